@@ -1,0 +1,1 @@
+"""What Utak knows: perception, interpretation, world model and reconciliation. Imports geometry alone."""

@@ -1,0 +1,1 @@
+"""Deciding: task, route, transport and the action cycle. Imports geometry and kb."""

@@ -1,0 +1,1 @@
+"""TABLETOP: the simulated world, its physics and senses, episodes, and the utak command."""
