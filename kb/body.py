@@ -1,7 +1,7 @@
 """Utak's body: all that his mind can do to the world, and all that it learns from it.
 
-One command goes in, one impression comes out. Everything is in Utak's frame: his north is the way he faces when he wakes.
-Lengths are in squares, angles in degrees, counter-clockwise positive.
+One command goes in, one impression comes out. Everything is in Utak's frame: his north is the way he faces when he
+wakes. Lengths are in squares, angles in degrees, counter-clockwise positive.
 """
 
 from dataclasses import dataclass

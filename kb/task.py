@@ -8,7 +8,7 @@ from kb.factfile import parse_facts
 from kb.facts import Fact, Number, Symbol, Term
 from kb.problems import BadInputError, Problem, Span, did_you_mean
 from kb.source import Source, read_source
-from kb.vocabulary import GOAL, RESERVED, START, check_facts
+from kb.vocabulary import GOAL, RESERVED, START, Vocabulary, check_facts
 
 CERTAIN = 100
 KINDS = ("object", "door", "room")
@@ -80,19 +80,38 @@ def read_task(start: Path | str, goal: Path | str) -> Task:
     return task_of(sources[0], begin, sources[1], end)
 
 
+def read_start(path: Path | str) -> tuple[Fact, ...]:
+    """Read start.lp alone and check it; raises as `read_task` does."""
+    source = read_source(path)
+    problems: list[Problem] = []
+    begin = _checked(source, START, problems)
+    if not problems:
+        problems = _start_problems(source, begin)[2]
+    if problems:
+        raise BadInputError(problems)
+    return begin
+
+
 def task_of(start: Source, begin: tuple[Fact, ...], goal: Source, end: tuple[Fact, ...]) -> Task:
     """Return the task that checked facts of start.lp and goal.lp state; raises BadInputError."""
-    problems = _repeated(start, begin) + _repeated(goal, end)
-    parameters = _parameters(start, begin, problems)
-    claims = _claims(start, begin, parameters, problems)
-    problems += _contradictions(start, claims)
+    parameters, claims, problems = _start_problems(start, begin)
+    problems += _repeated(goal, end)
     problems += _goal_problems(goal, end, parameters)
     if problems:
         raise BadInputError(problems)
     return Task(parameters, tuple(claims), end)
 
 
-def _checked(source: Source | None, vocabulary: object, problems: list[Problem]) -> tuple[Fact, ...]:
+def _start_problems(source: Source, begin: tuple[Fact, ...]) -> tuple[dict[str, Parameter], list[Claim], list[Problem]]:
+    """What start.lp introduces and claims, and what is wrong with it."""
+    problems = _repeated(source, begin)
+    parameters = _parameters(source, begin, problems)
+    claims = _claims(source, begin, parameters, problems)
+    problems += _contradictions(source, claims)
+    return parameters, claims, problems
+
+
+def _checked(source: Source | None, vocabulary: Vocabulary, problems: list[Problem]) -> tuple[Fact, ...]:
     """The facts of a source; what is wrong with them is appended to `problems`."""
     if source is None:
         return ()
@@ -101,7 +120,7 @@ def _checked(source: Source | None, vocabulary: object, problems: list[Problem])
     except BadInputError as bad:
         problems += bad.problems
         return ()
-    problems += check_facts(source, facts, vocabulary)  # type: ignore[arg-type]
+    problems += check_facts(source, facts, vocabulary)
     return facts
 
 
