@@ -1,0 +1,262 @@
+"""The times of impact behind first contact: corners that run into edges, straight or on arcs. Plain loops for numba.
+
+Rows of edges are x0, y0, x1, y1, outward normal x and y, length (see contact.with_normals). A time counts from 0 to 1
+over a push and in radians turned, always positive, over a turn. NEVER is later than any motion's end.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from geometry.compiled import compiled
+
+Floats = npt.NDArray[np.float64]
+
+
+class Surface(NamedTuple):
+    """What a body runs against.
+
+    hull: the edges of closed rings; skin: the same drawn in, row for row; edges: the true edges of the obstacles, and
+    owner: whose they are. Hull and true edges are the same but for points (see contact.Obstacles).
+    """
+
+    hull: Floats
+    skin: Floats
+    edges: Floats
+    owner: npt.NDArray[np.intp]
+
+
+Found = tuple[float, float, float, int, float, float]  # fraction, place x, y, obstacle or -1, normal x, y
+Met = tuple[float, int, int, int]  # time, 0 nothing or 1 corner on edge or 2 edge on corner, index in body, edge
+
+NEVER = 1e9
+BESIDE = 1e-9  # an edge reaches this far beyond its ends, so that nothing slips between two edges
+BEHIND = 1e-11  # a point up to this deep behind an edge, going in, meets it at once: rounding put it there
+MARGIN = 1e-6  # squares: by how much the broad phase looks further than the motion goes
+STILL = 1e-12  # going in by less than this is rounding
+WHOLE_TURN = 2 * math.pi
+
+
+@compiled
+def push_impact(x: float, y: float, dx: float, dy: float, edges: Floats, j: int) -> float:
+    """When the point (x, y), pushed by (dx, dy), enters through edge j; NEVER when it does not, or not yet by 1."""
+    nx, ny = edges[j, 4], edges[j, 5]
+    ahead = nx * dx + ny * dy
+    if ahead >= 0.0:
+        return NEVER
+    px, py = x - edges[j, 0], y - edges[j, 1]
+    above = nx * px + ny * py
+    if above + ahead > 0.0:
+        return NEVER
+    time = -above / ahead
+    if above < 0.0:
+        if above < -BEHIND or ahead > -STILL:
+            return NEVER
+        time = 0.0
+    along = nx * (py + time * dy) - ny * (px + time * dx)
+    if along < -BESIDE or along > edges[j, 6] + BESIDE:
+        return NEVER
+    return float(time)
+
+
+@compiled
+def turn_impact(x: float, y: float, cx: float, cy: float, sign: float, edges: Floats, j: int) -> float:
+    """When the point (x, y), turning about (cx, cy) with the sign's sense, enters through edge j, in radians turned."""
+    nx, ny = edges[j, 4], edges[j, 5]
+    hx, hy = cx - edges[j, 0], cy - edges[j, 1]
+    h = nx * hx + ny * hy
+    qx, qy = x - cx, y - cy
+    r2 = qx * qx + qy * qy
+    if h * h >= r2:
+        return NEVER
+    r = math.sqrt(r2)
+    up = nx * qx + ny * qy  # r cos(g): the height over the pivot
+    across = sign * (nx * qy - ny * qx)  # r sin(g): the speed downwards
+    above = h + up
+    if -BEHIND < above < 1e-13 and across > STILL:
+        time = 0.0
+    else:
+        time = math.acos(-h / r) - math.atan2(across, up)
+        if time < 0.0:
+            time += WHOLE_TURN
+    cosine, sine = math.cos(time), sign * math.sin(time)
+    px = hx + cosine * qx - sine * qy
+    py = hy + sine * qx + cosine * qy
+    along = nx * py - ny * px
+    if along < -BESIDE or along > edges[j, 6] + BESIDE:
+        return NEVER
+    return time
+
+
+@compiled
+def first_push(corners: Floats, body: Floats, surface: Surface, dx: float, dy: float) -> Found:
+    """First contact of a pushed body."""
+    hull, skin, edges, owner = surface
+    time, kind, i, j = _push_through_skin(corners, body, hull, skin, dx, dy)
+    if kind == 0:
+        return 1.0, 0.0, 0.0, -1, 0.0, 0.0
+    if kind == 1:
+        x, y = corners[i, 0], corners[i, 1]
+        at, k = _last_push(x, y, dx, dy, edges, time)
+        return at, x + at * dx, y + at * dy, owner[k], edges[k, 4], edges[k, 5]
+    x, y = hull[j, 0], hull[j, 1]
+    at, k = _last_push(x, y, -dx, -dy, body, time)
+    return at, x, y, owner[j], -body[k, 4], -body[k, 5]
+
+
+@compiled
+def _push_through_skin(corners: Floats, body: Floats, hull: Floats, skin: Floats, dx: float, dy: float) -> Met:
+    """The earliest impact of a pushed body on the skins."""
+    low_x, low_y, high_x, high_y = _bounds(corners)
+    low_x += min(dx, 0.0)
+    low_y += min(dy, 0.0)
+    high_x += max(dx, 0.0)
+    high_y += max(dy, 0.0)
+    best, kind, at, edge = NEVER, 0, 0, 0
+    for j in range(len(hull)):
+        x0, y0, x1, y1 = hull[j, 0], hull[j, 1], hull[j, 2], hull[j, 3]
+        if max(x0, x1) < low_x or min(x0, x1) > high_x or max(y0, y1) < low_y or min(y0, y1) > high_y:
+            continue
+        if hull[j, 4] * dx + hull[j, 5] * dy < 0.0:
+            for i in range(len(corners)):
+                time = push_impact(corners[i, 0], corners[i, 1], dx, dy, skin, j)
+                if time < best:
+                    best, kind, at, edge = time, 1, i, j
+        x, y = skin[j, 0], skin[j, 1]
+        if low_x <= x <= high_x and low_y <= y <= high_y:
+            for i in range(len(body)):
+                time = push_impact(x, y, -dx, -dy, body, i)
+                if time < best:
+                    best, kind, at, edge = time, 2, i, j
+    return best, kind, at, edge
+
+
+@compiled
+def _last_push(x: float, y: float, dx: float, dy: float, edges: Floats, until: float) -> tuple[float, int]:
+    """The last entry through the true edges up to a time, and by which; at once by the nearest when there is none."""
+    last, by = 0.0, -1
+    for k in range(len(edges)):
+        time = push_impact(x, y, dx, dy, edges, k)
+        if time <= until and (time > last or by < 0):
+            last, by = time, k
+    if by < 0:
+        by = _nearest_ahead(x, y, dx, dy, edges)
+    return last, by
+
+
+@compiled
+def _nearest_ahead(x: float, y: float, dx: float, dy: float, edges: Floats) -> int:
+    """The edge nearest to a point among those that face its velocity (dx, dy)."""
+    best, at = math.inf, 0
+    for k in range(len(edges)):
+        nx, ny = edges[k, 4], edges[k, 5]
+        if nx * dx + ny * dy < 0.0:
+            px, py = x - edges[k, 0], y - edges[k, 1]
+            along = nx * py - ny * px
+            off = along - min(max(along, 0.0), edges[k, 6])
+            d2 = (nx * px + ny * py) ** 2 + off * off
+            if d2 < best:
+                best, at = d2, k
+    return at
+
+
+@compiled
+def first_turn(corners: Floats, body: Floats, surface: Surface, turn: float, cx: float, cy: float) -> Found:
+    """First contact of a body turned by some radians about (cx, cy)."""
+    hull, skin, edges, owner = surface
+    sign = 1.0 if turn >= 0.0 else -1.0
+    time, kind, i, j = _turn_through_skin(corners, body, hull, skin, cx, cy, sign, abs(turn))
+    if kind == 0:
+        return 1.0, 0.0, 0.0, -1, 0.0, 0.0
+    if kind == 1:
+        x, y = corners[i, 0], corners[i, 1]
+        at, k = _last_turn(x, y, cx, cy, sign, edges, time)
+        x, y = _turned(x - cx, y - cy, sign * at)
+        return at / abs(turn), cx + x, cy + y, owner[k], edges[k, 4], edges[k, 5]
+    x, y = hull[j, 0], hull[j, 1]
+    at, k = _last_turn(x, y, cx, cy, -sign, body, time)
+    nx, ny = _turned(-body[k, 4], -body[k, 5], sign * at)
+    return at / abs(turn), x, y, owner[j], nx, ny
+
+
+@compiled
+def _turn_through_skin(
+    corners: Floats, body: Floats, hull: Floats, skin: Floats, cx: float, cy: float, sign: float, limit: float
+) -> Met:
+    """The earliest impact on the skins within a turn of `limit` radians."""
+    reach = 0.0
+    for i in range(len(corners)):
+        reach = max(reach, (corners[i, 0] - cx) ** 2 + (corners[i, 1] - cy) ** 2)
+    reach = math.sqrt(reach)
+    best, kind, at, edge = limit, 0, 0, 0
+    for j in range(len(hull)):
+        x0, y0, x1, y1 = hull[j, 0], hull[j, 1], hull[j, 2], hull[j, 3]
+        if max(x0, x1) < cx - reach or min(x0, x1) > cx + reach or max(y0, y1) < cy - reach or min(y0, y1) > cy + reach:
+            continue
+        if abs(hull[j, 4] * (cx - x0) + hull[j, 5] * (cy - y0)) <= reach:
+            for i in range(len(corners)):
+                time = turn_impact(corners[i, 0], corners[i, 1], cx, cy, sign, skin, j)
+                if time < best:
+                    best, kind, at, edge = time, 1, i, j
+        x, y = skin[j, 0], skin[j, 1]
+        if (x - cx) ** 2 + (y - cy) ** 2 <= reach * reach:
+            for i in range(len(body)):
+                time = turn_impact(x, y, cx, cy, -sign, body, i)
+                if time < best:
+                    best, kind, at, edge = time, 2, i, j
+    return best, kind, at, edge
+
+
+@compiled
+def _last_turn(x: float, y: float, cx: float, cy: float, sign: float, edges: Floats, until: float) -> tuple[float, int]:
+    """The last entry through the true edges within a turn of `until` radians, told as by _last_push."""
+    last, by = 0.0, -1
+    for k in range(len(edges)):
+        time = turn_impact(x, y, cx, cy, sign, edges, k)
+        if time <= until and (time > last or by < 0):
+            last, by = time, k
+    if by < 0:
+        by = _nearest_ahead(x, y, -sign * (y - cy), sign * (x - cx), edges)
+    return last, by
+
+
+@compiled
+def _turned(x: float, y: float, angle: float) -> tuple[float, float]:
+    """The vector (x, y) turned by some radians."""
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return cosine * x - sine * y, sine * x + cosine * y
+
+
+@compiled
+def _bounds(points: Floats) -> tuple[float, float, float, float]:
+    """Least x, least y, greatest x, greatest y, with a margin: a corner may lie a skin behind an edge."""
+    low_x = high_x = points[0, 0]
+    low_y = high_y = points[0, 1]
+    for i in range(1, len(points)):
+        low_x = min(low_x, points[i, 0])
+        high_x = max(high_x, points[i, 0])
+        low_y = min(low_y, points[i, 1])
+        high_y = max(high_y, points[i, 1])
+    return low_x - MARGIN, low_y - MARGIN, high_x + MARGIN, high_y + MARGIN
+
+
+@compiled
+def many_pushes(corners: Floats, body: Floats, surface: Surface, vectors: Floats) -> Floats:
+    """The fraction travelled for each of many translations (n, 2)."""
+    fractions = np.empty(len(vectors))
+    for n in range(len(vectors)):
+        dx, dy = vectors[n, 0], vectors[n, 1]
+        fractions[n] = first_push(corners, body, surface, dx, dy)[0]
+    return fractions
+
+
+@compiled
+def many_turns(corners: Floats, body: Floats, surface: Surface, turns: Floats, pivots: Floats) -> Floats:
+    """The fraction travelled for each of many turns (n,) about pivots (n, 2)."""
+    fractions = np.empty(len(turns))
+    for n in range(len(turns)):
+        x, y = pivots[n, 0], pivots[n, 1]
+        fractions[n] = first_turn(corners, body, surface, turns[n], x, y)[0]
+    return fractions
