@@ -105,6 +105,18 @@ class Evidence:
         impossible: Mask = (full > ranges[:, 1]) | (possible < ranges[:, 0] - samples.slack)
         return impossible
 
+    def clashes(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> int:
+        """How many fields, of this look and of those before, cannot be right if it was received on square (x, y)."""
+        new = int(self.misfits(samples, ranges, x, y).sum())
+        where = self._under(samples, x, y)
+        single = (samples.weight.sum(1) == 1) & (samples.slack == 0)
+        state = self.state.ravel().copy()
+        state[where[single, 0]] = np.where(ranges[single, 0] > 0, FULL, FREE)
+        under = state[self._where]
+        full = np.where(under == FULL, self._weight, 0).sum(1)
+        possible = full + np.where(under == OPEN, self._weight, 0).sum(1)
+        return new + int(((full > self._high) | (possible < self._low)).sum())
+
     def look(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, number: int) -> None:
         """Take in one impression, received on square (x, y), as impression `number`.
 

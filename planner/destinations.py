@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kb.facts import Fact, Symbol, Term
-from kb.lattice import WOKE
 from kb.rooms import Rooms
 from kb.worldmodel import WorldModel
 from planner.exploring import Lookout, rooms_beyond
@@ -55,7 +54,7 @@ def destination(goal: Fact, situation: Situation) -> Destination:
     if goal.name == "at" and isinstance(where, Symbol) and where.name == "corner":
         return corner(str(where.args[0]), situation)
     if goal.name == "at" and str(where) == "start":
-        return Destination(_within(situation.model, WOKE, 1.0))
+        return Destination(_within(situation.model, situation.model.lattice.woke, 1.0))
     if goal.name in ("at", "beside"):
         return beside(str(where), situation)
     if goal.name in ("in", "through"):
