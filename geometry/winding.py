@@ -1,7 +1,10 @@
-"""Shortest ways over a raster with a prescribed crossing number: how often, with sign, they cross a ray from a given point.
+"""Shortest ways over a raster with a prescribed crossing number: how often, with sign, they cross a ray from a given
+point.
 
-# Strategy: the raster is taken in several sheets, one for each crossing number so far; a step over the ray leads to the next sheet up or
-# down. This is a piece of the universal cover of the plane without the point, and Dijkstra's algorithm runs on it as on any raster.
+# Strategy: the raster is taken in several sheets, one for each crossing number so far; a step over the ray leads to
+# the next sheet up or
+# down. This is a piece of the universal cover of the plane without the point, and Dijkstra's algorithm runs on it as
+# on any raster.
 """
 
 import numpy as np
@@ -18,7 +21,8 @@ Square = tuple[int, int]
 def crossings(points: NDArray[np.float64], about: tuple[float, float]) -> int:
     """How often a polyline crosses the ray from a point towards +x: upwards counts +1, downwards -1.
 
-    points: (n, 2). Of a closed polyline this is its winding number about the point. A point at the ray's own height counts as above it.
+    points: (n, 2). Of a closed polyline this is its winding number about the point. A point at the ray's own height
+    counts as above it.
 
     >>> crossings(np.array([[1, -1], [1, 1], [-1, 1], [-1, -1], [1, -1]]), (0.0, 0.0))
     1

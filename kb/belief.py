@@ -87,7 +87,7 @@ def _object(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
         yield f"colour({name},{node.colour},99)"
     yield f"movable({name},{50 if node.confidence >= 50 else 0})"
     yield from _outlined(name, _object_rings(node), model)
-    row, column = model.view.index(*node.patch.centre)
+    row, column = model.view.locate(*node.patch.centre)
     room = rooms.labels[row, column]
     if room:
         yield f"in({name},r{room})"
@@ -96,7 +96,7 @@ def _object(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
 
 
 def _beside_utak(node: Node, model: WorldModel) -> bool:
-    row, column = model.view.index(*model.place)
+    row, column = model.view.locate(*model.place)
     return bool(model.mask(node.patch)[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2].any())
 
 
@@ -146,7 +146,7 @@ def _rooms(model: WorldModel, rooms: Rooms) -> Iterator[str]:
         squares = rooms.labels == room
         yield f"room(r{room})"
         yield f"unseen(r{room},{int((squares & (model.view.state == OPEN)).sum())})"
-    row, column = model.view.index(*model.place)
+    row, column = model.view.locate(*model.place)
     if rooms.labels[row, column]:
         yield f"in({ORG},r{rooms.labels[row, column]})"
     for door in rooms.doors:

@@ -44,7 +44,7 @@ class MapView(NamedTuple):
     seen: Mask
     settled_by: NDArray[np.int16]
 
-    def index(self, x: float, y: float) -> tuple[int, int]:
+    def locate(self, x: float, y: float) -> tuple[int, int]:
         """[row, column] of the square in which a point of the lattice lies."""
         return math.floor(y) - self.south, math.floor(x) - self.west
 
@@ -152,7 +152,8 @@ class Evidence:
         self.state.ravel()[squares] = OPEN
         self.logit.ravel()[squares] = 0.0
         self.settled_by.ravel()[squares] = -1
-        self._keep(~(doubtful[self._where] & (self._weight > 0)).any(1))
+        touched = doubtful[self._where] & (self._weight > 0)
+        self._keep(np.logical_not(np.logical_or.reduce(touched, axis=1)))
 
     def stand(self, x: int, y: int, number: int) -> None:
         """Utak stands on this square, so it is floor, unless it was settled otherwise: his own image hides it."""
@@ -223,7 +224,8 @@ class Evidence:
         if not chosen.any():
             return np.zeros(0, np.int32)
         only = (member[a[chosen]] > 0) & (member[b[chosen]] == 0)
-        return squares[only.any(0)]
+        chosen_squares: Squares = squares[only.any(0)]
+        return chosen_squares
 
     def _assign(self, free: Squares, full: Squares, number: int) -> bool:
         for squares, value in ((free, FREE), (full, FULL)):
@@ -240,11 +242,12 @@ class Evidence:
         squares, column = np.unique(where, return_inverse=True)
         times = np.maximum(np.bincount(column, minlength=len(squares)), 1)
         logit = self.logit.ravel()[squares].astype(np.float64)
-        target = _logit(((low + high) / 2)[entry] / np.maximum(weight, 1)[entry])
+        middle = 0.5 * (low + high).astype(np.float64)
+        target = _logit(middle[entry] / np.maximum(weight, 1)[entry])
         share = self._weight[open_] / np.maximum(weight, 1)[entry]
         for _ in range(FITTING_ROUNDS):
             p = 1.0 / (1.0 + np.exp(-logit))
-            mean = np.bincount(entry, p[column] * share, minlength=len(weight))[entry]
+            mean = np.bincount(entry, p[column] * share, minlength=len(weight)).astype(np.float64)[entry]
             logit += np.bincount(column, target - _logit(mean), minlength=len(squares)) / times
             np.clip(logit, -LARGEST_LOGIT, LARGEST_LOGIT, out=logit)
         self.logit.ravel()[squares] = logit

@@ -49,7 +49,7 @@ class Knowledge:
         view = self.memory.evidence.view()
         occupied = view.seen & (view.probability > SPACE)
         percept, labels = map_regions(occupied, view.seen, view.state != OPEN)
-        touched = [(f"part{labels[view.index(x, y)]}", colour) for (x, y), colour in sorted(self.felt.items())]
+        touched = [(f"part{labels[view.locate(x, y)]}", colour) for (x, y), colour in sorted(self.felt.items())]
         kinds = interpret(percept, touched, self.rules)
         model = WorldModel(
             self.memory.lattice,

@@ -107,7 +107,7 @@ def _cell_region(name: str, members: Iterable[int], levels: tuple[int, ...], ran
 
 def _extents(labels: NDArray[np.int32], count: int) -> NDArray[np.int64]:
     answer = np.zeros(count + 1, np.int64)
-    for positions in np.indices(labels.shape, sparse=True):
+    for positions in np.ogrid[: labels.shape[0], : labels.shape[1]]:
         place = np.broadcast_to(positions, labels.shape).ravel()
         least = np.full(count + 1, max(labels.shape))
         most = np.full(count + 1, -1)

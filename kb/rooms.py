@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from geometry.passages import Passage
 from numpy.typing import NDArray
 
+from geometry.passages import Passage
 from geometry.screen import Screen
 from kb.encodings import KB, solve
 from kb.evidence import OPEN
@@ -69,6 +69,9 @@ class Rooms:
         return mask
 
 
+NOTHING = Rooms((), np.zeros((0, 0), np.int32), np.zeros((0, 0), np.bool_))
+
+
 def rooms_of(model: WorldModel, rules: tuple[Path, ...] = ()) -> Rooms:
     """The rooms of a world model."""
     verge = model.verge
@@ -78,7 +81,7 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = ()) -> Rooms:
     necks = [(passage, _known(passage, model, verge)) for passage in screen.passages()]
     sure = _doors(necks, rules)
     labels = screen.parts([passage for passage, _ in sure])
-    row, column = model.view.index(*model.lattice.woke)
+    row, column = model.view.locate(*model.lattice.woke)
     labels = _first(labels, int(labels[row, column]))
     doors = tuple(
         Door(f"d{number}", passage.a, passage.b, _sides(passage, labels), confidence)
@@ -110,11 +113,11 @@ def _known(passage: Passage, model: WorldModel, verge: Mask) -> int:
     across = _squares(ax + (bx - ax) * parts, ay + (by - ay) * parts, verge.shape)
     if not (model.view.seen[across] & ((model.view.probability[across] <= SPACE) | ~verge[across])).all():
         return 0
-    walls = [_near(verge, end) & model.view.seen for end in (passage.a, passage.b)]
+    walls: list[Mask] = [_near(verge, end) & model.view.seen for end in (passage.a, passage.b)]
     if not all(wall.any() for wall in walls):
         return 0
-    settled = [float((model.view.state[where] != OPEN).mean()) for where in (across, *walls)]
-    return round(50 + 50 * min(settled))
+    settled = model.view.state != OPEN
+    return round(50 + 50 * min(float(settled[across].mean()), *(float(settled[wall].mean()) for wall in walls)))
 
 
 def _near(verge: Mask, end: tuple[float, float]) -> Mask:
@@ -148,7 +151,7 @@ def _doorway(door: Door, verge: Mask) -> Mask:
     """The squares between a door's jambs: from the neck both ways, as long as there is wall on both sides."""
     along = np.subtract(door.b, door.a) / door.width
     across = np.array([-along[1], along[0]])
-    rows, columns = np.indices(verge.shape, sparse=True)
+    rows, columns = np.ogrid[: verge.shape[0], : verge.shape[1]]
     x, y = columns + 0.5 - door.place[0], rows + 0.5 - door.place[1]
     sideways, forward = x * along[0] + y * along[1], x * across[0] + y * across[1]
     depth = [_depth(door, along, sign * across, verge) for sign in (-1, 1)]

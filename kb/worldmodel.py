@@ -99,7 +99,7 @@ class WorldModel:
     @property
     def floor(self) -> Mask:
         """(rows, columns): the zero region in which Utak stands."""
-        row, column = self.view.index(*self.place)
+        row, column = self.view.locate(*self.place)
         mask: Mask = self.labels == self.labels[row, column]
         return mask
 
@@ -123,9 +123,9 @@ class WorldModel:
 
     def squares(self, squares: Iterable[tuple[int, int]]) -> Mask:
         """(rows, columns): squares of the lattice on the arrays of the view."""
-        mask = np.zeros(self.labels.shape, np.bool_)
+        mask: Mask = np.zeros(self.labels.shape, np.bool_)
         for x, y in squares:
-            row, column = self.view.index(x, y)
+            row, column = self.view.locate(x, y)
             if 0 <= row < mask.shape[0] and 0 <= column < mask.shape[1]:
                 mask[row, column] = True
         return mask

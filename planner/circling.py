@@ -1,8 +1,9 @@
 """Circling: a closed track that winds once about an object.
 
-The track walked so far, closed by the way that is still to go, must cross a ray from the object once, with sign. So what remains is a way to the
-start with a certain crossing number; geometry finds the shortest of each, and the choice between going left and going right is
-made like any other choice among topologically distinct routes.
+The track walked so far, closed by the way that is still to go, must cross a ray from the object once, with sign. So
+what remains is a way to the
+start with a certain crossing number; geometry finds the shortest of each, and the choice between going left and going
+right is made like any other choice among topologically distinct routes.
 """
 
 from collections.abc import Sequence
@@ -24,7 +25,7 @@ def winding(track: Sequence[Place], node: Node) -> int:
 
 
 def ways_round(screens: Screens, track: Sequence[Place], node: Node) -> list[Way]:
-    """The ways that complete one turn about an object and end where the track began, at the most certain level at which there is any."""
+    """The ways, at the most certain level, that complete one turn about an object and end where the track began."""
     model = screens.model
     x, y = pivot(node)
     about = (x - model.view.west, y - model.view.south)
@@ -63,5 +64,5 @@ def pivot(node: Node) -> Place:
 
 
 def _square(place: Place, model: WorldModel) -> Square:
-    row, column = model.view.index(*place)
+    row, column = model.view.locate(*place)
     return column, row

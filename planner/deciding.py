@@ -11,7 +11,7 @@ import numpy as np
 
 from kb.body import Command
 from kb.reconciliation import Reconciled, reconcile
-from kb.rooms import Rooms, rooms_of
+from kb.rooms import NOTHING, Rooms, rooms_of
 from kb.task import Task
 from kb.worldmodel import WorldModel
 from planner import exploring
@@ -40,7 +40,8 @@ class Decision:
 class Decider:
     """Decides, and remembers what it decided.
 
-    track : where he has been, as points of the lattice. bound : what the task's parameters mean. rooms : as last believed.
+    track : where he has been, as points of the lattice. bound : what the task's parameters mean. rooms : as last
+    believed.
     """
 
     task: Task
@@ -48,7 +49,7 @@ class Decider:
     rules: tuple[Path, ...] = ()
     bound: Mapping[str, str] = field(default_factory=dict)
     attained: int = 0
-    rooms: Rooms | None = None
+    rooms: Rooms = NOTHING
 
     def __post_init__(self) -> None:
         self.stages = stages(self.task)
@@ -88,7 +89,8 @@ class Decider:
         aim = choose(aims, situation.screens, self._old_aim(situation.model))
         if aim is None:
             missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
-            return Decision(None, f"{stage} cannot be attained: {missing}, and nothing is left to look at", "impossible")
+            why = f"{stage} cannot be attained: {missing}, and nothing is left to look at"
+            return Decision(None, why, "impossible")
         return self._walk(aim, stage, situation)
 
     def _round(self, stage: Stage, name: str, situation: Situation, track: Sequence[Place]) -> Decision | None:

@@ -115,8 +115,8 @@ def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
 
 def _within(model: WorldModel, point: tuple[float, float], reach: float) -> Squares:
     """The squares whose centres are within so many squares of a point, in each axis."""
-    row, column = model.view.index(*point)
-    rows, columns = np.indices(model.labels.shape, sparse=True)
+    row, column = model.view.locate(*point)
+    rows, columns = np.ogrid[: model.labels.shape[0], : model.labels.shape[1]]
     x, y = point[0] - model.view.west, point[1] - model.view.south
     near = (abs(columns + 0.5 - x) < reach) & (abs(rows + 0.5 - y) < reach)
     near[row, column] = True
@@ -125,12 +125,12 @@ def _within(model: WorldModel, point: tuple[float, float], reach: float) -> Squa
 
 def contains(squares: Squares, model: WorldModel) -> bool:
     """Does Utak stand on one of these squares?"""
-    row, column = model.view.index(*model.place)
+    row, column = model.view.locate(*model.place)
     return bool((squares == row * model.labels.shape[1] + column).any())
 
 
 def distance_to(squares: Squares, model: WorldModel) -> float:
     """How far the nearest of some squares is as the crow flies, in squares."""
     rows, columns = np.divmod(squares, model.labels.shape[1])
-    row, column = model.view.index(*model.place)
+    row, column = model.view.locate(*model.place)
     return float(min(np.hypot(rows - row, columns - column), default=math.inf))

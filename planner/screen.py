@@ -39,7 +39,7 @@ class Screens:
 
     def __init__(self, model: WorldModel) -> None:
         self.model = model
-        row, column = model.view.index(*model.place)
+        row, column = model.view.locate(*model.place)
         self.here = (column, row)
         self._barred = model.squares(model.barred)
 
@@ -78,7 +78,7 @@ class Screens:
         """Squares over which a move is made without looking first."""
         view = self.model.view
         doubtful = grown(view.seen & (view.state == OPEN) & (view.probability >= WARY), 1) | grown(~view.seen, 1)
-        mask = (view.state == FREE) | (view.seen & (view.probability <= SPACE) & ~doubtful)
+        mask: Mask = (view.state == FREE) | (view.seen & (view.probability <= SPACE) & ~doubtful)
         mask &= ~self._barred
         mask[self.here[1], self.here[0]] = True
         return mask

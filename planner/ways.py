@@ -1,6 +1,7 @@
 """Ways over a screen, by one of the paper's three path-finders, and the choice among them (planner/asp/routes.lp).
 
-Geometry finds topologically distinct routes; their lengths, clearances and risks go to the encoding as facts, with the doors they lead through.
+Geometry finds topologically distinct routes; their lengths, clearances and risks go to the encoding as facts, with
+the doors they lead through.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -35,22 +36,23 @@ class Way(NamedTuple):
     level: int
 
 
-PathFinder = Callable[[Mask, Square, Square], list[tuple[NDArray[np.float64], float, float]]]
+Line = tuple[list[list[float]], float, float]  # points (x, y), length, clearance
+PathFinder = Callable[[Mask, Square, Square], list[Line]]
 
 
-def by_skeleton(free: Mask, here: Square, there: Square) -> list[tuple[NDArray[np.float64], float, float]]:
+def by_skeleton(free: Mask, here: Square, there: Square) -> list[Line]:
     """Tight routes, one for each class, from the pathgraph of the skeleton: (points, length, clearance) of each."""
     from geometry.screen import Screen
 
     routes = Screen(free).routes(_centre(here), _centre(there), k=ROUTES)
-    return [(route.points, route.length, route.clearance) for route in routes]
+    return [(route.points.tolist(), route.length, route.clearance) for route in routes]
 
 
 FINDERS: Mapping[str, PathFinder] = {"skeleton": by_skeleton}
 
 
 def ways(screens: Screens, level: int, goals: NDArray[np.int64], finder: str) -> list[Way]:
-    """Topologically distinct ways to the nearest of some squares (flat indices) that can be reached at a level of certainty."""
+    """Topologically distinct ways, at a level of certainty, to the nearest square that can be reached of some."""
     free, distances = screens.free(level), screens.distances[level].ravel()
     reached = goals[distances[goals] >= 0]
     row, column = divmod(int(reached[np.argmin(distances[reached])]), free.shape[1])
@@ -61,7 +63,11 @@ def ways(screens: Screens, level: int, goals: NDArray[np.int64], finder: str) ->
 
 
 def choose_way(
-    offered: Sequence[Way], screens: Screens, before: frozenset[Square], doors: Sequence[Door], forbidden: frozenset[str]
+    offered: Sequence[Way],
+    screens: Screens,
+    before: frozenset[Square],
+    doors: Sequence[Door],
+    forbidden: frozenset[str],
 ) -> Way | None:
     """The way that kb rules prefer; None when every one of them is forbidden.
 
