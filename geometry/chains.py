@@ -1,8 +1,8 @@
 """Junctions and chains: the skeleton's links contracted to a graph held in arrays.
 
-A node is a skeleton cell with other than two links (or one cell on a ring that has no such cell). A chain is a maximal
-way of linked cells between two nodes, both included. Nodes come in the order of their cells, chains in the order of their
-first node and direction, so equal skeletons give equal arrays.
+A node is a skeleton cell with other than two links (or one cell on a ring that has no such cell). A chain is a
+maximal way of linked cells between two nodes, both included. Nodes come in the order of their cells, chains in the
+order of their first node and direction, so equal skeletons give equal arrays.
 """
 
 from typing import NamedTuple

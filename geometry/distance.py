@@ -1,14 +1,15 @@
 """How far each square's centre is from the nearest square that is not free: exact, in integers.
 
-All arrays are padded by one blocked square on each side: cell ``(row + 1) * width + column + 1`` with ``width = columns + 2``.
-``gap[row, column]`` is the number of steps to the nearest blocked square in the same column; ``square`` is the squared
-distance in *half squares* from the centre to the nearest blocked square's edge or corner, 0 on blocked squares. A blocked
-square at offset (dx, dy) is ``(max(2|dx| - 1, 0))^2 + (max(2|dy| - 1, 0))^2`` away, so ``sqrt(square) / 2`` is the clearance.
+All arrays are padded by one blocked square on each side: cell ``(row + 1) * width + column + 1`` with ``width =
+columns + 2``. ``gap[row, column]`` is the number of steps to the nearest blocked square in the same column;
+``square`` is the squared distance in *half squares* from the centre to the nearest blocked square's edge or corner,
+0 on blocked squares. A blocked square at offset (dx, dy) is ``(max(2|dx| - 1, 0))^2 + (max(2|dy| - 1, 0))^2`` away,
+so ``sqrt(square) / 2`` is the clearance.
 
-# Strategy: columns first, then along each run of free squares of a row the lower envelope of parabolas (Felzenszwalb and
-# Huttenlocher 2012), here as the lower convex hull of (site, height + site^2), which needs no division. Between squares j and
-# j + 1 a column's edge stands at 2j + 1 half squares, so a run has a site between any two of its squares, with the lower of
-# their two column distances as its height.
+# Strategy: columns first, then along each run of free squares of a row the lower envelope of parabolas
+(Felzenszwalb and # Huttenlocher 2012), here as the lower convex hull of (site, height + site^2), which needs no
+division. Between squares j and # j + 1 a column's edge stands at 2j + 1 half squares, so a run has a site between
+any two of its squares, with the lower of # their two column distances as its height.
 """
 
 import numpy as np
@@ -88,14 +89,15 @@ def measure_run(gap: Gaps, square: Squares, first: int, last: int, sites: Sites,
 
 @compiled
 def envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> int:
-    """The sites whose parabolas are lowest somewhere; positions relative to ``first``. Returns the index of the last."""
+    """The sites whose parabolas are lowest somewhere; relative to ``first``. Returns the index of the last."""
     sites[0] = -1
     heights[0] = 1
     top = 0
     before = np.int64(gap[first])
     for column in range(first + 1, last + 1):
         here = np.int64(gap[column])
-        edge = max(2 * min(before, here) - 1, 0)
+        lower = before if before < here else here
+        edge = 2 * lower - 1 if lower > 0 else 0
         before = here
         site = 2 * (column - first) - 1
         height = edge * edge + site * site
@@ -108,7 +110,7 @@ def envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> 
 
 
 @compiled
-def hidden(sites: Sites, heights: Sites, top: int, site: int, height: int) -> bool:
+def hidden(sites: Sites, heights: Sites, top: int, site: int, height: np.int64 | int) -> bool:
     """Whether the top site lies on or above the line from the one beneath it to the new one."""
     rise = (heights[top] - heights[top - 1]) * (site - sites[top])
-    return rise >= (height - heights[top]) * (sites[top] - sites[top - 1])
+    return bool(rise >= (height - heights[top]) * (sites[top] - sites[top - 1]))

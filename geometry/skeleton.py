@@ -1,13 +1,15 @@
 """The skeleton of a screen: steepest ways up from every saddle of the clearance.
 
-# Strategy: cells are totally ordered by (squared clearance, index). Seen from a cell, the neighbours above it in that order
-fall into groups along the ring of eight; a group counts when it touches the cell by an edge. A cell with no higher edge
-neighbour is a maximum, one with two groups or more a saddle. Clearance has no interior minimum, so discrete Morse theory
-gives maxima - sum of (groups - 1) over saddles = components - holes of the free space (4-connected, as DESIGN has it). From
-each saddle one steepest way up per group, until a way already trodden: the union has the homotopy type of free space, and
-so has its part at or above any level, which is free space for a body of that radius.
+# Strategy: cells are totally ordered by (squared clearance, index). Seen from a cell, the neighbours above it in
+that order fall into groups along the ring of eight; a group counts when it touches the cell by an edge. A cell with
+no higher edge neighbour is a maximum, one with two groups or more a saddle. Clearance has no interior minimum, so
+discrete Morse theory gives maxima - sum of (groups - 1) over saddles = components - holes of the free space
+(4-connected, as DESIGN has it). From each saddle one steepest way up per group, until a way already trodden: the
+union has the homotopy type of free space, and so has its part at or above any level, which is free space for a body
+of that radius.
 
-``state`` holds one byte a cell: bits 0-3 the links to the east, north, west and south neighbours, then the flags below.
+``state`` holds one byte a cell: bits 0-3 the links to the east, north, west and south neighbours, then the flags
+below.
 """
 
 import numpy as np
@@ -75,7 +77,7 @@ def classify_part(
 
 @compiled
 def trace(square: Squares, state: States, words: Words) -> None:
-    """Link the ways up from all saddles. ``square`` and ``state`` are whole screens; ``words`` is ``state`` by eights."""
+    """Link the ways up from all saddles. ``words`` is ``state`` by eights."""
     width = square.shape[1]
     heights, states = square.reshape(-1), state.reshape(-1)
     for word in range(words.shape[0]):
