@@ -53,9 +53,12 @@ def find_runs(square: Squares, level: int) -> Runs:
     p = fill_portals(row, low, high, up, down, left, right, lower, upper, line)
     crossing = np.zeros(p, np.int32)
     number_crossings(lower, upper, np.arange(n, dtype=np.int32), crossing)
-    return Runs(
-        row, low, high, up, down, left[:p].copy(), right[:p].copy(), lower[:p].copy(), upper[:p].copy(), crossing
-    )
+    return Runs(row, low, high, up, down, *trimmed(p, left, right, lower), *trimmed(p, upper, line, crossing))
+
+
+def trimmed(size: int, a: Ints, b: Ints, c: Ints) -> tuple[Ints, Ints, Ints]:
+    """Copies of the arrays' first ``size`` entries, without the spare room behind."""
+    return a[:size].copy(), b[:size].copy(), c[:size].copy()
 
 
 @compiled
@@ -174,8 +177,8 @@ def symbol_between(runs: Runs, cell: int, other: int, width: int) -> int:
 
 @compiled
 def extend(word: Ints, size: int, symbol: int) -> int:
-    """Append a symbol to a reduced word; returns its new size."""
-    if symbol == 0:
+    """Append a symbol to a reduced word; returns its new size. A word that fills its room needs a larger one."""
+    if symbol == 0 or size >= word.shape[0]:
         return size
     if size > 0 and word[size - 1] == -symbol:
         return size - 1

@@ -1,4 +1,6 @@
-"""What routing needs besides chains and runs: the portals along each chain, and how long a chain is when pulled tight."""
+"""What routing needs besides chains and runs: the portals along each chain, and how long a chain is when pulled
+tight.
+"""
 
 from typing import NamedTuple
 
@@ -75,7 +77,7 @@ def measure_ways(
 
 @compiled
 def ascend(cell: int, square: Squares, state: States, runs: Runs, word: Ints, size: int) -> tuple[int, int]:
-    """Go up the steepest way from a cell to the skeleton, adding its portals to the word; returns cell and word size."""
+    """Go up the steepest way from a cell to the skeleton, adding its portals; returns cell and word size."""
     width = square.shape[1]
     heights, states = square.reshape(-1), state.reshape(-1)
     while states[cell] == 0:
@@ -91,29 +93,34 @@ def locate(cell: int, state: States, chains: Chains) -> Anchor:
     width = state.shape[1]
     states = state.reshape(-1)
     if is_node(states[cell]):
-        node = find(chains.node, cell)
-        for direction in range(4):
-            chain = chains.leave[node, direction]
-            if chain >= 0:
-                at_start = chains.cells[chains.start[chain]] == cell
-                return Anchor(chain, 0 if at_start else chains.start[chain + 1] - chains.start[chain] - 1, node, cell)
-        return Anchor(-1, 0, node, cell)
+        return locate_node(cell, chains)
     direction = 0
     while not states[cell] >> direction & 1:
         direction += 1
     steps, here = 0, cell
-    while True:
+    while steps == 0 or not is_node(states[here]):
+        if steps > 0:
+            direction = onward(states[here], direction ^ 2)
         here += stride(direction, width)
         steps += 1
-        back = direction ^ 2
-        if is_node(states[here]):
-            break
-        direction = onward(states[here], back)
-    chain = chains.leave[find(chains.node, here), back]
+    chain = chains.leave[find(chains.node, here), direction ^ 2]
     first = chains.start[chain]
     if chains.cells[first + steps] != cell:  # we came to the chain's far end (or round a ring to its near one)
         steps = chains.start[chain + 1] - first - 1 - steps
-    return Anchor(chain, steps, -1, cell)
+    return Anchor(0 + chain, steps, -1, cell)
+
+
+@compiled
+def locate_node(cell: int, chains: Chains) -> Anchor:
+    """The place of a node, as an end of one of its chains if it has any."""
+    node, found, position = find(chains.node, cell), -1, 0
+    for direction in range(4):
+        chain = chains.leave[node, direction]
+        if chain >= 0:
+            found = chain
+            at_start = chains.cells[chains.start[chain]] == cell
+            position = 0 if at_start else chains.start[chain + 1] - chains.start[chain] - 1
+    return Anchor(found, position, node, cell)
 
 
 @compiled
