@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.passages import Passage
-from geometry.screen import Screen
+from geometry import Screen
 from kb.encodings import KB, solve
 from kb.evidence import OPEN
 from kb.worldmodel import SPACE, WorldModel

@@ -42,7 +42,7 @@ PathFinder = Callable[[Mask, Square, Square], list[Line]]
 
 def by_skeleton(free: Mask, here: Square, there: Square) -> list[Line]:
     """Tight routes, one for each class, from the pathgraph of the skeleton: (points, length, clearance) of each."""
-    from geometry.screen import Screen
+    from geometry import Screen
 
     routes = Screen(free).routes(_centre(here), _centre(there), k=ROUTES)
     return [(route.points.tolist(), route.length, route.clearance) for route in routes]
