@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from geometry.rigid import Motion, Translate
-
 from kb.body import Body, Command, Grasp, Impression, Release, Turn
 from kb.source import read_source
 from kb.task import Task
