@@ -103,10 +103,9 @@ class _Reader:
 
     def number(self) -> float:
         token = self.take()
-        try:
-            value = float(token.text)
-        except ValueError:
-            raise WktError(token.at, f"a number was expected, {token.text[:20] or 'the end'!r} found") from None
+        if not token.text or token.text[-1] not in "0123456789.":
+            raise WktError(token.at, f"a number was expected, {token.text[:20] or 'the end'!r} found")
+        value = float(token.text)
         if not abs(value) <= FURTHEST:
             raise WktError(token.at, f"a coordinate beyond {FURTHEST:.0f} squares")
         return value

@@ -4,7 +4,7 @@ import argparse
 import dataclasses
 import json
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from kb.problems import BadInputError, Problem, Span
 from simulator import exits
@@ -12,6 +12,7 @@ from simulator import exits
 if TYPE_CHECKING:
     from simulator.session import Result, Session, Settings
 
+Amount = TypeVar("Amount", int, float)
 PATHS = ("skeleton", "visibility", "grid")
 
 
@@ -132,10 +133,10 @@ def _steps(text: str) -> int:
 
 
 def _noise(text: str) -> float:
-    return _within(float(text), 0.0, 1.0)
+    return _within(float(text), 0, 1)
 
 
-def _within(value: Any, low: float, high: float) -> Any:
+def _within(value: Amount, low: int, high: int) -> Amount:
     if not low <= value <= high:
         raise argparse.ArgumentTypeError(f"must be from {low} to {high}, not {value}")
     return value
