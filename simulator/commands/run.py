@@ -1,8 +1,6 @@
 """`utak run`: the robot wakes in a scenario and does his task."""
 
 import argparse
-import dataclasses
-import json
 import sys
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -55,12 +53,14 @@ def execute(options: argparse.Namespace) -> int:
 
 def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = None) -> "Settings":
     """Return the settings that the command line gives; those of a recorded episode hold where it is silent."""
+    from dataclasses import replace
+
     from simulator.session import Settings, kb_files_named
 
     given = {"seed": options.seed, "noise": options.noise, "paths": options.paths, "max_steps": options.max_steps}
     given = {name: value for name, value in given.items() if value is not None}
     kept = {name: value for name, value in (recorded or {}).items() if name in ("seed", "noise", "paths", "max_steps")}
-    return dataclasses.replace(Settings(kb_files=kb_files_named(options.kb)), **{**kept, **given})
+    return replace(Settings(kb_files=kb_files_named(options.kb)), **{**kept, **given})
 
 
 def exit_code(result: "Result") -> int:
@@ -87,6 +87,8 @@ def _recorded(options: argparse.Namespace) -> dict[str, Any] | None:
 
 
 def _print(result: "Result", as_json: bool) -> None:
+    import json
+
     if as_json:
         print(json.dumps({**result.line["result"], "unmet": list(result.unmet)}))
         return
