@@ -8,7 +8,8 @@ from kb.problems import BadInputError, Problem, Span
 from simulator import exits
 
 if TYPE_CHECKING:
-    from simulator.session import Result, Session, Settings
+    from simulator.session import Result, Session
+    from simulator.settings import Settings
 
 Amount = TypeVar("Amount", int, float)
 PATHS = ("skeleton", "visibility", "grid")
@@ -55,7 +56,7 @@ def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = N
     """Return the settings that the command line gives; those of a recorded episode hold where it is silent."""
     from dataclasses import replace
 
-    from simulator.session import Settings, kb_files_named
+    from simulator.settings import Settings, kb_files_named
 
     given = {"seed": options.seed, "noise": options.noise, "paths": options.paths, "max_steps": options.max_steps}
     given = {name: value for name, value in given.items() if value is not None}
