@@ -22,6 +22,7 @@ BAD = {
     "POINT (1 2": (10, "the end"),
     "POINT (1 2) x": (12, "the shape ends before 'x'"),
     "POINT (1 nan)": (9, "a number was expected"),
+    "POINT (1 .)": (9, "a number was expected"),
     "POINT (1 1e999)": (9, "a coordinate beyond"),
     "POLYGON ((0 0, 1 0, 1 1))": (9, "a ring that does not end where it begins"),
     "POLYGON ((0 0, 1 0, 0 0))": (9, "three corners"),
