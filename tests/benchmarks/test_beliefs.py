@@ -37,7 +37,7 @@ def robot(quarters: int, angle: int = 0, shape: str = "brick") -> tuple[Any, int
             for _ in range(-quarters % 4):
                 dx, dy = -dy, dx
             state[dy - south, dx - west] = grid[y, x]
-    node = SimpleNamespace(shape={shape: 90, "polygon": 40}, polygon=lattice, patch=None)
+    node = SimpleNamespace(shape={shape: 90, "rectangle": 90, "polygon": 99}, polygon=lattice, patch=None)
     view = SimpleNamespace(west=west, south=south, state=state)
     model = SimpleNamespace(lattice=SimpleNamespace(angle=angle), objects=(node,), view=view)
     return SimpleNamespace(model=model), (90 * quarters + angle) % 360
