@@ -88,7 +88,7 @@ def beliefs(robot: Any, woke: tuple[float, float], heading: int) -> Beliefs:
 
 
 def _class(shape: Mapping[str, int]) -> str:
-    """The class believed most; of equals the first by name. What says less (rectangle, polygon) only stands in for none."""
+    """The class believed most; of equals the first by name. Rectangle and polygon stand in for none."""
     narrow = {name: sure for name, sure in shape.items() if name in SHAPES} or shape
     return min(narrow, key=lambda name: (-narrow[name], name)) if narrow else "unknown"
 
