@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from kb.body import Command, Impression, Move, Push
 from kb.encodings import KB, solve
 from kb.evidence import OPEN, Evidence
-from kb.heading import ANGLES, Look, believed, contradictions, standing
-from kb.lattice import WOKE, Lattice
+from kb.heading import CENTRED, Hypothesis, Look, believed, contradictions, search, standing
+from kb.lattice import CENTRE, Lattice
 from kb.retina import FIELDS, count_ranges
 
 MEMORY = 12  # looks by which angles are judged: those that contradict older looks are gone already
+MOST_SEARCHES = 4  # times that all lattices are tried anew before slips are blamed for what contradicts
 NEAR = 2  # squares about the predicted place in which Utak is looked for first
 Place = tuple[float, float]
 
@@ -34,11 +35,11 @@ class CellStatus(StrEnum):
 
 
 class Explanation(NamedTuple):
-    """A pose that may have given rise to the impression. place: a point of the lattice at that angle."""
+    """A pose that may have given rise to the impression. place: a point of that lattice."""
 
     how: str
     place: Place
-    angle: int
+    lattice: Lattice
     misfits: int
     distance: float
 
@@ -59,10 +60,12 @@ class Memory:
 
     evidence: Evidence = field(default_factory=Evidence)
     lattice: Lattice = field(default_factory=Lattice)
-    place: Place = WOKE
+    place: Place = CENTRE
     looks: list[Look] = field(default_factory=list)
-    angles: tuple[int, ...] = ANGLES
+    hypotheses: tuple[Hypothesis, ...] = CENTRED
     trust: int = 0
+    barred: set[tuple[int, int]] = field(default_factory=set)
+    searches: int = 0
 
     @property
     def square(self) -> tuple[int, int]:
@@ -70,9 +73,15 @@ class Memory:
         return math.floor(self.place[0]), math.floor(self.place[1])
 
     @property
+    def looked_from(self) -> frozenset[tuple[int, int]]:
+        """The squares on which an impression was received."""
+        places = (self.lattice.place_from_utak(*look.place) for look in self.looks)
+        return frozenset((math.floor(x), math.floor(y)) for x, y in places)
+
+    @property
     def spread(self) -> float:
         """By how many radians the angles that still stand differ from the believed one, at most."""
-        return math.radians(max((abs(a - self.lattice.angle) for a in self.angles), default=0))
+        return math.radians(max((abs(other.angle - self.lattice.angle) for other in self.hypotheses), default=0))
 
     def wake(self, impression: Impression) -> Accommodated:
         """Take in the first impression."""
@@ -91,8 +100,8 @@ class Memory:
     def _accommodate(self, impression: Impression, predicted: Place, stops: tuple[Place, ...]) -> Accommodated:
         ranges = count_ranges(impression.retina)
         explanation = self._explain(ranges, predicted, stops)
-        if explanation.angle != self.lattice.angle:
-            self._turn(explanation.angle)
+        if explanation.lattice != self.lattice:
+            self._relay(explanation.lattice)
         if explanation.how in ("predicted", "turned"):
             self.trust += 1
         x, y = math.floor(explanation.place[0]), math.floor(explanation.place[1])
@@ -100,34 +109,39 @@ class Memory:
         self.place = explanation.place
         self.looks.append(Look(ranges, self.lattice.place_to_utak(*self.place)))
         self.evidence.look(self.lattice.samples(), ranges, x, y, len(self.looks) - 1)
-        if explanation.how != "blocked":
+        if explanation.how == "blocked":
+            self.barred.add(_next_square(self.place, predicted))
+        else:
             self.evidence.stand(x, y, len(self.looks) - 1)
         return Accommodated(explanation, cells)
 
     def _explain(self, ranges: NDArray[np.int16], predicted: Place, stops: tuple[Place, ...]) -> Explanation:
         look = Look(ranges, self.lattice.place_to_utak(*predicted))
         recent = [*self.looks[-MEMORY:], look]
-        left = standing(self.angles, recent)
+        left = standing(self.hypotheses, recent)
         first = self._explanation("predicted", predicted, ranges, predicted)
-        if self.lattice.angle in left and not first.misfits:
-            self.angles = left
+        if any(h.lattice == self.lattice for h in left) and not first.misfits:
+            self.hypotheses = left
             return first
         explanations = [first]
-        if left:
-            angle = believed(left, self.lattice.angle)
-            place = Lattice(angle).place_from_utak(*look.place)
-            explanations.append(Explanation("turned", place, angle, contradictions(angle, recent), 0.0))
         explanations += [self._explanation("blocked", stop, ranges, predicted) for stop in stops]
         explanations += [self._explanation("slipped", place, ranges, predicted) for place in _around(predicted)]
+        if not left and self.searches < MOST_SEARCHES:
+            self.searches += 1
+            left = search(recent)
+        if left:
+            lattice = believed(left, self.lattice)
+            place = lattice.place_from_utak(*look.place)
+            explanations.append(Explanation("turned", place, lattice, contradictions(lattice, recent), 0.0))
         chosen = self._choose(explanations)
         if chosen.how == "turned":
-            self.angles = left
+            self.hypotheses = left
         return chosen
 
     def _explanation(self, how: str, place: Place, ranges: NDArray[np.int16], predicted: Place) -> Explanation:
         x, y = math.floor(place[0]), math.floor(place[1])
-        misfits = int(self.evidence.misfits(self.lattice.samples(), ranges, x, y).sum())
-        return Explanation(how, place, self.lattice.angle, misfits, math.dist(place, predicted))
+        misfits = self.evidence.clashes(self.lattice.samples(), ranges, x, y)
+        return Explanation(how, place, self.lattice, misfits, math.dist(place, predicted))
 
     def _choose(self, explanations: list[Explanation]) -> Explanation:
         facts = [
@@ -139,14 +153,15 @@ class Memory:
             raise AssertionError("accommodation.lp always has an answer")
         return explanations[answer[0].arguments[0].number]
 
-    def _turn(self, angle: int) -> None:
-        """Believe another angle, and build the map anew from all looks."""
-        self.lattice = Lattice(angle)
+    def _relay(self, lattice: Lattice) -> None:
+        """Believe that the lattice lies otherwise, and build the map anew from all looks."""
+        self.lattice = lattice
         self.evidence = Evidence()
+        self.barred = set()
         for number, look in enumerate(self.looks):
-            x, y = self.lattice.place_from_utak(*look.place)
-            self.evidence.look(self.lattice.samples(), look.ranges, math.floor(x), math.floor(y), number)
-            self.evidence.stand(math.floor(x), math.floor(y), number)
+            x, y = (math.floor(v) for v in lattice.place_from_utak(*look.place))
+            self.evidence.look(lattice.samples(), look.ranges, x, y, number)
+            self.evidence.stand(x, y, number)
 
     def _statuses(self, ranges: NDArray[np.int16], x: int, y: int) -> tuple[CellStatus, ...]:
         samples = self.lattice.samples()
@@ -166,6 +181,13 @@ def _along(start: Place, shift: tuple[float, float]) -> tuple[Place, ...]:
     steps = math.ceil(length)
     parts = [i / steps for i in range(steps - 1, -1, -1)] if steps else []
     return tuple((start[0] + shift[0] * t, start[1] + shift[1] * t) for t in parts)
+
+
+def _next_square(place: Place, towards: Place) -> tuple[int, int]:
+    """The square that a motion towards a point was about to enter when it was stopped."""
+    away = math.dist(place, towards) or 1.0
+    ahead = [a + (b - a) / away for a, b in zip(place, towards, strict=True)]
+    return math.floor(ahead[0]), math.floor(ahead[1])
 
 
 def _around(place: Place) -> tuple[Place, ...]:

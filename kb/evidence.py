@@ -81,8 +81,10 @@ class Evidence:
         state = self.state[part].copy()
         soft = 1.0 / (1.0 + np.exp(-self.logit[part]))
         probability = np.where(state == OPEN, soft, state).astype(np.float32)
+        seen = self.seen[part].copy()
+        _fill_gaps(probability, seen)
         west, south = self.west + int(left), self.south + int(top)
-        return MapView(west, south, probability, state, self.seen[part].copy(), self.settled_by[part].copy())
+        return MapView(west, south, probability, state, seen, self.settled_by[part].copy())
 
     def index(self, x: int, y: int) -> tuple[int, int]:
         """[row, column] of a square of the lattice."""
@@ -104,6 +106,18 @@ class Evidence:
         possible = full + np.where(state == OPEN, weight, 0).sum(1)
         impossible: Mask = (full > ranges[:, 1]) | (possible < ranges[:, 0] - samples.slack)
         return impossible
+
+    def clashes(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> int:
+        """How many fields, of this look and of those before, cannot be right if it was received on square (x, y)."""
+        new = int(self.misfits(samples, ranges, x, y).sum())
+        where = self._under(samples, x, y)
+        single = (samples.weight.sum(1) == 1) & (samples.slack == 0)
+        state = self.state.ravel().copy()
+        state[where[single, 0]] = np.where(ranges[single, 0] > 0, FULL, FREE)
+        under = state[self._where]
+        full = np.where(under == FULL, self._weight, 0).sum(1)
+        possible = full + np.where(under == OPEN, self._weight, 0).sum(1)
+        return new + int(((full > self._high) | (possible < self._low)).sum())
 
     def look(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, number: int) -> None:
         """Take in one impression, received on square (x, y), as impression `number`.
@@ -263,6 +277,19 @@ class Evidence:
         self.settled_by = np.pad(self.settled_by, widths, constant_values=-1)
         self.south, self.west = self.south - south, self.west - west
         self._where = ((rows + south) * self.state.shape[1] + columns + west).astype(np.int32)
+
+
+def _fill_gaps(probability: NDArray[np.float32], seen: Mask) -> None:
+    """Count a single square that no field happened to sample, amid squares that were seen, as seen: as likely occupied as those about it.
+
+    On a turned lattice the eye skips some squares, though never two side by side.
+    """
+    known = np.pad(seen, 1).astype(np.float32)
+    likely = np.pad(np.where(seen, probability, 0), 1)
+    count, total = (a[:-2, 1:-1] + a[2:, 1:-1] + a[1:-1, :-2] + a[1:-1, 2:] for a in (known, likely))
+    gaps = ~seen & (count >= 3)
+    probability[gaps] = total[gaps] / count[gaps]
+    seen |= gaps
 
 
 def _logit(p: NDArray[np.float64]) -> NDArray[np.float64]:

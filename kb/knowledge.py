@@ -5,6 +5,7 @@ and the tree (kb.worldmodel).
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -50,9 +51,18 @@ class Knowledge:
         percept, labels = map_regions(occupied, view.seen, view.state != OPEN)
         touched = [(f"part{labels[view.index(x, y)]}", colour) for (x, y), colour in sorted(self.felt.items())]
         kinds = interpret(percept, touched, self.rules)
-        model = WorldModel(self.memory.lattice, self.memory.place, view, labels, percept, kinds, ())
-        objects = self._objects(model)
-        return WorldModel(model.lattice, model.place, view, labels, percept, kinds, objects), accommodated
+        model = WorldModel(
+            self.memory.lattice,
+            self.memory.place,
+            view,
+            labels,
+            percept,
+            kinds,
+            objects=(),
+            looked_from=self.memory.looked_from,
+            barred=frozenset(self.memory.barred),
+        )
+        return replace(model, objects=self._objects(model)), accommodated
 
     def _feel(self, impression: Impression) -> None:
         x, y = self.memory.square

@@ -4,7 +4,8 @@ Utak's north need not lie along the rows of squares. The lattice is turned by `a
 quarter turn that is left makes no difference to anything he sees. The map in his head is kept on the lattice, where every look
 samples the same squares; his own frame (east, north, origin the point where he woke) is for commands and for what he says.
 
-The centre of the square in which he woke is (0.5, 0.5) of the lattice, and (0, 0) of his own frame.
+The square in which he woke is square (0, 0) of the lattice; the point where he woke is (0, 0) of his own frame. Where in that square it lies he cannot
+feel; the centre is assumed as long as nothing contradicts it.
 """
 
 import math
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 
 from kb.retina import FIELDS, OWN
 
-WOKE = (0.5, 0.5)
+CENTRE = (0.5, 0.5)
 TIE = 1e-9  # an offset that falls this near to the middle between two squares may be sampled from either
 MOST = 16  # squares under the largest field
 
@@ -37,9 +38,10 @@ class Samples(NamedTuple):
 
 @dataclass(frozen=True)
 class Lattice:
-    """The lattice at one angle (degrees by which Utak's frame is turned against it, counter-clockwise)."""
+    """How Utak's frame lies in the lattice: angle, the degrees by which it is turned counter-clockwise, and woke, the lattice point of its origin."""
 
     angle: int = 0
+    woke: tuple[float, float] = CENTRE
 
     def to_lattice(self, east: float, north: float) -> tuple[float, float]:
         """A vector of Utak's frame as a vector of the lattice."""
@@ -51,12 +53,12 @@ class Lattice:
 
     def place_to_utak(self, x: float, y: float) -> tuple[float, float]:
         """A point of the lattice as a point of Utak's frame."""
-        return self.to_utak(x - WOKE[0], y - WOKE[1])
+        return self.to_utak(x - self.woke[0], y - self.woke[1])
 
     def place_from_utak(self, east: float, north: float) -> tuple[float, float]:
         """A point of Utak's frame as a point of the lattice."""
         x, y = self.to_lattice(east, north)
-        return x + WOKE[0], y + WOKE[1]
+        return x + self.woke[0], y + self.woke[1]
 
     def samples(self) -> Samples:
         """The squares that each field samples."""

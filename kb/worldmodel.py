@@ -5,7 +5,7 @@ parent, so that when Utak moves, or an object is pushed, one relation changes. V
 next is only which node a patch of squares belongs to (`Names`).
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -78,6 +78,7 @@ class WorldModel:
     percept, kinds : the regions and what they are taken for.
     objects : the isolated objects, and what may be one, by name.
     held : the node that is held, or None.
+    looked_from : the squares on which an impression was received. barred : squares before which a motion was stopped.
     """
 
     lattice: Lattice
@@ -88,6 +89,8 @@ class WorldModel:
     kinds: Kinds
     objects: tuple[Node, ...]
     held: str | None = None
+    looked_from: frozenset[tuple[int, int]] = frozenset()
+    barred: frozenset[tuple[int, int]] = frozenset()
 
     @property
     def floor(self) -> Mask:
@@ -113,6 +116,15 @@ class WorldModel:
     def object(self, name: str) -> Node | None:
         """The object of this name, if there is one."""
         return next((node for node in self.objects if node.name == name), None)
+
+    def squares(self, squares: Iterable[tuple[int, int]]) -> Mask:
+        """(rows, columns): squares of the lattice on the arrays of the view."""
+        mask = np.zeros(self.labels.shape, np.bool_)
+        for x, y in squares:
+            row, column = self.view.index(x, y)
+            if 0 <= row < mask.shape[0] and 0 <= column < mask.shape[1]:
+                mask[row, column] = True
+        return mask
 
     def mask(self, patch: Patch) -> Mask:
         """(rows, columns): a patch on the arrays of the view."""

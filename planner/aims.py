@@ -29,7 +29,7 @@ def choose(aims: Sequence[Aim], screens: Screens, last: frozenset[int]) -> Aim |
     """
     facts = []
     for number, aim in enumerate(aims):
-        reached = screens.nearest(aim.squares)
+        reached = screens.nearest(aim.squares) if len(aim.squares) else None
         if reached is not None:
             kind = "pass" if reached.level and aim.kind != "inspect" else aim.kind
             facts.append(f"aim({number},{kind},{round(10 * reached.cost)})")

@@ -5,10 +5,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from kb.facts import Fact, Symbol, Term
-from kb.lattice import WOKE
 from kb.rooms import Rooms
 from kb.worldmodel import WorldModel
 from planner.exploring import Lookout, rooms_beyond
@@ -55,7 +55,7 @@ def destination(goal: Fact, situation: Situation) -> Destination:
     if goal.name == "at" and isinstance(where, Symbol) and where.name == "corner":
         return corner(str(where.args[0]), situation)
     if goal.name == "at" and str(where) == "start":
-        return Destination(_within(situation.model, WOKE, 1.0))
+        return Destination(_within(situation.model, situation.model.lattice.woke, 1.0))
     if goal.name in ("at", "beside"):
         return beside(str(where), situation)
     if goal.name in ("in", "through"):
@@ -69,7 +69,7 @@ def corner(side: str, situation: Situation) -> Destination:
     Where the floor goes on unseen at its furthest, or is seen beyond walls, it is not known yet.
     """
     model, screens = situation.model, situation.screens
-    beyond = [room for room in rooms_beyond(screens) if screens.nearest(room.squares)]
+    beyond = rooms_beyond(screens)
     known = np.concatenate([np.flatnonzero(screens.floor), *[room.squares for room in beyond]])
     rows, columns = np.divmod(known, model.labels.shape[1])
     dx, dy = model.lattice.to_lattice(*SIDES[side])
@@ -87,11 +87,18 @@ def corner(side: str, situation: Situation) -> Destination:
 
 
 def beside(parameter: str, situation: Situation) -> Destination:
-    """The squares from which an object is at most one square away."""
+    """The squares from which an object is at most one square away; of those, the ones nearest to its believed outline."""
     node = situation.model.object(situation.binding.get(parameter, ""))
     if node is None:
         return nowhere(f"nothing seen so far is {parameter}")
-    return Destination(np.flatnonzero(grown(situation.model.mask(node.patch), 1) & situation.screens.floor))
+    near = grown(situation.model.mask(node.patch), 1) & situation.screens.floor
+    squares = np.flatnonzero(near)
+    if node.polygon is not None and len(squares):
+        rows, columns = np.divmod(squares, near.shape[1])
+        view = situation.model.view
+        away = shapely.distance(node.polygon, shapely.points(columns + view.west + 0.5, rows + view.south + 0.5))
+        squares = squares[away <= max(1.0, float(away.min()))]
+    return Destination(squares)
 
 
 def _room(goal: Fact, where: Term, situation: Situation) -> Destination:

@@ -26,7 +26,7 @@ class Lookout(NamedTuple):
 
 def frontiers(screens: Screens) -> list[Lookout]:
     """Floor that can be reached and borders on squares never seen, one Lookout for each connected stretch."""
-    border = screens.floor & grown(~screens.model.view.seen, 1)
+    border = _new(screens) & grown(~screens.model.view.seen, 1)
     labels = components(grown(border, 1)).labels
     return [Lookout(squares, "the floor goes on unseen") for squares in _groups(np.where(border, labels, 0))]
 
@@ -36,7 +36,7 @@ def vague_places(screens: Screens) -> list[Lookout]:
     view = screens.model.view
     open_ = view.seen & (view.state == OPEN) & (view.probability > SPACE) & grown(screens.floor, 1)
     labels = np.where(open_, components(grown(open_, 1)).labels, 0)
-    near = np.where(screens.floor, _spread(labels, CLOSE), 0)
+    near = np.where(_new(screens), _spread(labels, CLOSE), 0)
     return [Lookout(squares, "what bounds the floor is not clear") for squares in _groups(near)]
 
 
@@ -45,9 +45,9 @@ def inspection(screens: Screens, node: Node, touch: bool) -> Lookout:
     model = screens.model
     mask = model.mask(node.patch)
     if touch:
-        return Lookout(np.flatnonzero(screens.floor & grown(mask, 1)), f"the colour of {node.name} is not known")
+        return Lookout(np.flatnonzero(_new(screens) & grown(mask, 1)), f"the colour of {node.name} is not known")
     unsettled = grown(mask, 1) & (model.view.state == OPEN)
-    near = screens.floor & grown(unsettled if unsettled.any() else mask, CLOSE)
+    near = _new(screens) & grown(unsettled if unsettled.any() else mask, CLOSE)
     return Lookout(np.flatnonzero(near), f"what {node.name} is is not clear")
 
 
@@ -56,6 +56,13 @@ def rooms_beyond(screens: Screens) -> list[Lookout]:
     apart = components(screens.model.space & ~screens.floor).labels
     what = "floor is seen beyond, so a passage must lead there"
     return [Lookout(squares, what) for squares in _groups(apart) if len(squares) >= SMALLEST_ROOM]
+
+
+def _new(screens: Screens) -> NDArray[np.bool_]:
+    """Floor that can be reached and from which nothing was looked at yet: a second look from the same square tells nothing new."""
+    model = screens.model
+    mask: NDArray[np.bool_] = screens.floor & ~model.squares(model.looked_from)
+    return mask
 
 
 def _groups(labels: NDArray[np.int32]) -> list[Squares]:

@@ -32,11 +32,11 @@ class Reached(NamedTuple):
 class Screens:
     """One world model, projected at every level of certainty. Arrays are (rows, columns), as those of the model's view."""
 
-    def __init__(self, model: WorldModel, blocked: Mask | None = None) -> None:
+    def __init__(self, model: WorldModel) -> None:
         self.model = model
         row, column = model.view.index(*model.place)
         self.here = (column, row)
-        self._blocked = blocked
+        self._barred = model.squares(model.barred)
 
     def free(self, level: int) -> Mask:
         """Squares that may be crossed at a level of certainty; Utak's own is always one."""
@@ -45,8 +45,7 @@ class Screens:
             mask = ~view.seen | (view.probability <= LEVELS[-1])
         else:
             mask = view.seen & (view.probability <= LEVELS[level])
-        if self._blocked is not None:
-            mask = mask & ~self._blocked
+        mask &= ~self._barred
         mask[self.here[1], self.here[0]] = True
         return mask
 
@@ -75,9 +74,8 @@ class Screens:
         view = self.model.view
         doubtful = grown(view.seen & (view.state == OPEN) & (view.probability >= WARY), 1) | grown(~view.seen, 1)
         mask = (view.state == FREE) | (view.seen & (view.probability <= SPACE) & ~doubtful)
+        mask &= ~self._barred
         mask[self.here[1], self.here[0]] = True
-        if self._blocked is not None:
-            mask &= ~self._blocked
         return mask
 
 
