@@ -1,7 +1,8 @@
 """The campaign: the robot in many random worlds, judged and measured.
 
     python -m benchmarks.campaign --task 1,2,3,4 --count 50 --seed 0 --jobs 2 [--noise S] [-o results.jsonl]
-    python -m benchmarks.campaign --only 3:17 --keep FOLDER
+    python -m benchmarks.campaign --only 3:17 --keep FOLDER      (one world, drawn at each step)
+    python -m benchmarks.campaign --again results.jsonl          (the worlds that went wrong)
 
 The table goes to stdout, progress to stderr. docs/benchmarks-worlds.md explains the columns.
 """
@@ -40,11 +41,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
             task, seed = (int(part) for part in given.only.split(":"))
             trials = [_watched(task, seed, conditions, folder)]
         else:
-            worlds = [(t, s) for t in given.task for s in range(given.seed, given.seed + given.count)]
+            worlds = _unclean(given.again) if given.again else _worlds(given.task, given.seed, given.count)
             output = stack.enter_context(given.output.open("w")) if given.output else None
             trials = list(_reported(_run_all(worlds, conditions, folder, given.jobs), len(worlds), output))
     print(table(trials), verdicts(trials), faults(trials), sep="\n", end="")
-    return 0 if all(trial.right and not trial.judged for trial in trials) else 1
+    return 0 if all(trial.clean for trial in trials) else 1
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -60,12 +61,23 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--seconds", type=int, default=120, help="most seconds a world, 0 for no limit (%(default)s)")
     parser.add_argument("-o", "--output", type=Path, help="a JSON line for each world")
     parser.add_argument("--only", metavar="TASK:SEED", help="one world, drawn at each step on stderr")
+    parser.add_argument("--again", type=Path, metavar="RESULTS", help="the worlds that went wrong in earlier results")
     parser.add_argument("--keep", type=Path, help="folder in which scenarios and episodes stay")
     return parser
 
 
 def _numbers(text: str) -> list[int]:
     return [int(part) for part in text.split(",")]
+
+
+def _worlds(tasks: list[int], first: int, count: int) -> list[tuple[int, int]]:
+    return [(task, seed) for task in tasks for seed in range(first, first + count)]
+
+
+def _unclean(results: Path) -> list[tuple[int, int]]:
+    """The worlds of earlier results in which something went wrong."""
+    rows = [json.loads(line) for line in results.read_text().splitlines()]
+    return [(row["task"], row["seed"]) for row in rows if not row["clean"]]
 
 
 def _run_all(worlds: list[tuple[int, int]], conditions: Conditions, folder: Path, jobs: int) -> Iterator[Trial]:
@@ -87,7 +99,7 @@ def _reported(trials: Iterable[Trial], count: int, output: TextIO | None) -> Ite
         if output is not None:
             output.write(json.dumps(trial.row()) + "\n")
             output.flush()
-        mark = "" if trial.right and not trial.judged else "  <--"
+        mark = "" if trial.clean else "  <--"
         said = trial.crash or trial.verdict
         print(f"{number}/{count} {trial.task}:{trial.seed} {trial.steps} commands, {said}{mark}", file=sys.stderr)
         yield trial

@@ -73,9 +73,14 @@ class Trial:
         """Achieved where that was possible, and refused with a reason where it was not."""
         return self.achieved if self.possible else not (self.crash or self.believed or not self.reason)
 
+    @property
+    def clean(self) -> bool:
+        """Nothing at all went wrong: right, nothing found by the judge, and no certain square wrong."""
+        return self.right and not self.judged and not (self.score and self.score.wrong)
+
     def row(self) -> dict[str, Any]:
         """The trial as a JSON object."""
-        row = asdict(self) | {"score": self.score._asdict() if self.score else None}
+        row = asdict(self) | {"score": self.score._asdict() if self.score else None, "clean": self.clean}
         return {name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in row.items()}
 
 

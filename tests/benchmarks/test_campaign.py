@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from benchmarks import campaign
+from benchmarks.beliefs import Score
 from benchmarks.judging import judge_path
 from benchmarks.tally import faults, table, verdicts
 from benchmarks.trial import Conditions, Trial, run_trial
@@ -172,6 +173,21 @@ def test_without_a_judge_it_says_so_loudly(
     told = capsys.readouterr()
     assert "NO JUDGE" in told.err and "none!" in told.out
     assert len((tmp_path / "r.jsonl").read_text().splitlines()) == 2
+
+
+def test_worlds_that_went_wrong_are_run_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    ran = []
+
+    def record(task: int, seed: int, *_: object) -> Trial:
+        ran.append((task, seed))
+        return Trial(task, seed, True, True, seed != 1, "done", score=Score(0, 0, 0, 0, 9, int(seed == 2), ()))
+
+    monkeypatch.setattr(campaign, "run_trial", record)
+    results = tmp_path / "results.jsonl"
+    assert campaign.main(["--task", "1", "--count", "4", "-o", str(results)]) == 1
+    ran.clear()
+    campaign.main(["--again", str(results)])
+    assert ran == [(1, 1), (1, 2)]
 
 
 def test_one_world_is_drawn_at_each_step(
