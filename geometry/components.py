@@ -46,9 +46,7 @@ def _runs(mask: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]
     return row, start, np.nonzero(edges == -1)[1]
 
 
-def _overlaps(
-    row: NDArray[np.int64], start: NDArray[np.int64], stop: NDArray[np.int64]
-) -> tuple[list[int], list[int]]:
+def _overlaps(row: NDArray[np.int64], start: NDArray[np.int64], stop: NDArray[np.int64]) -> tuple[list[int], list[int]]:
     """Pairs of runs of neighbouring rows that share a column."""
     width = int(stop.max()) + 2
     first = np.searchsorted(row * width + stop, (row - 1) * width + start, side="right")

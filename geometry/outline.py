@@ -12,9 +12,10 @@ def outline(mask: NDArray[np.bool_]) -> list[Ring]:
 
     Returns
     -------
-    Rings of corners (x, y) in grid units, without repeating the first; the region lies on their left, so that outer rings run counter-clockwise and
-    holes clockwise. Regions are edge-connected: where squares touch at a corner only, their rings stay apart. Rings start at their least corner
-    and come in the order of it.
+    Rings of corners (x, y) in grid units, without repeating the first; the region lies on their left, so that outer
+    rings run counter-clockwise and
+    holes clockwise. Regions are edge-connected: where squares touch at a corner only, their rings stay apart. Rings
+    start at their least corner and come in the order of it.
 
     >>> outline(np.array([[True, True]]))
     [((0, 0), (2, 0), (2, 1), (0, 1))]

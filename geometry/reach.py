@@ -1,7 +1,7 @@
 """How far every square of a raster is from a start, walking over the eight neighbours.
 
-Dijkstra's algorithm with a ring of buckets (Dial 1969): steps cost 5 along rows and columns and 7 diagonally, which is within 1.1 % of the
-true ratio. A diagonal step needs both squares beside it free.
+Dijkstra's algorithm with a ring of buckets (Dial 1969): steps cost 5 along rows and columns and 7 diagonally, which
+is within 1.1 % of the true ratio. A diagonal step needs both squares beside it free.
 """
 
 import numpy as np
@@ -14,7 +14,8 @@ _SIDE, _DIAGONAL = 5, 7
 
 
 def reach(free: NDArray[np.bool_], column: int, row: int) -> NDArray[np.int32]:
-    """(rows, columns) int32: the length of the shortest way from a square, in fifths of squares; UNREACHED (-1) where none leads.
+    """(rows, columns) int32: the length of the shortest way from a square, in fifths of squares; UNREACHED (-1) where
+    none leads.
 
     Parameters
     ----------

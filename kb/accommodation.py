@@ -1,8 +1,11 @@
 """Accommodation: the believed pose, the angle of the lattice and the map, made to agree with every new impression.
 
-From the command the pose is predicted. When the impression cannot have been received there, explanations are gathered (the motion was blocked, it
-ended beside the predicted place, the lattice lies at another angle) and kb/asp/accommodation.lp chooses the cheapest. Then the impression
-is taken into the evidence. Each of the 160 cells ends as predicted, as explained (it shows squares not settled before), or as noise.
+From the command the pose is predicted. When the impression cannot have been received there, explanations are gathered
+(the motion was blocked, it
+ended beside the predicted place, the lattice lies at another angle) and kb/asp/accommodation.lp chooses the cheapest.
+Then the impression
+is taken into the evidence. Each of the 160 cells ends as predicted, as explained (it shows squares not settled
+before), or as noise.
 """
 
 import math
@@ -73,10 +76,14 @@ class Memory:
         return math.floor(self.place[0]), math.floor(self.place[1])
 
     @property
+    def track(self) -> list[Place]:
+        """Where he has been, as points of the lattice."""
+        return [self.lattice.place_from_utak(*look.place) for look in self.looks]
+
+    @property
     def looked_from(self) -> frozenset[tuple[int, int]]:
         """The squares on which an impression was received."""
-        places = (self.lattice.place_from_utak(*look.place) for look in self.looks)
-        return frozenset((math.floor(x), math.floor(y)) for x, y in places)
+        return frozenset((math.floor(x), math.floor(y)) for x, y in self.track)
 
     @property
     def spread(self) -> float:
@@ -195,5 +202,3 @@ def _around(place: Place) -> tuple[Place, ...]:
     reach = range(-NEAR, NEAR + 1)
     offsets = sorted((i * i + j * j, i, j) for i in reach for j in reach if i or j)
     return tuple((place[0] + i, place[1] + j) for _, i, j in offsets)
-
-

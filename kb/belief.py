@@ -1,49 +1,159 @@
-"""The world model as facts, in the vocabulary that docs/vocabulary.md documents, and as an episode's `belief`."""
+"""The world model as facts, in the vocabulary that docs/vocabulary.md documents, and as an episode's `belief`.
+
+Coordinates are hundredths of squares in Utak's own frame, whose origin is the point where he woke; confidences are
+percent.
+"""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.outline import outline
 from kb.accommodation import Accommodated
-from kb.worldmodel import FLOOR, ORG, Node, WorldModel
+from kb.evidence import OPEN
+from kb.rooms import Rooms
+from kb.worldmodel import FLOOR, ORG, VERGE, Node, WorldModel
 
-HUNDREDTHS = 100  # coordinates in facts are in hundredths of squares, in Utak's frame
+HUNDREDTHS = 100
+Mask = NDArray[np.bool_]
 
 
-def belief(model: WorldModel, accommodated: Accommodated, bound: Mapping[str, str]) -> dict[str, Any]:
-    """What an episode's line tells of Utak's belief: the facts, how the impression was accounted for, and what the parameters mean."""
-    east, north = model.lattice.place_to_utak(*model.place)
+def belief(model: WorldModel, rooms: Rooms, accommodated: Accommodated, bound: Mapping[str, str]) -> dict[str, Any]:
+    """What an episode's line tells of Utak's belief.
+
+    place, lattice: where he believes himself, and the angle of the lattice. pose: how the pose was explained. cells:
+    how many cells of the impression
+    were predicted, explained or noise. bound: what the parameters of the task mean. facts: the world model.
+    """
     cells = Counter(str(status) for status in accommodated.cells)
+    east, north = model.lattice.place_to_utak(*model.place)
     return {
-        "place": [round(east, 6), round(north, 6)],
+        "place": [round(east, 6) + 0.0, round(north, 6) + 0.0],
         "lattice": model.lattice.angle,
         "pose": accommodated.explanation.how,
         "cells": {status: cells[status] for status in sorted(cells)},
         "bound": dict(sorted(bound.items())),
-        "facts": sorted(f"{fact}." for fact in model_facts(model)),
+        "facts": sorted(f"{fact}." for fact in model_facts(model, rooms)),
     }
 
 
-def model_facts(model: WorldModel) -> Iterator[str]:
-    """The tree as facts. Coordinates are hundredths of squares in Utak's frame, confidences percent."""
+def model_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
+    """The tree of the world model, its rooms and doors, as facts without their full stops."""
+    yield from _root(model)
+    for name, mask in ((FLOOR, model.floor), (VERGE, model.verge)):
+        if mask.any():
+            yield from _outlined(name, _rings(mask, model), model)
+    for node in model.objects:
+        yield from _object(node, model, rooms)
+    yield from _rooms(model, rooms)
+
+
+def _root(model: WorldModel) -> Iterator[str]:
+    east, north = model.lattice.place_to_utak(*model.place)
     yield f"node({ORG})"
     yield f"kind({ORG},utak,100)"
-    yield f"node({FLOOR})"
-    yield f"kind({FLOOR},floor,100)"
-    yield f"child({ORG},{FLOOR})"
-    for node in model.objects:
-        yield from _node(node, model)
+    yield f"offset({ORG},{_hundredths(east)},{_hundredths(north)})"
+    for name, kind, parent in ((FLOOR, "floor", ORG), (VERGE, "verge", FLOOR)):
+        yield f"node({name})"
+        yield f"child({parent},{name})"
+        yield f"kind({name},{kind},{_sureness(model, kind)})"
+    yield f"offset({FLOOR},{_hundredths(-east)},{_hundredths(-north)})"
+    yield f"offset({VERGE},0,0)"
+    if model.held:
+        yield f"held({model.held})"
 
 
-def _node(node: Node, model: WorldModel) -> Iterator[str]:
-    yield f"node({node.name})"
-    yield f"child({FLOOR},{node.name})"
-    yield f"kind({node.name},{node.kind},{node.confidence})"
+def _sureness(model: WorldModel, kind: str) -> int:
+    mask = model.floor if kind == "floor" else model.verge
+    squares = int(mask.sum())
+    return 100 * int((mask & (model.view.state != OPEN)).sum()) // squares if squares else 0
+
+
+def _object(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
+    name = node.name
+    yield f"node({name})"
+    yield f"child({FLOOR},{name})"
+    yield f"kind({name},object,{node.confidence})"
+    if node.confidence < 100:
+        yield f"kind({name},verge,{model.kinds.of(node.region, 'verge')})"
     east, north = model.lattice.place_to_utak(*node.patch.centre)
-    yield f"offset({node.name},{round(east * HUNDREDTHS)},{round(north * HUNDREDTHS)})"
+    yield f"offset({name},{_hundredths(east)},{_hundredths(north)})"
     for shape, confidence in sorted(node.shape.items()):
-        yield f"shape({node.name},{shape},{confidence})"
-    if node.colour:
-        yield f"colour({node.name},{node.colour},99)"
+        yield f"shape({name},{shape},{confidence})"
+    if node.colour is not None:
+        yield f"colour({name},{node.colour},99)"
+    yield f"movable({name},{50 if node.confidence >= 50 else 0})"
+    yield from _outlined(name, _object_rings(node), model)
+    row, column = model.view.index(*node.patch.centre)
+    room = rooms.labels[row, column]
+    if room:
+        yield f"in({name},r{room})"
+    if _beside_utak(node, model):
+        yield f"adjacent({ORG},{name})"
 
 
+def _beside_utak(node: Node, model: WorldModel) -> bool:
+    row, column = model.view.index(*model.place)
+    return bool(model.mask(node.patch)[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2].any())
+
+
+def _object_rings(node: Node) -> list[list[tuple[float, float]]]:
+    if node.polygon is not None:
+        return [list(node.polygon.exterior.coords)[:-1]]
+    rings = outline(node.patch.mask)
+    return [[(x + node.patch.west, y + node.patch.south) for x, y in ring] for ring in rings]
+
+
+def _rings(mask: Mask, model: WorldModel) -> list[list[tuple[float, float]]]:
+    return [[(x + model.view.west, y + model.view.south) for x, y in ring] for ring in outline(mask)]
+
+
+def _outlined(name: str, rings: Iterable[list[tuple[float, float]]], model: WorldModel) -> Iterator[str]:
+    """The containing rectangle and the circular boundary, ring after ring, of a node."""
+    turned = [[model.lattice.place_to_utak(*corner) for corner in ring] for ring in rings]
+    corners = np.array([corner for ring in turned for corner in ring])
+    (west, south), (east, north) = corners.min(0), corners.max(0)
+    yield f"rect({name},{_hundredths(west)},{_hundredths(south)},{_hundredths(east)},{_hundredths(north)})"
+    number = 0
+    for ring, own in zip(turned, rings, strict=True):
+        for i, (e, n) in enumerate(ring):
+            f, m = ring[(i + 1) % len(ring)]
+            sure = _segment_sureness(own[i], own[(i + 1) % len(own)], model)
+            yield (
+                f"segment({name},{number},{_hundredths(e)},{_hundredths(n)},{_hundredths(f)},{_hundredths(m)},{sure})"
+            )
+            number += 1
+
+
+def _segment_sureness(a: tuple[float, float], b: tuple[float, float], model: WorldModel) -> int:
+    """Percent of the squares on both sides of a segment that are settled, sampled along it."""
+    count = max(2, min(64, int(np.hypot(b[0] - a[0], b[1] - a[1])) + 1))
+    parts = (np.arange(count) + 0.5) / count
+    along = np.array(a) + np.outer(parts, np.subtract(b, a))
+    across = np.array([a[1] - b[1], b[0] - a[0]]) / (np.hypot(b[0] - a[0], b[1] - a[1]) or 1.0) * 0.5
+    points = np.concatenate([along + across, along - across]) - (model.view.west, model.view.south)
+    columns, rows = np.floor(points).astype(int).T
+    inside = (rows >= 0) & (rows < model.labels.shape[0]) & (columns >= 0) & (columns < model.labels.shape[1])
+    settled = model.view.state[rows[inside], columns[inside]] != OPEN
+    return int(100 * settled.sum() // len(points))
+
+
+def _rooms(model: WorldModel, rooms: Rooms) -> Iterator[str]:
+    for room in range(1, int(rooms.labels.max(initial=0)) + 1):
+        squares = rooms.labels == room
+        yield f"room(r{room})"
+        yield f"unseen(r{room},{int((squares & (model.view.state == OPEN)).sum())})"
+    row, column = model.view.index(*model.place)
+    if rooms.labels[row, column]:
+        yield f"in({ORG},r{rooms.labels[row, column]})"
+    for door in rooms.doors:
+        yield f"door({door.name})"
+        yield f"width({door.name},{_hundredths(door.width)})"
+        yield from (f"connects({door.name},r{a},r{b})" for a, b in ((door.sides), (door.sides[1], door.sides[0])))
+
+
+def _hundredths(length: float) -> int:
+    return round(HUNDREDTHS * length)

@@ -1,6 +1,7 @@
 """The one place where encodings meet clingo: files by absolute path, facts as text, every message an error.
 
-Facts come from our own values, never as raw text from a user; a user's own rules (`--kb`) are checked first by kb.userrules.
+Facts come from our own values, never as raw text from a user; a user's own rules (`--kb`) are checked first by
+kb.userrules.
 """
 
 from collections.abc import Iterable, Sequence

@@ -1,9 +1,13 @@
 """What all looks together say of every square: the counts of overlapping fields, solved as far as they settle anything.
 
-A field that shows a gray level says: of these squares at least `low` and at most `high` are occupied. Three rules settle squares, and
-each is sound: a field that can take no more occupied squares leaves its others free; one that needs them all fills them; and what two
-overlapping fields have not in common is bounded by the difference of their counts. Squares that stay open get the probability of
-the maximum-entropy distribution with the fields' mean counts (iterative proportional fitting): confidence comes from the sets of counts alone.
+A field that shows a gray level says: of these squares at least `low` and at most `high` are occupied. Three rules
+settle squares, and
+each is sound: a field that can take no more occupied squares leaves its others free; one that needs them all fills
+them; and what two
+overlapping fields have not in common is bounded by the difference of their counts. Squares that stay open get the
+probability of
+the maximum-entropy distribution with the fields' mean counts (iterative proportional fitting): confidence comes from
+the sets of counts alone.
 """
 
 import math
@@ -98,7 +102,10 @@ class Evidence:
     # -- looking ---------------------------------------------------------------------------------
 
     def misfits(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> Mask:
-        """(160,): fields that cannot show what they show if Utak stands on square (x, y) and all that is settled is right."""
+        """(160,).
+
+        Fields that cannot show what they show if Utak stands on square (x, y) and all that is settled is right.
+        """
         self._cover(x, y)
         where, weight = self._under(samples, x, y), samples.weight
         state = self.state.ravel()[where]
@@ -122,8 +129,8 @@ class Evidence:
     def look(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, number: int) -> None:
         """Take in one impression, received on square (x, y), as impression `number`.
 
-        Where it contradicts what was settled, what is seen now counts: older settlements under the contradicting fields, and the
-        fields that led to them, are withdrawn.
+        Where it contradicts what was settled, what is seen now counts: older settlements under the contradicting
+        fields, and the fields that led to them, are withdrawn.
         """
         wrong = self.misfits(samples, ranges, x, y)
         where = self._under(samples, x, y)
@@ -280,7 +287,8 @@ class Evidence:
 
 
 def _fill_gaps(probability: NDArray[np.float32], seen: Mask) -> None:
-    """Count a single square that no field happened to sample, amid squares that were seen, as seen: as likely occupied as those about it.
+    """Count a single square that no field happened to sample, amid squares that were seen, as seen: as likely
+    occupied as those about it.
 
     On a turned lattice the eye skips some squares, though never two side by side.
     """

@@ -1,7 +1,9 @@
 """How the lattice of the table may lie under Utak, judged by all looks so far.
 
-Under a wrong angle two looks, or two fields of one look, claim of one square that it is free and that it is occupied. A lattice that leads to such
-a contradiction is given up. One along Utak's own axes is preferred as long as it stands; else the middle of what is left is believed.
+Under a wrong angle two looks, or two fields of one look, claim of one square that it is free and that it is occupied.
+A lattice that leads to such
+a contradiction is given up. One along Utak's own axes is preferred as long as it stands; else the middle of what is
+left is believed.
 """
 
 import math
@@ -17,21 +19,30 @@ ANGLES = tuple(sorted(range(-44, 46), key=lambda angle: (abs(angle), angle)))
 
 
 class Hypothesis(NamedTuple):
-    """How the lattice may lie: its angle in degrees, and a box (west, south, east, north) within the square, in which Utak woke."""
+    """How the lattice may lie.
+
+    Its angle in degrees, and a box (west, south, east, north) within the square, in which Utak woke.
+    """
 
     angle: int
     box: tuple[float, float, float, float]
 
     @property
     def lattice(self) -> Lattice:
-        """The lattice, with the middle of the box for the point where he woke; the square's centre where that will do."""
+        """The lattice, with the middle of the box for the point where he woke.
+
+        The square's centre where that will do.
+        """
         west, south, east, north = self.box
         if west <= CENTRE[0] <= east and south <= CENTRE[1] <= north:
             return Lattice(self.angle)
         return Lattice(self.angle, ((west + east) / 2, (south + north) / 2))
 
     def split(self, place: tuple[float, float]) -> "list[Hypothesis]":
-        """Cut the box where the square changes on which he stands at a place of his own frame; the part with the centre first."""
+        """Cut the box where the square changes on which he stands at a place of his own frame.
+
+        The part with the centre first.
+        """
         west, south, east, north = self.box
         dx, dy = Lattice(self.angle).to_lattice(*place)
         columns = _cut(west, east, math.ceil(dx) - dx)

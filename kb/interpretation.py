@@ -35,9 +35,7 @@ def percept_facts(percept: Percept, touched: Iterable[tuple[str, str]] = ()) -> 
     return facts
 
 
-def interpret(
-    percept: Percept, touched: Iterable[tuple[str, str]] = (), rules: tuple[Path, ...] = ()
-) -> Kinds:
+def interpret(percept: Percept, touched: Iterable[tuple[str, str]] = (), rules: tuple[Path, ...] = ()) -> Kinds:
     """Decide what every region is. rules: the user's own encodings, beside ours."""
     kind: dict[str, dict[str, int]] = {}
     passages = set()

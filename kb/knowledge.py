@@ -1,7 +1,7 @@
 """What Utak knows, kept up to date: from each impression to a new world model.
 
-The way of one impression: regions (kb.regions), their interpretation (kb/asp), accommodation (kb.accommodation), objects and their shapes,
-and the tree (kb.worldmodel).
+The way of one impression: regions (kb.regions), their interpretation (kb/asp), accommodation (kb.accommodation),
+objects and their shapes, and the tree (kb.worldmodel).
 """
 
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from kb.evidence import FREE, FULL, OPEN, MapView
 from kb.interpretation import Kinds, interpret, shapes
 from kb.lattice import turned
 from kb.measuring import Measured, Measurer
-from kb.regions import Percept, map_regions
+from kb.regions import map_regions
 from kb.worldmodel import SPACE, Names, Node, Patch, WorldModel, patch_of, unsettled
 
 TOUCHES = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))  # clockwise from his north

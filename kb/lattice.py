@@ -1,11 +1,14 @@
 """The lattice of the table's squares, as Utak's eye samples it.
 
-Utak's north need not lie along the rows of squares. The lattice is turned by `angle` degrees (-44..45) against his own frame; the
-quarter turn that is left makes no difference to anything he sees. The map in his head is kept on the lattice, where every look
-samples the same squares; his own frame (east, north, origin the point where he woke) is for commands and for what he says.
+Utak's north need not lie along the rows of squares. The lattice is turned by `angle` degrees (-44..45) against his
+own frame; the
+quarter turn that is left makes no difference to anything he sees. The map in his head is kept on the lattice, where
+every look
+samples the same squares; his own frame (east, north, origin the point where he woke) is for commands and for what he
+says.
 
-The square in which he woke is square (0, 0) of the lattice; the point where he woke is (0, 0) of his own frame. Where in that square it lies he cannot
-feel; the centre is assumed as long as nothing contradicts it.
+The square in which he woke is square (0, 0) of the lattice; the point where he woke is (0, 0) of his own frame. Where
+in that square it lies he cannot feel; the centre is assumed as long as nothing contradicts it.
 """
 
 import math
@@ -26,8 +29,8 @@ MOST = 16  # squares under the largest field
 class Samples(NamedTuple):
     """What the 160 fields sample at one angle, relative to Utak's own square.
 
-    columns, rows: (160, 16) offsets on the lattice; weight: (160, 16) how often a field samples that square (0: padding);
-    slack: (160,) samples of a field that fall between two squares, and so count for nothing.
+    columns, rows: (160, 16) offsets on the lattice; weight: (160, 16) how often a field samples that square (0:
+    padding); slack: (160,) samples of a field that fall between two squares, and so count for nothing.
     """
 
     columns: NDArray[np.int32]
@@ -38,7 +41,10 @@ class Samples(NamedTuple):
 
 @dataclass(frozen=True)
 class Lattice:
-    """How Utak's frame lies in the lattice: angle, the degrees by which it is turned counter-clockwise, and woke, the lattice point of its origin."""
+    """How Utak's frame lies in the lattice.
+
+    Angle, the degrees by which it is turned counter-clockwise, and woke, the lattice point of its origin.
+    """
 
     angle: int = 0
     woke: tuple[float, float] = CENTRE

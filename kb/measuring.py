@@ -1,4 +1,7 @@
-"""Measuring objects: which shapes fit the squares of a patch, and how well. Geometry measures; kb/asp/shapes.lp decides."""
+"""Measuring objects: which shapes fit the squares of a patch, and how well. Geometry measures.
+
+Kb/asp/shapes.lp decides.
+"""
 
 from typing import Any, NamedTuple
 
@@ -13,10 +16,12 @@ from kb.worldmodel import Patch
 Mask = NDArray[np.bool_]
 MOST_OPEN = 2.0  # times as many open squares as settled ones: beyond that nothing is measured
 
+
 class Measured(NamedTuple):
     """What was measured of a patch.
 
-    fits: (class, squares wrong) pairs, the likeliest first. polygon: the first one's outline in the lattice, or None. open: squares not settled.
+    fits: (class, squares wrong) pairs, the likeliest first. polygon: the first one's outline in the lattice, or None.
+    open: squares not settled.
     """
 
     fits: tuple[tuple[str, int], ...]
@@ -39,7 +44,11 @@ class Measurer:
         if not full.any() or possible.sum() > MOST_OPEN * full.sum():
             return Measured((), None, int(possible.sum()))
         fits, polygon = self._fit(full, possible)
-        return Measured(fits, shapely.transform(polygon, lambda p: p + (patch.west, patch.south)), int(possible.sum()))
+        return Measured(
+            fits,
+            shapely.transform(polygon, lambda points: points + np.array([patch.west, patch.south])),
+            int(possible.sum()),
+        )
 
     def _fit(self, full: Mask, possible: Mask) -> tuple[tuple[tuple[str, int], ...], Any]:
         key = (full.tobytes() + bytes(full.shape), possible.tobytes())

@@ -32,7 +32,8 @@ def reconcile(
 ) -> Reconciled:
     """Bind the object parameters of a task by the best match.
 
-    distances: way to each node in squares, where one is known. before: the binding up to now, which is kept unless another is clearly better.
+    distances: way to each node in squares, where one is known. before: the binding up to now, which is kept unless
+    another is clearly better.
     """
     facts = [*_task_facts(task), *(fact for node in model.objects for fact in _node_facts(node))]
     facts += [f"distance({name},{round(way)})" for name, way in sorted(distances.items())]
@@ -41,7 +42,7 @@ def reconcile(
     for atom in solve([KB / "reconciliation.lp", *rules], facts) or ():
         found.setdefault(atom.name, []).append(tuple(str(a) for a in atom.arguments))
     return Reconciled(
-        {x: node for x, node in found.get("bind", ())},
+        {atom[0]: atom[1] for atom in found.get("bind", ())},
         tuple(x for (x,) in found.get("hypothesised", ())),
         tuple((x, node) for x, node in found.get("doubtful", ())),
         tuple((x, node, p) for x, node, p in found.get("contradicted", ())),

@@ -1,7 +1,8 @@
-"""Regions of space and of things, and which surrounds which: of one impression's cells, or of the squares of the whole map.
+"""Regions of space and of things, and which surrounds which: of one impression's cells, or of the squares of the
+whole map.
 
-A region is a maximal edge-connected set of zero cells, or of non-zero ones. These are facts for the interpretation (kb/asp); nothing here
-says what a region is.
+A region is a maximal edge-connected set of zero cells, or of non-zero ones. These are facts for the interpretation
+(kb/asp); nothing here says what a region is.
 """
 
 from collections.abc import Iterable, Mapping
@@ -39,7 +40,10 @@ class Percept(NamedTuple):
 
 
 def impression_regions(levels: tuple[int, ...]) -> tuple[Percept, dict[str, frozenset[int]]]:
-    """The regions of one retinal impression of 160 gray levels, and the cells of each. Utak's own cell is a region by itself."""
+    """The regions of one retinal impression of 160 gray levels, and the cells of each.
+
+    Utak's own cell is a region by itself.
+    """
     cells: dict[str, frozenset[int]] = {"own": frozenset({OWN})}
     unseen = set(range(len(FIELDS))) - {OWN}
     while unseen:
@@ -88,9 +92,7 @@ def _grow(first: int, among: set[int], levels: tuple[int, ...]) -> set[int]:
     return region
 
 
-def _cell_region(
-    name: str, members: Iterable[int], levels: tuple[int, ...], ranges: NDArray[np.int16]
-) -> Region:
+def _cell_region(name: str, members: Iterable[int], levels: tuple[int, ...], ranges: NDArray[np.int16]) -> Region:
     cells = sorted(members)
     occupied = levels[cells[0]] > 0
     area = sum(FIELDS[c].side ** 2 for c in cells)

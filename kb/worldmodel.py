@@ -1,8 +1,9 @@
-"""The world model: a tree of nodes, rooted in Utak, made anew after every impression from the map and its interpretation.
+"""The world model: a tree of nodes, rooted in Utak, made anew after every impression from the map and its
+interpretation.
 
 $org (Utak) has one son, $floor; its sons are the verge and the isolated objects. A node's place is the offset to its
-parent, so that when Utak moves, or an object is pushed, one relation changes. Values are frozen; what persists from one impression to the
-next is only which node a patch of squares belongs to (`Names`).
+parent, so that when Utak moves, or an object is pushed, one relation changes. Values are frozen; what persists from
+one impression to the next is only which node a patch of squares belongs to (`Names`).
 """
 
 from collections.abc import Iterable, Mapping
@@ -24,7 +25,10 @@ Mask = NDArray[np.bool_]
 
 
 class Patch(NamedTuple):
-    """A set of squares of the lattice. west, south: the square at [0, 0] of mask, a (rows, columns) array cut to its extent."""
+    """A set of squares of the lattice. west, south.
+
+    The square at [0, 0] of mask, a (rows, columns) array cut to its extent.
+    """
 
     west: int
     south: int

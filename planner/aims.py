@@ -25,7 +25,8 @@ class Aim(NamedTuple):
 def choose(aims: Sequence[Aim], screens: Screens, last: frozenset[int]) -> Aim | None:
     """The aim to pursue, or None when none can be reached.
 
-    last: the squares (flat indices of this screen) of the aim chosen last time; an aim that shares one with it continues it.
+    last: the squares (flat indices of this screen) of the aim chosen last time; an aim that shares one with it
+    continues it.
     """
     facts = []
     for number, aim in enumerate(aims):

@@ -20,7 +20,7 @@ SIDES = {"northeast": (1, 1), "northwest": (-1, 1), "southeast": (1, -1), "south
 
 @dataclass(frozen=True)
 class Situation:
-    """What the meaning of a goal depends on. binding: parameter -> node; start_room: where Utak began (in `rooms`)."""
+    """What the meaning of a goal depends on. binding: parameter -> node."""
 
     model: WorldModel
     screens: Screens
@@ -56,7 +56,7 @@ def destination(goal: Fact, situation: Situation) -> Destination:
         return corner(str(where.args[0]), situation)
     if goal.name == "at" and str(where) == "start":
         return Destination(_within(situation.model, situation.model.lattice.woke, 1.0))
-    if goal.name in ("at", "beside"):
+    if goal.name in ("at", "beside", "circled"):
         return beside(str(where), situation)
     if goal.name in ("in", "through"):
         return _room(goal, where, situation)
@@ -87,7 +87,10 @@ def corner(side: str, situation: Situation) -> Destination:
 
 
 def beside(parameter: str, situation: Situation) -> Destination:
-    """The squares from which an object is at most one square away; of those, the ones nearest to its believed outline."""
+    """The squares from which an object is at most one square away.
+
+    Of those, the ones nearest to its believed outline.
+    """
     node = situation.model.object(situation.binding.get(parameter, ""))
     if node is None:
         return nowhere(f"nothing seen so far is {parameter}")
@@ -103,7 +106,7 @@ def beside(parameter: str, situation: Situation) -> Destination:
 
 def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
     rooms = situation.rooms
-    squares = np.flatnonzero(rooms.next_to_start() & situation.screens.floor)
+    squares = np.flatnonzero(rooms.beyond(1) & situation.screens.floor)
     if len(squares):
         return Destination(squares)
     what = "no door is seen yet" if not rooms.doors else "no next room is seen yet that can be reached"

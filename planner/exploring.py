@@ -59,7 +59,10 @@ def rooms_beyond(screens: Screens) -> list[Lookout]:
 
 
 def _new(screens: Screens) -> NDArray[np.bool_]:
-    """Floor that can be reached and from which nothing was looked at yet: a second look from the same square tells nothing new."""
+    """Floor that can be reached and from which nothing was looked at yet.
+
+    A second look from the same square tells nothing new.
+    """
     model = screens.model
     mask: NDArray[np.bool_] = screens.floor & ~model.squares(model.looked_from)
     return mask

@@ -1,7 +1,7 @@
 """The task in stages: what must be attained, one after the other, and which of it only the way there can fulfil.
 
-Goals without first(...) or then(...) hold together at the end. What a track fulfils (circled, through) comes first, then what a place
-fulfils (at, in, beside), all at once.
+Goals without first(...) or then(...) hold together at the end. What a track fulfils (circled, through) comes first,
+then what a place fulfils (at, in, beside), all at once.
 """
 
 from dataclasses import dataclass

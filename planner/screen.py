@@ -1,6 +1,8 @@
-"""Projection of the world model onto the screen, Utak's map-in-the-head: which squares a way may lead over, and how sure that is.
+"""Projection of the world model onto the screen, Utak's map-in-the-head: which squares a way may lead over, and how
+sure that is.
 
-A screen is an array of squares, [row, column], cut to the window that was seen. There are several, from the squares that are surely floor to all that
+A screen is an array of squares, [row, column], cut to the window that was seen. There are several, from the squares
+that are surely floor to all that
 might be: a way over a less certain one is a way only if what is assumed proves true.
 """
 
@@ -30,7 +32,10 @@ class Reached(NamedTuple):
 
 
 class Screens:
-    """One world model, projected at every level of certainty. Arrays are (rows, columns), as those of the model's view."""
+    """One world model, projected at every level of certainty.
+
+    Arrays are (rows, columns), as those of the model's view.
+    """
 
     def __init__(self, model: WorldModel) -> None:
         self.model = model

@@ -1,51 +1,97 @@
-"""Ways over a screen, by any of the paper's three path-finders: the skeleton's pathgraph (the default), visibility lines, the grid."""
+"""Ways over a screen, by one of the paper's three path-finders, and the choice among them (planner/asp/routes.lp).
 
+Geometry finds topologically distinct routes; their lengths, clearances and risks go to the encoding as facts, with the doors they lead through.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.winding import crossings
+from kb.encodings import solve
+from kb.rooms import Door
+from planner.aims import ASP
+from planner.screen import Screens
 from planner.steps import Square, squares_along
 
 Mask = NDArray[np.bool_]
+Points = Sequence[tuple[float, float]]
+ROUTES = 4  # topologically distinct routes that are offered for a choice
+SHARED = 0.6  # of a way's squares: then it continues the one before
 
 
 class Way(NamedTuple):
     """A way that geometry found.
 
-    points: (x, y) in the frame of the screen. squares: the same as an edge-connected path of free squares. length, clearance: in squares.
-    signature: names its class; equal for ways that can be deformed into each other. level: of certainty, 0 the surest.
+    squares : (column, row), edge-connected and free. length, clearance : in squares.
+    level : of certainty, 0 the surest (planner.screen).
     """
 
-    points: tuple[tuple[float, float], ...]
     squares: tuple[Square, ...]
     length: float
     clearance: float
-    signature: tuple[int, ...]
     level: int
 
 
-class Finder:
-    def __init__(self, kind: str) -> None:
-        self.kind = kind
+PathFinder = Callable[[Mask, Square, Square], list[tuple[NDArray[np.float64], float, float]]]
 
-    def way(self, screens, squares):
-        from geometry.reach import reach
-        level = screens.nearest(squares).level
-        free = screens.free(level)
-        d = screens.distances[level]
-        sq = squares[d.ravel()[squares] >= 0]
-        best = sq[np.argmin(d.ravel()[sq])]
-        r, c = divmod(int(best), free.shape[1])
-        path = [(c, r)]
-        while d[r, c]:
-            for dr in (-1, 0, 1):
-                for dc in (-1, 0, 1):
-                    p, q = r + dr, c + dc
-                    if (dr or dc) and 0 <= p < free.shape[0] and 0 <= q < free.shape[1] and d[p, q] >= 0 and d[p, q] + (7 if dr and dc else 5) == d[r, c]:
-                        if not (dr and dc) or (free[p, c] and free[r, q]):
-                            nxt = (p, q)
-            r, c = nxt
-            path.append((c, r))
-        path.reverse()
-        return Way((), tuple(path), d.ravel()[best] / 5, 0, (), level)
+
+def by_skeleton(free: Mask, here: Square, there: Square) -> list[tuple[NDArray[np.float64], float, float]]:
+    """Tight routes, one for each class, from the pathgraph of the skeleton: (points, length, clearance) of each."""
+    from geometry.screen import Screen
+
+    routes = Screen(free).routes(_centre(here), _centre(there), k=ROUTES)
+    return [(route.points, route.length, route.clearance) for route in routes]
+
+
+FINDERS: Mapping[str, PathFinder] = {"skeleton": by_skeleton}
+
+
+def ways(screens: Screens, level: int, goals: NDArray[np.int64], finder: str) -> list[Way]:
+    """Topologically distinct ways to the nearest of some squares (flat indices) that can be reached at a level of certainty."""
+    free, distances = screens.free(level), screens.distances[level].ravel()
+    reached = goals[distances[goals] >= 0]
+    row, column = divmod(int(reached[np.argmin(distances[reached])]), free.shape[1])
+    if (column, row) == screens.here:
+        return [Way((screens.here,), 0.0, 0.0, level)]
+    found = FINDERS[finder](free, screens.here, (column, row))
+    return [Way(tuple(squares_along(free, points)), length, clear, level) for points, length, clear in found]
+
+
+def choose_way(
+    offered: Sequence[Way], screens: Screens, before: frozenset[Square], doors: Sequence[Door], forbidden: frozenset[str]
+) -> Way | None:
+    """The way that kb rules prefer; None when every one of them is forbidden.
+
+    before : the squares of the way chosen last time. doors : known doors. forbidden : those that the task forbids.
+    """
+    facts = [f"not_through({door})" for door in sorted(forbidden)]
+    for number, way in enumerate(offered):
+        columns, rows = np.array(way.squares).T
+        risk = round(100 * float(screens.model.view.probability[rows[1:], columns[1:]].sum()))
+        facts.append(f"route({number},{round(10 * way.length)},{round(10 * way.clearance)},{risk})")
+        facts += [f"through({number},{door.name})" for door in doors if leads_through(way, door)]
+        if len(before.intersection(way.squares)) > SHARED * len(way.squares):
+            facts.append(f"last({number})")
+    answer = solve([ASP / "routes.lp"], facts)
+    return offered[answer[0].arguments[0].number] if answer else None
+
+
+def leads_through(way: Way, door: Door) -> bool:
+    """Does a way cross the neck of a door, and not come back?"""
+    points = np.array(way.squares) + 0.5
+    return bool(crosses(points, door) % 2)
+
+
+def crosses(points: NDArray[np.float64], door: Door) -> int:
+    """How often a polyline crosses the neck of a door."""
+    a, along = np.array(door.a), np.subtract(door.b, door.a)
+    turned = np.column_stack([(points - a) @ along, (points - a) @ np.array([-along[1], along[0]])])
+    whole = float(along @ along)
+    return abs(crossings(turned, (0.0, 0.0)) - crossings(turned, (whole, 0.0)))
+
+
+def _centre(square: Square) -> tuple[float, float]:
+    return square[0] + 0.5, square[1] + 0.5
