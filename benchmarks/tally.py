@@ -25,7 +25,6 @@ def _row(name: str, trials: Sequence[Trial]) -> dict[str, str]:
     possible = [trial for trial in trials if trial.possible]
     unable = [trial for trial in trials if not trial.possible]
     ratios = [t.walked / t.shortest for t in possible if t.achieved and t.shortest > 1]
-    cycles = sorted(1000 * c for trial in trials for c in trial.cycles[1:])
     steps = [trial.steps for trial in trials if not trial.crash]
     return {
         "task": name,
@@ -36,11 +35,20 @@ def _row(name: str, trials: Sequence[Trial]) -> dict[str, str]:
         "crashed": str(sum(bool(t.crash) for t in trials)),
         "commands": f"{median(steps):g} / {max(steps)}" if steps else "-",
         "way ratio": f"{median(ratios):.2f} / {max(ratios):.2f}" if ratios else "-",
-        "cycle ms": f"{median(cycles):.0f} / {cycles[math.ceil(0.95 * len(cycles)) - 1]:.0f}" if cycles else "-",
+        "cycle ms": _milliseconds([cycle.wall for trial in trials for cycle in trial.cycles[1:]]),
+        "cpu ms": _milliseconds([cycle.processor for trial in trials for cycle in trial.cycles[1:]]),
         "shapes": _part(_summed(trials, "known"), _summed(trials, "met")),
         "seen whole": _part(_summed(trials, "whole_known"), _summed(trials, "whole")),
         "wrong squares": f"{_summed(trials, 'wrong')} of {_summed(trials, 'certain')}",
     }
+
+
+def _milliseconds(seconds: Sequence[float]) -> str:
+    """Median and 95th percentile."""
+    if not seconds:
+        return "-"
+    ordered = sorted(1000 * value for value in seconds)
+    return f"{median(ordered):.0f} / {ordered[math.ceil(0.95 * len(ordered)) - 1]:.0f}"
 
 
 def _part(some: int, whole: int) -> str:
@@ -69,12 +77,13 @@ def verdicts(trials: Sequence[Trial]) -> str:
 
 
 def faults(trials: Sequence[Trial]) -> str:
-    """A line for each world in which something was not as it should be."""
-    lines = []
+    """A line for whatever was not as it should be, with the worlds in which it was so."""
+    said: dict[str, list[str]] = {}
     for trial in trials:
         found = _faults(trial)
         if found:
-            lines.append(f"{trial.task}:{trial.seed}  {'; '.join(found)}")
+            said.setdefault("; ".join(found), []).append(f"{trial.task}:{trial.seed}")
+    lines = [f"{' '.join(worlds)}  {what}" for what, worlds in said.items()]
     return "\n".join(lines) + ("\n" if lines else "")
 
 

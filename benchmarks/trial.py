@@ -17,7 +17,7 @@ from benchmarks.judging import findings
 from benchmarks.placing import digital
 from benchmarks.scenes import Scenario, write
 from benchmarks.shortest import free_space, shortest_loop, shortest_way
-from benchmarks.stopwatch import TimedBody, TimedRobot
+from benchmarks.stopwatch import Seconds, TimedBody, TimedRobot
 from benchmarks.worlds import scenario
 from kb.body import Body
 from kb.task import Task
@@ -44,7 +44,7 @@ class Conditions:
 class Trial:
     """What came of one world.
 
-    `judged` holds the judge's findings (None without a judge), `cycles` the seconds of each cycle, `walked` and
+    `judged` holds the judge's findings (None without a judge), `cycles` the times of each cycle, `walked` and
     `shortest` squares (nan where there is no such way), `crash` the last line of an error, if there was one.
     """
 
@@ -59,7 +59,7 @@ class Trial:
     walked: float = math.nan
     shortest: float = math.nan
     judged: list[str] | None = None
-    cycles: list[float] = field(default_factory=list)
+    cycles: list[Seconds] = field(default_factory=list)
     score: Score | None = None
     crash: str = ""
 

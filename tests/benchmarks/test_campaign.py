@@ -12,6 +12,7 @@ import pytest
 from benchmarks import campaign
 from benchmarks.beliefs import Score
 from benchmarks.judging import judge_path
+from benchmarks.stopwatch import Seconds
 from benchmarks.tally import faults, table, verdicts
 from benchmarks.trial import Conditions, Trial, run_trial
 from benchmarks.worlds import scenario
@@ -85,7 +86,7 @@ def test_an_honest_walk_is_achieved_judged_and_measured(tmp_path: Path) -> None:
     assert (trial.crash, trial.achieved, trial.believed, trial.steps) == ("", True, True, 1)
     assert trial.right and not trial.false_done
     assert 1.0 <= trial.walked / trial.shortest < 1.4
-    assert len(trial.cycles) == 2 and all(0 <= cycle < 1 for cycle in trial.cycles)
+    assert len(trial.cycles) == 2 and all(0 <= cycle.wall < 1 for cycle in trial.cycles)
     assert trial.judged == ([] if judge_path() else None)
     assert faults([trial]) == ""
 
@@ -130,11 +131,16 @@ def test_a_loop_is_measured_against_the_shortest_loop(tmp_path: Path) -> None:
     assert trial.walked == 0.0
 
 
+def times(*seconds: float) -> list[Seconds]:
+    """Cycles of so many seconds on the wall and half of them by the processor."""
+    return [Seconds(value, value / 2) for value in seconds]
+
+
 def test_the_table_counts() -> None:
     trials = [
-        Trial(1, 0, True, True, True, "done", "", 4, 12.0, 10.0, [], [1.0, 0.01, 0.03]),
-        Trial(1, 1, True, False, False, "limit", "lost", 9, 3.0, 10.0, ["step 1: bad"], [1.0, 0.02]),
-        Trial(1, 11, False, False, False, "impossible", "no way", 2, 0.0, math.nan, [], [1.0, 0.02]),
+        Trial(1, 0, True, True, True, "done", "", 4, 12.0, 10.0, [], times(1.0, 0.01, 0.03)),
+        Trial(1, 1, True, False, False, "limit", "lost", 9, 3.0, 10.0, ["step 1: bad"], times(1.0, 0.02)),
+        Trial(1, 11, False, False, False, "impossible", "no way", 2, 0.0, math.nan, [], times(1.0, 0.02)),
     ]
     lines = table(trials).splitlines()
     assert lines[1].split() == [
@@ -153,6 +159,9 @@ def test_the_table_counts() -> None:
         "20",
         "/",
         "30",
+        "10",
+        "/",
+        "15",
         "-",
         "-",
         "0",
