@@ -6,13 +6,14 @@ percent.
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.outline import outline
 from kb.accommodation import Accommodated
+from kb.corners import Corner
 from kb.evidence import OPEN
 from kb.rooms import Rooms
 from kb.worldmodel import FLOOR, ORG, VERGE, Node, WorldModel
@@ -23,7 +24,14 @@ Mask = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 
 
-def belief(model: WorldModel, rooms: Rooms, accommodated: Accommodated, bound: Mapping[str, str]) -> dict[str, Any]:
+class Places(NamedTuple):
+    """What is believed of the floor besides the tree: its rooms and doors, and its corners by side."""
+
+    rooms: Rooms
+    corners: Mapping[str, Corner]
+
+
+def belief(model: WorldModel, places: Places, accommodated: Accommodated, bound: Mapping[str, str]) -> dict[str, Any]:
     """What an episode's line tells of Utak's belief.
 
     place, lattice: where he believes himself, and the angle of the lattice. pose: how the pose was explained. cells:
@@ -38,19 +46,23 @@ def belief(model: WorldModel, rooms: Rooms, accommodated: Accommodated, bound: M
         "pose": accommodated.explanation.how,
         "cells": {status: cells[status] for status in sorted(cells)},
         "bound": dict(sorted(bound.items())),
-        "facts": sorted(f"{fact}." for fact in model_facts(model, rooms)),
+        "facts": sorted(f"{fact}." for fact in model_facts(model, places)),
     }
 
 
-def model_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
+def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
     """The tree of the world model, its rooms and doors, as facts without their full stops."""
     yield from _root(model)
     for name, mask in ((FLOOR, model.floor), (VERGE, model.verge)):
         if mask.any():
             yield from _outlined(name, _rings(mask, model), model)
     for node in model.objects:
-        yield from _object(node, model, rooms)
-    yield from _rooms(model, rooms)
+        yield from _object(node, model, places.rooms)
+    yield from _rooms(model, places.rooms)
+    for side, corner in sorted(places.corners.items()):
+        x, y = corner.point[0] + model.view.west, corner.point[1] + model.view.south
+        east, north = model.lattice.place_to_utak(x, y)
+        yield f"corner({side},{_hundredths(east)},{_hundredths(north)})"
 
 
 def _root(model: WorldModel) -> Iterator[str]:
