@@ -1,6 +1,8 @@
 """Objects of all the shapes that Utak tells apart, as polygons about the origin.
 
-Turned objects are larger: the few squares of a small square turned by 40 degrees could be those of a disc.
+Turned objects are larger: the few squares of a small square turned by 40 degrees could be those of a disc. A disc of
+radius 3 fills 6 x 6 squares as a square does. One of radius 4 leaves out one square at each corner, as does a square
+of side 7 turned by 10 degrees. From 5 on a disc leaves out three, which no square of its size does.
 """
 
 import math
@@ -33,7 +35,7 @@ def outline(rng: np.random.Generator, shape: str, turned: bool) -> Polygon:
     if shape == "triangle":
         return triangle(rng, 5 + grow)
     if shape == "disc":
-        return disc(4 + int(rng.integers(0, 3)))  # one of radius 3 fills all its 6 x 6 squares
+        return disc(5 + int(rng.integers(0, 2)))
     raise ValueError(f"no such shape: {shape}")
 
 

@@ -17,6 +17,7 @@ from benchmarks.placing import GAP, colour, face, furniture, lay, spot, stand
 from benchmarks.scenes import Scenario, Task, Thing, wkt
 
 DOORS = (3, 6)
+EYESHOT = 8.0  # squares: what lies so near is seen at every heading
 TIE = 3.0  # squares: a corner must be further out than all others by so much
 BOX = 2.5  # squares: side of the box that Utak must be in at a corner
 CORNERS = {"northeast": (1, 1), "northwest": (-1, 1), "southwest": (-1, -1), "southeast": (1, -1)}
@@ -67,12 +68,20 @@ def corner_world(rng: np.random.Generator, seed: int, unable: bool) -> Scenario 
         return None
     target = corner_box(corner, BOX)
     rooms = [room.polygon for room in plan.rooms]
-    things = furniture(rng, rooms, int(rng.integers(0, 5)), [target, *_necks(plan)])
     starts = [room for room in rooms if not (unable and room.intersects(target))]
+    if unable and not _overlooks(starts[0], compass, heading, union_all(rooms).difference(starts[0])):
+        return None
+    things = furniture(rng, rooms, int(rng.integers(0, 5)), [target, *_necks(plan)])
     utak = stand(rng, starts, things, target, 6)
     expect = f'inside(utak, "{wkt(target)}").\n'
     why = "the corner is in a room without a door" if unable else ""
     return _made(1, seed, plan, things, utak, heading, Task("", f"at(utak, corner({compass})).\n", expect, why), target)
+
+
+def _overlooks(room: Polygon, compass: str, heading: int, beyond: BaseGeometry) -> bool:
+    """Whether from the furthest corner of a closed room the floor beyond its wall can be seen, and so is known."""
+    corner = furthest_corner(room, compass, heading)
+    return corner is not None and Point(corner[:2]).distance(beyond) < EYESHOT
 
 
 def next_room_world(rng: np.random.Generator, seed: int, unable: bool) -> Scenario | None:

@@ -17,7 +17,7 @@ from benchmarks.walking import WALKING
 
 MAKERS = WALKING | CARRYING
 UNABLE_EVERY = 12  # seeds
-TRIES = 400
+TRIES = 20_000
 
 
 def scenario(task: int, seed: int) -> Scenario:

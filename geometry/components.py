@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 
 class Components(NamedTuple):
-    """labels: (rows, columns) int32, 0 outside the mask, 1..count inside, numbered by first square in raster order."""
+    """labels: (rows, columns) int32, 0 outside the mask, 1..number inside, by first square in raster order."""
 
     labels: NDArray[np.int32]
-    count: int
+    number: int
 
 
 def components(mask: NDArray[np.bool_]) -> Components:

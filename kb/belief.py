@@ -6,22 +6,32 @@ percent.
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.outline import outline
 from kb.accommodation import Accommodated
+from kb.corners import Corner
 from kb.evidence import OPEN
 from kb.rooms import Rooms
 from kb.worldmodel import FLOOR, ORG, VERGE, Node, WorldModel
 
 HUNDREDTHS = 100
+SAMPLES = 8
 Mask = NDArray[np.bool_]
+Floats = NDArray[np.float64]
 
 
-def belief(model: WorldModel, rooms: Rooms, accommodated: Accommodated, bound: Mapping[str, str]) -> dict[str, Any]:
+class Places(NamedTuple):
+    """What is believed of the floor besides the tree: its rooms and doors, and its corners by side."""
+
+    rooms: Rooms
+    corners: Mapping[str, Corner]
+
+
+def belief(model: WorldModel, places: Places, accommodated: Accommodated, bound: Mapping[str, str]) -> dict[str, Any]:
     """What an episode's line tells of Utak's belief.
 
     place, lattice: where he believes himself, and the angle of the lattice. pose: how the pose was explained. cells:
@@ -36,19 +46,23 @@ def belief(model: WorldModel, rooms: Rooms, accommodated: Accommodated, bound: M
         "pose": accommodated.explanation.how,
         "cells": {status: cells[status] for status in sorted(cells)},
         "bound": dict(sorted(bound.items())),
-        "facts": sorted(f"{fact}." for fact in model_facts(model, rooms)),
+        "facts": sorted(f"{fact}." for fact in model_facts(model, places)),
     }
 
 
-def model_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
+def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
     """The tree of the world model, its rooms and doors, as facts without their full stops."""
     yield from _root(model)
     for name, mask in ((FLOOR, model.floor), (VERGE, model.verge)):
         if mask.any():
             yield from _outlined(name, _rings(mask, model), model)
     for node in model.objects:
-        yield from _object(node, model, rooms)
-    yield from _rooms(model, rooms)
+        yield from _object(node, model, places.rooms)
+    yield from _rooms(model, places.rooms)
+    for side, corner in sorted(places.corners.items()):
+        x, y = corner.point[0] + model.view.west, corner.point[1] + model.view.south
+        east, north = model.lattice.place_to_utak(x, y)
+        yield f"corner({side},{_hundredths(east)},{_hundredths(north)})"
 
 
 def _root(model: WorldModel) -> Iterator[str]:
@@ -117,28 +131,27 @@ def _outlined(name: str, rings: Iterable[list[tuple[float, float]]], model: Worl
     corners = np.array([corner for ring in turned for corner in ring])
     (west, south), (east, north) = corners.min(0), corners.max(0)
     yield f"rect({name},{_hundredths(west)},{_hundredths(south)},{_hundredths(east)},{_hundredths(north)})"
-    number = 0
-    for ring, own in zip(turned, rings, strict=True):
-        for i, (e, n) in enumerate(ring):
-            f, m = ring[(i + 1) % len(ring)]
-            sure = _segment_sureness(own[i], own[(i + 1) % len(own)], model)
-            yield (
-                f"segment({name},{number},{_hundredths(e)},{_hundredths(n)},{_hundredths(f)},{_hundredths(m)},{sure})"
-            )
-            number += 1
+    starts = np.array([corner for ring in rings for corner in ring])
+    ends = np.array([corner for ring in rings for corner in (*ring[1:], ring[0])])
+    sure = _sureness_along(starts, ends, model)
+    following = (corner for ring in turned for corner in (*ring[1:], ring[0]))
+    for number, ((e, n), (f, m)) in enumerate(zip(corners.tolist(), following, strict=True)):
+        ends_at = ",".join(str(_hundredths(v)) for v in (e, n, f, m))
+        yield f"segment({name},{number},{ends_at},{sure[number]})"
 
 
-def _segment_sureness(a: tuple[float, float], b: tuple[float, float], model: WorldModel) -> int:
-    """Percent of the squares on both sides of a segment that are settled, sampled along it."""
-    count = max(2, min(64, int(np.hypot(b[0] - a[0], b[1] - a[1])) + 1))
-    parts = (np.arange(count) + 0.5) / count
-    along = np.array(a) + np.outer(parts, np.subtract(b, a))
-    across = np.array([a[1] - b[1], b[0] - a[0]]) / (np.hypot(b[0] - a[0], b[1] - a[1]) or 1.0) * 0.5
-    points = np.concatenate([along + across, along - across]) - (model.view.west, model.view.south)
-    columns, rows = np.floor(points).astype(int).T
-    inside = (rows >= 0) & (rows < model.labels.shape[0]) & (columns >= 0) & (columns < model.labels.shape[1])
-    settled = model.view.state[rows[inside], columns[inside]] != OPEN
-    return int(100 * settled.sum() // len(points))
+def _sureness_along(starts: Floats, ends: Floats, model: WorldModel) -> list[int]:
+    """For each segment, percent of the squares on both sides of it that are settled, sampled at SAMPLES places."""
+    parts = (np.arange(SAMPLES) + 0.5) / SAMPLES
+    step = ends - starts
+    along = starts[:, None] + parts[:, None] * step[:, None]
+    length = np.hypot(*step.T)[:, None, None]
+    across = np.stack([-step[:, 1], step[:, 0]], axis=1)[:, None] / (2 * np.maximum(length, 1e-9))
+    points = np.concatenate([along + across, along - across], axis=1) - (model.view.west, model.view.south)
+    columns, rows = np.floor(points).astype(int).transpose(2, 0, 1)
+    framed = np.pad(model.view.state != OPEN, 1)
+    settled = framed[np.clip(rows + 1, 0, framed.shape[0] - 1), np.clip(columns + 1, 0, framed.shape[1] - 1)]
+    return [int(share) for share in 100 * settled.mean(axis=1)]
 
 
 def _rooms(model: WorldModel, rooms: Rooms) -> Iterator[str]:

@@ -5,6 +5,7 @@ kb.userrules.
 """
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from pathlib import Path
 
 import clingo
@@ -16,10 +17,10 @@ class EncodingError(Exception):
     """An encoding is wrong, or contradicts the facts: a fault of ours or of the user's own rules."""
 
 
-def solve(
-    files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0, options: Sequence[str] = ()
-) -> list[clingo.Symbol] | None:
-    """The shown atoms of the best answer set found, sorted; None when there is none.
+def solve(files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0) -> list[clingo.Symbol] | None:
+    """The shown atoms of the best answer set found, in the order of their text; None when there is none.
+
+    The same files and facts are answered from memory: an answer depends on nothing else.
 
     Parameters
     ----------
@@ -29,10 +30,14 @@ def solve(
 
     Raises EncodingError on any message of clingo.
     """
+    answer = _answer(tuple(files), tuple(facts), seconds)
+    return None if answer is None else list(answer)
+
+
+@lru_cache(maxsize=256)
+def _answer(files: tuple[Path, ...], facts: tuple[str, ...], seconds: float) -> tuple[clingo.Symbol, ...] | None:
     messages: list[str] = []
-    control = clingo.Control(
-        ["--stats=0", *options], logger=lambda _code, text: messages.append(text), message_limit=20
-    )
+    control = clingo.Control(["--stats=0"], logger=lambda _code, text: messages.append(text), message_limit=20)
     try:
         for path in files:
             control.load(str(path.resolve()))
@@ -46,10 +51,10 @@ def solve(
 
     def keep(model: clingo.Model) -> None:
         nonlocal best
-        best = sorted(model.symbols(shown=True))
+        best = list(model.symbols(shown=True))
 
     with control.solve(on_model=keep, async_=True) as handle:
         if not handle.wait(seconds):
             handle.cancel()
         handle.get()
-    return best
+    return None if best is None else tuple(sorted(best, key=str))

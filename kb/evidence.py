@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kb.lattice import MOST, Samples
+from kb.retina import FIELDS
 
 OPEN, FREE, FULL = -1, 0, 1
 MARGIN = 40  # squares by which the map grows beyond what is needed
@@ -24,6 +25,7 @@ FITTING_ROUNDS = 6
 LARGEST_LOGIT = 6.0
 
 Squares = NDArray[np.int32]
+Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
 
@@ -196,36 +198,23 @@ class Evidence:
             changed = True
 
     def _settle_pairs(self, number: int) -> bool:
-        """Settle what two fields do not share, from the difference of their counts."""
+        """Settle what a field of this look and another one do not share, from the difference of their counts."""
         open_, weight, low, high = self._residue()
         plain = (weight > 0) & (np.where(open_, self._weight, 0).max(1, initial=0) == 1)
-        use = np.flatnonzero(plain)[-400:]
-        if len(use) < 2:
-            return False
-        squares, column = np.unique(self._where[use][open_[use]], return_inverse=True)
-        member = np.zeros((len(use), len(squares)), np.float32)
-        member[np.nonzero(open_[use])[0], column] = 1.0
-        shared = member @ member.T
-        np.fill_diagonal(shared, 0)
-        a, b = np.nonzero(shared)
-        common = shared[a, b].astype(np.int64)
-        size, other = weight[use][a] - common, weight[use][b] - common
-        least = low[use][a] - np.minimum(high[use][b], common)
-        most = high[use][a] - np.maximum(low[use][b] - other, 0)
-        empty = self._difference(member, squares, a, b, (size > 0) & (most <= 0))
-        filled = self._difference(member, squares, a, b, (size > 0) & (least >= size))
+        a, b, shared = _overlaps(self._where, open_ & plain[:, None], len(FIELDS))
+        size, other = weight[a] - shared, weight[b] - shared
+        least = low[a] - np.minimum(high[b], shared)
+        most = high[a] - np.maximum(low[b] - other, 0)
+        empty = self._differences(open_, a, b, (size > 0) & (most <= 0))
+        filled = self._differences(open_, a, b, (size > 0) & (least >= size))
         return self._assign(empty, np.setdiff1d(filled, empty), number)
 
-    @staticmethod
-    def _difference(
-        member: NDArray[np.float32], squares: Squares, a: NDArray[np.int64], b: NDArray[np.int64], chosen: Mask
-    ) -> Squares:
-        """The squares of each chosen field a that the field b beside it lacks."""
-        if not chosen.any():
-            return np.zeros(0, np.int32)
-        only = (member[a[chosen]] > 0) & (member[b[chosen]] == 0)
-        chosen_squares: Squares = squares[only.any(0)]
-        return chosen_squares
+    def _differences(self, open_: Mask, a: Indices, b: Indices, chosen: Mask) -> Squares:
+        """The open squares of each chosen field a that the field b beside it lacks."""
+        found = [np.zeros(0, np.int32)]
+        for one, two in zip(a[chosen], b[chosen], strict=True):
+            found.append(np.setdiff1d(self._where[one][open_[one]], self._where[two][open_[two]]))
+        return np.unique(np.concatenate(found))
 
     def _assign(self, free: Squares, full: Squares, number: int) -> bool:
         for squares, value in ((free, FREE), (full, FULL)):
@@ -287,6 +276,23 @@ class Evidence:
         self.settled_by = np.pad(self.settled_by, widths, constant_values=-1)
         self.south, self.west = self.south - south, self.west - west
         self._where = ((rows + south) * self.state.shape[1] + columns + west).astype(np.int32)
+
+
+def _overlaps(where: Squares, open_: Mask, new: int) -> tuple[Indices, Indices, Indices]:
+    """Pairs of fields that share open squares, and how many, both ways; one of each pair is among the last `new`."""
+    field, entry = np.nonzero(open_)
+    square = where[field, entry]
+    order = np.argsort(square, kind="stable")
+    field, square = field[order], square[order]
+    latest = np.flatnonzero(field >= len(where) - new)
+    first = np.searchsorted(square, square[latest], side="left")
+    count = np.searchsorted(square, square[latest], side="right") - first
+    one = np.repeat(field[latest], count)
+    within = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
+    two = field[np.repeat(first, count) + within]
+    pairs, shared = np.unique(one[one != two] * len(where) + two[one != two], return_counts=True)
+    one, two = np.divmod(pairs, max(len(where), 1))
+    return np.concatenate([one, two]), np.concatenate([two, one]), np.concatenate([shared, shared])
 
 
 def _fill_gaps(probability: NDArray[np.float32], seen: Mask) -> None:

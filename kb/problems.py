@@ -1,6 +1,5 @@
 """What is wrong with a file that the user wrote: where, what, and how to put it right."""
 
-import difflib
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -65,6 +64,8 @@ def render(problems: Iterable[Problem]) -> str:
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return a hint that names the known word most like `word`, or '' when none is like it."""
+    import difflib  # only when something is misspelt
+
     near = difflib.get_close_matches(word[:80], sorted(known), n=1, cutoff=0.6)
     return f"did you mean {near[0]}?" if near else ""
 

@@ -63,8 +63,8 @@ def map_regions(occupied: Mask, seen: Mask, certain: Mask) -> tuple[Percept, NDA
     occupied: where something may be; certain: where the counts settle it. Arrays are (rows, columns) of the same shape.
     """
     zero, full = components(seen & ~occupied), components(seen & occupied)
-    labels = np.where(full.labels > 0, full.labels + zero.count, zero.labels).astype(np.int32)
-    count = zero.count + full.count
+    labels = np.where(full.labels > 0, full.labels + zero.number, zero.labels).astype(np.int32)
+    count = zero.number + full.number
     framed = np.pad(labels, 1)
     touching, open_ = set(), set()
     for a, b in ((framed[:, :-1], framed[:, 1:]), (framed[:-1], framed[1:])):
@@ -76,7 +76,7 @@ def map_regions(occupied: Mask, seen: Mask, certain: Mask) -> tuple[Percept, NDA
     sure = np.bincount(labels.ravel(), certain.ravel(), minlength=count + 1)
     extents = _extents(labels, count)
     regions = tuple(
-        Region(f"part{n}", n > zero.count, int(100 * sure[n] // size[n]), n in open_, int(extents[n]))
+        Region(f"part{n}", n > zero.number, int(100 * sure[n] // size[n]), n in open_, int(extents[n]))
         for n in range(1, count + 1)
     )
     return _percept(regions, touching), labels

@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.passages import Passage
 from geometry import Screen
+from geometry.passages import Passage
 from kb.encodings import KB, solve
 from kb.evidence import OPEN
 from kb.worldmodel import SPACE, WorldModel

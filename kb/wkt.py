@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 
 import shapely
 
-WORD = re.compile(r"\s*([A-Za-z]+|[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|.)?", re.DOTALL)
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+WORD = re.compile(rf"\s*([A-Za-z]+|{NUMBER}|.)?", re.DOTALL)
 KINDS = ("POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")
 FURTHEST = 1e6  # squares: no coordinate is greater
 
@@ -103,10 +104,9 @@ class _Reader:
 
     def number(self) -> float:
         token = self.take()
-        try:
-            value = float(token.text)
-        except ValueError:
-            raise WktError(token.at, f"a number was expected, {token.text[:20] or 'the end'!r} found") from None
+        if not re.fullmatch(NUMBER, token.text):
+            raise WktError(token.at, f"a number was expected, {token.text[:20] or 'the end'!r} found")
+        value = float(token.text)
         if not abs(value) <= FURTHEST:
             raise WktError(token.at, f"a coordinate beyond {FURTHEST:.0f} squares")
         return value

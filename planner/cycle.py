@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from kb.accommodation import Accommodated
-from kb.belief import belief
+from kb.belief import Places, belief
 from kb.body import Body, Command, Impression
 from kb.knowledge import Knowledge
 from kb.task import Task
@@ -93,7 +93,8 @@ class Robot:
     def _report(
         self, command: Command | None, impression: Impression, accommodated: Accommodated, why: str
     ) -> StepReport:
-        believed = belief(self.model, self.decider.rooms, accommodated, self.decider.bound)
+        places = Places(self.decider.rooms, self.decider.corners)
+        believed = belief(self.model, places, accommodated, self.decider.bound)
         return StepReport(command, impression, believed, why)
 
     def _test(self) -> None:

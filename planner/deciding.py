@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from kb.body import Command
+from kb.corners import Corner, corners
 from kb.reconciliation import Reconciled, reconcile
 from kb.rooms import NOTHING, Rooms, rooms_of
 from kb.task import Task
@@ -50,6 +51,7 @@ class Decider:
     bound: Mapping[str, str] = field(default_factory=dict)
     attained: int = 0
     rooms: Rooms = NOTHING
+    corners: Mapping[str, Corner] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.stages = stages(self.task)
@@ -63,7 +65,8 @@ class Decider:
         screens = Screens(model)
         self.rooms = rooms_of(model, self.rules)
         reconciled = self._reconcile(model, screens)
-        situation = Situation(model, screens, self.bound, self.rooms)
+        self.corners = corners(model, self.rules)
+        situation = Situation(model, screens, self.bound, self.rooms, self.corners)
         while self.attained < len(self.stages):
             stage = self.stages[self.attained]
             decision = self._towards(stage, situation, reconciled, track)

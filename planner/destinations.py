@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from kb.corners import Corner
 from kb.facts import Fact, Symbol, Term
 from kb.rooms import Rooms
 from kb.worldmodel import WorldModel
@@ -15,17 +16,17 @@ from planner.exploring import Lookout, rooms_beyond
 from planner.screen import Screens, Squares, grown
 
 Mask = NDArray[np.bool_]
-SIDES = {"northeast": (1, 1), "northwest": (-1, 1), "southeast": (1, -1), "southwest": (-1, -1)}
 
 
 @dataclass(frozen=True)
 class Situation:
-    """What the meaning of a goal depends on. binding: parameter -> node."""
+    """What the meaning of a goal depends on. binding: parameter -> node; corners: side -> corner of the known floor."""
 
     model: WorldModel
     screens: Screens
     binding: Mapping[str, str]
     rooms: Rooms
+    corners: Mapping[str, Corner]
 
 
 @dataclass(frozen=True)
@@ -69,16 +70,11 @@ def corner(side: str, situation: Situation) -> Destination:
     Where the floor goes on unseen at its furthest, or is seen beyond walls, it is not known yet.
     """
     model, screens = situation.model, situation.screens
-    beyond = rooms_beyond(screens)
-    known = np.concatenate([np.flatnonzero(screens.floor), *[room.squares for room in beyond]])
-    rows, columns = np.divmod(known, model.labels.shape[1])
-    dx, dy = model.lattice.to_lattice(*SIDES[side])
-    score = columns * dx + rows * dy
-    best = known[np.argmax(np.round(score, 6))]
-    row, column = divmod(int(best), model.labels.shape[1])
+    column, row = situation.corners[side].square
+    best = row * model.labels.shape[1] + column
     if not screens.floor[row, column]:
-        room = next(room for room in beyond if best in room.squares)
-        return nowhere(f"the floor towards the {side} lies beyond a passage that is not seen yet", (room,))
+        rooms = tuple(room for room in rooms_beyond(screens) if best in room.squares)
+        return nowhere(f"the floor towards the {side} lies beyond a passage that is not seen yet", rooms)
     around = (slice(max(row - 1, 0), row + 2), slice(max(column - 1, 0), column + 2))
     if not model.view.seen[around].all():
         lookout = Lookout(np.array([best]), f"the floor goes on to the {side}, unseen")

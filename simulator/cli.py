@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 from kb.problems import BadInputError, CannotOpenError
 from simulator import exits
-from simulator.commands import check, run, show
+from simulator.commands import check, new, query, repl, run, show, test
 
-COMMANDS = (run, check, show)
+COMMANDS = (run, test, check, show, new, query, repl)
 EXIT_CODES = (
     "exit codes: 0 done; 1 ran, goal not reached; 2 usage; 65 bad input; 66 cannot open; 70 our bug; 75 limit; "
     "130 interrupted"
@@ -20,7 +20,7 @@ def parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command line."""
     top = argparse.ArgumentParser(
         prog="utak",
-        description="Utak, a robot who sees coarsely, believes with confidence, and solves spatial tasks on a tabletop.",
+        description="Utak, a robot who sees coarsely, believes with confidence and solves spatial tasks.",
         epilog=EXIT_CODES,
     )
     parts = top.add_subparsers(title="commands", metavar="COMMAND", required=True)

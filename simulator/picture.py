@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import shapely
-from geometry.digital import squares
 
+from geometry.digital import squares
 from kb.problems import BadInputError, Problem, Span
 from kb.source import Source, read_source
 from kb.vocabulary import MOST_SQUARES

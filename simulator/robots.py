@@ -5,7 +5,8 @@ from typing import cast
 
 from kb.body import Body
 from kb.task import Task
-from simulator.session import Robot, Settings
+from simulator.session import Robot
+from simulator.settings import Settings
 
 
 def make_robot(body: Body, task: Task, settings: Settings) -> Robot:

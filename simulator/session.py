@@ -1,21 +1,18 @@
 """One run: the robot wakes in a scenario and acts until he stops, and the truth is written down as it happens."""
 
-import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any, Protocol
 
-from geometry.rigid import Motion, Translate
-
-from kb.body import Body, Command, Grasp, Impression, Release, Turn
-from kb.source import read_source
+from kb.body import Body, Command, Impression
 from kb.task import Task
-from simulator.contents import Thing, World, ring_of
+from simulator.contents import ring_of
 from simulator.embodiment import Embodiment
-from simulator.episode import VERSION, EpisodeLog, Line
+from simulator.episode import EpisodeLog, Line
 from simulator.expectation import Snapshot, should_fail, unmet
+from simulator.record import action_entry, header, motion_entry
 from simulator.scenario import Scenario
+from simulator.settings import Settings
 from simulator.tabletop import Tabletop
 
 
@@ -52,17 +49,6 @@ class Robot(Protocol):
     def finished(self) -> bool: ...
     @property
     def verdict(self) -> Verdict: ...
-
-
-@dataclass(frozen=True)
-class Settings:
-    """The options of a run that decide what happens in it."""
-
-    seed: int = 0
-    noise: float = 0.0
-    paths: str = "skeleton"
-    max_steps: int = 200
-    kb_files: tuple[str, ...] = ()
 
 
 RobotMaker = Callable[[Body, Task, Settings], Robot]
@@ -159,72 +145,3 @@ class Session:
         }
         self._log.write(self.line)
         return self.line
-
-
-def action_entry(command: Command | None) -> Line | None:
-    """Return a command as an episode states it, in Utak's frame."""
-    if command is None:
-        return None
-    do = type(command).__name__.lower()
-    if isinstance(command, Grasp):
-        return {"do": do, "direction": command.direction}
-    if isinstance(command, Turn):
-        return {"do": do, "degrees": command.degrees}
-    if isinstance(command, Release):
-        return {"do": do}
-    return {"do": do, "east": command.east, "north": command.north}
-
-
-def motion_entry(motion: Motion | None) -> Line | None:
-    """Return what really happened as an episode states it, in the table's frame."""
-    if motion is None:
-        return None
-    if isinstance(motion, Translate):
-        return {"translate": [motion.dx, motion.dy]}
-    return {"rotate": motion.degrees, "about": list(motion.about)}
-
-
-def header(scenario: Scenario, settings: Settings) -> Line:
-    """Return the first line of an episode: options, world and task, without times or paths."""
-    world, task = scenario.world, scenario.task
-    rules = [read_source(path).text for path in settings.kb_files]
-    options = {
-        "seed": settings.seed,
-        "noise": settings.noise,
-        "paths": settings.paths,
-        "max_steps": settings.max_steps,
-        "kb": [hashlib.sha256(text.encode()).hexdigest() for text in rules],
-    }
-    told = {
-        "parameters": {name: parameter.kind for name, parameter in task.parameters.items()},
-        "claims": [[str(claim.fact), claim.confidence] for claim in task.claims],
-        "goals": [str(goal) for goal in task.goals],
-        "expect": None if scenario.expectations is None else [str(fact) for fact in scenario.expectations],
-    }
-    return {"utak": "episode", "version": VERSION, "options": options, "world": _world_entry(world), "task": told}
-
-
-def _world_entry(world: World) -> Line:
-    def entry(thing: Thing) -> Line:
-        return {"colour": thing.colour, "rings": _rings(thing.polygon)}
-
-    return {
-        "table": [world.width, world.height],
-        "heading": world.heading,
-        "verge": [_rings(part) for part in getattr(world.verge, "geoms", [world.verge]) if not part.is_empty],
-        "fixed": {thing.name: entry(thing) for thing in world.fixed},
-        "movable": {thing.name: entry(thing) for thing in world.movable},
-    }
-
-
-def _rings(polygon: Any) -> list[list[list[float]]]:
-    """The outer ring and the holes of a polygon, each without its repeated last point."""
-    rings = [polygon.exterior, *polygon.interiors]
-    return [[[float(x), float(y)] for x, y in ring.coords[:-1]] for ring in rings]
-
-
-def kb_files_named(paths: list[str]) -> tuple[str, ...]:
-    """Return the rule files of --kb, each read once to make sure that it can be."""
-    for path in paths:
-        read_source(Path(path))
-    return tuple(paths)

@@ -1,17 +1,17 @@
 """`utak run`: the robot wakes in a scenario and does his task."""
 
 import argparse
-import dataclasses
-import json
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from kb.problems import BadInputError, Problem, Span
 from simulator import exits
 
 if TYPE_CHECKING:
-    from simulator.session import Result, Session, Settings
+    from simulator.session import Result, Session
+    from simulator.settings import Settings
 
+Amount = TypeVar("Amount", int, float)
 PATHS = ("skeleton", "visibility", "grid")
 
 
@@ -54,12 +54,14 @@ def execute(options: argparse.Namespace) -> int:
 
 def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = None) -> "Settings":
     """Return the settings that the command line gives; those of a recorded episode hold where it is silent."""
-    from simulator.session import Settings, kb_files_named
+    from dataclasses import replace
+
+    from simulator.settings import Settings, kb_files_named
 
     given = {"seed": options.seed, "noise": options.noise, "paths": options.paths, "max_steps": options.max_steps}
     given = {name: value for name, value in given.items() if value is not None}
     kept = {name: value for name, value in (recorded or {}).items() if name in ("seed", "noise", "paths", "max_steps")}
-    return dataclasses.replace(Settings(kb_files=kb_files_named(options.kb)), **{**kept, **given})
+    return replace(Settings(kb_files=kb_files_named(options.kb)), **{**kept, **given})
 
 
 def exit_code(result: "Result") -> int:
@@ -86,6 +88,8 @@ def _recorded(options: argparse.Namespace) -> dict[str, Any] | None:
 
 
 def _print(result: "Result", as_json: bool) -> None:
+    import json
+
     if as_json:
         print(json.dumps({**result.line["result"], "unmet": list(result.unmet)}))
         return
@@ -132,10 +136,10 @@ def _steps(text: str) -> int:
 
 
 def _noise(text: str) -> float:
-    return _within(float(text), 0.0, 1.0)
+    return _within(float(text), 0, 1)
 
 
-def _within(value: Any, low: float, high: float) -> Any:
+def _within(value: Amount, low: int, high: int) -> Amount:
     if not low <= value <= high:
         raise argparse.ArgumentTypeError(f"must be from {low} to {high}, not {value}")
     return value
