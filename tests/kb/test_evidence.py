@@ -103,7 +103,9 @@ def test_what_is_settled_follows_from_the_counts(case) -> None:
 
 def test_single_fields_and_full_counts_settle() -> None:
     evidence = Evidence()
-    evidence.look(tiny([[0], [1, 2], [3, 4]], [[1], [1, 1], [1, 1]], [0] * 3), np.array([(1, 1), (0, 0), (2, 2)]), 0, 0, 0)
+    evidence.look(
+        tiny([[0], [1, 2], [3, 4]], [[1], [1, 1], [1, 1]], [0] * 3), np.array([(1, 1), (0, 0), (2, 2)]), 0, 0, 0
+    )
     assert settled(evidence) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FREE, (3, 0): FULL, (4, 0): FULL}
 
 

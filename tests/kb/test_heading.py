@@ -77,7 +77,13 @@ def test_who_wakes_in_the_middle_keeps_the_middle(seed: int) -> None:
         assert contradictions(Lattice(angle_of(heading)), looks[:number]) == 0
 
 
-ROOM = ["b" * 26, *["b" + "." * 24 + "b"] * 8, *["b.....ggg................b"] * 3, *["b" + "." * 24 + "b"] * 9, "b" * 26]
+ROOM = [
+    "b" * 26,
+    *["b" + "." * 24 + "b"] * 8,
+    *["b.....ggg................b"] * 3,
+    *["b" + "." * 24 + "b"] * 9,
+    "b" * 26,
+]
 
 
 @pytest.mark.parametrize("heading", [20, 117, 300])

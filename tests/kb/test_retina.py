@@ -70,9 +70,7 @@ def test_neighbours_share_an_edge() -> None:
 
 def test_the_rim_is_what_reaches_the_edge() -> None:
     edge = {
-        i
-        for i, f in enumerate(FIELDS)
-        if -REACH in (f.east, f.north) or REACH in (f.east + f.side, f.north + f.side)
+        i for i, f in enumerate(FIELDS) if -REACH in (f.east, f.north) or REACH in (f.east + f.side, f.north + f.side)
     }
     assert rim() == edge
     assert all(FIELDS[i].side == 4 for i in edge)
