@@ -1,7 +1,10 @@
 """Questions put to one layer of a screen, and the scratch they share."""
 
+from math import nan
+
 import numpy as np
 
+from geometry.anyangle import FULL, NONE, Scout, new_scout, shortest_line
 from geometry.chains import Ints
 from geometry.distance import Bools
 from geometry.goals import Region, entry, regions, way_in, word_of_cells
@@ -9,7 +12,7 @@ from geometry.itinerary import OVERFLOW, Desk, anchor_at, itineraries, new_desk
 from geometry.layer import Layer
 from geometry.loops import Arc, cells_of_way, closed_ways
 from geometry.passages import Passage, on_chain
-from geometry.polyline import join_words, word_of_line
+from geometry.polyline import crossings_of, join_words, word_of_line
 from geometry.route import Route, read_answers
 from geometry.skeleton import SADDLE
 from geometry.tightening import tight_route
@@ -27,6 +30,7 @@ class Questions:
         self.level = level
         self._width: int = layer.square.shape[1]
         self._desks: dict[int, Desk] = {}
+        self._scout: Scout | None = None
 
     def admits(self, point: XY) -> bool:
         """Whether the body may be in the square of a point."""
@@ -57,6 +61,22 @@ class Questions:
         clearance = 0.5 * min(self._height(start), self._height(goal)) ** 0.5
         route = tight_route(self.layer, (*self._snap(start), *self._snap(goal)), word, clearance, ())
         return self._with_ends(route, start, goal)
+
+    def shortest(self, start: XY, goal: XY) -> Route | None:
+        """The shortest way of all, or None."""
+        runs = self.layer.runs
+        if self._scout is None:
+            self._scout = new_scout(1 << 14, len(runs.left))
+        length = shortest_line(runs, (*start, *goal), *self._scout)
+        while self._scout.sizes[0] == FULL:
+            self._scout = new_scout(4 * len(self._scout.nodes.left), len(runs.left))
+            length = shortest_line(runs, (*start, *goal), *self._scout)
+        size, corners = self._scout.sizes.tolist()
+        if size == NONE:
+            return None
+        points = self._scout.line[:corners].copy()
+        points.flags.writeable = False
+        return Route(points, length, nan, crossings_of(runs, self._scout.word[:size]), ())
 
     def to_area(self, start: XY, goal: Bools, k: int, avoid: tuple[Passage, ...]) -> list[Route]:
         """Routes to any square of a set."""

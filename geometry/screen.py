@@ -134,6 +134,11 @@ class Screen:
         symbols = word_of_crossings(questions.layer.runs, (*begin, *end), word)
         return [] if symbols is None else [questions.of_word(begin, end, symbols)]
 
+    def shortest(self, start: Point, goal: Point) -> Route | None:
+        """The shortest route of all, at any angle; None when there is none. Its clearance and chains are not known."""
+        begin, end = self._checked(start, "start"), self._checked(goal, "goal")
+        return self._ask(0.0).shortest(begin, end)
+
     def loops(self, start: Point, around: ArrayLike, k: int = 1, radius: float = 0.0) -> list[Route]:
         """Closed tight routes that wind once, counter-clockwise, about blocked squares; shortest first.
 
