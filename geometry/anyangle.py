@@ -3,8 +3,8 @@
 # Strategy: a search node is an interval of a portal, all of which is visible from its root, a corner where the rope
 bends (at first the start). Entering the next run, the interval casts a cone: what the cone meets of the run's other
 portals stays visible from the root; beyond a side of the cone that is a corner the rope may bend, which makes that
-corner the root. Nodes are taken by the least length of a way through their interval, so the first way to reach the goal
-is the shortest.
+corner the root. Nodes are taken by the least length of a way through their interval, so the first way to reach the
+goal is the shortest.
 """
 
 from typing import NamedTuple
