@@ -61,6 +61,7 @@ class Knowledge:
             objects=(),
             looked_from=self.memory.looked_from,
             barred=frozenset(self.memory.barred),
+            spread=self.memory.spread,
         )
         return replace(model, objects=self._objects(model)), accommodated
 

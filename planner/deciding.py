@@ -26,6 +26,7 @@ from planner.walking import next_move
 from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
+APART = 2  # squares: a new look is first sought further than this from earlier ones
 
 
 @dataclass(frozen=True)
@@ -188,7 +189,11 @@ def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconc
             aims.append(Aim("inspect", f"{look.what}: it may be {x}", look.squares))
     if any(_surely_reached(aim, screens) for aim in aims if aim.kind == "explore"):
         return aims
-    looks = [*exploring.frontiers(screens), *exploring.vague_places(screens), *exploring.rooms_beyond(screens)]
+    for apart in (APART, 0):
+        looks = [*exploring.frontiers(screens, apart), *exploring.vague_places(screens, apart)]
+        if looks:
+            break
+    looks += exploring.rooms_beyond(screens)
     return aims + [Aim("explore", look.what, look.squares) for look in looks]
 
 
