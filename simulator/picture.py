@@ -10,6 +10,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
 import shapely
 
 from geometry.digital import squares
@@ -18,7 +20,7 @@ from kb.source import Source, read_source
 from simulator.contents import VERGE_COLOUR, Thing, World
 
 FLOOR, UTAK = ".", "U"
-MOST_SQUARES = 1024  # along either side of a picture; greater tables are for world.lp
+MOST_SQUARES = 512  # along either side of a picture; greater tables are for world.lp
 Square = tuple[int, int]
 
 
@@ -111,17 +113,22 @@ def _connected(first: Square, marks: Mapping[Square, str]) -> set[Square]:
 
 def _outline(part: set[Square]) -> Any:
     """The outline of squares, holes kept, without corners on straight lines."""
-    return shapely.simplify(shapely.normalize(shapely.union_all(list(_runs(part)))), 0)
+    corners = np.array(sorted(part), dtype=float).reshape(-1, 2)
+    whole = shapely.coverage_union_all(shapely.box(*corners.T, *(corners + 1).T))
+    parts = [
+        shapely.Polygon(_straight(polygon.exterior), [_straight(hole) for hole in polygon.interiors])
+        for polygon in shapely.get_parts(shapely.normalize(whole))
+        if not polygon.is_empty
+    ]
+    return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
 
 
-def _runs(part: set[Square]) -> Iterator[Any]:
-    """The squares as boxes, one for every unbroken run along a row."""
-    for i, j in part:
-        if (i - 1, j) not in part:
-            end = i + 1
-            while (end, j) in part:
-                end += 1
-            yield shapely.box(i, j, end, j + 1)
+def _straight(ring: Any) -> npt.NDArray[np.float64]:
+    """The points of a ring of unit steps at which it turns."""
+    points = shapely.get_coordinates(ring)[:-1]
+    turns = np.any(points - np.roll(points, 1, axis=0) != np.roll(points, -1, axis=0) - points, axis=1)
+    corners: npt.NDArray[np.float64] = points[turns]
+    return corners
 
 
 def draw(world: World, polygons: Mapping[str, Any] | None = None, utak: tuple[float, float] | None = None) -> str:
