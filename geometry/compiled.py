@@ -1,37 +1,79 @@
-"""Compile kernels with numba when one is first called, not when a module is imported."""
+"""Kernels: plain loops over arrays, compiled by numba on their first call and cached on disk.
 
+numba is imported when the first kernel is called, never at import. A kernel is also ordinary Python: with
+``NUMBA_DISABLE_JIT=1`` it runs uncompiled, for debugging and coverage.
+"""
+
+import sys
 from collections.abc import Callable
-from typing import Any, ParamSpec, TypeVar, cast
+from threading import Timer
+from types import FunctionType
+from typing import Any, Generic, ParamSpec, TypeVar, cast
 
 P = ParamSpec("P")
 R = TypeVar("R")
+PATIENCE = 1.0  # seconds of compiling before the user is told
 
 
-def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Mark a kernel: its first call compiles it, and the kernels that it calls, with numba's cache."""
-    return cast(Callable[P, R], _Kernel(function))
+class Kernel(Generic[P, R]):
+    """A function that compiles itself when it is first called."""
 
-
-class _Kernel:
-    """A kernel not yet compiled."""
-
-    def __init__(self, function: Callable[..., Any]) -> None:
+    def __init__(self, function: Callable[P, R]) -> None:
         self.function = function
         self.__doc__ = function.__doc__
-        self.__wrapped__ = function
+        self.__name__ = function.__name__
+        self.__module__ = function.__module__
+        self._ready: Callable[P, R] | None = None
+        self._machine: Callable[P, R] | None = None
 
-    def __call__(self, *args: Any) -> Any:
-        return self.build()(*args)
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        if self._ready is None:
+            machine = self.machine()
+            _compile(machine, args)
+            self._ready = machine
+        return self._ready(*args, **kwargs)
 
-    def build(self) -> Callable[..., Any]:
-        """Compile, and take the kernel's own place in its module."""
-        import numba
+    def machine(self) -> Callable[P, R]:
+        """The numba dispatcher (or the bare function when numba is told not to compile)."""
+        if self._machine is None:
+            self._machine = _dispatcher(self.function)
+            _link(cast(FunctionType, self.function).__globals__)
+        return self._machine
 
-        space = self.function.__globals__
-        for name in self.function.__code__.co_names:
-            if isinstance(space.get(name), _Kernel):
-                space[name].build()
-        kernel: Callable[..., Any] = numba.njit(cache=True)(self.function)
-        space[self.function.__name__] = kernel
-        self.build = lambda: kernel  # type: ignore[method-assign]
-        return kernel
+
+def compiled(function: Callable[P, R]) -> Kernel[P, R]:
+    """Decorate a kernel. Its arguments are arrays and numbers; it may call other kernels, also of other modules."""
+    return Kernel(function)
+
+
+def _dispatcher(function: Callable[P, R]) -> Callable[P, R]:
+    import numba
+
+    try:
+        return cast(Callable[P, R], numba.njit(cache=True, error_model="numpy")(function))
+    except RuntimeError:  # no directory to keep the cache in: compile anew in each process
+        return cast(Callable[P, R], numba.njit(error_model="numpy")(function))
+
+
+def _link(names: dict[str, Any]) -> None:
+    """Let kernels call each other directly: numba resolves only dispatchers among a module's globals."""
+    for name, value in list(names.items()):
+        if isinstance(value, Kernel):
+            names[name] = value.machine()
+
+
+def _compile(machine: Any, args: tuple[Any, ...]) -> None:
+    """Compile for these arguments without running, and say so when it takes long."""
+    if not hasattr(machine, "typeof_pyval"):
+        return
+    notice = Timer(PATIENCE, _tell)
+    notice.daemon = True
+    notice.start()
+    try:
+        machine.compile(tuple(machine.typeof_pyval(value) for value in args))
+    finally:
+        notice.cancel()
+
+
+def _tell() -> None:
+    print("utak: compiling geometry kernels (once per installation) ...", file=sys.stderr, flush=True)

@@ -63,31 +63,28 @@ def push_impact(x: float, y: float, dx: float, dy: float, edges: Floats, j: int)
 
 @compiled
 def turn_impact(x: float, y: float, cx: float, cy: float, sign: float, edges: Floats, j: int) -> float:
-    """When the point (x, y), turning about (cx, cy) with the sign's sense, enters through edge j, in radians turned."""
+    """When the point (x, y), turning about (cx, cy) with the sign's sense, enters through edge j, in radians turned.
+
+    The circle cuts the edge's line twice and enters at one of them: no angle is needed to know where.
+    """
     nx, ny = edges[j, 4], edges[j, 5]
     hx, hy = cx - edges[j, 0], cy - edges[j, 1]
     h = nx * hx + ny * hy
     qx, qy = x - cx, y - cy
-    r2 = qx * qx + qy * qy
-    if h * h >= r2:
+    half2 = qx * qx + qy * qy - h * h
+    if half2 <= 0.0:
         return NEVER
-    r = math.sqrt(r2)
-    up = nx * qx + ny * qy  # r cos(g): the height over the pivot
-    across = sign * (nx * qy - ny * qx)  # r sin(g): the speed downwards
-    above = h + up
-    if -BEHIND < above < 1e-13 and across > STILL:
-        time = 0.0
-    else:
-        time = math.acos(-h / r) - math.atan2(across, up)
-        if time < 0.0:
-            time += WHOLE_TURN
-    cosine, sine = math.cos(time), sign * math.sin(time)
-    px = hx + cosine * qx - sine * qy
-    py = hy + sine * qx + cosine * qy
-    along = nx * py - ny * px
+    up, across = nx * qx + ny * qy, nx * qy - ny * qx
+    foot = nx * hy - ny * hx
+    if -BEHIND < h + up < 1e-13 and sign * across > STILL:
+        at_once = foot + across
+        return 0.0 if -BESIDE <= at_once <= edges[j, 6] + BESIDE else NEVER
+    half = sign * math.sqrt(half2)
+    along = foot + half
     if along < -BESIDE or along > edges[j, 6] + BESIDE:
         return NEVER
-    return time
+    time = math.atan2(sign * (up * half + across * h), across * half - up * h)
+    return time if time >= 0.0 else time + WHOLE_TURN
 
 
 @compiled
@@ -192,10 +189,11 @@ def _turn_through_skin(
     reach = math.sqrt(reach)
     best, kind, at, edge = limit, 0, 0, 0
     for j in range(len(hull)):
-        x0, y0, x1, y1 = hull[j, 0], hull[j, 1], hull[j, 2], hull[j, 3]
-        if max(x0, x1) < cx - reach or min(x0, x1) > cx + reach or max(y0, y1) < cy - reach or min(y0, y1) > cy + reach:
+        across = hull[j, 4] * (cx - hull[j, 0]) + hull[j, 5] * (cy - hull[j, 1])
+        if abs(across) > reach:
             continue
-        if abs(hull[j, 4] * (cx - x0) + hull[j, 5] * (cy - y0)) <= reach:
+        along = hull[j, 4] * (cy - hull[j, 1]) - hull[j, 5] * (cx - hull[j, 0])
+        if along >= -reach and along <= hull[j, 6] + reach:
             for i in range(len(corners)):
                 time = turn_impact(corners[i, 0], corners[i, 1], cx, cy, sign, skin, j)
                 if time < best:

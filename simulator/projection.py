@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 import shapely
-from geometry.digital import squares
 
+from geometry.digital import squares
 from simulator.contents import VERGE_COLOUR, World
 
 Bools = npt.NDArray[np.bool_]

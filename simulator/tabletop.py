@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import shapely
+
 from geometry.contact import Body, Obstacles
 from geometry.rigid import Motion, Rotate, Translate, direction
-
 from simulator.contents import World
 from simulator.projection import Table
 from simulator.senses import Senses

@@ -1,0 +1,190 @@
+"""Where to lay shapes on an image: all whole ones, and a fan of turned ones that then settle. Plain loops for numba."""
+
+import math
+
+import numpy as np
+
+from geometry.compiled import compiled
+from geometry.overlay import (
+    BRICK,
+    DISC,
+    ELL,
+    HORSESHOE,
+    SQUARE,
+    TRIANGLE,
+    UNKNOWN,
+    WANTED,
+    Floats,
+    Image,
+    disagreement,
+    impropriety,
+    misfit,
+    settle,
+)
+
+STEPS = 150  # of settling
+ANGLES = 24  # in the fan, a whole turn
+STARTS = 4  # that settle
+SLACK = 2  # unknown squares by which a whole shape may reach beyond what is known of it
+
+
+@compiled
+def whole_best(kind: int, image: Image) -> tuple[Floats, float]:
+    """The best shape of a class with whole corners and sides along the axes, and its misfit (infinite: none)."""
+    best, at = math.inf, np.zeros(6)
+    if kind == DISC:
+        return at, best
+    s0, n1, w0, e1 = _extent(image, WANTED)
+    s1, n0, w1, e0 = _extent(image, UNKNOWN)
+    for south in range(max(min(s0, s1), s0 - SLACK), s0 + 1):
+        for north in range(n1, min(max(n1, n0), n1 + SLACK) + 1):
+            for west in range(max(min(w0, w1), w0 - SLACK), w0 + 1):
+                for east in range(e1, min(max(e1, e0), e1 + SLACK) + 1):
+                    if kind == TRIANGLE:
+                        shape, wrong = _whole_triangle(image, west, south, east, north, best)
+                    else:
+                        shape, wrong = _whole_rectangles(kind, image, west, south, east, north, best)
+                    if wrong < best:
+                        best, at = wrong, shape
+    return at, best
+
+
+@compiled
+def _extent(image: Image, state: int) -> tuple[int, int, int, int]:
+    """South, north, west, east of the squares of one state: first and one beyond the last."""
+    south, north, west, east = 10**6, -(10**6), 10**6, -(10**6)
+    for row in range(image.shape[0]):
+        for column in range(image.shape[1]):
+            if image[row, column] == state:
+                south, north = min(south, row), max(north, row + 1)
+                west, east = min(west, column), max(east, column + 1)
+    return south, north, west, east
+
+
+@compiled
+def _whole_rectangles(
+    kind: int, image: Image, west: int, south: int, east: int, north: int, limit: float
+) -> tuple[Floats, float]:
+    """The best square, brick, L, T or U that just fits in a rectangle, in all four directions."""
+    best, at = limit, np.zeros(6)
+    wide, high = east - west, north - south
+    if kind == SQUARE and wide != high:
+        return at, math.inf
+    for quarter in range(1 if kind <= BRICK else 4):
+        a, b = (wide, high) if quarter % 2 == 0 else (high, wide)
+        for thick in range(1, 2 if kind <= BRICK else min(a, b)):
+            angle = quarter * math.pi / 2
+            shape = np.array([angle, (west + east) / 2, (south + north) / 2, a, b, thick])
+            if impropriety(kind, shape) == 0.0:
+                wrong = misfit(kind, shape, image)
+                if wrong < best:
+                    best, at = float(wrong), shape
+    return at, best if best < limit else math.inf
+
+
+@compiled
+def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, limit: float) -> tuple[Floats, float]:
+    """The best triangle with a side on a rectangle's and a whole corner on the opposite one.
+
+    Right-angled ones are tried first, then those with two equal sides, then the rest.
+    """
+    best, at = limit, np.zeros(6)
+    for turn in range(3):
+        for side in range(4):
+            length = east - west if side < 2 else north - south
+            for tip in range(length + 1):
+                rank = 0 if tip == 0 or tip == length else 1 if 2 * tip == length else 2
+                if rank != turn:
+                    continue
+                if side < 2:
+                    y0, y1 = (south, north) if side == 0 else (north, south)
+                    shape = np.array([west, y0, east, y0, west + tip, y1], np.float64)
+                else:
+                    x0, x1 = (west, east) if side == 2 else (east, west)
+                    shape = np.array([x0, south, x0, north, x1, south + tip], np.float64)
+                wrong = misfit(TRIANGLE, shape, image)
+                if wrong < best:
+                    best, at = float(wrong), shape
+    return at, best if best < limit else math.inf
+
+
+@compiled
+def settled_best(kind: int, image: Image) -> tuple[Floats, float]:
+    """The best shape of a class at any place and angle that settling finds, and its misfit."""
+    starts = _fan(kind, image)
+    losses = np.empty(len(starts))
+    for k in range(len(starts)):
+        losses[k] = disagreement(kind, starts[k], image)
+    order = np.argsort(losses)
+    best, at, least = math.inf, starts[0], math.inf
+    free = _freedom(kind)
+    for k in range(min(STARTS, len(order))):
+        shape = starts[order[k]].copy()
+        loss = settle(kind, shape, free, image, STEPS)
+        wrong = float(misfit(kind, shape, image))
+        if impropriety(kind, shape) > 0.01:
+            wrong += 1.0
+        if wrong < best or (wrong == best and loss < least):
+            best, at, least = wrong, shape, loss
+        if least == 0.0:
+            break
+    return at, best
+
+
+@compiled
+def _freedom(kind: int) -> Floats:
+    """How far each number of a class is moved at first when it settles."""
+    if kind == DISC:
+        return np.array([0.3, 0.3, 0.3, 0.0, 0.0, 0.0])
+    if kind == TRIANGLE:
+        return np.full(6, 0.4)
+    free = np.array([0.1, 0.3, 0.3, 0.4, 0.4, 0.3])
+    if kind <= BRICK:
+        free[5] = 0.0
+    if kind == SQUARE:
+        free[4] = 0.0
+    return free
+
+
+@compiled
+def _fan(kind: int, image: Image) -> Floats:
+    """Shapes to start from: (n, 6)."""
+    places = np.argwhere(image == WANTED)
+    if kind == DISC:
+        x, y = places[:, 1].mean() + 0.5, places[:, 0].mean() + 0.5
+        radius = math.sqrt(len(places) / math.pi) - 0.5
+        return np.array([[x, y, max(radius, 0.7), 0.0, 0.0, 0.0]])
+    thicknesses = 3 if kind >= ELL and kind <= HORSESHOE else 1
+    angles = ANGLES if kind >= ELL else ANGLES // 4
+    starts = np.zeros((angles * thicknesses, 6))
+    for k in range(angles):
+        angle = 2 * math.pi * k / ANGLES
+        for t in range(thicknesses):
+            starts[k * thicknesses + t] = _start(kind, places, angle, 1.5 + t * 0.9)
+    return starts
+
+
+@compiled
+def _start(kind: int, places: np.ndarray, angle: float, thick: float) -> Floats:
+    """A shape in one direction, its sizes read off the extent of the squares.
+
+    A shape reaches into its outermost squares by less than half of what a square measures across that direction; a
+    little less than that is taken off.
+    """
+    c, s = math.cos(angle), math.sin(angle)
+    u = c * (places[:, 1] + 0.5) + s * (places[:, 0] + 0.5)
+    v = -s * (places[:, 1] + 0.5) + c * (places[:, 0] + 0.5)
+    off = (abs(c) + abs(s)) / 2 - 0.3
+    u0, u1, v0, v1 = u.min() + off, u.max() - off, v.min() + off, v.max() - off
+    if kind == TRIANGLE:
+        tip = u[np.argmax(v)]
+        low = np.empty(6)
+        low[0], low[1] = c * u0 - s * v0, s * u0 + c * v0
+        low[2], low[3] = c * u1 - s * v0, s * u1 + c * v0
+        low[4], low[5] = c * tip - s * v1, s * tip + c * v1
+        return low
+    mid_u, mid_v = (u0 + u1) / 2, (v0 + v1) / 2
+    wide, high = max(u1 - u0, 1.0), max(v1 - v0, 1.0)
+    if kind == SQUARE:
+        wide = (wide + high) / 2
+    return np.array([angle, c * mid_u - s * mid_v, s * mid_u + c * mid_v, wide, high, thick])

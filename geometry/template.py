@@ -1,0 +1,184 @@
+"""Measuring what shape an object may have from the squares that it occupies.
+
+Geometry measures here and does not decide: for each class of shape it lays the one that agrees best over the image, at
+any place and angle, and says how many squares are wrong. What to believe is for whoever asked.
+
+# Strategy: shapes with whole corners and sides along the axes are tried one and all, since most things are so and their
+# images are exact. For turned ones a coarse fan of angles, with sizes read off the image's extent in that direction,
+# gives starts; the best few settle downhill on the sum of the wrong gaps (geometry.overlay), which tells the way where
+# the number of wrong squares is flat.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from geometry import overlay
+from geometry.fan import settled_best, whole_best
+
+Bools = npt.NDArray[np.bool_]
+Floats = npt.NDArray[np.float64]
+CLASSES = {
+    "square": overlay.SQUARE,
+    "brick": overlay.BRICK,
+    "disc": overlay.DISC,
+    "triangle": overlay.TRIANGLE,
+    "l_shape": overlay.ELL,
+    "t_shape": overlay.TEE,
+    "u_shape": overlay.HORSESHOE,
+}  # by the number of their parameters, then as the eye prefers them
+PAD = 2  # squares of known floor that are looked at around the image
+CORNERS = 32  # of the polygon that stands for a disc
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The shape of one class that agrees best with an image.
+
+    Attributes
+    ----------
+    shape : "square", "brick", "l_shape", "t_shape", "u_shape", "triangle" or "disc".
+    misfit : number of squares wrong: occupied and not covered, or free and covered.
+    polygon : shapely Polygon, in squares, origin at the corner of the image's square (0, 0).
+    whole : all sides along the axes or corners on whole squares, tried exactly.
+    width, height, thick : sizes in squares: of the rectangle that holds the shape, in the shape's own frame (a disc's
+        diameter, a triangle's longest side and the height on it), and of its arms or walls (0 where there are none).
+    degrees : how far the shape is turned, 0 to 360.
+    """
+
+    shape: str
+    misfit: int
+    polygon: Any
+    whole: bool
+    width: float
+    height: float
+    thick: float
+    degrees: float
+
+
+def fit_shapes(occupied: Bools, possible: Bools | None = None) -> list[Fit]:
+    """Lay a shape of every class over the image of one object.
+
+    Parameters
+    ----------
+    occupied : (rows, columns) bool. Squares that the object is known to occupy; row 0 in the south. At least one.
+    possible : (rows, columns) bool, or None for nowhere. Squares of which it is not known. All others, and everything
+        beyond the array, are known to be free of the object.
+
+    Returns
+    -------
+    One Fit a class, the likeliest first: by misfit, then whole corners before others, then fewer parameters; a disc
+    before turned shapes when the image has all the symmetries of one.
+
+    Raises
+    ------
+    ValueError : when no square is occupied, or the arrays differ in shape.
+
+    Examples
+    --------
+    >>> best = fit_shapes(np.ones((3, 3), bool))[0]
+    >>> best.shape, best.misfit, best.width
+    ('square', 0, 3.0)
+    """
+    image, west, south = _image(occupied, possible)
+    fits = [_fit(name, kind, image, west, south) for name, kind in CLASSES.items()]
+    rank = sorted(CLASSES, key=lambda name: name != "disc") if _is_round(image) else list(CLASSES)
+    return sorted(fits, key=lambda fit: (fit.misfit, not fit.whole, rank.index(fit.shape)))
+
+
+def _is_round(image: overlay.Image) -> bool:
+    """Does the image look the same in the mirror, upright and lying? A disc's does.
+
+    That of a square hardly when it is turned.
+    """
+    seen = image == overlay.WANTED
+    return seen.shape[0] == seen.shape[1] and all(
+        np.array_equal(seen, other) for other in (seen[::-1], seen[:, ::-1], seen.T)
+    )
+
+
+def _image(occupied: Bools, possible: Bools | None) -> tuple[overlay.Image, int, int]:
+    """The image cut to what may be the object and a rim of PAD squares, and the place of its corner."""
+    occupied = np.asarray(occupied, bool)
+    unknown = np.zeros_like(occupied) if possible is None else np.asarray(possible, bool)
+    if occupied.ndim != 2 or unknown.shape != occupied.shape or not occupied.any():
+        raise ValueError("occupied must be a (rows, columns) array with a True square, possible of the same shape")
+    unknown = unknown & ~occupied
+    rows, columns = np.nonzero(occupied | unknown)
+    south, west = int(rows.min()), int(columns.min())
+    high, wide = int(rows.max()) + 1 - south, int(columns.max()) + 1 - west
+    image = np.zeros((high + 2 * PAD, wide + 2 * PAD), np.int8)
+    inner = image[PAD : PAD + high, PAD : PAD + wide]
+    inner[unknown[south : south + high, west : west + wide]] = overlay.UNKNOWN
+    inner[occupied[south : south + high, west : west + wide]] = overlay.WANTED
+    return image, west - PAD, south - PAD
+
+
+def _fit(name: str, kind: int, image: overlay.Image, west: int, south: int) -> Fit:
+    """The best of a class: the best whole one unless a turned one has fewer squares wrong."""
+    shape, wrong = whole_best(kind, image)
+    whole = wrong < math.inf
+    if wrong > 0:
+        other, worse = settled_best(kind, image)
+        if worse < wrong:
+            shape, wrong, whole = other, worse, False
+    polygon = shapely.Polygon(outline(kind, shape) + np.array([west, south], float))
+    wide, high, thick = _sizes(kind, shape, polygon)
+    degrees = 0.0 if kind == overlay.DISC else _turn(kind, shape)
+    return Fit(name, int(wrong), polygon, whole, wide, high, thick, degrees)
+
+
+def outline(kind: int, shape: Floats) -> Floats:
+    """The corners (n, 2) of a shape, in order."""
+    if kind == overlay.TRIANGLE:
+        return shape.reshape(3, 2)
+    if kind == overlay.DISC:
+        angles = 2 * math.pi * (np.arange(CORNERS) + 0.5) / CORNERS
+        return np.column_stack([shape[0] + shape[2] * np.cos(angles), shape[1] + shape[2] * np.sin(angles)])
+    wide, high, thick = shape[3], shape[3] if kind == overlay.SQUARE else shape[4], shape[5]
+    corners = np.array(_corners(kind, wide, high, thick)) - np.array([wide, high]) / 2
+    quarters = shape[0] / (math.pi / 2)
+    c, s = math.cos(shape[0]), math.sin(shape[0])
+    if quarters == round(quarters):
+        c, s = float(round(c)), float(round(s))
+    x, y = corners.T
+    return np.column_stack([shape[1] + c * x - s * y, shape[2] + s * x + c * y])
+
+
+def _corners(kind: int, wide: float, high: float, thick: float) -> list[tuple[float, float]]:
+    """The corners of a shape made of rectangles, not turned, lower left at the origin."""
+    if kind <= overlay.BRICK:
+        return [(0, 0), (wide, 0), (wide, high), (0, high)]
+    if kind == overlay.ELL:
+        return [(0, 0), (wide, 0), (wide, thick), (thick, thick), (thick, high), (0, high)]
+    left, right = (wide - thick) / 2, (wide + thick) / 2
+    foot = [(0, 0), (wide, 0)]
+    if kind == overlay.TEE:
+        return [*foot, (wide, thick), (right, thick), (right, high), (left, high), (left, thick), (0, thick)]
+    inner = [(wide - thick, high), (wide - thick, thick), (thick, thick), (thick, high)]
+    return [*foot, (wide, high), *inner, (0, high)]
+
+
+def _sizes(kind: int, shape: Floats, polygon: Any) -> tuple[float, float, float]:
+    """Width, height and thickness of a shape."""
+    if kind == overlay.DISC:
+        return 2 * float(shape[2]), 2 * float(shape[2]), 0.0
+    if kind == overlay.TRIANGLE:
+        sides = np.hypot(*(shape.reshape(3, 2) - np.roll(shape.reshape(3, 2), 1, axis=0)).T)
+        return float(sides.max()), float(2 * polygon.area / sides.max()), 0.0
+    high = shape[3] if kind == overlay.SQUARE else shape[4]
+    return float(shape[3]), float(high), float(shape[5]) if kind >= overlay.ELL else 0.0
+
+
+def _turn(kind: int, shape: Floats) -> float:
+    """The degrees that a shape is turned; of a triangle the direction of its longest side."""
+    if kind != overlay.TRIANGLE:
+        return math.degrees(float(shape[0])) % 360.0
+    corners = shape.reshape(3, 2)
+    sides = np.roll(corners, -1, axis=0) - corners
+    side = sides[int(np.argmax(np.hypot(*sides.T)))]
+    return math.degrees(math.atan2(side[1], side[0])) % 360.0

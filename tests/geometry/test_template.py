@@ -1,0 +1,119 @@
+"""Which shape an image may have: whole shapes exactly, turned ones nearly always."""
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from shapely import affinity
+
+from geometry.digital import squares
+from geometry.template import fit_shapes
+
+ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
+TEE = shapely.Polygon([(0, 0), (6, 0), (6, 2), (4, 2), (4, 5), (2, 5), (2, 2), (0, 2)])
+HORSESHOE = shapely.Polygon([(0, 0), (6, 0), (6, 5), (4, 5), (4, 2), (2, 2), (2, 5), (0, 5)])
+WHOLE = [
+    ("square", shapely.box(0, 0, 3, 3)),
+    ("square", shapely.box(0, 0, 1, 1).buffer(1, join_style="mitre")),
+    ("brick", shapely.box(0, 0, 2, 4)),
+    ("brick", shapely.box(0, 0, 6, 2)),
+    ("brick", shapely.box(0, 0, 3, 4)),
+    ("l_shape", ELL),
+    ("t_shape", TEE),
+    ("u_shape", HORSESHOE),
+    ("triangle", shapely.Polygon([(0, 0), (4, 4), (4, 0)])),
+    ("triangle", shapely.Polygon([(0, 0), (6, 0), (3, 5)])),
+]
+
+
+def image_of(shape: shapely.Geometry) -> np.ndarray:
+    return squares(shape, 30, 30)
+
+
+def same(a: shapely.Geometry, b: shapely.Geometry) -> bool:
+    return a.symmetric_difference(b).area < 1e-9
+
+
+@pytest.mark.parametrize(("name", "shape"), WHOLE)
+@pytest.mark.parametrize("quarter", range(4))
+def test_whole_shapes_come_out_exactly(name: str, shape: shapely.Geometry, quarter: int) -> None:
+    laid = affinity.translate(affinity.rotate(shape, 90 * quarter, origin=(0, 0)), 12, 11)
+    best = fit_shapes(image_of(laid))[0]
+    assert (best.shape, best.misfit, best.whole) == (name, 0, True)
+    assert same(best.polygon, laid)
+
+
+@pytest.mark.parametrize("radius", [3.5, 4, 5])
+def test_a_disc_comes_out_as_a_disc(radius: float) -> None:
+    """Smaller ones may occupy the very squares of a square: nobody could tell, and the square is told first."""
+    image = image_of(shapely.Point(12.3, 11.1).buffer(radius))
+    best = fit_shapes(image)[0]
+    assert (best.shape, best.misfit) == ("disc", 0)
+    assert best.width / 2 == pytest.approx(radius, abs=0.4)
+
+
+def random_shape(rng: np.random.Generator, name: str) -> shapely.Geometry:
+    """A shape of the class with sizes from 2 to 6."""
+    a, b = sorted(rng.uniform(2.0, 4.5, 2))
+    if name == "square":
+        return shapely.box(0, 0, a + 1, a + 1)
+    if name == "brick":
+        return shapely.box(0, 0, a, 1.4 * a + b - 1.5)
+    if name == "triangle":
+        return shapely.Polygon([(0, 0), (a + 2.5, 0), (rng.uniform(0, a), b + 2)])
+    if name == "disc":
+        return shapely.Point(0, 0).buffer(a + 1.2)
+    base = {"l_shape": ELL, "t_shape": TEE, "u_shape": HORSESHOE}[name]
+    return affinity.scale(base, *rng.uniform(0.9, 1.1, 2))
+
+
+@pytest.mark.parametrize("name", ["square", "brick", "l_shape", "t_shape", "u_shape", "triangle", "disc"])
+def test_turned_shapes_keep_their_class(name: str) -> None:
+    rng = np.random.default_rng(len(name))
+    right = 0
+    for _ in range(40):
+        shape = affinity.rotate(random_shape(rng, name), rng.uniform(0, 360))
+        shape = affinity.translate(shape, *(15 + rng.random(2)))
+        fits = fit_shapes(image_of(shape))
+        right += fits[0].shape == name
+    assert right >= 37
+
+
+def test_the_misfit_is_that_of_the_polygon() -> None:
+    """Counted again with the digital representation of the polygon told."""
+    rng = np.random.default_rng(8)
+    for _ in range(10):
+        shape = affinity.translate(affinity.rotate(random_shape(rng, "triangle"), rng.uniform(0, 360)), 15.2, 14.9)
+        image = image_of(shape)
+        for fit in fit_shapes(image):
+            if fit.shape != "disc":
+                assert abs(int((image_of(fit.polygon) != image).sum()) - fit.misfit) <= 1
+
+
+def test_what_is_unknown_does_not_count() -> None:
+    rng = np.random.default_rng(3)
+    laid = affinity.translate(ELL, 12, 11)
+    image = image_of(laid)
+    hidden = (rng.random(image.shape) < 0.15) | (np.arange(30) > 16)
+    fits = fit_shapes(image & ~hidden, hidden & (np.abs(np.arange(30) - 15) < 6))
+    assert next(fit for fit in fits if fit.shape == "l_shape").misfit == 0
+
+
+def test_sizes_and_direction_are_told() -> None:
+    best = fit_shapes(image_of(affinity.translate(ELL, 4, 5)))[0]
+    assert (best.width, best.height, best.thick, best.degrees) == (6, 6, 2, 0)
+    turned = affinity.rotate(shapely.box(10, 10, 16, 13), 33)
+    best = fit_shapes(image_of(turned))[0]
+    assert best.shape == "brick"
+    assert max(best.width, best.height) == pytest.approx(6, abs=0.5)
+    assert math.cos(math.radians(2 * (best.degrees - 33))) == pytest.approx(1, abs=0.1) or best.width < best.height
+
+
+@pytest.mark.parametrize(
+    ("occupied", "possible"),
+    [(np.zeros((3, 3), bool), None), (np.ones((2, 2), bool), np.ones((3, 2), bool)), (np.ones(4, bool), None)],
+)
+def test_no_image_is_an_error(occupied: np.ndarray, possible: np.ndarray | None) -> None:
+    with pytest.raises(ValueError, match="occupied"):
+        fit_shapes(occupied, possible)
