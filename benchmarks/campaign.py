@@ -37,6 +37,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     conditions = Conditions(given.noise, given.noise_seed, given.paths, given.max_steps, given.seconds)
     with ExitStack() as stack:
         folder = given.keep or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="utak-campaign-")))
+        _warm_up(folder)
         if given.only:
             task, seed = (int(part) for part in given.only.split(":"))
             trials = [_watched(task, seed, conditions, folder)]
@@ -78,6 +79,11 @@ def _unclean(results: Path) -> list[tuple[int, int]]:
     """The worlds of earlier results in which something went wrong."""
     rows = [json.loads(line) for line in results.read_text().splitlines()]
     return [(row["task"], row["seed"]) for row in rows if not row["clean"]]
+
+
+def _warm_up(folder: Path) -> None:
+    """One trial that does not count: kernels are compiled and cached before any clock runs."""
+    run_trial(4, 0, Conditions(max_steps=30, seconds=0), folder / "warming-up")
 
 
 def _run_all(worlds: list[tuple[int, int]], conditions: Conditions, folder: Path, jobs: int) -> Iterator[Trial]:

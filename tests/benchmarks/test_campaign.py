@@ -61,6 +61,12 @@ def maker(commands: list[Command], verdict: Verdict) -> Callable[[Body, Task, Se
     return lambda body, task, settings: Scripted(body, commands, verdict)
 
 
+@pytest.fixture(autouse=True)
+def cold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No trial before those that are asked for."""
+    monkeypatch.setattr(campaign, "_warm_up", lambda folder: None)
+
+
 DONE = Verdict(True, "done", "I am there")
 GIVES_UP = Verdict(False, "impossible", "there is no way")
 HERE = Move(0.0, 0.0)
