@@ -36,6 +36,11 @@ def new_state(shape: tuple[int, int]) -> tuple[States, Words]:
 def find_chains(square: Squares, level: int, state: States, words: Words) -> Chains:
     """The pathgraph of the cells whose ``square`` is at least ``level``; fills ``state``."""
     classify(square, level, state, np.zeros(square.shape[1], np.uint8), KINDS)
+    return retrace(square, state, words)
+
+
+def retrace(square: Squares, state: States, words: Words) -> Chains:
+    """The pathgraph of cells that are already classified."""
     trace(square, state, words)
     return contract(square, state, words)
 

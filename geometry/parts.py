@@ -1,6 +1,7 @@
 """Parts of the floor: what remains connected when free space is cut along the necks of some passages."""
 
 from collections.abc import Iterable
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,14 +33,13 @@ def find_parts(square: Squares, state: NDArray[np.uint8], passages: Iterable[Pas
 
 def cut(shut: Bools, passage: Passage) -> None:
     """Mark the steps to the east (0) and to the north (1) that cross a passage's neck."""
-    (ax, ay), (bx, by) = passage.a, passage.b
-    ends = (ax, ay, bx, by)
-    for row in range(int(min(ay, by)) - 1, int(max(ay, by)) + 2):
-        for column in range(int(min(ax, bx)) - 1, int(max(ax, bx)) + 2):
+    for a, b in pairwise(passage.cut):
+        near = [(int(x) + dx, int(y) + dy) for x, y in (a, b) for dx in (-1, 0, 1) for dy in (-1, 0, 1)]
+        for column, row in sorted(set(near)):
             x, y = column + 0.5, row + 0.5
             if 0 <= row < shut.shape[1] - 2 and 0 <= column < shut.shape[2] - 2:
-                shut[0, row + 1, column + 1] |= crosses((x, y), (x + 1.0, y), ends)
-                shut[1, row + 1, column + 1] |= crosses((x, y), (x, y + 1.0), ends)
+                shut[0, row + 1, column + 1] |= crosses(passage.cut, (x, y), (x + 1.0, y))
+                shut[1, row + 1, column + 1] |= crosses(passage.cut, (x, y), (x, y + 1.0))
 
 
 @compiled

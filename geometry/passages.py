@@ -6,6 +6,7 @@ between two wide parts exactly one place counts as the neck, however long and bu
 narrowest, ties broken by index.
 """
 
+from itertools import pairwise
 from math import sqrt
 from typing import NamedTuple
 
@@ -35,9 +36,11 @@ class Passage(NamedTuple):
     b: XY
     """The other end."""
     sides: tuple[float, float]
-    """The greatest clearance on either side, before any neck that is narrower."""
+    """The greatest clearance on either side, before any neck that is narrower (also between squares' centres)."""
     gates: tuple[XY, XY]
     """The centres of two neighbouring free squares, one on either side of the neck, in the order of ``sides``."""
+    cut: tuple[XY, ...]
+    """Centres of squares from wall to wall over ``place``: where the floor is cut (on the side of a little more x)."""
     chain: int
     """The chain of the pathgraph that leads through."""
     position: int
@@ -50,56 +53,68 @@ def find_passages(square: Squares, state: States, chains: Chains) -> list[Passag
     if not len(saddles):
         return []
     groups, first, peaks = compare_sides(square, state, saddles)
+    finer = {peak: finest(square, peak) for peak in np.unique(peaks).tolist()}
     found = []
     for k, saddle in enumerate(saddles.tolist()):
         count = int(groups[k])
         for g in range(1 if count == 2 else count):
-            found.append(describe(square, state, chains, saddle, first[k, :count], peaks[k, :count], g))
+            sides = [finer[peak] for peak in peaks[k, :count].tolist()]
+            found.append(describe(square, state, chains, saddle, first[k, :count], sides, g))
     return found
 
 
-def describe(square: Squares, state: States, chains: Chains, saddle: int, first: Ints, peaks: Ints, g: int) -> Passage:
+def describe(
+    square: Squares, state: States, chains: Chains, saddle: int, first: Ints, sides: list[float], g: int
+) -> Passage:
     """The passage between one side of a saddle and the rest."""
     width = square.shape[1]
     others = [k for k in range(len(first)) if k != g]
-    other = max(others, key=lambda k: (int(peaks[k]), -k))
-    wall = neck_walls(square, saddle, int(first[g]))
-    ends = nearest_points(wall[0], wall[1], width)
-    one, two = crossing_step(square, saddle, int(first[g]), int(first[other]), ends)
-    anchor = locate(int(first[g]), state, chains)
-    chain, position = on_chain(chains, saddle, anchor.chain, state)
+    other = max(others, key=lambda k: (sides[k], -k))
+    left, right = slopes(square, saddle, int(first[g]))
+    ax, ay, bx, by = neck_ends(square, saddle, int(left[-1]), int(right[-1]))
+    cut = tuple(centre(cell, width) for cell in [*left[::-1].tolist(), saddle, *right.tolist()])
+    place = centre(saddle, width)
+    near, far = crossing_step(square, saddle, int(first[g]), int(first[other]), cut)
+    chain, position = on_chain(chains, saddle, int(first[g]), state)
     return Passage(
-        centre(saddle, width),
+        place,
         clearance_of(square, saddle),
-        float(np.hypot(ends[2] - ends[0], ends[3] - ends[1])),
-        (ends[0], ends[1]),
-        (ends[2], ends[3]),
-        (0.5 * sqrt(float(peaks[g])), 0.5 * sqrt(float(peaks[other]))),
-        (centre(one, width), centre(two, width)),
+        float(np.hypot(bx - ax, by - ay)),
+        (ax, ay),
+        (bx, by),
+        (sides[g], sides[other]),
+        (centre(near, width), centre(far, width)),
+        cut,
         chain,
         position,
     )
 
 
-def on_chain(chains: Chains, saddle: int, fallback: int, state: States) -> tuple[int, int]:
+def on_chain(chains: Chains, saddle: int, side: int, state: States) -> tuple[int, int]:
     """The chain that leads from a saddle to one side, and the saddle's position on it."""
     anchor = locate(saddle, state, chains)
-    chain = anchor.chain if anchor.node < 0 else fallback
-    cells = chains.cells[chains.start[chain] : chains.start[chain + 1]]
-    return int(chain), int(np.flatnonzero(cells == saddle)[0]) if saddle in cells else 0
+    if anchor.node < 0:
+        return anchor.chain, anchor.position
+    for chain in sorted(set(chains.leave[anchor.node].tolist()) - {-1}):
+        cells = chains.cells[chains.start[chain] : chains.start[chain + 1]]
+        if (cells[0], cells[1]) == (saddle, side):
+            return chain, 0
+        if (cells[-1], cells[-2]) == (saddle, side):
+            return chain, len(cells) - 1
+    raise AssertionError("a saddle that is a node has a chain into each of its sides")
 
 
 def compare_sides(square: Squares, state: States, saddles: Ints) -> tuple[Ints, Ints, Ints]:
-    """Per saddle: its number of sides, their first cells, and the highest ``square`` of each side's part."""
+    """Per saddle: its number of sides, their first cells, and the summit of each side's part."""
     heights = square.reshape(-1)
     count = np.zeros(len(saddles), np.int32)
     first, summit, peaks = (np.zeros((len(saddles), 4), np.int32) for _ in range(3))
     find_sides(square, state, saddles, count, first, summit)
     summits = np.flatnonzero(state.reshape(-1) & SUMMIT).astype(np.int32)
     parent = np.arange(len(summits), dtype=np.int32)
-    highest = heights[summits].copy()
+    highest = summits.copy()
     order = np.lexsort((-saddles, -heights[saddles])).astype(np.int32)
-    merge_sides(order, count, np.searchsorted(summits, summit).astype(np.int32), parent, highest, peaks)
+    merge_sides(order, count, np.searchsorted(summits, summit).astype(np.int32), parent, highest, heights, peaks)
     return count, first, peaks
 
 
@@ -128,51 +143,86 @@ def find_sides(square: Squares, state: States, saddles: Ints, count: Ints, first
 
 
 @compiled
-def merge_sides(order: Ints, count: Ints, summit: Ints, parent: Ints, highest: Ints, peaks: Ints) -> None:
-    """Take the saddles in order; note the heights of the parts they join, then join them."""
+def merge_sides(
+    order: Ints, count: Ints, summit: Ints, parent: Ints, highest: Ints, heights: Squares, peaks: Ints
+) -> None:
+    """Take the saddles in order; note the summits of the parts they join, then join them."""
     for saddle in order:
         for g in range(count[saddle]):
             peaks[saddle, g] = highest[root(parent, summit[saddle, g])]
         for g in range(1, count[saddle]):
             a, b = root(parent, summit[saddle, 0]), root(parent, summit[saddle, g])
-            highest[min(a, b)] = max(highest[a], highest[b])
+            if above(highest[max(a, b)], highest[min(a, b)], heights):
+                highest[min(a, b)] = highest[max(a, b)]
             parent[max(a, b)] = min(a, b)
 
 
 @compiled
-def neck_walls(square: Squares, saddle: int, side: int) -> tuple[int, int]:
-    """The two blocked squares nearest to each other across the way from a saddle to one of its sides."""
+def finest(square: Squares, cell: int) -> float:
+    """The greatest clearance at a cell's centre, corners and edges' middles."""
+    rows, width = square.shape
+    i, j = cell // width, cell % width
+    reach = int(np.sqrt(float(square[i, j]))) // 2 + 2
+    best = 0.0
+    for dy in range(-1, 2):
+        for dx in range(-1, 2):
+            least = np.inf
+            for y in range(max(i - reach, 0), min(i + reach + 1, rows)):
+                for x in range(max(j - reach, 0), min(j + reach + 1, width)):
+                    if square[y, x] == 0:
+                        rise, run = max(abs(y - i - 0.5 * dy) - 0.5, 0.0), max(abs(x - j - 0.5 * dx) - 0.5, 0.0)
+                        least = min(least, rise * rise + run * run)
+            best = max(best, np.sqrt(least) if least < np.inf else 0.0)
+    return best
+
+
+@compiled
+def slopes(square: Squares, saddle: int, side: int) -> tuple[Ints, Ints]:
+    """The steepest ways down to the walls, left and right of the way from a saddle to one of its sides."""
     width = square.shape[1]
     heights = square.reshape(-1)
     k = 0
     while saddle + beside(k, width) != side:
         k += 1
-    a = descend(heights, saddle, k, 1, width)
-    b = descend(heights, saddle, k, 7, width)
-    for _ in range(4):
-        c = across(square, saddle, a, b)
-        d = across(square, saddle, c, a)
-        if c == b and d == a:
-            break
-        a, b = d, c
-    return a, b
+    return descend(heights, saddle, k, 1, width), descend(heights, saddle, k, 7, width)
+
+
+def neck_ends(square: Squares, saddle: int, one: int, two: int) -> tuple[float, float, float, float]:
+    """The ends of a neck: the nearest points of its walls, or those nearest the saddle if it does not lie between."""
+    width = square.shape[1]
+    i, j = saddle // width, saddle % width
+    if (one // width - i) * (two // width - i) + (one % width - j) * (two % width - j) < 0:
+        return nearest_points(*neck_walls(square, saddle, one, two), width)
+    return (*nearest_points(one, saddle, width)[:2], *nearest_points(two, saddle, width)[:2])
 
 
 @compiled
-def descend(heights: Squares, saddle: int, k: int, turn: int, width: int) -> int:
-    """The blocked square at the foot of the first lower neighbours, turning from the k-th one way."""
+def neck_walls(square: Squares, saddle: int, one: int, two: int) -> tuple[int, int]:
+    """The blocked squares nearest to each other across a saddle, starting from the feet of its slopes."""
+    for _ in range(4):
+        nearer = across(square, saddle, one, two)
+        back = across(square, saddle, nearer, one)
+        if nearer == two and back == one:
+            break
+        one, two = back, nearer
+    return one, two
+
+
+@compiled
+def descend(heights: Squares, saddle: int, k: int, turn: int, width: int) -> Ints:
+    """The cells of the steepest way down to a wall from the first lower neighbour, turning from the k-th one way."""
     k += turn
     while above(saddle + beside(k, width), saddle, heights):
         k += turn
-    cell = saddle + beside(k, width)
-    while heights[cell] > 0:
-        best = cell
+    cells = [saddle + beside(k, width)]
+    while heights[cells[-1]] > 0:
+        best = cells[-1]
         for j in range(8):
-            other = cell + beside(j, width)
+            other = cells[-1] + beside(j, width)
             if heights[other] < heights[best]:
                 best = other
-        cell = best
-    return cell
+        cells.append(best)
+    return np.array(cells, np.int32)
 
 
 @compiled
@@ -213,29 +263,28 @@ def nearest_on_axis(a: int, b: int) -> tuple[float, float]:
     return (a + 1.0, float(b)) if a < b else (float(a), b + 1.0)
 
 
-def crossing_step(
-    square: Squares, saddle: int, one: int, two: int, ends: tuple[float, float, float, float]
-) -> tuple[int, int]:
+def crossing_step(square: Squares, saddle: int, one: int, two: int, cut: tuple[XY, ...]) -> tuple[int, int]:
     """The two neighbouring cells between which the skeleton crosses the neck, first the one towards ``one``."""
     width = square.shape[1]
-    for side, swap in ((one, False), (two, True)):
-        cell, onward = saddle, side
-        for _ in range(int(2 * max(abs(ends[2] - ends[0]), abs(ends[3] - ends[1]))) + 4):
-            if crosses(centre(cell, width), centre(onward, width), ends):
-                return (cell, onward) if swap else (onward, cell)
-            cell, onward = onward, int(steepest(onward, square.reshape(-1), width))
-    return one, saddle
+    if crosses(cut, centre(saddle, width), centre(one, width)):
+        return one, saddle
+    return saddle, two
 
 
-def crosses(p: XY, q: XY, ends: tuple[float, float, float, float]) -> bool:
-    """Whether the unit step from p to q crosses the segment; a point on its line counts as left of it."""
-    ax, ay, bx, by = ends
-    sides = [(bx - ax) * (y - ay) - (by - ay) * (x - ax) >= 0.0 for x, y in (p, q)]
-    if sides[0] == sides[1]:
-        return False
-    if p[1] == q[1]:
-        return min(ay, by) <= p[1] <= max(ay, by)
-    return min(ax, bx) <= p[0] <= max(ax, bx)
+def crosses(cut: tuple[XY, ...], p: XY, q: XY) -> bool:
+    """Whether the step from p to q crosses a cut, which runs a little off its squares' centres."""
+    shifted = [(x + 1e-4, y + 3e-5) for x, y in cut]
+    return sum(meets(a, b, p, q) for a, b in pairwise(shifted)) % 2 == 1
+
+
+def meets(a: XY, b: XY, p: XY, q: XY) -> bool:
+    """Whether two segments cross."""
+    return (turn(a, b, p) > 0) != (turn(a, b, q) > 0) and (turn(p, q, a) > 0) != (turn(p, q, b) > 0)
+
+
+def turn(a: XY, b: XY, c: XY) -> float:
+    """Positive when c lies left of the ray from a through b."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 def centre(cell: int, width: int) -> XY:

@@ -1,19 +1,21 @@
 """Questions put to one layer of a screen, and the scratch they share."""
 
+from math import nan
+
 import numpy as np
 
+from geometry.anyangle import FULL, NONE, Scout, new_scout, shortest_line
 from geometry.chains import Ints
 from geometry.distance import Bools
 from geometry.goals import Region, entry, regions, way_in, word_of_cells
 from geometry.itinerary import OVERFLOW, Desk, anchor_at, itineraries, new_desk
 from geometry.layer import Layer
 from geometry.loops import Arc, cells_of_way, closed_ways
-from geometry.passages import Passage
-from geometry.polyline import join_words, word_of_line
+from geometry.passages import Passage, on_chain
+from geometry.polyline import crossings_of, join_words, word_of_line
 from geometry.route import Route, read_answers
 from geometry.skeleton import SADDLE
 from geometry.tightening import tight_route
-from geometry.ways import locate
 
 XY = tuple[float, float]
 SPARE = 8  # ways tried beyond those wanted, since their order changes when ropes are pulled tight
@@ -28,6 +30,7 @@ class Questions:
         self.level = level
         self._width: int = layer.square.shape[1]
         self._desks: dict[int, Desk] = {}
+        self._scout: Scout | None = None
 
     def admits(self, point: XY) -> bool:
         """Whether the body may be in the square of a point."""
@@ -59,6 +62,22 @@ class Questions:
         route = tight_route(self.layer, (*self._snap(start), *self._snap(goal)), word, clearance, ())
         return self._with_ends(route, start, goal)
 
+    def shortest(self, start: XY, goal: XY) -> Route | None:
+        """The shortest way of all, or None."""
+        runs = self.layer.runs
+        if self._scout is None:
+            self._scout = new_scout(1 << 14, len(runs.left))
+        length = shortest_line(runs, (*start, *goal), *self._scout)
+        while self._scout.sizes[0] == FULL:
+            self._scout = new_scout(4 * len(self._scout.nodes.left), len(runs.left))
+            length = shortest_line(runs, (*start, *goal), *self._scout)
+        size, corners = self._scout.sizes.tolist()
+        if size == NONE:
+            return None
+        points = self._scout.line[:corners].copy()
+        points.flags.writeable = False
+        return Route(points, length, nan, crossings_of(runs, self._scout.word[:size]), ())
+
     def to_area(self, start: XY, goal: Bools, k: int, avoid: tuple[Passage, ...]) -> list[Route]:
         """Routes to any square of a set."""
         if not self.admits(start):
@@ -67,7 +86,10 @@ class Questions:
         for number, place in enumerate(regions(self.layer.square, self.level, goal)):
             centre = self._centre(place.cell)
             for route in self.to_point(start, centre, k + SPARE, avoid):
-                tight, key = self._cut(route, goal, place, start)
+                cut = self._cut(route, goal, place, start)
+                if cut is None:
+                    continue
+                tight, key = cut
                 if (number, key) not in best or tight.length < best[number, key].length:
                     best[number, key] = tight
         return sorted(best.values(), key=lambda route: route.length)[:k]
@@ -92,10 +114,12 @@ class Questions:
         route = tight_route(self.layer, (*at, *at), word, 0.5 * lowest**0.5, chains)
         return self._with_ends(route, start, start)
 
-    def _cut(self, route: Route, goal: Bools, place: Region, start: XY) -> tuple[Route, tuple[int, ...]]:
-        """A route up to where it enters a part of a goal set, and its class there."""
+    def _cut(self, route: Route, goal: Bools, place: Region, start: XY) -> tuple[Route, tuple[int, ...]] | None:
+        """A route up to where it enters a part of a goal set, and its class there; None if another part comes first."""
         points, (i, j) = entry(route.points, goal)
         cell = (j + 1) * self._width + i + 1
+        if cell not in place.parent and cell != place.cell:
+            return None
         word = word_of_line(self.layer.runs, points.tolist())
         key = join_words(word, word_of_cells(self.layer.runs, way_in(place, cell), self._width))
         tight = self._to_cell(route, start, word, cell)
@@ -131,12 +155,10 @@ class Questions:
             cell = self._cell(passage.place)
             if not state.reshape(-1)[cell] & SADDLE:
                 continue  # too narrow for this body anyway
-            anchor = locate(cell, state, chains)
-            if anchor.node >= 0:  # three ways meet in the neck itself: the one behind the gate is shut
-                gate = next(g for g in map(self._cell, passage.gates) if g != cell)
-                anchor = locate(gate, state, chains)
-            desk.query.shut[anchor.chain] |= 1
-            bars.append((anchor.chain, anchor.position))
+            near, far = (self._cell(gate) for gate in passage.gates)
+            chain, position = on_chain(chains, cell, far if near == cell else near, state)
+            desk.query.shut[chain] |= 1
+            bars.append((chain, position))
         bar = np.array(bars, np.int32).reshape(-1, 2)
         return desk._replace(query=desk.query._replace(bars=bar))
 

@@ -146,5 +146,11 @@ def measure_line(line: Floats, size: int) -> float:
     """The length of a polyline's first ``size`` corners."""
     total = 0.0
     for k in range(1, size):
-        total += np.hypot(line[k, 0] - line[k - 1, 0], line[k, 1] - line[k - 1, 1])
+        total += reach(line[k, 0] - line[k - 1, 0], line[k, 1] - line[k - 1, 1])
     return total
+
+
+@compiled
+def reach(run: float, rise: float) -> float:
+    """The length of a step; many times as fast as hypot, and nothing here is near overflow."""
+    return float(np.sqrt(run * run + rise * rise))

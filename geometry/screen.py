@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.chains import Chains
+from geometry.chains import Chains, Ints
+from geometry.change import change_squares
 from geometry.distance import Bools, count_columns, measure
 from geometry.goals import checked_goal
-from geometry.layer import find_chains, find_layer, level_of, new_state
+from geometry.layer import find_chains, find_layer, level_of, new_state, retrace
 from geometry.parts import Labels, find_parts
 from geometry.passages import Passage, find_passages
 from geometry.polyline import word_of_line
@@ -62,6 +63,26 @@ class Screen:
         self._skeletons: dict[int, tuple[States, Words, Chains]] = {}
         self._questions: dict[tuple[int, bool], Questions] = {}
         self._skeleton_at(1)
+
+    def changed(self, rows: ArrayLike, columns: ArrayLike, values: ArrayLike) -> "Screen":
+        """Set some squares free (True) or blocked (False), in place, much faster than a new screen; returns itself.
+
+        Everything asked of the screen afterwards is as of a new screen of the changed squares. Crossing numbers, chain
+        numbers and passages given out before no longer hold.
+
+        Raises
+        ------
+        ValueError
+            When a square lies outside, the three do not match, or no square would be left free (nothing changes then).
+        """
+        where = checked_squares(rows, columns, values, self.shape)
+        state, words, _ = self._skeletons[1]
+        change_squares(self._gap, self._square, state, words, *where)
+        self._skeletons = {1: (state, words, retrace(self._square, state, words))}
+        self._questions = {}
+        for name in ("clearance", "skeleton", "pathgraph"):
+            self.__dict__.pop(name, None)
+        return self
 
     @property
     def free(self) -> Bools:
@@ -133,6 +154,11 @@ class Screen:
             return questions.to_point(begin, end, k, tuple(avoid))
         symbols = word_of_crossings(questions.layer.runs, (*begin, *end), word)
         return [] if symbols is None else [questions.of_word(begin, end, symbols)]
+
+    def shortest(self, start: Point, goal: Point) -> Route | None:
+        """The shortest route of all, at any angle; None when there is none. Its clearance and chains are not known."""
+        begin, end = self._checked(start, "start"), self._checked(goal, "goal")
+        return self._ask(0.0).shortest(begin, end)
 
     def loops(self, start: Point, around: ArrayLike, k: int = 1, radius: float = 0.0) -> list[Route]:
         """Closed tight routes that wind once, counter-clockwise, about blocked squares; shortest first.
@@ -221,3 +247,20 @@ def checked_grid(free: ArrayLike) -> Bools:
     if not grid.any():
         raise ValueError("free has no free square")
     return grid
+
+
+def checked_squares(
+    rows: ArrayLike, columns: ArrayLike, values: ArrayLike, shape: tuple[int, int]
+) -> tuple[Ints, Ints, Bools]:
+    """Rows, columns and values as arrays of one length, each square once (the last value counts)."""
+    i, j = (np.atleast_1d(np.asarray(v)).ravel() for v in (rows, columns))
+    value = np.asarray(values)
+    if value.dtype != np.bool_ or len(i) != len(j) or value.size not in (1, len(i)):
+        raise ValueError("rows, columns and values must have one length, and values be True or False")
+    if i.dtype.kind not in "iu" or j.dtype.kind not in "iu":
+        raise ValueError("rows and columns must be whole numbers")
+    if len(i) and not (i.min() >= 0 and i.max() < shape[0] and j.min() >= 0 and j.max() < shape[1]):
+        raise ValueError(f"a changed square lies outside the screen of {shape[0]} rows and {shape[1]} columns")
+    last = {(a, b): v for a, b, v in zip(i.tolist(), j.tolist(), np.broadcast_to(value.ravel(), i.shape), strict=True)}
+    spots = np.array(list(last), np.int32).reshape(-1, 2)
+    return spots[:, 0].copy(), spots[:, 1].copy(), np.array(list(last.values()), np.bool_)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from geometry.chains import Chains, Floats, Ints
 from geometry.compiled import compiled
+from geometry.rope import reach
 from geometry.skeleton import States
 from geometry.ways import Ways
 
@@ -146,7 +147,7 @@ def remaining(ways: Ways, query: Query, search: Search, node: int) -> float:
         return 0.0
     if search.stamp[1]:
         return float(search.ahead[node])
-    return float(np.hypot(ways.place[node, 0] - query.goal[0], ways.place[node, 1] - query.goal[1]))
+    return reach(ways.place[node, 0] - query.goal[0], ways.place[node, 1] - query.goal[1])
 
 
 @compiled
