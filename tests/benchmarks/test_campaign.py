@@ -18,7 +18,7 @@ from benchmarks.trial import Conditions, Trial, run_trial
 from benchmarks.worlds import scenario
 from kb.body import Body, Command, Impression, Move
 from kb.task import Task
-from simulator.session import Settings
+from simulator.settings import Settings
 
 
 class Report(NamedTuple):
@@ -195,7 +195,7 @@ def test_worlds_that_went_wrong_are_run_again(monkeypatch: pytest.MonkeyPatch, t
 
     def record(task: int, seed: int, *_: object) -> Trial:
         ran.append((task, seed))
-        return Trial(task, seed, True, True, seed != 1, "done", score=Score(0, 0, 0, 0, 9, int(seed == 2), ()))
+        return Trial(task, seed, True, True, seed != 1, "done", score=Score(0, 0, 0, 0, 9, int(seed == 2), 0, ()))
 
     monkeypatch.setattr(campaign, "run_trial", record)
     results = tmp_path / "results.jsonl"
