@@ -21,6 +21,7 @@ from typing import TextIO
 
 from shapely import Polygon
 
+from benchmarks.beliefs import beliefs
 from benchmarks.drawing import drawing
 from benchmarks.judging import judge_path
 from benchmarks.tally import faults, table, verdicts
@@ -120,7 +121,11 @@ def _watched(task: int, seed: int, conditions: Conditions, folder: Path) -> Tria
         moved = {name: Polygon(shape) for name, shape in at.table.polygons.items()}
         picture = drawing(world, at.table.utak, moved, {"+": world.target})
         line = at.line
-        print(f"step {line['step']}: {line['action']} why: {line['why']}\n{picture}", file=sys.stderr)
+        woke, mind = (world.utak.x, world.utak.y), getattr(at.robot, "robot", None)
+        drift = beliefs(mind, woke, at.table.utak, world.heading).drift
+        print(
+            f"step {line['step']}: {line['action']} why: {line['why']}; slipped by {drift}\n{picture}", file=sys.stderr
+        )
 
     trial = run_trial(task, seed, conditions, folder, draw)
     crash = folder / world.name / "crash.txt"
