@@ -14,12 +14,13 @@ class Aim(NamedTuple):
     """Somewhere to go and why.
 
     kind : attain, inspect, explore or pass (planner/asp/aims.lp). what : the reason in words.
-    squares : flat indices of the screen, any of which will do.
+    squares : flat indices of the screen, any of which will do. price : squares that it costs besides the way.
     """
 
     kind: str
     what: str
     squares: Squares
+    price: float = 0.0
 
 
 def choose(aims: Sequence[Aim], screens: Screens, last: frozenset[int]) -> Aim | None:
@@ -33,7 +34,7 @@ def choose(aims: Sequence[Aim], screens: Screens, last: frozenset[int]) -> Aim |
         reached = screens.nearest(aim.squares) if len(aim.squares) else None
         if reached is not None:
             kind = "pass" if reached.level and aim.kind != "inspect" else aim.kind
-            facts.append(f"aim({number},{kind},{round(10 * reached.cost)})")
+            facts.append(f"aim({number},{kind},{round(10 * (reached.cost + aim.price))})")
             facts += [f"last({number})"] * bool(last and not last.isdisjoint(aim.squares.tolist()))
     answer = solve([ASP / "aims.lp"], facts) if facts else None
     return aims[answer[0].arguments[0].number] if answer else None

@@ -26,7 +26,7 @@ from planner.walking import next_move
 from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
-APART = 2  # squares: a new look is first sought further than this from earlier ones
+DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
 
 
 @dataclass(frozen=True)
@@ -80,6 +80,9 @@ class Decider:
         self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[Place]
     ) -> Decision | None:
         """The next command towards a stage, the verdict when it cannot be attained, or None when it is."""
+        carried = sorted({str(goal.args[0]) for goal in stage.goals} - {"utak"})
+        if carried:
+            return Decision(None, f"{stage} is not attempted: Utak does not carry things yet", "limit")
         if stage.goals[0].name in BY_THE_WAY:
             node = situation.model.object(self.bound.get(str(stage.goals[0].args[1]), ""))
             if node is not None:
@@ -186,10 +189,10 @@ def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconc
         node = model.object(name)
         if node is not None and x in reconciled.hypothesised:
             look = exploring.inspection(screens, node, touch=node.open == 0)
-            aims.append(Aim("inspect", f"{look.what}: it may be {x}", look.squares))
+            aims.append(Aim("inspect", f"{look.what}: it may be {x}", look.squares, (95 - node.confidence) * DOUBT))
     if any(_surely_reached(aim, screens) for aim in aims if aim.kind == "explore"):
         return aims
-    for apart in (APART, 0):
+    for apart in (exploring.APART, 0):
         looks = [*exploring.frontiers(screens, apart), *exploring.vague_places(screens, apart)]
         if looks:
             break
