@@ -183,21 +183,22 @@ def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconc
         squares: Squares = where[0].squares
         for other in where[1:]:
             squares = np.intersect1d(squares, other.squares)
-        return [Aim("attain", "the way to the goal is known", squares)]
-    aims = [Aim("explore", look.what, look.squares) for d in missing for look in d.lookouts]
+        return [Aim("attain", squares, "the way to the goal is known")]
+    aims = [Aim("explore", *look) for d in missing for look in d.lookouts]
     for x, name in reconciled.doubtful:
         node = model.object(name)
         if node is not None and x in reconciled.hypothesised:
             look = exploring.inspection(screens, node, touch=node.open == 0)
-            aims.append(Aim("inspect", f"{look.what}: it may be {x}", look.squares, (95 - node.confidence) * DOUBT))
+            aims.append(Aim("inspect", look.squares, f"{look.what}: it may be {x}", (95 - node.confidence) * DOUBT))
     if any(_surely_reached(aim, screens) for aim in aims if aim.kind == "explore"):
         return aims
     for apart in (exploring.APART, 0):
-        looks = [*exploring.frontiers(screens, apart), *exploring.vague_places(screens, apart)]
-        if looks:
+        explored = [Aim("explore", *look) for look in exploring.frontiers(screens, apart)]
+        settled = [Aim("settle", *look) for look in exploring.vague_places(screens, apart)]
+        if explored or settled:
             break
-    looks += exploring.rooms_beyond(screens)
-    return aims + [Aim("explore", look.what, look.squares) for look in looks]
+    beyond = [Aim("pass", *look) for look in exploring.rooms_beyond(screens)]
+    return [*aims, *explored, *settled, *beyond]
 
 
 def _surely_reached(aim: Aim, screens: Screens) -> bool:
