@@ -49,7 +49,8 @@ WORDS = (
     "#script (python)", "#const n=1.", "@f()", "X", "_", "-", "--1", "99999999999999999999", "-2147483649", "1e999",
     "nan", "inf", "1.5", "0x10", "\\", "\x00", "\x1b[31m", "\r", "\t", "\ufeff", "\u201c", "\u201d", "\u00a0",
     "gr\u00f6\u00dfe", "\U0001f916", "\u202e", "POLYGON", "POLYGON EMPTY", "POINT Z (1 2 3)",
-    "MULTIPOLYGON (((0 0, 1 0, 1 1, 0 0)))", "GEOMETRYCOLLECTION (" * 300, "object(utak).", "object(start, next).", "utak", "verge", "square", "table(0, 0).",
+    "MULTIPOLYGON (((0 0, 1 0, 1 1, 0 0)))",
+    "GEOMETRYCOLLECTION (" * 300, "object(utak).", "object(start, next).", "utak", "verge", "square", "table(0, 0).",
     "table(4096, 4096).", "f(" * 70 + "x" + ")" * 70, "p" * 5000, "{a;b}.", "not a.", "1 2 3", "<xml/>", "asp 1 0 0\n",
 )  # fmt: skip
 

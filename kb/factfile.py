@@ -11,15 +11,18 @@ Strings know the escapes `\"`, `\\` and `\n`; comments run from `%` to the end o
 nest.
 """
 
+import re
 from pathlib import Path
 
 from kb.facts import Fact, Number, Symbol, Term, Text
-from kb.problems import BadInputError, Problem, Span
+from kb.problems import ENOUGH, BadInputError, Problem, Span
 from kb.source import Source, decode, read_source
 from kb.tokens import Token, tokens
 
 DEEPEST = 64  # how far terms may be nested
 BITS = range(-(2**31), 2**31)
+MOST_FACTS = 100_000
+ESCAPE = re.compile(r"\\.")
 ESCAPES = {"\\n": "\n", '\\"': '"', "\\\\": "\\"}
 
 
@@ -60,29 +63,32 @@ class _Reader:
     def __init__(self, source: Source) -> None:
         self.source = source
         self.problems: list[Problem] = []
-        self.tokens = tokens(source, self.problems)
-        self.at = 0
+        self._coming = tokens(source, self.problems)
+        self.peek = next(self._coming)
+        self.ended = False  # the full stop of the fact that is refused has been taken
 
     def facts(self) -> tuple[Fact, ...]:
         found = []
-        while self.peek.kind != "end":
+        while self.peek.kind != "end" and len(self.problems) < ENOUGH:
             try:
                 found.append(self.fact())
             except _RefusedError:
                 self.skip()
+            if len(found) > MOST_FACTS:
+                self.refuse(self.peek, f"more than {MOST_FACTS} facts")
+                break
         return tuple(found)
 
-    @property
-    def peek(self) -> Token:
-        return self.tokens[self.at]
-
     def take(self) -> Token:
-        token = self.tokens[self.at]
-        self.at += token.kind != "end"
+        token = self.peek
+        self.peek = next(self._coming, token)
         return token
 
     def skip(self) -> None:
         """Go on after the next full stop, or where a fact plainly begins on a new line."""
+        if self.ended:
+            self.ended = False
+            return
         line = self.peek.span.line
         while self.peek.kind != "end":
             if self.take().text == ".":
@@ -136,14 +142,10 @@ class _Reader:
 
     def string(self) -> Text:
         token = self.take()
-        value, rest = "", token.text[1:-1]
-        while rest:
-            width = 2 if rest[0] == "\\" else 1
-            piece, rest = rest[:width], rest[width:]
-            if width == 2 and piece not in ESCAPES:
-                raise self.refuse(token, f"unknown escape {piece} in a string", 'strings know \\", \\\\ and \\n')
-            value += ESCAPES.get(piece, piece)
-        return Text(value, token.span)
+        unknown = [piece for piece in ESCAPE.findall(token.text) if piece not in ESCAPES]
+        if unknown:
+            raise self.refuse(token, f"unknown escape {unknown[0]} in a string", 'strings know \\", \\\\ and \\n')
+        return Text(ESCAPE.sub(lambda match: ESCAPES[match[0]], token.text[1:-1]), token.span)
 
     def number(self) -> Number:
         sign = self.take() if self.peek.text == "-" else None
@@ -156,8 +158,11 @@ class _Reader:
         value = -value if sign else value
         if value not in BITS or len(digits) > 10:
             raise self.refuse(Token("number", token.text, span), "a number beyond 32 bits", "-2147483648 .. 2147483647")
-        if self.peek.text == "." and self.tokens[self.at + 1].kind == "number":
-            self.at += 2
+        if self.peek.text == ".":  # a fact cannot end inside of a term
+            stop = self.take()
+            self.ended = self.peek.kind != "number"
+            if self.ended:
+                raise self.not_closed(stop)
             raise self.refuse(token, "a number with a fraction; facts know integers alone")
         return Number(value, span)
 

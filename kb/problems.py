@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 AT_MOST = 20  # problems shown in one go
+ENOUGH = 100  # problems of one file after which no more are looked for
 WIDTH = 120  # characters of a source line that are shown
 
 
@@ -54,11 +55,11 @@ class CannotOpenError(Exception):
 
 
 def render(problems: Iterable[Problem]) -> str:
-    """Return the first 20 problems as text, and how many more there are."""
+    """Return the first 20 problems as text, and whether there are more."""
     every = list(problems)
     text = [str(problem) for problem in every[:AT_MOST]]
     if len(every) > AT_MOST:
-        text.append(f"... and {len(every) - AT_MOST} more")
+        text.append("... and more")
     return "\n".join(text)
 
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from kb.problems import BadInputError, CannotOpenError, Problem, Span
+from kb.problems import ENOUGH, BadInputError, CannotOpenError, Problem, Span
 
-LARGEST = 8_000_000  # bytes
+LARGEST = 4_000_000  # bytes
 WIDE = {b"\xff\xfe": "UTF-16", b"\xfe\xff": "UTF-16", b"\xef\xbb\xbf": "a UTF-8 byte order mark"}
 QUOTES = "\u2018\u2019\u201a\u201b\u201c\u201d\u201e\u201f"
 SPACES = "\u00a0\u2002\u2003\u2009\u200b\u202f\u3000"
@@ -82,10 +82,12 @@ def _strangers(source: Source) -> list[Problem]:
     """One problem for each run of characters that are not allowed in a text file of ours."""
     if source.text.isascii() and source.text.translate(_ALLOWED) == "":
         return []
-    problems = []
+    problems: list[Problem] = []
     for number, line in enumerate(source.lines, 1):
+        if line.isascii() and line.translate(_ALLOWED) == "":
+            continue
         column = 1
-        while column <= len(line):
+        while column <= len(line) and len(problems) < ENOUGH:
             char = line[column - 1]
             if " " <= char <= "~" or char == "\t":
                 column += 1

@@ -1,6 +1,7 @@
 """The words of a fact file: names, variables, numbers, strings and marks, each with its place."""
 
 import re
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from kb.problems import Problem, Span
@@ -42,9 +43,9 @@ class Token(NamedTuple):
         return self.text if len(self.text) <= 40 else f"{self.text[:37]}..."
 
 
-def tokens(source: Source, problems: list[Problem]) -> list[Token]:
-    """Return the words of a text, the last one of kind `end`; problems of form are appended to `problems`."""
-    text, found, at, line, begin = source.text, [], 0, 1, 0
+def tokens(source: Source, problems: list[Problem]) -> Iterator[Token]:
+    """Yield the words of a text, the last one of kind `end`; problems of form are appended to `problems`."""
+    text, at, line, begin = source.text, 0, 1, 0
     while at < len(text):
         match = WORD.match(text, at)
         assert match is not None  # every character but a line end is at least a mark, and line ends are spaces
@@ -57,15 +58,14 @@ def tokens(source: Source, problems: list[Problem]) -> list[Token]:
                 end = len(text)
         elif kind == "open":
             problems.append(source.problem(span, "this string is not closed on its line", 'close it with "'))
-            found.append(Token(kind, match.group(), span))
+            yield Token(kind, match.group(), span)
         elif kind not in ("space", "comment"):
-            found.append(Token(kind, match.group(), span))
+            yield Token(kind, match.group(), span)
         breaks = text.count("\n", at, end)
         if breaks:
             line, begin = line + breaks, text.rindex("\n", at, end) + 1
         at = end
-    found.append(Token("end", "", Span(line, max(1, at - begin), max(1, at - begin))))
-    return found
+    yield Token("end", "", Span(line, max(1, at - begin), max(1, at - begin)))
 
 
 def _block_end(text: str, start: int) -> int:

@@ -14,6 +14,7 @@ from kb.worldmodel import SPACE, Node
 from planner.screen import Screens, Squares, grown
 
 CLOSE = 3  # squares from which a thing lies within the fovea, whichever way it is seen
+APART = 2  # squares: a new look is first sought further than this from earlier ones
 SMALLEST_ROOM = 6  # squares of floor that are worth a passage
 
 
@@ -46,9 +47,12 @@ def inspection(screens: Screens, node: Node, touch: bool) -> Lookout:
     mask = model.mask(node.patch)
     if touch:
         return Lookout(np.flatnonzero(_new(screens, 0) & grown(mask, 1)), f"the colour of {node.name} is not known")
-    unsettled = grown(mask, 1) & (model.view.state == OPEN)
-    near = _new(screens, 0) & grown(unsettled if unsettled.any() else mask, CLOSE)
-    return Lookout(np.flatnonzero(near), f"what {node.name} is is not clear")
+    about = grown(mask, CLOSE)
+    for apart in (APART, 0):
+        near = np.flatnonzero(_new(screens, apart) & about)
+        if len(near):
+            break
+    return Lookout(near, f"what {node.name} is is not clear")
 
 
 def rooms_beyond(screens: Screens) -> list[Lookout]:

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 from kb.problems import BadInputError, CannotOpenError
 from simulator import exits
-from simulator.commands import check, new, query, repl, run, show, test
+from simulator.commands import check, new, query, repl, routes, run, show, test
 
-COMMANDS = (run, test, check, show, new, query, repl)
+COMMANDS = (run, test, check, show, new, query, repl, routes)
 EXIT_CODES = (
     "exit codes: 0 done; 1 ran, goal not reached; 2 usage; 65 bad input; 66 cannot open; 70 our bug; 75 limit; "
     "130 interrupted"

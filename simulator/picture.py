@@ -4,19 +4,23 @@
 the south. Edge-connected equal letters are one object; objects are named by colour and number: g1, g2, ...
 """
 
+import re
 from collections.abc import Iterator, Mapping
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
 import shapely
 
 from geometry.digital import squares
-from kb.problems import BadInputError, Problem, Span
+from kb.problems import ENOUGH, BadInputError, Problem, Span
 from kb.source import Source, read_source
-from kb.vocabulary import MOST_SQUARES
 from simulator.contents import VERGE_COLOUR, Thing, World
 
 FLOOR, UTAK = ".", "U"
+MOST_SQUARES = 512  # along either side of a picture; greater tables are for world.lp
 Square = tuple[int, int]
 
 
@@ -29,7 +33,7 @@ def read_picture(path: Path | str) -> World:
     rows = [line.rstrip() for line in source.lines]
     while rows and not rows[-1]:
         rows.pop()
-    problems = list(_bad_rows(source, rows)) or list(_bad_marks(source, rows))
+    problems = list(_bad_rows(source, rows)) or list(islice(_bad_marks(source, rows), ENOUGH))
     if problems:
         raise BadInputError(problems)
     return _world(rows)
@@ -40,22 +44,24 @@ def _bad_rows(source: Source, rows: list[str]) -> Iterator[Problem]:
         yield source.problem(source.start(), "the picture is empty")
         return
     if len(rows) > MOST_SQUARES or len(rows[0]) > MOST_SQUARES:
-        yield source.problem(source.start(), f"a table has at most {MOST_SQUARES} squares a side")
+        yield source.problem(source.start(), f"a picture has at most {MOST_SQUARES} squares a side")
     for number, row in enumerate(rows, 1):
         if len(row) != len(rows[0]) or not row:
             what = f"{len(row)} squares in this row, {len(rows[0])} in the first"
             yield source.problem(Span(number, 1, max(1, len(row))), what, "one character a square: write . for floor")
+            return
 
 
 def _bad_marks(source: Source, rows: list[str]) -> Iterator[Problem]:
     found = []
     for number, row in enumerate(rows, 1):
-        for column, mark in enumerate(row, 1):
-            if mark == UTAK:
-                found.append(Span(number, column, column))
-            elif mark != FLOOR and not mark.islower():
+        for match in re.finditer("[^a-z.]", row):
+            span = Span(number, match.start() + 1, match.start() + 1)
+            if match[0] == UTAK:
+                found.append(span)
+            else:
                 hint = "U is Utak, . floor, b verge, other small letters objects"
-                yield source.problem(Span(number, column, column), f"{mark!r} is nothing that a picture knows", hint)
+                yield source.problem(span, f"{match[0]!r} is nothing that a picture knows", hint)
     if not found:
         yield source.problem(source.start(), "the picture has no Utak", "put a U where he stands")
     for span in found[1:]:
@@ -79,14 +85,15 @@ def _world(rows: list[str]) -> World:
 
 def _things(marks: Mapping[Square, str]) -> list[Thing]:
     """The objects of a picture, in the order of their names."""
-    left = {square: mark for square, mark in sorted(marks.items()) if mark not in (UTAK, VERGE_COLOUR)}
+    lettered = {square: mark for square, mark in sorted(marks.items()) if mark not in (UTAK, VERGE_COLOUR)}
+    done: set[Square] = set()
     numbers: dict[str, int] = {}
     things = []
-    while left:
-        first, colour = next(iter(left.items()))
-        part = _connected(first, left)
-        for square in part:
-            del left[square]
+    for first, colour in lettered.items():
+        if first in done:
+            continue
+        part = _connected(first, lettered)
+        done |= part
         numbers[colour] = numbers.get(colour, 0) + 1
         things.append(Thing(f"{colour}{numbers[colour]}", colour, _outline(part)))
     return sorted(things, key=lambda thing: thing.name)
@@ -106,8 +113,22 @@ def _connected(first: Square, marks: Mapping[Square, str]) -> set[Square]:
 
 def _outline(part: set[Square]) -> Any:
     """The outline of squares, holes kept, without corners on straight lines."""
-    whole = shapely.union_all([shapely.box(i, j, i + 1, j + 1) for i, j in sorted(part)])
-    return shapely.simplify(shapely.normalize(whole), 0)
+    corners = np.array(sorted(part), dtype=float).reshape(-1, 2)
+    whole = shapely.coverage_union_all(shapely.box(*corners.T, *(corners + 1).T))
+    parts = [
+        shapely.Polygon(_straight(polygon.exterior), [_straight(hole) for hole in polygon.interiors])
+        for polygon in shapely.get_parts(shapely.normalize(whole))
+        if not polygon.is_empty
+    ]
+    return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
+
+
+def _straight(ring: Any) -> npt.NDArray[np.float64]:
+    """The points of a ring of unit steps at which it turns."""
+    points = shapely.get_coordinates(ring)[:-1]
+    turns = np.any(points - np.roll(points, 1, axis=0) != np.roll(points, -1, axis=0) - points, axis=1)
+    corners: npt.NDArray[np.float64] = points[turns]
+    return corners
 
 
 def draw(world: World, polygons: Mapping[str, Any] | None = None, utak: tuple[float, float] | None = None) -> str:

@@ -44,6 +44,7 @@ class Tabletop:
         self._random = np.random.default_rng(seed)
         self._table = Table(world)
         self._senses = Senses(world.heading)
+        self._obstacles: Obstacles | None = None  # as long as the same is held; nothing else moves meanwhile
         self._still = [world.verge, _edge(world.width, world.height), *(thing.polygon for thing in world.fixed)]
 
     def move(self, east: float, north: float) -> None:
@@ -79,11 +80,13 @@ class Tabletop:
         slips = self.noise > 0.0 and float(self._random.random()) < self.noise
         if not slips:
             self.held = self._table.movable_at(*square)
+            self._obstacles = None
 
     def release(self) -> None:
         """Let go of what is held."""
         self.motion = None
         self.held = None
+        self._obstacles = None
 
     def look(self) -> tuple[tuple[int, ...], tuple[str | None, ...]]:
         """Return the impression that Utak receives here: 160 gray levels and 8 touches. Changes nothing."""
@@ -107,8 +110,10 @@ class Tabletop:
         if not any(wanted[:2]) if isinstance(wanted, Translate) else not wanted.degrees:
             return
         carried = None if self.held is None else self.polygons[self.held]
-        others = [self.polygons[name] for name in self.polygons if name != self.held]
-        fraction = Obstacles([*self._still, *others]).first_contact(Body(carried, [self.utak]), wanted).fraction
+        if self._obstacles is None:
+            others = [self.polygons[name] for name in self.polygons if name != self.held]
+            self._obstacles = Obstacles([*self._still, *others])
+        fraction = self._obstacles.first_contact(Body(carried, [self.utak]), wanted).fraction
         if fraction <= 0.0:
             return
         motion = wanted.part(fraction)

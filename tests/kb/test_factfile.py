@@ -1,6 +1,7 @@
 """Our reader of fact files: what it takes, and where it says that something is wrong."""
 
 import os
+import time
 from pathlib import Path
 
 import pytest
@@ -95,8 +96,8 @@ def test_nesting_has_a_limit() -> None:
 
 
 def test_one_bad_fact_does_not_hide_the_next() -> None:
-    found = problems("a(X).\nb(1..2).\nc(x).\nd(Y)")
-    assert [p.partition(":")[0] for p in found] == ["1", "2", "4"]
+    found = problems("a(X).\nb(1..2).\nc(x).\nd(Y). e(1. f(Z).\ng(1.5). h(U)")
+    assert [p.partition("-")[0] for p in found] == ["1:3", "2:4", "4:3", "4:10", "4:14", "5:3", "5:11"]
 
 
 def test_a_message_shows_line_caret_and_hint(tmp_path: Path) -> None:
@@ -116,7 +117,24 @@ def test_at_most_twenty_problems_are_shown() -> None:
     with pytest.raises(BadInputError) as caught:
         facts_of("p(X).\n" * 25)
     assert str(caught.value).count("error:") == 20
-    assert str(caught.value).endswith("... and 5 more")
+    assert str(caught.value).endswith("... and more")
+
+
+@pytest.mark.parametrize("text", ["p(X).\n", "(", "\u00e9", "p(", '"', "a.", '"a\\\\"', "%*", "\n", "p(x,"])
+def test_big_files_are_soon_done_with(text: str) -> None:
+    start = time.monotonic()
+    with pytest.raises(BadInputError) as caught:
+        facts_of(text * (1_000_000 // len(text)) + "X")
+    assert len(caught.value.problems) <= 101
+    assert time.monotonic() - start < 5
+
+
+def test_a_long_string_is_soon_read() -> None:
+    start = time.monotonic()
+    (fact,) = facts_of('p("' + "1 2, " * 200_000 + '\\n").')
+    assert isinstance(fact.args[0], Text)
+    assert fact.args[0].value.endswith("2, \n")
+    assert time.monotonic() - start < 2
 
 
 def test_utf16_is_named(tmp_path: Path) -> None:

@@ -179,3 +179,34 @@ def test_scenarios_are_pytest_tests(scene: Path) -> None:
     assert "2 failed" in done.stdout
     assert "not met: within(0)" in done.stdout
     assert "expect.lp:1:8-8: error: a number of steps must be an integer, not x" in done.stdout
+
+
+def test_routes_go_both_ways_round(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "s").mkdir()
+    (tmp_path / "s" / "world.txt").write_text("......\n..gg..\n.U....\n")
+    ends = [str(tmp_path / "s"), "--from", "0.5,1.5", "--to", "5.5,1.5"]
+    assert cli.main(["routes", *ends, "--json", "--svg", str(tmp_path / "out.svg")]) == 0
+    routes = json.loads(capsys.readouterr().out)["routes"]
+    assert [route["points"][1][1] for route in routes] in ([1, 2], [2, 1])
+    assert len({tuple(route["signature"]) for route in routes}) == 2
+    assert (tmp_path / "out.svg").read_text().startswith("<svg")
+    assert cli.main(["routes", *ends, "-k", "1"]) == 0
+    assert capsys.readouterr().out.startswith("1: length 5.")
+
+
+def test_routes_on_a_map(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "a.map"
+    path.write_text("type octile\nheight 2\nwidth 3\nmap\n..@\n.@.\n")
+    assert cli.main(["routes", str(path), "--from", "0.5,0.5", "--to", "1.5,1.5"]) == 0
+    assert cli.main(["routes", str(path), "--from", "0.5,0.5", "--to", "2.5,0.5"]) == 1
+    seen = capsys.readouterr()
+    assert seen.out.count("\n") == 1
+    assert "there is no way" in seen.err
+    assert cli.main(["routes", str(path), "--from", "0.5,0.5", "--to", "1.5,0.5"]) == 65
+    assert cli.main(["routes", str(path), "--from", "0.5", "--to", "1.5,0.5"]) == 2
+    path.write_text("type octile\nheight 2\nwidth 3\nmap\n..@\n.?.\n")
+    assert cli.main(["routes", str(path), "--from", "0.5,0.5", "--to", "1.5,0.5"]) == 65
+    assert cli.main(["routes", str(tmp_path / "no.map"), "--from", "0,0", "--to", "1,1"]) == 66
+    err = capsys.readouterr().err
+    assert "lies in a blocked square" in err
+    assert f"{path}:6:1-1: error: unknown square '?'" in err

@@ -180,9 +180,11 @@ def test_nothing_ever_goes_into_anything(heading: int, commands: list[Any], nois
 @given(st.integers(0, 359), amount, amount, st.floats(-170, 170))
 def test_a_reversed_motion_returns(heading: int, east: float, north: float, degrees: float) -> None:
     world = table(*THINGS, heading=heading)
-    world.grasp(next(d for d in ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")))
-    world.held = "a"
-    start = world.polygons["a"]
+    directions = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")
+    world.grasp(directions[next(n for n, colour in enumerate(world.look()[1]) if colour)])
+    held = world.held
+    assert held is not None
+    start = world.polygons[held]
     world.push(east, north)
     pushed = world.motion
     world.turn(degrees)
@@ -193,7 +195,7 @@ def test_a_reversed_motion_returns(heading: int, east: float, north: float, degr
         dx, dy = -pushed.dx, -pushed.dy
         world.push(dx * cosine + dy * sine, dy * cosine - dx * sine)
     assert world.utak == pytest.approx((8.5, 8.5), abs=1e-6)
-    assert shapely.hausdorff_distance(world.polygons["a"], start) < 1e-6
+    assert shapely.hausdorff_distance(world.polygons[held], start) < 1e-6
 
 
 @given(st.lists(command, max_size=8), st.integers(0, 5))
