@@ -12,7 +12,7 @@ import numpy as np
 
 from kb.accommodation import Accommodated, Memory
 from kb.body import Command, Impression
-from kb.evidence import FREE, FULL, MapView
+from kb.evidence import FREE, FULL, OPEN, MapView
 from kb.interpretation import Kinds, interpret, shapes
 from kb.lattice import turned
 from kb.measuring import Measured, Measurer
