@@ -45,10 +45,11 @@ def test_a_motion_that_was_stopped_is_understood() -> None:
     assert (2, -4) in memory.barred
 
 
-def test_a_slip_is_understood() -> None:
-    walk = walked(ROOM, [(2, 0), (0, 3)])
+def test_a_slip_of_one_who_slips_is_understood() -> None:
+    walk = walked(ROOM, [(2, 0), (0, 3), (1, 0), (0, 1), (-1, 0), (0, -1)])
     x, y = utak_in(ROOM)
     memory = walk.knowledge.memory
+    memory.slipped = True
     found = memory.accommodate(Move(-3.0, 0.0), impression(world_of(ROOM), (x - 1, y + 4)))
     assert found.explanation.how == "slipped"
     assert memory.place == pytest.approx((-0.5, 4.5))

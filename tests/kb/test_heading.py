@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kb.heading import ANGLES, ANYWHERE, CENTRED, Hypothesis, Look, believed, contradictions, search, standing
+from kb.heading import ANGLES, ANYWHERE, CENTRED, Hypothesis, Look, candidates, contradictions, search, standing
 from kb.lattice import CENTRE, Lattice, turned
 from kb.retina import count_ranges
 from tests.kb.eyes import random_room, retina, world_of
@@ -128,12 +128,20 @@ def test_a_split_covers_the_box_and_tells_squares_apart(angle: int, place: Point
             assert len(squares) == 1
 
 
-def test_the_held_lattice_is_kept_while_it_stands() -> None:
+def test_the_held_lattice_is_tried_first_then_the_axes() -> None:
     held = Lattice(3)
-    assert believed(CENTRED, held) == held
+    tried = candidates(CENTRED, held)
+    assert tried[:2] == [held, Lattice(0)]
+    assert sorted(lattice.angle for lattice in tried) == list(range(-44, 46))
+
+
+def test_of_the_others_the_middle_is_tried_first() -> None:
     others = tuple(h for h in CENTRED if h.angle > 10)
-    assert believed(others, held).angle == 28  # the middle of 11 to 45
-    assert believed((), held) == held
+    tried = candidates(others, Lattice(3))
+    assert tried[0].angle == 28  # the middle of 11 to 45
+    away = [abs(lattice.angle - 28) for lattice in tried]
+    assert away == sorted(away)
+    assert candidates((), Lattice(3)) == []
 
 
 def test_every_angle_is_tried_once_the_axes_first() -> None:

@@ -14,7 +14,6 @@ from kb.task import Claim, Parameter, Task
 from planner.cycle import Options, Robot
 from planner.goals import constraints, stages
 from planner.screen import Screens
-from planner.steps import swept
 from tests.kb.drawings import seen_whole
 from tests.kb.eyes import impression, utak_in, world_of
 
@@ -22,22 +21,27 @@ NOWHERE = Span(0, 0, 0)
 
 
 class DrawnBody:
-    """A body in a drawing; every move goes from centre to centre and must be free. It faces north."""
+    """A body in a drawing, which must never be told to walk into anything. It wakes amid a square and faces north."""
 
     def __init__(self, rows: list[str]) -> None:
-        self.occupied, self.square = world_of(rows), utak_in(rows)
+        self.occupied = world_of(rows)
+        i, j = utak_in(rows)
+        self.place = np.array([i + 0.5, j + 0.5])
         self.track = [self.square]
+
+    @property
+    def square(self) -> tuple[int, int]:
+        return int(self.place[0]), int(self.place[1])
 
     def wake(self) -> Impression:
         return impression(self.occupied, self.square)
 
     def act(self, command: Command) -> Impression:
         assert isinstance(command, Move)
-        east, north = round(command.east), round(command.north)
-        assert (east, north) == (command.east, command.north)
-        for c, r in zip(*swept(east, north), strict=True):
-            assert not self.occupied(self.square[0] + c, self.square[1] + r)
-        self.square = (self.square[0] + east, self.square[1] + north)
+        way = np.array([command.east, command.north])
+        for part in np.linspace(0, 1, 200):
+            assert not self.occupied(*(int(v) for v in self.place + part * way))
+        self.place = self.place + way
         self.track.append(self.square)
         return impression(self.occupied, self.square)
 
@@ -119,7 +123,7 @@ def test_each_step_reports_command_belief_and_reason() -> None:
         assert isinstance(report.command, Move)
         assert report.why
         x, y = report.belief["place"]
-        assert (x + body.track[0][0], y + body.track[0][1]) == pytest.approx(body.square)
+        assert (x + body.track[0][0] + 0.5, y + body.track[0][1] + 0.5) == pytest.approx(tuple(body.place))
         assert sum(report.belief["cells"].values()) == 160
         assert report.belief["cells"].get("noise", 0) == 0
         assert all(fact.endswith(").") for fact in report.belief["facts"])

@@ -177,12 +177,12 @@ def test_frontiers_border_on_what_was_never_seen() -> None:
     rows = ["bbbbb?????", "b....?????", "b.U..?????", "b.........", "bbbbb....?"]
     model = seen_whole(rows)
     screens = Screens(model)
-    found = np.unique(np.concatenate([look.squares for look in exploring.frontiers(screens)]))
+    found = np.unique(np.concatenate([look.squares for look in exploring.frontiers(screens, 0)]))
     near = grown(~model.view.seen, 1)
     assert np.array_equal(found, np.flatnonzero(screens.floor & near))
     closed = Screens(seen_whole(HALL))
-    assert exploring.frontiers(closed) == []
-    assert exploring.vague_places(closed) == []
+    assert exploring.frontiers(closed, 0) == []
+    assert exploring.vague_places(closed, 0) == []
     assert exploring.rooms_beyond(closed) == []
 
 
@@ -199,9 +199,12 @@ def test_floor_seen_over_a_wall_is_a_room_beyond() -> None:
 def test_a_second_look_from_the_same_square_is_not_worth_it() -> None:
     rows = ["bbbbb????", "b.U..????", "bbbbb????"]
     model = seen_whole(rows)
-    assert exploring.frontiers(Screens(model))
+    (border,) = exploring.frontiers(Screens(model), 0)
     looked = replace(model, looked_from=frozenset({(2, 0)}))
-    assert exploring.frontiers(Screens(looked)) == []
+    assert exploring.frontiers(Screens(looked), 0) == []
+    beside = Screens(replace(model, looked_from=frozenset({(0, 0)})))
+    assert len(exploring.frontiers(beside, 0)[0].squares) == len(border.squares)
+    assert exploring.frontiers(beside, 2) == []
 
 
 def test_circling_winds_once() -> None:
