@@ -166,8 +166,8 @@ class Questions:
         """Scratch for that many routes, with at least that much room for words."""
         desk = self._desks.get(wanted)
         if desk is None or len(desk.start) < room:
-            chains = self.layer.chains
-            desk = new_desk(len(chains.node), len(chains.length), wanted, max(room, 1024), NO_BARS)
+            nodes, sights = self.layer.ways.sight.shape
+            desk = new_desk(nodes, len(self.layer.ways.length), sights, wanted, max(room, 1024), NO_BARS)
             self._desks[wanted] = desk
         return desk
 
