@@ -55,6 +55,7 @@ def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars:
         np.empty(4, np.int32),
         np.empty(5),
         np.empty(sights),
+        np.zeros(4),
         np.zeros(chains, np.uint8),
         bars,
         np.zeros(nodes, np.bool_),
@@ -72,6 +73,7 @@ def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars:
 
 
 OVERFLOW = -1
+BOW = 1.0  # chosen by trial on the benchmark maps: 0 gives 1.014 of the optimum in the mean, 0.1 1.010, 1 1.009
 Ends = tuple[float, float, float, float]  # x and y of the start, x and y of the goal
 
 
@@ -89,6 +91,7 @@ def itineraries(layer: Layer, ends: Ends, wanted: int, desk: Desk) -> int:
     if max(rise, fall) >= desk.start.shape[0]:
         return OVERFLOW
     pose(layer, desk.query, start, goal)
+    bow(desk.query.line, ends, BOW if wanted == 1 else 0.0)
     found = shortest_ways(layer.chains, layer.ways, desk.query, desk.search, desk.album, wanted)
     settle(desk.query, start, goal, False)
     heights = layer.square.reshape(-1)
@@ -117,6 +120,15 @@ def settle(query: Query, start: Anchor, goal: Anchor, split: bool) -> None:
         query.shut[start.chain] = query.shut[start.chain] | 2 if split else query.shut[start.chain] & 1
     if goal.node < 0:
         query.shut[goal.chain] = query.shut[goal.chain] | 2 if split else query.shut[goal.chain] & 1
+
+
+@compiled
+def bow(line: Floats, ends: Ends, share: float) -> None:
+    """Make arcs dearer by that share of their length times their distance from the straight line, in its lengths."""
+    dx, dy = ends[2] - ends[0], ends[3] - ends[1]
+    square = max(dx * dx + dy * dy, 1.0)
+    line[0], line[1] = ends[0], ends[1]
+    line[2], line[3] = -dy * share / square, dx * share / square
 
 
 @compiled

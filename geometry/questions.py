@@ -53,8 +53,18 @@ class Questions:
         if avoid:
             desk.query.shut[:] = 0
             desk.query.closed[:] = False
-        routes = read_answers(desk.answers, found)[:k]
+        routes = read_answers(desk.answers, found)
+        if k > 1 and routes and not avoid and not self.layer.body:
+            routes = self._with_shortest(routes, start, goal)
+        routes = routes[:k]
         return [self._with_ends(route, start, goal) for route in routes] if self.layer.body else routes
+
+    def _with_shortest(self, routes: list[Route], start: XY, goal: XY) -> list[Route]:
+        """The routes with the shortest of all before them, should none of them be of its class."""
+        best = self.shortest(start, goal)
+        if best is None or any(route.signature == best.signature for route in routes):
+            return routes
+        return [best, *routes]
 
     def of_word(self, start: XY, goal: XY, word: Ints) -> Route:
         """The route of a reduced word."""

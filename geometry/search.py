@@ -29,6 +29,8 @@ class Query(NamedTuple):
     """(5,) the lengths of the five arcs; infinite where there is none."""
     sight: Floats
     """(landmarks,) the goal's distances from the landmarks."""
+    line: Floats
+    """(4,) a point of the straight line from start to goal and the line's normal, scaled: how much dearer an arc is."""
     shut: States
     """(m,) not 0 for chains that may not be walked from end to end: bit 0 by wish, bit 1 because an end splits them."""
     bars: Ints
@@ -92,6 +94,7 @@ def seek(chains: Chains, ways: Ways, query: Query, search: Search, origin: int) 
     best, came, seen, barred = search.best, search.came, search.seen, search.barred
     n, arcs, stamp, exact = leave.shape[0], 2 * length.shape[0], search.stamp[0], search.stamp[1] != 0
     best[origin], came[origin], seen[origin] = 0.0, -1, stamp
+    place, line, bowed = ways.place, query.line, query.line[2] != 0.0 or query.line[3] != 0.0
     node, size = origin, 0
     while node != n + 1:
         for slot in range(6):
@@ -117,6 +120,11 @@ def seek(chains: Chains, ways: Ways, query: Query, search: Search, origin: int) 
                 cost = query.cost[code - arcs]
                 if code < arcs + 2:
                     head = query.joint[code - arcs]
+            if (
+                head < n and bowed
+            ):  # among ways of one length, the one nearest to the straight line is shortest when tight
+                off = (place[head, 0] - line[0]) * line[2] + (place[head, 1] - line[1]) * line[3]
+                cost *= 1.0 + abs(off)
             total = best[node] + cost
             if total == np.inf or barred[head] == stamp or (seen[head] == stamp and best[head] <= total):
                 continue

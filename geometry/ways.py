@@ -24,6 +24,8 @@ class Ways(NamedTuple):
     """Per chain cell, the signed portal (from 1) between it and the next cell of its chain; 0 within a row."""
     length: Floats
     """(m,) the length of the tight rope between the chain's ends, in squares."""
+    place: Floats
+    """(n, 2) the nodes' centres, in squares."""
     sight: Floats
     """(n, landmarks) distances over the pathgraph from the landmarks; infinite where there is no way."""
 
@@ -49,7 +51,8 @@ def find_ways(square: Squares, chains: Chains, runs: Runs, body: bool) -> Ways:
     longest = int(np.diff(chains.start).max(initial=1))
     word, line = np.empty(longest, np.int32), np.empty((4 * longest + 8, 2))
     measure_ways(chains, runs, body, width, symbol, length, word, line, new_rope(2 * longest))
-    return Ways(symbol, length, sights(chains, length))
+    place = np.stack([chains.node % width - 0.5, chains.node // width - 0.5], axis=1)
+    return Ways(symbol, length, place, sights(chains, length))
 
 
 @compiled
