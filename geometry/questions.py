@@ -1,5 +1,6 @@
 """Questions put to one layer of a screen, and the scratch they share."""
 
+from collections.abc import Callable
 from math import nan
 
 import numpy as np
@@ -8,7 +9,7 @@ from geometry.anyangle import FULL, NONE, Scout, new_scout, shortest_line
 from geometry.chains import Ints
 from geometry.distance import Bools
 from geometry.goals import Region, entry, regions, way_in, word_of_cells
-from geometry.itinerary import OVERFLOW, Desk, anchor_at, itineraries, new_desk
+from geometry.itinerary import OVERFLOW, Desk, Ends, anchor_at, itineraries, new_desk
 from geometry.layer import Layer
 from geometry.loops import Arc, cells_of_way, closed_ways
 from geometry.passages import Passage, on_chain
@@ -31,6 +32,7 @@ class Questions:
         self._width: int = layer.square.shape[1]
         self._desks: dict[int, Desk] = {}
         self._scout: Scout | None = None
+        self._solve: Callable[[Layer, Ends, int, Desk], int] | None = None
 
     def admits(self, point: XY) -> bool:
         """Whether the body may be in the square of a point."""
@@ -45,11 +47,13 @@ class Questions:
         desk = self._desk(wanted, 0)
         if avoid:
             desk = self._forbid(desk, avoid)
-        found = itineraries(self.layer, ends, wanted, desk)
+        if self._solve is None:
+            self._solve = itineraries.entry(self.layer, ends, wanted, desk)
+        found = self._solve(self.layer, ends, wanted, desk)
         while found == OVERFLOW:
             desk = self._desk(wanted, 4 * len(desk.start))
             desk = self._forbid(desk, avoid) if avoid else desk
-            found = itineraries(self.layer, ends, wanted, desk)
+            found = self._solve(self.layer, ends, wanted, desk)
         if avoid:
             desk.query.shut[:] = 0
             desk.query.closed[:] = False
