@@ -90,7 +90,7 @@ def turn_impact(x: float, y: float, cx: float, cy: float, sign: float, edges: Fl
 def first_push(corners: Floats, body: Floats, surface: Surface, dx: float, dy: float) -> Found:
     """First contact of a pushed body."""
     hull, skin, edges, owner = surface
-    time, kind, i, j = _push_through_skin(corners, body, hull, skin, dx, dy)
+    time, kind, i, j = push_through_skin(corners, body, hull, skin, dx, dy)
     if kind == 0:
         return 1.0, 0.0, 0.0, -1, 0.0, 0.0
     if kind == 1:
@@ -103,7 +103,7 @@ def first_push(corners: Floats, body: Floats, surface: Surface, dx: float, dy: f
 
 
 @compiled
-def _push_through_skin(corners: Floats, body: Floats, hull: Floats, skin: Floats, dx: float, dy: float) -> Met:
+def push_through_skin(corners: Floats, body: Floats, hull: Floats, skin: Floats, dx: float, dy: float) -> Met:
     """The earliest impact of a pushed body on the skins."""
     low_x, low_y, high_x, high_y = _bounds(corners)
     low_x += min(dx, 0.0)
@@ -163,7 +163,7 @@ def first_turn(corners: Floats, body: Floats, surface: Surface, turn: float, cx:
     """First contact of a body turned by some radians about (cx, cy)."""
     hull, skin, edges, owner = surface
     sign = 1.0 if turn >= 0.0 else -1.0
-    time, kind, i, j = _turn_through_skin(corners, body, hull, skin, cx, cy, sign, abs(turn))
+    time, kind, i, j = turn_through_skin(corners, body, hull, skin, cx, cy, sign, abs(turn))
     if kind == 0:
         return 1.0, 0.0, 0.0, -1, 0.0, 0.0
     if kind == 1:
@@ -178,7 +178,7 @@ def first_turn(corners: Floats, body: Floats, surface: Surface, turn: float, cx:
 
 
 @compiled
-def _turn_through_skin(
+def turn_through_skin(
     corners: Floats, body: Floats, hull: Floats, skin: Floats, cx: float, cy: float, sign: float, limit: float
 ) -> Met:
     """The earliest impact on the skins within a turn of `limit` radians."""

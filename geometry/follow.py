@@ -1,0 +1,144 @@
+"""Following a chain of cells hop by hop, and splitting what is to blame where a hop fails. Plain loops for numba."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from geometry.cells import Tree, centre, split, splittable
+from geometry.chain import Hunt
+from geometry.compiled import compiled
+from geometry.hop import BLOCKED, hop
+from geometry.impact import Surface
+from geometry.separation import DEAD, FREE, OPEN, Ground, Mover
+
+Floats = npt.NDArray[np.float64]
+
+
+class Scene(NamedTuple):
+    """A body, where it moves, and the surface that it must not go into."""
+
+    mover: Mover
+    ground: Ground
+    surface: Surface
+
+
+class Way(NamedTuple):
+    """The poses of a way found so far.
+
+    poses: (n, 3) x, y, angle, the first being the start; used: (1,) how many of them are in use; goal: the pose to end
+    at, empty when the centre of the chain's last cell will do.
+    """
+
+    poses: Floats
+    used: npt.NDArray[np.int64]
+    goal: Floats
+
+
+@compiled
+def follow(tree: Tree, scene: Scene, hunt: Hunt, length: int, way: Way) -> int:
+    """Check the hops of a chain and split what is to blame; how many cells were changed. 0: the way is free.
+
+    One doubtful cell may be jumped over. After a hop that fails the rest is followed as if it had not, so that one look
+    at a chain finds most of its faults. A cell that is to blame and too small to split is given up.
+    """
+    way.used[0] = 1
+    total = length + (1 if len(way.goal) > 0 else 0)
+    blamed, last, n = 0, -1, 0
+    here, there = way.poses[0].copy(), np.empty(3)
+    while n < total:
+        step = 0
+        for ahead in range(2):
+            if step > 0 or n + ahead >= total or (ahead == 1 and n < length and tree.kind[hunt.chain[n]] == FREE):
+                continue
+            if _stop_at(tree, hunt, length, way, n + ahead, there) and _go(
+                tree, scene, hunt, length, way, last, n + ahead, here, there
+            ):
+                step = ahead + 1
+        if step > 0:
+            last = n + step - 1
+            here[:] = there
+        else:
+            blamed += _blame(tree, scene, hunt, last, n, length)
+            step, last = 1, -1
+            if n < length:
+                here[0], here[1], here[2] = centre(tree, hunt.chain[n])
+                last = n if tree.child[hunt.chain[n]] < 0 else -1
+        n += step
+    return blamed
+
+
+@compiled
+def _stop_at(tree: Tree, hunt: Hunt, length: int, way: Way, n: int, there: Floats) -> bool:
+    """Write the n-th stop of a chain: a cell's centre or, after the last, the goal. False: it overlaps there."""
+    if n == length:
+        there[:] = way.goal
+        return True
+    there[0], there[1], there[2] = centre(tree, hunt.chain[n])
+    return bool(tree.kind[hunt.chain[n]] <= OPEN)
+
+
+@compiled
+def _go(
+    tree: Tree, scene: Scene, hunt: Hunt, length: int, way: Way, last: int, n: int, here: Floats, there: Floats
+) -> bool:
+    """Hop to the n-th stop, straight or by way of the face between the two cells, and write it down."""
+    if hop(scene.mover, scene.ground, scene.surface, here, there) == BLOCKED:
+        if last < 0 or n >= length or n != last + 1:
+            return False
+        middle = np.empty(3)
+        middle[0], middle[1], middle[2] = meeting(tree, hunt.chain[last], hunt.chain[n])
+        if hop(scene.mover, scene.ground, scene.surface, here, middle) == BLOCKED:
+            return False
+        if hop(scene.mover, scene.ground, scene.surface, middle, there) == BLOCKED:
+            return False
+        way.poses[way.used[0]] = middle
+        way.used[0] += 1
+    way.poses[way.used[0]] = there
+    way.used[0] += 1
+    return True
+
+
+@compiled
+def meeting(tree: Tree, a: int, b: int) -> tuple[float, float, float]:
+    """The pose in the middle of the face that two neighbouring cells share."""
+    middle = np.empty(3)
+    for k in range(3):
+        unit = tree.frame[2] if k < 2 else tree.frame[3]
+        size_a = tree.sizes[tree.box[a, 3], k // 2] * unit
+        size_b = tree.sizes[tree.box[b, 3], k // 2] * unit
+        a0, b0 = tree.box[a, k] * unit, tree.box[b, k] * unit
+        if k == 2 and b0 > a0 + size_a + 1e-12:
+            b0 -= 2 * math.pi
+        elif k == 2 and a0 > b0 + size_b + 1e-12:
+            b0 += 2 * math.pi
+        middle[k] = (max(a0, b0) + min(a0 + size_a, b0 + size_b)) / 2
+    return tree.frame[0] + middle[0], tree.frame[1] + middle[1], middle[2]
+
+
+@compiled
+def _blame(tree: Tree, scene: Scene, hunt: Hunt, last: int, n: int, length: int) -> int:
+    """Split the cell that a failed hop leads into, and the one that it leaves when that is as doubtful and as large."""
+    blamed = 0
+    if n < length and tree.kind[hunt.chain[n]] != FREE:
+        blamed += _divide(tree, scene, hunt.chain[n])
+    if last >= 0 and tree.kind[hunt.chain[last]] == OPEN:
+        large = n < length and tree.box[hunt.chain[last], 3] <= tree.box[hunt.chain[n], 3]
+        if blamed == 0 or large:
+            blamed += _divide(tree, scene, hunt.chain[last])
+    if blamed == 0 and n == length:
+        blamed += _divide(tree, scene, hunt.chain[length - 1])
+    return blamed
+
+
+@compiled
+def _divide(tree: Tree, scene: Scene, cell: int) -> int:
+    """Split a leaf, or give it up when it is too small; 1 when something changed."""
+    if tree.child[cell] >= 0 or tree.kind[cell] == DEAD:
+        return 0
+    if splittable(tree, cell, scene.mover):
+        split(tree, cell, scene.mover, scene.ground)
+    else:
+        tree.kind[cell] = DEAD
+    return 1

@@ -1,0 +1,208 @@
+"""Planning the motion of a polygon among polygons: certified when found, proved when impossible.
+
+    plan = plan_motion(shape, obstacles, Pose(2, 2, 0), Pose(9, 5, 90))
+
+# Strategy: poses are searched in cells that are split only along the way (geometry.cells, geometry.chain). A chain of
+# cells from start to goal is an optimist's plan. Its hops are checked by exact first contact; where one fails the cells
+# to blame are split and the search goes on. A chain all of whose hops are free is a motion. When there is no chain left
+# although only cells were dropped in which the body certainly overlaps an obstacle, there is no motion: a proof.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from geometry.cells import Tree, leaf_at, new_tree
+from geometry.chain import REGION, Hunt, find_chain, new_hunt
+from geometry.floor import Floor
+from geometry.follow import Scene, Way, follow
+from geometry.mover import centre_pose, new_mover, reference_pose
+from geometry.rigid import Motion, Pose, Translate
+from geometry.separation import DEAD, Ground, Mover
+from geometry.shorten import motions_along, shorten
+
+Floats = npt.NDArray[np.float64]
+CAPACITY = 600_000  # cells
+TOUCH = 1e-6  # squares: a start or goal may be this deep in an obstacle
+
+
+@dataclass(frozen=True)
+class Inside:
+    """A goal: the whole body within a polygon, at any place and angle.
+
+    polygon : shapely Polygon or MultiPolygon, table frame.
+    """
+
+    polygon: Any
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What plan_motion found.
+
+    Attributes
+    ----------
+    status : "found", "impossible" (proved) or "limit" (not decided at the resolution or within the cells allowed).
+    motions : Translate and Rotate from start to goal, each free by exact first contact; () unless found.
+    poses : Pose of the reference point before, between and after the motions; () unless found.
+    cells : how many cells were looked at; rounds : how many chains.
+    resolution : the least size of a cell, in squares.
+    reason : "start", "goal" when impossible because the body overlaps an obstacle there; else "".
+    """
+
+    status: str
+    motions: tuple[Motion, ...] = ()
+    poses: tuple[Pose, ...] = ()
+    cells: int = 0
+    rounds: int = 0
+    resolution: float = 0.0
+    reason: str = ""
+
+    @cached_property
+    def length(self) -> float:
+        """The way of the reference point, in squares; nan unless found."""
+        if self.status != "found":
+            return math.nan
+        return sum(_way(motion, pose) for motion, pose in zip(self.motions, self.poses, strict=False))
+
+
+def _way(motion: Motion, pose: Pose) -> float:
+    """How far a motion takes the reference point."""
+    if isinstance(motion, Translate):
+        return math.hypot(motion.dx, motion.dy)
+    return abs(math.radians(motion.degrees)) * math.dist((pose.x, pose.y), motion.about)
+
+
+def plan_motion(
+    shape: Any,
+    obstacles: Any,
+    start: Pose,
+    goal: Pose | Inside,
+    bounds: Sequence[float] | None = None,
+    resolution: float = 2e-4,
+    points: Iterable[tuple[float, float]] = (),
+    cells: int = CAPACITY,
+) -> Plan:
+    """Find how to move a polygon among polygons from a pose to a goal, or prove that it cannot be done.
+
+    Parameters
+    ----------
+    shape : shapely Polygon or MultiPolygon whose reference point is the origin, in squares.
+    obstacles : any shapely geometry, a sequence of them, or a Floor prepared for many calls (bounds are then its own).
+    start : Pose of the reference point. The body may touch obstacles there.
+    goal : Pose, or Inside(polygon).
+    bounds : (x0, y0, x1, y1) of the reference point; None for the box around obstacles, start and goal.
+    resolution : cells smaller than this times the bounds' greater side are not split.
+    points : (x, y) in the body's own frame that move with it and must not enter obstacles, such as Utak.
+    cells : no more than so many cells are looked at.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    ValueError : when the body has no area, or a number is not finite.
+    """
+    mover = new_mover(shape, points)
+    floor = obstacles if isinstance(obstacles, Floor) else Floor(obstacles, _bounds(obstacles, start, goal, bounds))
+    return _Problem(mover, floor, start, goal, resolution, cells).solve()
+
+
+def _bounds(obstacles: Any, start: Pose, goal: Pose | Inside, bounds: Sequence[float] | None) -> Sequence[float]:
+    """The bounds given, or the box around all there is."""
+    if bounds is not None:
+        return bounds
+    several = list(obstacles) if isinstance(obstacles, list | tuple) else [obstacles]
+    ends = [goal.polygon] if isinstance(goal, Inside) else [shapely.Point(goal.x, goal.y)]
+    around = shapely.total_bounds([*several, shapely.Point(start.x, start.y).buffer(1.0), *ends])
+    return [float(v) for v in around]
+
+
+class _Problem:
+    """One planning problem on its way to a Plan."""
+
+    def __init__(
+        self, mover: Mover, floor: Floor, start: Pose, goal: Pose | Inside, resolution: float, cells: int
+    ) -> None:
+        self.mover, self.floor = mover, floor
+        self.start = centre_pose(mover, start)
+        self.ground = floor.ground(mover)
+        self.least = resolution * floor.side
+        if not np.all(np.isfinite(self.start)) or not self.least > 0.0:
+            raise ValueError("start and resolution must be finite, the resolution positive")
+        self.end, self.region, goals = self._goal(goal)
+        reach = float(np.hypot(*mover.reference))
+        corner, side = floor.bounds[:2] - reach, floor.side + 2 * reach
+        self.tree: Tree = new_tree(corner[0], corner[1], side * (1 + 1e-9), mover.radius, self.least, cells)
+        eye = mover.probes[0]
+        self.hunt: Hunt = new_hunt(cells, floor.ways(goals, float(eye[2])), eye[:2].copy())
+
+    def _goal(self, goal: Pose | Inside) -> tuple[Floats, Ground, npt.NDArray[np.bool_]]:
+        """The pose to end at (empty for a region), the region's complement as ground, and the goal's pixels."""
+        if isinstance(goal, Pose):
+            end = centre_pose(self.mover, goal)
+            if not np.all(np.isfinite(end)):
+                raise ValueError("goal must be finite")
+            c, s = math.cos(end[2]), math.sin(end[2])
+            px, py = self.mover.probes[0, :2]
+            return end, self.ground, self.floor.pixel_of(end[0] + c * px - s * py, end[1] + s * px + c * py)
+        outer = shapely.box(*self.floor.bounds).buffer(self.floor.side, join_style="mitre")
+        region = Floor(outer.difference(goal.polygon), self.floor.bounds.tolist())
+        goals = region.raster >= self.mover.probes[0, 2] - region.frame[2]
+        return np.empty(0), region.ground(self.mover), goals
+
+    def solve(self) -> Plan:
+        """Search and split until there is an answer."""
+        for name, pose in (("start", self.start), ("goal", self.end)):
+            if len(pose) and self._overlaps(pose):
+                return self._plan("impossible", 0, reason=name)
+        scene = Scene(self.mover, self.ground, self.floor.surface)
+        way = Way(np.empty((2 * len(self.tree.child) + 2, 3)), np.ones(1, np.int64), self.end)
+        way.poses[0] = self.start
+        rounds = 0
+        while True:
+            rounds += 1
+            length = self._chain(rounds, False)
+            if length == 0:
+                break
+            if follow(self.tree, scene, self.hunt, length, way) == 0:
+                return self._found(way.poses[: way.used[0]], rounds)
+        given_up = bool(np.any(self.tree.kind[: self.tree.used[0]] == DEAD))
+        undecided = given_up and self._chain(rounds + 1, True) > 0
+        return self._plan("limit" if undecided else "impossible", rounds)
+
+    def _chain(self, nth: int, dead: bool) -> int:
+        first = leaf_at(self.tree, *self.start)
+        last = leaf_at(self.tree, *self.end) if len(self.end) else REGION
+        if first < 0 or last == -1:
+            return 0
+        return find_chain(self.tree, self.mover, self.ground, self.region, self.hunt, first, last, nth, dead)
+
+    def _overlaps(self, pose: Floats) -> bool:
+        """Whether the body at a pose is in an obstacle by more than a touch, or its reference point out of bounds."""
+        reference = reference_pose(self.mover, pose)
+        x0, y0, x1, y1 = self.floor.bounds + np.array([-TOUCH, -TOUCH, TOUCH, TOUCH])
+        if not (x0 <= reference.x <= x1 and y0 <= reference.y <= y1):
+            return True
+        turned = Pose(pose[0], pose[1], math.degrees(pose[2]))
+        rings = shapely.linearrings(self.mover.edges[:, :2]) if len(self.mover.edges) > 2 else None
+        body = turned.place(shapely.Polygon(rings)).buffer(-TOUCH, join_style="mitre")
+        return any(body.intersects(polygon) for polygon in self.floor.polygons)
+
+    def _found(self, poses: Floats, rounds: int) -> Plan:
+        ways = shorten(self.mover, self.ground, self.floor.surface, poses)
+        motions = motions_along(self.mover, self.ground, self.floor.surface, ways)
+        return self._plan("found", rounds, motions)
+
+    def _plan(self, status: str, rounds: int, motions: tuple[Motion, ...] = (), reason: str = "") -> Plan:
+        poses = [reference_pose(self.mover, self.start)] if status == "found" else []
+        for motion in motions:
+            poses.append(motion.pose(poses[-1]))
+        return Plan(status, motions, tuple(poses), int(self.tree.used[0]), rounds, self.least, reason)

@@ -1,0 +1,98 @@
+"""Shortening a way of certified hops, and writing it as motions. Every hop is checked again."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from geometry.compiled import compiled
+from geometry.hop import BLOCKED, EVEN, TURN_FIRST, hop, shorter_turn
+from geometry.impact import Surface
+from geometry.rigid import Motion, Rotate, Translate
+from geometry.separation import Ground, Mover
+
+Floats = npt.NDArray[np.float64]
+PULLS = 4  # times that every corner of the way is pulled straight
+
+
+@compiled
+def shorten(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floats:
+    """A shorter way from the first to the last of (n, 3) poses: hops over poses, then corners pulled straight."""
+    kept = _jump(mover, ground, surface, poses)
+    for _ in range(PULLS):
+        _pull(mover, ground, surface, kept)
+        kept = _jump(mover, ground, surface, kept)
+    return kept
+
+
+@compiled
+def _jump(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floats:
+    """From each pose hop as far ahead as doubling and halving finds."""
+    kept = np.empty_like(poses)
+    kept[0] = poses[0]
+    count, at, last = 1, 0, len(poses) - 1
+    while at < last:
+        low, step = at + 1, 2
+        high = last + 1
+        if hop(mover, ground, surface, poses[at], poses[last]) != BLOCKED:
+            low, high = last, last + 1
+        while low + 1 < high:
+            tried = min(at + step, last) if step > 0 else (low + high) // 2
+            if tried <= low:
+                break
+            if hop(mover, ground, surface, poses[at], poses[tried]) != BLOCKED:
+                low, step = tried, 2 * step
+            else:
+                high, step = tried, 0
+        at = low
+        kept[count] = poses[at]
+        count += 1
+    return kept[:count].copy()
+
+
+@compiled
+def _pull(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> None:
+    """Move each pose towards the straight way between its neighbours as far as the hops stay free."""
+    for n in range(1, len(poses) - 1):
+        before, here, after = poses[n - 1], poses[n].copy(), poses[n + 1]
+        d0 = math.hypot(here[0] - before[0], here[1] - before[1])
+        d1 = math.hypot(after[0] - here[0], after[1] - here[1])
+        part = d0 / (d0 + d1) if d0 + d1 > 0.0 else 0.5
+        aim = before + part * (after - before)
+        aim[2] = before[2] + part * shorter_turn(after[2] - before[2])
+        turn = shorter_turn(aim[2] - here[2])
+        pull = 1.0
+        for _ in range(5):
+            poses[n] = here + pull * (aim - here)
+            poses[n, 2] = here[2] + pull * turn
+            if hop(mover, ground, surface, before, poses[n]) != BLOCKED and (
+                hop(mover, ground, surface, poses[n], after) != BLOCKED
+            ):
+                break
+            pull *= 0.5
+            poses[n] = here
+
+
+def motions_along(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> tuple[Motion, ...]:
+    """The turns and pushes of a way, in order, those of no size left out.
+
+    Raises
+    ------
+    RuntimeError : when a hop is not free; the way was never certified.
+    """
+    motions: list[Motion] = []
+    for here, there in pairwise(poses):
+        way = hop(mover, ground, surface, here, there)
+        if way == BLOCKED:
+            raise RuntimeError("a hop of the way is blocked")
+        dx, dy = float(there[0] - here[0]), float(there[1] - here[1])
+        turn = float(shorter_turn(there[2] - here[2]))
+        pivot = here if way == TURN_FIRST else there
+        steps: list[Motion] = [Rotate(math.degrees(turn), (float(pivot[0]), float(pivot[1]))), Translate(dx, dy)]
+        sizes = [abs(turn), abs(dx) + abs(dy)]
+        if way != TURN_FIRST:
+            steps.reverse()
+            sizes.reverse()
+        motions += [step for step, size in zip(steps, sizes, strict=True) if size >= EVEN]
+    return tuple(motions)
