@@ -7,20 +7,21 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.cells import Tree, centre, split, splittable
-from geometry.chain import Hunt
+from geometry.chain import REGION, Hunt, goal_sight
 from geometry.compiled import compiled
 from geometry.hop import BLOCKED, hop
 from geometry.impact import Surface
-from geometry.separation import DEAD, FREE, OPEN, Ground, Mover
+from geometry.separation import DEAD, FREE, OPEN, SHUT, Ground, Mover
 
 Floats = npt.NDArray[np.float64]
 
 
 class Scene(NamedTuple):
-    """A body, where it moves, and the surface that it must not go into."""
+    """A body, where it moves, the ground of its goal region, and the surface that it must not go into."""
 
     mover: Mover
     ground: Ground
+    region: Ground
     surface: Surface
 
 
@@ -66,6 +67,8 @@ def follow(tree: Tree, scene: Scene, hunt: Hunt, length: int, way: Way) -> int:
                 here[0], here[1], here[2] = centre(tree, hunt.chain[n])
                 last = n if tree.child[hunt.chain[n]] < 0 else -1
         n += step
+    if len(way.goal) == 0 and goal_sight(tree, scene.mover, scene.region, hunt.chain[length - 1], REGION) == SHUT:
+        blamed += _divide(tree, scene, hunt.chain[length - 1])
     return blamed
 
 
@@ -134,9 +137,9 @@ def _blame(tree: Tree, scene: Scene, hunt: Hunt, last: int, n: int, length: int)
 
 @compiled
 def _divide(tree: Tree, scene: Scene, cell: int) -> int:
-    """Split a leaf, or give it up when it is too small; 1 when something changed."""
+    """Split a leaf, or give it up when it is too small. Always 1: it was changed, now or before."""
     if tree.child[cell] >= 0 or tree.kind[cell] == DEAD:
-        return 0
+        return 1
     if splittable(tree, cell, scene.mover):
         split(tree, cell, scene.mover, scene.ground)
     else:

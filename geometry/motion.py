@@ -24,7 +24,7 @@ from geometry.floor import Floor
 from geometry.follow import Scene, Way, follow
 from geometry.mover import centre_pose, new_mover, reference_pose
 from geometry.rigid import Motion, Pose, Translate
-from geometry.separation import DEAD, Ground, Mover
+from geometry.separation import Ground, Mover
 from geometry.shorten import motions_along, shorten
 
 Floats = npt.NDArray[np.float64]
@@ -163,7 +163,7 @@ class _Problem:
         for name, pose in (("start", self.start), ("goal", self.end)):
             if len(pose) and self._overlaps(pose):
                 return self._plan("impossible", 0, reason=name)
-        scene = Scene(self.mover, self.ground, self.floor.surface)
+        scene = Scene(self.mover, self.ground, self.region, self.floor.surface)
         way = Way(np.empty((2 * len(self.tree.child) + 2, 3)), np.ones(1, np.int64), self.end)
         way.poses[0] = self.start
         rounds = 0
@@ -174,8 +174,9 @@ class _Problem:
                 break
             if follow(self.tree, scene, self.hunt, length, way) == 0:
                 return self._found(way.poses[: way.used[0]], rounds)
-        given_up = bool(np.any(self.tree.kind[: self.tree.used[0]] == DEAD))
-        undecided = given_up and self._chain(rounds + 1, True) > 0
+        lost = bool(self.hunt.size[1])
+        self.hunt.seen[0] = self.hunt.size[0] = 0
+        undecided = lost or self._chain(rounds + 1, True) > 0
         return self._plan("limit" if undecided else "impossible", rounds)
 
     def _chain(self, nth: int, dead: bool) -> int:
