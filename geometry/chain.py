@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.cells import Tree, centre, neighbours, splittable
+from geometry.cells import Tree, next_neighbour, splittable
 from geometry.compiled import compiled
 from geometry.heap import pop, push
 from geometry.separation import DEAD, FULL, OPEN, SHUT, Ground, Mover, classify
@@ -30,12 +30,13 @@ UNSEEN, OFFERED, SETTLED, DOUBTED = 0, 1, 2, 3
 class Hunt(NamedTuple):
     """A search among the cells of a tree, kept from one chain to the next.
 
-    cost: of the way to a cell; before: the cell before it; state: UNSEEN, OFFERED (on the heap), SETTLED, or DOUBTED (a
-    settled cell that may hold a goal, put off); verdict: scratch of the repair. seen: (1,) cells that have a state. key,
-    item, size: the heap. found, stack: scratch for neighbours. chain: the cells of the last chain, the start's first;
-    loose: scratch. ways: (rows, columns) what is left to go at a pixel. eye: the point of the body that it is told for.
+    guess: of the way left from a cell; cost: of the way to a cell; before: the cell before it; state: UNSEEN, OFFERED (on the heap), SETTLED, or DOUBTED (a
+    settled cell that may hold a goal, put off); verdict, loose: scratch of the repair. seen: (1,) cells that have a
+    state. key, item, size: the heap. chain: the cells of the last chain, the start's first. ways: (rows, columns) what
+    is left to go at a pixel. eye: the point of the body that it is told for.
     """
 
+    guess: Floats
     cost: Floats
     before: Ints
     state: npt.NDArray[np.int8]
@@ -44,8 +45,6 @@ class Hunt(NamedTuple):
     key: Floats
     item: Ints
     size: npt.NDArray[np.int64]
-    found: Ints
-    stack: Ints
     chain: Ints
     loose: Ints
     ways: Floats
@@ -54,12 +53,11 @@ class Hunt(NamedTuple):
 
 def new_hunt(capacity: int, ways: Floats, eye: Floats) -> Hunt:
     """Room to search a tree of up to so many cells."""
-    ints = [np.empty(n, np.int32) for n in (capacity, capacity, 8 * capacity, capacity, 4096, capacity, capacity)]
-    before, verdict, item, found, stack, chain, loose = ints
-    verdict[:] = 0
+    before, chain, loose = (np.empty(capacity, np.int32) for _ in range(3))
+    verdict, item = np.zeros(capacity, np.int32), np.empty(8 * capacity, np.int32)
     numbers = np.zeros(1, np.int64), np.empty(8 * capacity), item, np.zeros(2, np.int64)
     state = np.empty(capacity, np.int8)
-    return Hunt(np.empty(capacity), before, state, verdict, *numbers, found, stack, chain, loose, ways, eye)
+    return Hunt(np.empty(capacity), np.empty(capacity), before, state, verdict, *numbers, chain, loose, ways, eye)
 
 
 @compiled
@@ -83,10 +81,10 @@ def find_chain(
         sight = SHUT if doubted else goal_sight(tree, mover, region, cell, goal)
         if sight <= OPEN or doubted:
             hunt.state[cell] = SETTLED
-            _spread_out(tree, mover, ground, hunt, cell, dead)
+            _spread_out(tree, hunt, mover.radius, cell, dead)
             return _trace(hunt, cell)
         hunt.state[cell] = SETTLED
-        _spread_out(tree, mover, ground, hunt, cell, dead)
+        _spread_out(tree, hunt, mover.radius, cell, dead)
         if sight == SHUT and (dead or splittable(tree, cell, mover)):
             hunt.state[cell] = DOUBTED
             push(hunt.key, hunt.item, hunt.size, key + 2.0 * mover.radius, cell)
@@ -98,7 +96,7 @@ def goal_sight(tree: Tree, mover: Mover, region: Ground, cell: int, goal: int) -
     """FREE or OPEN when the cell's centre is a goal (or the cell the goal's), SHUT when it may hold one, else FULL."""
     if goal != REGION:
         return OPEN if cell == goal else FULL
-    x, y, angle = centre(tree, cell)
+    x, y, angle = tree.middle[cell, 0], tree.middle[cell, 1], tree.middle[cell, 2]
     depth = tree.box[cell, 3]
     spread = tree.sizes[depth, 0] * tree.frame[2] / math.sqrt(2.0)
     return classify(mover, region, x, y, angle, spread, tree.sizes[depth, 1] * tree.frame[3] / 2)
@@ -109,86 +107,89 @@ def _repair(tree: Tree, mover: Mover, ground: Ground, hunt: Hunt, nth: int) -> N
     """Cut off what hung on cells that were split or given up, and offer it and the new cells again."""
     loose = 0
     for cell in range(hunt.seen[0]):
-        if hunt.state[cell] != UNSEEN and _cut_off(tree, hunt, cell, nth):
+        if hunt.state[cell] != UNSEEN and _cut_off(tree.child, tree.kind, hunt.before, hunt.verdict, cell, nth):
             hunt.state[cell] = UNSEEN
             hunt.loose[loose] = cell
             loose += 1
     for cell in range(hunt.seen[0], tree.used[0]):
         hunt.state[cell] = UNSEEN
+        hunt.guess[cell] = _guess(tree.middle, hunt.ways, hunt.eye, ground.frame, cell)
         hunt.loose[loose] = cell
         loose += 1
     hunt.seen[0] = tree.used[0]
     for k in range(loose):
         cell = hunt.loose[k]
         if tree.child[cell] < 0 and tree.kind[cell] <= SHUT:
-            _be_offered(tree, mover, ground, hunt, cell)
+            _be_offered(tree, hunt, mover.radius, cell)
 
 
 @compiled
-def _cut_off(tree: Tree, hunt: Hunt, cell: int, nth: int) -> bool:
-    """Whether the way to a cell runs through one that was split or given up."""
+def _cut_off(child: Ints, kind: npt.NDArray[np.int8], before: Ints, verdict: Ints, cell: int, nth: int) -> bool:
+    """Whether the way to a cell runs through one that was split or given up. verdict: what was found out on the way."""
     at = cell
-    while at >= 0 and hunt.verdict[at] // 2 != nth and tree.child[at] < 0 and tree.kind[at] <= SHUT:
-        at = hunt.before[at]
+    while at >= 0 and verdict[at] // 2 != nth and child[at] < 0 and kind[at] <= SHUT:
+        at = before[at]
     bad = 0
     if at >= 0:
-        bad = hunt.verdict[at] % 2 if hunt.verdict[at] // 2 == nth else 1
+        bad = verdict[at] % 2 if verdict[at] // 2 == nth else 1
     stop, at = at, cell
     while at != stop:
-        hunt.verdict[at] = 2 * nth + bad
-        at = hunt.before[at]
+        verdict[at] = 2 * nth + bad
+        at = before[at]
     return bad == 1
 
 
 @compiled
-def _be_offered(tree: Tree, mover: Mover, ground: Ground, hunt: Hunt, cell: int) -> None:
+def _be_offered(tree: Tree, hunt: Hunt, radius: float, cell: int) -> None:
     """Let the settled neighbours of a cell offer it the cheapest way to it."""
+    child, head, links, middle, kind = tree.child, tree.head, tree.link, tree.middle, tree.kind
     best, by = 1e18, -1
-    for k in range(neighbours(tree, cell, hunt.found, hunt.stack)):
-        other = hunt.found[k]
+    link = next_neighbour(child, head, links, cell, -1)
+    while link >= 0:
+        other = links[link, 0]
         if hunt.state[other] >= SETTLED:
-            cost = hunt.cost[other] + _step(tree, mover, other, cell)
+            cost = hunt.cost[other] + _step(middle, kind, radius, other, cell)
             if cost < best:
                 best, by = cost, other
+        link = next_neighbour(child, head, links, cell, link)
     if by >= 0:
-        _offer(tree, mover, ground, hunt, cell, best, by)
+        hunt.cost[cell], hunt.before[cell], hunt.state[cell] = best, by, OFFERED
+        push(hunt.key, hunt.item, hunt.size, best + hunt.guess[cell], cell)
 
 
 @compiled
-def _spread_out(tree: Tree, mover: Mover, ground: Ground, hunt: Hunt, cell: int, dead: bool) -> None:
+def _spread_out(tree: Tree, hunt: Hunt, radius: float, cell: int, dead: bool) -> None:
     """Offer the neighbours of a settled cell the way through it."""
-    for k in range(neighbours(tree, cell, hunt.found, hunt.stack)):
-        other = hunt.found[k]
-        if hunt.state[other] >= SETTLED or (tree.kind[other] == DEAD and not dead):
-            continue
-        cost = hunt.cost[cell] + _step(tree, mover, cell, other)
-        if hunt.state[other] == UNSEEN or cost < hunt.cost[other]:
-            _offer(tree, mover, ground, hunt, other, cost, cell)
+    child, head, links, middle, kind = tree.child, tree.head, tree.link, tree.middle, tree.kind
+    link = next_neighbour(child, head, links, cell, -1)
+    while link >= 0:
+        other = links[link, 0]
+        if hunt.state[other] < SETTLED and (kind[other] != DEAD or dead):
+            cost = hunt.cost[cell] + _step(middle, kind, radius, cell, other)
+            if hunt.state[other] == UNSEEN or cost < hunt.cost[other]:
+                hunt.cost[other], hunt.before[other], hunt.state[other] = cost, cell, OFFERED
+                push(hunt.key, hunt.item, hunt.size, cost + hunt.guess[other], other)
+        link = next_neighbour(child, head, links, cell, link)
 
 
 @compiled
-def _offer(tree: Tree, mover: Mover, ground: Ground, hunt: Hunt, cell: int, cost: float, before: int) -> None:
-    """Put a cell on the heap with the way to it."""
-    hunt.cost[cell], hunt.before[cell], hunt.state[cell] = cost, before, OFFERED
-    x, y, angle = centre(tree, cell)
-    c, s = math.cos(angle), math.sin(angle)
-    px = x + c * hunt.eye[0] - s * hunt.eye[1]
-    py = y + s * hunt.eye[0] + c * hunt.eye[1]
-    rows, columns = hunt.ways.shape
-    column = min(max(int((px - ground.frame[0]) / ground.frame[2]), 0), columns - 1)
-    row = min(max(int((py - ground.frame[1]) / ground.frame[2]), 0), rows - 1)
-    push(hunt.key, hunt.item, hunt.size, cost + EAGER * hunt.ways[row, column], cell)
-
-
-@compiled
-def _step(tree: Tree, mover: Mover, a: int, b: int) -> float:
-    """The cost of going from the centre of one cell to that of another."""
-    ax, ay, at = centre(tree, a)
-    bx, by, bt = centre(tree, b)
-    turn = abs(bt - at)
+def _step(middle: Floats, kind: npt.NDArray[np.int8], radius: float, a: int, b: int) -> float:
+    """The cost of going from the middle of one cell to that of another."""
+    dx, dy = middle[b, 0] - middle[a, 0], middle[b, 1] - middle[a, 1]
+    turn = abs(middle[b, 2] - middle[a, 2])
     turn = min(turn, 2 * math.pi - turn)
-    way = math.sqrt((bx - ax) ** 2 + (by - ay) ** 2) + 0.5 * mover.radius * turn
-    return float(way * 0.5 * (DEAR[tree.kind[a]] + DEAR[tree.kind[b]]))
+    return float((math.sqrt(dx * dx + dy * dy) + 0.5 * radius * turn) * 0.5 * (DEAR[kind[a]] + DEAR[kind[b]]))
+
+
+@compiled
+def _guess(middle: Floats, ways: Floats, eye: Floats, frame: Floats, cell: int) -> float:
+    """What may be left to go from the middle of a cell."""
+    c, s = math.cos(middle[cell, 2]), math.sin(middle[cell, 2])
+    x = middle[cell, 0] + c * eye[0] - s * eye[1]
+    y = middle[cell, 1] + s * eye[0] + c * eye[1]
+    column = min(max(int((x - frame[0]) / frame[2]), 0), ways.shape[1] - 1)
+    row = min(max(int((y - frame[1]) / frame[2]), 0), ways.shape[0] - 1)
+    return float(EAGER * ways[row, column])
 
 
 @compiled

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.cells import Tree, centre, split, splittable
+from geometry.cells import Tree, split, splittable
 from geometry.chain import REGION, Hunt, goal_sight
 from geometry.compiled import compiled
 from geometry.hop import BLOCKED, hop
@@ -64,7 +64,7 @@ def follow(tree: Tree, scene: Scene, hunt: Hunt, length: int, way: Way) -> int:
             blamed += _blame(tree, scene, hunt, last, n, length)
             step, last = 1, -1
             if n < length:
-                here[0], here[1], here[2] = centre(tree, hunt.chain[n])
+                here[:] = tree.middle[hunt.chain[n]]
                 last = n if tree.child[hunt.chain[n]] < 0 else -1
         n += step
     if len(way.goal) == 0 and goal_sight(tree, scene.mover, scene.region, hunt.chain[length - 1], REGION) == SHUT:
@@ -78,7 +78,7 @@ def _stop_at(tree: Tree, hunt: Hunt, length: int, way: Way, n: int, there: Float
     if n == length:
         there[:] = way.goal
         return True
-    there[0], there[1], there[2] = centre(tree, hunt.chain[n])
+    there[:] = tree.middle[hunt.chain[n]]
     return bool(tree.kind[hunt.chain[n]] <= OPEN)
 
 

@@ -28,7 +28,7 @@ from geometry.separation import Ground, Mover
 from geometry.shorten import motions_along, shorten
 
 Floats = npt.NDArray[np.float64]
-CAPACITY = 600_000  # cells
+CAPACITY = 300_000  # cells
 TOUCH = 1e-6  # squares: a start or goal may be this deep in an obstacle
 
 
