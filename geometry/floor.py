@@ -15,6 +15,7 @@ import shapely
 
 from geometry.compiled import compiled
 from geometry.contact import Obstacles
+from geometry.rigid import Pose
 from geometry.separation import Ground, Mover, inside, point_to_edge
 
 Floats = npt.NDArray[np.float64]
@@ -22,6 +23,7 @@ Ints = npt.NDArray[np.int64]
 PIXELS = 128  # along the longer side of the raster
 BLOCK = 8  # pixels along the side of a block
 RIM = 0.1  # of the longer side, around the bounds
+TOUCH = 1e-6  # squares: a start or goal may be this deep in an obstacle, or out of bounds
 WALL = 6.0  # going through pixels where the body's disc does not fit looks so much dearer
 
 
@@ -63,6 +65,18 @@ class Floor:
         first, near = _blocks(self.surface.hull, self.frame, down, across, 2 * radius)
         blocks = np.array([across, BLOCK])
         return Ground(self.surface.hull, self.raster, self.frame, first, near, blocks, radius, self.bounds)
+
+    def has_room(self, shape: Any, points: Sequence[tuple[float, float]], pose: Pose) -> bool:
+        """Whether a body at a pose of its reference point is within bounds and at most touches obstacles."""
+        x0, y0, x1, y1 = self.bounds
+        if not (x0 - TOUCH <= pose.x <= x1 + TOUCH and y0 - TOUCH <= pose.y <= y1 + TOUCH):
+            return False
+        body = shapely.buffer(pose.place(shape), -TOUCH, join_style="mitre")
+        specks = [pose.place(shapely.Point(p)) for p in points]
+        if shapely.intersects(self.polygons, body).any():
+            return False
+        deep = [shapely.buffer(polygon, -TOUCH, join_style="mitre") for polygon in self.polygons] if specks else []
+        return not any(polygon.intersects(speck) for polygon in deep for speck in specks)
 
     def ways(self, goals: npt.NDArray[np.bool_], radius: float) -> Floats:
         """How far it is from every pixel to the nearest goal pixel for a disc: (rows, columns). A guess, never inf."""

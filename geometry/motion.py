@@ -9,7 +9,7 @@
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -29,7 +29,6 @@ from geometry.shorten import motions_along, shorten
 
 Floats = npt.NDArray[np.float64]
 CAPACITY = 300_000  # cells
-TOUCH = 1e-6  # squares: a start or goal may be this deep in an obstacle
 
 
 @dataclass(frozen=True)
@@ -86,7 +85,7 @@ def plan_motion(
     goal: Pose | Inside,
     bounds: Sequence[float] | None = None,
     resolution: float = 2e-4,
-    points: Iterable[tuple[float, float]] = (),
+    points: Sequence[tuple[float, float]] = (),
     cells: int = CAPACITY,
 ) -> Plan:
     """Find how to move a polygon among polygons from a pose to a goal, or prove that it cannot be done.
@@ -112,7 +111,11 @@ def plan_motion(
     """
     mover = new_mover(shape, points)
     floor = obstacles if isinstance(obstacles, Floor) else Floor(obstacles, _bounds(obstacles, start, goal, bounds))
-    return _Problem(mover, floor, start, goal, resolution, cells).solve()
+    problem = _Problem(mover, floor, start, goal, resolution, cells)
+    for name, pose in (("start", start), ("goal", goal)):
+        if isinstance(pose, Pose) and not floor.has_room(shape, points, pose):
+            return Plan("impossible", resolution=problem.least, reason=name)
+    return problem.solve()
 
 
 def _bounds(obstacles: Any, start: Pose, goal: Pose | Inside, bounds: Sequence[float] | None) -> Sequence[float]:
@@ -160,9 +163,6 @@ class _Problem:
 
     def solve(self) -> Plan:
         """Search and split until there is an answer."""
-        for name, pose in (("start", self.start), ("goal", self.end)):
-            if len(pose) and self._overlaps(pose):
-                return self._plan("impossible", 0, reason=name)
         scene = Scene(self.mover, self.ground, self.region, self.floor.surface)
         way = Way(np.empty((2 * len(self.tree.child) + 2, 3)), np.ones(1, np.int64), self.end)
         way.poses[0] = self.start
@@ -185,17 +185,6 @@ class _Problem:
         if first < 0 or last == -1:
             return 0
         return find_chain(self.tree, self.mover, self.ground, self.region, self.hunt, first, last, nth, dead)
-
-    def _overlaps(self, pose: Floats) -> bool:
-        """Whether the body at a pose is in an obstacle by more than a touch, or its reference point out of bounds."""
-        reference = reference_pose(self.mover, pose)
-        x0, y0, x1, y1 = self.floor.bounds + np.array([-TOUCH, -TOUCH, TOUCH, TOUCH])
-        if not (x0 <= reference.x <= x1 and y0 <= reference.y <= y1):
-            return True
-        turned = Pose(pose[0], pose[1], math.degrees(pose[2]))
-        rings = shapely.linearrings(self.mover.edges[:, :2]) if len(self.mover.edges) > 2 else None
-        body = turned.place(shapely.Polygon(rings)).buffer(-TOUCH, join_style="mitre")
-        return any(body.intersects(polygon) for polygon in self.floor.polygons)
 
     def _found(self, poses: Floats, rounds: int) -> Plan:
         ways = shorten(self.mover, self.ground, self.floor.surface, poses)

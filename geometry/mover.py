@@ -36,7 +36,8 @@ def new_mover(shape: Any, points: Iterable[tuple[float, float]] = ()) -> Mover:
     corners = np.column_stack([edges[:, :2], np.zeros(len(edges))])
     probes = np.vstack([_discs(shape, middle), corners])
     away = np.hypot(probes[:, 0], probes[:, 1])
-    return Mover(with_normals(edges), np.ascontiguousarray(np.column_stack([probes, away])), radius, -middle)
+    seeds = np.array([part.exterior.coords[0] for part in shapely.get_parts(whole)]) - middle
+    return Mover(with_normals(edges), np.ascontiguousarray(np.column_stack([probes, away])), radius, -middle, seeds)
 
 
 def _discs(shape: Any, middle: Floats) -> Floats:

@@ -22,13 +22,14 @@ class Mover(NamedTuple):
 
     edges: (m, 7) rows x0, y0, x1, y1, outward normal, length. probes: (k, 4) rows x, y, r, distance from the centre:
     the body covers the disc of radius r about (x, y); r is 0 at its corners. radius: of the enclosing circle.
-    reference: the (x, y) of the body's own origin.
+    reference: the (x, y) of the body's own origin. seeds: (parts, 2) a corner of each part of the body.
     """
 
     edges: Floats
     probes: Floats
     radius: float
     reference: Floats
+    seeds: Floats
 
 
 class Ground(NamedTuple):
@@ -129,8 +130,10 @@ def distance_at(mover: Mover, ground: Ground, x: float, y: float, c: float, s: f
         best = min(best, _edge_to_body(ax, ay, bx, by, edges[j, 6], body))
         if best < 0.0:
             return -1.0
-    if inside(x + c * body[0, 0] - s * body[0, 1], y + s * body[0, 0] + c * body[0, 1], edges):
-        return -1.0
+    for k in range(len(mover.seeds)):
+        px, py = mover.seeds[k, 0], mover.seeds[k, 1]
+        if inside(x + c * px - s * py, y + s * px + c * py, edges):
+            return -1.0
     return math.sqrt(best)
 
 
