@@ -31,9 +31,9 @@ class Hunt(NamedTuple):
     """A search among the cells of a tree, kept from one chain to the next.
 
     guess: of the way left from a cell; cost: of the way to it; before: the cell before it; state: UNSEEN, OFFERED (on
-    the heap), SETTLED, or DOUBTED (a settled cell that may hold a goal, put off); verdict, loose: scratch of the repair.
-    seen: (1,) cells that have a state. key, item, size: the heap. chain: the cells of the last chain, the start's first.
-    ways: (rows, columns) what is left to go at a pixel. eye: the point of the body that it is told for.
+    the heap), SETTLED, or DOUBTED (a settled cell that may hold a goal, put off); verdict, loose: scratch of the
+    repair. seen: (1,) cells that have a state. key, item, size: the heap. chain: the cells of the last chain, the
+    start's first. ways: (rows, columns) what is left to go at a pixel. eye: the point of the body it is told for.
     """
 
     guess: Floats
