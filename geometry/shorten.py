@@ -10,7 +10,7 @@ from geometry.compiled import compiled
 from geometry.hop import BLOCKED, EVEN, TURN_FIRST, hop, shorter_turn
 from geometry.impact import Surface
 from geometry.rigid import Motion, Rotate, Translate
-from geometry.separation import Ground, Mover
+from geometry.separation import Ground, Mover, distance_at
 
 Floats = npt.NDArray[np.float64]
 PULLS = 4  # times that every corner of the way is pulled straight
@@ -20,10 +20,60 @@ PULLS = 4  # times that every corner of the way is pulled straight
 def shorten(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floats:
     """A shorter way from the first to the last of (n, 3) poses: hops over poses, then corners pulled straight."""
     kept = _jump(mover, ground, surface, poses)
+    if len(kept) > 2:
+        kept = _jump(mover, ground, surface, _retracted(mover, ground, surface, kept))
     for _ in range(PULLS):
         _pull(mover, ground, surface, kept)
         kept = _jump(mover, ground, surface, kept)
     return kept
+
+
+@compiled
+def _retracted(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floats:
+    """The way with its corners moved to where the body has most room: there the longest hops begin.
+
+    Where two such corners do not see each other the old ones stay between them.
+    """
+    roomy = poses.copy()
+    for n in range(1, len(poses) - 1):
+        _make_room(mover, ground, roomy[n])
+        if hop(mover, ground, surface, poses[n], roomy[n]) == BLOCKED:
+            roomy[n] = poses[n]
+    way = np.empty((3 * len(poses), 3))
+    way[0] = poses[0]
+    count = 1
+    for n in range(1, len(poses)):
+        if hop(mover, ground, surface, roomy[n - 1], roomy[n]) == BLOCKED:
+            way[count], way[count + 1] = poses[n - 1], poses[n]
+            count += 2
+        way[count] = roomy[n]
+        count += 1
+    return way[:count].copy()
+
+
+@compiled
+def _make_room(mover: Mover, ground: Ground, pose: Floats) -> None:
+    """Move a pose, in place, towards more distance from the obstacles: halving steps in place and angle."""
+    best = _room(mover, ground, pose)
+    step = min(max(best, 0.02 * mover.radius), 0.5 * mover.radius)
+    while step > 1e-4 * mover.radius:
+        better = False
+        for k in range(6):
+            size = (step if k % 2 == 0 else -step) / (mover.radius if k >= 4 else 1.0)
+            pose[k // 2] += size
+            room = _room(mover, ground, pose)
+            if room > best + 1e-9:
+                best, better = room, True
+            else:
+                pose[k // 2] -= size
+        if not better:
+            step *= 0.5
+
+
+@compiled
+def _room(mover: Mover, ground: Ground, pose: Floats) -> float:
+    """The body's distance from the obstacles at a pose, as far as it matters."""
+    return min(distance_at(mover, ground, pose[0], pose[1], math.cos(pose[2]), math.sin(pose[2])), 0.3 * mover.radius)
 
 
 @compiled
