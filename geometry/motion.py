@@ -10,7 +10,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -18,8 +18,9 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
+from geometry.bottleneck import Neck, missing_width, neck_near
 from geometry.cells import Tree, leaf_at, new_tree
-from geometry.chain import REGION, Hunt, find_chain, new_hunt
+from geometry.chain import REGION, SETTLED, Hunt, find_chain, new_hunt
 from geometry.floor import Floor
 from geometry.follow import Scene, Way, follow
 from geometry.mover import centre_pose, new_mover, reference_pose
@@ -29,6 +30,7 @@ from geometry.shorten import motions_along, shorten
 
 Floats = npt.NDArray[np.float64]
 CAPACITY = 300_000  # cells
+COARSE, FEW = 1e-3, 40_000  # resolution and cells for the missing width
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,23 @@ class Inside:
     """
 
     polygon: Any
+
+
+@dataclass(frozen=True)
+class Question:
+    """What plan_motion was asked, and where its search was stuck: the place nearest to the goal that it got to.
+
+    stuck : (x, y) of the middle of the body's greatest inscribed disc. ways : what is left to go from every pixel.
+    """
+
+    shape: Any
+    floor: Floor
+    start: Pose
+    goal: "Pose | Inside"
+    points: Sequence[tuple[float, float]]
+    radius: float
+    stuck: tuple[float, float]
+    ways: Floats
 
 
 @dataclass(frozen=True)
@@ -53,6 +72,7 @@ class Plan:
     cells : how many cells were looked at; rounds : how many chains.
     resolution : the least size of a cell, in squares.
     reason : "start", "goal" when impossible because the body overlaps an obstacle there; else "".
+    question : what was asked, for passage and missing; None unless impossible.
     """
 
     status: str
@@ -62,6 +82,29 @@ class Plan:
     rounds: int = 0
     resolution: float = 0.0
     reason: str = ""
+    question: Question | None = field(default=None, repr=False, compare=False)
+
+    @cached_property
+    def passage(self) -> Neck | None:
+        """The neck that is too narrow; None unless impossible for want of one. Worked out when asked for."""
+        q = self.question
+        return None if q is None else neck_near(q.floor, q.ways, (q.start.x, q.start.y), q.stuck, q.radius)
+
+    @cached_property
+    def missing(self) -> float:
+        """How much wider the passage must be, in squares, to about 0.02: a second or so of work when asked for.
+
+        nan unless there is a passage; inf when widening that passage alone does not help.
+        """
+        q, neck = self.question, self.passage
+        if q is None or neck is None:
+            return math.nan
+
+        def passes(walls: Any) -> bool:
+            floor = Floor(walls, q.floor.bounds.tolist())
+            return plan_motion(q.shape, floor, q.start, q.goal, None, COARSE, q.points, FEW).status == "found"
+
+        return missing_width(shapely.union_all(q.floor.polygons), neck, q.radius, passes)
 
     @cached_property
     def length(self) -> float:
@@ -115,7 +158,11 @@ def plan_motion(
     for name, pose in (("start", start), ("goal", goal)):
         if isinstance(pose, Pose) and not floor.has_room(shape, points, pose):
             return Plan("impossible", resolution=problem.least, reason=name)
-    return problem.solve()
+    plan = problem.solve()
+    if plan.status != "impossible":
+        return plan
+    asked = Question(shape, floor, start, goal, tuple(points), mover.radius, problem.stuck(), problem.hunt.ways)
+    return replace(plan, question=asked)
 
 
 def _bounds(obstacles: Any, start: Pose, goal: Pose | Inside, bounds: Sequence[float] | None) -> Sequence[float]:
@@ -185,6 +232,16 @@ class _Problem:
         if first < 0 or last == -1:
             return 0
         return find_chain(self.tree, self.mover, self.ground, self.region, self.hunt, first, last, nth, dead)
+
+    def stuck(self) -> tuple[float, float]:
+        """The place of the greatest inscribed disc's middle in the settled cell that is nearest to the goal."""
+        known = self.hunt.seen[0]
+        settled = np.nonzero((self.hunt.state[:known] >= SETTLED) & (self.tree.child[:known] < 0))[0]
+        if len(settled) == 0:
+            return float(self.start[0]), float(self.start[1])
+        x, y, angle = self.tree.middle[settled[np.argmin(self.hunt.guess[settled])]]
+        c, s, (px, py) = math.cos(angle), math.sin(angle), self.hunt.eye
+        return float(x + c * px - s * py), float(y + s * px + c * py)
 
     def _found(self, poses: Floats, rounds: int) -> Plan:
         ways = shorten(self.mover, self.ground, self.floor.surface, poses)

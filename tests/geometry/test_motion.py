@@ -1,8 +1,6 @@
 """Planned motions: certified again with shapely when found, and the closed-form thresholds on both sides."""
 
-import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +11,6 @@ from geometry.floor import Floor
 from geometry.motion import Inside, Plan, plan_motion
 from geometry.rigid import Pose, Rotate
 
-SCENES = Path(__file__).parent / "scenes"
 BRICK = box(-3, -1, 3, 1)
 
 
@@ -164,7 +161,16 @@ def test_bad_numbers_are_refused(wrong: float) -> None:
         plan_motion(shapely.Point(0, 0), two_rooms(3.0), Pose(5, 6), Pose(19, 7))
 
 
-def scene(path: Path) -> tuple:
-    told = json.loads(path.read_text())
-    poses = [Pose(x, y, math.degrees(a)) for x, y, a in (told["start"], told["goal"])]
-    return shapely.Polygon(told["robot"]), [shapely.Polygon(r) for r in told["obstacles"]], *poses, told["bounds"]
+@pytest.mark.parametrize(("door", "missing"), [(1.7, 0.3), (1.95, 0.05)])
+def test_the_passage_and_what_it_lacks_are_told(door: float, missing: float) -> None:
+    plan = plan_motion(BRICK, two_rooms(door), Pose(5, 6, 90), Pose(19, 7, 30))
+    assert plan.passage is not None
+    assert plan.passage.width == pytest.approx(door, abs=0.01)
+    assert math.dist(plan.passage.place, (12.5, 6)) < 0.7
+    assert plan.missing == pytest.approx(missing, abs=0.05)
+
+
+def test_what_is_found_has_no_missing_width() -> None:
+    plan = plan_motion(BRICK, two_rooms(3.0), Pose(5, 6, 90), Pose(19, 7, 30))
+    assert plan.passage is None
+    assert math.isnan(plan.missing)
