@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from geometry.compiled import compiled
 from geometry.impact import Surface, push_through_skin, turn_through_skin
-from geometry.separation import Ground, Mover, block_at
+from geometry.separation import Ground, Mover
 
 Floats = npt.NDArray[np.float64]
 BLOCKED, TURN_FIRST, PUSH_FIRST = 0, 1, 2
@@ -41,10 +41,7 @@ def push_is_free(
     if abs(dx) + abs(dy) < EVEN:
         return True
     edges = placed(mover, x, y, angle)
-    hull, skin = surface.hull, surface.skin
-    if dx * dx + dy * dy < ground.reach * ground.reach:
-        hull, skin = _nearby(ground, surface, x, y)
-    return push_through_skin(edges[:, :2], edges, hull, skin, dx, dy)[1] == 0
+    return push_through_skin(edges[:, :2], edges, surface.hull, surface.skin, surface.chunks, dx, dy)[1] == 0
 
 
 @compiled
@@ -55,21 +52,9 @@ def turn_is_free(mover: Mover, ground: Ground, surface: Surface, x: float, y: fl
     if abs(turn) < EVEN:
         return True
     edges = placed(mover, x, y, angle)
-    hull, skin = _nearby(ground, surface, x, y)
     sign = 1.0 if turn > 0 else -1.0
-    return turn_through_skin(edges[:, :2], edges, hull, skin, x, y, sign, abs(turn))[1] == 0
-
-
-@compiled
-def _nearby(ground: Ground, surface: Surface, x: float, y: float) -> tuple[Floats, Floats]:
-    """The hull's and skin's edges that a body at a place can reach."""
-    block = block_at(ground, x, y)
-    first, stop = ground.first[block], ground.first[block + 1]
-    hull, skin = np.empty((stop - first, 7)), np.empty((stop - first, 7))
-    for k in range(first, stop):
-        hull[k - first] = surface.hull[ground.near[k]]
-        skin[k - first] = surface.skin[ground.near[k]]
-    return hull, skin
+    hull, skin, chunks = surface.hull, surface.skin, surface.chunks
+    return turn_through_skin(edges[:, :2], edges, hull, skin, chunks, x, y, sign, abs(turn))[1] == 0
 
 
 @compiled
