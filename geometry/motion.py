@@ -10,7 +10,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -19,28 +19,16 @@ import numpy.typing as npt
 import shapely
 
 from geometry.bottleneck import Neck, missing_width, neck_near
-from geometry.cells import Tree, leaf_at, new_tree
-from geometry.chain import REGION, SETTLED, Hunt, find_chain, new_hunt
 from geometry.floor import Floor
-from geometry.follow import Scene, Way, follow
-from geometry.mover import centre_pose, new_mover, reference_pose
+from geometry.mover import new_mover
+from geometry.problem import Inside, Problem
 from geometry.rigid import Motion, Pose, Translate
-from geometry.separation import Ground, Mover
-from geometry.shorten import motions_along, shorten
+
+__all__ = ["Inside", "Plan", "Pose", "plan_motion"]
 
 Floats = npt.NDArray[np.float64]
 CAPACITY = 300_000  # cells
 COARSE, FEW = 1e-3, 40_000  # resolution and cells for the missing width
-
-
-@dataclass(frozen=True)
-class Inside:
-    """A goal: the whole body within a polygon, at any place and angle.
-
-    polygon : shapely Polygon or MultiPolygon, table frame.
-    """
-
-    polygon: Any
 
 
 @dataclass(frozen=True)
@@ -154,15 +142,19 @@ def plan_motion(
     """
     mover = new_mover(shape, points)
     floor = obstacles if isinstance(obstacles, Floor) else Floor(obstacles, _bounds(obstacles, start, goal, bounds))
-    problem = _Problem(mover, floor, start, goal, resolution, cells)
+    problem = Problem(mover, floor, start, goal, resolution, cells)
     for name, pose in (("start", start), ("goal", goal)):
         if isinstance(pose, Pose) and not floor.has_room(shape, points, pose):
             return Plan("impossible", resolution=problem.least, reason=name)
-    plan = problem.solve()
-    if plan.status != "impossible":
-        return plan
-    asked = Question(shape, floor, start, goal, tuple(points), mover.radius, problem.stuck(), problem.hunt.ways)
-    return replace(plan, question=asked)
+    status, motions = problem.solve()
+    poses = [start] if status == "found" else []
+    for motion in motions:
+        poses.append(motion.pose(poses[-1]))
+    asked = None
+    if status == "impossible":
+        asked = Question(shape, floor, start, goal, tuple(points), mover.radius, problem.stuck(), problem.hunt.ways)
+    looked = int(problem.tree.used[0])
+    return Plan(status, motions, tuple(poses), looked, problem.rounds, problem.least, question=asked)
 
 
 def _bounds(obstacles: Any, start: Pose, goal: Pose | Inside, bounds: Sequence[float] | None) -> Sequence[float]:
@@ -173,83 +165,3 @@ def _bounds(obstacles: Any, start: Pose, goal: Pose | Inside, bounds: Sequence[f
     ends = [goal.polygon] if isinstance(goal, Inside) else [shapely.Point(goal.x, goal.y)]
     around = shapely.total_bounds([*several, shapely.Point(start.x, start.y).buffer(1.0), *ends])
     return [float(v) for v in around]
-
-
-class _Problem:
-    """One planning problem on its way to a Plan."""
-
-    def __init__(
-        self, mover: Mover, floor: Floor, start: Pose, goal: Pose | Inside, resolution: float, cells: int
-    ) -> None:
-        self.mover, self.floor = mover, floor
-        self.start = centre_pose(mover, start)
-        self.ground = floor.ground(mover)
-        self.least = resolution * floor.side
-        if not np.all(np.isfinite(self.start)) or not self.least > 0.0:
-            raise ValueError("start and resolution must be finite, the resolution positive")
-        self.end, self.region, goals = self._goal(goal)
-        reach = float(np.hypot(*mover.reference))
-        corner, side = floor.bounds[:2] - reach, floor.side + 2 * reach
-        self.tree: Tree = new_tree(corner[0], corner[1], side * (1 + 1e-9), mover.radius, self.least, cells)
-        eye = mover.probes[0]
-        self.hunt: Hunt = new_hunt(cells, floor.ways(goals, float(eye[2])), eye[:2].copy())
-
-    def _goal(self, goal: Pose | Inside) -> tuple[Floats, Ground, npt.NDArray[np.bool_]]:
-        """The pose to end at (empty for a region), the region's complement as ground, and the goal's pixels."""
-        if isinstance(goal, Pose):
-            end = centre_pose(self.mover, goal)
-            if not np.all(np.isfinite(end)):
-                raise ValueError("goal must be finite")
-            c, s = math.cos(end[2]), math.sin(end[2])
-            px, py = self.mover.probes[0, :2]
-            return end, self.ground, self.floor.pixel_of(end[0] + c * px - s * py, end[1] + s * px + c * py)
-        outer = shapely.box(*self.floor.bounds).buffer(self.floor.side, join_style="mitre")
-        region = Floor(outer.difference(goal.polygon), self.floor.bounds.tolist())
-        goals = region.raster >= self.mover.probes[0, 2] - region.frame[2]
-        return np.empty(0), region.ground(self.mover), goals
-
-    def solve(self) -> Plan:
-        """Search and split until there is an answer."""
-        scene = Scene(self.mover, self.ground, self.region, self.floor.surface)
-        way = Way(np.empty((2 * len(self.tree.child) + 2, 3)), np.ones(1, np.int64), self.end)
-        way.poses[0] = self.start
-        rounds = 0
-        while True:
-            rounds += 1
-            length = self._chain(rounds, False)
-            if length == 0:
-                break
-            if follow(self.tree, scene, self.hunt, length, way) == 0:
-                return self._found(way.poses[: way.used[0]], rounds)
-        lost = bool(self.hunt.size[1])
-        self.hunt.seen[0] = self.hunt.size[0] = 0
-        undecided = lost or self._chain(rounds + 1, True) > 0
-        return self._plan("limit" if undecided else "impossible", rounds)
-
-    def _chain(self, nth: int, dead: bool) -> int:
-        first = leaf_at(self.tree, *self.start)
-        last = leaf_at(self.tree, *self.end) if len(self.end) else REGION
-        if first < 0 or last == -1:
-            return 0
-        return find_chain(self.tree, self.mover, self.ground, self.region, self.hunt, first, last, nth, dead)
-
-    def stuck(self) -> tuple[float, float]:
-        """The place of the greatest inscribed disc's middle in the settled cell that is nearest to the goal."""
-        known = self.hunt.seen[0]
-        settled = np.nonzero((self.hunt.state[:known] >= SETTLED) & (self.tree.child[:known] < 0))[0]
-        if len(settled) == 0:
-            return float(self.start[0]), float(self.start[1])
-        x, y, angle = self.tree.middle[settled[np.argmin(self.hunt.guess[settled])]]
-        c, s, (px, py) = math.cos(angle), math.sin(angle), self.hunt.eye
-        return float(x + c * px - s * py), float(y + s * px + c * py)
-
-    def _found(self, poses: Floats, rounds: int) -> Plan:
-        ways = shorten(self.mover, self.ground, self.floor.surface, poses)
-        motions = motions_along(self.mover, self.ground, self.floor.surface, ways)
-        return self._plan("found", rounds, motions)
-
-    def _plan(self, status: str, rounds: int, motions: tuple[Motion, ...] = (), reason: str = "") -> Plan:
-        poses = [reference_pose(self.mover, self.start)] if status == "found" else []
-        for motion in motions:
-            poses.append(motion.pose(poses[-1]))
-        return Plan(status, motions, tuple(poses), int(self.tree.used[0]), rounds, self.least, reason)

@@ -14,7 +14,7 @@ from geometry.separation import Mover
 
 Floats = npt.NDArray[np.float64]
 DISCS = 16  # inscribed in a body at most
-GRID = 24  # places along the body's longer side where discs are tried
+GRID = 16  # places along the body's longer side where discs are tried
 SPECK = 1e-3  # squares: half the diagonal of what stands for a point that moves with the body
 
 
