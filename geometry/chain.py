@@ -32,8 +32,9 @@ class Hunt(NamedTuple):
 
     guess: of the way left from a cell; cost: of the way to it; before: the cell before it; state: UNSEEN, OFFERED (on
     the heap), SETTLED, or DOUBTED (a settled cell that may hold a goal, put off); verdict, loose: scratch of the
-    repair. seen: (1,) cells that have a state. key, item, size: the heap. chain: the cells of the last chain, the
-    start's first. ways: (rows, columns) what is left to go at a pixel. eye: the point of the body it is told for.
+    repair. seen: (2,) cells that have a state, and 1 when the last chain ends at a doubted cell. key, item, size: the
+    heap. chain: the cells of the last chain, the start's first. ways: (rows, columns) what is left to go at a pixel.
+    eye: the point of the body it is told for.
     """
 
     guess: Floats
@@ -55,7 +56,7 @@ def new_hunt(capacity: int, ways: Floats, eye: Floats) -> Hunt:
     """Room to search a tree of up to so many cells."""
     before, chain, loose = (np.empty(capacity, np.int32) for _ in range(3))
     verdict, item = np.zeros(capacity, np.int32), np.empty(8 * capacity, np.int32)
-    numbers = np.zeros(1, np.int64), np.empty(8 * capacity), item, np.zeros(2, np.int64)
+    numbers = np.zeros(2, np.int64), np.empty(8 * capacity), item, np.zeros(2, np.int64)
     state = np.empty(capacity, np.int8)
     return Hunt(np.empty(capacity), np.empty(capacity), before, state, verdict, *numbers, chain, loose, ways, eye)
 
@@ -78,11 +79,14 @@ def find_chain(
         if tree.child[cell] >= 0 or hunt.state[cell] == SETTLED or hunt.state[cell] == UNSEEN:
             continue
         doubted = hunt.state[cell] == DOUBTED
-        sight = SHUT if doubted else goal_sight(tree, mover, region, cell, goal)
+        sight = SHUT if doubted else (OPEN if cell == goal else FULL)
+        if goal == REGION and not doubted:
+            sight = _goal_sight(tree, mover, region, cell)
         if sight <= OPEN or doubted:
             hunt.state[cell] = SETTLED
+            hunt.seen[1] = int(doubted)
             _spread_out(tree, hunt, mover.radius, cell, dead)
-            return _trace(hunt, cell)
+            return _trace(hunt.before, hunt.chain, cell)
         hunt.state[cell] = SETTLED
         _spread_out(tree, hunt, mover.radius, cell, dead)
         if sight == SHUT and (dead or splittable(tree, cell, mover)):
@@ -92,14 +96,12 @@ def find_chain(
 
 
 @compiled
-def goal_sight(tree: Tree, mover: Mover, region: Ground, cell: int, goal: int) -> int:
-    """FREE or OPEN when the cell's centre is a goal (or the cell the goal's), SHUT when it may hold one, else FULL."""
-    if goal != REGION:
-        return OPEN if cell == goal else FULL
-    x, y, angle = tree.middle[cell, 0], tree.middle[cell, 1], tree.middle[cell, 2]
+def _goal_sight(tree: Tree, mover: Mover, region: Ground, cell: int) -> int:
+    """FREE or OPEN when a cell's middle is in the goal region, SHUT when another pose in it may be, else FULL."""
     depth = tree.box[cell, 3]
     spread = tree.sizes[depth, 0] * tree.frame[2] / math.sqrt(2.0)
-    return classify(mover, region, x, y, angle, spread, tree.sizes[depth, 1] * tree.frame[3] / 2)
+    half = tree.sizes[depth, 1] * tree.frame[3] / 2
+    return classify(mover, region, tree.middle[cell, 0], tree.middle[cell, 1], tree.middle[cell, 2], spread, half)
 
 
 @compiled
@@ -193,16 +195,16 @@ def _guess(middle: Floats, ways: Floats, eye: Floats, frame: Floats, cell: int) 
 
 
 @compiled
-def _trace(hunt: Hunt, cell: int) -> int:
+def _trace(before: Ints, chain: Ints, cell: int) -> int:
     """Write the chain that ends at a cell, from its start; its length."""
     length = 0
     at = cell
     while at >= 0:
         length += 1
-        at = hunt.before[at]
+        at = before[at]
     n = length
     while cell >= 0:
         n -= 1
-        hunt.chain[n] = cell
-        cell = hunt.before[cell]
+        chain[n] = cell
+        cell = before[cell]
     return length

@@ -7,21 +7,20 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.cells import Tree, split, splittable
-from geometry.chain import REGION, Hunt, goal_sight
 from geometry.compiled import compiled
 from geometry.hop import BLOCKED, hop
 from geometry.impact import Surface
-from geometry.separation import DEAD, FREE, OPEN, SHUT, Ground, Mover
+from geometry.separation import DEAD, FREE, OPEN, Ground, Mover
 
 Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int32]
 
 
 class Scene(NamedTuple):
-    """A body, where it moves, the ground of its goal region, and the surface that it must not go into."""
+    """A body, where it moves, and the surface that it must not go into."""
 
     mover: Mover
     ground: Ground
-    region: Ground
     surface: Surface
 
 
@@ -38,11 +37,12 @@ class Way(NamedTuple):
 
 
 @compiled
-def follow(tree: Tree, scene: Scene, hunt: Hunt, length: int, way: Way) -> int:
+def follow(tree: Tree, scene: Scene, chain: Ints, length: int, doubt: bool, way: Way) -> int:
     """Check the hops of a chain and split what is to blame; how many cells were changed. 0: the way is free.
 
     One doubtful cell may be jumped over. After a hop that fails the rest is followed as if it had not, so that one look
-    at a chain finds most of its faults. A cell that is to blame and too small to split is given up.
+    at a chain finds most of its faults. A cell that is to blame and too small to split is given up. doubt: the last
+    cell must be split in any case.
     """
     way.used[0] = 1
     total = length + (1 if len(way.goal) > 0 else 0)
@@ -51,47 +51,47 @@ def follow(tree: Tree, scene: Scene, hunt: Hunt, length: int, way: Way) -> int:
     while n < total:
         step = 0
         for ahead in range(2):
-            if step > 0 or n + ahead >= total or (ahead == 1 and n < length and tree.kind[hunt.chain[n]] == FREE):
+            if step > 0 or n + ahead >= total or (ahead == 1 and n < length and tree.kind[chain[n]] == FREE):
                 continue
-            if _stop_at(tree, hunt, length, way, n + ahead, there) and _go(
-                tree, scene, hunt, length, way, last, n + ahead, here, there
+            if _stop_at(tree, chain, length, way, n + ahead, there) and _go(
+                tree, scene, chain, length, way, last, n + ahead, here, there
             ):
                 step = ahead + 1
         if step > 0:
             last = n + step - 1
             here[:] = there
         else:
-            blamed += _blame(tree, scene, hunt, last, n, length)
+            blamed += _blame(tree, scene, chain, last, n, length)
             step, last = 1, -1
             if n < length:
-                here[:] = tree.middle[hunt.chain[n]]
-                last = n if tree.child[hunt.chain[n]] < 0 else -1
+                here[:] = tree.middle[chain[n]]
+                last = n if tree.child[chain[n]] < 0 else -1
         n += step
-    if len(way.goal) == 0 and goal_sight(tree, scene.mover, scene.region, hunt.chain[length - 1], REGION) == SHUT:
-        blamed += _divide(tree, scene, hunt.chain[length - 1])
+    if doubt:
+        blamed += _divide(tree, scene, chain[length - 1])
     return blamed
 
 
 @compiled
-def _stop_at(tree: Tree, hunt: Hunt, length: int, way: Way, n: int, there: Floats) -> bool:
+def _stop_at(tree: Tree, chain: Ints, length: int, way: Way, n: int, there: Floats) -> bool:
     """Write the n-th stop of a chain: a cell's centre or, after the last, the goal. False: it overlaps there."""
     if n == length:
         there[:] = way.goal
         return True
-    there[:] = tree.middle[hunt.chain[n]]
-    return bool(tree.kind[hunt.chain[n]] <= OPEN)
+    there[:] = tree.middle[chain[n]]
+    return bool(tree.kind[chain[n]] <= OPEN)
 
 
 @compiled
 def _go(
-    tree: Tree, scene: Scene, hunt: Hunt, length: int, way: Way, last: int, n: int, here: Floats, there: Floats
+    tree: Tree, scene: Scene, chain: Ints, length: int, way: Way, last: int, n: int, here: Floats, there: Floats
 ) -> bool:
     """Hop to the n-th stop, straight or by way of the face between the two cells, and write it down."""
     if hop(scene.mover, scene.ground, scene.surface, here, there) == BLOCKED:
         if last < 0 or n >= length or n != last + 1:
             return False
         middle = np.empty(3)
-        middle[0], middle[1], middle[2] = meeting(tree, hunt.chain[last], hunt.chain[n])
+        middle[0], middle[1], middle[2] = meeting(tree, chain[last], chain[n])
         if hop(scene.mover, scene.ground, scene.surface, here, middle) == BLOCKED:
             return False
         if hop(scene.mover, scene.ground, scene.surface, middle, there) == BLOCKED:
@@ -121,17 +121,17 @@ def meeting(tree: Tree, a: int, b: int) -> tuple[float, float, float]:
 
 
 @compiled
-def _blame(tree: Tree, scene: Scene, hunt: Hunt, last: int, n: int, length: int) -> int:
+def _blame(tree: Tree, scene: Scene, chain: Ints, last: int, n: int, length: int) -> int:
     """Split the cell that a failed hop leads into, and the one that it leaves when that is as doubtful and as large."""
     blamed = 0
-    if n < length and tree.kind[hunt.chain[n]] != FREE:
-        blamed += _divide(tree, scene, hunt.chain[n])
-    if last >= 0 and tree.kind[hunt.chain[last]] == OPEN:
-        large = n < length and tree.box[hunt.chain[last], 3] <= tree.box[hunt.chain[n], 3]
+    if n < length and tree.kind[chain[n]] != FREE:
+        blamed += _divide(tree, scene, chain[n])
+    if last >= 0 and tree.kind[chain[last]] == OPEN:
+        large = n < length and tree.box[chain[last], 3] <= tree.box[chain[n], 3]
         if blamed == 0 or large:
-            blamed += _divide(tree, scene, hunt.chain[last])
+            blamed += _divide(tree, scene, chain[last])
     if blamed == 0 and n == length:
-        blamed += _divide(tree, scene, hunt.chain[length - 1])
+        blamed += _divide(tree, scene, chain[length - 1])
     return blamed
 
 

@@ -75,11 +75,11 @@ class Problem:
         straight = np.array([self.start, self.end]) if len(self.end) else None
         if straight is not None and hop(self.mover, self.ground, self.floor.surface, *straight) != BLOCKED:
             return "found", motions_along(self.mover, self.ground, self.floor.surface, straight)
-        scene = Scene(self.mover, self.ground, self.region, self.floor.surface)
+        scene = Scene(self.mover, self.ground, self.floor.surface)
         way = Way(np.empty((2 * len(self.tree.child) + 2, 3)), np.ones(1, np.int64), self.end)
         way.poses[0] = self.start
         while length := self._chain(False):
-            if follow(self.tree, scene, self.hunt, length, way) == 0:
+            if follow(self.tree, scene, self.hunt.chain, length, bool(self.hunt.seen[1]), way) == 0:
                 poses = shorten(self.mover, self.ground, self.floor.surface, way.poses[: way.used[0]])
                 return "found", motions_along(self.mover, self.ground, self.floor.surface, poses)
         lost = bool(self.hunt.size[1])
