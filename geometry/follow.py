@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from geometry.cells import Tree, split, splittable
 from geometry.compiled import compiled
-from geometry.hop import BLOCKED, hop
+from geometry.hop import BLOCKED, hop, put
 from geometry.impact import Surface
 from geometry.separation import DEAD, FREE, OPEN, Ground, Mover
 
@@ -47,24 +47,25 @@ def follow(tree: Tree, scene: Scene, chain: Ints, length: int, doubt: bool, way:
     way.used[0] = 1
     total = length + (1 if len(way.goal) > 0 else 0)
     blamed, last, n = 0, -1, 0
-    here, there = way.poses[0].copy(), np.empty(3)
+    here, there = np.empty(3), np.empty(3)
+    put(here, way.poses[0])
     while n < total:
         step = 0
         for ahead in range(2):
             if step > 0 or n + ahead >= total or (ahead == 1 and n < length and tree.kind[chain[n]] == FREE):
                 continue
-            if _stop_at(tree, chain, length, way, n + ahead, there) and _go(
+            if _stop_at(tree.middle, tree.kind, chain, length, way.goal, n + ahead, there) and _go(
                 tree, scene, chain, length, way, last, n + ahead, here, there
             ):
                 step = ahead + 1
         if step > 0:
             last = n + step - 1
-            here[:] = there
+            put(here, there)
         else:
             blamed += _blame(tree, scene, chain, last, n, length)
             step, last = 1, -1
             if n < length:
-                here[:] = tree.middle[chain[n]]
+                put(here, tree.middle[chain[n]])
                 last = n if tree.child[chain[n]] < 0 else -1
         n += step
     if doubt:
@@ -73,13 +74,15 @@ def follow(tree: Tree, scene: Scene, chain: Ints, length: int, doubt: bool, way:
 
 
 @compiled
-def _stop_at(tree: Tree, chain: Ints, length: int, way: Way, n: int, there: Floats) -> bool:
-    """Write the n-th stop of a chain: a cell's centre or, after the last, the goal. False: it overlaps there."""
+def _stop_at(
+    middle: Floats, kind: npt.NDArray[np.int8], chain: Ints, length: int, goal: Floats, n: int, there: Floats
+) -> bool:
+    """Write the n-th stop of a chain: a cell's middle or, after the last, the goal. False: the body overlaps there."""
     if n == length:
-        there[:] = way.goal
+        put(there, goal)
         return True
-    there[:] = tree.middle[chain[n]]
-    return bool(tree.kind[chain[n]] <= OPEN)
+    put(there, middle[chain[n]])
+    return bool(kind[chain[n]] <= OPEN)
 
 
 @compiled
@@ -96,9 +99,9 @@ def _go(
             return False
         if hop(scene.mover, scene.ground, scene.surface, middle, there) == BLOCKED:
             return False
-        way.poses[way.used[0]] = middle
+        put(way.poses[way.used[0]], middle)
         way.used[0] += 1
-    way.poses[way.used[0]] = there
+    put(way.poses[way.used[0]], there)
     way.used[0] += 1
     return True
 

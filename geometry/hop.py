@@ -15,6 +15,13 @@ EVEN = 1e-12  # radians or squares: less is no motion
 
 
 @compiled
+def put(target: Floats, pose: Floats) -> None:
+    """Copy a pose (x, y, angle) into another array. (An array assignment would take numba long to compile.)"""
+    for k in range(3):
+        target[k] = pose[k]
+
+
+@compiled
 def placed(mover: Mover, x: float, y: float, angle: float) -> Floats:
     """The body's edges at a pose: (m, 7)."""
     c, s = math.cos(angle), math.sin(angle)

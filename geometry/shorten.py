@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.compiled import compiled
-from geometry.hop import BLOCKED, EVEN, TURN_FIRST, hop, shorter_turn
+from geometry.hop import BLOCKED, EVEN, TURN_FIRST, hop, put, shorter_turn
 from geometry.impact import Surface
 from geometry.rigid import Motion, Rotate, Translate
 from geometry.separation import Ground, Mover, distance_at
@@ -38,15 +38,16 @@ def _retracted(mover: Mover, ground: Ground, surface: Surface, poses: Floats) ->
     for n in range(1, len(poses) - 1):
         _make_room(mover, ground, roomy[n])
         if hop(mover, ground, surface, poses[n], roomy[n]) == BLOCKED:
-            roomy[n] = poses[n]
+            put(roomy[n], poses[n])
     way = np.empty((3 * len(poses), 3))
-    way[0] = poses[0]
+    put(way[0], poses[0])
     count = 1
     for n in range(1, len(poses)):
         if hop(mover, ground, surface, roomy[n - 1], roomy[n]) == BLOCKED:
-            way[count], way[count + 1] = poses[n - 1], poses[n]
+            put(way[count], poses[n - 1])
+            put(way[count + 1], poses[n])
             count += 2
-        way[count] = roomy[n]
+        put(way[count], roomy[n])
         count += 1
     return way[:count].copy()
 
@@ -80,7 +81,7 @@ def _room(mover: Mover, ground: Ground, pose: Floats) -> float:
 def _jump(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floats:
     """From each pose hop as far ahead as doubling and halving finds."""
     kept = np.empty_like(poses)
-    kept[0] = poses[0]
+    put(kept[0], poses[0])
     count, at, last = 1, 0, len(poses) - 1
     while at < last:
         low, step = at + 1, 2
@@ -96,7 +97,7 @@ def _jump(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floa
             else:
                 high, step = tried, 0
         at = low
-        kept[count] = poses[at]
+        put(kept[count], poses[at])
         count += 1
     return kept[:count].copy()
 
@@ -104,24 +105,26 @@ def _jump(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floa
 @compiled
 def _pull(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> None:
     """Move each pose towards the straight way between its neighbours as far as the hops stay free."""
+    here, step = np.empty(3), np.empty(3)
     for n in range(1, len(poses) - 1):
-        before, here, after = poses[n - 1], poses[n].copy(), poses[n + 1]
+        before, after = poses[n - 1], poses[n + 1]
+        put(here, poses[n])
         d0 = math.hypot(here[0] - before[0], here[1] - before[1])
         d1 = math.hypot(after[0] - here[0], after[1] - here[1])
         part = d0 / (d0 + d1) if d0 + d1 > 0.0 else 0.5
-        aim = before + part * (after - before)
-        aim[2] = before[2] + part * shorter_turn(after[2] - before[2])
-        turn = shorter_turn(aim[2] - here[2])
+        step[0] = before[0] + part * (after[0] - before[0]) - here[0]
+        step[1] = before[1] + part * (after[1] - before[1]) - here[1]
+        step[2] = shorter_turn(before[2] + part * shorter_turn(after[2] - before[2]) - here[2])
         pull = 1.0
         for _ in range(5):
-            poses[n] = here + pull * (aim - here)
-            poses[n, 2] = here[2] + pull * turn
+            for k in range(3):
+                poses[n, k] = here[k] + pull * step[k]
             if hop(mover, ground, surface, before, poses[n]) != BLOCKED and (
                 hop(mover, ground, surface, poses[n], after) != BLOCKED
             ):
                 break
             pull *= 0.5
-            poses[n] = here
+            put(poses[n], here)
 
 
 def motions_along(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> tuple[Motion, ...]:
