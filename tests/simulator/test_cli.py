@@ -64,7 +64,9 @@ def test_bad_input_and_what_cannot_be_opened(scene: Path, capsys: pytest.Capture
     assert cli.main(["run", str(scene / "none")]) == 66
     assert cli.main(["run", str(scene), "--kb", str(scene)]) == 66
     assert cli.main(["run", str(scene), "--log", str(scene / "no" / "ep.jsonl")]) == 66
-    assert cli.main(["run", str(scene), "--resume"]) == 65
+    assert cli.main(["run", str(scene), "--log", str(scene)]) == 66
+    assert cli.main(["run", str(scene), "--log", "/dev/full"]) == 66
+    assert cli.main(["run", str(scene), "--resume"]) == 2
     (scene / "goal.lp").write_text("at(utak, x).")
     (scene / "world.lp").write_text("table(4, 4)")
     assert cli.main(["check", str(scene)]) == 65
