@@ -1,7 +1,8 @@
 """What the robot believes, brought to the table's frame and compared with the truth.
 
 Only the campaign knows both sides. The robot keeps his map on the lattice of the table's squares, turned by some
-quarter turns, with the square in which he woke at (0, 0).
+quarter turns, and his world model hangs on himself: so the two maps are laid on each other at the square in which he
+stands at the end. Where he woke must then fall on (0, 0) of the lattice; by how much it does not is his drift.
 """
 
 import math
@@ -24,10 +25,12 @@ class Beliefs(NamedTuple):
     """What a robot holds, in squares of the table.
 
     objects : (class, polygon) of the objects of his model. certain : (x, y, occupied) squares held with confidence 100.
+    drift : how far his map has slipped from where he woke, in squares (the greater of both axes).
     """
 
     objects: list[tuple[str, Polygon]]
     certain: list[tuple[int, int, bool]]
+    drift: int = 0
 
 
 class Score(NamedTuple):
@@ -39,11 +42,12 @@ class Score(NamedTuple):
     whole_known: int
     certain: int
     wrong: int
+    drift: int
     mistaken: tuple[str, ...]
 
 
 class Frame(NamedTuple):
-    """The table's frame seen from the robot's lattice: quarter turns, and the table's square in which he woke."""
+    """The table's frame seen from the robot's lattice: quarter turns, and the table's square at (0, 0)."""
 
     quarters: int
     east: int
@@ -63,19 +67,21 @@ class Frame(NamedTuple):
         return affine_transform(shape, [c, -s, s, c, x, y])
 
 
-def beliefs(robot: Any, woke: tuple[float, float], heading: int) -> Beliefs:
+def beliefs(robot: Any, woke: tuple[float, float], now: tuple[float, float], heading: int) -> Beliefs:
     """What a robot believes at the end; empty when he exposes no model.
 
     Parameters
     ----------
-    robot : has `model` with `lattice.angle`, `objects` and `view`, as in kb.worldmodel.
-    woke : the table's point where he woke. heading : degrees from table north, as he woke.
+    robot : has `model` with `lattice.angle`, `place`, `objects` and `view`, as in kb.worldmodel.
+    woke, now : the table's points where he woke and where he stands. heading : degrees from table north, as he woke.
     """
     model = getattr(robot, "model", None)
     if model is None:
         return Beliefs([], [])
     quarters = round((heading - model.lattice.angle) / 90) % 4
-    frame = Frame(quarters, math.floor(woke[0]), math.floor(woke[1]))
+    x, y = Frame(quarters, 0, 0).square(*(math.floor(v) for v in model.place))
+    frame = Frame(quarters, math.floor(now[0]) - x, math.floor(now[1]) - y)
+    drift = max(abs(frame.east - math.floor(woke[0])), abs(frame.north - math.floor(woke[1])))
     objects = [(_class(node.shape), frame.polygon(_outline(node))) for node in model.objects]
     rows, columns = np.nonzero((model.view.state == FREE) | (model.view.state == FULL))
     full = model.view.state[rows, columns] == FULL
@@ -84,7 +90,7 @@ def beliefs(robot: Any, woke: tuple[float, float], heading: int) -> Beliefs:
         (*frame.square(column + west, row + south), bool(occupied))
         for row, column, occupied in zip(rows.tolist(), columns.tolist(), full.tolist(), strict=True)
     ]
-    return Beliefs(objects, certain)
+    return Beliefs(objects, certain, drift)
 
 
 def _class(shape: Mapping[str, int]) -> str:
@@ -142,7 +148,7 @@ def compare(
             mistaken.append(f"{name}: {kind} taken for {believed}")
     height, width = occupied.shape
     wrong = sum(full != (occupied[y, x] if 0 <= x < width and 0 <= y < height else True) for x, y, full in held.certain)
-    return Score(met, known, whole, whole_known, len(held.certain), int(wrong), tuple(mistaken))
+    return Score(met, known, whole, whole_known, len(held.certain), int(wrong), held.drift, tuple(mistaken))
 
 
 def _match(held: Beliefs, polygon: Polygon) -> str:

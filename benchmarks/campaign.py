@@ -21,6 +21,7 @@ from typing import TextIO
 
 from shapely import Polygon
 
+from benchmarks.beliefs import beliefs
 from benchmarks.drawing import drawing
 from benchmarks.judging import judge_path
 from benchmarks.tally import faults, table, verdicts
@@ -37,6 +38,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     conditions = Conditions(given.noise, given.noise_seed, given.paths, given.max_steps, given.seconds)
     with ExitStack() as stack:
         folder = given.keep or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="utak-campaign-")))
+        _warm_up(folder)
         if given.only:
             task, seed = (int(part) for part in given.only.split(":"))
             trials = [_watched(task, seed, conditions, folder)]
@@ -80,6 +82,11 @@ def _unclean(results: Path) -> list[tuple[int, int]]:
     return [(row["task"], row["seed"]) for row in rows if not row["clean"]]
 
 
+def _warm_up(folder: Path) -> None:
+    """One trial that does not count: kernels are compiled and cached before any clock runs."""
+    run_trial(4, 0, Conditions(max_steps=30, seconds=0), folder / "warming-up")
+
+
 def _run_all(worlds: list[tuple[int, int]], conditions: Conditions, folder: Path, jobs: int) -> Iterator[Trial]:
     run = partial(_one, conditions=conditions, folder=folder)
     if jobs <= 1:
@@ -114,7 +121,11 @@ def _watched(task: int, seed: int, conditions: Conditions, folder: Path) -> Tria
         moved = {name: Polygon(shape) for name, shape in at.table.polygons.items()}
         picture = drawing(world, at.table.utak, moved, {"+": world.target})
         line = at.line
-        print(f"step {line['step']}: {line['action']} why: {line['why']}\n{picture}", file=sys.stderr)
+        woke, mind = (world.utak.x, world.utak.y), getattr(at.robot, "robot", None)
+        drift = beliefs(mind, woke, at.table.utak, world.heading).drift
+        print(
+            f"step {line['step']}: {line['action']} why: {line['why']}; slipped by {drift}\n{picture}", file=sys.stderr
+        )
 
     trial = run_trial(task, seed, conditions, folder, draw)
     crash = folder / world.name / "crash.txt"

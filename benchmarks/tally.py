@@ -99,4 +99,5 @@ def _faults(trial: Trial) -> list[str]:
     if trial.score is not None:
         found += trial.score.mistaken
         found += [f"{trial.score.wrong} certain squares wrong"] if trial.score.wrong else []
+        found += [f"the map slipped by {trial.score.drift}"] if trial.score.drift else []
     return found

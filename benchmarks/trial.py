@@ -24,7 +24,8 @@ from kb.task import Task
 from simulator.episode import EpisodeLog
 from simulator.robots import make_robot
 from simulator.scenario import read_scenario
-from simulator.session import Result, RobotMaker, Session, Settings
+from simulator.session import Result, RobotMaker, Session
+from simulator.settings import Settings
 
 LOOPS = (4,)  # tasks whose shortest way is a loop
 
@@ -177,7 +178,7 @@ def _scored(world: Scenario, robot: Any, moved: dict[str, Polygon], track: list[
         occupied |= grid
         if thing.shape != "wall" and polygon.distance(plan.verge) > 0:
             things[thing.name] = (thing.shape, polygon, grid)
-    held = beliefs(robot, (world.utak.x, world.utak.y), world.heading)
+    held = beliefs(robot, (world.utak.x, world.utak.y), track[-1], world.heading)
     return compare(held, things, np.asarray(occupied), under_fovea(track, world.heading))
 
 

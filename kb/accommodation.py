@@ -9,6 +9,7 @@ before), or as noise.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple
@@ -19,12 +20,13 @@ from numpy.typing import NDArray
 from kb.body import Command, Impression, Move, Push
 from kb.encodings import KB, solve
 from kb.evidence import OPEN, Evidence
-from kb.heading import CENTRED, Hypothesis, Look, believed, contradictions, search, standing
+from kb.heading import CENTRED, Hypothesis, Look, candidates, search, standing
 from kb.lattice import CENTRE, Lattice
 from kb.retina import FIELDS, count_ranges
 
 MEMORY = 12  # looks by which angles are judged: those that contradict older looks are gone already
-MOST_SEARCHES = 4  # times that all lattices are tried anew before slips are blamed for what contradicts
+MOST_REPLAYS = 6  # lattices that are tried on all looks before one is believed
+MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are blamed for what contradicts
 NEAR = 2  # squares about the predicted place in which Utak is looked for first
 Place = tuple[float, float]
 
@@ -69,6 +71,7 @@ class Memory:
     trust: int = 0
     barred: set[tuple[int, int]] = field(default_factory=set)
     searches: int = 0
+    slipped: bool = False
 
     @property
     def square(self) -> tuple[int, int]:
@@ -109,8 +112,8 @@ class Memory:
         explanation = self._explain(ranges, predicted, stops)
         if explanation.lattice != self.lattice:
             self._relay(explanation.lattice)
-        if explanation.how in ("predicted", "turned"):
-            self.trust += 1
+        self.trust = self.trust + 1 if explanation.how == "predicted" else 0
+        self.slipped |= explanation.how == "slipped"
         x, y = math.floor(explanation.place[0]), math.floor(explanation.place[1])
         cells = self._statuses(ranges, x, y)
         self.place = explanation.place
@@ -137,13 +140,24 @@ class Memory:
             self.searches += 1
             left = search(recent)
         if left:
-            lattice = believed(left, self.lattice)
+            lattice, misfits = self._borne_out(left, look)
             place = lattice.place_from_utak(*look.place)
-            explanations.append(Explanation("turned", place, lattice, contradictions(lattice, recent), 0.0))
+            explanations.append(Explanation("turned", place, lattice, misfits, 0.0))
         chosen = self._choose(explanations)
         if chosen.how == "turned":
             self.hypotheses = left
         return chosen
+
+    def _borne_out(self, left: tuple[Hypothesis, ...], look: Look) -> tuple[Lattice, int]:
+        """Of the lattices left, the one that all looks bear out best, and how many fields it leaves as noise."""
+        tried: list[tuple[int, int]] = []
+        lattices = candidates(left, self.lattice)[:MOST_REPLAYS]
+        for number, lattice in enumerate(lattices):
+            tried.append((_replay(lattice, [*self.looks, look])[1], number))
+            if tried[-1][0] == 0:
+                break
+        misfits, number = min(tried)
+        return lattices[number], misfits
 
     def _explanation(self, how: str, place: Place, ranges: NDArray[np.int16], predicted: Place) -> Explanation:
         x, y = math.floor(place[0]), math.floor(place[1])
@@ -155,7 +169,8 @@ class Memory:
             f"explanation({number},{e.how},{e.misfits},{math.ceil(e.distance)})"
             for number, e in enumerate(explanations)
         ]
-        answer = solve([KB / "accommodation.lp"], [*facts, f"trust({self.trust})"])
+        facts += [f"trust({self.trust})", *["slips"] * self.slipped]
+        answer = solve([KB / "accommodation.lp"], facts)
         if not answer:
             raise AssertionError("accommodation.lp always has an answer")
         return explanations[answer[0].arguments[0].number]
@@ -163,12 +178,8 @@ class Memory:
     def _relay(self, lattice: Lattice) -> None:
         """Believe that the lattice lies otherwise, and build the map anew from all looks."""
         self.lattice = lattice
-        self.evidence = Evidence()
         self.barred = set()
-        for number, look in enumerate(self.looks):
-            x, y = (math.floor(v) for v in lattice.place_from_utak(*look.place))
-            self.evidence.look(lattice.samples(), look.ranges, x, y, number)
-            self.evidence.stand(x, y, number)
+        self.evidence = _replay(lattice, self.looks)[0]
 
     def _statuses(self, ranges: NDArray[np.int16], x: int, y: int) -> tuple[CellStatus, ...]:
         samples = self.lattice.samples()
@@ -180,6 +191,17 @@ class Memory:
             CellStatus.NOISE if noise[i] else CellStatus.EXPLAINED if new[i] else CellStatus.PREDICTED
             for i in range(len(FIELDS))
         )
+
+
+def _replay(lattice: Lattice, looks: Sequence[Look]) -> tuple[Evidence, int]:
+    """The evidence of all looks if the lattice lies like this, and how many fields contradict it."""
+    evidence, misfits = Evidence(), 0
+    for number, look in enumerate(looks):
+        x, y = (math.floor(v) for v in lattice.place_from_utak(*look.place))
+        misfits += evidence.clashes(lattice.samples(), look.ranges, x, y)
+        evidence.look(lattice.samples(), look.ranges, x, y, number)
+        evidence.stand(x, y, number)
+    return evidence, misfits
 
 
 def _along(start: Place, shift: tuple[float, float]) -> tuple[Place, ...]:

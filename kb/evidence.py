@@ -22,6 +22,7 @@ from kb.retina import FIELDS
 OPEN, FREE, FULL = -1, 0, 1
 MARGIN = 40  # squares by which the map grows beyond what is needed
 FITTING_ROUNDS = 6
+STRAY = 0.05  # occupied squares expected under a field that shows level 0 and yet may hide one
 LARGEST_LOGIT = 6.0
 
 Squares = NDArray[np.int32]
@@ -232,6 +233,7 @@ class Evidence:
         times = np.maximum(np.bincount(column, minlength=len(squares)), 1)
         logit = self.logit.ravel()[squares].astype(np.float64)
         middle = 0.5 * (low + high).astype(np.float64)
+        middle = np.where((self._low == 0) & (self._high == 1), np.minimum(middle, STRAY), middle)
         target = _logit(middle[entry] / np.maximum(weight, 1)[entry])
         share = self._weight[open_] / np.maximum(weight, 1)[entry]
         for _ in range(FITTING_ROUNDS):

@@ -64,7 +64,7 @@ class Look(NamedTuple):
 def contradictions(lattice: Lattice, looks: Sequence[Look]) -> int:
     """How many squares and fields contradict each other if the lattice lies like this.
 
-    Squares seen by themselves are compared with each other, and coarser fields with them.
+    Squares under fields that are quite full or quite empty are compared with each other, and other fields with them.
     """
     samples = lattice.samples()
     places = [lattice.place_from_utak(*look.place) for look in looks]
@@ -75,11 +75,9 @@ def contradictions(lattice: Lattice, looks: Sequence[Look]) -> int:
     under = []
     for look, (x, y) in zip(looks, corners - low, strict=True):
         where = (samples.rows + y) * width + samples.columns + x
-        single = (samples.weight.sum(1) == 1) & (samples.slack == 0)
-        square = where[single, 0]
-        occupied = look.ranges[single, 0] > 0
-        full[square[occupied]] = True
-        free[square[~occupied]] = True
+        used, weight = samples.weight > 0, samples.weight.sum(1)
+        full[where[(look.ranges[:, 0] - samples.slack >= weight)[:, None] & used]] = True
+        free[where[(look.ranges[:, 1] == 0)[:, None] & used]] = True
         under.append(where)
     wrong = int((free & full).sum())
     for look, where in zip(looks, under, strict=True):
@@ -103,12 +101,14 @@ def search(looks: Sequence[Look]) -> tuple[Hypothesis, ...]:
     return hypotheses
 
 
-def believed(hypotheses: Sequence[Hypothesis], held: Lattice) -> Lattice:
-    """The lattice to believe: the one held so far while it stands, else the middle of those left by angle."""
-    if not hypotheses or any(h.lattice == held for h in hypotheses):
-        return held
+def candidates(hypotheses: Sequence[Hypothesis], held: Lattice) -> list[Lattice]:
+    """The lattices to try, the likeliest first: the one held, one along his own axes, then from the middle outwards."""
     ordered = sorted(hypotheses)
-    return ordered[len(ordered) // 2].lattice
+    middle = len(ordered) // 2
+    outwards = sorted(range(len(ordered)), key=lambda i: abs(i - middle))
+    likely = [held, *(Lattice(h.angle) for h in ordered if h.angle == 0), *(ordered[i].lattice for i in outwards)]
+    standing_still = {h.lattice for h in hypotheses}
+    return [lattice for lattice in dict.fromkeys(likely) if lattice in standing_still]
 
 
 def _cut(low: float, high: float, at: float) -> list[tuple[float, float]]:

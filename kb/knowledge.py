@@ -61,6 +61,7 @@ class Knowledge:
             objects=(),
             looked_from=self.memory.looked_from,
             barred=frozenset(self.memory.barred),
+            spread=self.memory.spread,
         )
         return replace(model, objects=self._objects(model)), accommodated
 
@@ -110,7 +111,7 @@ def _may_be_object(region: str, extent: int, kinds: Kinds) -> bool:
 def _shape_facts(measured: Mapping[str, Measured]) -> list[str]:
     facts = []
     for name, result in measured.items():
-        facts.append(f"open_squares({name},{result.open})")
+        facts += [f"open_squares({name},{result.open})", f"full_squares({name},{result.full})"]
         facts += [f"fit({name},{shape},{misfit},{i})" for i, (shape, misfit) in enumerate(result.fits, 1)]
     return facts
 

@@ -21,12 +21,13 @@ class Measured(NamedTuple):
     """What was measured of a patch.
 
     fits: (class, squares wrong) pairs, the likeliest first. polygon: the first one's outline in the lattice, or None.
-    open: squares not settled.
+    open, full: squares that are not settled, and that are settled as covered.
     """
 
     fits: tuple[tuple[str, int], ...]
     polygon: Any
     open: int
+    full: int
 
 
 class Measurer:
@@ -42,13 +43,10 @@ class Measurer:
         full = patch.mask & (view.state[part] == FULL)
         possible = patch.mask & (view.state[part] == OPEN)
         if not full.any() or possible.sum() > MOST_OPEN * full.sum():
-            return Measured((), None, int(possible.sum()))
+            return Measured((), None, int(possible.sum()), int(full.sum()))
         fits, polygon = self._fit(full, possible)
-        return Measured(
-            fits,
-            shapely.transform(polygon, lambda points: points + np.array([patch.west, patch.south])),
-            int(possible.sum()),
-        )
+        placed = shapely.transform(polygon, lambda points: points + np.array([patch.west, patch.south]))
+        return Measured(fits, placed, int(possible.sum()), int(full.sum()))
 
     def _fit(self, full: Mask, possible: Mask) -> tuple[tuple[tuple[str, int], ...], Any]:
         key = (full.tobytes() + bytes(full.shape), possible.tobytes())

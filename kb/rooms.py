@@ -14,12 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry import Screen
+from geometry.components import components
 from geometry.passages import Passage
 from kb.encodings import KB, solve
-from kb.evidence import OPEN
+from kb.evidence import FULL, OPEN
 from kb.worldmodel import SPACE, WorldModel
 
 Mask = NDArray[np.bool_]
+SMALLEST_WALL = 13  # squares: what is surely one thing and as long as this is no object
 SURE = 60  # percent: a door is one from here on
 DEEPEST = 12.0  # squares: how far a doorway is followed into the wall
 STEP = 0.5
@@ -117,7 +119,20 @@ def _known(passage: Passage, model: WorldModel, verge: Mask) -> int:
     if not all(wall.any() for wall in walls):
         return 0
     settled = model.view.state != OPEN
+    walled = min(_extent_of_wall(model, wall) for wall in walls)
+    if walled < SMALLEST_WALL:
+        return min(50, round(50 * walled / SMALLEST_WALL))
     return round(50 + 50 * min(float(settled[across].mean()), *(float(settled[wall].mean()) for wall in walls)))
+
+
+def _extent_of_wall(model: WorldModel, wall: Mask) -> int:
+    """How long that is, in squares, which is surely one thing with a jamb."""
+    full = components(model.view.state == FULL).labels
+    own = full[wall]
+    if not own.any():
+        return 0
+    rows, columns = np.nonzero(full == own[own > 0][0])
+    return int(max(np.ptp(rows), np.ptp(columns))) + 1
 
 
 def _near(verge: Mask, end: tuple[float, float]) -> Mask:

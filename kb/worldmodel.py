@@ -83,6 +83,7 @@ class WorldModel:
     objects : the isolated objects, and what may be one, by name.
     held : the node that is held, or None.
     looked_from : the squares on which an impression was received. barred : squares before which a motion was stopped.
+    spread : by how many radians the lattice may still lie otherwise than believed.
     """
 
     lattice: Lattice
@@ -95,6 +96,7 @@ class WorldModel:
     held: str | None = None
     looked_from: frozenset[tuple[int, int]] = frozenset()
     barred: frozenset[tuple[int, int]] = frozenset()
+    spread: float = 0.0
 
     @property
     def floor(self) -> Mask:

@@ -13,13 +13,15 @@ ASP = Path(__file__).resolve().parent / "asp"
 class Aim(NamedTuple):
     """Somewhere to go and why.
 
-    kind : attain, inspect, explore or pass (planner/asp/aims.lp). what : the reason in words.
-    squares : flat indices of the screen, any of which will do.
+    kind : attain, inspect, explore, pass or settle (planner/asp/aims.lp).
+    squares : flat indices of the screen, any of which will do. what : the reason in words.
+    price : squares that it costs besides the way.
     """
 
     kind: str
-    what: str
     squares: Squares
+    what: str
+    price: float = 0.0
 
 
 def choose(aims: Sequence[Aim], screens: Screens, last: frozenset[int]) -> Aim | None:
@@ -32,8 +34,8 @@ def choose(aims: Sequence[Aim], screens: Screens, last: frozenset[int]) -> Aim |
     for number, aim in enumerate(aims):
         reached = screens.nearest(aim.squares) if len(aim.squares) else None
         if reached is not None:
-            kind = "pass" if reached.level and aim.kind != "inspect" else aim.kind
-            facts.append(f"aim({number},{kind},{round(10 * reached.cost)})")
+            kind = "pass" if reached.level and aim.kind == "explore" else aim.kind
+            facts.append(f"aim({number},{kind},{round(10 * (reached.cost + aim.price))})")
             facts += [f"last({number})"] * bool(last and not last.isdisjoint(aim.squares.tolist()))
     answer = solve([ASP / "aims.lp"], facts) if facts else None
     return aims[answer[0].arguments[0].number] if answer else None

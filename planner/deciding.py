@@ -26,6 +26,7 @@ from planner.walking import next_move
 from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
+DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,9 @@ class Decider:
         self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[Place]
     ) -> Decision | None:
         """The next command towards a stage, the verdict when it cannot be attained, or None when it is."""
+        carried = sorted({str(goal.args[0]) for goal in stage.goals} - {"utak"})
+        if carried:
+            return Decision(None, f"{stage} is not attempted: Utak does not carry things yet", "limit")
         if stage.goals[0].name in BY_THE_WAY:
             node = situation.model.object(self.bound.get(str(stage.goals[0].args[1]), ""))
             if node is not None:
@@ -179,17 +183,22 @@ def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconc
         squares: Squares = where[0].squares
         for other in where[1:]:
             squares = np.intersect1d(squares, other.squares)
-        return [Aim("attain", "the way to the goal is known", squares)]
-    aims = [Aim("explore", look.what, look.squares) for d in missing for look in d.lookouts]
+        return [Aim("attain", squares, "the way to the goal is known")]
+    aims = [Aim("explore", *look) for d in missing for look in d.lookouts]
     for x, name in reconciled.doubtful:
         node = model.object(name)
         if node is not None and x in reconciled.hypothesised:
             look = exploring.inspection(screens, node, touch=node.open == 0)
-            aims.append(Aim("inspect", f"{look.what}: it may be {x}", look.squares))
+            aims.append(Aim("inspect", look.squares, f"{look.what}: it may be {x}", (95 - node.confidence) * DOUBT))
     if any(_surely_reached(aim, screens) for aim in aims if aim.kind == "explore"):
         return aims
-    looks = [*exploring.frontiers(screens), *exploring.vague_places(screens), *exploring.rooms_beyond(screens)]
-    return aims + [Aim("explore", look.what, look.squares) for look in looks]
+    for apart in (exploring.APART, 0):
+        explored = [Aim("explore", *look) for look in exploring.frontiers(screens, apart)]
+        settled = [Aim("settle", *look) for look in exploring.vague_places(screens, apart)]
+        if explored or settled:
+            break
+    beyond = [Aim("pass", *look) for look in exploring.rooms_beyond(screens)]
+    return [*aims, *explored, *settled, *beyond]
 
 
 def _surely_reached(aim: Aim, screens: Screens) -> bool:

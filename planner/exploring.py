@@ -14,6 +14,7 @@ from kb.worldmodel import SPACE, Node
 from planner.screen import Screens, Squares, grown
 
 CLOSE = 3  # squares from which a thing lies within the fovea, whichever way it is seen
+APART = 2  # squares: a new look is first sought further than this from earlier ones
 SMALLEST_ROOM = 6  # squares of floor that are worth a passage
 
 
@@ -24,19 +25,19 @@ class Lookout(NamedTuple):
     what: str
 
 
-def frontiers(screens: Screens) -> list[Lookout]:
+def frontiers(screens: Screens, apart: int) -> list[Lookout]:
     """Floor that can be reached and borders on squares never seen, one Lookout for each connected stretch."""
-    border = _new(screens) & grown(~screens.model.view.seen, 1)
+    border = _new(screens, apart) & grown(~screens.model.view.seen, 1)
     labels = components(grown(border, 1)).labels
     return [Lookout(squares, "the floor goes on unseen") for squares in _groups(np.where(border, labels, 0))]
 
 
-def vague_places(screens: Screens) -> list[Lookout]:
+def vague_places(screens: Screens, apart: int) -> list[Lookout]:
     """Floor close to things beside it that were seen only coarsely, one Lookout for each connected stretch of them."""
     view = screens.model.view
     open_ = view.seen & (view.state == OPEN) & (view.probability > SPACE) & grown(screens.floor, 1)
     labels = np.where(open_, components(grown(open_, 1)).labels, 0)
-    near = np.where(_new(screens), _spread(labels, CLOSE), 0)
+    near = np.where(_new(screens, apart), _spread(labels, CLOSE), 0)
     return [Lookout(squares, "what bounds the floor is not clear") for squares in _groups(near)]
 
 
@@ -45,10 +46,13 @@ def inspection(screens: Screens, node: Node, touch: bool) -> Lookout:
     model = screens.model
     mask = model.mask(node.patch)
     if touch:
-        return Lookout(np.flatnonzero(_new(screens) & grown(mask, 1)), f"the colour of {node.name} is not known")
-    unsettled = grown(mask, 1) & (model.view.state == OPEN)
-    near = _new(screens) & grown(unsettled if unsettled.any() else mask, CLOSE)
-    return Lookout(np.flatnonzero(near), f"what {node.name} is is not clear")
+        return Lookout(np.flatnonzero(_new(screens, 0) & grown(mask, 1)), f"the colour of {node.name} is not known")
+    about = grown(mask, CLOSE)
+    for apart in (APART, 0):
+        near = np.flatnonzero(_new(screens, apart) & about)
+        if len(near):
+            break
+    return Lookout(near, f"what {node.name} is is not clear")
 
 
 def rooms_beyond(screens: Screens) -> list[Lookout]:
@@ -58,13 +62,13 @@ def rooms_beyond(screens: Screens) -> list[Lookout]:
     return [Lookout(squares, what) for squares in _groups(apart) if len(squares) >= SMALLEST_ROOM]
 
 
-def _new(screens: Screens) -> NDArray[np.bool_]:
+def _new(screens: Screens, apart: int) -> NDArray[np.bool_]:
     """Floor that can be reached and from which nothing was looked at yet.
 
     A second look from the same square tells nothing new.
     """
     model = screens.model
-    mask: NDArray[np.bool_] = screens.floor & ~model.squares(model.looked_from)
+    mask: NDArray[np.bool_] = screens.floor & ~grown(model.squares(model.looked_from), apart)
     return mask
 
 

@@ -10,8 +10,9 @@ from kb.worldmodel import WorldModel
 from planner.screen import Screens
 from planner.steps import Square, clear
 
-LONGEST = {"attain": 12, "inspect": 8, "explore": 8, "pass": 6}  # squares of one move, by the kind of its aim
+LONGEST = {"attain": 12, "inspect": 8, "explore": 8, "pass": 6, "settle": 8}  # squares of one move, by its aim
 DIGITS = 9  # of a command
+ASIDE = (0.0618, 0.0341)  # squares from a centre, where no turn by whole degrees leads to the line between two squares
 
 
 def next_move(screens: Screens, path: Sequence[Square], kind: str, about: tuple[float, float] | None = None) -> Move:
@@ -32,8 +33,13 @@ def next_move(screens: Screens, path: Sequence[Square], kind: str, about: tuple[
 
 
 def move_to(model: WorldModel, square: Square) -> Move:
-    """The move from where Utak believes himself to the centre of a square (column, row) of the view."""
-    x, y = model.view.west + square[0] + 0.5, model.view.south + square[1] + 0.5
+    """The move from where Utak believes himself to the centre of a square (column, row) of the view.
+
+    As long as it is not sure how the lattice lies, it is a little beside the centre: halts on the line between two
+    squares, where it would be chance which of them he sees himself in, could never be explained.
+    """
+    aside = ASIDE if model.spread else (0.0, 0.0)
+    x, y = model.view.west + square[0] + 0.5 + aside[0], model.view.south + square[1] + 0.5 + aside[1]
     east, north = model.lattice.to_utak(x - model.place[0], y - model.place[1])
     return Move(round(east, DIGITS) + 0.0, round(north, DIGITS) + 0.0)
 

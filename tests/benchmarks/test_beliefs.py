@@ -39,7 +39,7 @@ def robot(quarters: int, angle: int = 0, shape: str = "brick") -> tuple[Any, int
             state[dy - south, dx - west] = grid[y, x]
     node = SimpleNamespace(shape={shape: 90, "rectangle": 90, "polygon": 99}, polygon=lattice, patch=None)
     view = SimpleNamespace(west=west, south=south, state=state)
-    model = SimpleNamespace(lattice=SimpleNamespace(angle=angle), objects=(node,), view=view)
+    model = SimpleNamespace(lattice=SimpleNamespace(angle=angle), objects=(node,), view=view, place=(0.5, 0.5))
     return SimpleNamespace(model=model), (90 * quarters + angle) % 360
 
 
@@ -54,7 +54,7 @@ def brick_as_truth() -> dict[str, Any]:
 @pytest.mark.parametrize("quarters", range(4))
 def test_true_beliefs_are_found_right(quarters: int, angle: int) -> None:
     mind, heading = robot(quarters, angle)
-    held = beliefs(mind, WOKE, heading)
+    held = beliefs(mind, WOKE, WOKE, heading)
     score = compare(held, brick_as_truth(), truth(), under_fovea([WOKE, (9.5, 5.5)], heading))
     assert (score.met, score.known, score.certain, score.wrong) == (1, 1, WIDTH * HEIGHT, 0)
 
@@ -62,26 +62,37 @@ def test_true_beliefs_are_found_right(quarters: int, angle: int) -> None:
 def test_a_wrong_class_and_a_wrong_square_are_found() -> None:
     mind, heading = robot(1, shape="disc")
     mind.model.view.state[24, 24] = 1  # his own square
-    score = compare(beliefs(mind, WOKE, heading), brick_as_truth(), truth(), under_fovea([WOKE], heading))
+    score = compare(beliefs(mind, WOKE, WOKE, heading), brick_as_truth(), truth(), under_fovea([WOKE], heading))
     assert (score.met, score.known, score.wrong) == (1, 0, 1)
     assert score.mistaken == ("d1: brick taken for disc",)
+
+
+@pytest.mark.parametrize("quarters", range(4))
+def test_beliefs_are_seen_from_where_he_stands(quarters: int) -> None:
+    mind, heading = robot(quarters)
+    step = [(2, 1), (1, -2), (-2, -1), (-1, 2)][quarters]  # two squares east and one north on the table
+    mind.model.place = (step[0] + 0.3, step[1] + 0.8)
+    held = beliefs(mind, WOKE, (WOKE[0] + 2, WOKE[1] + 1), heading)
+    assert held.drift == 0
+    assert compare(held, brick_as_truth(), truth(), under_fovea([WOKE], heading)).wrong == 0
+    assert beliefs(mind, (WOKE[0] + 3, WOKE[1]), (WOKE[0] + 2, WOKE[1] + 1), heading).drift == 3
 
 
 def test_an_object_that_is_not_in_the_model_is_missed() -> None:
     mind, heading = robot(0)
     mind.model.objects = ()
-    score = compare(beliefs(mind, WOKE, heading), brick_as_truth(), truth(), under_fovea([WOKE], heading))
+    score = compare(beliefs(mind, WOKE, WOKE, heading), brick_as_truth(), truth(), under_fovea([WOKE], heading))
     assert score.mistaken == ("d1: brick taken for nothing",)
 
 
 def test_what_was_never_under_the_fovea_does_not_count() -> None:
     mind, heading = robot(0, shape="disc")
-    score = compare(beliefs(mind, WOKE, heading), brick_as_truth(), truth(), under_fovea([(2.5, 11.5)], heading))
+    score = compare(beliefs(mind, WOKE, WOKE, heading), brick_as_truth(), truth(), under_fovea([(2.5, 11.5)], heading))
     assert (score.met, score.whole) == (0, 0)
 
 
 def test_a_robot_without_a_model_holds_nothing() -> None:
-    assert beliefs(object(), WOKE, 0) == ([], [])
+    assert beliefs(object(), WOKE, WOKE, 0) == ([], [], 0)
 
 
 def test_the_fovea_is_four_squares_each_way() -> None:

@@ -18,7 +18,7 @@ from benchmarks.trial import Conditions, Trial, run_trial
 from benchmarks.worlds import scenario
 from kb.body import Body, Command, Impression, Move
 from kb.task import Task
-from simulator.session import Settings
+from simulator.settings import Settings
 
 
 class Report(NamedTuple):
@@ -59,6 +59,12 @@ class Scripted:
 def maker(commands: list[Command], verdict: Verdict) -> Callable[[Body, Task, Settings], Scripted]:
     """Make such robots."""
     return lambda body, task, settings: Scripted(body, commands, verdict)
+
+
+@pytest.fixture(autouse=True)
+def cold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No trial before those that are asked for."""
+    monkeypatch.setattr(campaign, "_warm_up", lambda folder: None)
 
 
 DONE = Verdict(True, "done", "I am there")
@@ -189,7 +195,7 @@ def test_worlds_that_went_wrong_are_run_again(monkeypatch: pytest.MonkeyPatch, t
 
     def record(task: int, seed: int, *_: object) -> Trial:
         ran.append((task, seed))
-        return Trial(task, seed, True, True, seed != 1, "done", score=Score(0, 0, 0, 0, 9, int(seed == 2), ()))
+        return Trial(task, seed, True, True, seed != 1, "done", score=Score(0, 0, 0, 0, 9, int(seed == 2), 0, ()))
 
     monkeypatch.setattr(campaign, "run_trial", record)
     results = tmp_path / "results.jsonl"

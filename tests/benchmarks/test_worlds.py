@@ -4,7 +4,7 @@ import math
 import os
 import subprocess
 import sys
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 
 import clingo
@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from shapely import Point, box
 
+from benchmarks.carrying import ELLS
 from benchmarks.floorplans import is_simple_row
 from benchmarks.placing import digital
 from benchmarks.scenes import Scenario, write
@@ -149,6 +150,31 @@ def test_the_files_are_facts(task: int, tmp_path: Path) -> None:
         control.load(str(folder / f"{name}.lp"))
         control.ground([("base", [])])
         assert all(atom.is_fact for atom in control.symbolic_atoms)
+
+
+@pytest.mark.parametrize("seed", [*SEEDS, 23, 35])
+@pytest.mark.parametrize("task", [5, 6, 7, 9])
+def test_doors_let_what_is_carried_through_or_lack_what_is_said(task: int, seed: int) -> None:
+    world = scenario(task, seed)
+    load = world.things[0].polygon
+    corners = list(load.minimum_rotated_rectangle.exterior.coords)
+    least = min(math.dist(one, other) for one, other in pairwise(corners))
+    if world.things[0].shape == "l_shape":
+        least = next(need for (arm, thick), need in ELLS.items() if load.area == thick * (2 * arm - thick))
+    for door in world.plan.doors:
+        if world.possible:
+            assert 1 <= door.width - least <= 3
+        else:
+            assert world.missing == pytest.approx(least - door.width)
+            assert 0.5 <= world.missing <= 1.5
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_load_lies_apart_from_its_target(seed: int) -> None:
+    for task in (5, 6, 7, 8, 9):
+        world = scenario(task, seed)
+        assert not world.target.intersects(world.things[0].polygon)
+        assert world.possible == (world.missing == 0)
 
 
 def test_half_of_the_headings_are_quarter_turns() -> None:
