@@ -79,6 +79,8 @@ def test_check_knows_files_by_their_names(scene: Path, capsys: pytest.CaptureFix
     files = [str(scene / name) for name in ("world.lp", "start.lp", "goal.lp", "expect.lp")]
     assert cli.main(["check", str(scene), *files]) == 0
     assert capsys.readouterr().out.count(": ok\n") == 5
+    assert cli.main(["check", str(scene.parent)]) == 0
+    assert capsys.readouterr().out == f"{scene}: ok\n"
     (scene / "more.lp").write_text("")
     assert cli.main(["check", str(scene / "more.lp")]) == 65
     assert cli.main(["check", str(scene / "goal.txt")]) == 66
