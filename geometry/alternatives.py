@@ -40,17 +40,27 @@ def new_album(room: int, longest: int) -> Album:
 def shortest_ways(chains: Chains, ways: Ways, query: Query, search: Search, album: Album, wanted: int) -> int:
     """Fill the album with up to ``wanted`` shortest ways; returns their number. Its room must exceed ``wanted``."""
     search.stamp[1] = 0
-    if wanted > 1:
-        survey(chains, ways, query, search)
-        if search.ahead[chains.node.shape[0]] == np.inf:
-            return 0
     fresh(search)
     start = chains.node.shape[0]
     if not seek(chains, ways, query, search, start):
         return 0
-    record(chains, ways, query, search, album, 0, 0, start, 0)
+    record(chains, ways, query, search, album, 0, 0, start, 0.0)
+    if wanted == 1:
+        return 1
+    limit = 1.5 * album.cost[0] + 1.0
+    survey(chains, ways, query, search, limit)
+    found = fan_out(chains, ways, query, search, album, wanted)
+    if found < wanted or album.cost[found - 1] > limit:  # ways beyond the survey's limit may be missing
+        survey(chains, ways, query, search, np.inf)
+        found = fan_out(chains, ways, query, search, album, wanted)
+    return found
+
+
+@compiled
+def fan_out(chains: Chains, ways: Ways, query: Query, search: Search, album: Album, wanted: int) -> int:
+    """Branch off the ways taken, shortest first, until there are enough."""
     have, taken = 1, 1
-    while taken < wanted and taken <= have:
+    while taken < wanted:
         have = branch(chains, ways, query, search, album, taken - 1, have, wanted)
         if have == taken:
             break

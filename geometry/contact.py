@@ -25,6 +25,7 @@ from geometry.rigid import Motion, Translate
 
 Floats = npt.NDArray[np.float64]
 SKIN = 1e-8  # squares: a body may be this deep in an obstacle before a motion further in is stopped
+CHUNK = 4  # edges that are looked at or left alone together
 SHORT = 1e-7  # squares: shorter edges are dropped
 
 
@@ -83,7 +84,7 @@ class Obstacles:
         rings = [boundary_edges(polygon) for polygon in polygons]
         edges = with_normals(np.concatenate([np.empty((0, 4)), *rings]))
         owner = np.repeat(np.arange(len(rings)), [len(ring) for ring in rings])
-        self.surface = Surface(edges, _drawn_in(edges, SKIN), edges, owner)
+        self.surface = Surface(edges, _drawn_in(edges, SKIN), _chunks(edges), edges, owner)
 
     @cached_property
     def point_surface(self) -> Surface:
@@ -93,7 +94,7 @@ class Obstacles:
         """
         one = shapely.union_all([shapely.orient_polygons(p) for p in self.polygons], grid_size=SKIN / 10)
         hull = with_normals(boundary_edges(one))
-        return Surface(hull, _drawn_in(hull, SKIN), self.surface.edges, self.surface.owner)
+        return Surface(hull, _drawn_in(hull, SKIN), _chunks(hull), self.surface.edges, self.surface.owner)
 
     def first_contact(self, body: Body, motion: Motion) -> Contact:
         """Move a body until it would go into an obstacle.
@@ -182,6 +183,17 @@ def _drawn_in(edges: Floats, depth: float) -> Floats:
     shifted[following, 0:2] = corner
     shifted[:, 6] = np.hypot(shifted[:, 2] - shifted[:, 0], shifted[:, 3] - shifted[:, 1])
     return shifted
+
+
+def _chunks(edges: Floats) -> Floats:
+    """Runs of CHUNK edges and the boxes around them: (k, 6) rows first, stop, x0, y0, x1, y1."""
+    first = np.arange(0, len(edges), CHUNK)
+    if len(first) == 0:
+        return np.empty((0, 6))
+    stop = np.minimum(first + CHUNK, len(edges))
+    low = np.minimum.reduceat(np.minimum(edges[:, :2], edges[:, 2:4]), first)
+    high = np.maximum.reduceat(np.maximum(edges[:, :2], edges[:, 2:4]), first)
+    return np.column_stack([first, stop, low, high])
 
 
 def _following(edges: Floats) -> npt.NDArray[np.intp]:

@@ -115,11 +115,12 @@ def settled_best(kind: int, image: Image) -> tuple[Floats, float]:
     losses = np.empty(len(starts))
     for k in range(len(starts)):
         losses[k] = disagreement(kind, starts[k], image)
-    order = np.argsort(losses)
     best, at, least = math.inf, starts[0], math.inf
     free = _freedom(kind)
-    for k in range(min(STARTS, len(order))):
-        shape = starts[order[k]].copy()
+    for _ in range(min(STARTS, len(losses))):
+        next_best = np.argmin(losses)
+        losses[next_best] = math.inf
+        shape = starts[next_best].copy()
         loss = settle(kind, shape, free, image, STEPS)
         wrong = float(misfit(kind, shape, image))
         if impropriety(kind, shape) > 0.01:
@@ -149,35 +150,55 @@ def _freedom(kind: int) -> Floats:
 @compiled
 def _fan(kind: int, image: Image) -> Floats:
     """Shapes to start from: (n, 6)."""
-    places = np.argwhere(image == WANTED)
     if kind == DISC:
-        x, y = places[:, 1].mean() + 0.5, places[:, 0].mean() + 0.5
-        radius = math.sqrt(len(places) / math.pi) - 0.5
-        return np.array([[x, y, max(radius, 0.7), 0.0, 0.0, 0.0]])
+        return _round_start(image)
     thicknesses = 3 if kind >= ELL and kind <= HORSESHOE else 1
     angles = ANGLES if kind >= ELL else ANGLES // 4
     starts = np.zeros((angles * thicknesses, 6))
     for k in range(angles):
         angle = 2 * math.pi * k / ANGLES
         for t in range(thicknesses):
-            starts[k * thicknesses + t] = _start(kind, places, angle, 1.5 + t * 0.9)
+            starts[k * thicknesses + t] = _start(kind, image, angle, 1.5 + t * 0.9)
     return starts
 
 
 @compiled
-def _start(kind: int, places: np.ndarray, angle: float, thick: float) -> Floats:
+def _round_start(image: Image) -> Floats:
+    """A disc about the middle of the squares, of nearly their area."""
+    x = y = 0.0
+    count = 0
+    for row in range(image.shape[0]):
+        for column in range(image.shape[1]):
+            if image[row, column] == WANTED:
+                x += column + 0.5
+                y += row + 0.5
+                count += 1
+    start = np.zeros((1, 6))
+    start[0, 0], start[0, 1] = x / count, y / count
+    start[0, 2] = max(math.sqrt(count / math.pi) - 0.5, 0.7)
+    return start
+
+
+@compiled
+def _start(kind: int, image: Image, angle: float, thick: float) -> Floats:
     """A shape in one direction, its sizes read off the extent of the squares.
 
     A shape reaches into its outermost squares by less than half of what a square measures across that direction; a
     little less than that is taken off.
     """
     c, s = math.cos(angle), math.sin(angle)
-    u = c * (places[:, 1] + 0.5) + s * (places[:, 0] + 0.5)
-    v = -s * (places[:, 1] + 0.5) + c * (places[:, 0] + 0.5)
+    u0, u1, v0, v1, tip = 1e9, -1e9, 1e9, -1e9, 0.0
+    for row in range(image.shape[0]):
+        for column in range(image.shape[1]):
+            if image[row, column] == WANTED:
+                u = c * (column + 0.5) + s * (row + 0.5)
+                v = -s * (column + 0.5) + c * (row + 0.5)
+                if v > v1:
+                    v1, tip = v, u
+                u0, u1, v0 = min(u0, u), max(u1, u), min(v0, v)
     off = (abs(c) + abs(s)) / 2 - 0.3
-    u0, u1, v0, v1 = u.min() + off, u.max() - off, v.min() + off, v.max() - off
+    u0, u1, v0, v1 = u0 + off, u1 - off, v0 + off, v1 - off
     if kind == TRIANGLE:
-        tip = u[np.argmax(v)]
         low = np.empty(6)
         low[0], low[1] = c * u0 - s * v0, s * u0 + c * v0
         low[2], low[3] = c * u1 - s * v0, s * u1 + c * v0

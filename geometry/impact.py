@@ -18,12 +18,14 @@ Floats = npt.NDArray[np.float64]
 class Surface(NamedTuple):
     """What a body runs against.
 
-    hull: the edges of closed rings; skin: the same drawn in, row for row; edges: the true edges of the obstacles, and
-    owner: whose they are. Hull and true edges are the same but for points (see contact.Obstacles).
+    hull: the edges of closed rings; skin: the same drawn in, row for row; chunks: (k, 6) rows first, stop, x0, y0, x1,
+    y1: runs of a few of these edges and the box around them; edges: the true edges of the obstacles, and owner: whose
+    they are. Hull and true edges are the same but for points (see contact.Obstacles).
     """
 
     hull: Floats
     skin: Floats
+    chunks: Floats
     edges: Floats
     owner: npt.NDArray[np.intp]
 
@@ -90,8 +92,8 @@ def turn_impact(x: float, y: float, cx: float, cy: float, sign: float, edges: Fl
 @compiled
 def first_push(corners: Floats, body: Floats, surface: Surface, dx: float, dy: float) -> Found:
     """First contact of a pushed body."""
-    hull, skin, edges, owner = surface
-    time, kind, i, j = _push_through_skin(corners, body, hull, skin, dx, dy)
+    hull, skin, chunks, edges, owner = surface
+    time, kind, i, j = push_through_skin(corners, body, hull, skin, chunks, dx, dy)
     if kind == 0:
         return 1.0, 0.0, 0.0, -1, 0.0, 0.0
     if kind == 1:
@@ -104,7 +106,9 @@ def first_push(corners: Floats, body: Floats, surface: Surface, dx: float, dy: f
 
 
 @compiled
-def _push_through_skin(corners: Floats, body: Floats, hull: Floats, skin: Floats, dx: float, dy: float) -> Met:
+def push_through_skin(
+    corners: Floats, body: Floats, hull: Floats, skin: Floats, chunks: Floats, dx: float, dy: float
+) -> Met:
     """The earliest impact of a pushed body on the skins."""
     low_x, low_y, high_x, high_y = _bounds(corners)
     low_x += min(dx, 0.0)
@@ -112,21 +116,30 @@ def _push_through_skin(corners: Floats, body: Floats, hull: Floats, skin: Floats
     high_x += max(dx, 0.0)
     high_y += max(dy, 0.0)
     best, kind, at, edge = NEVER, 0, 0, 0
-    for j in range(len(hull)):
-        x0, y0, x1, y1 = hull[j, 0], hull[j, 1], hull[j, 2], hull[j, 3]
-        if max(x0, x1) < low_x or min(x0, x1) > high_x or max(y0, y1) < low_y or min(y0, y1) > high_y:
+    for chunk in range(len(chunks)):
+        if (
+            chunks[chunk, 2] > high_x
+            or chunks[chunk, 3] > high_y
+            or chunks[chunk, 4] < low_x
+            or chunks[chunk, 5] < low_y
+        ):
             continue
-        if hull[j, 4] * dx + hull[j, 5] * dy < 0.0:
-            for i in range(len(corners)):
-                time = push_impact(corners[i, 0], corners[i, 1], dx, dy, skin, j)
-                if time < best:
-                    best, kind, at, edge = time, 1, i, j
-        x, y = skin[j, 0], skin[j, 1]
-        if low_x <= x <= high_x and low_y <= y <= high_y:
-            for i in range(len(body)):
-                time = push_impact(x, y, -dx, -dy, body, i)
-                if time < best:
-                    best, kind, at, edge = time, 2, i, j
+        for j in range(int(chunks[chunk, 0]), int(chunks[chunk, 1])):
+            if max(hull[j, 0], hull[j, 2]) < low_x or min(hull[j, 0], hull[j, 2]) > high_x:
+                continue
+            if max(hull[j, 1], hull[j, 3]) < low_y or min(hull[j, 1], hull[j, 3]) > high_y:
+                continue
+            if hull[j, 4] * dx + hull[j, 5] * dy < 0.0:
+                for i in range(len(corners)):
+                    time = push_impact(corners[i, 0], corners[i, 1], dx, dy, skin, j)
+                    if time < best:
+                        best, kind, at, edge = time, 1, i, j
+            x, y = skin[j, 0], skin[j, 1]
+            if low_x <= x <= high_x and low_y <= y <= high_y:
+                for i in range(len(body)):
+                    time = push_impact(x, y, -dx, -dy, body, i)
+                    if time < best:
+                        best, kind, at, edge = time, 2, i, j
     return best, kind, at, edge
 
 
@@ -134,7 +147,13 @@ def _push_through_skin(corners: Floats, body: Floats, hull: Floats, skin: Floats
 def _last_push(x: float, y: float, dx: float, dy: float, edges: Floats, until: float) -> tuple[float, int]:
     """The last entry through the true edges up to a time, and by which; at once by the nearest when there is none."""
     last, by = 0.0, -1
+    x1, y1 = x + until * dx, y + until * dy
+    low_x, low_y, high_x, high_y = min(x, x1) - BESIDE, min(y, y1) - BESIDE, max(x, x1) + BESIDE, max(y, y1) + BESIDE
     for k in range(len(edges)):
+        if max(edges[k, 0], edges[k, 2]) < low_x or min(edges[k, 0], edges[k, 2]) > high_x:
+            continue
+        if max(edges[k, 1], edges[k, 3]) < low_y or min(edges[k, 1], edges[k, 3]) > high_y:
+            continue
         time = push_impact(x, y, dx, dy, edges, k)
         if time <= until and (time > last or by < 0):
             last, by = time, k
@@ -162,9 +181,9 @@ def _nearest_ahead(x: float, y: float, dx: float, dy: float, edges: Floats) -> i
 @compiled
 def first_turn(corners: Floats, body: Floats, surface: Surface, turn: float, cx: float, cy: float) -> Found:
     """First contact of a body turned by some radians about (cx, cy)."""
-    hull, skin, edges, owner = surface
+    hull, skin, chunks, edges, owner = surface
     sign = 1.0 if turn >= 0.0 else -1.0
-    time, kind, i, j = _turn_through_skin(corners, body, hull, skin, cx, cy, sign, abs(turn))
+    time, kind, i, j = turn_through_skin(corners, body, hull, skin, chunks, cx, cy, sign, abs(turn))
     if kind == 0:
         return 1.0, 0.0, 0.0, -1, 0.0, 0.0
     if kind == 1:
@@ -179,8 +198,16 @@ def first_turn(corners: Floats, body: Floats, surface: Surface, turn: float, cx:
 
 
 @compiled
-def _turn_through_skin(
-    corners: Floats, body: Floats, hull: Floats, skin: Floats, cx: float, cy: float, sign: float, limit: float
+def turn_through_skin(
+    corners: Floats,
+    body: Floats,
+    hull: Floats,
+    skin: Floats,
+    chunks: Floats,
+    cx: float,
+    cy: float,
+    sign: float,
+    limit: float,
 ) -> Met:
     """The earliest impact on the skins within a turn of `limit` radians."""
     reach = 0.0
@@ -188,22 +215,25 @@ def _turn_through_skin(
         reach = max(reach, (corners[i, 0] - cx) ** 2 + (corners[i, 1] - cy) ** 2)
     reach = math.sqrt(reach)
     best, kind, at, edge = limit, 0, 0, 0
-    for j in range(len(hull)):
-        across = hull[j, 4] * (cx - hull[j, 0]) + hull[j, 5] * (cy - hull[j, 1])
-        if abs(across) > reach:
+    for chunk in range(len(chunks)):
+        off_x = cx - min(max(cx, chunks[chunk, 2]), chunks[chunk, 4])
+        off_y = cy - min(max(cy, chunks[chunk, 3]), chunks[chunk, 5])
+        if off_x * off_x + off_y * off_y > reach * reach:
             continue
-        along = hull[j, 4] * (cy - hull[j, 1]) - hull[j, 5] * (cx - hull[j, 0])
-        if along >= -reach and along <= hull[j, 6] + reach:
-            for i in range(len(corners)):
-                time = turn_impact(corners[i, 0], corners[i, 1], cx, cy, sign, skin, j)
-                if time < best:
-                    best, kind, at, edge = time, 1, i, j
-        x, y = skin[j, 0], skin[j, 1]
-        if (x - cx) ** 2 + (y - cy) ** 2 <= reach * reach:
-            for i in range(len(body)):
-                time = turn_impact(x, y, cx, cy, -sign, body, i)
-                if time < best:
-                    best, kind, at, edge = time, 2, i, j
+        for j in range(int(chunks[chunk, 0]), int(chunks[chunk, 1])):
+            across = hull[j, 4] * (cx - hull[j, 0]) + hull[j, 5] * (cy - hull[j, 1])
+            along = hull[j, 4] * (cy - hull[j, 1]) - hull[j, 5] * (cx - hull[j, 0])
+            if abs(across) <= reach and -reach <= along <= hull[j, 6] + reach:
+                for i in range(len(corners)):
+                    time = turn_impact(corners[i, 0], corners[i, 1], cx, cy, sign, skin, j)
+                    if time < best:
+                        best, kind, at, edge = time, 1, i, j
+            x, y = skin[j, 0], skin[j, 1]
+            if (x - cx) ** 2 + (y - cy) ** 2 <= reach * reach:
+                for i in range(len(body)):
+                    time = turn_impact(x, y, cx, cy, -sign, body, i)
+                    if time < best:
+                        best, kind, at, edge = time, 2, i, j
     return best, kind, at, edge
 
 

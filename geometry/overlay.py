@@ -186,24 +186,27 @@ def settle(kind: int, shape: Floats, free: Floats, image: Image, steps: int) -> 
 
     free: how far each of the six numbers is moved at first; 0 for those that stay.
     """
-    index = np.nonzero(free)[0]
-    n = len(index)
-    simplex = np.empty((n + 1, 6))
-    losses = np.empty(n + 1)
+    simplex = np.empty((7, 6))
+    losses = np.empty(7)
+    simplex[0] = shape
+    n = 0
+    for k in range(6):
+        if free[k] > 0.0:
+            n += 1
+            simplex[n] = shape
+            simplex[n, k] += free[k]
     for k in range(n + 1):
-        simplex[k] = shape
-        if k:
-            simplex[k, index[k - 1]] += free[index[k - 1]]
         losses[k] = disagreement(kind, simplex[k], image)
+    low = 0
     for _ in range(steps):
-        order = np.argsort(losses)
-        low, high, second = order[0], order[n], order[n - 1]
+        low, high, second = _ends(losses, n + 1)
         if losses[low] <= 0.0 or losses[high] - losses[low] < 1e-4:
             break
         middle = np.zeros(6)
         for k in range(n + 1):
             if k != high:
-                middle += simplex[k] / n
+                for m in range(6):
+                    middle[m] += simplex[k, m] / n
         trial = 2.0 * middle - simplex[high]
         loss = disagreement(kind, trial, image)
         if loss < losses[low]:
@@ -224,6 +227,22 @@ def settle(kind: int, shape: Floats, free: Floats, image: Image, steps: int) -> 
                         losses[k] = disagreement(kind, simplex[k], image)
                 continue
         simplex[high], losses[high] = trial, loss
-    best = np.argmin(losses)
-    shape[:] = simplex[best]
-    return float(losses[best])
+    low, high, second = _ends(losses, n + 1)
+    shape[:] = simplex[low]
+    return float(losses[low])
+
+
+@compiled
+def _ends(losses: Floats, n: int) -> tuple[int, int, int]:
+    """Which of the first n numbers is the least, the greatest and the second greatest."""
+    low, high = 0, 0
+    for k in range(1, n):
+        if losses[k] < losses[low]:
+            low = k
+        if losses[k] >= losses[high]:
+            high = k
+    second = 1 if high == 0 else 0
+    for k in range(n):
+        if k != high and losses[k] >= losses[second]:
+            second = k
+    return low, high, second

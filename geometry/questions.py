@@ -1,5 +1,6 @@
 """Questions put to one layer of a screen, and the scratch they share."""
 
+from collections.abc import Callable
 from math import nan
 
 import numpy as np
@@ -8,7 +9,7 @@ from geometry.anyangle import FULL, NONE, Scout, new_scout, shortest_line
 from geometry.chains import Ints
 from geometry.distance import Bools
 from geometry.goals import Region, entry, regions, way_in, word_of_cells
-from geometry.itinerary import OVERFLOW, Desk, anchor_at, itineraries, new_desk
+from geometry.itinerary import OVERFLOW, Desk, Ends, anchor_at, itineraries, new_desk
 from geometry.layer import Layer
 from geometry.loops import Arc, cells_of_way, closed_ways
 from geometry.passages import Passage, on_chain
@@ -31,6 +32,7 @@ class Questions:
         self._width: int = layer.square.shape[1]
         self._desks: dict[int, Desk] = {}
         self._scout: Scout | None = None
+        self._solve: Callable[[Layer, Ends, int, Desk], int] | None = None
 
     def admits(self, point: XY) -> bool:
         """Whether the body may be in the square of a point."""
@@ -45,16 +47,28 @@ class Questions:
         desk = self._desk(wanted, 0)
         if avoid:
             desk = self._forbid(desk, avoid)
-        found = itineraries(self.layer, ends, wanted, desk)
+        if self._solve is None:
+            self._solve = itineraries.entry(self.layer, ends, wanted, desk)
+        found = self._solve(self.layer, ends, wanted, desk)
         while found == OVERFLOW:
             desk = self._desk(wanted, 4 * len(desk.start))
             desk = self._forbid(desk, avoid) if avoid else desk
-            found = itineraries(self.layer, ends, wanted, desk)
+            found = self._solve(self.layer, ends, wanted, desk)
         if avoid:
             desk.query.shut[:] = 0
             desk.query.closed[:] = False
-        routes = read_answers(desk.answers, found)[:k]
+        routes = read_answers(desk.answers, found)
+        if k > 1 and routes and not avoid and not self.layer.body:
+            routes = self._with_shortest(routes, start, goal)
+        routes = routes[:k]
         return [self._with_ends(route, start, goal) for route in routes] if self.layer.body else routes
+
+    def _with_shortest(self, routes: list[Route], start: XY, goal: XY) -> list[Route]:
+        """The routes with the shortest of all before them, should none of them be of its class."""
+        best = self.shortest(start, goal)
+        if best is None or any(route.signature == best.signature for route in routes):
+            return routes
+        return [best, *routes]
 
     def of_word(self, start: XY, goal: XY, word: Ints) -> Route:
         """The route of a reduced word."""
@@ -166,8 +180,8 @@ class Questions:
         """Scratch for that many routes, with at least that much room for words."""
         desk = self._desks.get(wanted)
         if desk is None or len(desk.start) < room:
-            chains = self.layer.chains
-            desk = new_desk(len(chains.node), len(chains.length), wanted, max(room, 1024), NO_BARS)
+            nodes, sights = self.layer.ways.sight.shape
+            desk = new_desk(nodes, len(self.layer.ways.length), sights, wanted, max(room, 1024), NO_BARS)
             self._desks[wanted] = desk
         return desk
 

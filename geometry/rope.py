@@ -26,8 +26,6 @@ class Rope(NamedTuple):
     """(size,) the corner before, on the shortest way."""
     queue: Ints
     """(2 size,) the funnel, from its left end over the apex to its right end."""
-    ends: Ints
-    """(3,) positions in ``queue`` of left end, apex and right end."""
 
 
 def new_rope(portals: int) -> Rope:
@@ -38,7 +36,6 @@ def new_rope(portals: int) -> Rope:
         np.empty(size),
         np.empty(size, np.int32),
         np.empty(2 * size, np.int32),
-        np.empty(3, np.int64),
     )
 
 
@@ -51,75 +48,62 @@ def tighten_word(
     A point may use whole squares; a body moves on the lines between the centres of its squares and in the meshes of
     four, so each portal counts twice: where the rope leaves the lower line of centres and where it meets the upper.
     """
-    rope.x[0], rope.y[0] = ends[0], ends[1]
-    middle = rope.queue.shape[0] // 2
-    rope.queue[middle] = 0
-    rope.ends[:] = middle
+    xs, ys = rope.x, rope.y
+    xs[0], ys[0] = ends[0], ends[1]
+    inset, times = (0.5, 2) if body else (0.0, 1)
     used = 1
     for k in range(size):
-        portal = abs(word[k]) - 1
-        row = runs.line[portal]
-        left, right = float(runs.left[portal]), float(runs.right[portal])
-        up = word[k] > 0
-        if not body:
-            used = pull(rope, used, left, right + 1.0, row + 1.0, up)
-        else:
-            used = pull(rope, used, left + 0.5, right + 0.5, row + 0.5 if up else row + 1.5, up)
-            used = pull(rope, used, left + 0.5, right + 0.5, row + 1.5 if up else row + 0.5, up)
-    rope.x[used], rope.y[used] = ends[2], ends[3]
-    add_left(rope, used)
+        symbol = word[k]
+        portal = abs(symbol) - 1
+        left, right = runs.left[portal] + inset, runs.right[portal] + 1.0 - inset
+        y = runs.line[portal] + 1.0
+        if symbol < 0:
+            left, right = right, left
+        for n in range(times):
+            ys[used] = ys[used + 1] = y + inset * (2 * n - 1) * (1 if symbol > 0 else -1)
+            xs[used], xs[used + 1] = left, right
+            used += 2
+    xs[used], ys[used] = ends[2], ends[3]
+    funnel(xs, ys, rope.via, rope.queue, used)
     return unwind(rope, used, out)
 
 
 @compiled
-def pull(rope: Rope, used: int, low: float, high: float, y: float, up: bool) -> int:
-    """Take both ends of a portal into the funnel."""
-    rope.x[used] = low if up else high
-    rope.x[used + 1] = high if up else low
-    rope.y[used] = y
-    rope.y[used + 1] = y
-    add_left(rope, used)
-    add_right(rope, used + 1)
-    return used + 2
+def funnel(xs: Floats, ys: Floats, via: Ints, queue: Ints, last: int) -> None:
+    """For every corner (left and right ends of portals in turn, then the goal), the one before on the way to it.
+
+    ``queue`` holds the funnel: from ``left`` outwards to ``apex`` the left chain, from there to ``right`` the right one.
+    """
+    left = apex = right = queue.shape[0] // 2
+    queue[apex] = 0
+    for corner in range(1, last + 1):
+        x, y = xs[corner], ys[corner]
+        if corner & 1:
+            while left < apex and turn(xs, ys, queue[left + 1], queue[left], x, y) <= 0.0:
+                left += 1
+            if left == apex:
+                while apex < right and turn(xs, ys, queue[apex], queue[apex + 1], x, y) < 0.0:
+                    apex += 1
+                left = apex
+            via[corner] = queue[left]
+            left -= 1
+            queue[left] = corner
+        else:
+            while right > apex and turn(xs, ys, queue[right - 1], queue[right], x, y) >= 0.0:
+                right -= 1
+            if right == apex:
+                while apex > left and turn(xs, ys, queue[apex], queue[apex - 1], x, y) > 0.0:
+                    apex -= 1
+                right = apex
+            via[corner] = queue[right]
+            right += 1
+            queue[right] = corner
 
 
 @compiled
-def add_left(rope: Rope, corner: int) -> None:
-    """Take a corner into the left end of the funnel."""
-    queue, ends = rope.queue, rope.ends
-    left, apex, right = ends[0], ends[1], ends[2]
-    while left < apex and side(rope, queue[left + 1], queue[left], corner) <= 0.0:
-        left += 1
-    if left == apex:
-        while apex < right and side(rope, queue[apex], queue[apex + 1], corner) < 0.0:
-            apex += 1
-        left = apex
-    rope.via[corner] = queue[left]
-    queue[left - 1] = corner
-    ends[0], ends[1] = left - 1, apex
-
-
-@compiled
-def add_right(rope: Rope, corner: int) -> None:
-    """Take a corner into the right end of the funnel."""
-    queue, ends = rope.queue, rope.ends
-    left, apex, right = ends[0], ends[1], ends[2]
-    while right > apex and side(rope, queue[right - 1], queue[right], corner) >= 0.0:
-        right -= 1
-    if right == apex:
-        while apex > left and side(rope, queue[apex], queue[apex - 1], corner) > 0.0:
-            apex -= 1
-        right = apex
-    rope.via[corner] = queue[right]
-    queue[right + 1] = corner
-    ends[1], ends[2] = apex, right + 1
-
-
-@compiled
-def side(rope: Rope, a: int, b: int, c: int) -> float:
-    """Positive when c lies left of the ray from a through b."""
-    ax, ay = rope.x[a], rope.y[a]
-    return float((rope.x[b] - ax) * (rope.y[c] - ay) - (rope.y[b] - ay) * (rope.x[c] - ax))
+def turn(xs: Floats, ys: Floats, a: int, b: int, x: float, y: float) -> float:
+    """Positive when (x, y) lies left of the ray from corner a through corner b."""
+    return float((xs[b] - xs[a]) * (y - ys[a]) - (ys[b] - ys[a]) * (x - xs[a]))
 
 
 @compiled

@@ -21,11 +21,13 @@ class Route:
     length: float
     """In squares."""
     clearance: float
-    """The radius of the largest body that can go this way, over the skeleton, from square to square."""
+    """The radius of the largest body that can go this way, over the skeleton, from square to square; nan when the way
+    over the skeleton is not known (from ``shortest`` and, on screens with very many ways, from ``routes``)."""
     signature: tuple[int, ...]
     """Signed crossing numbers of the portals crossed (see runs.py); empty for the class without any."""
     chains: tuple[int, ...]
-    """The chains of the pathgraph that the way uses, in order (its ends may lie inside the first and last)."""
+    """The chains of the pathgraph that the way uses, in order (its ends may lie inside the first and last); empty
+    when not known."""
 
 
 def read_answers(answers: Answers, found: int) -> list[Route]:

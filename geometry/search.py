@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from geometry.chains import Chains, Floats, Ints
 from geometry.compiled import compiled
-from geometry.rope import reach
+from geometry.heap import pop, push
 from geometry.skeleton import States
 from geometry.ways import Ways
 
@@ -27,8 +27,10 @@ class Query(NamedTuple):
     """(4,) the nodes that the start's two arcs lead to and the goal's two come from."""
     cost: Floats
     """(5,) the lengths of the five arcs; infinite where there is none."""
-    goal: Floats
-    """(2,) the goal's place."""
+    sight: Floats
+    """(landmarks,) the goal's distances from the landmarks."""
+    line: Floats
+    """(4,) a point of the straight line from start to goal and the line's normal, scaled: how much dearer an arc is."""
     shut: States
     """(m,) not 0 for chains that may not be walked from end to end: bit 0 by wish, bit 1 because an end splits them."""
     bars: Ints
@@ -84,70 +86,76 @@ def fresh(search: Search) -> int:
 
 @compiled
 def seek(chains: Chains, ways: Ways, query: Query, search: Search, origin: int) -> bool:
-    """A* from a node to the goal, under the stamp's bars and seals; the way is then in ``came``."""
-    n, stamp = chains.node.shape[0], search.stamp[0]
-    search.best[origin] = 0.0
-    search.came[origin] = -1
-    search.seen[origin] = stamp
-    size = 0
-    if origin == n:
-        for k in (0, 1, 4):
-            size = try_arc(chains, ways, query, search, origin, 2 * ways.length.shape[0] + k, origin, size)
-    else:
-        size = expand(chains, ways, query, search, origin, origin, size)
-    while size > 0:
-        node, size = pop(search, size)
-        if node == n + 1:
-            return True
-        if search.barred[node] == stamp:
-            continue
-        search.barred[node] = stamp  # done with: its way is the shortest
-        size = expand(chains, ways, query, search, node, origin, size)
-    return False
+    """A* from a node to the goal, under the stamp's bars and seals; the way is then in ``came``.
+
+    One loop without calls that pass many arrays: each would cost more than the arc it serves.
+    """
+    leave, ends, length, shut = chains.leave, chains.ends, ways.length, query.shut
+    best, came, seen, barred = search.best, search.came, search.seen, search.barred
+    n, arcs, stamp, exact = leave.shape[0], 2 * length.shape[0], search.stamp[0], search.stamp[1] != 0
+    best[origin], came[origin], seen[origin] = 0.0, -1, stamp
+    place, line, bowed = ways.place, query.line, query.line[2] != 0.0 or query.line[3] != 0.0
+    node, size = origin, 0
+    while node != n + 1:
+        for slot in range(6):
+            if node == n:
+                code = arcs + (0 if slot == 0 else 1 if slot == 1 else 4)
+                if slot > 2:
+                    break
+            elif slot < 4:
+                chain = leave[node, slot]
+                if chain < 0 or shut[chain] or ends[chain, 0] == ends[chain, 1]:
+                    continue
+                code = 2 * chain if ends[chain, 0] == node else 2 * chain + 1
+            else:
+                code = arcs + slot - 2
+                if query.joint[slot - 2] != node:
+                    continue
+            if node == origin and search.sealed[code] == stamp:
+                continue
+            head, cost = n + 1, 0.0
+            if code < arcs:
+                head, cost = ends[code >> 1, 1 - (code & 1)], length[code >> 1]
+            else:
+                cost = query.cost[code - arcs]
+                if code < arcs + 2:
+                    head = query.joint[code - arcs]
+            if (
+                head < n and bowed
+            ):  # among ways of one length, the one nearest to the straight line is shortest when tight
+                off = (place[head, 0] - line[0]) * line[2] + (place[head, 1] - line[1]) * line[3]
+                cost *= 1.0 + abs(off)
+            total = best[node] + cost
+            if total == np.inf or barred[head] == stamp or (seen[head] == stamp and best[head] <= total):
+                continue
+            if head < n and query.closed[head]:
+                continue
+            best[head], came[head], seen[head] = total, code, stamp
+            rest = 0.0
+            if head < n:
+                rest = search.ahead[head] if exact else bound(ways.sight, query.sight, head)
+            if rest < np.inf:
+                size = push(search.key, search.node, size, total + rest, head)
+        while size > 0 and (node == origin or barred[node] == stamp):
+            node, size = pop(search.key, search.node, size)
+            if barred[node] != stamp:
+                break
+        else:
+            return False
+        if node < n:
+            barred[node] = stamp  # done with: its way is the shortest
+    return True
 
 
 @compiled
-def expand(chains: Chains, ways: Ways, query: Query, search: Search, node: int, origin: int, size: int) -> int:
-    """Try all arcs out of a pathgraph node; returns the heap's size."""
-    for direction in range(4):
-        chain = chains.leave[node, direction]
-        if chain >= 0 and not query.shut[chain] and chains.ends[chain, 0] != chains.ends[chain, 1]:
-            code = 2 * chain if chains.ends[chain, 0] == node else 2 * chain + 1
-            size = try_arc(chains, ways, query, search, node, code, origin, size)
-    for k in (2, 3):
-        if query.joint[k] == node:
-            size = try_arc(chains, ways, query, search, node, 2 * ways.length.shape[0] + k, origin, size)
-    return size
-
-
-@compiled
-def try_arc(
-    chains: Chains, ways: Ways, query: Query, search: Search, node: int, code: int, origin: int, size: int
-) -> int:
-    """Relax one arc; returns the heap's size."""
-    stamp = search.stamp[0]
-    if node == origin and search.sealed[code] == stamp:
-        return size
-    head = head_of(chains, query, code)
-    total = search.best[node] + arc_cost(ways, query, code)
-    if total == np.inf or search.barred[head] == stamp or (search.seen[head] == stamp and search.best[head] <= total):
-        return size
-    if head < chains.node.shape[0] and query.closed[head]:
-        return size
-    search.best[head] = total
-    search.came[head] = code
-    search.seen[head] = stamp
-    return push(search, size, total + remaining(ways, query, search, head), head)
-
-
-@compiled
-def remaining(ways: Ways, query: Query, search: Search, node: int) -> float:
-    """A lower bound of the way from a node to the goal: exact when known, else the straight line."""
-    if node >= ways.place.shape[0]:
-        return 0.0
-    if search.stamp[1]:
-        return float(search.ahead[node])
-    return reach(ways.place[node, 0] - query.goal[0], ways.place[node, 1] - query.goal[1])
+def bound(sight: Floats, goal: Floats, node: int) -> float:
+    """A lower bound of the way from a node to the goal by the triangle inequality over the landmarks."""
+    least = 0.0
+    for k in range(goal.shape[0]):
+        ahead = abs(sight[node, k] - goal[k])
+        if ahead > least:  # false for two infinities
+            least = ahead
+    return least
 
 
 @compiled
@@ -176,66 +184,36 @@ def tail_of(chains: Chains, query: Query, code: int) -> int:
 
 
 @compiled
-def survey(chains: Chains, ways: Ways, query: Query, search: Search) -> None:
-    """Fill ``ahead`` with the exact distances to the goal: Dijkstra, backwards."""
-    n = chains.node.shape[0]
-    search.ahead[:] = np.inf
+def survey(chains: Chains, ways: Ways, query: Query, search: Search, limit: float) -> None:
+    """Fill ``ahead`` with the exact distances to the goal as far as a limit: Dijkstra, backwards."""
+    leave, ends, length, ahead = chains.leave, chains.ends, ways.length, search.ahead
+    n = leave.shape[0]
+    ahead[:] = np.inf
     size = 0
     for k in (2, 3):
         node = query.joint[k]
-        if query.cost[k] < np.inf and query.cost[k] < search.ahead[node] and not query.closed[node]:
-            search.ahead[node] = query.cost[k]
-            size = push(search, size, query.cost[k], node)
+        if query.cost[k] < np.inf and query.cost[k] < ahead[node] and not query.closed[node]:
+            ahead[node] = query.cost[k]
+            size = push(search.key, search.node, size, query.cost[k], node)
     while size > 0:
         key = search.key[0]
-        node, size = pop(search, size)
-        if key > search.ahead[node]:
+        node, size = pop(search.key, search.node, size)
+        if key > limit:
+            break
+        if key > ahead[node]:
             continue
         for direction in range(4):
-            chain = chains.leave[node, direction]
+            chain = leave[node, direction]
             if chain < 0 or query.shut[chain]:
                 continue
-            other = chains.ends[chain, 0] if chains.ends[chain, 1] == node else chains.ends[chain, 1]
-            total = key + ways.length[chain]
-            if total < search.ahead[other] and not query.closed[other]:
-                search.ahead[other] = total
-                size = push(search, size, total, other)
-    search.ahead[n + 1] = 0.0
-    search.ahead[n] = query.cost[4]
+            other = ends[chain, 0] if ends[chain, 1] == node else ends[chain, 1]
+            total = key + length[chain]
+            if total < ahead[other] and not query.closed[other]:
+                ahead[other] = total
+                size = push(search.key, search.node, size, total, other)
+    ahead[n + 1] = 0.0
+    ahead[n] = query.cost[4]
     for k in (0, 1):
         if query.cost[k] < np.inf:
-            search.ahead[n] = min(search.ahead[n], query.cost[k] + search.ahead[query.joint[k]])
+            ahead[n] = min(ahead[n], query.cost[k] + ahead[query.joint[k]])
     search.stamp[1] = 1
-
-
-@compiled
-def push(search: Search, size: int, key: float, node: int) -> int:
-    """Put a node on the heap; returns the heap's size."""
-    k = size
-    while k > 0:
-        parent = (k - 1) >> 1
-        if search.key[parent] <= key:
-            break
-        search.key[k], search.node[k] = search.key[parent], search.node[parent]
-        k = parent
-    search.key[k], search.node[k] = key, node
-    return size + 1
-
-
-@compiled
-def pop(search: Search, size: int) -> tuple[int, int]:
-    """Take the most promising node; returns it and the heap's size."""
-    top = search.node[0]
-    size -= 1
-    key, node = search.key[size], search.node[size]
-    k = 0
-    while 2 * k + 1 < size:
-        child = 2 * k + 1
-        if child + 1 < size and search.key[child + 1] < search.key[child]:
-            child += 1
-        if search.key[child] >= key:
-            break
-        search.key[k], search.node[k] = search.key[child], search.node[child]
-        k = child
-    search.key[k], search.node[k] = key, node
-    return top, size

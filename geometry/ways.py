@@ -9,9 +9,12 @@ import numpy as np
 from geometry.chains import Chains, Floats, Ints, find, is_node, onward, stride
 from geometry.compiled import compiled
 from geometry.distance import Squares
+from geometry.heap import pop, push
 from geometry.rope import Rope, measure_line, new_rope, tighten_word
 from geometry.runs import Runs, extend, symbol_between
 from geometry.skeleton import States, steepest
+
+LANDMARKS = 6
 
 
 class Ways(NamedTuple):
@@ -23,6 +26,8 @@ class Ways(NamedTuple):
     """(m,) the length of the tight rope between the chain's ends, in squares."""
     place: Floats
     """(n, 2) the nodes' centres, in squares."""
+    sight: Floats
+    """(n, landmarks) distances over the pathgraph from the landmarks; infinite where there is no way."""
 
 
 class Anchor(NamedTuple):
@@ -47,7 +52,7 @@ def find_ways(square: Squares, chains: Chains, runs: Runs, body: bool) -> Ways:
     word, line = np.empty(longest, np.int32), np.empty((4 * longest + 8, 2))
     measure_ways(chains, runs, body, width, symbol, length, word, line, new_rope(2 * longest))
     place = np.stack([chains.node % width - 0.5, chains.node // width - 0.5], axis=1)
-    return Ways(symbol, length, place)
+    return Ways(symbol, length, place, sights(chains, length))
 
 
 @compiled
@@ -73,6 +78,44 @@ def measure_ways(
         ends = (a % width - 0.5, a // width - 0.5, b % width - 0.5, b // width - 0.5)
         corners = tighten_word(runs, body, word, size, ends, rope, line)
         length[chain] = measure_line(line, corners)
+
+
+def sights(chains: Chains, length: Floats) -> Floats:
+    """Distances from landmarks: each next one is the node furthest from those before (Goldberg and Harrelson 2005)."""
+    n = len(chains.node)
+    sight = np.full((n, min(LANDMARKS, n)), np.inf)
+    key, node = np.empty(2 * len(length) + 8), np.empty(2 * len(length) + 8, np.int32)
+    nearest, spot = np.full(n, np.inf), 0
+    for k in range(sight.shape[1]):
+        distances_from(chains, length, spot, sight[:, k], key, node)
+        if k == 0:  # the first is only a place to start from
+            first = np.where(np.isfinite(sight[:, 0]), sight[:, 0], -1.0)
+            spot = int(np.argmax(first))
+            sight[:, 0] = np.inf
+            distances_from(chains, length, spot, sight[:, 0], key, node)
+        nearest = np.minimum(nearest, sight[:, k])
+        spot = int(np.argmax(nearest))
+    return sight
+
+
+@compiled
+def distances_from(chains: Chains, length: Floats, spot: int, out: Floats, key: Floats, node: Ints) -> None:
+    """Dijkstra over the whole pathgraph."""
+    out[spot] = 0.0
+    size = push(key, node, 0, 0.0, spot)
+    while size > 0:
+        done = key[0]
+        here, size = pop(key, node, size)
+        if done > out[here]:
+            continue
+        for direction in range(4):
+            chain = chains.leave[here, direction]
+            if chain < 0:
+                continue
+            other = chains.ends[chain, 0] if chains.ends[chain, 1] == here else chains.ends[chain, 1]
+            if done + length[chain] < out[other]:
+                out[other] = done + length[chain]
+                size = push(key, node, size, out[other], other)
 
 
 @compiled

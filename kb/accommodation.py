@@ -25,7 +25,8 @@ from kb.lattice import CENTRE, Lattice
 from kb.retina import FIELDS, count_ranges
 
 MEMORY = 12  # looks by which angles are judged: those that contradict older looks are gone already
-MOST_REPLAYS = 6  # lattices that are tried on all looks before one is believed
+MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one is believed
+NONE_FITS = 10**6  # misfits of no lattice at all
 MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are blamed for what contradicts
 NEAR = 2  # squares about the predicted place in which Utak is looked for first
 Place = tuple[float, float]
@@ -136,11 +137,14 @@ class Memory:
         explanations = [first]
         explanations += [self._explanation("blocked", stop, ranges, predicted) for stop in stops]
         explanations += [self._explanation("slipped", place, ranges, predicted) for place in _around(predicted)]
-        if not left and self.searches < MOST_SEARCHES:
+        lattice, misfits = self._borne_out(left, look)
+        if misfits and self.searches < MOST_SEARCHES:
             self.searches += 1
-            left = search(recent)
+            found = search(recent)
+            another, fewer = self._borne_out(found, look)
+            if fewer < misfits:
+                left, lattice, misfits = found, another, fewer
         if left:
-            lattice, misfits = self._borne_out(left, look)
             place = lattice.place_from_utak(*look.place)
             explanations.append(Explanation("turned", place, lattice, misfits, 0.0))
         chosen = self._choose(explanations)
@@ -150,8 +154,10 @@ class Memory:
 
     def _borne_out(self, left: tuple[Hypothesis, ...], look: Look) -> tuple[Lattice, int]:
         """Of the lattices left, the one that all looks bear out best, and how many fields it leaves as noise."""
+        if not left:
+            return self.lattice, NONE_FITS
         tried: list[tuple[int, int]] = []
-        lattices = candidates(left, self.lattice)[:MOST_REPLAYS]
+        lattices = candidates(left, self.lattice)[: max(6, MOST_REPLAYS // len(self.looks))]
         for number, lattice in enumerate(lattices):
             tried.append((_replay(lattice, [*self.looks, look])[1], number))
             if tried[-1][0] == 0:

@@ -28,7 +28,7 @@ def percept_facts(percept: Percept, touched: Iterable[tuple[str, str]] = ()) -> 
     facts = []
     for region in percept.regions:
         facts.append(f"region({region.name},{'nonzero' if region.occupied else 'zero'},{region.certain})")
-        facts.append(f"extent({region.name},{region.extent})")
+        facts += [f"extent({region.name},{region.extent})", f"mass({region.name},{region.mass})"]
         facts += [f"rim({region.name})"] * region.rim + [f"own({region.name})"] * region.own
     facts += [f"surrounds({outer},{inner})" for outer, inner in sorted(percept.surrounds)]
     facts += [f"touched({region},{colour})" for region, colour in sorted(set(touched))]

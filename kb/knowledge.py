@@ -48,7 +48,7 @@ class Knowledge:
         self._feel(impression)
         view = self.memory.evidence.view()
         occupied = view.seen & (view.probability > SPACE)
-        percept, labels = map_regions(occupied, view.seen, view.state != OPEN)
+        percept, labels = map_regions(occupied, view.seen, view.state != OPEN, view.probability)
         touched = [(f"part{labels[view.locate(x, y)]}", colour) for (x, y), colour in sorted(self.felt.items())]
         kinds = interpret(percept, touched, self.rules)
         model = WorldModel(

@@ -83,13 +83,15 @@ class QueryEngine:
 
     def close(self) -> None:
         """End the process."""
-        if self._process is not None:
-            self._process.kill()
-            self._process.wait()
-            for stream in (self._process.stdin, self._process.stdout):
-                if stream is not None:
+        worker, self._process = self._process, None
+        if worker is None:
+            return
+        worker.kill()
+        worker.wait()
+        for stream in (worker.stdin, worker.stdout):
+            if stream is not None:
+                with suppress(OSError):  # what it has not read is lost
                     stream.close()
-        self._process = None
 
     def ask(self, facts: Sequence[str], query: str) -> Answer:
         """Answer a query over facts such as `kind(o1,object,95).`

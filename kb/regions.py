@@ -21,6 +21,7 @@ class Region(NamedTuple):
     """One region. certain: percent of its squares that are as its cells say, whatever counts the gray levels stand for.
 
     rim: does it touch what is not seen? extent: the longer side of its containing rectangle, in squares.
+    mass: tenths of squares that are expected to be occupied.
     """
 
     name: str
@@ -28,6 +29,7 @@ class Region(NamedTuple):
     certain: int
     rim: bool
     extent: int
+    mass: int
     own: bool = False
 
 
@@ -57,10 +59,13 @@ def impression_regions(levels: tuple[int, ...]) -> tuple[Percept, dict[str, froz
     return _percept(regions, touching), cells
 
 
-def map_regions(occupied: Mask, seen: Mask, certain: Mask) -> tuple[Percept, NDArray[np.int32]]:
+def map_regions(
+    occupied: Mask, seen: Mask, certain: Mask, probability: NDArray[np.float32] | None = None
+) -> tuple[Percept, NDArray[np.int32]]:
     """The regions of the map, and a label array (rows, columns): 0 unseen, n for the region named `part<n>`.
 
-    occupied: where something may be; certain: where the counts settle it. Arrays are (rows, columns) of the same shape.
+    occupied: where something may be; certain: where the counts settle it; probability: that it is (1 where occupied,
+    when left out). Arrays are (rows, columns) of the same shape.
     """
     zero, full = components(seen & ~occupied), components(seen & occupied)
     labels = np.where(full.labels > 0, full.labels + zero.number, zero.labels).astype(np.int32)
@@ -74,9 +79,13 @@ def map_regions(occupied: Mask, seen: Mask, certain: Mask) -> tuple[Percept, NDA
             open_ |= set() if p and q else {max(p, q)}
     size = np.bincount(labels.ravel(), minlength=count + 1)
     sure = np.bincount(labels.ravel(), certain.ravel(), minlength=count + 1)
+    weight = occupied if probability is None else probability
+    mass = np.bincount(labels.ravel(), weight.ravel(), minlength=count + 1)
     extents = _extents(labels, count)
     regions = tuple(
-        Region(f"part{n}", n > zero.number, int(100 * sure[n] // size[n]), n in open_, int(extents[n]))
+        Region(
+            f"part{n}", n > zero.number, int(100 * sure[n] // size[n]), n in open_, int(extents[n]), round(10 * mass[n])
+        )
         for n in range(1, count + 1)
     )
     return _percept(regions, touching), labels
@@ -101,8 +110,9 @@ def _cell_region(name: str, members: Iterable[int], levels: tuple[int, ...], ran
     north = [FIELDS[c].north for c in cells] + [FIELDS[c].north + FIELDS[c].side for c in cells]
     extent = max(max(east) - min(east), max(north) - min(north))
     if name == "own":
-        return Region(name, True, 100, False, 1, True)
-    return Region(name, occupied, 100 * right // area, bool(rim() & set(cells)), extent)
+        return Region(name, True, 100, False, 1, 10, True)
+    mass = round(5 * float(ranges[cells].sum()))
+    return Region(name, occupied, 100 * right // area, bool(rim() & set(cells)), extent, mass)
 
 
 def _extents(labels: NDArray[np.int32], count: int) -> NDArray[np.int64]:

@@ -20,7 +20,7 @@ Mask = NDArray[np.bool_]
 Squares = NDArray[np.int64]  # flat indices
 LEVELS = (SPACE, 0.15, 0.3, 0.45)  # up to which probability of being occupied a square may be crossed
 UNSEEN = len(LEVELS)  # the level at which unseen squares may be crossed too
-PRICE = 12.0  # squares that each level of uncertainty costs
+PRICE = 6.0  # squares that each level of uncertainty costs
 WARY = 0.3  # beside squares that are occupied with at least this probability a move is made only over settled ones
 
 

@@ -5,6 +5,7 @@ Every line is written and flushed before the next command is given, so that a ki
 
 import json
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -94,18 +95,20 @@ class EpisodeLog:
         if resume and Path(path).exists():
             self._recorded = complete_lines(path)
         try:
-            self._stream = Path(path).open("r+b" if self._recorded else "wb", buffering=0)  # noqa: SIM115
-        except OSError as error:
-            raise CannotOpenError(str(path), error.strerror or str(error)) from None
-        self._stream.truncate(sum(map(len, self._recorded)))
-        self._stream.seek(0, 2)
+            self._stream = Path(path).open("r+b" if self._recorded else "wb")  # noqa: SIM115
+            if self._recorded:
+                self._stream.truncate(sum(map(len, self._recorded)))
+                self._stream.seek(0, 2)
+        except (OSError, ValueError) as error:
+            raise CannotOpenError(str(path), getattr(error, "strerror", None) or str(error)) from None
 
     def __enter__(self) -> "EpisodeLog":
         return self
 
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, at: TracebackType | None) -> None:
         if self._stream is not None:
-            self._stream.close()
+            with suppress(OSError):  # what could not be written was reported then
+                self._stream.close()
 
     def write(self, line: Line) -> None:
         """Write one line at once; while resuming, check that it is the one recorded (BadInputError when not)."""
@@ -116,4 +119,8 @@ class EpisodeLog:
                 what = "the run does not repeat this line: another scenario, other options or another version of utak"
                 raise _none(str(self._path), self._number, what)
         elif self._stream is not None:
-            self._stream.write(text)
+            try:
+                self._stream.write(text)
+                self._stream.flush()
+            except OSError as error:
+                raise CannotOpenError(str(self._path), f"it cannot be written: {error.strerror}") from None

@@ -68,8 +68,8 @@ class Running:
 class Recorded:
     """An episode that was written to a file."""
 
-    def __init__(self, episode: Episode) -> None:
-        self._episode = episode
+    def __init__(self, name: str, episode: Episode) -> None:
+        self._name, self._episode = name, episode
         self._at = 0
 
     @property
@@ -91,9 +91,13 @@ class Recorded:
 
     def picture(self) -> str:
         """The table at this step."""
-        world = recorded_world(self._episode.header)
-        polygons = {name: shapely.Polygon(ring) for name, ring in self.line["objects"].items()}
-        x, y = self.line["utak"]
+        try:
+            world = recorded_world(self._episode.header)
+            polygons = {name: shapely.Polygon(ring) for name, ring in self.line["objects"].items()}
+            x, y = self.line["utak"]
+        except (KeyError, IndexError, TypeError, ValueError, AttributeError):
+            what = f"step {self._at} does not record the table: the episode is damaged"
+            raise BadInputError([Problem(self._name, Span(self._at + 2, 1, 1), what)]) from None
         return draw(world, polygons, (x, y))
 
 
@@ -107,7 +111,7 @@ def open_story(path: Path | str, settings: Settings) -> Story:
     episode = read_episode(path)
     if not episode.steps:
         raise BadInputError([Problem(str(path), Span(1, 1, 1), "the episode ends before its first step")])
-    return Recorded(episode)
+    return Recorded(str(path), episode)
 
 
 def facts_of_line(line: Line) -> list[str]:

@@ -12,22 +12,30 @@ from simulator import exits
 def add(parts: Any) -> None:
     """Declare the subcommand."""
     part = parts.add_parser("check", help="check scenarios or single files of them")
-    part.add_argument("paths", nargs="+", metavar="FILE|FOLDER", help="a scenario, or a file of one")
+    part.add_argument("paths", nargs="+", metavar="FILE|FOLDER", help="a scenario, a folder of them, or a file of one")
     part.set_defaults(execute=execute)
 
 
 def execute(options: argparse.Namespace) -> int:
     """Check every path; all problems are reported together."""
     problems: list[Problem] = []
-    for path in options.paths:
+    for path in [part for given in options.paths for part in _parts(Path(given))]:
         try:
-            _check(Path(path))
+            _check(path)
             print(f"{path}: ok")
         except BadInputError as bad:
             problems += bad.problems
     if problems:
         raise BadInputError(problems)
     return exits.DONE
+
+
+def _parts(path: Path) -> list[Path]:
+    """The scenarios in a folder that is none itself; else the path alone."""
+    names = ("world.lp", "world.txt", "start.lp", "goal.lp")
+    if not path.is_dir() or any((path / name).exists() for name in names):
+        return [path]
+    return sorted({goal.parent for goal in path.rglob("goal.lp")}) or [path]
 
 
 def _check(path: Path) -> None:

@@ -4,7 +4,6 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from kb.problems import BadInputError, Problem, Span
 from simulator import exits
 
 if TYPE_CHECKING:
@@ -43,6 +42,9 @@ def execute(options: argparse.Namespace) -> int:
     from simulator.scenario import read_scenario
     from simulator.session import Session
 
+    if options.resume and options.log is None:
+        print("utak run: --resume needs --log EP.jsonl", file=sys.stderr)
+        return exits.USAGE
     scenario = read_scenario(options.scenario)
     settings = settings_of(options, _recorded(options))
     with EpisodeLog(options.log, options.resume) as log:
@@ -79,8 +81,6 @@ def _recorded(options: argparse.Namespace) -> dict[str, Any] | None:
 
     if not options.resume:
         return None
-    if options.log is None:
-        raise BadInputError([Problem("--resume", Span(1, 1, 1), "--resume needs --log EP.jsonl")])
     if not Path(options.log).exists() or not complete_lines(options.log):
         return None
     found = read_episode(options.log).header.get("options")

@@ -64,7 +64,9 @@ def test_bad_input_and_what_cannot_be_opened(scene: Path, capsys: pytest.Capture
     assert cli.main(["run", str(scene / "none")]) == 66
     assert cli.main(["run", str(scene), "--kb", str(scene)]) == 66
     assert cli.main(["run", str(scene), "--log", str(scene / "no" / "ep.jsonl")]) == 66
-    assert cli.main(["run", str(scene), "--resume"]) == 65
+    assert cli.main(["run", str(scene), "--log", str(scene)]) == 66
+    assert cli.main(["run", str(scene), "--log", "/dev/full"]) == 66
+    assert cli.main(["run", str(scene), "--resume"]) == 2
     (scene / "goal.lp").write_text("at(utak, x).")
     (scene / "world.lp").write_text("table(4, 4)")
     assert cli.main(["check", str(scene)]) == 65
@@ -77,6 +79,8 @@ def test_check_knows_files_by_their_names(scene: Path, capsys: pytest.CaptureFix
     files = [str(scene / name) for name in ("world.lp", "start.lp", "goal.lp", "expect.lp")]
     assert cli.main(["check", str(scene), *files]) == 0
     assert capsys.readouterr().out.count(": ok\n") == 5
+    assert cli.main(["check", str(scene.parent)]) == 0
+    assert capsys.readouterr().out == f"{scene}: ok\n"
     (scene / "more.lp").write_text("")
     assert cli.main(["check", str(scene / "more.lp")]) == 65
     assert cli.main(["check", str(scene / "goal.txt")]) == 66

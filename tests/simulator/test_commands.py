@@ -105,7 +105,9 @@ def test_the_prompt_reads_an_episode_cut_short(
     bare = json.dumps({"utak": "episode", "version": 1}) + "\n" + json.dumps({"step": 0}) + "\n"
     path.write_text(bare)
     assert repl(monkeypatch, "show\nfacts\nstep\n?- node(X).\n", str(path)) == 0
-    assert capsys.readouterr().out.endswith("none\nthere are no more steps\nno\n")
+    out = capsys.readouterr().out
+    assert f"{path}:2:1-1: error: step 0 does not record the table" in out
+    assert out.endswith("none\nthere are no more steps\nno\n")
 
 
 class DoneRobot(scripted_robot.Robot):

@@ -1,9 +1,13 @@
 """world.lp and world.txt: what they mean, and what is refused."""
 
+import random
+import tempfile
 from pathlib import Path
 
 import pytest
 import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from kb.problems import BadInputError, CannotOpenError
 from simulator.contents import World
@@ -108,6 +112,24 @@ def test_a_picture_is_a_world(tmp_path: Path) -> None:
 
 def test_what_is_drawn_is_read_back(tmp_path: Path) -> None:
     assert draw(picture(tmp_path, PICTURE)) == PICTURE
+
+
+rows = st.integers(1, 7).flatmap(
+    lambda width: st.lists(st.text("....bbgc", min_size=width, max_size=width), min_size=1, max_size=7)
+)
+
+
+@settings(deadline=None)
+@given(rows, st.randoms(use_true_random=False))
+def test_any_picture_is_drawn_as_it_was_read(rows: list[str], draw_from: random.Random) -> None:
+    j, i = draw_from.randrange(len(rows)), draw_from.randrange(len(rows[0]))
+    rows[j] = rows[j][:i] + "U" + rows[j][i + 1 :]
+    text = "".join(f"{row}\n" for row in rows)
+    with tempfile.TemporaryDirectory() as folder:
+        got = picture(Path(folder), text)
+    assert draw(got) == text
+    assert all(thing.polygon.is_valid for thing in (*got.movable, *got.fixed))
+    assert got.verge.area == text.count("b")
 
 
 def test_a_picture_needs_no_verge(tmp_path: Path) -> None:

@@ -1,0 +1,171 @@
+"""First contact: exact, beside a sweep with shapely and Box2D's time of impact, in one process.
+
+    python -m benchmarks.contact [--motions N] [--check N]
+
+The sweep looks at 32 poses of each motion and then halves; Box2D's b2TimeOfImpact takes convex pieces only, so the
+body and the obstacles are convex here. --check compares that many random pushes and turns of all kinds of shapes with
+shapely and counts disagreements: a motion that shapely finds to go into something, or one that stopped too early.
+"""
+
+import argparse
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import shapely
+from shapely import affinity, box
+
+from geometry.contact import Body, Obstacles
+from geometry.rigid import Motion, Rotate, Translate
+
+ELL = shapely.Polygon([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)])
+HORSESHOE = shapely.Polygon([(0, 0), (3, 0), (3, 2), (2, 2), (2, 1), (1, 1), (1, 2), (0, 2)])
+KINDS = [box(0, 0, 2, 2), box(0, 0, 4, 1), ELL, HORSESHOE, shapely.Polygon([(0, 0), (4, 0), (4, 3)])]
+
+
+def swept(body: Any, solid: Any, motion: Motion, steps: int = 32) -> float:
+    """The fraction that a sweep finds: the first of some poses that overlaps, then halved down to 1e-6."""
+    poses = [motion.part(t).carry(body) for t in np.linspace(0, 1, steps)]
+    hit = np.nonzero(shapely.intersects(solid, poses))[0]
+    if len(hit) == 0:
+        return 1.0
+    low, high = max(int(hit[0]) - 1, 0) / (steps - 1), int(hit[0]) / (steps - 1)
+    while high - low > 1e-6:
+        middle = (low + high) / 2
+        if solid.intersects(motion.part(middle).carry(body)):
+            high = middle
+        else:
+            low = middle
+    return low
+
+
+def box2d_pushes(body: Any, obstacles: list[Any], vectors: Any) -> int:
+    """Box2D's time of impact of a pushed convex body with every convex obstacle; how many motions were stopped."""
+    import Box2D
+
+    moving = Box2D.b2PolygonShape(vertices=shapely.get_coordinates(body)[:-1].tolist())
+    still = [Box2D.b2PolygonShape(vertices=shapely.get_coordinates(o)[:-1].tolist()) for o in obstacles]
+    rest = Box2D.b2Sweep(a0=0, a=0, c0=(0, 0), c=(0, 0), localCenter=(0, 0), alpha0=0)
+    stopped = 0
+    for dx, dy in vectors.tolist():
+        sweep = Box2D.b2Sweep(a0=0, a=0, c0=(0, 0), c=(dx, dy), localCenter=(0, 0), alpha0=0)
+        stopped += any(
+            Box2D.b2TimeOfImpact(shapeA=moving, shapeB=s, sweepA=sweep, sweepB=rest, tMax=1.0)[1] < 1.0 for s in still
+        )
+    return stopped
+
+
+def rate(work: Callable[[], Any], count: int, runs: int = 25) -> float:
+    """Motions a second, the best of some runs."""
+    best = math.inf
+    for _ in range(runs):
+        begin = time.perf_counter()
+        work()
+        best = min(best, time.perf_counter() - begin)
+    return count / best
+
+
+def speed(count: int, pieces: int) -> None:
+    """One table: pushes and turns a second against so many convex obstacles."""
+    rng = np.random.default_rng(pieces)
+    body, obstacles = box(-1, -1, 1, 1), []
+    while len(obstacles) < pieces:
+        x, y = rng.uniform(-12, 12, 2)
+        piece = affinity.rotate(box(x, y, x + 1.5, y + 1), float(rng.uniform(0, 90)))
+        if piece.distance(body) > 0.1:
+            obstacles.append(piece)
+    vectors, degrees = rng.uniform(-8, 8, (count, 2)), rng.uniform(-180, 180, count)
+    prepared, mover = Obstacles(obstacles), Body(body)
+    prepared.pushes(mover, vectors[:2])
+    prepared.turns(mover, degrees[:2], vectors[:2])
+    solid = shapely.union_all(obstacles)
+    shapely.prepare(solid)
+    few = max(count // 40, 20)
+    pushes = [Translate(*v) for v in vectors[:few].tolist()]
+    turns = [Rotate(d, (x, y)) for d, (x, y) in zip(degrees[:few].tolist(), vectors[:few].tolist(), strict=True)]
+    rows = [
+        ("push", rate(lambda: prepared.pushes(mover, vectors), count)),
+        ("turn", rate(lambda: prepared.turns(mover, degrees, vectors), count)),
+        ("push, one call each", rate(lambda: [prepared.first_contact(mover, m) for m in pushes], few)),
+        ("turn, one call each", rate(lambda: [prepared.first_contact(mover, m) for m in turns], few)),
+        ("push, shapely sweep", rate(lambda: [swept(body, solid, m) for m in pushes], few)),
+        ("turn, shapely sweep", rate(lambda: [swept(body, solid, m) for m in turns], few)),
+    ]
+    try:
+        rows.append(("push, Box2D", rate(lambda: box2d_pushes(body, obstacles, vectors[:few]), few)))
+    except ImportError:
+        print("Box2D is not installed (pip install Box2D)")
+    print(f"{len(prepared.surface.edges)} edges")
+    for title, each in rows:
+        print(f"  {title:22}{each:12.0f} a second")
+
+
+def disagreements(count: int) -> int:
+    """Random motions, one after another from where the last one stopped, looked at again with shapely."""
+    rng = np.random.default_rng(1)
+    bad = done = 0
+    while done < count:
+        still = [_thrown(rng) for _ in range(4)]
+        body = _thrown(rng)
+        if any(body.relate(o)[0] == "2" for o in still):
+            continue
+        prepared = Obstacles(still)
+        for _ in range(5):
+            motion = _motion(rng)
+            fraction = prepared.first_contact(Body(body), motion).fraction
+            bad += _disagrees(body, still, motion, fraction)
+            body = motion.part(fraction).carry(body)
+            done += 1
+    return bad
+
+
+def _thrown(rng: np.random.Generator) -> Any:
+    """A shape at a random place: half of them whole, with many flush contacts to come."""
+    shape = KINDS[int(rng.integers(len(KINDS)))]
+    if rng.random() < 0.5:
+        turned = affinity.rotate(shape, 90.0 * int(rng.integers(4)), origin=(0, 0))
+        return affinity.translate(turned, *np.round(rng.uniform(-6, 6, 2)))
+    return affinity.translate(affinity.rotate(shape, float(rng.uniform(0, 360))), *rng.uniform(-6, 6, 2))
+
+
+def _motion(rng: np.random.Generator) -> Motion:
+    """A random push or turn, every other one along the axes."""
+    if rng.random() < 0.5:
+        dx, dy = rng.uniform(-9, 9, 2) if rng.random() < 0.5 else rng.integers(-9, 10, 2) * rng.integers(0, 2, 2)
+        return Translate(float(dx), float(dy))
+    x, y = rng.uniform(-6, 6, 2)
+    return Rotate(float(rng.uniform(-400, 400)), (float(x), float(y)))
+
+
+def _disagrees(body: Any, still: list[Any], motion: Motion, fraction: float) -> bool:
+    """Whether shapely finds the motion to go into something, or to have stopped too early."""
+    travelled = motion.part(fraction)
+    poses = [travelled.part(t).carry(body) for t in np.linspace(0, 1, 24)]
+    for obstacle in still:
+        if obstacle.intersects(shapely.union_all(poses)):
+            cores = shapely.buffer(poses, -1e-6, join_style="mitre")
+            if shapely.intersects(obstacle.buffer(-1e-6, join_style="mitre"), cores).any():
+                return True
+    if fraction == 1.0:
+        return False
+    length = math.hypot(*motion) if isinstance(motion, Translate) else abs(math.radians(motion.degrees)) * 10
+    on = [motion.part(fraction + step / length).carry(body) for step in (1e-5, 1e-4, 1e-3)]
+    return not any(pose.intersection(obstacle).area > 0.0 for pose in on for obstacle in still)
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--motions", type=int, default=2_000)
+    parser.add_argument("--check", type=int, default=0)
+    args = parser.parse_args()
+    for pieces in (6, 69):
+        speed(args.motions, pieces)
+    if args.check:
+        print(f"{disagreements(args.check)} disagreements with shapely in {args.check} motions")
+
+
+if __name__ == "__main__":
+    main()

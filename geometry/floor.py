@@ -1,0 +1,151 @@
+"""A floor prepared for many motions: obstacles as one, a raster of distances to them, and which of them are near where.
+
+All that does not depend on the body is made once; what depends on its radius is kept by radius. Kernels are plain loops
+for numba.
+"""
+
+import heapq
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from geometry.compiled import compiled
+from geometry.contact import Obstacles
+from geometry.rigid import Pose
+from geometry.separation import Ground, Mover, inside, point_to_edge
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+PIXELS = 128  # along the longer side of the raster
+BLOCK = 8  # pixels along the side of a block
+RIM = 0.1  # of the longer side, around the bounds
+TOUCH = 1e-6  # squares: a start or goal may be this deep in an obstacle, or out of bounds
+WALL = 6.0  # going through pixels where the body's disc does not fit looks so much dearer
+
+
+class Floor:
+    """Obstacles and bounds, prepared once for many calls of plan_motion.
+
+    Parameters
+    ----------
+    obstacles : shapely geometry or a sequence of them, squares, table frame. Only polygons count.
+    bounds : (x0, y0, x1, y1) of the body's reference point; None for the box around the obstacles.
+    """
+
+    def __init__(self, obstacles: Any, bounds: Sequence[float] | None = None) -> None:
+        several = list(obstacles) if isinstance(obstacles, list | tuple) else [obstacles]
+        self.polygons = [part for each in several for part in shapely.get_parts(each) if part.geom_type == "Polygon"]
+        if bounds is None:
+            bounds = shapely.total_bounds(self.polygons).tolist() if self.polygons else None
+        if bounds is None or not np.all(np.isfinite(bounds)) or bounds[2] <= bounds[0] or bounds[3] <= bounds[1]:
+            raise ValueError(f"bounds must be finite x0 < x1, y0 < y1, not {bounds}")
+        self.bounds = np.array(bounds, dtype=float)
+        self.surface = Obstacles(self.polygons).point_surface
+        self.side = float(max(self.bounds[2:] - self.bounds[:2]))
+        pixel = self.side * (1 + 2 * RIM) / PIXELS
+        corner = self.bounds[:2] - RIM * self.side
+        columns, rows = np.ceil((self.bounds[2:] - self.bounds[:2] + 2 * RIM * self.side) / pixel).astype(int)
+        self.frame = np.array([corner[0], corner[1], pixel])
+        self.raster = _distances(self.surface.hull, self.frame, int(rows), int(columns))
+        self._grounds: dict[float, Ground] = {}
+
+    def ground(self, mover: Mover) -> Ground:
+        """What the kernels need to know of the floor for a body of this radius."""
+        if mover.radius not in self._grounds:
+            self._grounds[mover.radius] = self._prepare(mover.radius)
+        return self._grounds[mover.radius]
+
+    def _prepare(self, radius: float) -> Ground:
+        rows, columns = self.raster.shape
+        down, across = math.ceil(rows / BLOCK), math.ceil(columns / BLOCK)
+        first, near = _blocks(self.surface.hull, self.frame, down, across, 2 * radius)
+        blocks = np.array([across, BLOCK])
+        return Ground(self.surface.hull, self.raster, self.frame, first, near, blocks, radius, self.bounds)
+
+    def has_room(self, shape: Any, points: Sequence[tuple[float, float]], pose: Pose) -> bool:
+        """Whether a body at a pose of its reference point is within bounds and at most touches obstacles."""
+        x0, y0, x1, y1 = self.bounds
+        if not (x0 - TOUCH <= pose.x <= x1 + TOUCH and y0 - TOUCH <= pose.y <= y1 + TOUCH):
+            return False
+        body = shapely.buffer(pose.place(shape), -TOUCH, join_style="mitre")
+        specks = [pose.place(shapely.Point(p)) for p in points]
+        if shapely.intersects(self.polygons, body).any():
+            return False
+        deep = [shapely.buffer(polygon, -TOUCH, join_style="mitre") for polygon in self.polygons] if specks else []
+        return not any(polygon.intersects(speck) for polygon in deep for speck in specks)
+
+    def ways(self, goals: npt.NDArray[np.bool_], radius: float) -> Floats:
+        """How far it is from every pixel to the nearest goal pixel for a disc: (rows, columns). A guess, never inf."""
+        return _ways(self.raster, goals, radius - self.frame[2], self.frame[2])
+
+    def pixel_of(self, x: float, y: float) -> npt.NDArray[np.bool_]:
+        """The raster with one pixel True: the one of a place."""
+        goals = np.zeros(self.raster.shape, bool)
+        column, row = ((np.array([x, y]) - self.frame[:2]) / self.frame[2]).astype(int)
+        goals[min(max(row, 0), len(goals) - 1), min(max(column, 0), goals.shape[1] - 1)] = True
+        return goals
+
+
+@compiled
+def _distances(edges: Floats, frame: Floats, rows: int, columns: int) -> Floats:
+    """The signed distance to the obstacles at every pixel's centre."""
+    raster = np.empty((rows, columns))
+    for row in range(rows):
+        y = frame[1] + (row + 0.5) * frame[2]
+        for column in range(columns):
+            x = frame[0] + (column + 0.5) * frame[2]
+            best = 1e12
+            for j in range(len(edges)):
+                best = min(best, point_to_edge(x, y, edges, j))
+            raster[row, column] = -math.sqrt(best) if inside(x, y, edges) else math.sqrt(best)
+    return raster
+
+
+@compiled
+def _blocks(edges: Floats, frame: Floats, rows: int, columns: int, reach: float) -> tuple[Ints, Ints]:
+    """For each block of pixels the edges within reach of a place in it: (blocks + 1,) where each list begins, lists."""
+    first = np.zeros(rows * columns + 1, np.int64)
+    near = np.empty(rows * columns * max(len(edges), 1), np.int64)
+    size = frame[2] * BLOCK
+    count = 0
+    for block in range(rows * columns):
+        x = frame[0] + (block % columns + 0.5) * size
+        y = frame[1] + (block // columns + 0.5) * size
+        for j in range(len(edges)):
+            if point_to_edge(x, y, edges, j) <= (reach + 0.7072 * size) ** 2:
+                near[count] = j
+                count += 1
+        first[block + 1] = count
+    return first, near[:count].copy()
+
+
+@compiled
+def _ways(raster: Floats, goals: npt.NDArray[np.bool_], radius: float, pixel: float) -> Floats:
+    """Dijkstra's algorithm from the goal pixels over the eight neighbours."""
+    rows, columns = raster.shape
+    ways = np.full(rows * columns, 1e15)
+    heap = [(0.0, 0)]
+    heap.pop()
+    for row in range(rows):
+        for column in range(columns):
+            if goals[row, column]:
+                ways[row * columns + column] = 0.0
+                heapq.heappush(heap, (0.0, row * columns + column))
+    while len(heap) > 0:
+        way, at = heapq.heappop(heap)
+        if way > ways[at]:
+            continue
+        row, column = at // columns, at % columns
+        for up in range(max(row - 1, 0), min(row + 2, rows)):
+            for along in range(max(column - 1, 0), min(column + 2, columns)):
+                step = pixel * (1.4142135623730951 if up != row and along != column else 1.0)
+                if raster[up, along] < radius:
+                    step *= WALL
+                if way + step < ways[up * columns + along]:
+                    ways[up * columns + along] = way + step
+                    heapq.heappush(heap, (way + step, up * columns + along))
+    return ways.reshape(rows, columns)

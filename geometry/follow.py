@@ -1,0 +1,150 @@
+"""Following a chain of cells hop by hop, and splitting what is to blame where a hop fails. Plain loops for numba."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from geometry.cells import Tree, split, splittable
+from geometry.compiled import compiled
+from geometry.hop import BLOCKED, hop, put
+from geometry.impact import Surface
+from geometry.separation import DEAD, FREE, OPEN, Ground, Mover
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int32]
+
+
+class Scene(NamedTuple):
+    """A body, where it moves, and the surface that it must not go into."""
+
+    mover: Mover
+    ground: Ground
+    surface: Surface
+
+
+class Way(NamedTuple):
+    """The poses of a way found so far.
+
+    poses: (n, 3) x, y, angle, the first being the start; used: (1,) how many of them are in use; goal: the pose to end
+    at, empty when the centre of the chain's last cell will do.
+    """
+
+    poses: Floats
+    used: npt.NDArray[np.int64]
+    goal: Floats
+
+
+@compiled
+def follow(tree: Tree, scene: Scene, chain: Ints, length: int, doubt: bool, way: Way) -> int:
+    """Check the hops of a chain and split what is to blame; how many cells were changed. 0: the way is free.
+
+    One doubtful cell may be jumped over. After a hop that fails the rest is followed as if it had not, so that one look
+    at a chain finds most of its faults. A cell that is to blame and too small to split is given up. doubt: the last
+    cell must be split in any case.
+    """
+    way.used[0] = 1
+    total = length + (1 if len(way.goal) > 0 else 0)
+    blamed, last, n = 0, -1, 0
+    here, there = np.empty(3), np.empty(3)
+    put(here, way.poses[0])
+    while n < total:
+        step = 0
+        for ahead in range(2):
+            if step > 0 or n + ahead >= total or (ahead == 1 and n < length and tree.kind[chain[n]] == FREE):
+                continue
+            if _stop_at(tree.middle, tree.kind, chain, length, way.goal, n + ahead, there) and _go(
+                tree, scene, chain, length, way, last, n + ahead, here, there
+            ):
+                step = ahead + 1
+        if step > 0:
+            last = n + step - 1
+            put(here, there)
+        else:
+            blamed += _blame(tree, scene, chain, last, n, length)
+            step, last = 1, -1
+            if n < length:
+                put(here, tree.middle[chain[n]])
+                last = n if tree.child[chain[n]] < 0 else -1
+        n += step
+    if doubt:
+        blamed += _divide(tree, scene, chain[length - 1])
+    return blamed
+
+
+@compiled
+def _stop_at(
+    middle: Floats, kind: npt.NDArray[np.int8], chain: Ints, length: int, goal: Floats, n: int, there: Floats
+) -> bool:
+    """Write the n-th stop of a chain: a cell's middle or, after the last, the goal. False: the body overlaps there."""
+    if n == length:
+        put(there, goal)
+        return True
+    put(there, middle[chain[n]])
+    return bool(kind[chain[n]] <= OPEN)
+
+
+@compiled
+def _go(
+    tree: Tree, scene: Scene, chain: Ints, length: int, way: Way, last: int, n: int, here: Floats, there: Floats
+) -> bool:
+    """Hop to the n-th stop, straight or by way of the face between the two cells, and write it down."""
+    if hop(scene.mover, scene.ground, scene.surface, here, there) == BLOCKED:
+        if last < 0 or n >= length or n != last + 1:
+            return False
+        middle = np.empty(3)
+        middle[0], middle[1], middle[2] = meeting(tree, chain[last], chain[n])
+        if hop(scene.mover, scene.ground, scene.surface, here, middle) == BLOCKED:
+            return False
+        if hop(scene.mover, scene.ground, scene.surface, middle, there) == BLOCKED:
+            return False
+        put(way.poses[way.used[0]], middle)
+        way.used[0] += 1
+    put(way.poses[way.used[0]], there)
+    way.used[0] += 1
+    return True
+
+
+@compiled
+def meeting(tree: Tree, a: int, b: int) -> tuple[float, float, float]:
+    """The pose in the middle of the face that two neighbouring cells share."""
+    middle = np.empty(3)
+    for k in range(3):
+        unit = tree.frame[2] if k < 2 else tree.frame[3]
+        size_a = tree.sizes[tree.box[a, 3], k // 2] * unit
+        size_b = tree.sizes[tree.box[b, 3], k // 2] * unit
+        a0, b0 = tree.box[a, k] * unit, tree.box[b, k] * unit
+        if k == 2 and b0 > a0 + size_a + 1e-12:
+            b0 -= 2 * math.pi
+        elif k == 2 and a0 > b0 + size_b + 1e-12:
+            b0 += 2 * math.pi
+        middle[k] = (max(a0, b0) + min(a0 + size_a, b0 + size_b)) / 2
+    return tree.frame[0] + middle[0], tree.frame[1] + middle[1], middle[2]
+
+
+@compiled
+def _blame(tree: Tree, scene: Scene, chain: Ints, last: int, n: int, length: int) -> int:
+    """Split the cell that a failed hop leads into, and the one that it leaves when that is as doubtful and as large."""
+    blamed = 0
+    if n < length and tree.kind[chain[n]] != FREE:
+        blamed += _divide(tree, scene, chain[n])
+    if last >= 0 and tree.kind[chain[last]] == OPEN:
+        large = n < length and tree.box[chain[last], 3] <= tree.box[chain[n], 3]
+        if blamed == 0 or large:
+            blamed += _divide(tree, scene, chain[last])
+    if blamed == 0 and n == length:
+        blamed += _divide(tree, scene, chain[length - 1])
+    return blamed
+
+
+@compiled
+def _divide(tree: Tree, scene: Scene, cell: int) -> int:
+    """Split a leaf, or give it up when it is too small. Always 1: it was changed, now or before."""
+    if tree.child[cell] >= 0 or tree.kind[cell] == DEAD:
+        return 1
+    if splittable(tree, cell, scene.mover):
+        split(tree, cell, scene.mover, scene.ground)
+    else:
+        tree.kind[cell] = DEAD
+    return 1

@@ -1,0 +1,167 @@
+"""Planning the motion of a polygon among polygons: certified when found, proved when impossible.
+
+    plan = plan_motion(shape, obstacles, Pose(2, 2, 0), Pose(9, 5, 90))
+
+# Strategy: poses are searched in cells that are split only along the way (geometry.cells, geometry.chain). A chain of
+# cells from start to goal is an optimist's plan. Its hops are checked by exact first contact; where one fails the cells
+# to blame are split and the search goes on. A chain all of whose hops are free is a motion. When there is no chain left
+# although only cells were dropped in which the body certainly overlaps an obstacle, there is no motion: a proof.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from geometry.bottleneck import Neck, missing_width, neck_near
+from geometry.floor import Floor
+from geometry.mover import new_mover
+from geometry.problem import Inside, Problem
+from geometry.rigid import Motion, Pose, Translate
+
+__all__ = ["Inside", "Plan", "Pose", "plan_motion"]
+
+Floats = npt.NDArray[np.float64]
+CAPACITY = 300_000  # cells
+COARSE, FEW = 1e-3, 40_000  # resolution and cells for the missing width
+
+
+@dataclass(frozen=True)
+class Question:
+    """What plan_motion was asked, and where its search was stuck: the place nearest to the goal that it got to.
+
+    stuck : (x, y) of the middle of the body's greatest inscribed disc. ways : what is left to go from every pixel.
+    """
+
+    shape: Any
+    floor: Floor
+    start: Pose
+    goal: "Pose | Inside"
+    points: Sequence[tuple[float, float]]
+    radius: float
+    stuck: tuple[float, float]
+    ways: Floats
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What plan_motion found.
+
+    Attributes
+    ----------
+    status : "found", "impossible" (proved) or "limit" (not decided at the resolution or within the cells allowed).
+    motions : Translate and Rotate from start to goal, each free by exact first contact; () unless found.
+    poses : Pose of the reference point before, between and after the motions; () unless found.
+    cells : how many cells were looked at; rounds : how many chains.
+    resolution : the least size of a cell, in squares.
+    reason : "start", "goal" when impossible because the body overlaps an obstacle there; else "".
+    question : what was asked, for passage and missing; None unless impossible.
+    """
+
+    status: str
+    motions: tuple[Motion, ...] = ()
+    poses: tuple[Pose, ...] = ()
+    cells: int = 0
+    rounds: int = 0
+    resolution: float = 0.0
+    reason: str = ""
+    question: Question | None = field(default=None, repr=False, compare=False)
+
+    @cached_property
+    def passage(self) -> Neck | None:
+        """The neck that is too narrow; None unless impossible for want of one. Worked out when asked for."""
+        q = self.question
+        return None if q is None else neck_near(q.floor, q.ways, (q.start.x, q.start.y), q.stuck, q.radius)
+
+    @cached_property
+    def missing(self) -> float:
+        """How much wider the passage must be, in squares, to about 0.02: a second or so of work when asked for.
+
+        nan unless there is a passage; inf when widening that passage alone does not help.
+        """
+        q, neck = self.question, self.passage
+        if q is None or neck is None:
+            return math.nan
+
+        def passes(walls: Any) -> bool:
+            floor = Floor(walls, q.floor.bounds.tolist())
+            return plan_motion(q.shape, floor, q.start, q.goal, None, COARSE, q.points, FEW).status == "found"
+
+        return missing_width(shapely.union_all(q.floor.polygons), neck, q.radius, passes)
+
+    @cached_property
+    def length(self) -> float:
+        """The way of the reference point, in squares; nan unless found."""
+        if self.status != "found":
+            return math.nan
+        return sum(_way(motion, pose) for motion, pose in zip(self.motions, self.poses, strict=False))
+
+
+def _way(motion: Motion, pose: Pose) -> float:
+    """How far a motion takes the reference point."""
+    if isinstance(motion, Translate):
+        return math.hypot(motion.dx, motion.dy)
+    return abs(math.radians(motion.degrees)) * math.dist((pose.x, pose.y), motion.about)
+
+
+def plan_motion(
+    shape: Any,
+    obstacles: Any,
+    start: Pose,
+    goal: Pose | Inside,
+    bounds: Sequence[float] | None = None,
+    resolution: float = 2e-4,
+    points: Sequence[tuple[float, float]] = (),
+    cells: int = CAPACITY,
+) -> Plan:
+    """Find how to move a polygon among polygons from a pose to a goal, or prove that it cannot be done.
+
+    Parameters
+    ----------
+    shape : shapely Polygon or MultiPolygon whose reference point is the origin, in squares.
+    obstacles : any shapely geometry, a sequence of them, or a Floor prepared for many calls (bounds are then its own).
+    start : Pose of the reference point. The body may touch obstacles there.
+    goal : Pose, or Inside(polygon).
+    bounds : (x0, y0, x1, y1) of the reference point; None for the box around obstacles, start and goal.
+    resolution : cells smaller than this times the bounds' greater side are not split.
+    points : (x, y) in the body's own frame that move with it and must not enter obstacles, such as Utak.
+    cells : no more than so many cells are looked at.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    ValueError : when the body has no area, or a number is not finite.
+    """
+    mover = new_mover(shape, points)
+    floor = obstacles if isinstance(obstacles, Floor) else Floor(obstacles, _bounds(obstacles, start, goal, bounds))
+    problem = Problem(mover, floor, start, goal, resolution, cells)
+    for name, pose in (("start", start), ("goal", goal)):
+        if isinstance(pose, Pose) and not floor.has_room(shape, points, pose):
+            return Plan("impossible", resolution=problem.least, reason=name)
+    status, motions = problem.solve()
+    poses = [start] if status == "found" else []
+    for motion in motions:
+        poses.append(motion.pose(poses[-1]))
+    asked = None
+    if status == "impossible":
+        asked = Question(shape, floor, start, goal, tuple(points), mover.radius, problem.stuck(), problem.hunt.ways)
+    looked = int(problem.tree.used[0])
+    return Plan(status, motions, tuple(poses), looked, problem.rounds, problem.least, question=asked)
+
+
+def _bounds(obstacles: Any, start: Pose, goal: Pose | Inside, bounds: Sequence[float] | None) -> Sequence[float]:
+    """The bounds given, or the box around all there is."""
+    if bounds is not None:
+        return bounds
+    several = list(obstacles) if isinstance(obstacles, list | tuple) else [obstacles]
+    ends = [goal.polygon] if isinstance(goal, Inside) else [shapely.Point(goal.x, goal.y)]
+    around = shapely.total_bounds([*several, shapely.Point(start.x, start.y).buffer(1.0), *ends])
+    return [float(v) for v in around]

@@ -1,0 +1,106 @@
+"""One planning problem: chains are sought and followed, cells split, until one is free or none is left."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from geometry.cells import Tree, leaf_at, new_tree
+from geometry.chain import REGION, SETTLED, Hunt, find_chain, new_hunt
+from geometry.floor import Floor
+from geometry.follow import Scene, Way, follow
+from geometry.hop import BLOCKED, hop
+from geometry.mover import centre_pose
+from geometry.rigid import Motion, Pose
+from geometry.separation import Ground, Mover
+from geometry.shorten import motions_along, shorten
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Inside:
+    """A goal: the whole body within a polygon, at any place and angle.
+
+    polygon : shapely Polygon or MultiPolygon, table frame.
+    """
+
+    polygon: Any
+
+
+class Problem:
+    """One planning problem on its way to a Plan."""
+
+    def __init__(
+        self, mover: Mover, floor: Floor, start: Pose, goal: Pose | Inside, resolution: float, cells: int
+    ) -> None:
+        self.mover, self.floor = mover, floor
+        self.start = centre_pose(mover, start)
+        self.ground = floor.ground(mover)
+        self.least = resolution * floor.side
+        self.rounds = 0
+        if not np.all(np.isfinite(self.start)) or not self.least > 0.0:
+            raise ValueError("start and resolution must be finite, the resolution positive")
+        self.end, self.region, self.goals = self._goal(goal)
+        reach = float(np.hypot(*mover.reference))
+        corner, side = floor.bounds[:2] - reach, floor.side + 2 * reach
+        self.tree: Tree = new_tree(corner[0], corner[1], side * (1 + 1e-9), mover.radius, self.least, cells)
+
+    @cached_property
+    def hunt(self) -> Hunt:
+        """The search, with its guess of the way left."""
+        eye = self.mover.probes[0]
+        return new_hunt(len(self.tree.child), self.floor.ways(self.goals, float(eye[2])), eye[:2].copy())
+
+    def _goal(self, goal: Pose | Inside) -> tuple[Floats, Ground, npt.NDArray[np.bool_]]:
+        """The pose to end at (empty for a region), the region's complement as ground, and the goal's pixels."""
+        if isinstance(goal, Pose):
+            end = centre_pose(self.mover, goal)
+            if not np.all(np.isfinite(end)):
+                raise ValueError("goal must be finite")
+            c, s = math.cos(end[2]), math.sin(end[2])
+            px, py = self.mover.probes[0, :2]
+            return end, self.ground, self.floor.pixel_of(end[0] + c * px - s * py, end[1] + s * px + c * py)
+        outer = shapely.box(*self.floor.bounds).buffer(self.floor.side, join_style="mitre")
+        region = Floor(outer.difference(goal.polygon), self.floor.bounds.tolist())
+        goals = region.raster >= self.mover.probes[0, 2] - region.frame[2]
+        return np.empty(0), region.ground(self.mover), goals
+
+    def solve(self) -> tuple[str, tuple[Motion, ...]]:
+        """Search and split until there is an answer: the status of a Plan, and its motions."""
+        straight = np.array([self.start, self.end]) if len(self.end) else None
+        if straight is not None and hop(self.mover, self.ground, self.floor.surface, *straight) != BLOCKED:
+            return "found", motions_along(self.mover, self.ground, self.floor.surface, straight)
+        scene = Scene(self.mover, self.ground, self.floor.surface)
+        way = Way(np.empty((2 * len(self.tree.child) + 2, 3)), np.ones(1, np.int64), self.end)
+        way.poses[0] = self.start
+        while length := self._chain(False):
+            if follow(self.tree, scene, self.hunt.chain, length, bool(self.hunt.seen[1]), way) == 0:
+                poses = shorten(self.mover, self.ground, self.floor.surface, way.poses[: way.used[0]])
+                return "found", motions_along(self.mover, self.ground, self.floor.surface, poses)
+        lost = bool(self.hunt.size[1])
+        self.hunt.seen[0] = self.hunt.size[0] = 0
+        return "limit" if lost or self._chain(True) > 0 else "impossible", ()
+
+    def _chain(self, dead: bool) -> int:
+        """The length of the next chain; 0 when there is none, dead: not even through cells given up."""
+        self.rounds += 1
+        first = leaf_at(self.tree, *self.start)
+        last = leaf_at(self.tree, *self.end) if len(self.end) else REGION
+        if first < 0 or last == -1:
+            return 0
+        return find_chain(self.tree, self.mover, self.ground, self.region, self.hunt, first, last, self.rounds, dead)
+
+    def stuck(self) -> tuple[float, float]:
+        """The place of the greatest inscribed disc's middle in the settled cell that is nearest to the goal."""
+        known = self.hunt.seen[0]
+        settled = np.nonzero((self.hunt.state[:known] >= SETTLED) & (self.tree.child[:known] < 0))[0]
+        if len(settled) == 0:
+            return float(self.start[0]), float(self.start[1])
+        x, y, angle = self.tree.middle[settled[np.argmin(self.hunt.guess[settled])]]
+        c, s, (px, py) = math.cos(angle), math.sin(angle), self.hunt.eye
+        return float(x + c * px - s * py), float(y + s * px + c * py)

@@ -1,0 +1,151 @@
+"""Shortening a way of certified hops, and writing it as motions. Every hop is checked again."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from geometry.compiled import compiled
+from geometry.hop import BLOCKED, EVEN, TURN_FIRST, hop, put, shorter_turn
+from geometry.impact import Surface
+from geometry.rigid import Motion, Rotate, Translate
+from geometry.separation import Ground, Mover, distance_at
+
+Floats = npt.NDArray[np.float64]
+PULLS = 4  # times that every corner of the way is pulled straight
+
+
+@compiled
+def shorten(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floats:
+    """A shorter way from the first to the last of (n, 3) poses: hops over poses, then corners pulled straight."""
+    kept = _jump(mover, ground, surface, poses)
+    if len(kept) > 2:
+        kept = _jump(mover, ground, surface, _retracted(mover, ground, surface, kept))
+    for _ in range(PULLS):
+        _pull(mover, ground, surface, kept)
+        kept = _jump(mover, ground, surface, kept)
+    return kept
+
+
+@compiled
+def _retracted(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floats:
+    """The way with its corners moved to where the body has most room: there the longest hops begin.
+
+    Where two such corners do not see each other the old ones stay between them.
+    """
+    roomy = poses.copy()
+    for n in range(1, len(poses) - 1):
+        _make_room(mover, ground, roomy[n])
+        if hop(mover, ground, surface, poses[n], roomy[n]) == BLOCKED:
+            put(roomy[n], poses[n])
+    way = np.empty((3 * len(poses), 3))
+    put(way[0], poses[0])
+    count = 1
+    for n in range(1, len(poses)):
+        if hop(mover, ground, surface, roomy[n - 1], roomy[n]) == BLOCKED:
+            put(way[count], poses[n - 1])
+            put(way[count + 1], poses[n])
+            count += 2
+        put(way[count], roomy[n])
+        count += 1
+    return way[:count].copy()
+
+
+@compiled
+def _make_room(mover: Mover, ground: Ground, pose: Floats) -> None:
+    """Move a pose, in place, towards more distance from the obstacles: halving steps in place and angle."""
+    best = _room(mover, ground, pose)
+    step = min(max(best, 0.02 * mover.radius), 0.5 * mover.radius)
+    while step > 1e-4 * mover.radius:
+        better = False
+        for k in range(6):
+            size = (step if k % 2 == 0 else -step) / (mover.radius if k >= 4 else 1.0)
+            pose[k // 2] += size
+            room = _room(mover, ground, pose)
+            if room > best + 1e-9:
+                best, better = room, True
+            else:
+                pose[k // 2] -= size
+        if not better:
+            step *= 0.5
+
+
+@compiled
+def _room(mover: Mover, ground: Ground, pose: Floats) -> float:
+    """The body's distance from the obstacles at a pose, as far as it matters."""
+    return min(distance_at(mover, ground, pose[0], pose[1], math.cos(pose[2]), math.sin(pose[2])), 0.3 * mover.radius)
+
+
+@compiled
+def _jump(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floats:
+    """From each pose hop as far ahead as doubling and halving finds."""
+    kept = np.empty_like(poses)
+    put(kept[0], poses[0])
+    count, at, last = 1, 0, len(poses) - 1
+    while at < last:
+        low, step = at + 1, 2
+        high = last + 1
+        if hop(mover, ground, surface, poses[at], poses[last]) != BLOCKED:
+            low, high = last, last + 1
+        while low + 1 < high:
+            tried = min(at + step, last) if step > 0 else (low + high) // 2
+            if tried <= low:
+                break
+            if hop(mover, ground, surface, poses[at], poses[tried]) != BLOCKED:
+                low, step = tried, 2 * step
+            else:
+                high, step = tried, 0
+        at = low
+        put(kept[count], poses[at])
+        count += 1
+    return kept[:count].copy()
+
+
+@compiled
+def _pull(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> None:
+    """Move each pose towards the straight way between its neighbours as far as the hops stay free."""
+    here, step = np.empty(3), np.empty(3)
+    for n in range(1, len(poses) - 1):
+        before, after = poses[n - 1], poses[n + 1]
+        put(here, poses[n])
+        d0 = math.hypot(here[0] - before[0], here[1] - before[1])
+        d1 = math.hypot(after[0] - here[0], after[1] - here[1])
+        part = d0 / (d0 + d1) if d0 + d1 > 0.0 else 0.5
+        step[0] = before[0] + part * (after[0] - before[0]) - here[0]
+        step[1] = before[1] + part * (after[1] - before[1]) - here[1]
+        step[2] = shorter_turn(before[2] + part * shorter_turn(after[2] - before[2]) - here[2])
+        pull = 1.0
+        for _ in range(5):
+            for k in range(3):
+                poses[n, k] = here[k] + pull * step[k]
+            if hop(mover, ground, surface, before, poses[n]) != BLOCKED and (
+                hop(mover, ground, surface, poses[n], after) != BLOCKED
+            ):
+                break
+            pull *= 0.5
+            put(poses[n], here)
+
+
+def motions_along(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> tuple[Motion, ...]:
+    """The turns and pushes of a way, in order, those of no size left out.
+
+    Raises
+    ------
+    RuntimeError : when a hop is not free; the way was never certified.
+    """
+    motions: list[Motion] = []
+    for here, there in pairwise(poses):
+        way = hop(mover, ground, surface, here, there)
+        if way == BLOCKED:
+            raise RuntimeError("a hop of the way is blocked")
+        dx, dy = float(there[0] - here[0]), float(there[1] - here[1])
+        turn = float(shorter_turn(there[2] - here[2]))
+        pivot = here if way == TURN_FIRST else there
+        steps: list[Motion] = [Rotate(math.degrees(turn), (float(pivot[0]), float(pivot[1]))), Translate(dx, dy)]
+        sizes = [abs(turn), abs(dx) + abs(dy)]
+        if way != TURN_FIRST:
+            steps.reverse()
+            sizes.reverse()
+        motions += [step for step, size in zip(steps, sizes, strict=True) if size >= EVEN]
+    return tuple(motions)
