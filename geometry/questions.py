@@ -169,8 +169,7 @@ class Questions:
             cell = self._cell(passage.place)
             if not state.reshape(-1)[cell] & SADDLE:
                 continue  # too narrow for this body anyway
-            near, far = (self._cell(gate) for gate in passage.gates)
-            chain, position = on_chain(chains, cell, far if near == cell else near, state)
+            chain, position = on_chain(chains, cell, self._cell(passage.towards), state)
             desk.query.shut[chain] |= 1
             bars.append((chain, position))
         bar = np.array(bars, np.int32).reshape(-1, 2)
