@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from geometry.cells import Tree, next_neighbour, splittable
 from geometry.compiled import compiled
-from geometry.heap import pop, push
+from geometry.priority import pop, push
 from geometry.separation import DEAD, FULL, OPEN, SHUT, Ground, Mover, classify
 
 Floats = npt.NDArray[np.float64]

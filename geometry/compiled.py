@@ -40,6 +40,18 @@ class Kernel(Generic[P, R]):
             _link(cast(FunctionType, self.function).__globals__)
         return self._machine
 
+    def entry(self, *args: P.args, **kwargs: P.kwargs) -> Callable[P, R]:
+        """The machine code for arguments of these types, which skips looking at types again: for short, frequent calls.
+
+        Later arguments must have the very same types.
+        """
+        machine: Any = self.machine()
+        _compile(machine, args)
+        if not hasattr(machine, "overloads"):
+            return self.function
+        types = tuple(machine.typeof_pyval(value) for value in args)
+        return cast(Callable[P, R], machine.overloads[types].entry_point)
+
 
 def compiled(function: Callable[P, R]) -> Kernel[P, R]:
     """Decorate a kernel. Its arguments are arrays and numbers; it may call other kernels, also of other modules."""

@@ -134,12 +134,16 @@ class Obstacles:
         return free
 
     def _runs(self, body: Body) -> list[tuple[Floats, Floats, Surface]]:
-        """The kernels' arguments: the shape against the obstacles one by one, the points against all as one."""
+        """The kernels' arguments: the shape against the obstacles one by one, the points against all as one as well.
+
+        A point in the seam of two flush obstacles is inside of both as one: there only each by itself stops it.
+        """
         runs = []
         if len(body.corners) and len(self.surface.edges):
             runs.append((body.corners, body.edges, self.surface))
         if len(body.points) and len(self.surface.edges):
             runs.append((body.points, np.empty((0, 7)), self.point_surface))
+            runs.append((body.points, np.empty((0, 7)), self.surface))
         return runs
 
 

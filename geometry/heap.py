@@ -1,48 +1,37 @@
-"""A binary heap of numbered items by key, in arrays. Plain loops for numba."""
+"""A binary heap in two arrays, keys and what they belong to; the caller keeps its size."""
 
-import numpy as np
-import numpy.typing as npt
-
+from geometry.chains import Floats, Ints
 from geometry.compiled import compiled
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
-Count = npt.NDArray[np.int64]
+
+@compiled
+def push(keys: Floats, nodes: Ints, size: int, key: float, node: int) -> int:
+    """Put a node on the heap; returns the heap's size."""
+    k = size
+    while k > 0:
+        parent = (k - 1) >> 1
+        if keys[parent] <= key:
+            break
+        keys[k], nodes[k] = keys[parent], nodes[parent]
+        k = parent
+    keys[k], nodes[k] = key, node
+    return size + 1
 
 
 @compiled
-def push(key: Floats, item: Ints, size: Count, new_key: float, new_item: int) -> None:
-    """Put an item on the heap. size: (2,) how many there are, and how many were lost because there was no room."""
-    at = size[0]
-    if at >= len(key):
-        size[1] += 1
-        return
-    size[0] += 1
-    while at > 0:
-        up = (at - 1) >> 1
-        if key[up] <= new_key:
+def pop(keys: Floats, nodes: Ints, size: int) -> tuple[int, int]:
+    """Take the most promising node; returns it and the heap's size."""
+    top = nodes[0]
+    size -= 1
+    key, node = keys[size], nodes[size]
+    k = 0
+    while 2 * k + 1 < size:
+        child = 2 * k + 1
+        if child + 1 < size and keys[child + 1] < keys[child]:
+            child += 1
+        if keys[child] >= key:
             break
-        key[at], item[at] = key[up], item[up]
-        at = up
-    key[at], item[at] = new_key, new_item
-
-
-@compiled
-def pop(key: Floats, item: Ints, size: Count) -> tuple[float, int]:
-    """Take the item with the least key off a heap that is not empty."""
-    best, least = item[0], key[0]
-    size[0] -= 1
-    last_key, last = key[size[0]], item[size[0]]
-    at = 0
-    while True:
-        down = 2 * at + 1
-        if down >= size[0]:
-            break
-        if down + 1 < size[0] and key[down + 1] < key[down]:
-            down += 1
-        if key[down] >= last_key:
-            break
-        key[at], item[at] = key[down], item[down]
-        at = down
-    key[at], item[at] = last_key, last
-    return float(least), int(best)
+        keys[k], nodes[k] = keys[child], nodes[child]
+        k = child
+    keys[k], nodes[k] = key, node
+    return top, size

@@ -36,6 +36,7 @@ Met = tuple[float, int, int, int]  # time, 0 nothing or 1 corner on edge or 2 ed
 NEVER = 1e9
 BESIDE = 1e-9  # an edge reaches this far beyond its ends, so that nothing slips between two edges
 BEHIND = 1e-11  # a point up to this deep behind an edge, going in, meets it at once: rounding put it there
+MARGIN = 1e-6  # squares: by how much the broad phase looks further than the motion goes
 STILL = 1e-12  # going in by less than this is rounding
 WHOLE_TURN = 2 * math.pi
 
@@ -258,7 +259,7 @@ def _turned(x: float, y: float, angle: float) -> tuple[float, float]:
 
 @compiled
 def _bounds(points: Floats) -> tuple[float, float, float, float]:
-    """Least x, least y, greatest x, greatest y."""
+    """Least x, least y, greatest x, greatest y, with a margin: a corner may lie a skin behind an edge."""
     low_x = high_x = points[0, 0]
     low_y = high_y = points[0, 1]
     for i in range(1, len(points)):
@@ -266,7 +267,7 @@ def _bounds(points: Floats) -> tuple[float, float, float, float]:
         high_x = max(high_x, points[i, 0])
         low_y = min(low_y, points[i, 1])
         high_y = max(high_y, points[i, 1])
-    return low_x, low_y, high_x, high_y
+    return low_x - MARGIN, low_y - MARGIN, high_x + MARGIN, high_y + MARGIN
 
 
 @compiled

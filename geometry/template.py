@@ -71,7 +71,8 @@ def fit_shapes(occupied: Bools, possible: Bools | None = None) -> list[Fit]:
 
     Returns
     -------
-    One Fit a class, the likeliest first: by misfit, then whole corners before others, then fewer parameters.
+    One Fit a class, the likeliest first: by misfit, then whole corners before others, then fewer parameters; a disc
+    before turned shapes when the image has all the symmetries of one.
 
     Raises
     ------
@@ -85,8 +86,19 @@ def fit_shapes(occupied: Bools, possible: Bools | None = None) -> list[Fit]:
     """
     image, west, south = _image(occupied, possible)
     fits = [_fit(name, kind, image, west, south) for name, kind in CLASSES.items()]
-    rank = list(CLASSES)
+    rank = sorted(CLASSES, key=lambda name: name != "disc") if _is_round(image) else list(CLASSES)
     return sorted(fits, key=lambda fit: (fit.misfit, not fit.whole, rank.index(fit.shape)))
+
+
+def _is_round(image: overlay.Image) -> bool:
+    """Does the image look the same in the mirror, upright and lying? A disc's does.
+
+    That of a square hardly when it is turned.
+    """
+    seen = image == overlay.WANTED
+    return seen.shape[0] == seen.shape[1] and all(
+        np.array_equal(seen, other) for other in (seen[::-1], seen[:, ::-1], seen.T)
+    )
 
 
 def _image(occupied: Bools, possible: Bools | None) -> tuple[overlay.Image, int, int]:

@@ -1,0 +1,138 @@
+"""The campaign: the robot in many random worlds, judged and measured.
+
+    python -m benchmarks.campaign --task 1,2,3,4 --count 50 --seed 0 --jobs 2 [--noise S] [-o results.jsonl]
+    python -m benchmarks.campaign --only 3:17 --keep FOLDER      (one world, drawn at each step)
+    python -m benchmarks.campaign --again results.jsonl          (the worlds that went wrong)
+
+The table goes to stdout, progress to stderr. docs/benchmarks-worlds.md explains the columns.
+"""
+
+import argparse
+import json
+import multiprocessing
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack
+from functools import partial
+from pathlib import Path
+from typing import TextIO
+
+from shapely import Polygon
+
+from benchmarks.beliefs import beliefs
+from benchmarks.drawing import drawing
+from benchmarks.judging import judge_path
+from benchmarks.tally import faults, table, verdicts
+from benchmarks.trial import Conditions, Trial, run_trial
+from benchmarks.worlds import scenario
+from simulator.session import Session
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a campaign; 0 when every world came out right, 1 otherwise."""
+    given = _parser().parse_args(arguments)
+    if judge_path() is None:
+        print("campaign: NO JUDGE: set UTAK_JUDGE to judge.py; the episodes are not judged", file=sys.stderr)
+    conditions = Conditions(given.noise, given.noise_seed, given.paths, given.max_steps, given.seconds)
+    with ExitStack() as stack:
+        folder = given.keep or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="utak-campaign-")))
+        _warm_up(folder)
+        if given.only:
+            task, seed = (int(part) for part in given.only.split(":"))
+            trials = [_watched(task, seed, conditions, folder)]
+        else:
+            worlds = _unclean(given.again) if given.again else _worlds(given.task, given.seed, given.count)
+            output = stack.enter_context(given.output.open("w")) if given.output else None
+            trials = list(_reported(_run_all(worlds, conditions, folder, given.jobs), len(worlds), output))
+    print(table(trials), verdicts(trials), faults(trials), sep="\n", end="")
+    return 0 if all(trial.clean for trial in trials) else 1
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.campaign", description="Measure the robot.")
+    parser.add_argument("--task", type=_numbers, default=[1, 2, 3, 4], help="tasks with commas between (1,2,3,4)")
+    parser.add_argument("--count", type=int, default=50, help="worlds a task (%(default)s)")
+    parser.add_argument("--seed", type=int, default=0, help="the first world's seed (%(default)s)")
+    parser.add_argument("--jobs", type=int, default=1, help="processes (%(default)s)")
+    parser.add_argument("--noise", type=float, default=0.0, help="noise of motions and grasps (%(default)s)")
+    parser.add_argument("--noise-seed", type=int, default=0, help="seed of the noise (%(default)s)")
+    parser.add_argument("--paths", default="skeleton", help="path-finder: skeleton, visibility or grid")
+    parser.add_argument("--max-steps", type=int, default=200, help="most commands (%(default)s)")
+    parser.add_argument("--seconds", type=int, default=120, help="most seconds a world, 0 for no limit (%(default)s)")
+    parser.add_argument("-o", "--output", type=Path, help="a JSON line for each world")
+    parser.add_argument("--only", metavar="TASK:SEED", help="one world, drawn at each step on stderr")
+    parser.add_argument("--again", type=Path, metavar="RESULTS", help="the worlds that went wrong in earlier results")
+    parser.add_argument("--keep", type=Path, help="folder in which scenarios and episodes stay")
+    return parser
+
+
+def _numbers(text: str) -> list[int]:
+    return [int(part) for part in text.split(",")]
+
+
+def _worlds(tasks: list[int], first: int, count: int) -> list[tuple[int, int]]:
+    return [(task, seed) for task in tasks for seed in range(first, first + count)]
+
+
+def _unclean(results: Path) -> list[tuple[int, int]]:
+    """The worlds of earlier results in which something went wrong."""
+    rows = [json.loads(line) for line in results.read_text().splitlines()]
+    return [(row["task"], row["seed"]) for row in rows if not row["clean"]]
+
+
+def _warm_up(folder: Path) -> None:
+    """One trial that does not count: kernels are compiled and cached before any clock runs."""
+    run_trial(4, 0, Conditions(max_steps=30, seconds=0), folder / "warming-up")
+
+
+def _run_all(worlds: list[tuple[int, int]], conditions: Conditions, folder: Path, jobs: int) -> Iterator[Trial]:
+    run = partial(_one, conditions=conditions, folder=folder)
+    if jobs <= 1:
+        yield from map(run, worlds)
+        return
+    with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
+        yield from pool.map(run, worlds)
+
+
+def _one(world: tuple[int, int], conditions: Conditions, folder: Path) -> Trial:
+    return run_trial(*world, conditions, folder)
+
+
+def _reported(trials: Iterable[Trial], count: int, output: TextIO | None) -> Iterator[Trial]:
+    """The trials as they come, each told on stderr and written to the output."""
+    for number, trial in enumerate(trials, 1):
+        if output is not None:
+            output.write(json.dumps(trial.row()) + "\n")
+            output.flush()
+        mark = "" if trial.clean else "  <--"
+        said = trial.crash or trial.verdict
+        print(f"{number}/{count} {trial.task}:{trial.seed} {trial.steps} commands, {said}{mark}", file=sys.stderr)
+        yield trial
+
+
+def _watched(task: int, seed: int, conditions: Conditions, folder: Path) -> Trial:
+    """One world with a drawing of it at each step, on stderr."""
+    world = scenario(task, seed)
+    print(f"{world.name}, heading {world.heading}: {world.texts.goal}{world.texts.expect}", file=sys.stderr)
+
+    def draw(at: Session) -> None:
+        moved = {name: Polygon(shape) for name, shape in at.table.polygons.items()}
+        picture = drawing(world, at.table.utak, moved, {"+": world.target})
+        line = at.line
+        woke, mind = (world.utak.x, world.utak.y), getattr(at.robot, "robot", None)
+        drift = beliefs(mind, woke, at.table.utak, world.heading).drift
+        print(
+            f"step {line['step']}: {line['action']} why: {line['why']}; slipped by {drift}\n{picture}", file=sys.stderr
+        )
+
+    trial = run_trial(task, seed, conditions, folder, draw)
+    crash = folder / world.name / "crash.txt"
+    if trial.crash and crash.exists():
+        print(crash.read_text(), file=sys.stderr)
+    return trial
+
+
+if __name__ == "__main__":
+    sys.exit(main())

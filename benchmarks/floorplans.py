@@ -1,0 +1,217 @@
+"""Random floor plans: one to three rooms in a row, stacked or in an L, with doors in the walls between them.
+
+All lengths are squares, all corners of rooms and doors are whole squares of the table.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from shapely import Polygon, box, union_all
+from shapely.geometry.base import BaseGeometry
+
+JAMB = 2  # squares of wall left between a door and the corner of a room
+ARM = 9  # squares: the least width of an arm of an L-shaped room
+
+
+@dataclass(frozen=True)
+class Room:
+    """A room of the floor: its name and its polygon, without the necks of its doors."""
+
+    name: str
+    polygon: Polygon
+
+
+@dataclass(frozen=True)
+class Door:
+    """A neck of the floor, as thick as the wall it goes through; `vertical` when the wall runs north and south."""
+
+    rooms: tuple[str, str]
+    polygon: Polygon
+    width: int
+    vertical: bool
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A table of width x height squares, its rooms and its doors (none when the rooms are closed off)."""
+
+    width: int
+    height: int
+    rooms: tuple[Room, ...]
+    doors: tuple[Door, ...]
+
+    @property
+    def floor(self) -> BaseGeometry:
+        """All that is not verge: rooms and necks together."""
+        return union_all([room.polygon for room in self.rooms] + [door.polygon for door in self.doors]).simplify(0)
+
+    @property
+    def verge(self) -> BaseGeometry:
+        """The rest of the table."""
+        return box(0, 0, self.width, self.height).difference(self.floor)
+
+    def room(self, name: str) -> Polygon:
+        """The polygon of a room by name."""
+        return next(room.polygon for room in self.rooms if room.name == name)
+
+    def neighbours(self, name: str) -> list[str]:
+        """The rooms that share a door with one."""
+        return sorted({b if a == name else a for a, b in (door.rooms for door in self.doors) if name in (a, b)})
+
+
+Cell = tuple[int, int]
+LAYOUTS: dict[int, list[list[Cell]]] = {
+    1: [[(0, 0)]],
+    2: [[(0, 0), (1, 0)], [(0, 0), (0, 1)]],
+    3: [
+        [(0, 0), (1, 0), (2, 0)],
+        [(0, 0), (0, 1), (0, 2)],
+        [(1, 0), (0, 0), (0, 1)],
+        [(0, 0), (1, 0), (1, 1)],
+        [(0, 0), (0, 1), (1, 1)],
+        [(1, 0), (1, 1), (0, 1)],
+    ],
+}
+SIDES = {1: (20, 58), 2: (16, 29), 3: (14, 19)}  # least and greatest inner side along an axis with so many rooms
+
+
+def random_plan(
+    rng: np.random.Generator,
+    rooms: int,
+    doors: tuple[int, int],
+    wall: int = 2,
+    closed: bool = False,
+    ells: float = 0.15,
+) -> Plan:
+    """A plan with so many rooms, each joined to the next by a door.
+
+    Parameters
+    ----------
+    rooms : 1 to 3.
+    doors : least and greatest width of a door in squares; every room is at least twice as wide as its doors.
+    wall : thickness of the walls in squares.
+    closed : leave the doors out: rooms that nothing joins.
+    ells : chance that a corner is cut from a room, which makes it L-shaped.
+    """
+    while True:
+        cells = LAYOUTS[rooms][rng.integers(len(LAYOUTS[rooms]))]
+        widths = [int(rng.integers(doors[0], doors[1] + 1)) for _ in range(rooms - 1)]
+        least = max([2 * w + 1 for w in widths] + [0])
+        rects, size = _rectangles(rng, cells, wall, least)
+        joints = [_door(rng, rects, i, w, wall) for i, w in enumerate(widths)]
+        if all(joint is not None for joint in joints):
+            made = [joint for joint in joints if joint is not None]
+            shapes = [_cut(rng, rect, made, max(ARM, least)) if rng.random() < ells else box(*rect) for rect in rects]
+            named = tuple(Room(f"r{i + 1}", shape) for i, shape in enumerate(shapes))
+            return Plan(*size, named, () if closed else tuple(made))
+
+
+def corridor(rng: np.random.Generator, widths: tuple[int, int], wall: int = 2) -> tuple[Plan, Polygon, Polygon]:
+    """A floor in the form of an L, mirrored at random: the plan (one room), its two arms without the elbow.
+
+    The first arm runs west and east and has width `widths[0]`, the second north and south with `widths[1]`.
+    """
+    long, tall = int(rng.integers(16, 25)), int(rng.integers(16, 25))
+    width, height = long + widths[1] + 2 * wall, tall + widths[0] + 2 * wall
+    first = box(wall, wall, wall + long, wall + widths[0])
+    second = box(wall + long, wall + widths[0], width - wall, height - wall)
+    elbow = box(wall + long, wall, width - wall, wall + widths[0])
+    east, north = bool(rng.integers(2)), bool(rng.integers(2))
+    parts = [_mirrored(part, width, height, east, north) for part in (first, second, elbow)]
+    room = Room("r1", union_all(parts).simplify(0))
+    return Plan(width, height, (room,), ()), parts[0], parts[1]
+
+
+Rect = tuple[int, int, int, int]
+
+
+def _mirrored(part: Polygon, width: int, height: int, east: bool, north: bool) -> Polygon:
+    west, south, right, top = (int(v) for v in part.bounds)
+    if east:
+        west, right = width - right, width - west
+    if north:
+        south, top = height - top, height - south
+    return box(west, south, right, top)
+
+
+def _spans(rng: np.random.Generator, count: int, wall: int, least: int) -> list[tuple[int, int]]:
+    low, high = SIDES[count]
+    spans, at = [], wall
+    for _ in range(count):
+        side = int(rng.integers(max(low, least), max(high, least) + 1))
+        spans.append((at, at + side))
+        at += side + wall
+    return spans
+
+
+def _rectangles(rng: np.random.Generator, cells: list[Cell], wall: int, least: int) -> tuple[list[Rect], Cell]:
+    """One rectangle a cell of the layout, drawn in a little on sides where no room lies, and the table's size."""
+    columns = _spans(rng, 1 + max(c for c, _ in cells), wall, least)
+    rows = _spans(rng, 1 + max(r for _, r in cells), wall, least)
+    rects = []
+    for column, row in cells:
+        inset = [int(rng.integers(0, 5)) if rng.random() < 0.3 else 0 for _ in range(4)]
+        for side, near in enumerate([(column - 1, row), (column, row - 1), (column + 1, row), (column, row + 1)]):
+            inset[side] = 0 if near in cells or len(cells) == 1 else inset[side]
+        (west, east), (south, north) = columns[column], rows[row]
+        if east - west - inset[0] - inset[2] < max(14, least):
+            inset[0] = inset[2] = 0
+        if north - south - inset[1] - inset[3] < max(14, least):
+            inset[1] = inset[3] = 0
+        rects.append((west + inset[0], south + inset[1], east - inset[2], north - inset[3]))
+    return rects, (columns[-1][1] + wall, rows[-1][1] + wall)
+
+
+def _door(rng: np.random.Generator, rects: list[Rect], index: int, width: int, wall: int) -> Door | None:
+    """A door between a rectangle and the next one, or None where they do not face each other widely enough."""
+    a, b = rects[index], rects[index + 1]
+    names = (f"r{index + 1}", f"r{index + 2}")
+    for vertical in (True, False):
+        axis, across = (0, 1) if vertical else (1, 0)
+        for one, other in ((a, b), (b, a)):
+            if other[axis] - one[axis + 2] == wall:
+                low, high = max(a[across], b[across]) + JAMB, min(a[across + 2], b[across + 2]) - JAMB - width
+                if low > high:
+                    return None
+                at = int(rng.integers(low, high + 1))
+                corners = (one[axis + 2], at, other[axis], at + width)
+                neck = box(*corners) if vertical else box(corners[1], corners[0], corners[3], corners[2])
+                return Door(names, neck, width, vertical)
+    return None
+
+
+def _cut(rng: np.random.Generator, rect: Rect, doors: list[Door], arm: int) -> Polygon:
+    """The rectangle without one of its corners, the cut clear of the doors, or as it was when it is too small."""
+    west, south, east, north = rect
+    room = box(*rect)
+    if min(east - west, north - south) < arm + 4:
+        return room
+    wide, high = int(rng.integers(4, east - west - arm + 1)), int(rng.integers(4, north - south - arm + 1))
+    pieces = [
+        box(x, y, x + wide, y + high)
+        for x in (west, east - wide)
+        for y in (south, north - high)
+        if all(box(x, y, x + wide, y + high).distance(door.polygon) >= 4 for door in doors)
+    ]
+    return room.difference(pieces[rng.integers(len(pieces))]) if pieces else room
+
+
+def convex_corners(floor: BaseGeometry) -> list[tuple[float, float, float, float]]:
+    """Corners of a rectilinear floor where it turns by a right angle to the inside: (x, y, inward x, inward y)."""
+    corners = []
+    for polygon in getattr(floor, "geoms", [floor]):
+        ring = list(polygon.exterior.coords)[:-1]
+        if not polygon.exterior.is_ccw:
+            ring.reverse()
+        for (px, py), (x, y), (nx, ny) in zip(ring[-1:] + ring[:-1], ring, ring[1:] + ring[:1], strict=True):
+            if (x - px) * (ny - y) - (y - py) * (nx - x) > 0:
+                inward = np.sign([px - x + nx - x, py - y + ny - y])
+                corners.append((x, y, float(inward[0]), float(inward[1])))
+    return corners
+
+
+def is_simple_row(plan: Plan) -> bool:
+    """Whether each room is joined to the next one (what random_plan promises unless the rooms are closed off)."""
+    joined = [set(door.rooms) for door in plan.doors]
+    return all({a.name, b.name} in joined for a, b in pairwise(plan.rooms))

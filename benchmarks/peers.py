@@ -1,0 +1,106 @@
+"""The libraries that the screens are compared with: same map, same ends, same process, everything prepared beforehand."""
+
+from collections.abc import Callable
+from itertools import islice
+
+import networkx as nx
+import numpy as np
+from scipy.ndimage import distance_transform_edt, label
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import dijkstra
+from skimage.morphology import skeletonize
+from sknw import build_sknw
+from w9_pathfinding.envs import DiagonalMovement, Grid
+from w9_pathfinding.pf import AStar
+
+XY = tuple[float, float]
+Finder = Callable[[XY, XY], object]
+
+
+def skeleton_graph(free: np.ndarray) -> object:
+    """skimage.skeletonize, sknw and a distance transform: a pathgraph with clearance."""
+    padded = np.pad(free, 1)
+    return build_sknw(skeletonize(padded).astype(np.uint16), multi=True), distance_transform_edt(padded)
+
+
+def components_and_holes(free: np.ndarray) -> tuple[int, int]:
+    """Components by edges, and holes: what every pathgraph of free space must have."""
+    padded = np.pad(free, 1)
+    return label(padded)[1], label(~padded, np.ones((3, 3)))[1] - 1
+
+
+def w9_astar(free: np.ndarray) -> Finder:
+    """w9-pathfinding's A*, diagonal steps only between two free squares."""
+    grid = Grid(
+        np.where(free, 1.0, -1.0).tolist(),
+        diagonal_movement=DiagonalMovement.only_when_no_obstacle,
+        diagonal_movement_cost_multiplier=2**0.5,
+    )
+    finder = AStar(grid)
+    return lambda p, q: finder.find_path((int(p[0]), int(p[1])), (int(q[0]), int(q[1])))
+
+
+def grid_edges(free: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Legal steps to four of the eight neighbours, and their lengths."""
+    rows, columns = free.shape
+    padded = np.pad(free, 1)
+    own = np.arange(rows * columns).reshape(rows, columns)
+    tails, heads, lengths = [], [], []
+    for dy, dx in ((0, 1), (1, 0), (1, 1), (1, -1)):
+        there = padded[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns]
+        ok = free & there
+        if dx and dy:
+            ok &= padded[1 : 1 + rows, 1 + dx : 1 + dx + columns] & padded[1 + dy : 1 + dy + rows, 1 : 1 + columns]
+        tails.append(own[ok])
+        heads.append(own[ok] + dy * columns + dx)
+        lengths.append(np.full(ok.sum(), np.hypot(dx, dy)))
+    return np.concatenate(tails), np.concatenate(heads), np.concatenate(lengths)
+
+
+def scipy_dijkstra(free: np.ndarray) -> Finder:
+    """scipy's Dijkstra on the eight-connected grid, with the way back."""
+    tails, heads, lengths = grid_edges(free)
+    size, columns = free.size, free.shape[1]
+    graph = coo_matrix((lengths, (tails, heads)), (size, size)).tocsr()
+
+    def find(p: XY, q: XY) -> list[int]:
+        start, cell = (int(v[1]) * columns + int(v[0]) for v in (p, q))
+        _, before = dijkstra(graph, directed=False, indices=start, return_predecessors=True)
+        way = [cell]
+        while cell != start:
+            cell = before[cell]
+            way.append(cell)
+        return way
+
+    return find
+
+
+def networkx_astar(free: np.ndarray) -> Finder:
+    """networkx's A* on the eight-connected grid."""
+    tails, heads, lengths = grid_edges(free)
+    columns = free.shape[1]
+    graph = nx.Graph()
+    graph.add_weighted_edges_from(zip(tails.tolist(), heads.tolist(), lengths.tolist(), strict=True))
+
+    def ahead(a: int, b: int) -> float:
+        dy, dx = abs(a // columns - b // columns), abs(a % columns - b % columns)
+        return max(dx, dy) + (2**0.5 - 1) * min(dx, dy)
+
+    return lambda p, q: nx.astar_path(
+        graph, int(p[1]) * columns + int(p[0]), int(q[1]) * columns + int(q[0]), ahead, "weight"
+    )
+
+
+def simple_graph(pathgraph: nx.MultiGraph) -> nx.Graph:
+    """The pathgraph for networkx's k shortest paths, which knows no parallel edges: a node in the middle of each chain."""
+    graph = nx.Graph()
+    graph.add_nodes_from(pathgraph)
+    for a, b, key, edge in pathgraph.edges(keys=True, data=True):
+        graph.add_edge(a, ("middle", key), weight=0.5 * edge["length"])
+        graph.add_edge(("middle", key), b, weight=0.5 * edge["length"])
+    return graph
+
+
+def networkx_ways(graph: nx.Graph, a: int, b: int, k: int) -> list[list[object]]:
+    """networkx's k shortest simple paths."""
+    return list(islice(nx.shortest_simple_paths(graph, a, b, "weight"), k))

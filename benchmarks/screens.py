@@ -1,0 +1,203 @@
+"""Screens against the libraries one could use instead, side by side.
+
+    python -m benchmarks.screens [FOLDER OF .map FILES] [--queries N] [--only build,query,...]
+
+All times are the least of several, in milliseconds, warm, in this one process. Two cores shared with others make times
+noisy; ratios of least times are steadier.
+"""
+
+import argparse
+import time
+import tracemalloc
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks import peers
+from geometry import Screen
+from geometry.movingai import Trip, read_map, read_trips
+
+MAPS = Path(__file__).resolve().parents[2] / "shared" / "data" / "movingai"
+SECTIONS = ("build", "growth", "change", "query", "quality", "classes")
+
+
+def least(call: Callable[[], object], times: int = 5, seconds: float = 2.0) -> float:
+    """The least time of a call, in milliseconds."""
+    best, begun = np.inf, time.perf_counter()
+    for n in range(times):
+        start = time.perf_counter()
+        call()
+        now = time.perf_counter()
+        best = min(best, now - start)
+        if n and now - begun > seconds:
+            break
+    return 1e3 * best
+
+
+def trips_of(path: Path, free: np.ndarray, count: int) -> list[Trip]:
+    """Some problems of a map, drawn without favour."""
+    scenario = path.with_suffix(".map.scen")
+    rng = np.random.default_rng(1)
+    if scenario.exists():
+        trips = [t for t in read_trips(scenario) if t.octile > 0]
+        return [trips[k] for k in rng.permutation(len(trips))[:count]]
+    squares = np.argwhere(free)
+    ends = squares[rng.integers(len(squares), size=(count, 2))]
+    return [Trip((b + 0.5, a + 0.5), (d + 0.5, c + 0.5), 1.0) for (a, b), (c, d) in ends.tolist()]
+
+
+def topology(screen: Screen, radius: float) -> tuple[int, int]:
+    """Components and holes of a pathgraph."""
+    import networkx as nx
+
+    graph = screen.pathgraph_for(radius)
+    components = nx.number_connected_components(graph)
+    return components, graph.number_of_edges() - graph.number_of_nodes() + components
+
+
+def build(maps: dict[Path, np.ndarray], _: int) -> None:
+    print(
+        f"{'build':32} {'size':>10} {'ours':>8} {'peer':>9} {'ratio':>6} {'fresh':>6} {'bytes':>6}  topology for r = 0..5"
+    )
+    large = []
+    for path, free in maps.items():
+        screen = Screen(free)
+        ours = least(lambda free=free: Screen(free), 15)
+        peer = least(lambda free=free: peers.skeleton_graph(free), 5)
+        kept: list[Screen] = []
+        fresh = least(lambda free=free, kept=kept: kept.append(Screen(free)), 10)
+        tracemalloc.start()
+        again = Screen(free)
+        peak = tracemalloc.get_traced_memory()[1] / free.size
+        tracemalloc.stop()
+        right = [topology(again, r) == peers.components_and_holes(free & (screen.clearance >= r)) for r in range(6)]
+        if free.size >= 512 * 512:
+            large.append(peer / ours)
+        size = f"{free.shape[0]}x{free.shape[1]}"
+        verdict = "right" if all(right) else f"wrong {right}"
+        print(
+            f"{path.stem:32} {size:>10} {ours:8.2f} {peer:9.1f} {peer / ours:6.1f} {fresh / ours:6.2f} {peak:6.1f}  {verdict}"
+        )
+    if large:
+        print(
+            f"maps of 512^2 and more: median ratio {np.median(large):.1f} (15 wanted), least {min(large):.1f} (7 wanted)"
+        )
+
+
+def growth(maps: dict[Path, np.ndarray], _: int) -> None:
+    name = max(maps, key=lambda path: maps[path].size)
+    free = maps[name][:1024, :1024]
+    print(f"{'growth of ' + name.stem + ', tiled':40} ms and ns a cell")
+    sizes, times = [], []
+    for n in (256, 512, 1024, 2048, 4096):
+        tiles = -(-n // free.shape[0]), -(-n // free.shape[1])
+        big = np.tile(free, tiles)[:n, :n]
+        took = least(lambda big=big: Screen(big), 7, 4.0)
+        sizes.append(big.size)
+        times.append(took)
+        print(f"{n:>6}^2 {took:10.2f} {1e6 * took / big.size:8.2f}")
+    slope = np.polyfit(np.log(sizes[1:]), np.log(times[1:]), 1)[0]
+    print(f"exponent from 512^2 to 4096^2: {slope:.3f} (at most 1.05 wanted)")
+
+
+def change(maps: dict[Path, np.ndarray], _: int) -> None:
+    print(f"{'change of 8 x 8 squares':32} {'build':>8} {'least':>8} {'median':>8} {'median/build':>13}")
+    for path, free in maps.items():
+        if free.size < 512 * 512:
+            continue
+        screen, rng, took = Screen(free), np.random.default_rng(2), []
+        whole = least(lambda free=free: Screen(free), 10)
+        for k in range(60):
+            i, j = (int(rng.integers(0, n - 8)) for n in free.shape)
+            rows, columns = np.mgrid[i : i + 8, j : j + 8]
+            values = np.zeros((8, 8), bool) if k % 2 else free[i : i + 8, j : j + 8]
+            took.append(least(lambda a=rows, b=columns, c=values, s=screen: s.changed(a, b, c), 1))
+        print(f"{path.stem:32} {whole:8.2f} {min(took):8.3f} {np.median(took):8.3f} {np.median(took) / whole:13.3f}")
+
+
+def query(maps: dict[Path, np.ndarray], count: int) -> None:
+    print(
+        f"{'query, microseconds (median)':32} {'k=1':>8} {'k=4':>8} {'shortest':>8} {'w9 A*':>9} {'scipy':>9} {'w9/k1':>6} {'scipy/k1':>8}"
+    )
+    ratios = []
+    for path, free in maps.items():
+        screen, trips = Screen(free), trips_of(path, free, count)
+        w9, sparse = peers.w9_astar(free), peers.scipy_dijkstra(free)
+        calls = [
+            lambda t: screen.routes(t.start, t.goal, 1),
+            lambda t: screen.routes(t.start, t.goal, 4),
+            lambda t: screen.shortest(t.start, t.goal),
+        ]
+        ours = [np.median([1e3 * least(lambda c=c, t=t: c(t), 9, 0.2) for t in trips]) for c in calls]
+        slow = [
+            np.median([1e3 * least(lambda c=c, t=t: c(t.start, t.goal), 3, 0.2) for t in trips[:m]])
+            for c, m in ((w9, count), (sparse, 8))
+        ]
+        ratios.append((slow[0] / ours[0], slow[1] / ours[0]))
+        cells = " ".join(f"{v:8.1f}" for v in ours)
+        print(f"{path.stem:32} {cells} {slow[0]:9.0f} {slow[1]:9.0f} {ratios[-1][0]:6.0f} {ratios[-1][1]:8.0f}")
+    w9_ratio, scipy_ratio = np.median(ratios, axis=0)
+    print(f"median over maps: w9 / k=1 {w9_ratio:.0f} (35 wanted), scipy / k=1 {scipy_ratio:.0f} (110 wanted)")
+
+
+def quality(maps: dict[Path, np.ndarray], count: int) -> None:
+    print(f"{'length / any-angle optimum':32} {'k=1':>8} {'k=4':>8} {'k=8':>8} {'octile grid':>12}")
+    table = []
+    for path, free in maps.items():
+        screen, rows = Screen(free), []
+        for trip in trips_of(path, free, 2 * count):
+            best = screen.shortest(trip.start, trip.goal)
+            if best is None or best.length == 0.0:
+                continue
+            lengths = [screen.routes(trip.start, trip.goal, k)[0].length for k in (1, 4, 8)]
+            rows.append([v / best.length for v in (*lengths, trip.octile)])
+        table.append(np.mean(rows, axis=0))
+        print(f"{path.stem:32} " + " ".join(f"{v:8.4f}" for v in table[-1]))
+    mean, worst = np.mean(table, axis=0), np.max(table, axis=0)
+    print(
+        f"mean over maps: k=1 {mean[0]:.4f} (1.010 wanted), k=4 {mean[1]:.4f} (1.005 wanted; worst map {worst[1]:.4f}, 1.03 wanted)"
+    )
+
+
+def classes(maps: dict[Path, np.ndarray], _: int) -> None:
+    print(f"{'k=8 routes, milliseconds':32} {'ours':>8} {'networkx':>9} {'ratio':>7}  distinct")
+    ratios = []
+    for path, free in maps.items():
+        screen = Screen(free)
+        graph = screen.pathgraph
+        if graph.number_of_edges() > 4000:
+            continue
+        simple, rng = peers.simple_graph(graph), np.random.default_rng(3)
+        for _ in range(3):
+            a, b = (int(n) for n in rng.integers(0, graph.number_of_nodes(), 2))
+            start, goal = ((graph.nodes[n]["x"], graph.nodes[n]["y"]) for n in (a, b))
+            routes = screen.routes(start, goal, 8)
+            if a == b or not routes:
+                continue
+            ours = least(lambda s=start, g=goal, screen=screen: screen.routes(s, g, 8), 5)
+            theirs = least(lambda a=a, b=b, g=simple: peers.networkx_ways(g, a, b, 8), 1)
+            ratios.append(theirs / ours)
+            distinct = len({route.signature for route in routes}) == len(routes)
+            print(f"{path.stem:32} {ours:8.3f} {theirs:9.1f} {theirs / ours:7.0f}  {len(routes)} {distinct}")
+    print(f"median ratio {np.median(ratios):.0f} (150 wanted)")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", nargs="?", type=Path, default=MAPS)
+    parser.add_argument("--queries", type=int, default=30)
+    parser.add_argument("--only", default=",".join(SECTIONS))
+    options = parser.parse_args()
+    maps = {path: read_map(path) for path in sorted(options.folder.glob("*.map"))}
+    if not maps:
+        parser.error(f"no .map files in {options.folder}")
+    for section in options.only.split(","):
+        {"build": build, "growth": growth, "change": change, "query": query, "quality": quality, "classes": classes}[
+            section
+        ](maps, options.queries)
+        print(flush=True)
+
+
+if __name__ == "__main__":
+    main()

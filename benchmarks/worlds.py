@@ -1,0 +1,62 @@
+"""Random worlds for the nine tasks, the same for the same task and seed.
+
+    python -m benchmarks.worlds --task 3 --seed 0 --count 10 -o FOLDER
+
+Every twelfth seed (11, 23, ...) gives a world in which the task cannot be done; its expect.lp holds `fails`.
+"""
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.carrying import CARRYING
+from benchmarks.scenes import Scenario, write
+from benchmarks.walking import WALKING
+
+MAKERS = WALKING | CARRYING
+UNABLE_EVERY = 12  # seeds
+TRIES = 20_000
+
+
+def scenario(task: int, seed: int) -> Scenario:
+    """A random world with a task.
+
+    Parameters
+    ----------
+    task : 1 to 9, as in the paper: (i) to (ix).
+    seed : any integer from 0; when it is 11 modulo 12 the task cannot be done.
+
+    Raises
+    ------
+    ValueError
+        When there is no such task or seed.
+    """
+    if task not in MAKERS or seed < 0:
+        raise ValueError(f"no task {task} with seed {seed}: tasks are 1 to 9, seeds from 0")
+    rng = np.random.default_rng([task, seed])
+    unable = seed % UNABLE_EVERY == UNABLE_EVERY - 1
+    for _ in range(TRIES):
+        made = MAKERS[task](rng, seed, unable)
+        if made is not None:
+            return made
+    raise RuntimeError(f"no world found for task {task}, seed {seed}")
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Write scenario folders and print their names."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.worlds", description="Write random scenario folders.")
+    parser.add_argument("--task", default="1,2,3,4", help="tasks, with commas between (default %(default)s)")
+    parser.add_argument("--seed", type=int, default=0, help="the first seed (default %(default)s)")
+    parser.add_argument("--count", type=int, default=1, help="how many of each task (default %(default)s)")
+    parser.add_argument("-o", "--output", type=Path, default=Path("worlds"), help="folder (default %(default)s)")
+    given = parser.parse_args(arguments)
+    for task in [int(part) for part in given.task.split(",")]:
+        for seed in range(given.seed, given.seed + given.count):
+            made = scenario(task, seed)
+            print(write(made, given.output / made.name))
+
+
+if __name__ == "__main__":
+    main()

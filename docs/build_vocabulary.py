@@ -1,0 +1,141 @@
+"""docs/vocabulary.md, made from the documentation blocks of the encodings and the declared fact files.
+
+python docs/build_vocabulary.py            write it
+python docs/build_vocabulary.py --check    exit 1 when it is stale, or when an interface is not documented
+"""
+
+import argparse
+import re
+import sys
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs" / "vocabulary.md"
+FIRST = "belief"  # the world model comes before the encodings that build it
+BLOCK = re.compile(r"%\*!\s*(.*?)\*%", re.DOTALL)
+SIGNATURE = re.compile(r"([a-z_]\w*)(?:\(([^)]*)\))?")
+HEAD = """\
+# Vocabulary
+
+Every predicate between the parts of Utak's mind. Made from the encodings by `python docs/build_vocabulary.py`; do not
+edit. **in** marks what an encoding is given, **out** what it answers.
+"""
+
+
+class Entry(NamedTuple):
+    """A documented predicate: as written, its name and arity, the text, the meaning of its arguments, and its role."""
+
+    form: str
+    signature: tuple[str, int]
+    text: str
+    arguments: tuple[str, ...]
+    role: str
+
+
+def encodings() -> list[Path]:
+    """All encodings, the world model's own vocabulary first."""
+    paths = [*(ROOT / "kb" / "asp").glob("*.lp"), *(ROOT / "planner" / "asp").glob("*.lp")]
+    return sorted(paths, key=lambda path: (path.stem != FIRST, path.parent.parent.name, path.stem))
+
+
+def entries(text: str) -> list[Entry]:
+    """The documented predicates of an encoding, in its order."""
+    inputs, shown = _signatures(text, "#defined"), _signatures(text, "#show")
+    found = []
+    for block in BLOCK.findall(text):
+        match = SIGNATURE.match(block)
+        if match is None:
+            raise ValueError(f"no predicate at the start of a documentation block: {block[:60]!r}")
+        arity = len(match[2].split(",")) if match[2] else 0
+        signature = match[1], arity
+        body, _, arguments = textwrap.dedent(block[match.end() :]).partition("Args:")
+        role = "in" if signature in inputs else "out" if signature in shown else ""
+        found.append(Entry(match[0], signature, " ".join(body.split()), tuple(_items(arguments)), role))
+    return found
+
+
+def _signatures(text: str, word: str) -> set[tuple[str, int]]:
+    return {(name, int(arity)) for name, arity in re.findall(rf"^{word}\s+(\w+)/(\d+)\.", text, re.MULTILINE)}
+
+
+def _items(text: str) -> Iterator[str]:
+    for item in re.split(r"^\s*-\s", text, flags=re.MULTILINE)[1:]:
+        yield " ".join(item.split())
+
+
+def title(text: str) -> str:
+    """The comment at the top of an encoding."""
+    lines = []
+    for line in text.splitlines():
+        if not line.startswith("% "):
+            break
+        lines.append(line[2:])
+    return " ".join(lines)
+
+
+def undocumented(text: str) -> set[tuple[str, int]]:
+    """Inputs and answers of an encoding without a documentation block."""
+    return (_signatures(text, "#defined") | _signatures(text, "#show")) - {e.signature for e in entries(text)}
+
+
+def section(path: Path) -> str:
+    """One encoding's part of the page."""
+    text = path.read_text()
+    lines = [f"## {path.relative_to(ROOT)}", "", title(text), ""]
+    for entry in entries(text):
+        role = f" **{entry.role}**" if entry.role else ""
+        lines.append(f"- `{entry.form}`{role} {entry.text}")
+        lines += [f"  - {argument}" for argument in entry.arguments]
+    return "\n".join(lines) + "\n"
+
+
+def files_section() -> str:
+    """The declared vocabulary of the four kinds of fact files."""
+    sys.path.insert(0, str(ROOT))
+    from kb.vocabulary import EXPECT, GOAL, START, WORLD
+
+    parts: Mapping[str, Mapping[str, Sequence[object]]] = {
+        "world.lp": WORLD,
+        "start.lp": START,
+        "goal.lp": GOAL,
+        "expect.lp": EXPECT,
+    }
+    lines = ["## Fact files", "", "What may stand in the files of a scenario (kb/vocabulary.py).", ""]
+    for name, vocabulary in parts.items():
+        forms = [_form(predicate, slots) for predicate, slots in vocabulary.items()]
+        lines.append(f"- **{name}**: " + ", ".join(f"`{form}`" for form in forms))
+    return "\n".join(lines) + "\n"
+
+
+def _form(predicate: str, slots: Sequence[object]) -> str:
+    inner = ", ".join(str(getattr(slot, "name", slot)) for slot in slots)
+    return f"{predicate}({inner})" if inner else predicate
+
+
+def page() -> str:
+    """The whole page."""
+    return "\n".join([HEAD, *(section(path) for path in encodings()), files_section()])
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write the page, or check it."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--check", action="store_true", help="only say whether the page is as it must be")
+    check = parser.parse_args(arguments).check
+    missing = {str(path.relative_to(ROOT)): sorted(undocumented(path.read_text())) for path in encodings()}
+    for name, signatures in missing.items():
+        for predicate, arity in signatures:
+            print(f"{name}: {predicate}/{arity} is not documented", file=sys.stderr)
+    if check and (not PAGE.exists() or PAGE.read_text() != page()):
+        print("docs/vocabulary.md is stale: run python docs/build_vocabulary.py", file=sys.stderr)
+        return 1
+    if not check:
+        PAGE.write_text(page())
+    return int(any(missing.values()))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,116 @@
+"""How far each square's centre is from the nearest square that is not free: exact, in integers.
+
+All arrays are padded by one blocked square on each side: cell ``(row + 1) * width + column + 1`` with ``width =
+columns + 2``. ``gap[row, column]`` is the number of steps to the nearest blocked square in the same column;
+``square`` is the squared distance in *half squares* from the centre to the nearest blocked square's edge or corner,
+0 on blocked squares. A blocked square at offset (dx, dy) is ``(max(2|dx| - 1, 0))^2 + (max(2|dy| - 1, 0))^2`` away,
+so ``sqrt(square) / 2`` is the clearance.
+
+# Strategy: columns first, then along each run of free squares of a row the lower envelope of parabolas
+(Felzenszwalb and # Huttenlocher 2012), here as the lower convex hull of (site, height + site^2), which needs no
+division. Between squares j and # j + 1 a column's edge stands at 2j + 1 half squares, so a run has a site between
+any two of its squares, with the lower of # their two column distances as its height.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.compiled import compiled
+
+Bools = NDArray[np.bool_]
+Gaps = NDArray[np.int16]
+Squares = NDArray[np.int32]
+Sites = NDArray[np.int64]
+
+
+@compiled
+def count_columns(free: Bools, gap: Gaps) -> None:
+    """Fill ``gap`` with the steps to the nearest blocked square below, in the same column."""
+    rows, columns = free.shape
+    gap[0, :] = 0
+    gap[rows + 1, :] = 0
+    for row in range(rows):
+        here = free[row]
+        below = gap[row]
+        out = gap[row + 1]
+        out[0] = 0
+        out[columns + 1] = 0
+        for column in range(columns):
+            out[column + 1] = (below[column + 1] + np.int16(1)) * here[column]
+
+
+@compiled
+def measure(gap: Gaps, square: Squares, sites: Sites, heights: Sites) -> None:
+    """Complete ``gap`` with the squares above, and fill ``square`` row by row."""
+    rows, width = gap.shape[0] - 2, gap.shape[1]
+    square[0, :] = 0
+    square[rows + 1, :] = 0
+    for row in range(rows, 0, -1):
+        above = gap[row + 1]
+        out = gap[row]
+        for column in range(width):
+            out[column] = min(out[column], above[column] + np.int16(1))
+        measure_row(out, square[row], sites, heights)
+
+
+@compiled
+def measure_row(gap: Gaps, square: Squares, sites: Sites, heights: Sites) -> None:
+    """Fill one row of ``square`` from its row of ``gap``."""
+    width = gap.shape[0]
+    column = 0
+    while column < width:
+        if gap[column] == 0:
+            square[column] = 0
+            column += 1
+            continue
+        first = column
+        while gap[column] != 0:
+            column += 1
+        measure_run(gap, square, first, column, sites, heights)
+
+
+@compiled
+def measure_run(gap: Gaps, square: Squares, first: int, last: int, sites: Sites, heights: Sites) -> None:
+    """Fill the run ``first <= column < last`` of free squares, blocked on both sides."""
+    top = envelope(gap, first, last, sites, heights)
+    best = 0
+    for column in range(first, last):
+        x = 2 * (column - first)
+        value = heights[best] - 2 * x * sites[best]
+        while best < top:
+            other = heights[best + 1] - 2 * x * sites[best + 1]
+            if other > value:
+                break
+            value = other
+            best += 1
+        own = 2 * np.int64(gap[column]) - 1
+        square[column] = min(own * own, value + x * x)
+
+
+@compiled
+def envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> int:
+    """The sites whose parabolas are lowest somewhere; relative to ``first``. Returns the index of the last."""
+    sites[0] = -1
+    heights[0] = 1
+    top = 0
+    before = np.int64(gap[first])
+    for column in range(first + 1, last + 1):
+        here = np.int64(gap[column])
+        lower = before if before < here else here
+        edge = 2 * lower - 1 if lower > 0 else 0
+        before = here
+        site = 2 * (column - first) - 1
+        height = edge * edge + site * site
+        while top > 0 and hidden(sites, heights, top, site, height):
+            top -= 1
+        top += 1
+        sites[top] = site
+        heights[top] = height
+    return top
+
+
+@compiled
+def hidden(sites: Sites, heights: Sites, top: int, site: int, height: np.int64 | int) -> bool:
+    """Whether the top site lies on or above the line from the one beneath it to the new one."""
+    rise = (heights[top] - heights[top - 1]) * (site - sites[top])
+    return bool(rise >= (height - heights[top]) * (sites[top] - sites[top - 1]))

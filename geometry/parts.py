@@ -1,0 +1,88 @@
+"""Parts of the floor: what remains connected when free space is cut along the necks of some passages."""
+
+from collections.abc import Iterable
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.chains import Ints
+from geometry.compiled import compiled
+from geometry.distance import Bools, Squares
+from geometry.passages import Passage, crosses
+
+Labels = NDArray[np.int32]
+
+
+def find_parts(square: Squares, state: NDArray[np.uint8], passages: Iterable[Passage]) -> Labels:
+    """(rows, columns) int: 0 blocked, else the number of the part, from 1 in the order of the parts' first squares.
+
+    A part cut off between a wall and a neck, without any of the skeleton, belongs to the part across that neck.
+    """
+    shut = np.zeros((2, *square.shape), np.bool_)
+    for passage in passages:
+        cut(shut, passage)
+    label = np.zeros(square.shape, np.int32)
+    count = number_parts(square > 0, shut, label, np.empty(square.size, np.int32))
+    joined = np.arange(count + 1, dtype=np.int32)
+    if count > 1:
+        join_slivers(shut, label, np.bincount(label[state > 0], minlength=count + 1).astype(np.int32), joined)
+    _, compact = np.unique(joined, return_inverse=True)
+    return compact.astype(np.int32)[label[1:-1, 1:-1]]
+
+
+def cut(shut: Bools, passage: Passage) -> None:
+    """Mark the steps to the east (0) and to the north (1) that cross a passage's neck."""
+    for a, b in pairwise(passage.cut):
+        near = [(int(x) + dx, int(y) + dy) for x, y in (a, b) for dx in (-1, 0, 1) for dy in (-1, 0, 1)]
+        for column, row in sorted(set(near)):
+            x, y = column + 0.5, row + 0.5
+            if 0 <= row < shut.shape[1] - 2 and 0 <= column < shut.shape[2] - 2:
+                shut[0, row + 1, column + 1] |= crosses(passage.cut, (x, y), (x + 1.0, y))
+                shut[1, row + 1, column + 1] |= crosses(passage.cut, (x, y), (x, y + 1.0))
+
+
+@compiled
+def number_parts(free: Bools, shut: Bools, label: Labels, stack: Ints) -> int:
+    """Number the parts of the padded free cells; returns how many there are."""
+    width = free.shape[1]
+    open_cells, labels = free.reshape(-1), label.reshape(-1)
+    east, north = shut[0].reshape(-1), shut[1].reshape(-1)
+    count = 0
+    for seed in range(open_cells.shape[0]):
+        if not open_cells[seed] or labels[seed] > 0:
+            continue
+        count += 1
+        labels[seed] = count
+        stack[0] = seed
+        size = 1
+        while size > 0:
+            size -= 1
+            cell = stack[size]
+            for k in range(4):
+                other = cell + (1 if k == 0 else width if k == 1 else -1 if k == 2 else -width)
+                low = min(cell, other)
+                closed = north[low] if k % 2 == 1 else east[low]
+                if open_cells[other] and labels[other] == 0 and not closed:
+                    labels[other] = count
+                    stack[size] = other
+                    size += 1
+    return count
+
+
+@compiled
+def join_slivers(shut: Bools, label: Labels, bones: Ints, joined: Ints) -> None:
+    """Join each part without skeleton to the first part with some across a neck."""
+    rows, width = label.shape
+    for i in range(1, rows - 1):
+        for j in range(1, width - 1):
+            for k in range(2):
+                if not shut[k, i, j]:
+                    continue
+                a, b = label[i, j], label[i + k, j + 1 - k]
+                if a == 0 or b == 0:
+                    continue
+                if bones[a] == 0 and bones[b] > 0 and joined[a] == a:
+                    joined[a] = b
+                elif bones[b] == 0 and bones[a] > 0 and joined[b] == b:
+                    joined[b] = a

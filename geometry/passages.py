@@ -1,0 +1,297 @@
+"""Passages: the necks of free space, each with the walls that form it and how wide the floor is on either side.
+
+# Strategy: every saddle of the clearance is a neck. Taken from the widest down, each joins the parts of the floor
+that are wider than it; the greatest clearance of the part on either side is what the neck is compared with. So
+between two wide parts exactly one place counts as the neck, however long and bumpy the way between them: the
+narrowest, ties broken by index.
+"""
+
+from itertools import pairwise
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.chains import Chains, Ints
+from geometry.compiled import compiled
+from geometry.distance import Squares
+from geometry.runs import root
+from geometry.skeleton import SADDLE, SUMMIT, States, above, beside, steepest
+from geometry.ways import locate
+
+XY = tuple[float, float]
+
+
+class Passage(NamedTuple):
+    """A neck of free space; all measures in squares."""
+
+    place: XY
+    """The centre of the saddle's square."""
+    clearance: float
+    """There."""
+    width: float
+    """The length of the neck: from wall to wall."""
+    a: XY
+    """One end of the neck, on the edge or corner of a blocked square."""
+    b: XY
+    """The other end."""
+    sides: tuple[float, float]
+    """The greatest clearance on either side, before any neck that is narrower (also between squares' centres)."""
+    gates: tuple[XY, XY]
+    """The centres of two neighbouring free squares, one on either side of the neck, in the order of ``sides``."""
+    cut: tuple[XY, ...]
+    """Centres of squares from wall to wall over ``place``: where the floor is cut (on the side of a little more x)."""
+    chain: int
+    """The chain of the pathgraph that leads through."""
+    position: int
+    """Where on it."""
+
+
+def find_passages(square: Squares, state: States, chains: Chains) -> list[Passage]:
+    """All passages, in the order of their saddles' squares."""
+    saddles = np.flatnonzero(state.reshape(-1) & SADDLE).astype(np.int32)
+    if not len(saddles):
+        return []
+    groups, first, peaks = compare_sides(square, state, saddles)
+    finer = {peak: finest(square, peak) for peak in np.unique(peaks).tolist()}
+    found = []
+    for k, saddle in enumerate(saddles.tolist()):
+        count = int(groups[k])
+        for g in range(1 if count == 2 else count):
+            sides = [finer[peak] for peak in peaks[k, :count].tolist()]
+            found.append(describe(square, state, chains, saddle, first[k, :count], sides, g))
+    return found
+
+
+def describe(
+    square: Squares, state: States, chains: Chains, saddle: int, first: Ints, sides: list[float], g: int
+) -> Passage:
+    """The passage between one side of a saddle and the rest."""
+    width = square.shape[1]
+    others = [k for k in range(len(first)) if k != g]
+    other = max(others, key=lambda k: (sides[k], -k))
+    left, right = slopes(square, saddle, int(first[g]))
+    ax, ay, bx, by = neck_ends(square, saddle, int(left[-1]), int(right[-1]))
+    cut = tuple(centre(cell, width) for cell in [*left[::-1].tolist(), saddle, *right.tolist()])
+    place = centre(saddle, width)
+    near, far = crossing_step(square, saddle, int(first[g]), int(first[other]), cut)
+    chain, position = on_chain(chains, saddle, int(first[g]), state)
+    return Passage(
+        place,
+        clearance_of(square, saddle),
+        float(np.hypot(bx - ax, by - ay)),
+        (ax, ay),
+        (bx, by),
+        (sides[g], sides[other]),
+        (centre(near, width), centre(far, width)),
+        cut,
+        chain,
+        position,
+    )
+
+
+def on_chain(chains: Chains, saddle: int, side: int, state: States) -> tuple[int, int]:
+    """The chain that leads from a saddle to one side, and the saddle's position on it."""
+    anchor = locate(saddle, state, chains)
+    if anchor.node < 0:
+        return anchor.chain, anchor.position
+    for chain in sorted(set(chains.leave[anchor.node].tolist()) - {-1}):
+        cells = chains.cells[chains.start[chain] : chains.start[chain + 1]]
+        if (cells[0], cells[1]) == (saddle, side):
+            return chain, 0
+        if (cells[-1], cells[-2]) == (saddle, side):
+            return chain, len(cells) - 1
+    raise AssertionError("a saddle that is a node has a chain into each of its sides")
+
+
+def compare_sides(square: Squares, state: States, saddles: Ints) -> tuple[Ints, Ints, Ints]:
+    """Per saddle: its number of sides, their first cells, and the summit of each side's part."""
+    heights = square.reshape(-1)
+    count = np.zeros(len(saddles), np.int32)
+    first, summit, peaks = (np.zeros((len(saddles), 4), np.int32) for _ in range(3))
+    find_sides(square, state, saddles, count, first, summit)
+    summits = np.flatnonzero(state.reshape(-1) & SUMMIT).astype(np.int32)
+    parent = np.arange(len(summits), dtype=np.int32)
+    highest = summits.copy()
+    order = np.lexsort((-saddles, -heights[saddles])).astype(np.int32)
+    merge_sides(order, count, np.searchsorted(summits, summit).astype(np.int32), parent, highest, heights, peaks)
+    return count, first, peaks
+
+
+@compiled
+def find_sides(square: Squares, state: States, saddles: Ints, count: Ints, first: Ints, summit: Ints) -> None:
+    """The highest neighbour in each group of higher ones, and the summit reached from it."""
+    width = square.shape[1]
+    heights, states = square.reshape(-1), state.reshape(-1)
+    for k in range(saddles.shape[0]):
+        saddle, start = saddles[k], 0
+        while above(saddle + beside(start, width), saddle, heights):
+            start += 1
+        best = -1
+        for j in range(start + 1, start + 9):
+            cell = saddle + beside(j, width)
+            if not above(cell, saddle, heights):
+                if best >= 0:
+                    first[k, count[k]] = best
+                    while not states[best] & SUMMIT:
+                        best = steepest(best, heights, width)
+                    summit[k, count[k]] = best
+                    count[k] += 1
+                best = -1
+            elif j % 2 == 0 and (best < 0 or above(cell, best, heights)):
+                best = cell
+
+
+@compiled
+def merge_sides(
+    order: Ints, count: Ints, summit: Ints, parent: Ints, highest: Ints, heights: Squares, peaks: Ints
+) -> None:
+    """Take the saddles in order; note the summits of the parts they join, then join them."""
+    for saddle in order:
+        for g in range(count[saddle]):
+            peaks[saddle, g] = highest[root(parent, summit[saddle, g])]
+        for g in range(1, count[saddle]):
+            a, b = root(parent, summit[saddle, 0]), root(parent, summit[saddle, g])
+            if above(highest[max(a, b)], highest[min(a, b)], heights):
+                highest[min(a, b)] = highest[max(a, b)]
+            parent[max(a, b)] = min(a, b)
+
+
+@compiled
+def finest(square: Squares, cell: int) -> float:
+    """The greatest clearance at a cell's centre, corners and edges' middles."""
+    rows, width = square.shape
+    i, j = cell // width, cell % width
+    reach = int(np.sqrt(float(square[i, j]))) // 2 + 2
+    best = 0.0
+    for dy in range(-1, 2):
+        for dx in range(-1, 2):
+            least = np.inf
+            for y in range(max(i - reach, 0), min(i + reach + 1, rows)):
+                for x in range(max(j - reach, 0), min(j + reach + 1, width)):
+                    if square[y, x] == 0:
+                        rise, run = max(abs(y - i - 0.5 * dy) - 0.5, 0.0), max(abs(x - j - 0.5 * dx) - 0.5, 0.0)
+                        least = min(least, rise * rise + run * run)
+            best = max(best, np.sqrt(least) if least < np.inf else 0.0)
+    return best
+
+
+@compiled
+def slopes(square: Squares, saddle: int, side: int) -> tuple[Ints, Ints]:
+    """The steepest ways down to the walls, left and right of the way from a saddle to one of its sides."""
+    width = square.shape[1]
+    heights = square.reshape(-1)
+    k = 0
+    while saddle + beside(k, width) != side:
+        k += 1
+    return descend(heights, saddle, k, 1, width), descend(heights, saddle, k, 7, width)
+
+
+def neck_ends(square: Squares, saddle: int, one: int, two: int) -> tuple[float, float, float, float]:
+    """The ends of a neck: the nearest points of its walls, or those nearest the saddle if it does not lie between."""
+    width = square.shape[1]
+    i, j = saddle // width, saddle % width
+    if (one // width - i) * (two // width - i) + (one % width - j) * (two % width - j) < 0:
+        return nearest_points(*neck_walls(square, saddle, one, two), width)
+    return (*nearest_points(one, saddle, width)[:2], *nearest_points(two, saddle, width)[:2])
+
+
+@compiled
+def neck_walls(square: Squares, saddle: int, one: int, two: int) -> tuple[int, int]:
+    """The blocked squares nearest to each other across a saddle, starting from the feet of its slopes."""
+    for _ in range(4):
+        nearer = across(square, saddle, one, two)
+        back = across(square, saddle, nearer, one)
+        if nearer == two and back == one:
+            break
+        one, two = back, nearer
+    return one, two
+
+
+@compiled
+def descend(heights: Squares, saddle: int, k: int, turn: int, width: int) -> Ints:
+    """The cells of the steepest way down to a wall from the first lower neighbour, turning from the k-th one way."""
+    k += turn
+    while above(saddle + beside(k, width), saddle, heights):
+        k += turn
+    cells = [saddle + beside(k, width)]
+    while heights[cells[-1]] > 0:
+        best = cells[-1]
+        for j in range(8):
+            other = cells[-1] + beside(j, width)
+            if heights[other] < heights[best]:
+                best = other
+        cells.append(best)
+    return np.array(cells, np.int32)
+
+
+@compiled
+def across(square: Squares, saddle: int, wall: int, before: int) -> int:
+    """The blocked square nearest to ``wall`` on the other side of the saddle; ``before`` if none is nearer."""
+    rows, width = square.shape
+    i, j = saddle // width, saddle % width
+    u, v = wall // width - i, wall % width - j
+    best, least = before, apart(before // width - i - u, before % width - j - v)
+    reach = int(np.sqrt(float(least))) + 2
+    for y in range(max(i + u - reach, 0), min(i + u + reach + 1, rows)):
+        for x in range(max(j + v - reach, 0), min(j + v + reach + 1, width)):
+            if square[y, x] == 0 and (y - i) * u + (x - j) * v < 0:
+                gap = apart(y - i - u, x - j - v)
+                if gap < least:
+                    best, least = y * width + x, gap
+    return best
+
+
+@compiled
+def apart(rise: int, run: int) -> int:
+    """The squared distance between two squares at that offset."""
+    y, x = max(abs(rise) - 1, 0), max(abs(run) - 1, 0)
+    return y * y + x * x
+
+
+def nearest_points(wall: int, other: int, width: int) -> tuple[float, float, float, float]:
+    """The nearest points of two squares; in the middle where they face each other."""
+    ay, by = nearest_on_axis(wall // width - 1, other // width - 1)
+    ax, bx = nearest_on_axis(wall % width - 1, other % width - 1)
+    return ax, ay, bx, by
+
+
+def nearest_on_axis(a: int, b: int) -> tuple[float, float]:
+    """The nearest points of the unit intervals at a and b."""
+    if a == b:
+        return a + 0.5, a + 0.5
+    return (a + 1.0, float(b)) if a < b else (float(a), b + 1.0)
+
+
+def crossing_step(square: Squares, saddle: int, one: int, two: int, cut: tuple[XY, ...]) -> tuple[int, int]:
+    """The two neighbouring cells between which the skeleton crosses the neck, first the one towards ``one``."""
+    width = square.shape[1]
+    if crosses(cut, centre(saddle, width), centre(one, width)):
+        return one, saddle
+    return saddle, two
+
+
+def crosses(cut: tuple[XY, ...], p: XY, q: XY) -> bool:
+    """Whether the step from p to q crosses a cut, which runs a little off its squares' centres."""
+    shifted = [(x + 1e-4, y + 3e-5) for x, y in cut]
+    return sum(meets(a, b, p, q) for a, b in pairwise(shifted)) % 2 == 1
+
+
+def meets(a: XY, b: XY, p: XY, q: XY) -> bool:
+    """Whether two segments cross."""
+    return (turn(a, b, p) > 0) != (turn(a, b, q) > 0) and (turn(p, q, a) > 0) != (turn(p, q, b) > 0)
+
+
+def turn(a: XY, b: XY, c: XY) -> float:
+    """Positive when c lies left of the ray from a through b."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def centre(cell: int, width: int) -> XY:
+    """The centre of a padded cell."""
+    return cell % width - 0.5, cell // width - 0.5
+
+
+def clearance_of(square: Squares, cell: int) -> float:
+    """The clearance at a padded cell."""
+    return 0.5 * sqrt(float(square.reshape(-1)[cell]))

@@ -1,0 +1,140 @@
+"""Rope tightening: the shortest way through a word of portals.
+
+# Strategy: the funnel of Lee and Preparata (1984). The way to the two ends of the last portal is a funnel with two
+chains of corners that bend outwards from a common apex; each new end pops what the rope no longer touches. The
+corners are multiples of half a square, on which cross products of floats are exact, so only free ends of the rope
+round at all.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.chains import Floats, Ints
+from geometry.compiled import compiled
+from geometry.runs import Runs
+
+
+class Rope(NamedTuple):
+    """Room for one tightening through at most (size - 4) / 4 portals."""
+
+    x: Floats
+    """(size,) corners, in squares."""
+    y: Floats
+    """(size,)"""
+    via: Ints
+    """(size,) the corner before, on the shortest way."""
+    queue: Ints
+    """(2 size,) the funnel, from its left end over the apex to its right end."""
+
+
+def new_rope(portals: int) -> Rope:
+    """Room for that many portals."""
+    size = 4 * portals + 8
+    return Rope(
+        np.empty(size),
+        np.empty(size),
+        np.empty(size, np.int32),
+        np.empty(2 * size, np.int32),
+    )
+
+
+@compiled
+def tighten_word(
+    runs: Runs, body: bool, word: Ints, size: int, ends: tuple[float, float, float, float], rope: Rope, out: Floats
+) -> int:
+    """Write the corners of the tight rope to ``out`` (corners, 2), both ends included; returns their number.
+
+    A point may use whole squares; a body moves on the lines between the centres of its squares and in the meshes of
+    four, so each portal counts twice: where the rope leaves the lower line of centres and where it meets the upper.
+    """
+    xs, ys = rope.x, rope.y
+    xs[0], ys[0] = ends[0], ends[1]
+    inset, times = (0.5, 2) if body else (0.0, 1)
+    used = 1
+    for k in range(size):
+        symbol = word[k]
+        portal = abs(symbol) - 1
+        left, right = runs.left[portal] + inset, runs.right[portal] + 1.0 - inset
+        y = runs.line[portal] + 1.0
+        if symbol < 0:
+            left, right = right, left
+        for n in range(times):
+            ys[used] = ys[used + 1] = y + inset * (2 * n - 1) * (1 if symbol > 0 else -1)
+            xs[used], xs[used + 1] = left, right
+            used += 2
+    xs[used], ys[used] = ends[2], ends[3]
+    funnel(xs, ys, rope.via, rope.queue, used)
+    return unwind(rope, used, out)
+
+
+@compiled
+def funnel(xs: Floats, ys: Floats, via: Ints, queue: Ints, last: int) -> None:
+    """For every corner (left and right ends of portals in turn, then the goal), the one before on the way to it.
+
+    ``queue`` holds the funnel: from ``left`` outwards to ``apex`` the left chain, from there to ``right`` the right one.
+    """
+    left = apex = right = queue.shape[0] // 2
+    queue[apex] = 0
+    for corner in range(1, last + 1):
+        x, y = xs[corner], ys[corner]
+        if corner & 1:
+            while left < apex and turn(xs, ys, queue[left + 1], queue[left], x, y) <= 0.0:
+                left += 1
+            if left == apex:
+                while apex < right and turn(xs, ys, queue[apex], queue[apex + 1], x, y) < 0.0:
+                    apex += 1
+                left = apex
+            via[corner] = queue[left]
+            left -= 1
+            queue[left] = corner
+        else:
+            while right > apex and turn(xs, ys, queue[right - 1], queue[right], x, y) >= 0.0:
+                right -= 1
+            if right == apex:
+                while apex > left and turn(xs, ys, queue[apex], queue[apex - 1], x, y) > 0.0:
+                    apex -= 1
+                right = apex
+            via[corner] = queue[right]
+            right += 1
+            queue[right] = corner
+
+
+@compiled
+def turn(xs: Floats, ys: Floats, a: int, b: int, x: float, y: float) -> float:
+    """Positive when (x, y) lies left of the ray from corner a through corner b."""
+    return float((xs[b] - xs[a]) * (y - ys[a]) - (ys[b] - ys[a]) * (x - xs[a]))
+
+
+@compiled
+def unwind(rope: Rope, last: int, out: Floats) -> int:
+    """Write the way to a corner, without corners met twice in a row; returns their number."""
+    size, corner = 1, last
+    while corner != 0:
+        corner = rope.via[corner]
+        size += 1
+    corner = last
+    for k in range(size - 1, -1, -1):
+        out[k, 0], out[k, 1] = rope.x[corner], rope.y[corner]
+        corner = rope.via[corner]
+    kept = 1
+    for k in range(1, size):
+        if out[k, 0] != out[kept - 1, 0] or out[k, 1] != out[kept - 1, 1]:
+            out[kept, 0], out[kept, 1] = out[k, 0], out[k, 1]
+            kept += 1
+    return kept
+
+
+@compiled
+def measure_line(line: Floats, size: int) -> float:
+    """The length of a polyline's first ``size`` corners."""
+    total = 0.0
+    for k in range(1, size):
+        total += reach(line[k, 0] - line[k - 1, 0], line[k, 1] - line[k - 1, 1])
+    return total
+
+
+@compiled
+def reach(run: float, rise: float) -> float:
+    """The length of a step; many times as fast as hypot, and nothing here is near overflow."""
+    return float(np.sqrt(run * run + rise * rise))

@@ -1,0 +1,51 @@
+"""A route: a tight way over a screen, and the class it belongs to."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.chains import Floats
+from geometry.itinerary import Answers
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Route:
+    """A locally shortest way from a start to a goal.
+
+    Two routes with the same ends on the same screen, for bodies of one radius, can be deformed into each other over
+    free space exactly when their signatures are equal.
+    """
+
+    points: Floats
+    """(n, 2) corners in squares, start and goal included."""
+    length: float
+    """In squares."""
+    clearance: float
+    """The radius of the largest body that can go this way, over the skeleton, from square to square; nan when the way
+    over the skeleton is not known (from ``shortest`` and, on screens with very many ways, from ``routes``)."""
+    signature: tuple[int, ...]
+    """Signed crossing numbers of the portals crossed (see runs.py); empty for the class without any."""
+    chains: tuple[int, ...]
+    """The chains of the pathgraph that the way uses, in order (its ends may lie inside the first and last); empty
+    when not known."""
+
+
+def read_answers(answers: Answers, found: int) -> list[Route]:
+    """The routes of a query, shortest first."""
+    bounds = answers.bounds[: found + 1].tolist()
+    lengths = answers.length[:found].tolist()
+    lowest = answers.lowest[:found].tolist()
+    routes = []
+    for k in sorted(range(found), key=lengths.__getitem__):
+        (a, c, e), (b, d, f) = bounds[k], bounds[k + 1]
+        points = answers.corners[a:b].copy()
+        points.flags.writeable = False
+        signature = tuple(answers.crossings[c:d].tolist())
+        chains = tuple(answers.chains[e:f].tolist())
+        routes.append(Route(points, lengths[k], 0.5 * lowest[k] ** 0.5, signature, chains))
+    return routes
+
+
+def length_of(points: Floats) -> float:
+    """The length of a polyline."""
+    return float(np.hypot(*np.diff(points, axis=0).T).sum())

@@ -1,0 +1,266 @@
+"""A screen: free and blocked squares, and what a point or a round body can do among them."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geometry.chains import Chains, Ints
+from geometry.change import change_squares
+from geometry.distance import Bools, count_columns, measure
+from geometry.goals import checked_goal
+from geometry.layer import find_chains, find_layer, level_of, new_state, retrace
+from geometry.parts import Labels, find_parts
+from geometry.passages import Passage, find_passages
+from geometry.polyline import word_of_line
+from geometry.questions import Questions
+from geometry.route import Route
+from geometry.skeleton import States, Words
+from geometry.tightening import tight_route, word_of_crossings
+
+if TYPE_CHECKING:
+    import networkx
+
+Point = Sequence[float]
+
+
+class Screen:
+    """Free space on a grid of squares; a point passes between squares that share an edge, never through a mere corner.
+
+    Points are (x, y) in squares; the centre of the square in column i and row j is (i + 0.5, j + 0.5).
+
+    Parameters
+    ----------
+    free : (rows, columns) array of bool
+        True where a point may be. Everything outside is blocked.
+
+    Raises
+    ------
+    ValueError
+        When ``free`` is not a two-dimensional array of truth values with at least one free square.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> free = np.ones((3, 5), dtype=bool)
+    >>> free[1, 2] = False
+    >>> [route.points.tolist() for route in Screen(free).routes((0.5, 1.5), (4.5, 1.5), k=2)]
+    [[[0.5, 1.5], [2.0, 2.0], [3.0, 2.0], [4.5, 1.5]], [[0.5, 1.5], [2.0, 1.0], [3.0, 1.0], [4.5, 1.5]]]
+    """
+
+    def __init__(self, free: ArrayLike) -> None:
+        grid = checked_grid(free)
+        rows, columns = grid.shape
+        self.shape = (rows, columns)
+        self._gap = np.empty((rows + 2, columns + 2), np.int16)
+        self._square = np.empty((rows + 2, columns + 2), np.int32)
+        sites = np.empty((2, columns + 3), np.int64)
+        count_columns(grid, self._gap)
+        measure(self._gap, self._square, sites[0], sites[1])
+        self._skeletons: dict[int, tuple[States, Words, Chains]] = {}
+        self._questions: dict[tuple[int, bool], Questions] = {}
+        self._skeleton_at(1)
+
+    def changed(self, rows: ArrayLike, columns: ArrayLike, values: ArrayLike) -> "Screen":
+        """Set some squares free (True) or blocked (False), in place, much faster than a new screen; returns itself.
+
+        Everything asked of the screen afterwards is as of a new screen of the changed squares. Crossing numbers, chain
+        numbers and passages given out before no longer hold.
+
+        Raises
+        ------
+        ValueError
+            When a square lies outside, the three do not match, or no square would be left free (nothing changes then).
+        """
+        where = checked_squares(rows, columns, values, self.shape)
+        state, words, _ = self._skeletons[1]
+        change_squares(self._gap, self._square, state, words, *where)
+        self._skeletons = {1: (state, words, retrace(self._square, state, words))}
+        self._questions = {}
+        for name in ("clearance", "skeleton", "pathgraph"):
+            self.__dict__.pop(name, None)
+        return self
+
+    @property
+    def free(self) -> Bools:
+        """(rows, columns) bool, True where a point may be."""
+        return self._square[1:-1, 1:-1] > 0
+
+    @cached_property
+    def clearance(self) -> NDArray[np.float64]:
+        """(rows, columns): distance from each square's centre to the nearest square that is not free, 0 on those."""
+        return 0.5 * np.sqrt(self._square[1:-1, 1:-1])
+
+    @cached_property
+    def skeleton(self) -> Bools:
+        """(rows, columns) bool: thin, with as many components and holes as the free space."""
+        from geometry.thinning import thin_skeleton
+
+        return thin_skeleton(self._square, self._skeleton_at(1)[0])
+
+    @cached_property
+    def pathgraph(self) -> "networkx.MultiGraph[int]":
+        """Junctions and ends as nodes, chains as edges (see pathgraph.py for what they carry)."""
+        return self.pathgraph_for(0.0)
+
+    def pathgraph_for(self, radius: float) -> "networkx.MultiGraph[int]":
+        """The pathgraph of a body: that of the squares whose clearance is at least its radius."""
+        from geometry.pathgraph import networkx_graph
+
+        return networkx_graph(self._square, self._skeleton_at(level_of(radius))[2])
+
+    def routes(
+        self,
+        start: Point,
+        goal: ArrayLike | set[tuple[int, int]],
+        k: int = 3,
+        radius: float = 0.0,
+        avoid: Iterable[Passage] = (),
+        word: Sequence[int] | None = None,
+    ) -> list[Route]:
+        """Topologically distinct tight routes, shortest first; an empty list when there is none.
+
+        Parameters
+        ----------
+        start : (x, y)
+        goal : (x, y), or (rows, columns) array of bool, or set of squares (column, row)
+            Of a set any square will do: a route ends where that makes it shortest.
+        k : int
+            How many at most. Routes pass no junction of the pathgraph twice.
+        radius : float
+            Of a round body about the point, in squares. It moves from centre to centre of its squares.
+        avoid : passages
+            Routes must not lead through these.
+        word : crossing numbers
+            Only the route of this signature (which may wind as it likes), whatever k and avoid.
+
+        Raises
+        ------
+        ValueError
+            When start or goal lie outside the screen or in a blocked square, or the word is not of this screen.
+        """
+        questions = self._ask(radius)
+        begin = self._checked(start, "start")
+        area = checked_goal(goal, self.shape)
+        if area is not None:
+            return questions.to_area(begin, area, k, tuple(avoid))
+        end = self._checked(np.asarray(goal, np.float64).tolist(), "goal")
+        if not (questions.admits(begin) and questions.admits(end)):
+            return []
+        if word is None:
+            return questions.to_point(begin, end, k, tuple(avoid))
+        symbols = word_of_crossings(questions.layer.runs, (*begin, *end), word)
+        return [] if symbols is None else [questions.of_word(begin, end, symbols)]
+
+    def shortest(self, start: Point, goal: Point) -> Route | None:
+        """The shortest route of all, at any angle; None when there is none. Its clearance and chains are not known."""
+        begin, end = self._checked(start, "start"), self._checked(goal, "goal")
+        return self._ask(0.0).shortest(begin, end)
+
+    def loops(self, start: Point, around: ArrayLike, k: int = 1, radius: float = 0.0) -> list[Route]:
+        """Closed tight routes that wind once, counter-clockwise, about blocked squares; shortest first.
+
+        Parameters
+        ----------
+        start : (x, y)
+            Where every loop begins and ends.
+        around : (rows, columns) array of bool
+            The blocked squares, of one object. No loops when it is part of the outer wall.
+        k, radius
+            As for ``routes``.
+        """
+        mask = np.asarray(around)
+        if mask.shape != self.shape or mask.dtype != np.bool_ or not mask.any():
+            raise ValueError(f"around must be a bool array of shape {self.shape} with a square in it")
+        if (mask & self.free).any():
+            raise ValueError("around must not hold free squares")
+        questions = self._ask(radius)
+        begin = self._checked(start, "start")
+        return questions.loops(begin, mask, k) if questions.admits(begin) else []
+
+    def tighten(self, route: Route, radius: float = 0.0) -> Route:
+        """The locally shortest route of the same class, between the same ends.
+
+        Raises
+        ------
+        ValueError
+            When the route leaves free space.
+        """
+        layer = self._ask(radius).layer
+        word = word_of_line(layer.runs, route.points.tolist())
+        (x, y), (u, v) = route.points[0].tolist(), route.points[-1].tolist()
+        tight = tight_route(layer, (x, y, u, v), word, route.clearance, route.chains)
+        return replace(tight, points=tight.points)
+
+    def passages(self) -> list[Passage]:
+        """All necks of free space (see passages.py), in the order of their squares."""
+        state, _, chains = self._skeleton_at(1)
+        return find_passages(self._square, state, chains)
+
+    def parts(self, passages: Iterable[Passage]) -> Labels:
+        """(rows, columns) int: 0 blocked, else the number of the part of the floor, cut along the passages' necks."""
+        return find_parts(self._square, self._skeleton_at(1)[0], passages)
+
+    def _checked(self, point: Point, name: str) -> tuple[float, float]:
+        """A point in a free square."""
+        x, y = float(point[0]), float(point[1])
+        if not (0.0 <= x <= self.shape[1] and 0.0 <= y <= self.shape[0]):
+            raise ValueError(f"{name} ({x}, {y}) lies outside the screen of {self.shape[1]} x {self.shape[0]} squares")
+        if self._square[int(y) + 1, int(x) + 1] == 0:
+            raise ValueError(f"{name} ({x}, {y}) lies in a blocked square")
+        return x, y
+
+    def _skeleton_at(self, level: int) -> tuple[States, Words, Chains]:
+        """The skeleton and pathgraph of the squares of at least that level."""
+        found = self._skeletons.get(level)
+        if found is None:
+            state, words = new_state((self.shape[0] + 2, self.shape[1] + 2))
+            found = state, words, find_chains(self._square, level, state, words)
+            self._skeletons[level] = found
+        return found
+
+    def _ask(self, radius: float) -> Questions:
+        """What answers questions for a body of that radius."""
+        if not radius >= 0.0:
+            raise ValueError(f"radius must not be negative, but is {radius}")
+        key = level_of(radius), radius > 0.0
+        found = self._questions.get(key)
+        if found is None:
+            state, _, chains = self._skeleton_at(key[0])
+            found = Questions(find_layer(self._square, key[0], key[1], state, chains), key[0])
+            self._questions[key] = found
+        return found
+
+
+def checked_grid(free: ArrayLike) -> Bools:
+    """The free squares as an array, or an error that says what is wrong with them."""
+    grid = np.asarray(free)
+    if grid.ndim != 2:
+        raise ValueError(f"free must have two dimensions (rows, columns), not {grid.ndim}")
+    if grid.dtype != np.bool_:
+        raise ValueError(f"free must be an array of bool, not of {grid.dtype}")
+    if max(grid.shape) > 32766:
+        raise ValueError(f"free must not be larger than 32766 squares a side, not {grid.shape}")
+    if not grid.any():
+        raise ValueError("free has no free square")
+    return grid
+
+
+def checked_squares(
+    rows: ArrayLike, columns: ArrayLike, values: ArrayLike, shape: tuple[int, int]
+) -> tuple[Ints, Ints, Bools]:
+    """Rows, columns and values as arrays of one length, each square once (the last value counts)."""
+    i, j = (np.atleast_1d(np.asarray(v)).ravel() for v in (rows, columns))
+    value = np.asarray(values)
+    if value.dtype != np.bool_ or len(i) != len(j) or value.size not in (1, len(i)):
+        raise ValueError("rows, columns and values must have one length, and values be True or False")
+    if i.dtype.kind not in "iu" or j.dtype.kind not in "iu":
+        raise ValueError("rows and columns must be whole numbers")
+    if len(i) and not (i.min() >= 0 and i.max() < shape[0] and j.min() >= 0 and j.max() < shape[1]):
+        raise ValueError(f"a changed square lies outside the screen of {shape[0]} rows and {shape[1]} columns")
+    last = {(a, b): v for a, b, v in zip(i.tolist(), j.tolist(), np.broadcast_to(value.ravel(), i.shape), strict=True)}
+    spots = np.array(list(last), np.int32).reshape(-1, 2)
+    return spots[:, 0].copy(), spots[:, 1].copy(), np.array(list(last.values()), np.bool_)

@@ -1,0 +1,232 @@
+"""Accommodation: the believed pose, the angle of the lattice and the map, made to agree with every new impression.
+
+From the command the pose is predicted. When the impression cannot have been received there, explanations are gathered
+(the motion was blocked, it
+ended beside the predicted place, the lattice lies at another angle) and kb/asp/accommodation.lp chooses the cheapest.
+Then the impression
+is taken into the evidence. Each of the 160 cells ends as predicted, as explained (it shows squares not settled
+before), or as noise.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kb.body import Command, Impression, Move, Push
+from kb.encodings import KB, solve
+from kb.evidence import OPEN, Evidence
+from kb.heading import CENTRED, Hypothesis, Look, candidates, search, standing
+from kb.lattice import CENTRE, Lattice
+from kb.retina import FIELDS, count_ranges
+
+MEMORY = 12  # looks by which angles are judged: those that contradict older looks are gone already
+MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one is believed
+NONE_FITS = 10**6  # misfits of no lattice at all
+MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are blamed for what contradicts
+NEAR = 2  # squares about the predicted place in which Utak is looked for first
+Place = tuple[float, float]
+
+
+class CellStatus(StrEnum):
+    """How a cell of the impression is accounted for."""
+
+    PREDICTED = "predicted"
+    EXPLAINED = "explained"
+    NOISE = "noise"
+
+
+class Explanation(NamedTuple):
+    """A pose that may have given rise to the impression. place: a point of that lattice."""
+
+    how: str
+    place: Place
+    lattice: Lattice
+    misfits: int
+    distance: float
+
+
+class Accommodated(NamedTuple):
+    """What one impression led to. cells: a CellStatus for each of the 160 fields."""
+
+    explanation: Explanation
+    cells: tuple[CellStatus, ...]
+
+
+@dataclass
+class Memory:
+    """All that is held true of the pose and the map. One of the few places with state.
+
+    place is a point of the lattice; looks keep where each impression was received, in Utak's own frame.
+    """
+
+    evidence: Evidence = field(default_factory=Evidence)
+    lattice: Lattice = field(default_factory=Lattice)
+    place: Place = CENTRE
+    looks: list[Look] = field(default_factory=list)
+    hypotheses: tuple[Hypothesis, ...] = CENTRED
+    trust: int = 0
+    barred: set[tuple[int, int]] = field(default_factory=set)
+    searches: int = 0
+    slipped: bool = False
+
+    @property
+    def square(self) -> tuple[int, int]:
+        """The square of the lattice on which Utak stands."""
+        return math.floor(self.place[0]), math.floor(self.place[1])
+
+    @property
+    def track(self) -> list[Place]:
+        """Where he has been, as points of the lattice."""
+        return [self.lattice.place_from_utak(*look.place) for look in self.looks]
+
+    @property
+    def looked_from(self) -> frozenset[tuple[int, int]]:
+        """The squares on which an impression was received."""
+        return frozenset((math.floor(x), math.floor(y)) for x, y in self.track)
+
+    @property
+    def spread(self) -> float:
+        """By how many radians the angles that still stand differ from the believed one, at most."""
+        return math.radians(max((abs(other.angle - self.lattice.angle) for other in self.hypotheses), default=0))
+
+    def wake(self, impression: Impression) -> Accommodated:
+        """Take in the first impression."""
+        return self._accommodate(impression, self.place, ())
+
+    def accommodate(self, command: Command, impression: Impression) -> Accommodated:
+        """Take in the impression that followed a command."""
+        shift = (0.0, 0.0)
+        if isinstance(command, Move | Push):
+            shift = self.lattice.to_lattice(command.east, command.north)
+        x, y = self.place
+        return self._accommodate(impression, (x + shift[0], y + shift[1]), _along((x, y), shift))
+
+    # -- explaining ------------------------------------------------------------------------------
+
+    def _accommodate(self, impression: Impression, predicted: Place, stops: tuple[Place, ...]) -> Accommodated:
+        ranges = count_ranges(impression.retina)
+        explanation = self._explain(ranges, predicted, stops)
+        if explanation.lattice != self.lattice:
+            self._relay(explanation.lattice)
+        self.trust = self.trust + 1 if explanation.how == "predicted" else 0
+        self.slipped |= explanation.how == "slipped"
+        x, y = math.floor(explanation.place[0]), math.floor(explanation.place[1])
+        cells = self._statuses(ranges, x, y)
+        self.place = explanation.place
+        self.looks.append(Look(ranges, self.lattice.place_to_utak(*self.place)))
+        self.evidence.look(self.lattice.samples(), ranges, x, y, len(self.looks) - 1)
+        if explanation.how == "blocked":
+            self.barred.add(_next_square(self.place, predicted))
+        else:
+            self.evidence.stand(x, y, len(self.looks) - 1)
+        return Accommodated(explanation, cells)
+
+    def _explain(self, ranges: NDArray[np.int16], predicted: Place, stops: tuple[Place, ...]) -> Explanation:
+        look = Look(ranges, self.lattice.place_to_utak(*predicted))
+        recent = [*self.looks[-MEMORY:], look]
+        left = standing(self.hypotheses, recent)
+        first = self._explanation("predicted", predicted, ranges, predicted)
+        if any(h.lattice == self.lattice for h in left) and not first.misfits:
+            self.hypotheses = left
+            return first
+        explanations = [first]
+        explanations += [self._explanation("blocked", stop, ranges, predicted) for stop in stops]
+        explanations += [self._explanation("slipped", place, ranges, predicted) for place in _around(predicted)]
+        lattice, misfits = self._borne_out(left, look)
+        if misfits and self.searches < MOST_SEARCHES:
+            self.searches += 1
+            found = search(recent)
+            another, fewer = self._borne_out(found, look)
+            if fewer < misfits:
+                left, lattice, misfits = found, another, fewer
+        if left:
+            place = lattice.place_from_utak(*look.place)
+            explanations.append(Explanation("turned", place, lattice, misfits, 0.0))
+        chosen = self._choose(explanations)
+        if chosen.how == "turned":
+            self.hypotheses = left
+        return chosen
+
+    def _borne_out(self, left: tuple[Hypothesis, ...], look: Look) -> tuple[Lattice, int]:
+        """Of the lattices left, the one that all looks bear out best, and how many fields it leaves as noise."""
+        if not left:
+            return self.lattice, NONE_FITS
+        tried: list[tuple[int, int]] = []
+        lattices = candidates(left, self.lattice)[: max(6, MOST_REPLAYS // len(self.looks))]
+        for number, lattice in enumerate(lattices):
+            tried.append((_replay(lattice, [*self.looks, look])[1], number))
+            if tried[-1][0] == 0:
+                break
+        misfits, number = min(tried)
+        return lattices[number], misfits
+
+    def _explanation(self, how: str, place: Place, ranges: NDArray[np.int16], predicted: Place) -> Explanation:
+        x, y = math.floor(place[0]), math.floor(place[1])
+        misfits = self.evidence.clashes(self.lattice.samples(), ranges, x, y)
+        return Explanation(how, place, self.lattice, misfits, math.dist(place, predicted))
+
+    def _choose(self, explanations: list[Explanation]) -> Explanation:
+        facts = [
+            f"explanation({number},{e.how},{e.misfits},{math.ceil(e.distance)})"
+            for number, e in enumerate(explanations)
+        ]
+        facts += [f"trust({self.trust})", *["slips"] * self.slipped]
+        answer = solve([KB / "accommodation.lp"], facts)
+        if not answer:
+            raise AssertionError("accommodation.lp always has an answer")
+        return explanations[answer[0].arguments[0].number]
+
+    def _relay(self, lattice: Lattice) -> None:
+        """Believe that the lattice lies otherwise, and build the map anew from all looks."""
+        self.lattice = lattice
+        self.barred = set()
+        self.evidence = _replay(lattice, self.looks)[0]
+
+    def _statuses(self, ranges: NDArray[np.int16], x: int, y: int) -> tuple[CellStatus, ...]:
+        samples = self.lattice.samples()
+        noise = self.evidence.misfits(samples, ranges, x, y)
+        row, column = self.evidence.index(x, y)
+        state = self.evidence.state[samples.rows + row, samples.columns + column]
+        new = ((state == OPEN) & (samples.weight > 0)).any(1)
+        return tuple(
+            CellStatus.NOISE if noise[i] else CellStatus.EXPLAINED if new[i] else CellStatus.PREDICTED
+            for i in range(len(FIELDS))
+        )
+
+
+def _replay(lattice: Lattice, looks: Sequence[Look]) -> tuple[Evidence, int]:
+    """The evidence of all looks if the lattice lies like this, and how many fields contradict it."""
+    evidence, misfits = Evidence(), 0
+    for number, look in enumerate(looks):
+        x, y = (math.floor(v) for v in lattice.place_from_utak(*look.place))
+        misfits += evidence.clashes(lattice.samples(), look.ranges, x, y)
+        evidence.look(lattice.samples(), look.ranges, x, y, number)
+        evidence.stand(x, y, number)
+    return evidence, misfits
+
+
+def _along(start: Place, shift: tuple[float, float]) -> tuple[Place, ...]:
+    """Places at which a motion may have been stopped, the last first, a square's side apart."""
+    length = math.hypot(*shift)
+    steps = math.ceil(length)
+    parts = [i / steps for i in range(steps - 1, -1, -1)] if steps else []
+    return tuple((start[0] + shift[0] * t, start[1] + shift[1] * t) for t in parts)
+
+
+def _next_square(place: Place, towards: Place) -> tuple[int, int]:
+    """The square that a motion towards a point was about to enter when it was stopped."""
+    away = math.dist(place, towards) or 1.0
+    ahead = [a + (b - a) / away for a, b in zip(place, towards, strict=True)]
+    return math.floor(ahead[0]), math.floor(ahead[1])
+
+
+def _around(place: Place) -> tuple[Place, ...]:
+    """The places within NEAR squares of a place, by distance; the place itself is not among them."""
+    reach = range(-NEAR, NEAR + 1)
+    offsets = sorted((i * i + j * j, i, j) for i in reach for j in reach if i or j)
+    return tuple((place[0] + i, place[1] + j) for _, i, j in offsets)

@@ -1,0 +1,172 @@
+"""The world model as facts, in the vocabulary that docs/vocabulary.md documents, and as an episode's `belief`.
+
+Coordinates are hundredths of squares in Utak's own frame, whose origin is the point where he woke; confidences are
+percent.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.outline import outline
+from kb.accommodation import Accommodated
+from kb.corners import Corner
+from kb.evidence import OPEN
+from kb.rooms import Rooms
+from kb.worldmodel import FLOOR, ORG, VERGE, Node, WorldModel
+
+HUNDREDTHS = 100
+SAMPLES = 8
+Mask = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+
+
+class Places(NamedTuple):
+    """What is believed of the floor besides the tree: its rooms and doors, and its corners by side."""
+
+    rooms: Rooms
+    corners: Mapping[str, Corner]
+
+
+def belief(model: WorldModel, places: Places, accommodated: Accommodated, bound: Mapping[str, str]) -> dict[str, Any]:
+    """What an episode's line tells of Utak's belief.
+
+    place, lattice: where he believes himself, and the angle of the lattice. pose: how the pose was explained. cells:
+    how many cells of the impression
+    were predicted, explained or noise. bound: what the parameters of the task mean. facts: the world model.
+    """
+    cells = Counter(str(status) for status in accommodated.cells)
+    east, north = model.lattice.place_to_utak(*model.place)
+    return {
+        "place": [round(east, 6) + 0.0, round(north, 6) + 0.0],
+        "lattice": model.lattice.angle,
+        "pose": accommodated.explanation.how,
+        "cells": {status: cells[status] for status in sorted(cells)},
+        "bound": dict(sorted(bound.items())),
+        "facts": sorted(f"{fact}." for fact in model_facts(model, places)),
+    }
+
+
+def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
+    """The tree of the world model, its rooms and doors, as facts without their full stops."""
+    yield from _root(model)
+    for name, mask in ((FLOOR, model.floor), (VERGE, model.verge)):
+        if mask.any():
+            yield from _outlined(name, _rings(mask, model), model)
+    for node in model.objects:
+        yield from _object(node, model, places.rooms)
+    yield from _rooms(model, places.rooms)
+    for side, corner in sorted(places.corners.items()):
+        x, y = corner.point[0] + model.view.west, corner.point[1] + model.view.south
+        east, north = model.lattice.place_to_utak(x, y)
+        yield f"corner({side},{_hundredths(east)},{_hundredths(north)})"
+
+
+def _root(model: WorldModel) -> Iterator[str]:
+    east, north = model.lattice.place_to_utak(*model.place)
+    yield f"node({ORG})"
+    yield f"kind({ORG},utak,100)"
+    yield f"offset({ORG},{_hundredths(east)},{_hundredths(north)})"
+    for name, kind, parent in ((FLOOR, "floor", ORG), (VERGE, "verge", FLOOR)):
+        yield f"node({name})"
+        yield f"child({parent},{name})"
+        yield f"kind({name},{kind},{_sureness(model, kind)})"
+    yield f"offset({FLOOR},{_hundredths(-east)},{_hundredths(-north)})"
+    yield f"offset({VERGE},0,0)"
+    if model.held:
+        yield f"held({model.held})"
+
+
+def _sureness(model: WorldModel, kind: str) -> int:
+    mask = model.floor if kind == "floor" else model.verge
+    squares = int(mask.sum())
+    return 100 * int((mask & (model.view.state != OPEN)).sum()) // squares if squares else 0
+
+
+def _object(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
+    name = node.name
+    yield f"node({name})"
+    yield f"child({FLOOR},{name})"
+    yield f"kind({name},object,{node.confidence})"
+    if node.confidence < 100:
+        yield f"kind({name},verge,{model.kinds.of(node.region, 'verge')})"
+    east, north = model.lattice.place_to_utak(*node.patch.centre)
+    yield f"offset({name},{_hundredths(east)},{_hundredths(north)})"
+    for shape, confidence in sorted(node.shape.items()):
+        yield f"shape({name},{shape},{confidence})"
+    if node.colour is not None:
+        yield f"colour({name},{node.colour},99)"
+    yield f"movable({name},{50 if node.confidence >= 50 else 0})"
+    yield from _outlined(name, _object_rings(node), model)
+    row, column = model.view.locate(*node.patch.centre)
+    room = rooms.labels[row, column]
+    if room:
+        yield f"in({name},r{room})"
+    if _beside_utak(node, model):
+        yield f"adjacent({ORG},{name})"
+
+
+def _beside_utak(node: Node, model: WorldModel) -> bool:
+    row, column = model.view.locate(*model.place)
+    return bool(model.mask(node.patch)[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2].any())
+
+
+def _object_rings(node: Node) -> list[list[tuple[float, float]]]:
+    if node.polygon is not None:
+        return [list(node.polygon.exterior.coords)[:-1]]
+    rings = outline(node.patch.mask)
+    return [[(x + node.patch.west, y + node.patch.south) for x, y in ring] for ring in rings]
+
+
+def _rings(mask: Mask, model: WorldModel) -> list[list[tuple[float, float]]]:
+    return [[(x + model.view.west, y + model.view.south) for x, y in ring] for ring in outline(mask)]
+
+
+def _outlined(name: str, rings: Iterable[list[tuple[float, float]]], model: WorldModel) -> Iterator[str]:
+    """The containing rectangle and the circular boundary, ring after ring, of a node."""
+    turned = [[model.lattice.place_to_utak(*corner) for corner in ring] for ring in rings]
+    corners = np.array([corner for ring in turned for corner in ring])
+    (west, south), (east, north) = corners.min(0), corners.max(0)
+    yield f"rect({name},{_hundredths(west)},{_hundredths(south)},{_hundredths(east)},{_hundredths(north)})"
+    starts = np.array([corner for ring in rings for corner in ring])
+    ends = np.array([corner for ring in rings for corner in (*ring[1:], ring[0])])
+    sure = _sureness_along(starts, ends, model)
+    following = (corner for ring in turned for corner in (*ring[1:], ring[0]))
+    for number, ((e, n), (f, m)) in enumerate(zip(corners.tolist(), following, strict=True)):
+        ends_at = ",".join(str(_hundredths(v)) for v in (e, n, f, m))
+        yield f"segment({name},{number},{ends_at},{sure[number]})"
+
+
+def _sureness_along(starts: Floats, ends: Floats, model: WorldModel) -> list[int]:
+    """For each segment, percent of the squares on both sides of it that are settled, sampled at SAMPLES places."""
+    parts = (np.arange(SAMPLES) + 0.5) / SAMPLES
+    step = ends - starts
+    along = starts[:, None] + parts[:, None] * step[:, None]
+    length = np.hypot(*step.T)[:, None, None]
+    across = np.stack([-step[:, 1], step[:, 0]], axis=1)[:, None] / (2 * np.maximum(length, 1e-9))
+    points = np.concatenate([along + across, along - across], axis=1) - (model.view.west, model.view.south)
+    columns, rows = np.floor(points).astype(int).transpose(2, 0, 1)
+    framed = np.pad(model.view.state != OPEN, 1)
+    settled = framed[np.clip(rows + 1, 0, framed.shape[0] - 1), np.clip(columns + 1, 0, framed.shape[1] - 1)]
+    return [int(share) for share in 100 * settled.mean(axis=1)]
+
+
+def _rooms(model: WorldModel, rooms: Rooms) -> Iterator[str]:
+    for room in range(1, int(rooms.labels.max(initial=0)) + 1):
+        squares = rooms.labels == room
+        yield f"room(r{room})"
+        yield f"unseen(r{room},{int((squares & (model.view.state == OPEN)).sum())})"
+    row, column = model.view.locate(*model.place)
+    if rooms.labels[row, column]:
+        yield f"in({ORG},r{rooms.labels[row, column]})"
+    for door in rooms.doors:
+        yield f"door({door.name})"
+        yield f"width({door.name},{_hundredths(door.width)})"
+        yield from (f"connects({door.name},r{a},r{b})" for a, b in ((door.sides), (door.sides[1], door.sides[0])))
+
+
+def _hundredths(length: float) -> int:
+    return round(HUNDREDTHS * length)

@@ -1,0 +1,60 @@
+"""The corners of the known floor: geometry gives its convex corners, and kb/asp/corners.lp says which is which.
+
+The corner furthest towards any side is a corner of the floor's convex hull, so only those are given.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from kb.encodings import KB, solve
+from kb.worldmodel import WorldModel
+
+SMALLEST = 6  # squares of floor that are worth a corner
+HUNDREDTHS = 100
+SIDES = ("northeast", "northwest", "southeast", "southwest")
+
+
+class Corner(NamedTuple):
+    """A convex corner: its point (x, y) in the frame of the view, and the square (column, row) of floor that has it."""
+
+    point: tuple[float, float]
+    square: tuple[int, int]
+
+
+def known_floor(model: WorldModel) -> NDArray[np.bool_]:
+    """(rows, columns): the floor on which Utak stands, and all other floor that is seen and large enough to be some."""
+    sizes = np.bincount(model.labels.ravel())
+    large = (sizes >= SMALLEST)[model.labels]
+    mask: NDArray[np.bool_] = model.floor | (model.space & large)
+    return mask
+
+
+def corners(model: WorldModel, rules: tuple[Path, ...] = ()) -> Mapping[str, Corner]:
+    """The corner of the known floor towards each side of Utak's frame."""
+    found = _convex(known_floor(model))
+    facts = []
+    for number, corner in enumerate(found):
+        x, y = corner.point[0] + model.view.west, corner.point[1] + model.view.south
+        east, north = model.lattice.place_to_utak(x, y)
+        facts.append(f"convex({number},{round(HUNDREDTHS * east)},{round(HUNDREDTHS * north)})")
+    answer = solve([KB / "corners.lp", *rules], facts) or ()
+    return {str(a.arguments[0]): found[a.arguments[1].number] for a in answer if a.match("furthest", 2)}
+
+
+def _convex(floor: NDArray[np.bool_]) -> list[Corner]:
+    """The corners of the convex hull of a mask, each with the square that has it; by place."""
+    rows = np.flatnonzero(floor.any(axis=1))
+    first = floor[rows].argmax(axis=1)
+    last = floor.shape[1] - 1 - floor[rows, ::-1].argmax(axis=1)
+    owner: dict[tuple[int, int], tuple[int, int]] = {}
+    for row, west, east in zip(rows.tolist(), first.tolist(), last.tolist(), strict=True):
+        for height in (row, row + 1):
+            owner[west, height] = (west, row)
+            owner[east + 1, height] = (east, row)
+    hull = shapely.MultiPoint(sorted(owner)).convex_hull
+    return [Corner((x, y), owner[round(x), round(y)]) for x, y in sorted(set(hull.exterior.coords))]

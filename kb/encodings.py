@@ -1,0 +1,60 @@
+"""The one place where encodings meet clingo: files by absolute path, facts as text, every message an error.
+
+Facts come from our own values, never as raw text from a user; a user's own rules (`--kb`) are checked first by
+kb.userrules.
+"""
+
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from pathlib import Path
+
+import clingo
+
+KB = Path(__file__).resolve().parent / "asp"
+
+
+class EncodingError(Exception):
+    """An encoding is wrong, or contradicts the facts: a fault of ours or of the user's own rules."""
+
+
+def solve(files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0) -> list[clingo.Symbol] | None:
+    """The shown atoms of the best answer set found, in the order of their text; None when there is none.
+
+    The same files and facts are answered from memory: an answer depends on nothing else.
+
+    Parameters
+    ----------
+    files : paths of the encodings.
+    facts : atoms without the full stop.
+    seconds : the search stops then, with the best answer so far.
+
+    Raises EncodingError on any message of clingo.
+    """
+    answer = _answer(tuple(files), tuple(facts), seconds)
+    return None if answer is None else list(answer)
+
+
+@lru_cache(maxsize=256)
+def _answer(files: tuple[Path, ...], facts: tuple[str, ...], seconds: float) -> tuple[clingo.Symbol, ...] | None:
+    messages: list[str] = []
+    control = clingo.Control(["--stats=0"], logger=lambda _code, text: messages.append(text), message_limit=20)
+    try:
+        for path in files:
+            control.load(str(path.resolve()))
+        control.add("base", [], "".join(f"{fact}.\n" for fact in facts))
+        control.ground([("base", [])])
+    except RuntimeError as error:
+        raise EncodingError("\n".join([*messages, str(error)])) from error
+    if messages:
+        raise EncodingError("\n".join(messages))
+    best: list[clingo.Symbol] | None = None
+
+    def keep(model: clingo.Model) -> None:
+        nonlocal best
+        best = list(model.symbols(shown=True))
+
+    with control.solve(on_model=keep, async_=True) as handle:
+        if not handle.wait(seconds):
+            handle.cancel()
+        handle.get()
+    return None if best is None else tuple(sorted(best, key=str))

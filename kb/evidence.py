@@ -1,0 +1,317 @@
+"""What all looks together say of every square: the counts of overlapping fields, solved as far as they settle anything.
+
+A field that shows a gray level says: of these squares at least `low` and at most `high` are occupied. Three rules
+settle squares, and
+each is sound: a field that can take no more occupied squares leaves its others free; one that needs them all fills
+them; and what two
+overlapping fields have not in common is bounded by the difference of their counts. Squares that stay open get the
+probability of
+the maximum-entropy distribution with the fields' mean counts (iterative proportional fitting): confidence comes from
+the sets of counts alone.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kb.lattice import MOST, Samples
+from kb.retina import FIELDS
+
+OPEN, FREE, FULL = -1, 0, 1
+MARGIN = 40  # squares by which the map grows beyond what is needed
+FITTING_ROUNDS = 6
+STRAY = 0.05  # occupied squares expected under a field that shows level 0 and yet may hide one
+LARGEST_LOGIT = 6.0
+
+Squares = NDArray[np.int32]
+Indices = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+
+class MapView(NamedTuple):
+    """A snapshot of the part of the map that was seen, with a margin of unseen squares.
+
+    west, south : the lattice square at [0, 0].
+    probability : (rows, columns) float32, that a square is occupied; 0.5 where nothing is known.
+    state : (rows, columns) int8, OPEN, FREE or FULL.
+    seen : (rows, columns) bool.
+    settled_by : (rows, columns) int16, the impression that settled a square, or -1.
+    """
+
+    west: int
+    south: int
+    probability: NDArray[np.float32]
+    state: NDArray[np.int8]
+    seen: Mask
+    settled_by: NDArray[np.int16]
+
+    def locate(self, x: float, y: float) -> tuple[int, int]:
+        """[row, column] of the square in which a point of the lattice lies."""
+        return math.floor(y) - self.south, math.floor(x) - self.west
+
+
+class Evidence:
+    """The growing map. Arrays are [row, column]; square (x, y) of the lattice lies at [y - south, x - west].
+
+    Attributes
+    ----------
+    state : (rows, columns) int8
+        OPEN (-1), FREE (0) or FULL (1): what the counts settle.
+    logit : (rows, columns) float32
+        Log odds that an open square is occupied; 0 where nothing was seen.
+    seen : (rows, columns) bool
+        Squares that were ever under the retina.
+    settled_by : (rows, columns) int16
+        The impression that settled a square, or -1.
+    """
+
+    def __init__(self) -> None:
+        self.west = self.south = -MARGIN
+        shape = (2 * MARGIN, 2 * MARGIN)
+        self.state = np.full(shape, OPEN, np.int8)
+        self.logit = np.zeros(shape, np.float32)
+        self.seen = np.zeros(shape, np.bool_)
+        self.settled_by = np.full(shape, -1, np.int16)
+        self._where = np.zeros((0, MOST), np.int32)
+        self._weight = np.zeros((0, MOST), np.int16)
+        self._low = np.zeros(0, np.int16)
+        self._high = np.zeros(0, np.int16)
+        self.overruled = 0
+
+    def view(self, margin: int = 2) -> MapView:
+        """The part of the map that was seen, and `margin` squares around it."""
+        rows, columns = np.flatnonzero(self.seen.any(1)), np.flatnonzero(self.seen.any(0))
+        top, left = max(0, rows[0] - margin), max(0, columns[0] - margin)
+        part = (slice(top, rows[-1] + margin + 1), slice(left, columns[-1] + margin + 1))
+        state = self.state[part].copy()
+        soft = 1.0 / (1.0 + np.exp(-self.logit[part]))
+        probability = np.where(state == OPEN, soft, state).astype(np.float32)
+        seen = self.seen[part].copy()
+        _fill_gaps(probability, seen)
+        west, south = self.west + int(left), self.south + int(top)
+        return MapView(west, south, probability, state, seen, self.settled_by[part].copy())
+
+    def index(self, x: int, y: int) -> tuple[int, int]:
+        """[row, column] of a square of the lattice."""
+        return y - self.south, x - self.west
+
+    def inside(self, x: int, y: int) -> bool:
+        """Is the square within the arrays?"""
+        row, column = self.index(x, y)
+        return 0 <= row < self.state.shape[0] and 0 <= column < self.state.shape[1]
+
+    # -- looking ---------------------------------------------------------------------------------
+
+    def misfits(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> Mask:
+        """(160,).
+
+        Fields that cannot show what they show if Utak stands on square (x, y) and all that is settled is right.
+        """
+        self._cover(x, y)
+        where, weight = self._under(samples, x, y), samples.weight
+        state = self.state.ravel()[where]
+        full = np.where(state == FULL, weight, 0).sum(1)
+        possible = full + np.where(state == OPEN, weight, 0).sum(1)
+        impossible: Mask = (full > ranges[:, 1]) | (possible < ranges[:, 0] - samples.slack)
+        return impossible
+
+    def clashes(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> int:
+        """How many fields, of this look and of those before, cannot be right if it was received on square (x, y)."""
+        new = int(self.misfits(samples, ranges, x, y).sum())
+        where = self._under(samples, x, y)
+        single = (samples.weight.sum(1) == 1) & (samples.slack == 0)
+        state = self.state.ravel().copy()
+        state[where[single, 0]] = np.where(ranges[single, 0] > 0, FULL, FREE)
+        under = state[self._where]
+        full = np.where(under == FULL, self._weight, 0).sum(1)
+        possible = full + np.where(under == OPEN, self._weight, 0).sum(1)
+        return new + int(((full > self._high) | (possible < self._low)).sum())
+
+    def look(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, number: int) -> None:
+        """Take in one impression, received on square (x, y), as impression `number`.
+
+        Where it contradicts what was settled, what is seen now counts: older settlements under the contradicting
+        fields, and the fields that led to them, are withdrawn.
+        """
+        wrong = self.misfits(samples, ranges, x, y)
+        where = self._under(samples, x, y)
+        if wrong.any():
+            self.withdraw(np.unique(where[wrong][samples.weight[wrong] > 0]))
+            self.overruled += int(wrong.sum())
+        self.seen.ravel()[where[samples.weight > 0]] = True
+        self._where = np.concatenate([self._where, where])
+        self._weight = np.concatenate([self._weight, samples.weight])
+        self._low = np.concatenate([self._low, np.maximum(ranges[:, 0] - samples.slack, 0)])
+        self._high = np.concatenate([self._high, ranges[:, 1]])
+        self._settle(number)
+        self._fit()
+
+    def withdraw(self, squares: Squares) -> None:
+        """Forget what was settled of these squares (flat indices), and every field that covers one of them."""
+        doubtful = np.zeros(self.state.size, np.bool_)
+        doubtful[squares] = True
+        self.state.ravel()[squares] = OPEN
+        self.logit.ravel()[squares] = 0.0
+        self.settled_by.ravel()[squares] = -1
+        touched = doubtful[self._where] & (self._weight > 0)
+        self._keep(np.logical_not(np.logical_or.reduce(touched, axis=1)))
+
+    def stand(self, x: int, y: int, number: int) -> None:
+        """Utak stands on this square, so it is floor, unless it was settled otherwise: his own image hides it."""
+        row, column = self.index(x, y)
+        if self.state[row, column] == OPEN:
+            self.state[row, column], self.settled_by[row, column] = FREE, number
+        self.seen[row, column] = True
+
+    def declare(self, mask: Mask, value: int, number: int) -> None:
+        """Settle squares by other knowledge than counts (the place of an object that was pushed)."""
+        self.withdraw(np.flatnonzero(mask).astype(np.int32))
+        self.state[mask] = value
+        self.settled_by[mask] = number
+
+    # -- solving ---------------------------------------------------------------------------------
+
+    def _settle(self, number: int) -> None:
+        for _ in range(20):
+            changed = self._settle_single(number)
+            if not changed and not self._settle_pairs(number):
+                break
+        self._keep(self._informative())
+
+    def _residue(self) -> tuple[Mask, NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+        """Of every field: its open entries, their weight, and the least and greatest count left for them."""
+        state = self.state.ravel()[self._where]
+        full = np.where(state == FULL, self._weight, 0).sum(1)
+        open_ = (state == OPEN) & (self._weight > 0)
+        weight = np.where(open_, self._weight, 0).sum(1)
+        return open_, weight, np.maximum(self._low - full, 0), np.minimum(self._high - full, weight)
+
+    def _settle_single(self, number: int) -> bool:
+        changed = False
+        while True:
+            open_, weight, low, high = self._residue()
+            free = open_ & (self._weight > high[:, None])
+            full = open_ & (self._weight > (weight - low)[:, None]) & ~free
+            if not self._assign(self._where[free], self._where[full], number):
+                return changed
+            changed = True
+
+    def _settle_pairs(self, number: int) -> bool:
+        """Settle what a field of this look and another one do not share, from the difference of their counts."""
+        open_, weight, low, high = self._residue()
+        plain = (weight > 0) & (np.where(open_, self._weight, 0).max(1, initial=0) == 1)
+        a, b, shared = _overlaps(self._where, open_ & plain[:, None], len(FIELDS))
+        size, other = weight[a] - shared, weight[b] - shared
+        least = low[a] - np.minimum(high[b], shared)
+        most = high[a] - np.maximum(low[b] - other, 0)
+        empty = self._differences(open_, a, b, (size > 0) & (most <= 0))
+        filled = self._differences(open_, a, b, (size > 0) & (least >= size))
+        return self._assign(empty, np.setdiff1d(filled, empty), number)
+
+    def _differences(self, open_: Mask, a: Indices, b: Indices, chosen: Mask) -> Squares:
+        """The open squares of each chosen field a that the field b beside it lacks."""
+        found = [np.zeros(0, np.int32)]
+        for one, two in zip(a[chosen], b[chosen], strict=True):
+            found.append(np.setdiff1d(self._where[one][open_[one]], self._where[two][open_[two]]))
+        return np.unique(np.concatenate(found))
+
+    def _assign(self, free: Squares, full: Squares, number: int) -> bool:
+        for squares, value in ((free, FREE), (full, FULL)):
+            self.state.ravel()[squares] = value
+            self.settled_by.ravel()[squares] = number
+        return bool(len(free) or len(full))
+
+    def _fit(self) -> None:
+        """Iterative proportional fitting of the open squares' odds to the fields' mean counts."""
+        open_, weight, low, high = self._residue()
+        if not open_.any():
+            return
+        where, entry = self._where[open_], np.nonzero(open_)[0]
+        squares, column = np.unique(where, return_inverse=True)
+        times = np.maximum(np.bincount(column, minlength=len(squares)), 1)
+        logit = self.logit.ravel()[squares].astype(np.float64)
+        middle = 0.5 * (low + high).astype(np.float64)
+        middle = np.where((self._low == 0) & (self._high == 1), np.minimum(middle, STRAY), middle)
+        target = _logit(middle[entry] / np.maximum(weight, 1)[entry])
+        share = self._weight[open_] / np.maximum(weight, 1)[entry]
+        for _ in range(FITTING_ROUNDS):
+            p = 1.0 / (1.0 + np.exp(-logit))
+            mean = np.bincount(entry, p[column] * share, minlength=len(weight)).astype(np.float64)[entry]
+            logit += np.bincount(column, target - _logit(mean), minlength=len(squares)) / times
+            np.clip(logit, -LARGEST_LOGIT, LARGEST_LOGIT, out=logit)
+        self.logit.ravel()[squares] = logit
+
+    def _informative(self) -> Mask:
+        _, weight, low, high = self._residue()
+        return (weight > 0) & ((low > 0) | (high < weight))
+
+    def _keep(self, rows: Mask) -> None:
+        self._where, self._weight = self._where[rows], self._weight[rows]
+        self._low, self._high = self._low[rows], self._high[rows]
+
+    # -- room to grow ----------------------------------------------------------------------------
+
+    def _under(self, samples: Samples, x: int, y: int) -> Squares:
+        """(160, 16) flat indices of the squares sampled from (x, y)."""
+        columns = self.state.shape[1]
+        answer: Squares = (samples.rows + (y - self.south)) * columns + samples.columns + (x - self.west)
+        return answer
+
+    def _cover(self, x: int, y: int) -> None:
+        """Grow the arrays until a look from (x, y), at any angle, fits in."""
+        reach = 24
+        row, column = self.index(x, y)
+        rows, columns = self.state.shape
+        south, west = max(0, reach - row), max(0, reach - column)
+        north, east = max(0, row + reach + 1 - rows), max(0, column + reach + 1 - columns)
+        if south or west or north or east:
+            self._grow(*(n + MARGIN if n else 0 for n in (south, north, west, east)))
+
+    def _grow(self, south: int, north: int, west: int, east: int) -> None:
+        rows, columns = np.divmod(self._where, self.state.shape[1])
+        widths = ((south, north), (west, east))
+        self.state = np.pad(self.state, widths, constant_values=OPEN)
+        self.logit = np.pad(self.logit, widths)
+        self.seen = np.pad(self.seen, widths)
+        self.settled_by = np.pad(self.settled_by, widths, constant_values=-1)
+        self.south, self.west = self.south - south, self.west - west
+        self._where = ((rows + south) * self.state.shape[1] + columns + west).astype(np.int32)
+
+
+def _overlaps(where: Squares, open_: Mask, new: int) -> tuple[Indices, Indices, Indices]:
+    """Pairs of fields that share open squares, and how many, both ways; one of each pair is among the last `new`."""
+    field, entry = np.nonzero(open_)
+    square = where[field, entry]
+    order = np.argsort(square, kind="stable")
+    field, square = field[order], square[order]
+    latest = np.flatnonzero(field >= len(where) - new)
+    first = np.searchsorted(square, square[latest], side="left")
+    count = np.searchsorted(square, square[latest], side="right") - first
+    one = np.repeat(field[latest], count)
+    within = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
+    two = field[np.repeat(first, count) + within]
+    pairs, shared = np.unique(one[one != two] * len(where) + two[one != two], return_counts=True)
+    one, two = np.divmod(pairs, max(len(where), 1))
+    return np.concatenate([one, two]), np.concatenate([two, one]), np.concatenate([shared, shared])
+
+
+def _fill_gaps(probability: NDArray[np.float32], seen: Mask) -> None:
+    """Count a single square that no field happened to sample, amid squares that were seen, as seen: as likely
+    occupied as those about it.
+
+    On a turned lattice the eye skips some squares, though never two side by side.
+    """
+    known = np.pad(seen, 1).astype(np.float32)
+    likely = np.pad(np.where(seen, probability, 0), 1)
+    count, total = (a[:-2, 1:-1] + a[2:, 1:-1] + a[1:-1, :-2] + a[1:-1, 2:] for a in (known, likely))
+    gaps = ~seen & (count >= 3)
+    probability[gaps] = total[gaps] / count[gaps]
+    seen |= gaps
+
+
+def _logit(p: NDArray[np.float64]) -> NDArray[np.float64]:
+    p = np.clip(p, 0.002, 0.998)
+    answer: NDArray[np.float64] = np.log(p / (1 - p))
+    return answer

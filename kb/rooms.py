@@ -1,0 +1,186 @@
+"""Doors and rooms. Geometry measures the necks of the floor; kb/asp/rooms.lp says which are doors; the parts between
+doors are rooms.
+
+Isolated objects do not count: rooms are made by the verge. What was never seen counts as floor, so that a door is
+known by its two jambs, before all is seen of the room behind it.
+"""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry import Screen
+from geometry.components import components
+from geometry.passages import Passage
+from kb.encodings import KB, solve
+from kb.evidence import FULL, OPEN
+from kb.worldmodel import SPACE, WorldModel
+
+Mask = NDArray[np.bool_]
+SMALLEST_WALL = 13  # squares: what is surely one thing and as long as this is no object
+SURE = 60  # percent: a door is one from here on
+DEEPEST = 12.0  # squares: how far a doorway is followed into the wall
+STEP = 0.5
+JAMB = 0.6  # squares beside a doorway at which its wall is looked for
+
+
+@dataclass(frozen=True)
+class Door:
+    """A door, in the frame of the view's arrays.
+
+    a, b : the ends of its neck, on the walls. sides : the rooms on its two sides. confidence : percent.
+    """
+
+    name: str
+    a: tuple[float, float]
+    b: tuple[float, float]
+    sides: tuple[int, int]
+    confidence: int
+
+    @property
+    def width(self) -> float:
+        """From wall to wall, in squares."""
+        return math.dist(self.a, self.b)
+
+    @property
+    def place(self) -> tuple[float, float]:
+        """The middle of the neck."""
+        return (self.a[0] + self.b[0]) / 2, (self.a[1] + self.b[1]) / 2
+
+
+@dataclass(frozen=True)
+class Rooms:
+    """The floor's rooms.
+
+    doors : those that are sure enough. labels : (rows, columns) the room of each square, 0 for none; the one in which
+    Utak woke is 1. doorways : (rows, columns) squares between the walls of a door: part of no room.
+    """
+
+    doors: tuple[Door, ...]
+    labels: NDArray[np.int32]
+    doorways: Mask
+
+    def beyond(self, room: int) -> Mask:
+        """(rows, columns): squares of the rooms that share a door with a room, but for the doorways."""
+        others = {side for door in self.doors if room in door.sides for side in door.sides} - {room}
+        mask: Mask = np.isin(self.labels, sorted(others)) & ~self.doorways
+        return mask
+
+
+NOTHING = Rooms((), np.zeros((0, 0), np.int32), np.zeros((0, 0), np.bool_))
+
+
+def rooms_of(model: WorldModel, rules: tuple[Path, ...] = ()) -> Rooms:
+    """The rooms of a world model."""
+    verge = model.verge
+    if not verge.any():
+        return Rooms((), np.ones(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
+    screen = Screen(~verge)
+    necks = [(passage, _known(passage, model, verge)) for passage in screen.passages()]
+    sure = _doors(necks, rules)
+    labels = screen.parts([passage for passage, _ in sure])
+    row, column = model.view.locate(*model.lattice.woke)
+    labels = _first(labels, int(labels[row, column]))
+    doors = tuple(
+        Door(f"d{number}", passage.a, passage.b, _sides(passage, labels), confidence)
+        for number, (passage, confidence) in enumerate(sure, 1)
+    )
+    doorways = np.zeros(verge.shape, np.bool_)
+    for door in doors:
+        doorways |= _doorway(door, verge)
+    return Rooms(doors, labels, doorways)
+
+
+def _doors(necks: Iterable[tuple[Passage, int]], rules: tuple[Path, ...]) -> list[tuple[Passage, int]]:
+    """Those necks that kb/asp takes for doors, with its confidence."""
+    known = [(passage, certainty) for passage, certainty in necks if certainty > 0]
+    facts = []
+    for number, (passage, certainty) in enumerate(known):
+        width, *sides = (round(10 * size) for size in (passage.width, 2 * passage.sides[0], 2 * passage.sides[1]))
+        facts.append(f"neck({number},{width},{sides[0]},{sides[1]},{certainty})")
+    answer = solve([KB / "rooms.lp", *rules], facts) if facts else None
+    chosen = {a.arguments[0].number: a.arguments[1].number for a in answer or () if a.match("door", 2)}
+    return [(known[number][0], confidence) for number, confidence in sorted(chosen.items()) if confidence >= SURE]
+
+
+def _known(passage: Passage, model: WorldModel, verge: Mask) -> int:
+    """Percent of belief that a neck is open from wall to wall and that its walls are verge."""
+    (ax, ay), (bx, by) = passage.a, passage.b
+    count = max(2, round(2 * math.dist(passage.a, passage.b)))
+    parts = (np.arange(count) + 0.5) / count
+    across = _squares(ax + (bx - ax) * parts, ay + (by - ay) * parts, verge.shape)
+    if not (model.view.seen[across] & ((model.view.probability[across] <= SPACE) | ~verge[across])).all():
+        return 0
+    walls: list[Mask] = [_near(verge, end) & model.view.seen for end in (passage.a, passage.b)]
+    if not all(wall.any() for wall in walls):
+        return 0
+    settled = model.view.state != OPEN
+    walled = min(_extent_of_wall(model, wall) for wall in walls)
+    if walled < SMALLEST_WALL:
+        return min(50, round(50 * walled / SMALLEST_WALL))
+    return round(50 + 50 * min(float(settled[across].mean()), *(float(settled[wall].mean()) for wall in walls)))
+
+
+def _extent_of_wall(model: WorldModel, wall: Mask) -> int:
+    """How long that is, in squares, which is surely one thing with a jamb."""
+    full = components(model.view.state == FULL).labels
+    own = full[wall]
+    if not own.any():
+        return 0
+    rows, columns = np.nonzero(full == own[own > 0][0])
+    return int(max(np.ptp(rows), np.ptp(columns))) + 1
+
+
+def _near(verge: Mask, end: tuple[float, float]) -> Mask:
+    """The squares of the verge that an end of a neck touches."""
+    mask = np.zeros(verge.shape, np.bool_)
+    low, high = ([max(0, math.floor(v + shift)) for v in end] for shift in (-0.5, 0.5))
+    mask[low[1] : high[1] + 1, low[0] : high[0] + 1] = verge[low[1] : high[1] + 1, low[0] : high[0] + 1]
+    return mask
+
+
+def _squares(x: NDArray[np.float64], y: NDArray[np.float64], shape: tuple[int, ...]) -> tuple[NDArray[np.int64], ...]:
+    rows = np.clip(np.floor(y).astype(int), 0, shape[0] - 1)
+    return rows, np.clip(np.floor(x).astype(int), 0, shape[1] - 1)
+
+
+def _first(labels: NDArray[np.int32], start: int) -> NDArray[np.int32]:
+    """Number the parts anew, so that one of them is number 1."""
+    if start in (0, 1):
+        return labels
+    order = np.arange(int(labels.max()) + 1, dtype=np.int32)
+    order[[1, start]] = order[[start, 1]]
+    return order[labels]
+
+
+def _sides(passage: Passage, labels: NDArray[np.int32]) -> tuple[int, int]:
+    one, two = (int(labels[math.floor(y), math.floor(x)]) for x, y in passage.gates)
+    return one, two
+
+
+def _doorway(door: Door, verge: Mask) -> Mask:
+    """The squares between a door's jambs: from the neck both ways, as long as there is wall on both sides."""
+    along = np.subtract(door.b, door.a) / door.width
+    across = np.array([-along[1], along[0]])
+    rows, columns = np.ogrid[: verge.shape[0], : verge.shape[1]]
+    x, y = columns + 0.5 - door.place[0], rows + 0.5 - door.place[1]
+    sideways, forward = x * along[0] + y * along[1], x * across[0] + y * across[1]
+    depth = [_depth(door, along, sign * across, verge) for sign in (-1, 1)]
+    mask: Mask = (np.abs(sideways) <= door.width / 2 + 1) & (-depth[0] < forward) & (forward < depth[1])
+    return mask
+
+
+def _depth(door: Door, along: NDArray[np.float64], ahead: NDArray[np.float64], verge: Mask) -> float:
+    """How deep the wall is from the neck in one direction, in squares, and half a square more."""
+    jambs = [np.array(end) + side * JAMB * along for end, side in ((door.a, -1), (door.b, 1))]
+    depth = 0.0
+    while depth < DEEPEST:
+        places = [jamb + ahead * (depth + STEP / 2) for jamb in jambs]
+        if not all(verge[_squares(np.array([x]), np.array([y]), verge.shape)][0] for x, y in places):
+            break
+        depth += STEP
+    return depth + STEP

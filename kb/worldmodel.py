@@ -1,0 +1,180 @@
+"""The world model: a tree of nodes, rooted in Utak, made anew after every impression from the map and its
+interpretation.
+
+$org (Utak) has one son, $floor; its sons are the verge and the isolated objects. A node's place is the offset to its
+parent, so that when Utak moves, or an object is pushed, one relation changes. Values are frozen; what persists from
+one impression to the next is only which node a patch of squares belongs to (`Names`).
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kb.evidence import OPEN, MapView
+from kb.interpretation import Kinds
+from kb.lattice import Lattice
+from kb.regions import Percept
+
+SPACE = 0.06  # a square that is occupied with at most this probability counts as floor
+ORG, FLOOR, VERGE = "org", "floor", "verge"
+
+Mask = NDArray[np.bool_]
+
+
+class Patch(NamedTuple):
+    """A set of squares of the lattice. west, south.
+
+    The square at [0, 0] of mask, a (rows, columns) array cut to its extent.
+    """
+
+    west: int
+    south: int
+    mask: Mask
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """The mean of its squares' centres."""
+        rows, columns = np.nonzero(self.mask)
+        return self.west + float(columns.mean()) + 0.5, self.south + float(rows.mean()) + 0.5
+
+    def squares(self) -> set[tuple[int, int]]:
+        """Its squares (x, y)."""
+        rows, columns = np.nonzero(self.mask)
+        return {(self.west + c, self.south + r) for r, c in zip(rows.tolist(), columns.tolist(), strict=True)}
+
+
+@dataclass(frozen=True)
+class Node:
+    """A part of the world.
+
+    Attributes
+    ----------
+    kind : verge or object. confidence : that it is, in percent.
+    region : its region of the map. patch : the squares that it covers, or may cover.
+    open : how many of them (and of their neighbours) are not settled.
+    shape : class -> confidence. polygon : its believed outline (shapely, lattice frame), None while nothing fits.
+    colour : as felt, or None. support : the impressions that settled its squares.
+    """
+
+    name: str
+    kind: str
+    confidence: int
+    region: str
+    patch: Patch
+    open: int
+    shape: Mapping[str, int] = field(default_factory=dict)
+    polygon: Any = None
+    colour: str | None = None
+    support: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class WorldModel:
+    """All that is believed after one impression.
+
+    Attributes
+    ----------
+    lattice, place : the frame, and Utak's place (a point of the lattice).
+    view : the map. labels : (rows, columns) the regions' numbers, as in `part<n>`.
+    percept, kinds : the regions and what they are taken for.
+    objects : the isolated objects, and what may be one, by name.
+    held : the node that is held, or None.
+    looked_from : the squares on which an impression was received. barred : squares before which a motion was stopped.
+    spread : by how many radians the lattice may still lie otherwise than believed.
+    """
+
+    lattice: Lattice
+    place: tuple[float, float]
+    view: MapView
+    labels: NDArray[np.int32]
+    percept: Percept
+    kinds: Kinds
+    objects: tuple[Node, ...]
+    held: str | None = None
+    looked_from: frozenset[tuple[int, int]] = frozenset()
+    barred: frozenset[tuple[int, int]] = frozenset()
+    spread: float = 0.0
+
+    @property
+    def floor(self) -> Mask:
+        """(rows, columns): the zero region in which Utak stands."""
+        row, column = self.view.locate(*self.place)
+        mask: Mask = self.labels == self.labels[row, column]
+        return mask
+
+    @property
+    def space(self) -> Mask:
+        """(rows, columns): all squares seen and taken for floor, wherever they are."""
+        mask: Mask = self.view.seen & (self.view.probability <= SPACE)
+        return mask
+
+    @property
+    def verge(self) -> Mask:
+        """(rows, columns): squares of regions taken for verge rather than for objects."""
+        names = [f"part{n}" for n in range(int(self.labels.max()) + 1)]
+        is_verge = np.array([self.kinds.of(n, "verge") > self.kinds.of(n, "object") for n in names])
+        mask: Mask = is_verge[self.labels]
+        return mask
+
+    def object(self, name: str) -> Node | None:
+        """The object of this name, if there is one."""
+        return next((node for node in self.objects if node.name == name), None)
+
+    def squares(self, squares: Iterable[tuple[int, int]]) -> Mask:
+        """(rows, columns): squares of the lattice on the arrays of the view."""
+        mask: Mask = np.zeros(self.labels.shape, np.bool_)
+        for x, y in squares:
+            row, column = self.view.locate(x, y)
+            if 0 <= row < mask.shape[0] and 0 <= column < mask.shape[1]:
+                mask[row, column] = True
+        return mask
+
+    def mask(self, patch: Patch) -> Mask:
+        """(rows, columns): a patch on the arrays of the view."""
+        mask = np.zeros(self.labels.shape, np.bool_)
+        row, column = patch.south - self.view.south, patch.west - self.view.west
+        mask[row : row + patch.mask.shape[0], column : column + patch.mask.shape[1]] = patch.mask
+        return mask
+
+
+class Names:
+    """Which name each patch has: a patch keeps the name of the one that it shares most squares with."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, set[tuple[int, int]]] = {}
+        self._count = 0
+
+    def assign(self, patches: list[Patch]) -> list[str]:
+        """Names for patches, the old ones first; names that no patch continues are forgotten."""
+        squares = [patch.squares() for patch in patches]
+        shares = sorted(
+            ((-len(known & own), name, i) for name, known in self._known.items() for i, own in enumerate(squares)),
+            key=lambda share: (share[0], int(share[1][1:]), share[2]),
+        )
+        names: dict[int, str] = {}
+        for share, name, i in shares:
+            if share < 0 and i not in names and name not in names.values():
+                names[i] = name
+        for i in range(len(patches)):
+            if i not in names:
+                self._count += 1
+                names[i] = f"o{self._count}"
+        self._known = {names[i]: own for i, own in enumerate(squares)}
+        return [names[i] for i in range(len(patches))]
+
+
+def patch_of(mask: Mask, view: MapView) -> Patch:
+    """The squares of a mask on the view's arrays, cut to their extent."""
+    rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))
+    part = mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    return Patch(view.west + int(columns[0]), view.south + int(rows[0]), part.copy())
+
+
+def unsettled(mask: Mask, view: MapView) -> int:
+    """How many squares of a region, and of the squares that touch it, the counts leave open."""
+    framed = np.pad(mask, 1)
+    about = framed[1:-1, 1:-1] | framed[:-2, 1:-1] | framed[2:, 1:-1] | framed[1:-1, :-2] | framed[1:-1, 2:]
+    return int((about & (view.state == OPEN)).sum())

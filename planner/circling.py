@@ -1,0 +1,68 @@
+"""Circling: a closed track that winds once about an object.
+
+The track walked so far, closed by the way that is still to go, must cross a ray from the object once, with sign. So
+what remains is a way to the
+start with a certain crossing number; geometry finds the shortest of each, and the choice between going left and going
+right is made like any other choice among topologically distinct routes.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from geometry.winding import MOST, crossings, winding_way
+from kb.worldmodel import Node, WorldModel
+from planner.screen import UNSEEN, Screens
+from planner.steps import Square
+from planner.ways import Way
+
+Place = tuple[float, float]
+
+
+def winding(track: Sequence[Place], node: Node) -> int:
+    """How often a track (points of the lattice), closed by its first point, winds about an object."""
+    return crossings(np.array([*track, track[0]]), pivot(node))
+
+
+def ways_round(screens: Screens, track: Sequence[Place], node: Node) -> list[Way]:
+    """The ways, at the most certain level, that complete one turn about an object and end where the track began."""
+    model = screens.model
+    x, y = pivot(node)
+    about = (x - model.view.west, y - model.view.south)
+    goal = _square(track[0], model)
+    done = crossings(np.array(track), (x, y))
+    for level in range(UNSEEN + 1):
+        free = screens.free(level) & ~model.mask(node.patch)
+        if not free[goal[1], goal[0]]:
+            continue
+        found = []
+        for number in (1 - done, -1 - done):
+            squares = winding_way(free, screens.here, goal, about, number) if abs(number) <= MOST else None
+            if squares and len(squares) > 1:
+                found.append(_way(squares, level))
+        if found:
+            return found
+    return []
+
+
+def _way(squares: Sequence[Square], level: int) -> Way:
+    """A way as an edge-connected path: a diagonal step is made by the square beside it."""
+    path = [squares[0]]
+    for column, row in squares[1:]:
+        if column != path[-1][0] and row != path[-1][1]:
+            path.append((column, path[-1][1]))
+        path.append((column, row))
+    length = float(np.hypot(*np.diff(np.array(squares), axis=0).T).sum())
+    return Way(tuple(path), length, 0.5, level)
+
+
+def pivot(node: Node) -> Place:
+    """A point within the object: the centre of its square nearest to its middle."""
+    x, y = node.patch.centre
+    column, row = min(node.patch.squares(), key=lambda s: (round(np.hypot(s[0] + 0.5 - x, s[1] + 0.5 - y), 6), s))
+    return column + 0.5, row + 0.5
+
+
+def _square(place: Place, model: WorldModel) -> Square:
+    row, column = model.view.locate(*place)
+    return column, row

@@ -1,0 +1,211 @@
+"""From the world model to the next command: what is attained, what to aim at, which way, which move.
+
+A way is kept while it holds: its aim is still wanted, and the squares ahead are still believed free.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from kb.body import Command
+from kb.corners import Corner, corners
+from kb.reconciliation import Reconciled, reconcile
+from kb.rooms import NOTHING, Rooms, rooms_of
+from kb.task import Task
+from kb.worldmodel import WorldModel
+from planner import exploring
+from planner.aims import Aim, choose
+from planner.circling import pivot, ways_round, winding
+from planner.destinations import Destination, Situation, contains, destination
+from planner.goals import BY_THE_WAY, Stage, constraints, stages
+from planner.screen import Screens, Squares, grown
+from planner.steps import Square
+from planner.walking import next_move
+from planner.ways import Way, choose_way, ways
+
+Place = tuple[float, float]
+DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
+
+
+@dataclass(frozen=True)
+class Decision:
+    """The next command and why; or no command, and the verdict."""
+
+    command: Command | None
+    why: str
+    verdict: str = ""
+
+
+@dataclass
+class Decider:
+    """Decides, and remembers what it decided.
+
+    track : where he has been, as points of the lattice. bound : what the task's parameters mean. rooms : as last
+    believed.
+    """
+
+    task: Task
+    paths: str = "skeleton"
+    rules: tuple[Path, ...] = ()
+    bound: Mapping[str, str] = field(default_factory=dict)
+    attained: int = 0
+    rooms: Rooms = NOTHING
+    corners: Mapping[str, Corner] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.stages = stages(self.task)
+        self.constraints = constraints(self.task)
+        self._aimed: frozenset[Square] = frozenset()  # squares of the lattice
+        self._path: tuple[Square, ...] = ()  # squares of the lattice
+        self._level = 0
+
+    def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
+        """What to do after an impression. track: the places where Utak has been, this one included."""
+        screens = Screens(model)
+        self.rooms = rooms_of(model, self.rules)
+        reconciled = self._reconcile(model, screens)
+        self.corners = corners(model, self.rules)
+        situation = Situation(model, screens, self.bound, self.rooms, self.corners)
+        while self.attained < len(self.stages):
+            stage = self.stages[self.attained]
+            decision = self._towards(stage, situation, reconciled, track)
+            if decision is not None:
+                return decision
+            self.attained += 1
+        return Decision(None, " and ".join(map(str, self.stages)) + " holds", "done")
+
+    def _towards(
+        self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[Place]
+    ) -> Decision | None:
+        """The next command towards a stage, the verdict when it cannot be attained, or None when it is."""
+        carried = sorted({str(goal.args[0]) for goal in stage.goals} - {"utak"})
+        if carried:
+            return Decision(None, f"{stage} is not attempted: Utak does not carry things yet", "limit")
+        if stage.goals[0].name in BY_THE_WAY:
+            node = situation.model.object(self.bound.get(str(stage.goals[0].args[1]), ""))
+            if node is not None:
+                return self._round(stage, node.name, situation, track)
+            where = [destination(stage.goals[0], situation)]
+        else:
+            where = [destination(goal, situation) for goal in stage.goals]
+            if all(not d.missing and contains(d.squares, situation.model) for d in where):
+                return None
+        aims = _aims(where, situation, reconciled)
+        aim = choose(aims, situation.screens, self._old_aim(situation.model))
+        if aim is None:
+            missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
+            why = f"{stage} cannot be attained: {missing}, and nothing is left to look at"
+            return Decision(None, why, "impossible")
+        return self._walk(aim, stage, situation)
+
+    def _round(self, stage: Stage, name: str, situation: Situation, track: Sequence[Place]) -> Decision | None:
+        """The next command on the way round an object."""
+        model, screens = situation.model, situation.screens
+        node = model.object(name)
+        assert node is not None
+        home = (np.floor(track[0]) == np.floor(model.place)).all()
+        if home and abs(winding(track, node)) == 1:
+            return None
+        offered = ways_round(screens, track, node)
+        way = self._choose(offered, situation)
+        if way is None:
+            return Decision(None, f"{stage} cannot be attained: no way leads round {name}", "impossible")
+        self._keep(way, frozenset(), model)
+        x, y = pivot(node)
+        about = (x - model.view.west, y - model.view.south)
+        kind = "attain" if way.level == 0 else "explore"
+        return Decision(next_move(screens, way.squares, kind, about), f"the way round {name}; {stage}")
+
+    def _walk(self, aim: Aim, stage: Stage, situation: Situation) -> Decision:
+        model, screens = situation.model, situation.screens
+        reached = screens.nearest(aim.squares)
+        assert reached is not None
+        way = self._continued(aim, reached.level, situation)
+        if way is None:
+            way = self._choose(ways(screens, reached.level, aim.squares, self.paths), situation)
+        if way is None:
+            return Decision(None, f"{stage} cannot be attained: every way there is forbidden", "impossible")
+        self._keep(way, _lattice_squares(aim.squares, model), model)
+        kind = aim.kind if reached.level == 0 else "pass"
+        return Decision(next_move(screens, way.squares, kind), f"{aim.what}; {stage}")
+
+    def _choose(self, offered: Sequence[Way], situation: Situation) -> Way | None:
+        if not offered:
+            return None
+        view = situation.model.view
+        before = frozenset((x - view.west, y - view.south) for x, y in self._path)
+        doors = situation.rooms.doors
+        forbidden = frozenset(doors[0].name for goal in self.constraints if doors and str(goal.args[0]) == "utak")
+        return choose_way(offered, situation.screens, before, doors, forbidden)
+
+    def _continued(self, aim: Aim, level: int, situation: Situation) -> Way | None:
+        """What is left of the way chosen before, when it still leads to the aim over squares believed free."""
+        view, screens = situation.model.view, situation.screens
+        path = [(x - view.west, y - view.south) for x, y in self._path]
+        if level != self._level or screens.here not in path:
+            return None
+        rest = path[path.index(screens.here) :]
+        columns, rows = np.array(rest).T
+        end = rest[-1][1] * situation.model.labels.shape[1] + rest[-1][0]
+        if len(rest) < 2 or end not in aim.squares or not screens.free(level)[rows, columns].all():
+            return None
+        return Way(tuple(rest), float(len(rest)), 0.0, level)
+
+    def _keep(self, way: Way, aimed: frozenset[Square], model: WorldModel) -> None:
+        view = model.view
+        self._path = tuple((column + view.west, row + view.south) for column, row in way.squares)
+        self._aimed, self._level = aimed, way.level
+
+    def _old_aim(self, model: WorldModel) -> frozenset[int]:
+        """The squares aimed at last time, as flat indices of this view."""
+        rows, columns = model.labels.shape
+        places = ((y - model.view.south, x - model.view.west) for x, y in self._aimed)
+        return frozenset(row * columns + column for row, column in places if 0 <= row < rows and 0 <= column < columns)
+
+    def _reconcile(self, model: WorldModel, screens: Screens) -> Reconciled:
+        distances = {}
+        for node in model.objects:
+            reached = screens.nearest(np.flatnonzero(grown(model.mask(node.patch), 1)))
+            if reached is not None:
+                distances[node.name] = reached.cost
+        reconciled = reconcile(self.task, model, distances, self.bound, self.rules)
+        self.bound = reconciled.binding
+        return reconciled
+
+
+def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconciled) -> list[Aim]:
+    """What is worth doing: go there, when it is known where; else look, first where just the missing thing may be."""
+    screens, model = situation.screens, situation.model
+    missing = [d for d in where if d.missing]
+    if not missing:
+        squares: Squares = where[0].squares
+        for other in where[1:]:
+            squares = np.intersect1d(squares, other.squares)
+        return [Aim("attain", squares, "the way to the goal is known")]
+    aims = [Aim("explore", *look) for d in missing for look in d.lookouts]
+    for x, name in reconciled.doubtful:
+        node = model.object(name)
+        if node is not None and x in reconciled.hypothesised:
+            look = exploring.inspection(screens, node, touch=node.open == 0)
+            aims.append(Aim("inspect", look.squares, f"{look.what}: it may be {x}", (95 - node.confidence) * DOUBT))
+    if any(_surely_reached(aim, screens) for aim in aims if aim.kind == "explore"):
+        return aims
+    for apart in (exploring.APART, 0):
+        explored = [Aim("explore", *look) for look in exploring.frontiers(screens, apart)]
+        settled = [Aim("settle", *look) for look in exploring.vague_places(screens, apart)]
+        if explored or settled:
+            break
+    beyond = [Aim("pass", *look) for look in exploring.rooms_beyond(screens)]
+    return [*aims, *explored, *settled, *beyond]
+
+
+def _surely_reached(aim: Aim, screens: Screens) -> bool:
+    reached = screens.nearest(aim.squares)
+    return reached is not None and reached.level == 0
+
+
+def _lattice_squares(squares: Squares, model: WorldModel) -> frozenset[Square]:
+    rows, columns = np.divmod(squares, model.labels.shape[1])
+    return frozenset(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))

@@ -1,0 +1,132 @@
+"""What a goal means on the screen: the squares on which it holds for Utak, or what is missing to tell."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from kb.corners import Corner
+from kb.facts import Fact, Symbol, Term
+from kb.rooms import Rooms
+from kb.worldmodel import WorldModel
+from planner.exploring import Lookout, rooms_beyond
+from planner.screen import Screens, Squares, grown
+
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Situation:
+    """What the meaning of a goal depends on. binding: parameter -> node; corners: side -> corner of the known floor."""
+
+    model: WorldModel
+    screens: Screens
+    binding: Mapping[str, str]
+    rooms: Rooms
+    corners: Mapping[str, Corner]
+
+
+@dataclass(frozen=True)
+class Destination:
+    """Where a goal holds.
+
+    Attributes
+    ----------
+    squares : flat indices, empty while it is not known where.
+    missing : what must be known first, in words; "" when nothing is.
+    lookouts : places where just that may be seen; when there are none, any place worth a look is.
+    """
+
+    squares: Squares
+    missing: str = ""
+    lookouts: tuple[Lookout, ...] = ()
+
+
+def nowhere(missing: str, lookouts: tuple[Lookout, ...] = ()) -> Destination:
+    """It is not known yet where."""
+    return Destination(np.zeros(0, np.int64), missing, lookouts)
+
+
+def destination(goal: Fact, situation: Situation) -> Destination:
+    """The squares on which a goal of place (at, in, beside, through with utak) holds."""
+    where = goal.args[1]
+    if goal.name == "at" and isinstance(where, Symbol) and where.name == "corner":
+        return corner(str(where.args[0]), situation)
+    if goal.name == "at" and str(where) == "start":
+        return Destination(_within(situation.model, situation.model.lattice.woke, 1.0))
+    if goal.name in ("at", "beside", "circled"):
+        return beside(str(where), situation)
+    if goal.name in ("in", "through"):
+        return _room(goal, where, situation)
+    return nowhere(f"how {goal} is attained")
+
+
+def corner(side: str, situation: Situation) -> Destination:
+    """The convex corner of the known floor that lies furthest towards a side of Utak's frame.
+
+    Where the floor goes on unseen at its furthest, or is seen beyond walls, it is not known yet.
+    """
+    model, screens = situation.model, situation.screens
+    column, row = situation.corners[side].square
+    best = row * model.labels.shape[1] + column
+    if not screens.floor[row, column]:
+        rooms = tuple(room for room in rooms_beyond(screens) if best in room.squares)
+        return nowhere(f"the floor towards the {side} lies beyond a passage that is not seen yet", rooms)
+    around = (slice(max(row - 1, 0), row + 2), slice(max(column - 1, 0), column + 2))
+    if not model.view.seen[around].all():
+        lookout = Lookout(np.array([best]), f"the floor goes on to the {side}, unseen")
+        return nowhere(lookout.what, (lookout,))
+    return Destination(np.array([best]))
+
+
+def beside(parameter: str, situation: Situation) -> Destination:
+    """The squares from which an object is at most one square away.
+
+    Of those, the ones nearest to its believed outline.
+    """
+    node = situation.model.object(situation.binding.get(parameter, ""))
+    if node is None:
+        return nowhere(f"nothing seen so far is {parameter}")
+    near = grown(situation.model.mask(node.patch), 1) & situation.screens.floor
+    squares = np.flatnonzero(near)
+    if node.polygon is not None and len(squares):
+        rows, columns = np.divmod(squares, near.shape[1])
+        view = situation.model.view
+        away = shapely.distance(node.polygon, shapely.points(columns + view.west + 0.5, rows + view.south + 0.5))
+        squares = squares[away <= max(1.0, float(away.min()))]
+    return Destination(squares)
+
+
+def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
+    rooms = situation.rooms
+    squares = np.flatnonzero(rooms.beyond(1) & situation.screens.floor)
+    if len(squares):
+        return Destination(squares)
+    what = "no door is seen yet" if not rooms.doors else "no next room is seen yet that can be reached"
+    return nowhere(what, tuple(rooms_beyond(situation.screens)))
+
+
+def _within(model: WorldModel, point: tuple[float, float], reach: float) -> Squares:
+    """The squares whose centres are within so many squares of a point, in each axis."""
+    row, column = model.view.locate(*point)
+    rows, columns = np.ogrid[: model.labels.shape[0], : model.labels.shape[1]]
+    x, y = point[0] - model.view.west, point[1] - model.view.south
+    near = (abs(columns + 0.5 - x) < reach) & (abs(rows + 0.5 - y) < reach)
+    near[row, column] = True
+    return np.flatnonzero(near)
+
+
+def contains(squares: Squares, model: WorldModel) -> bool:
+    """Does Utak stand on one of these squares?"""
+    row, column = model.view.locate(*model.place)
+    return bool((squares == row * model.labels.shape[1] + column).any())
+
+
+def distance_to(squares: Squares, model: WorldModel) -> float:
+    """How far the nearest of some squares is as the crow flies, in squares."""
+    rows, columns = np.divmod(squares, model.labels.shape[1])
+    row, column = model.view.locate(*model.place)
+    return float(min(np.hypot(rows - row, columns - column), default=math.inf))

@@ -1,0 +1,91 @@
+"""Places worth a look: where the floor borders on what was never seen, and where something is seen but not settled.
+
+These are candidates only; planner/asp/aims.lp chooses among them.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.components import components
+from kb.evidence import OPEN
+from kb.worldmodel import SPACE, Node
+from planner.screen import Screens, Squares, grown
+
+CLOSE = 3  # squares from which a thing lies within the fovea, whichever way it is seen
+APART = 2  # squares: a new look is first sought further than this from earlier ones
+SMALLEST_ROOM = 6  # squares of floor that are worth a passage
+
+
+class Lookout(NamedTuple):
+    """Squares (flat indices) from each of which something is seen that is not known yet, and what it is."""
+
+    squares: Squares
+    what: str
+
+
+def frontiers(screens: Screens, apart: int) -> list[Lookout]:
+    """Floor that can be reached and borders on squares never seen, one Lookout for each connected stretch."""
+    border = _new(screens, apart) & grown(~screens.model.view.seen, 1)
+    labels = components(grown(border, 1)).labels
+    return [Lookout(squares, "the floor goes on unseen") for squares in _groups(np.where(border, labels, 0))]
+
+
+def vague_places(screens: Screens, apart: int) -> list[Lookout]:
+    """Floor close to things beside it that were seen only coarsely, one Lookout for each connected stretch of them."""
+    view = screens.model.view
+    open_ = view.seen & (view.state == OPEN) & (view.probability > SPACE) & grown(screens.floor, 1)
+    labels = np.where(open_, components(grown(open_, 1)).labels, 0)
+    near = np.where(_new(screens, apart), _spread(labels, CLOSE), 0)
+    return [Lookout(squares, "what bounds the floor is not clear") for squares in _groups(near)]
+
+
+def inspection(screens: Screens, node: Node, touch: bool) -> Lookout:
+    """Floor from which an object is seen as well as can be, or felt."""
+    model = screens.model
+    mask = model.mask(node.patch)
+    if touch:
+        return Lookout(np.flatnonzero(_new(screens, 0) & grown(mask, 1)), f"the colour of {node.name} is not known")
+    about = grown(mask, CLOSE)
+    for apart in (APART, 0):
+        near = np.flatnonzero(_new(screens, apart) & about)
+        if len(near):
+            break
+    return Lookout(near, f"what {node.name} is is not clear")
+
+
+def rooms_beyond(screens: Screens) -> list[Lookout]:
+    """Floor that is seen and cannot be reached yet: all floor is connected, so some passage must lead there."""
+    apart = components(screens.model.space & ~screens.floor).labels
+    what = "floor is seen beyond, so a passage must lead there"
+    return [Lookout(squares, what) for squares in _groups(apart) if len(squares) >= SMALLEST_ROOM]
+
+
+def _new(screens: Screens, apart: int) -> NDArray[np.bool_]:
+    """Floor that can be reached and from which nothing was looked at yet.
+
+    A second look from the same square tells nothing new.
+    """
+    model = screens.model
+    mask: NDArray[np.bool_] = screens.floor & ~grown(model.squares(model.looked_from), apart)
+    return mask
+
+
+def _groups(labels: NDArray[np.int32]) -> list[Squares]:
+    """The flat indices of each label but 0, by label."""
+    flat = labels.ravel()
+    squares = np.flatnonzero(flat)
+    ordered = squares[np.argsort(flat[squares], kind="stable")]
+    cuts = np.flatnonzero(np.diff(flat[ordered])) + 1
+    return [group for group in np.split(ordered, cuts) if len(group)]
+
+
+def _spread(labels: NDArray[np.int32], squares: int) -> NDArray[np.int32]:
+    """Labels grown by so many rows and columns; where two meet the greater number counts."""
+    for _ in range(squares):
+        for axis in (0, 1):
+            padded = np.pad(labels, [(1, 1) if a == axis else (0, 0) for a in (0, 1)])
+            lower, upper = (padded[:-2], padded[2:]) if axis == 0 else (padded[:, :-2], padded[:, 2:])
+            labels = np.maximum(labels, np.maximum(lower, upper))
+    return labels

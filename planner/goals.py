@@ -1,0 +1,51 @@
+"""The task in stages: what must be attained, one after the other, and which of it only the way there can fulfil.
+
+Goals without first(...) or then(...) hold together at the end. What a track fulfils (circled, through) comes first,
+then what a place fulfils (at, in, beside), all at once.
+"""
+
+from dataclasses import dataclass
+
+from kb.facts import Fact, Symbol
+from kb.task import Task
+
+BY_THE_WAY = ("circled",)
+CONSTRAINTS = ("not_through",)
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Goals that shall hold at one time; those of the way (`circled`) stand alone in their stage."""
+
+    goals: tuple[Fact, ...]
+
+    def __str__(self) -> str:
+        return " and ".join(str(goal) for goal in self.goals)
+
+
+def stages(task: Task) -> tuple[Stage, ...]:
+    """The stages of a task, in order; constraints are not among them."""
+    steps: list[list[Fact]] = [[]]
+    for fact in task.goals:
+        if fact.name == "then":
+            steps.append([])
+        if fact.name not in CONSTRAINTS:
+            steps[-1].append(_inner(fact))
+    return tuple(stage for goals in steps for stage in _ordered(goals))
+
+
+def constraints(task: Task) -> tuple[Fact, ...]:
+    """The constraints of a task, such as not_through(utak, d)."""
+    return tuple(fact for fact in task.goals if fact.name in CONSTRAINTS)
+
+
+def _inner(fact: Fact) -> Fact:
+    inner = fact.args[0] if fact.name in ("first", "then") else fact
+    assert isinstance(inner, Symbol)
+    return inner
+
+
+def _ordered(goals: list[Fact]) -> list[Stage]:
+    by_the_way = [Stage((goal,)) for goal in goals if goal.name in BY_THE_WAY]
+    at_the_end = tuple(goal for goal in goals if goal.name not in BY_THE_WAY)
+    return by_the_way + ([Stage(at_the_end)] if at_the_end else [])

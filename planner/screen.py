@@ -1,0 +1,95 @@
+"""Projection of the world model onto the screen, Utak's map-in-the-head: which squares a way may lead over, and how
+sure that is.
+
+A screen is an array of squares, [row, column], cut to the window that was seen. There are several, from the squares
+that are surely floor to all that
+might be: a way over a less certain one is a way only if what is assumed proves true.
+"""
+
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.reach import UNREACHED, reach
+from kb.evidence import FREE, OPEN
+from kb.worldmodel import SPACE, WorldModel
+
+Mask = NDArray[np.bool_]
+Squares = NDArray[np.int64]  # flat indices
+LEVELS = (SPACE, 0.15, 0.3, 0.45)  # up to which probability of being occupied a square may be crossed
+UNSEEN = len(LEVELS)  # the level at which unseen squares may be crossed too
+PRICE = 6.0  # squares that each level of uncertainty costs
+WARY = 0.3  # beside squares that are occupied with at least this probability a move is made only over settled ones
+
+
+class Reached(NamedTuple):
+    """level: of certainty, 0 the surest. cost: the way in squares, with a price for each level."""
+
+    level: int
+    cost: float
+
+
+class Screens:
+    """One world model, projected at every level of certainty.
+
+    Arrays are (rows, columns), as those of the model's view.
+    """
+
+    def __init__(self, model: WorldModel) -> None:
+        self.model = model
+        row, column = model.view.locate(*model.place)
+        self.here = (column, row)
+        self._barred = model.squares(model.barred)
+
+    def free(self, level: int) -> Mask:
+        """Squares that may be crossed at a level of certainty; Utak's own is always one."""
+        view = self.model.view
+        if level == UNSEEN:
+            mask = ~view.seen | (view.probability <= LEVELS[-1])
+        else:
+            mask = view.seen & (view.probability <= LEVELS[level])
+        mask &= ~self._barred
+        mask[self.here[1], self.here[0]] = True
+        return mask
+
+    @cached_property
+    def distances(self) -> list[NDArray[np.int32]]:
+        """For each level, UNSEEN included, the way to every square, in fifths of squares; -1 where none leads."""
+        return [reach(self.free(level), *self.here) for level in range(UNSEEN + 1)]
+
+    def nearest(self, squares: Squares) -> Reached | None:
+        """How the nearest of some squares (flat indices) can be reached: at the most certain level at which any can."""
+        for level, distance in enumerate(self.distances):
+            far = distance.ravel()[squares]
+            if (far != UNREACHED).any():
+                return Reached(level, float(far[far != UNREACHED].min()) / 5 + PRICE * level)
+        return None
+
+    @property
+    def floor(self) -> Mask:
+        """The squares that can surely be reached."""
+        mask: Mask = self.distances[0] != UNREACHED
+        return mask
+
+    @property
+    def safe(self) -> Mask:
+        """Squares over which a move is made without looking first."""
+        view = self.model.view
+        doubtful = grown(view.seen & (view.state == OPEN) & (view.probability >= WARY), 1) | grown(~view.seen, 1)
+        mask: Mask = (view.state == FREE) | (view.seen & (view.probability <= SPACE) & ~doubtful)
+        mask &= ~self._barred
+        mask[self.here[1], self.here[0]] = True
+        return mask
+
+
+def grown(mask: Mask, squares: int) -> Mask:
+    """A mask, and all squares within so many rows and columns of it."""
+    for _ in range(squares):
+        for axis in (0, 1):
+            padded = np.pad(mask, [(1, 1) if a == axis else (0, 0) for a in (0, 1)])
+            lower = padded[:-2] if axis == 0 else padded[:, :-2]
+            upper = padded[2:] if axis == 0 else padded[:, 2:]
+            mask = mask | lower | upper
+    return mask

@@ -1,0 +1,49 @@
+"""From a way to the next command: a straight move, as far as is safe."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from geometry.winding import crossings
+from kb.body import Move
+from kb.worldmodel import WorldModel
+from planner.screen import Screens
+from planner.steps import Square, clear
+
+LONGEST = {"attain": 12, "inspect": 8, "explore": 8, "pass": 6, "settle": 8}  # squares of one move, by its aim
+DIGITS = 9  # of a command
+ASIDE = (0.0618, 0.0341)  # squares from a centre, where no turn by whole degrees leads to the line between two squares
+
+
+def next_move(screens: Screens, path: Sequence[Square], kind: str, about: tuple[float, float] | None = None) -> Move:
+    """The longest straight move along a way that leads over squares on which nothing has to be looked at first.
+
+    path : edge-connected squares, the first is Utak's. kind : of the aim.
+    about : a point (of the view's frame) about which the move must wind as the way does, when that matters.
+    """
+    safe, here = screens.safe, path[0]
+    there = path[1]
+    for number in range(len(path) - 1, 1, -1):
+        square = path[number]
+        far = max(abs(square[0] - here[0]), abs(square[1] - here[1]))
+        if far <= LONGEST[kind] and clear(safe, here, square) and _same_side(path[: number + 1], about):
+            there = square
+            break
+    return move_to(screens.model, there)
+
+
+def move_to(model: WorldModel, square: Square) -> Move:
+    """The move from where Utak believes himself to the centre of a square (column, row) of the view.
+
+    As long as it is not sure how the lattice lies, it is a little beside the centre: halts on the line between two
+    squares, where it would be chance which of them he sees himself in, could never be explained.
+    """
+    aside = ASIDE if model.spread else (0.0, 0.0)
+    x, y = model.view.west + square[0] + 0.5 + aside[0], model.view.south + square[1] + 0.5 + aside[1]
+    east, north = model.lattice.to_utak(x - model.place[0], y - model.place[1])
+    return Move(round(east, DIGITS) + 0.0, round(north, DIGITS) + 0.0)
+
+
+def _same_side(part: Sequence[Square], about: tuple[float, float] | None) -> bool:
+    """May this part of the way be replaced by a straight line without passing a point on its other side?"""
+    return about is None or crossings(np.array([*part, part[0]]) + 0.5, about) == 0

@@ -1,0 +1,71 @@
+"""`utak check`: are the files of a scenario as they must be?"""
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from kb.problems import BadInputError, CannotOpenError, Problem, Span
+from simulator import exits
+
+
+def add(parts: Any) -> None:
+    """Declare the subcommand."""
+    part = parts.add_parser("check", help="check scenarios or single files of them")
+    part.add_argument("paths", nargs="+", metavar="FILE|FOLDER", help="a scenario, a folder of them, or a file of one")
+    part.set_defaults(execute=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Check every path; all problems are reported together."""
+    problems: list[Problem] = []
+    for path in [part for given in options.paths for part in _parts(Path(given))]:
+        try:
+            _check(path)
+            print(f"{path}: ok")
+        except BadInputError as bad:
+            problems += bad.problems
+    if problems:
+        raise BadInputError(problems)
+    return exits.DONE
+
+
+def _parts(path: Path) -> list[Path]:
+    """The scenarios in a folder that is none itself; else the path alone."""
+    names = ("world.lp", "world.txt", "start.lp", "goal.lp")
+    if not path.is_dir() or any((path / name).exists() for name in names):
+        return [path]
+    return sorted({goal.parent for goal in path.rglob("goal.lp")}) or [path]
+
+
+def _check(path: Path) -> None:
+    """Check a scenario folder or one file; what a file must hold is known by its name."""
+    from simulator.scenario import read_scenario
+
+    if path.is_dir():
+        read_scenario(path)
+        return
+    check = _checks().get(path.name)
+    if check is None:
+        if not path.exists():
+            raise CannotOpenError(str(path), "no such file or folder")
+        hint = f"a scenario's files are {', '.join(sorted(_checks()))}"
+        raise BadInputError([Problem(str(path), Span(1, 1, 1), f"{path.name} is no file of a scenario", hint=hint)])
+    check(path)
+
+
+def _checks() -> dict[str, Callable[[Path], Any]]:
+    """How each file of a scenario is checked."""
+    from kb.task import read_start, read_task
+    from simulator.expectation import read_expectations
+    from simulator.picture import read_picture
+    from simulator.scenario import read_any_world
+    from simulator.worldfile import read_world
+
+    return {
+        "world.lp": read_world,
+        "world.txt": read_picture,
+        "start.lp": read_start,
+        "goal.lp": lambda path: read_task(path.parent / "start.lp", path),
+        "expect.lp": lambda path: read_expectations(path, read_any_world(path.parent)),
+    }

@@ -1,0 +1,57 @@
+"""`utak query`: ask what Utak believes, at a step of a run or of an episode."""
+
+import argparse
+import sys
+from typing import TYPE_CHECKING, Any
+
+from simulator import exits
+from simulator.commands.run import add_settings, settings_of
+
+if TYPE_CHECKING:
+    from simulator.story import Story
+
+
+def add(parts: Any) -> None:
+    """Declare the subcommand."""
+    part = parts.add_parser("query", help="ask what Utak believes")
+    part.add_argument("story", metavar="SCENARIO|EP.jsonl", help="a scenario folder, which is run, or an episode")
+    part.add_argument("query", metavar="QUERY", help='such as "object(X), shape(X, square, C)"')
+    part.add_argument("--at", type=int, metavar="STEP", help="the step to ask at (default: the last; 0: on waking)")
+    part.add_argument("--json", action="store_true", help="print the answer as one JSON object")
+    add_settings(part)
+    part.set_defaults(execute=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Go to the step, ask, and print the answer."""
+    from kb.query import QueryEngine, QueryLimitError
+    from simulator.story import facts_of_line, open_story
+
+    story = open_story(options.story, settings_of(options))
+    _go_to(story, options.story, options.at)
+    step = story.line["step"]
+    try:
+        with QueryEngine() as engine:
+            answer = engine.ask(facts_of_line(story.line), options.query)
+    except QueryLimitError as limit:
+        print(f"utak: {limit}", file=sys.stderr)
+        return exits.LIMIT
+    if options.json:
+        import json
+
+        rows = [list(row) for row in answer.rows]
+        print(json.dumps({"step": step, "answer": answer.kind, "variables": list(answer.variables), "rows": rows}))
+    else:
+        print(answer)
+    return exits.DONE
+
+
+def _go_to(story: "Story", name: str, step: int | None) -> None:
+    """Advance to a step, or to the end."""
+    from kb.problems import BadInputError, Problem, Span
+
+    while story.line["step"] != step and story.advance():
+        pass
+    if step is not None and story.line["step"] != step:
+        what = f"there is no step {step}: the last is {story.line['step']}"
+        raise BadInputError([Problem(name, Span(1, 1, 1), what)])

@@ -1,0 +1,30 @@
+"""`utak repl`: go through a run or an episode step by step, and ask what Utak believes."""
+
+import argparse
+from typing import Any
+
+from simulator import exits
+from simulator.commands.run import add_settings, settings_of
+
+
+def add(parts: Any) -> None:
+    """Declare the subcommand."""
+    part = parts.add_parser("repl", help="step through a run and ask what Utak believes")
+    part.add_argument("story", metavar="SCENARIO|EP.jsonl", help="a scenario folder, which is run, or an episode")
+    add_settings(part)
+    part.set_defaults(execute=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Read commands until they end."""
+    from kb.query import QueryEngine
+    from simulator.prompt import Prompt, lines_of
+    from simulator.story import open_story
+
+    story = open_story(options.story, settings_of(options))
+    with QueryEngine() as engine:
+        prompt = Prompt(story, engine)
+        for line in lines_of(prompt.words()):
+            if not prompt.obey(line):
+                break
+    return exits.DONE

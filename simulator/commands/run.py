@@ -1,0 +1,145 @@
+"""`utak run`: the robot wakes in a scenario and does his task."""
+
+import argparse
+import sys
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from simulator import exits
+
+if TYPE_CHECKING:
+    from simulator.session import Result, Session
+    from simulator.settings import Settings
+
+Amount = TypeVar("Amount", int, float)
+PATHS = ("skeleton", "visibility", "grid")
+
+
+def add(parts: Any) -> None:
+    """Declare the subcommand."""
+    part = parts.add_parser("run", help="run the robot on a scenario")
+    part.add_argument("scenario", metavar="SCENARIO", help="a scenario folder")
+    add_settings(part)
+    part.add_argument("--log", metavar="EP.jsonl", help="write the episode to this file as it happens")
+    part.add_argument("--resume", action="store_true", help="go on from the episode that --log names")
+    part.add_argument("--json", action="store_true", help="print the result as one JSON object")
+    part.add_argument("--watch", action="store_true", help="draw the table on stderr after every step")
+    part.set_defaults(execute=execute)
+
+
+def add_settings(part: argparse.ArgumentParser) -> None:
+    """Declare the options that decide what happens in a run."""
+    part.add_argument("--seed", type=_seed, metavar="N", help="seed of all randomness (default 0)")
+    part.add_argument("--noise", type=_noise, metavar="S", help="how much motions are disturbed, 0 to 1 (default 0)")
+    part.add_argument("--paths", choices=PATHS, help="how ways are found (default skeleton)")
+    part.add_argument("--max-steps", type=_steps, metavar="N", help="give up after so many commands (default 200)")
+    part.add_argument("--kb", action="append", metavar="FILE", default=[], help="a file of rules to add; repeatable")
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Run, and print the result."""
+    from simulator.episode import EpisodeLog
+    from simulator.robots import make_robot
+    from simulator.scenario import read_scenario
+    from simulator.session import Session
+
+    if options.resume and options.log is None:
+        print("utak run: --resume needs --log EP.jsonl", file=sys.stderr)
+        return exits.USAGE
+    scenario = read_scenario(options.scenario)
+    settings = settings_of(options, _recorded(options))
+    with EpisodeLog(options.log, options.resume) as log:
+        session = Session(scenario, settings, make_robot, log)
+        result = session.run(_watcher(options.watch))
+    _print(result, options.json)
+    return exit_code(result)
+
+
+def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = None) -> "Settings":
+    """Return the settings that the command line gives; those of a recorded episode hold where it is silent."""
+    from dataclasses import replace
+
+    from simulator.settings import Settings, kb_files_named
+
+    given = {"seed": options.seed, "noise": options.noise, "paths": options.paths, "max_steps": options.max_steps}
+    given = {name: value for name, value in given.items() if value is not None}
+    kept = {name: value for name, value in (recorded or {}).items() if name in ("seed", "noise", "paths", "max_steps")}
+    return replace(Settings(kb_files=kb_files_named(options.kb)), **{**kept, **given})
+
+
+def exit_code(result: "Result") -> int:
+    """Return the exit code that a result deserves."""
+    if result.believed:
+        return exits.NOT_REACHED if result.achieved is False else exits.DONE
+    return exits.LIMIT if result.verdict == "limit" else exits.NOT_REACHED
+
+
+def _recorded(options: argparse.Namespace) -> dict[str, Any] | None:
+    """The options that an episode to be resumed was run with; None when there is nothing to resume."""
+    from pathlib import Path
+
+    from simulator.episode import complete_lines, read_episode
+
+    if not options.resume:
+        return None
+    if not Path(options.log).exists() or not complete_lines(options.log):
+        return None
+    found = read_episode(options.log).header.get("options")
+    return found if isinstance(found, dict) else None
+
+
+def _print(result: "Result", as_json: bool) -> None:
+    import json
+
+    if as_json:
+        print(json.dumps({**result.line["result"], "unmet": list(result.unmet)}))
+        return
+    truth = {None: "", True: ", achieved", False: ", not achieved"}[result.achieved]
+    print(f"{result.verdict} in {result.steps} steps{truth}: {result.reason}")
+    for expected in result.unmet:
+        print(f"not met: {expected}", file=sys.stderr)
+
+
+def _watcher(watch: bool) -> Any:
+    """What is shown after every step: nothing, a line on a terminal, or the table drawn."""
+    if not watch and not sys.stderr.isatty():
+        return lambda session: None
+
+    def tell(session: "Session") -> None:
+        from simulator.picture import draw
+
+        line, table = session.line, session.table
+        if watch:
+            print(draw(table.world, table.polygons, table.utak), file=sys.stderr, end="")
+        print(f"step {line['step']}: {describe(line['action'])}: {line['why']}", file=sys.stderr)
+
+    return tell
+
+
+def describe(action: dict[str, Any] | None) -> str:
+    """Return an action of an episode in words, as `move(1.5, -2)`.
+
+    >>> describe({"do": "move", "east": 1.5, "north": -2.0})
+    'move(1.5, -2)'
+    """
+    if action is None:
+        return "wake"
+    values = [f"{v:g}" if isinstance(v, float) else str(v) for k, v in action.items() if k != "do"]
+    return f"{action['do']}({', '.join(values)})" if values else str(action["do"])
+
+
+def _seed(text: str) -> int:
+    return _within(int(text), 0, 2**63 - 1)
+
+
+def _steps(text: str) -> int:
+    return _within(int(text), 0, 1_000_000)
+
+
+def _noise(text: str) -> float:
+    return _within(float(text), 0, 1)
+
+
+def _within(value: Amount, low: int, high: int) -> Amount:
+    if not low <= value <= high:
+        raise argparse.ArgumentTypeError(f"must be from {low} to {high}, not {value}")
+    return value

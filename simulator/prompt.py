@@ -1,0 +1,151 @@
+"""The prompt of `utak repl`: one line, one command or question; whatever is typed, the prompt comes back."""
+
+import os
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from kb.problems import BadInputError, CannotOpenError, did_you_mean
+from kb.query import VOCABULARY, QueryEngine, QueryLimitError
+from simulator.commands.run import describe
+from simulator.story import Story, facts_of_line
+
+HELP = """\
+?- QUERY.     ask what Utak believes: ?- object(X), shape(X, square, C).
+facts [WORD]  the world model as facts; with a word those that name it
+step [N]      go on by one step, or by N
+run           go on to the end
+show          the table as a picture
+help          this
+quit          leave (so does the end of the input)"""
+
+
+class Prompt:
+    """Obeys commands about one story."""
+
+    def __init__(self, story: Story, engine: QueryEngine, write: Callable[[str], object] | None = None) -> None:
+        self._story, self._engine = story, engine
+        self._write = write or (lambda text: print(text, flush=True))
+        self._commands: dict[str, Callable[[str], None]] = {
+            "?-": self._ask,
+            "facts": self._facts,
+            "help": lambda rest: self._say(HELP),
+            "run": lambda rest: self._go(None),
+            "show": lambda rest: self._say(self._story.picture().rstrip("\n")),
+            "step": self._step,
+        }
+
+    def words(self) -> list[str]:
+        """What can be completed: commands and the names of predicates."""
+        return sorted([*self._commands, "quit", *(f"{name}(" for name, _ in VOCABULARY)])
+
+    def obey(self, line: str) -> bool:
+        """Do what a line says; False when it says to leave. Nothing that it says raises an exception."""
+        text = line.strip()
+        name, _, rest = ("?-", "", text[2:]) if text.startswith("?-") else text.partition(" ")
+        name = name.removesuffix(".")
+        if name in ("quit", "exit"):
+            return False
+        if not text or text.startswith("%"):
+            return True
+        try:
+            if name in self._commands:
+                self._commands[name](rest.strip())
+            else:
+                self._unknown(name)
+        except (BadInputError, CannotOpenError, QueryLimitError) as problem:
+            self._say(str(problem))
+        except KeyboardInterrupt:
+            self._say("interrupted")
+        except BrokenPipeError:
+            raise
+        except Exception as bug:  # the prompt must come back, whatever happens
+            self._say(f"this is a bug of ours: {type(bug).__name__}: {str(bug)[:500]}")
+        return True
+
+    def _say(self, text: str) -> None:
+        self._write(text)
+
+    def _ask(self, rest: str) -> None:
+        self._say(str(self._engine.ask(facts_of_line(self._story.line), rest)))
+
+    def _facts(self, rest: str) -> None:
+        word = rest.removesuffix(".")
+        facts = [fact for fact in facts_of_line(self._story.line) if not word or word in _names(fact)]
+        self._say("\n".join(facts) if facts else "none")
+
+    def _step(self, rest: str) -> None:
+        count = rest.removesuffix(".") or "1"
+        if not (count.isascii() and count.isdigit() and 0 < int(count[:9]) <= 1_000_000):
+            self._say(f"step takes a number of steps, not {rest}")
+            return
+        self._go(int(count[:9]))
+
+    def _go(self, count: int | None) -> None:
+        """Go on by some steps, or to the end."""
+        done = 0
+        while done != count and self._story.advance():
+            done += 1
+            line = self._story.line
+            self._say(f"step {line['step']}: {describe(line.get('action'))}: {line.get('why', '')}")
+        result: Any = self._story.result
+        if result is not None:
+            self._say(f"{result['verdict']} after {result['steps']} steps: {result['reason']}")
+        elif done == 0:
+            self._say("there are no more steps")
+
+    def _unknown(self, name: str) -> None:
+        hint = did_you_mean(name, self._commands)
+        self._say(f"unknown command {name[:40]}; {hint or 'help lists what there is, ?- asks'}")
+
+
+def _names(fact: str) -> set[str]:
+    """The words of a fact."""
+    return set("".join(char if char.isalnum() or char == "_" else " " for char in fact).split())
+
+
+def lines_of(words: Sequence[str]) -> Iterator[str]:
+    """Yield the lines that are typed, with history and completion on a terminal, or that come through a pipe."""
+    if not sys.stdin.isatty():
+        for raw in sys.stdin.buffer:
+            yield raw.decode("utf-8", errors="replace")
+        return
+    _prepare(words)
+    while True:
+        try:
+            yield input("utak> ")
+        except EOFError:
+            print()
+            return
+        except KeyboardInterrupt:
+            print()
+
+
+def _prepare(words: Sequence[str]) -> None:
+    """History and completion, where Python has readline."""
+    try:
+        import atexit
+        import readline
+    except ImportError:
+        return
+    home = Path(os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state")
+    history = home / "utak" / "history"
+    try:
+        history.parent.mkdir(parents=True, exist_ok=True)
+        if history.exists():
+            readline.read_history_file(history)
+        readline.set_history_length(1000)
+        atexit.register(_write_history, readline, history)
+    except OSError:
+        pass  # no history, then
+    readline.set_completer(lambda text, n: [*[w for w in words if w.startswith(text)], None][n])
+    readline.set_completer_delims(" \t\n,")
+    readline.parse_and_bind("tab: complete")
+
+
+def _write_history(readline: Any, history: Path) -> None:
+    try:
+        readline.write_history_file(history)
+    except OSError:
+        print(f"utak: the history could not be written to {history}", file=sys.stderr)

@@ -1,0 +1,15 @@
+"""Where simulator and planner are wired together: the one robot that the command line runs."""
+
+from kb.body import Body
+from kb.task import Task
+from simulator.session import Robot
+from simulator.settings import Settings
+
+
+def make_robot(body: Body, task: Task, settings: Settings) -> Robot:
+    """Return the robot of `planner.cycle` with a body and a task."""
+    from planner.cycle import Options
+    from planner.cycle import Robot as Mind
+
+    options = Options(paths=settings.paths, kb_files=settings.kb_files, max_steps=settings.max_steps)
+    return Mind(body, task, options)

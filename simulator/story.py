@@ -1,0 +1,121 @@
+"""An episode as it can be read step by step: one that runs now, or one that was recorded."""
+
+from pathlib import Path
+from typing import Any, Protocol
+
+import shapely
+
+from kb.problems import BadInputError, Problem, Span
+from simulator.episode import Episode, EpisodeLog, Line, read_episode
+from simulator.picture import draw
+from simulator.record import recorded_world
+from simulator.robots import make_robot
+from simulator.scenario import read_scenario
+from simulator.session import Session
+from simulator.settings import Settings
+
+
+class Story(Protocol):
+    """A sequence of episode lines with a place in it."""
+
+    @property
+    def line(self) -> Line:
+        """The line of the step at which the story stands."""
+
+    @property
+    def result(self) -> Line | None:
+        """How it ended, once it has: `believed`, `achieved`, `verdict`, `reason`, `steps`."""
+
+    def advance(self) -> bool:
+        """Go on by one step; False when there is none."""
+
+    def picture(self) -> str:
+        """The table at this step."""
+
+
+class Running:
+    """A run of the robot in a scenario; it wakes at once."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self.result: Line | None = None
+        session.wake()
+        self._close()
+
+    @property
+    def line(self) -> Line:
+        """The line of the last step."""
+        return self._session.line
+
+    def advance(self) -> bool:
+        """Let the robot act once."""
+        if self._session.finished:
+            return False
+        self._session.step()
+        self._close()
+        return True
+
+    def picture(self) -> str:
+        """The table now."""
+        table = self._session.table
+        return draw(table.world, table.polygons, table.utak)
+
+    def _close(self) -> None:
+        if self._session.finished:
+            self.result = self._session.end().line["result"]
+
+
+class Recorded:
+    """An episode that was written to a file."""
+
+    def __init__(self, name: str, episode: Episode) -> None:
+        self._name, self._episode = name, episode
+        self._at = 0
+
+    @property
+    def line(self) -> Line:
+        """The line of this step."""
+        return self._episode.steps[self._at]
+
+    @property
+    def result(self) -> Line | None:
+        """How it ended, at the last step."""
+        return self._episode.result if self._at == len(self._episode.steps) - 1 else None
+
+    def advance(self) -> bool:
+        """Turn to the next line."""
+        if self._at == len(self._episode.steps) - 1:
+            return False
+        self._at += 1
+        return True
+
+    def picture(self) -> str:
+        """The table at this step."""
+        try:
+            world = recorded_world(self._episode.header)
+            polygons = {name: shapely.Polygon(ring) for name, ring in self.line["objects"].items()}
+            x, y = self.line["utak"]
+        except (KeyError, IndexError, TypeError, ValueError, AttributeError):
+            what = f"step {self._at} does not record the table: the episode is damaged"
+            raise BadInputError([Problem(self._name, Span(self._at + 2, 1, 1), what)]) from None
+        return draw(world, polygons, (x, y))
+
+
+def open_story(path: Path | str, settings: Settings) -> Story:
+    """Return the story of a scenario folder, which is run, or of an episode file, which is read; it stands at step 0.
+
+    Raises CannotOpenError or BadInputError.
+    """
+    if Path(path).is_dir():
+        return Running(Session(read_scenario(path), settings, make_robot, EpisodeLog(None)))
+    episode = read_episode(path)
+    if not episode.steps:
+        raise BadInputError([Problem(str(path), Span(1, 1, 1), "the episode ends before its first step")])
+    return Recorded(str(path), episode)
+
+
+def facts_of_line(line: Line) -> list[str]:
+    """Return the world model of a step as facts; empty when the step records none."""
+    belief: Any = line.get("belief")
+    facts: Any = belief.get("facts") if isinstance(belief, dict) else None
+    return [str(fact) for fact in facts] if isinstance(facts, list) else []

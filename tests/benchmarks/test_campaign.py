@@ -1,0 +1,218 @@
+"""The campaign tells an honest robot from a liar, a loiterer and one that breaks."""
+
+import json
+import math
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+
+from benchmarks import campaign
+from benchmarks.beliefs import Score
+from benchmarks.judging import judge_path
+from benchmarks.stopwatch import Seconds
+from benchmarks.tally import faults, table, verdicts
+from benchmarks.trial import Conditions, Trial, run_trial
+from benchmarks.worlds import scenario
+from kb.body import Body, Command, Impression, Move
+from kb.task import Task
+from simulator.settings import Settings
+
+
+class Report(NamedTuple):
+    """What a robot reports of a step."""
+
+    command: Command | None
+    impression: Impression
+    belief: dict[str, Any]
+    why: str
+
+
+class Verdict(NamedTuple):
+    """What a robot says at the end."""
+
+    believed: bool
+    verdict: str
+    reason: str
+
+
+class Scripted:
+    """A robot that gives the commands of a list and then a verdict."""
+
+    def __init__(self, body: Body, commands: list[Command], verdict: Verdict) -> None:
+        self._body, self._commands, self.verdict = body, list(commands), verdict
+
+    def wake(self) -> Report:
+        return Report(None, self._body.wake(), {}, "woke")
+
+    def step(self) -> Report:
+        command = self._commands.pop(0)
+        return Report(command, self._body.act(command), {}, "as told")
+
+    @property
+    def finished(self) -> bool:
+        return not self._commands
+
+
+def maker(commands: list[Command], verdict: Verdict) -> Callable[[Body, Task, Settings], Scripted]:
+    """Make such robots."""
+    return lambda body, task, settings: Scripted(body, commands, verdict)
+
+
+@pytest.fixture(autouse=True)
+def cold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No trial before those that are asked for."""
+    monkeypatch.setattr(campaign, "_warm_up", lambda folder: None)
+
+
+DONE = Verdict(True, "done", "I am there")
+GIVES_UP = Verdict(False, "impossible", "there is no way")
+HERE = Move(0.0, 0.0)
+
+
+def straight_seed() -> int:
+    """A world of task (i) in which nothing lies between Utak and the corner."""
+    return next(s for s in range(100) if not (w := scenario(1, s)).things and len(w.plan.rooms) == 1 and w.possible)
+
+
+def way_to_target(seed: int) -> Move:
+    """The straight way to the target of task (i), in Utak's frame."""
+    world = scenario(1, seed)
+    middle = world.target.centroid
+    dx, dy = middle.x - world.utak.x, middle.y - world.utak.y
+    c, s = math.cos(math.radians(world.heading)), math.sin(math.radians(world.heading))
+    return Move(dx * c + dy * s, -dx * s + dy * c)
+
+
+def test_an_honest_walk_is_achieved_judged_and_measured(tmp_path: Path) -> None:
+    seed = straight_seed()
+    trial = run_trial(1, seed, Conditions(), tmp_path, maker=maker([way_to_target(seed)], DONE))
+    assert (trial.crash, trial.achieved, trial.believed, trial.steps) == ("", True, True, 1)
+    assert trial.right and not trial.false_done
+    assert 1.0 <= trial.walked / trial.shortest < 1.4
+    assert len(trial.cycles) == 2 and all(0 <= cycle.wall < 1 for cycle in trial.cycles)
+    assert trial.judged == ([] if judge_path() else None)
+    assert faults([trial]) == ""
+
+
+def test_a_false_done_is_found(tmp_path: Path) -> None:
+    trial = run_trial(1, straight_seed(), Conditions(), tmp_path, maker=maker([HERE], DONE))
+    assert trial.false_done and not trial.right
+    assert "FALSE DONE" in faults([trial])
+
+
+def test_giving_up_is_right_only_where_it_cannot_be_done(tmp_path: Path) -> None:
+    seeds = {True: 0, False: 11}
+    for possible, seed in seeds.items():
+        trial = run_trial(3, seed, Conditions(), tmp_path, maker=maker([HERE], GIVES_UP))
+        assert trial.possible == possible
+        assert trial.right == (not possible)
+        assert not trial.judged or possible
+
+
+def test_a_robot_that_breaks_is_a_crash_and_not_an_end_of_the_campaign(tmp_path: Path) -> None:
+    def broken(body: Body, task: Task, settings: Settings) -> Scripted:
+        raise KeyError("no mind")
+
+    trial = run_trial(2, 0, Conditions(), tmp_path, maker=broken)
+    assert trial.crash.startswith("KeyError: 'no mind' (test_campaign.py:")
+    assert "Traceback" in (tmp_path / "task2-000" / "crash.txt").read_text()
+    assert "crash: KeyError" in faults([trial])
+
+
+def test_a_robot_that_loiters_is_stopped(tmp_path: Path) -> None:
+    def slow(body: Body, task: Task, settings: Settings) -> Scripted:
+        time.sleep(30)
+        return Scripted(body, [HERE], DONE)
+
+    trial = run_trial(2, 0, Conditions(seconds=1), tmp_path, maker=slow)
+    assert "took more than 1 s" in trial.crash
+
+
+def test_a_loop_is_measured_against_the_shortest_loop(tmp_path: Path) -> None:
+    trial = run_trial(4, 0, Conditions(), tmp_path, maker=maker([HERE], GIVES_UP))
+    assert trial.shortest > 8
+    assert trial.walked == 0.0
+
+
+def times(*seconds: float) -> list[Seconds]:
+    """Cycles of so many seconds on the wall and half of them by the processor."""
+    return [Seconds(value, value / 2) for value in seconds]
+
+
+def test_the_table_counts() -> None:
+    trials = [
+        Trial(1, 0, True, True, True, "done", "", 4, 12.0, 10.0, [], times(1.0, 0.01, 0.03)),
+        Trial(1, 1, True, False, False, "limit", "lost", 9, 3.0, 10.0, ["step 1: bad"], times(1.0, 0.02)),
+        Trial(1, 11, False, False, False, "impossible", "no way", 2, 0.0, math.nan, [], times(1.0, 0.02)),
+    ]
+    lines = table(trials).splitlines()
+    assert lines[1].split() == [
+        "(i)",
+        "1/2",
+        "1/1",
+        "0",
+        "1",
+        "0",
+        "4",
+        "/",
+        "9",
+        "1.20",
+        "/",
+        "1.20",
+        "20",
+        "/",
+        "30",
+        "10",
+        "/",
+        "15",
+        "-",
+        "-",
+        "0",
+        "of",
+        "0",
+    ]
+    assert "possible worlds: done 1, limit 1" in verdicts(trials)
+    assert faults(trials) == "1:1  not achieved: limit: lost; judge: step 1: bad\n"
+    assert json.loads(json.dumps(trials[2].row()))["shortest"] is None
+
+
+def test_without_a_judge_it_says_so_loudly(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setenv("UTAK_JUDGE", str(tmp_path / "nowhere.py"))
+    monkeypatch.setattr(campaign, "run_trial", lambda t, s, *_: Trial(t, s, True, True, True, "done"))
+    assert campaign.main(["--task", "1", "--count", "2", "-o", str(tmp_path / "r.jsonl")]) == 0
+    told = capsys.readouterr()
+    assert "NO JUDGE" in told.err and "none!" in told.out
+    assert len((tmp_path / "r.jsonl").read_text().splitlines()) == 2
+
+
+def test_worlds_that_went_wrong_are_run_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    ran = []
+
+    def record(task: int, seed: int, *_: object) -> Trial:
+        ran.append((task, seed))
+        return Trial(task, seed, True, True, seed != 1, "done", score=Score(0, 0, 0, 0, 9, int(seed == 2), 0, ()))
+
+    monkeypatch.setattr(campaign, "run_trial", record)
+    results = tmp_path / "results.jsonl"
+    assert campaign.main(["--task", "1", "--count", "4", "-o", str(results)]) == 1
+    ran.clear()
+    campaign.main(["--again", str(results)])
+    assert ran == [(1, 1), (1, 2)]
+
+
+def test_one_world_is_drawn_at_each_step(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    def scripted(task: int, seed: int, conditions: Conditions, folder: Path, watch: Any) -> Trial:
+        return run_trial(task, seed, conditions, folder, watch, maker([HERE, HERE], GIVES_UP))
+
+    monkeypatch.setattr(campaign, "run_trial", scripted)
+    campaign.main(["--only", "3:2", "--keep", str(tmp_path)])
+    told = capsys.readouterr().err
+    assert told.count("bbbbb\n") > 30 and "step 2: {'do': 'move'" in told
+    assert (tmp_path / "task3-002" / "episode.jsonl").exists()

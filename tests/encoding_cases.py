@@ -1,0 +1,100 @@
+"""Small cases for the encodings: facts, and the atoms that hold in every, in some, or in no optimal answer.
+
+A file `cases/NAME.lp` beside the tests of a package belongs to `PACKAGE/asp/NAME.lp`. In it `%% TITLE` begins a case;
+facts stand as they are; `%every`, `%some` and `%never` are followed by shown atoms, and `%none` says that there is no
+answer.
+"""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+import clingo
+import clingo.ast
+
+ROOT = Path(__file__).resolve().parent.parent
+ENCODINGS = sorted([*(ROOT / "kb" / "asp").glob("*.lp"), *(ROOT / "planner" / "asp").glob("*.lp")])
+
+
+class Case(NamedTuple):
+    """One case. every, some, never: atoms as clingo writes them. answers: is there any?"""
+
+    title: str
+    facts: str
+    every: frozenset[str]
+    some: frozenset[str]
+    never: frozenset[str]
+    answers: bool
+
+
+def case_file(encoding: Path) -> Path:
+    """The file with the cases of an encoding."""
+    return ROOT / "tests" / encoding.parent.parent.name / "cases" / encoding.name
+
+
+def cases_of(encoding: Path) -> list[Case]:
+    """The cases of an encoding."""
+    parts = case_file(encoding).read_text().split("%% ")[1:]
+    return [_case(*part.split("\n", 1)) for part in parts]
+
+
+def _case(title: str, body: str) -> Case:
+    lines = body.splitlines()
+    told = {
+        word: _atoms(line[len(word) :] for line in lines if line.startswith(word))
+        for word in ("%every", "%some", "%never")
+    }
+    facts = "\n".join(line for line in lines if not line.startswith("%"))
+    return Case(title, facts, told["%every"], told["%some"], told["%never"], "%none" not in lines)
+
+
+def _atoms(texts: Iterable[str]) -> frozenset[str]:
+    """Atoms separated by full stops, in clingo's own spelling."""
+    words = [word.strip() for text in texts for word in text.split(".")]
+    return frozenset(str(clingo.parse_term(word)) for word in words if word)
+
+
+def statements(encoding: Path) -> list[clingo.ast.AST]:
+    """The rules and optimisation statements of an encoding."""
+    found: list[clingo.ast.AST] = []
+    clingo.ast.parse_files([str(encoding)], found.append)
+    return [s for s in found if s.ast_type in (clingo.ast.ASTType.Rule, clingo.ast.ASTType.Minimize)]
+
+
+def without(encoding: Path, dropped: clingo.ast.AST) -> str:
+    """An encoding's text with one statement left out; what only that statement derived stays declared."""
+    found: list[clingo.ast.AST] = []
+    clingo.ast.parse_files([str(encoding)], found.append)
+    return "\n".join(str(s) for s in found if s.location != dropped.location)
+
+
+def optimal_answers(program: str, facts: str, strict: bool = True) -> list[frozenset[str]]:
+    """The shown atoms of all optimal answers. strict: a message of clingo is an error."""
+    messages: list[str] = []
+    control = clingo.Control(["--opt-mode=optN", "0"], logger=lambda _code, text: messages.append(text))
+    control.add("base", [], f"{program}\n{facts}")
+    control.ground([("base", [])])
+    assert not (strict and messages), messages
+    answers: list[frozenset[str]] = []
+
+    def keep(model: clingo.Model) -> None:
+        if model.optimality_proven or not model.cost:
+            answers.append(frozenset(map(str, model.symbols(shown=True))))
+
+    control.solve(on_model=keep)
+    return answers
+
+
+def disagreement(case: Case, answers: list[frozenset[str]]) -> str:
+    """What is wrong with the answers to a case, or ''."""
+    if bool(answers) != case.answers:
+        return f"{len(answers)} answers"
+    if not answers:
+        return ""
+    all_, any_ = frozenset.intersection(*answers), frozenset.union(*answers)
+    wrong = [
+        ("not in every answer", case.every - all_),
+        ("in no answer", case.some - any_),
+        ("in an answer", case.never & any_),
+    ]
+    return "; ".join(f"{what}: {sorted(atoms)}" for what, atoms in wrong if atoms)

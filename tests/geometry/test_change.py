@@ -1,0 +1,60 @@
+"""A changed screen is a new screen of the changed squares."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from geometry import Screen
+from tests.geometry import oracles
+
+
+def same(screen, other):
+    assert (screen.free == other.free).all()
+    assert (screen.clearance == other.clearance).all()
+    assert (screen.skeleton == other.skeleton).all()
+    for mine, fresh in zip(screen._skeleton_at(1)[2], other._skeleton_at(1)[2], strict=True):
+        assert np.array_equal(mine, fresh)
+
+
+@settings(max_examples=200, deadline=None)
+@given(oracles.screens(most=20), st.integers(0, 2**32 - 1), st.integers(1, 3))
+def test_changes_give_what_a_fresh_build_gives(free, seed, times):
+    rng = np.random.default_rng(seed)
+    screen = Screen(free.copy())
+    for _ in range(times):
+        n = int(rng.integers(1, 12))
+        rows, columns = rng.integers(free.shape[0], size=n), rng.integers(free.shape[1], size=n)
+        values = rng.random(n) < rng.choice([0.0, 0.5, 1.0])
+        changed = screen.free.copy()
+        changed[rows, columns] = values
+        if not changed.any():
+            with pytest.raises(ValueError, match="no free square"):
+                screen.changed(rows, columns, values)
+            continue
+        same(screen.changed(rows, columns, values), Screen(changed))
+
+
+def test_routes_follow_a_change():
+    free = np.ones((5, 9), bool)
+    screen = Screen(free)
+    assert len(screen.routes((0.5, 2.5), (8.5, 2.5), k=3)) == 1
+    screen.changed([2], [4], False)
+    assert len(screen.routes((0.5, 2.5), (8.5, 2.5), k=3)) == 2
+    screen.changed([0, 1, 3, 4], [4] * 4, False)
+    assert screen.routes((0.5, 2.5), (8.5, 2.5), k=3) == []
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (([5], [0], True), "outside"),
+        (([0], [-1], True), "outside"),
+        (([0, 1], [0], True), "one length"),
+        (([0], [0], 1.0), "True or False"),
+        (([0.5], [0], True), "whole numbers"),
+    ],
+)
+def test_bad_changes_are_named(change, message):
+    with pytest.raises(ValueError, match=message):
+        Screen(np.ones((5, 5), bool)).changed(*change)

@@ -1,0 +1,32 @@
+"""Kernels compile on their first call, call each other, and cost nothing at import."""
+
+import subprocess
+import sys
+
+import numpy as np
+
+from geometry.compiled import compiled
+
+
+@compiled
+def double(x: int) -> int:
+    return 2 * x
+
+
+@compiled
+def total(values: np.ndarray) -> int:
+    out = 0
+    for i in range(values.shape[0]):
+        out += double(values[i])
+    return out
+
+
+def test_a_kernel_calls_another() -> None:
+    assert total(np.array([1, 2, 3])) == 12
+    assert total(np.array([1, 2, 3], dtype=np.int32)) == 12
+
+
+def test_importing_geometry_loads_neither_numba_nor_networkx() -> None:
+    code = "import sys, geometry; print([m for m in ('numba', 'networkx') if m in sys.modules])"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"

@@ -1,0 +1,91 @@
+"""Clearance, skeleton and pathgraph against brute force: they have the space's own components and holes."""
+
+import networkx as nx
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from geometry import Screen
+from tests.geometry import oracles
+
+RADII = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0)
+
+
+def topology(graph):
+    components = nx.number_connected_components(graph)
+    return components, graph.number_of_edges() - graph.number_of_nodes() + components
+
+
+@given(oracles.screens())
+def test_clearance_is_exact(free):
+    assert np.allclose(Screen(free).clearance, oracles.clearance(free), rtol=0, atol=1e-12)
+
+
+@settings(max_examples=200)
+@given(oracles.screens(most=16))
+def test_pathgraph_has_the_components_and_holes_of_free_space_for_every_radius(free):
+    screen = Screen(free)
+    for radius in RADII:
+        space = free & (screen.clearance >= radius)
+        assert topology(screen.pathgraph_for(radius)) == oracles.components_and_holes(space)
+
+
+@settings(max_examples=200)
+@given(oracles.screens(most=16))
+def test_skeleton_is_thin_and_connected_as_free_space_is(free):
+    skeleton = Screen(free).skeleton
+    assert not (skeleton & ~free).any()
+    assert oracles.components_and_holes(skeleton) == oracles.components_and_holes(free)
+    block = skeleton[1:, 1:] & skeleton[:-1, 1:] & skeleton[1:, :-1] & skeleton[:-1, :-1]
+    for i, j in np.argwhere(block):  # only where four ways meet so closely that each of the four cells is needed
+        for cell in ((i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)):
+            without = skeleton.copy()
+            without[cell] = False
+            assert oracles.components_and_holes(without) != oracles.components_and_holes(free)
+
+
+@given(oracles.screens())
+def test_chains_are_unbroken_and_their_necks_are_their_narrowest_places(free):
+    screen = Screen(free)
+    graph = screen.pathgraph
+    for a, b, edge in graph.edges(data=True):
+        points = edge["points"]
+        assert (np.abs(np.diff(points, axis=0)).sum(axis=1) == 1).all()
+        ends = {tuple(points[0]), tuple(points[-1])}
+        assert ends == {(graph.nodes[n]["x"], graph.nodes[n]["y"]) for n in (a, b)}
+        along = [screen.clearance[int(y), int(x)] for x, y in points]
+        assert edge["clearance"] == min(along) == screen.clearance[int(edge["neck"][1]), int(edge["neck"][0])]
+
+
+@pytest.mark.parametrize(
+    ("picture", "nodes", "edges"),
+    [
+        ((".",), 1, 0),
+        (("....",), 1, 0),
+        (("...", ".#.", "..."), 1, 1),
+        ((".#", "#."), 2, 0),
+        (("..#..", ".....", "..#.."), 2, 1),
+    ],
+)
+def test_small_screens(picture, nodes, edges):
+    graph = Screen(np.array([[c == "." for c in row] for row in picture])).pathgraph
+    assert (graph.number_of_nodes(), graph.number_of_edges()) == (nodes, edges)
+
+
+def test_a_corridor_of_one_square_has_half_a_square_of_clearance():
+    assert Screen(np.ones((1, 5), bool)).clearance.tolist() == [[0.5] * 5]
+
+
+@pytest.mark.parametrize(
+    ("free", "message"),
+    [
+        (np.ones(3, bool), "two dimensions"),
+        (np.ones((2, 2)), "array of bool"),
+        (np.full((2, 2), np.nan), "array of bool"),
+        (np.zeros((2, 2), bool), "no free square"),
+        (np.zeros((0, 2), bool), "no free square"),
+    ],
+)
+def test_bad_screens_are_named(free, message):
+    with pytest.raises(ValueError, match=message):
+        Screen(free)

@@ -1,0 +1,54 @@
+"""World models of drawn worlds: looked at from many places, or seen whole at once."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from kb.body import Move
+from kb.evidence import FREE, FULL, MapView
+from kb.interpretation import interpret
+from kb.knowledge import Knowledge
+from kb.lattice import Lattice
+from kb.regions import map_regions
+from kb.worldmodel import Node, WorldModel, patch_of
+from tests.kb.eyes import impression, utak_in, world_of
+
+
+def seen_whole(rows: list[str], objects: bool = True) -> WorldModel:
+    """The model of one who has seen all of a drawing, its north row first, and knows it for certain.
+
+    `.` floor, `b` verge, other letters objects, `?` never seen, `U` Utak, on floor.
+    """
+    marks = np.array([list(row) for row in reversed(rows)])
+    seen, occupied = marks != "?", ~np.isin(marks, [".", "U", "?"])
+    probability = np.where(seen, occupied, 0.5).astype(np.float32)
+    state = np.where(~seen, -1, np.where(occupied, FULL, FREE)).astype(np.int8)
+    x, y = utak_in(rows)
+    view = MapView(-x, -y, probability, state, seen, np.where(seen, 0, -1).astype(np.int16))
+    percept, labels = map_regions(occupied & seen, seen, seen)
+    model = WorldModel(Lattice(), (0.5, 0.5), view, labels, percept, interpret(percept), ())
+    nodes = [
+        Node(f"o{n}", "object", 95, region.name, patch_of(labels == int(region.name[4:]), view), 0)
+        for n, region in enumerate((r for r in percept.regions if model.kinds.of(r.name, "object") == 95), 1)
+    ]
+    return WorldModel(Lattice(), (0.5, 0.5), view, labels, percept, model.kinds, tuple(nodes) if objects else ())
+
+
+class Walk(NamedTuple):
+    """What one knows who walked, the last world model, and how each pose was explained."""
+
+    knowledge: Knowledge
+    model: WorldModel
+    poses: tuple[str, ...]
+
+
+def walked(rows: list[str], way: list[tuple[int, int]], colour: str = "b") -> Walk:
+    """One wakes on the U of a drawing, faces north, and goes by these moves (east, north)."""
+    occupied, (x, y), knowledge = world_of(rows), utak_in(rows), Knowledge()
+    model, accommodated = knowledge.wake(impression(occupied, (x, y), colour=colour))
+    poses = [accommodated.explanation.how]
+    for east, north in way:
+        x, y = x + east, y + north
+        model, accommodated = knowledge.perceive(Move(east, north), impression(occupied, (x, y), colour=colour))
+        poses.append(accommodated.explanation.how)
+    return Walk(knowledge, model, tuple(poses))

@@ -1,0 +1,72 @@
+"""An eye for tests: the impression of a drawn world, written from DESIGN 4 and not from the code under test."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from kb.body import Impression
+
+Occupied = Callable[[int, int], bool]
+ZONES = ((4, 1), (8, 2), (16, 4))
+AROUND = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))
+
+
+def world_of(rows: list[str]) -> Occupied:
+    """A world from a drawing, its north row first; `.` and `U` are free, beyond the drawing all is occupied."""
+    high = len(rows)
+
+    def occupied(i: int, j: int) -> bool:
+        inside = 0 <= j < high and 0 <= i < len(rows[high - 1 - j])
+        return not inside or rows[high - 1 - j][i] not in ".U"
+
+    return occupied
+
+
+def utak_in(rows: list[str]) -> tuple[int, int]:
+    """The square (i, j) of the U in a drawing."""
+    return next((row.index("U"), len(rows) - 1 - n) for n, row in enumerate(rows) if "U" in row)
+
+
+def sampled(east: int, north: int, heading: float) -> tuple[int, int]:
+    """The square under an offset at a heading, relative to Utak's square; halves to even, as Python rounds."""
+    c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
+    return round(east * c - north * s), round(east * s + north * c)
+
+
+def retina(occupied: Occupied, square: tuple[int, int], heading: float = 0.0) -> tuple[int, ...]:
+    """The 160 gray levels seen from a square at a heading."""
+    levels, inner = [], 0
+    for reach, side in ZONES:
+        for north in range(reach - side, -reach - 1, -side):
+            for east in range(-reach, reach, side):
+                if -inner <= east < inner and -inner <= north < inner:
+                    continue
+                count = 0
+                for e in range(east, east + side):
+                    for n in range(north, north + side):
+                        i, j = sampled(e, n, heading)
+                        count += (e, n) == (0, 0) or occupied(square[0] + i, square[1] + j)
+                levels.append(math.floor(7 * count / side**2 + 0.5))
+        inner = reach
+    return tuple(levels)
+
+
+def impression(occupied: Occupied, square: tuple[int, int], heading: float = 0.0, colour: str = "b") -> Impression:
+    """What is sensed there, everything being of one colour."""
+    touch = []
+    for east, north in AROUND:
+        i, j = sampled(east, north, heading)
+        touch.append(colour if occupied(square[0] + i, square[1] + j) else None)
+    return Impression(retina(occupied, square, heading), tuple(touch))
+
+
+def random_room(rng: np.random.Generator, wide: int, high: int, things: int) -> list[str]:
+    """A walled room with a few rectangles in it, drawn; all of its floor may not be connected."""
+    grid = np.full((high, wide), ".")
+    grid[[0, -1], :] = grid[:, [0, -1]] = "b"
+    for _ in range(things):
+        w, h = rng.integers(1, 5, 2)
+        x, y = rng.integers(1, wide - 1), rng.integers(1, high - 1)
+        grid[y : min(y + h, high - 1), x : min(x + w, wide - 1)] = "g"
+    return ["".join(row) for row in grid]

@@ -1,0 +1,52 @@
+"""The corners of drawn floors against the definition, square by square."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kb.corners import SIDES, corners, known_floor
+from tests.kb.drawings import seen_whole
+from tests.kb.eyes import random_room
+
+SIGNS = {"northeast": (1, 1), "northwest": (-1, 1), "southeast": (1, -1), "southwest": (-1, -1)}
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_a_corner_is_the_furthest_point_of_the_known_floor(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rows = random_room(rng, *rng.integers(8, 24, 2), things=5)
+    n, i = next((n, row.index(".")) for n, row in enumerate(rows) if "." in row)
+    rows[n] = rows[n][:i] + "U" + rows[n][i + 1 :]
+    model = seen_whole(rows)
+    floor = known_floor(model)
+    found = corners(model)
+    assert set(found) == set(SIDES)
+    for side, (dx, dy) in SIGNS.items():
+        r, c = np.nonzero(floor)
+        best = max(float((dx * (c + a) + dy * (r + b)).max()) for a in (0, 1) for b in (0, 1))
+        (x, y), (column, row) = found[side]
+        assert dx * x + dy * y == best
+        assert floor[row, column]
+        assert x - column in (0, 1)
+        assert y - row in (0, 1)
+
+
+def test_a_plain_room() -> None:
+    rows = ["bbbbbbbb", "b......b", "b......b", "b..U...b", "bbbbbbbb"]
+    found = corners(seen_whole(rows))
+    assert {side: corner.square for side, corner in found.items()} == {
+        "northeast": (6, 3),
+        "northwest": (1, 3),
+        "southeast": (6, 1),
+        "southwest": (1, 1),
+    }
+
+
+@pytest.mark.parametrize(("pocket", "counts"), [(2, False), (8, True)])
+def test_a_glimpse_of_floor_is_no_corner_yet(pocket: int, counts: bool) -> None:
+    rows = ["b" * 24] * 2 + ["b" * 12 + "." * pocket + "b" * (12 - pocket)] + ["b" * 24] * 3
+    rows += ["b......bbbbbbbbbbbbbbbbb"] * 3 + ["b..U...bbbbbbbbbbbbbbbbb", "b" * 24]
+    found = corners(seen_whole(rows))
+    assert (found["northeast"].square[1] > 6) == counts

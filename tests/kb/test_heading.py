@@ -1,0 +1,150 @@
+"""The true lattice is never given up while moves are exact; wrong ones are."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kb.heading import ANGLES, ANYWHERE, CENTRED, Hypothesis, Look, candidates, contradictions, search, standing
+from kb.lattice import CENTRE, Lattice, turned
+from kb.retina import count_ranges
+from tests.kb.eyes import random_room, retina, world_of
+
+Point = tuple[float, float]
+
+
+def angle_of(heading: int) -> int:
+    """The angle of the lattice for one who faces this way on the table: what is left after quarter turns."""
+    return (heading + 44) % 90 - 44
+
+
+def looks_of(rows: list[str], heading: int, points: list[Point]) -> list[Look]:
+    """The looks of one who wakes at the first point (table frame) and goes exactly to the others."""
+    occupied = world_of(rows)
+    looks = []
+    for x, y in points:
+        seen = retina(occupied, (math.floor(x), math.floor(y)), heading)
+        looks.append(Look(count_ranges(seen), turned(x - points[0][0], y - points[0][1], -heading)))
+    return looks
+
+
+def woke(heading: int, point: Point) -> Point:
+    """Where in his square he woke, in the frame of the lattice."""
+    quarters = heading - angle_of(heading)
+    x, y = turned(point[0] % 1 - 0.5, point[1] % 1 - 0.5, -quarters)
+    return x + 0.5, y + 0.5
+
+
+def holds(hypothesis: Hypothesis, angle: int, point: Point) -> bool:
+    """Is the truth among what a hypothesis says?"""
+    west, south, east, north = hypothesis.box
+    slack = 1e-9
+    inside = west - slack <= point[0] <= east + slack and south - slack <= point[1] <= north + slack
+    return hypothesis.angle == angle and inside
+
+
+def scene(seed: int, count: int) -> tuple[list[str], int, list[Point]]:
+    rng = np.random.default_rng(seed)
+    rows = random_room(rng, *rng.integers(12, 36, 2), things=rng.integers(1, 7))
+    free = [(i, len(rows) - 1 - n) for n, row in enumerate(rows) for i, mark in enumerate(row) if mark == "."]
+    chosen = [free[k] for k in rng.integers(len(free), size=count)]
+    points = [(x + rng.uniform(0.02, 0.98), y + rng.uniform(0.02, 0.98)) for x, y in chosen]
+    return rows, int(rng.integers(360)), points
+
+
+@settings(max_examples=6, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_the_truth_is_never_given_up(seed: int) -> None:
+    rows, heading, points = scene(seed, 3)
+    looks = looks_of(rows, heading, points)
+    left = search(looks)
+    assert any(holds(h, angle_of(heading), woke(heading, points[0])) for h in left)
+    assert len(left) < len(ANYWHERE) * 9
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_who_wakes_in_the_middle_keeps_the_middle(seed: int) -> None:
+    rows, heading, points = scene(seed, 4)
+    centred = (math.floor(points[0][0]) + 0.5, math.floor(points[0][1]) + 0.5)
+    looks = looks_of(rows, heading, [centred, *points[1:]])
+    hypotheses = CENTRED
+    for number in range(1, len(looks) + 1):
+        hypotheses = standing(hypotheses, looks[:number])
+        assert angle_of(heading) in {h.angle for h in hypotheses}
+        assert contradictions(Lattice(angle_of(heading)), looks[:number]) == 0
+
+
+ROOM = [
+    "b" * 26,
+    *["b" + "." * 24 + "b"] * 8,
+    *["b.....ggg................b"] * 3,
+    *["b" + "." * 24 + "b"] * 9,
+    "b" * 26,
+]
+
+
+@pytest.mark.parametrize("heading", [20, 117, 300])
+def test_wrong_angles_are_given_up(heading: int) -> None:
+    looks = looks_of(ROOM, heading, [(12.5, 10.5), (14.7, 6.2), (5.5, 15.5), (20.1, 4.4)])
+    assert contradictions(Lattice(0), looks) > 0
+    hypotheses = CENTRED
+    for number in range(1, len(looks) + 1):
+        hypotheses = standing(hypotheses, looks[:number])
+    assert hypotheses
+    assert all(abs(h.angle - angle_of(heading)) <= 6 for h in hypotheses)
+
+
+def test_one_look_at_an_edge_that_runs_askew_gives_the_axes_up() -> None:
+    looks = looks_of(ROOM, 27, [(4.5, 4.5)])
+    assert 0 in {h.angle for h in CENTRED}
+    later = looks_of(ROOM, 27, [(4.5, 4.5), (7.5, 4.5), (4.5, 7.5)])
+    assert contradictions(Lattice(0), later) > 0
+    assert contradictions(Lattice(27), looks) == 0
+
+
+def test_a_false_place_is_a_contradiction() -> None:
+    honest = looks_of(ROOM, 0, [(12.5, 10.5), (12.5, 8.5)])
+    moved = [honest[0], Look(honest[1].ranges, (3.0, 0.0))]
+    assert contradictions(Lattice(0), honest) == 0
+    assert contradictions(Lattice(0), moved) > 0
+
+
+@given(st.integers(-44, 45), st.tuples(st.floats(-40, 40), st.floats(-40, 40)))
+def test_a_split_covers_the_box_and_tells_squares_apart(angle: int, place: Point) -> None:
+    whole = Hypothesis(angle, (0.0, 0.0, 1.0, 1.0))
+    parts = whole.split(place)
+    area = sum((e - w) * (n - s) for _, (w, s, e, n) in parts)
+    assert area == pytest.approx(1.0)
+    for _, (w, s, e, n) in parts:
+        squares = set()
+        for fx, fy in ((0.01, 0.01), (0.5, 0.5), (0.99, 0.99), (0.01, 0.99)):
+            point = (w + fx * (e - w), s + fy * (n - s))
+            x, y = Lattice(angle, point).place_from_utak(*place)
+            squares.add((math.floor(x), math.floor(y)))
+        if min(e - w, n - s) > 1e-6:
+            assert len(squares) == 1
+
+
+def test_the_held_lattice_is_tried_first_then_the_axes() -> None:
+    held = Lattice(3)
+    tried = candidates(CENTRED, held)
+    assert tried[:2] == [held, Lattice(0)]
+    assert sorted(lattice.angle for lattice in tried) == list(range(-44, 46))
+
+
+def test_of_the_others_the_middle_is_tried_first() -> None:
+    others = tuple(h for h in CENTRED if h.angle > 10)
+    tried = candidates(others, Lattice(3))
+    assert tried[0].angle == 28  # the middle of 11 to 45
+    away = [abs(lattice.angle - 28) for lattice in tried]
+    assert away == sorted(away)
+    assert candidates((), Lattice(3)) == []
+
+
+def test_every_angle_is_tried_once_the_axes_first() -> None:
+    assert sorted(ANGLES) == list(range(-44, 46))
+    assert ANGLES[0] == 0
+    assert all(h.lattice.woke == CENTRE for h in CENTRED)

@@ -1,0 +1,127 @@
+"""Doors and rooms of drawn floors: doors of every width, thick walls, and no false doors."""
+
+import numpy as np
+import pytest
+
+from kb.rooms import rooms_of
+from tests.kb.drawings import seen_whole
+
+
+def two_rooms(door: int, wall: int, high: int = 14, wide: int = 12) -> list[str]:
+    """Two rooms side by side with a door in the middle of the wall between."""
+    full = "b" * (2 * wide + wall + 4)
+    south = (high - door) // 2
+    rows = []
+    for j in range(high):
+        between = "." * wall if south <= high - 1 - j < south + door else "b" * wall
+        rows.append("bb" + "." * wide + between + "." * wide + "bb")
+    rows[3] = rows[3][:4] + "U" + rows[3][5:]
+    return [full, full, *rows, full, full]
+
+
+@pytest.mark.parametrize("wall", [1, 2, 3])
+@pytest.mark.parametrize("door", [3, 4, 5, 6])
+def test_a_door_between_two_rooms(door: int, wall: int) -> None:
+    model = seen_whole(two_rooms(door, wall))
+    rooms = rooms_of(model)
+    assert len(rooms.doors) == 1
+    assert rooms.doors[0].width == pytest.approx(door)
+    assert rooms.doors[0].confidence == 100
+    assert sorted(rooms.doors[0].sides) == [1, 2]
+    assert sorted(np.unique(rooms.labels[model.floor]).tolist()) == [1, 2]
+    row, column = model.view.locate(*model.place)
+    assert rooms.labels[row, column] == 1
+    x, y = rooms.doors[0].place
+    assert 14 - 0.5 <= x <= 14 + wall + 0.5
+    assert y == pytest.approx(2 + (14 - door) // 2 + door / 2, abs=0.51)
+
+
+@pytest.mark.parametrize("wall", [1, 2, 3])
+def test_the_next_room_begins_behind_the_wall(wall: int) -> None:
+    model = seen_whole(two_rooms(4, wall))
+    beyond = rooms_of(model).beyond(1)
+    columns = np.flatnonzero((beyond & model.floor).any(0))
+    assert columns.min() == 14 + wall
+    assert columns.max() == 14 + wall + 11
+    assert (beyond & model.floor).sum() == 14 * 12
+
+
+def turned_drawing(rows: list[str]) -> list[str]:
+    """A drawing turned by a quarter."""
+    return ["".join(column) for column in zip(*rows[::-1], strict=True)]
+
+
+def test_a_quarter_turn_turns_the_rooms() -> None:
+    rows = two_rooms(4, 2)
+    for _ in range(4):
+        rows = turned_drawing(rows)
+        rooms = rooms_of(seen_whole(rows))
+        assert [door.width for door in rooms.doors] == pytest.approx([4])
+
+
+def bordered(rows: list[str]) -> list[str]:
+    full = "b" * (len(rows[0]) + 4)
+    return [full, full, *("bb" + row + "bb" for row in rows), full, full]
+
+
+@pytest.mark.parametrize("arm", [6, 8, 10])
+def test_an_l_shaped_room_has_no_door(arm: int) -> None:
+    rows = ["." * arm + "b" * 14] * 14 + ["." * (arm + 14)] * arm
+    rows[-2] = ".U" + rows[-2][2:]
+    assert not rooms_of(seen_whole(bordered(rows))).doors
+
+
+@pytest.mark.parametrize("size", [(8, 20), (20, 8), (15, 15), (30, 30)])
+def test_a_plain_room_has_no_door(size: tuple[int, int]) -> None:
+    rows = ["." * size[0]] * size[1]
+    rows[1] = "." * (size[0] - 1) + "U"
+    rooms = rooms_of(seen_whole(bordered(rows)))
+    assert not rooms.doors
+    assert not rooms.beyond(1).any()
+
+
+def test_objects_make_no_doors() -> None:
+    rows = ["." * 20] * 20
+    for j in (8, 9, 10):
+        rows[j] = "...ggggg...hhhhhh..."
+    rows[1] = "U" + "." * 19
+    assert not rooms_of(seen_whole(bordered(rows))).doors
+
+
+def test_an_object_in_the_door_leaves_the_door() -> None:
+    rows = two_rooms(6, 2)
+    middle = len(rows) // 2
+    for j in (middle - 1, middle):
+        rows[j] = rows[j][:14] + "gg" + rows[j][16:]
+    assert [door.width for door in rooms_of(seen_whole(rows)).doors] == pytest.approx([6])
+
+
+def test_three_rooms_in_a_row() -> None:
+    left, right = two_rooms(4, 2), two_rooms(5, 2)
+    rows = [a + b[2 + 12 :].replace("U", ".") for a, b in zip((r[:-2] for r in left), right, strict=True)]
+    model = seen_whole(rows)
+    rooms = rooms_of(model)
+    assert sorted(door.width for door in rooms.doors) == pytest.approx([4, 5])
+    assert len(np.unique(rooms.labels[model.floor])) == 3
+    own = rooms.beyond(1) & model.floor
+    assert own.sum() == 12 * 14  # the middle room alone is next
+
+
+def test_a_door_is_known_by_its_jambs_before_the_room_behind_is_seen() -> None:
+    rows = [row[:16] + "?" * (len(row) - 16) for row in two_rooms(4, 2)]
+    rooms = rooms_of(seen_whole(rows))
+    assert [door.width for door in rooms.doors] == pytest.approx([4])
+
+
+def test_a_wall_with_a_jamb_unseen_has_no_door() -> None:
+    drawn = two_rooms(6, 2)
+    cuts = [13 if n > 8 else 16 for n in range(len(drawn))]
+    rows = [row[:cut] + "?" * (len(row) - cut) for row, cut in zip(drawn, cuts, strict=True)]
+    assert not rooms_of(seen_whole(rows)).doors
+
+
+def test_nothing_but_floor_is_one_room() -> None:
+    rows = ["." * 9] * 4 + ["....U...."] + ["." * 9] * 4
+    rooms = rooms_of(seen_whole(rows))
+    assert (rooms.labels == 1).all()
+    assert not rooms.doors

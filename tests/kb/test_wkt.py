@@ -1,0 +1,56 @@
+"""Shapes as text: the same as shapely reads, and the character at which a text goes wrong."""
+
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kb.wkt import WktError, parse_wkt
+
+GOOD = [
+    "POINT (1.5 -2)",
+    "LINESTRING (0 0, 1e1 .5)",
+    "polygon((0 0,4 0,4 2,0 0))",
+    "POLYGON ((0 0, 9 0, 9 9, 0 9, 0 0), (2 2, 2 4, 4 4, 2 2))",
+    "MULTIPOLYGON (((0 0, 1 0, 1 1, 0 0)), ((5 5, 6 5, 6 6, 5 5)))",
+]
+BAD = {
+    "": (0, "a shape here is"),
+    "CIRCLE (1 2)": (0, "not 'CIRCLE'"),
+    "POINT 1 2": (6, "'(' was expected, '1' found"),
+    "POINT (1)": (8, "a number was expected, ')' found"),
+    "POINT (1 2": (10, "the end"),
+    "POINT (1 2) x": (12, "the shape ends before 'x'"),
+    "POINT (1 nan)": (9, "a number was expected"),
+    "POINT (1 .)": (9, "a number was expected"),
+    "POINT (1 1e999)": (9, "a coordinate beyond"),
+    "POLYGON ((0 0, 1 0, 1 1))": (9, "a ring that does not end where it begins"),
+    "POLYGON ((0 0, 1 0, 0 0))": (9, "three corners"),
+    "POLYGON ((0 0, 4 4, 4 0, 0 4, 0 0))": (0, "the boundary crosses or touches itself at (2, 2)"),
+    "POLYGON ((0 0, 1 0, 2 0, 0 0))": (0, "crosses or touches itself"),
+    "POLYGON ((0 0, 1 0, 1 1, 0 0), (5 5, 6 5, 6 6, 5 5))": (0, "a hole lies outside"),
+    "POLYGON EMPTY": (8, "'(' was expected"),
+    "(" * 100_000: (0, "a shape here is"),
+}
+
+
+@pytest.mark.parametrize("text", GOOD)
+def test_good_text_means_what_shapely_reads(text: str) -> None:
+    assert parse_wkt(text).equals_exact(shapely.from_wkt(text), 0)
+
+
+@pytest.mark.parametrize("text", BAD)
+def test_bad_text_is_refused_where_it_goes_wrong(text: str) -> None:
+    with pytest.raises(WktError) as caught:
+        parse_wkt(text)
+    at, what = BAD[text]
+    assert caught.value.at == at
+    assert what in caught.value.what
+
+
+@given(st.text(alphabet="POLYGNIT ()0123456789.,-+eE\n", max_size=60))
+def test_any_text_is_a_shape_or_refused(text: str) -> None:
+    try:
+        assert parse_wkt(text).is_valid
+    except WktError as error:
+        assert 0 <= error.at <= len(text)

@@ -1,0 +1,138 @@
+"""Names that last, patches, and what is measured and believed of known things."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kb.belief import Places, model_facts
+from kb.corners import corners
+from kb.evidence import FREE, FULL, OPEN, MapView
+from kb.measuring import Measurer
+from kb.rooms import rooms_of
+from kb.worldmodel import Names, Patch, patch_of, unsettled
+from tests.kb.drawings import seen_whole, walked
+
+
+def box(x: int, y: int, wide: int, high: int) -> Patch:
+    return Patch(x, y, np.ones((high, wide), bool))
+
+
+def test_a_thing_that_is_seen_better_keeps_its_name() -> None:
+    names = Names()
+    first = names.assign([box(0, 0, 2, 2), box(10, 0, 3, 3)])
+    assert names.assign([box(9, 0, 4, 4), box(0, 0, 3, 2)]) == first[::-1]
+
+
+def test_when_a_thing_falls_apart_the_larger_part_keeps_the_name() -> None:
+    names = Names()
+    (old,) = names.assign([box(0, 0, 10, 1)])
+    small, large = names.assign([box(0, 0, 2, 1), box(4, 0, 6, 1)])
+    assert large == old
+    assert small != old
+
+
+def test_what_is_gone_is_forgotten_and_its_name_not_used_again() -> None:
+    names = Names()
+    (old,) = names.assign([box(0, 0, 2, 2)])
+    assert names.assign([]) == []
+    assert names.assign([box(0, 0, 2, 2)]) != [old]
+
+
+patches = st.lists(
+    st.builds(box, st.integers(0, 9), st.integers(0, 9), st.integers(1, 4), st.integers(1, 4)), max_size=5
+)
+
+
+@given(st.lists(patches, max_size=4))
+def test_names_differ(steps: list[list[Patch]]) -> None:
+    names = Names()
+    for step in steps:
+        given_names = names.assign(step)
+        assert len(set(given_names)) == len(step)
+
+
+@given(st.integers(1, 7), st.integers(1, 7), st.integers(0, 2**32 - 1), st.integers(-9, 9), st.integers(-9, 9))
+def test_a_patch_is_the_squares_of_its_mask(rows: int, columns: int, seed: int, west: int, south: int) -> None:
+    rng = np.random.default_rng(seed)
+    mask = rng.random((rows, columns)) < 0.4
+    mask[rng.integers(rows), rng.integers(columns)] = True
+    blank = np.zeros(mask.shape)
+    view = MapView(west, south, blank.astype(np.float32), blank.astype(np.int8), mask, blank.astype(np.int16))
+    patch = patch_of(mask, view)
+    want = {(c + west, r + south) for r, c in np.argwhere(mask).tolist()}
+    assert patch.squares() == want
+    assert patch.centre == pytest.approx(np.mean(sorted(want), axis=0) + 0.5)
+    assert patch.mask.any(0).all() or not patch.mask.any(0)[1:-1].all()
+
+
+def test_open_squares_are_counted_about_a_thing_too() -> None:
+    state = np.array([[0, -1, 0, 0], [-1, 1, 1, 0], [0, -1, 0, -1]], np.int8)
+    thing = state == FULL
+    view = MapView(0, 0, thing.astype(np.float32), state, thing, np.zeros(state.shape, np.int16))
+    assert unsettled(thing, view) == 3  # the corner to the southeast touches it at a corner only
+
+
+SHAPES = {
+    "square": ["ggg", "ggg", "ggg"],
+    "brick": ["ggggg", "ggggg"],
+    "l_shape": ["gg...", "gg...", "ggggg", "ggggg"],
+    "t_shape": ["gggggg", "gggggg", "..gg..", "..gg.."],
+    "u_shape": ["gg..gg", "gg..gg", "gggggg", "gggggg"],
+}
+
+
+@pytest.mark.parametrize("shape", sorted(SHAPES))
+def test_known_things_are_measured_right(shape: str) -> None:
+    full = np.array([list(row) for row in reversed(SHAPES[shape])]) == "g"
+    framed = np.pad(full, 2)
+    state = np.where(framed, FULL, FREE).astype(np.int8)
+    view = MapView(-7, 4, framed.astype(np.float32), state, np.ones_like(framed), np.zeros(state.shape, np.int16))
+    measured = Measurer().measure(patch_of(framed, view), view)
+    assert measured.fits[0] == (shape, 0)
+    assert measured.open == 0
+    assert measured.polygon.area == pytest.approx(full.sum())
+    assert measured.polygon.bounds == pytest.approx((-5, 6, -5 + full.shape[1], 6 + full.shape[0]))
+
+
+def test_nothing_is_measured_of_what_is_hardly_settled() -> None:
+    state = np.full((4, 4), OPEN, np.int8)
+    state[1, 1] = FULL
+    thing = np.ones((4, 4), bool)
+    view = MapView(0, 0, thing.astype(np.float32), state, thing, np.zeros((4, 4), np.int16))
+    assert Measurer().measure(patch_of(thing, view), view) == ((), None, 15)
+
+
+ROOM = [
+    "b" * 26,
+    *["b" + "." * 24 + "b"] * 12,
+    *["b" + "." * 6 + "ggg" + "." * 15 + "b"] * 3,
+    "b" + "." * 9 + "U" + "." * 14 + "b",
+    *["b" + "." * 24 + "b"] * 6,
+    "b" * 26,
+]
+
+
+def test_a_square_seen_from_beside_is_believed() -> None:
+    model = walked(ROOM, [(0, 2), (-2, 2), (3, 0)], colour="g").model
+    thing = model.objects[0]
+    assert thing.confidence == 95
+    assert thing.open == 0
+    assert thing.patch.squares() == {(x, y) for x in (-3, -2, -1) for y in (1, 2, 3)}
+    assert max(thing.shape, key=lambda s: (s != "polygon", s != "rectangle", thing.shape[s])) == "square"
+    assert thing.polygon.area == pytest.approx(9)
+    assert model.floor.sum() > 200
+    assert not (model.floor & model.verge).any()
+
+
+def test_the_facts_of_a_known_room() -> None:
+    rows = ["bbbbbbbb", "b......b", "b.ggg..b", "b.ggg..b", "b......b", "b...U..b", "bbbbbbbb"]
+    model = seen_whole(rows)
+    facts = set(model_facts(model, Places(rooms_of(model), corners(model))))
+    assert {"node(org)", "kind(org,utak,100)", "child(org,floor)", "child(floor,o1)", "in(org,r1)"} <= facts
+    assert "offset(org,0,0)" in facts
+    assert "offset(o1,-100,250)" in facts  # its middle lies one square west and two and a half north
+    assert "rect(o1,-250,150,50,350)" in facts
+    assert {"room(r1)", "corner(northeast,250,450)", "corner(southwest,-350,-50)"} <= facts
+    assert not any(fact.startswith("door(") for fact in facts)
+    assert len([fact for fact in facts if fact.startswith("segment(o1,")]) == 4

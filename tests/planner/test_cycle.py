@@ -1,0 +1,198 @@
+"""The cycle on a tiny body: a drawn world, exact moves, nothing else. And what each goal means."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from kb.body import Command, Impression, Move
+from kb.corners import corners
+from kb.facts import Symbol
+from kb.problems import Span
+from kb.rooms import rooms_of
+from kb.task import Claim, Parameter, Task
+from planner.cycle import Options, Robot
+from planner.goals import constraints, stages
+from planner.screen import Screens
+from tests.kb.drawings import seen_whole
+from tests.kb.eyes import impression, utak_in, world_of
+
+NOWHERE = Span(0, 0, 0)
+
+
+class DrawnBody:
+    """A body in a drawing, which must never be told to walk into anything. It wakes amid a square and faces north."""
+
+    def __init__(self, rows: list[str]) -> None:
+        self.occupied = world_of(rows)
+        i, j = utak_in(rows)
+        self.place = np.array([i + 0.5, j + 0.5])
+        self.track = [self.square]
+
+    @property
+    def square(self) -> tuple[int, int]:
+        return int(self.place[0]), int(self.place[1])
+
+    def wake(self) -> Impression:
+        return impression(self.occupied, self.square)
+
+    def act(self, command: Command) -> Impression:
+        assert isinstance(command, Move)
+        way = np.array([command.east, command.north])
+        for part in np.linspace(0, 1, 200):
+            assert not self.occupied(*(int(v) for v in self.place + part * way))
+        self.place = self.place + way
+        self.track.append(self.square)
+        return impression(self.occupied, self.square)
+
+
+def term(text: str) -> Symbol:
+    name, _, rest = text.partition("(")
+    return Symbol(name, tuple(term(part) for part in rest[:-1].split(",") if part), NOWHERE)
+
+
+def goal(name: str, who: str, where: Symbol) -> Symbol:
+    return Symbol(name, (term(who), where), NOWHERE)
+
+
+NORTHEAST = goal("at", "utak", term("corner(northeast)"))
+SQUARE = Task(
+    {"x": Parameter("x", "object", NOWHERE)},
+    (Claim(term("shape(x,square)")),),
+    (goal("at", "utak", term("x")),),
+)
+
+EMPTY = ["b" * 22, *["b" + "." * 20 + "b"] * 10, "b...U" + "." * 16 + "b", *["b" + "." * 20 + "b"] * 5, "b" * 22]
+THINGS = ["b" * 24, *["b" + "." * 22 + "b"] * 3, *["b" + "." * 12 + "ggg" + "." * 7 + "b"] * 3]
+THINGS += ["b" + "." * 22 + "b"] * 5 + ["b...U" + "." * 18 + "b"] + ["b" + "." * 22 + "b"] * 4 + ["b" * 24]
+
+
+def run(rows: list[str], task: Task, **options: int) -> tuple[Robot, DrawnBody]:
+    body = DrawnBody(rows)
+    robot = Robot(body, task, Options(**options))
+    robot.wake()
+    while not robot.finished:
+        robot.step()
+    return robot, body
+
+
+def test_the_northeast_corner_of_a_plain_room() -> None:
+    robot, body = run(EMPTY, Task({}, (), (NORTHEAST,)))
+    assert robot.verdict.believed
+    assert robot.verdict.verdict == "done"
+    assert body.square == (20, 16)
+    assert robot.steps == len(body.track) - 1 <= 8
+
+
+def test_go_to_the_square() -> None:
+    robot, body = run(THINGS, SQUARE)
+    assert robot.verdict.believed
+    x, y = body.square
+    assert 12 <= x <= 16
+    assert 8 <= y <= 12
+
+
+def test_what_is_not_there_is_looked_for_and_given_up() -> None:
+    robot, body = run(EMPTY, SQUARE)
+    assert not robot.verdict.believed
+    assert robot.verdict.verdict != "done"
+    assert "x" in robot.verdict.reason
+    assert len(body.track) == len(set(body.track))
+
+
+def test_the_limit_of_commands() -> None:
+    robot, body = run(EMPTY, Task({}, (), (NORTHEAST,)), max_steps=1)
+    assert robot.verdict[:2] == (False, "limit")
+    assert len(body.track) == 2
+    assert "1 command" in robot.verdict.reason
+
+
+def test_nothing_happens_after_the_end() -> None:
+    robot, _ = run(EMPTY, Task({}, (), (NORTHEAST,)))
+    with pytest.raises(ValueError, match="finished"):
+        robot.step()
+
+
+def test_each_step_reports_command_belief_and_reason() -> None:
+    body = DrawnBody(THINGS)
+    robot = Robot(body, SQUARE, Options())
+    report = robot.wake()
+    assert report.command is None
+    while not robot.finished:
+        report = robot.step()
+        assert isinstance(report.command, Move)
+        assert report.why
+        x, y = report.belief["place"]
+        assert (x + body.track[0][0] + 0.5, y + body.track[0][1] + 0.5) == pytest.approx(tuple(body.place))
+        assert sum(report.belief["cells"].values()) == 160
+        assert report.belief["cells"].get("noise", 0) == 0
+        assert all(fact.endswith(").") for fact in report.belief["facts"])
+    assert set(report.belief["bound"]) == {"x"}
+
+
+def test_the_same_world_is_walked_the_same_way() -> None:
+    assert run(THINGS, SQUARE)[1].track == run(THINGS, SQUARE)[1].track
+
+
+def test_stages_and_constraints() -> None:
+    circled, at = goal("circled", "utak", term("x")), goal("at", "utak", term("start"))
+    never = goal("not_through", "utak", term("d"))
+    task = Task({}, (), (at, never, circled))
+    assert [stage.goals for stage in stages(task)] == [(circled,), (at,)]
+    assert constraints(task) == (never,)
+    first, then = (Symbol(word, (g,), NOWHERE) for word, g in (("first", at), ("then", NORTHEAST)))
+    assert [stage.goals for stage in stages(Task({}, (), (first, then)))] == [(at,), (NORTHEAST,)]
+
+
+def test_the_destination_of_a_corner_is_its_square() -> None:
+    from planner.destinations import Situation, destination
+
+    model = seen_whole(EMPTY)
+    situation = _situation(Situation, model, {})
+    squares = destination(NORTHEAST, situation).squares
+    row, column = model.view.locate(16.5, 10.5)
+    assert row * model.labels.shape[1] + column in squares.tolist()
+    for square in squares:
+        r, c = divmod(int(square), model.labels.shape[1])
+        assert abs(r - row) <= 1
+        assert abs(c - column) <= 1
+
+
+def test_the_destination_of_a_thing_is_beside_it() -> None:
+    from planner.destinations import Situation, destination
+
+    model = seen_whole(THINGS)
+    (node,) = model.objects
+    found = destination(SQUARE.goals[0], _situation(Situation, model, {"x": node.name}))
+    assert not found.missing
+    mask = model.mask(node.patch)
+    for square in found.squares:
+        r, c = divmod(int(square), model.labels.shape[1])
+        assert np.abs(np.argwhere(mask) - (r, c)).max(1).min() == 1
+        assert Screens(model).floor[r, c]
+    missing = destination(SQUARE.goals[0], _situation(Situation, model, {}))
+    assert missing.missing
+    assert len(missing.squares) == 0
+
+
+def _situation(kind, model, binding):  # type: ignore[no-untyped-def]
+    """A situation, with whatever fields it has."""
+    known = {"model": model, "screens": Screens(model), "binding": binding, "rooms": rooms_of(model)}
+    known["corners"] = corners(model)
+    return kind(**{name: known[name] for name in kind.__dataclass_fields__})
+
+
+def test_a_window_that_begins_elsewhere_changes_nothing() -> None:
+    model = seen_whole(THINGS)
+    one = Screens(model)
+    shift, view = ((0, 0), (3, 0)), model.view
+    padded = view._replace(
+        west=view.west - 3,
+        state=np.pad(view.state, shift, constant_values=-1),
+        seen=np.pad(view.seen, shift),
+        settled_by=np.pad(view.settled_by, shift, constant_values=-1),
+        probability=np.pad(view.probability, shift, constant_values=0.5),
+    )
+    other = Screens(replace(model, view=padded, labels=np.pad(model.labels, ((0, 0), (3, 0)))))
+    assert np.array_equal(one.floor, other.floor[:, 3:])
+    assert other.here == (one.here[0] + 3, one.here[1])

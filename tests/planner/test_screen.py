@@ -1,0 +1,246 @@
+"""The projection is monotone; what is aimed at, looked for and walked over is what it must be."""
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kb.evidence import FREE, OPEN
+from kb.worldmodel import WorldModel
+from planner import exploring
+from planner.aims import Aim, choose
+from planner.circling import pivot, ways_round, winding
+from planner.screen import UNSEEN, Screens, grown
+from planner.steps import swept
+from planner.walking import LONGEST, next_move
+from planner.ways import choose_way, ways
+from tests.kb.drawings import seen_whole, walked
+from tests.kb.eyes import random_room
+
+
+def random_walk(seed: int) -> WorldModel:
+    """The model of one who looked two or three times in a random room."""
+    rng = np.random.default_rng(seed)
+    while True:
+        rows = random_room(rng, *rng.integers(10, 34, 2), things=rng.integers(1, 7))
+        free = [(i, n) for n, row in enumerate(rows) for i, mark in enumerate(row) if mark == "."]
+        if free:
+            break
+    chosen = [free[k] for k in rng.integers(len(free), size=3)]
+    (i, n), *rest = chosen
+    rows[n] = rows[n][:i] + "U" + rows[n][i + 1 :]
+    places = [(i, n), *rest]
+    way = [(c - a, b - d) for (a, b), (c, d) in itertools.pairwise(places)]
+    return walked(rows, way).model
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_the_projection_is_monotone(seed: int) -> None:
+    screens = Screens(random_walk(seed))
+    for level in range(UNSEEN):
+        assert not (screens.free(level) & ~screens.free(level + 1)).any()
+        before, after = screens.distances[level], screens.distances[level + 1]
+        assert (after[before >= 0] >= 0).all()
+        assert (after <= before)[before >= 0].all()
+    assert not (screens.floor & ~screens.free(0)).any()
+    assert screens.floor[screens.here[1], screens.here[0]]
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_safe_squares_are_settled_or_far_from_doubt(seed: int) -> None:
+    model = random_walk(seed)
+    safe, view = Screens(model).safe, model.view
+    row, column = model.view.locate(*model.place)
+    for r, c in np.argwhere(safe).tolist():
+        if view.state[r, c] == FREE or (r, c) == (row, column):
+            continue
+        near = (slice(max(r - 1, 0), r + 2), slice(max(c - 1, 0), c + 2))
+        assert view.seen[near].all()
+        assert (view.probability[near][view.state[near] == OPEN] < 0.3).all()
+
+
+@given(st.integers(1, 9), st.integers(1, 9), st.integers(0, 2**32 - 1), st.integers(0, 3))
+def test_grown_is_chebyshev(rows: int, columns: int, seed: int, squares: int) -> None:
+    mask = np.random.default_rng(seed).random((rows, columns)) < 0.15
+    where = np.argwhere(mask)
+    want = [
+        [bool(len(where)) and int(np.abs(where - (r, c)).max(1).min()) <= squares for c in range(columns)]
+        for r in range(rows)
+    ]
+    assert np.array_equal(grown(mask, squares), np.array(want))
+
+
+HALL = [
+    "b" * 20,
+    *["b" + "." * 18 + "b"] * 5,
+    "b....U.....ggg.....b",
+    *["b..........ggg.....b"] * 2,
+    *["b" + "." * 18 + "b"] * 5,
+    "b" * 20,
+]
+
+
+def flat(model: WorldModel, x: int, y: int) -> np.ndarray:
+    """The flat index of a square (x, y) relative to where Utak woke."""
+    row, column = model.view.locate(x + 0.5, y + 0.5)
+    return np.array([row * model.labels.shape[1] + column])
+
+
+@pytest.mark.parametrize("kind", sorted(LONGEST))
+def test_a_move_sweeps_safe_squares_alone(kind: str) -> None:
+    model = seen_whole(HALL)
+    screens = Screens(model)
+    for goal in ((11, 0), (11, -2), (6, 5), (-4, 5), (0, 1)):
+        for way in ways(screens, 0, flat(model, *goal), "skeleton"):
+            move = next_move(screens, way.squares, kind)
+            east, north = round(move.east), round(move.north)
+            assert (east, north) == (move.east, move.north)
+            assert max(abs(east), abs(north)) <= LONGEST[kind]
+            c, r = swept(east, north)
+            assert screens.safe[r + screens.here[1], c + screens.here[0]].all()
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_longer_moves_than_a_step_are_safe_in_random_models(seed: int) -> None:
+    model = random_walk(seed)
+    screens = Screens(model)
+    squares = np.flatnonzero(screens.floor)
+    rng = np.random.default_rng(seed)
+    for goal in rng.choice(squares, size=min(4, len(squares)), replace=False):
+        for way in ways(screens, 0, np.array([goal]), "skeleton"):
+            if len(way.squares) < 2:
+                continue
+            move = next_move(screens, way.squares, "attain")
+            if max(abs(move.east), abs(move.north)) > 1:
+                c, r = swept(round(move.east), round(move.north))
+                assert screens.safe[r + screens.here[1], c + screens.here[0]].all()
+
+
+def test_ways_are_free_connected_and_distinct() -> None:
+    model = seen_whole(HALL)
+    screens = Screens(model)
+    found = ways(screens, 0, flat(model, 12, -1), "skeleton")
+    assert len(found) >= 2
+    for way in found:
+        assert way.squares[0] == screens.here
+        assert all(screens.free(0)[y, x] for x, y in way.squares)
+        assert all(abs(a - c) + abs(b - d) == 1 for (a, b), (c, d) in zip(way.squares, way.squares[1:], strict=False))
+    assert found[0].length <= found[1].length
+    chosen = choose_way(found, screens, frozenset(), (), frozenset())
+    assert chosen == found[0]
+    sticky = choose_way(found[:2], screens, frozenset(found[1].squares), (), frozenset())
+    assert sticky == (found[1] if found[1].length - found[0].length < 2 else found[0])
+
+
+def test_who_is_there_has_a_way_of_one_square() -> None:
+    model = seen_whole(HALL)
+    screens = Screens(model)
+    (way,) = ways(screens, 0, flat(model, 0, 0), "skeleton")
+    assert way.squares == (screens.here,)
+    assert way.length == 0
+
+
+def test_nearest_is_by_level_first() -> None:
+    rows = ["b" * 12, "b..........b", "b.U..?...?.b", "b..........b", "b" * 12]
+    model = seen_whole(rows)
+    screens = Screens(model)
+    reached = screens.nearest(np.concatenate([flat(model, 3, 0), flat(model, 8, 0)]))
+    assert reached is not None
+    assert reached.level == 0  # the further one is floor, the nearer one was never seen
+    assert reached.cost == pytest.approx(9.4)
+    only = screens.nearest(flat(model, 3, 0))
+    assert only is not None
+    assert only.level == UNSEEN
+    assert screens.nearest(flat(model, 9, 1)) is None
+
+
+def test_the_choice_of_an_aim() -> None:
+    model = seen_whole(HALL)
+    screens = Screens(model)
+    near, far = Aim("explore", "near", flat(model, 1, 0)), Aim("explore", "far", flat(model, 12, 0))
+    goal = Aim("attain", "there", flat(model, 12, 3))
+    assert choose([near, far], screens, frozenset()) == near
+    assert choose([near, far, goal], screens, frozenset()) == goal
+    wall = Aim("attain", "in the wall", flat(model, 14, 0))
+    assert choose([wall, far], screens, frozenset()) == far
+    assert choose([wall], screens, frozenset()) is None
+    assert choose([], screens, frozenset()) is None
+
+
+def test_frontiers_border_on_what_was_never_seen() -> None:
+    rows = ["bbbbb?????", "b....?????", "b.U..?????", "b.........", "bbbbb....?"]
+    model = seen_whole(rows)
+    screens = Screens(model)
+    found = np.unique(np.concatenate([look.squares for look in exploring.frontiers(screens, 0)]))
+    near = grown(~model.view.seen, 1)
+    assert np.array_equal(found, np.flatnonzero(screens.floor & near))
+    closed = Screens(seen_whole(HALL))
+    assert exploring.frontiers(closed, 0) == []
+    assert exploring.vague_places(closed, 0) == []
+    assert exploring.rooms_beyond(closed) == []
+
+
+def test_floor_seen_over_a_wall_is_a_room_beyond() -> None:
+    rows = ["bbbbbbbbbbb", "b....b....b", "b.U..b....b", "b....b....b", "bbbbbbbbbbb"]
+    screens = Screens(seen_whole(rows))
+    (room,) = exploring.rooms_beyond(screens)
+    assert len(room.squares) == 12
+    assert not screens.floor.ravel()[room.squares].any()
+    small = ["bbbbbbbbbbb", "b....b...bb", "b.U..b..bbb", "b....bbbbbb", "bbbbbbbbbbb"]
+    assert exploring.rooms_beyond(Screens(seen_whole(small))) == []
+
+
+def test_a_second_look_from_the_same_square_is_not_worth_it() -> None:
+    rows = ["bbbbb????", "b.U..????", "bbbbb????"]
+    model = seen_whole(rows)
+    (border,) = exploring.frontiers(Screens(model), 0)
+    looked = replace(model, looked_from=frozenset({(2, 0)}))
+    assert exploring.frontiers(Screens(looked), 0) == []
+    beside = Screens(replace(model, looked_from=frozenset({(0, 0)})))
+    assert len(exploring.frontiers(beside, 0)[0].squares) == len(border.squares)
+    assert exploring.frontiers(beside, 2) == []
+
+
+def test_circling_winds_once() -> None:
+    model = seen_whole(HALL)
+    (node,) = model.objects
+    screens = Screens(model)
+    track = [model.place]
+    offered = ways_round(screens, track, node)
+    assert len(offered) == 2
+    sides = set()
+    for way in offered:
+        assert way.squares[0] == way.squares[-1] == screens.here
+        assert all(screens.free(0)[y, x] for x, y in way.squares)
+        walked_track = [(x + 0.5 + model.view.west, y + 0.5 + model.view.south) for x, y in way.squares]
+        sides.add(winding(walked_track, node))
+    assert sides == {1, -1}
+
+
+def test_half_a_turn_leaves_the_other_half() -> None:
+    model = seen_whole(HALL)
+    (node,) = model.objects
+    x, y = pivot(node)
+    over = [model.place, (x, y + 5), (x + 6, y + 0.5)]
+    moved = replace(model, place=over[-1])
+    offered = ways_round(Screens(moved), over, node)
+    whole_turns = set()
+    for way in offered:
+        rest = [(c + 0.5 + model.view.west, r + 0.5 + model.view.south) for c, r in way.squares]
+        whole_turns.add(winding([*over, *rest[1:]], node))
+    assert whole_turns == {1, -1}
+    shortest = min(offered, key=lambda way: way.length)
+    assert min(r for _, r in shortest.squares) + model.view.south + 0.5 < y  # under it, not back over it
+
+
+def test_the_pivot_lies_within_the_object() -> None:
+    model = seen_whole(["bbbbbbbb", "b......b", "b.gggg.b", "b.g..g.b", "b.g..g.b", "b.U....b", "bbbbbbbb"])
+    (node,) = model.objects
+    x, y = pivot(node)
+    assert (int(np.floor(x)), int(np.floor(y))) in node.patch.squares()

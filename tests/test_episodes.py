@@ -1,0 +1,118 @@
+"""Episodes of the examples: judged by one who shares no code with us, the same every time, and as they were before.
+
+`UTAK_GOLDEN=write python -m pytest tests/test_episodes.py` writes golden_episodes.json anew, when a change of what
+Utak does is meant.
+"""
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from simulator.cli import main
+from simulator.scenario import read_any_world
+
+ROOT = Path(__file__).resolve().parent.parent
+GOLDEN = Path(__file__).with_name("golden_episodes.json")
+JUDGE = Path(os.environ.get("UTAK_JUDGE") or ROOT.parent / "shared" / "judge" / "judge.py")
+EXAMPLES = sorted(path.parent.name for path in (ROOT / "examples").glob("*/goal.lp"))
+REMEMBERED = ["go_northeast", "go_to_square", "go_round_square", "go_next_room_askew"]
+ALIKE = ["go_northeast_askew", "go_to_square_two"]  # run under several hash seeds
+
+
+@pytest.fixture(scope="module")
+def episode(tmp_path_factory: pytest.TempPathFactory):  # type: ignore[no-untyped-def]
+    """The episode of an example, by name; each is run once."""
+
+    @cache
+    def of(name: str) -> Path:
+        log = tmp_path_factory.mktemp("episodes") / f"{name}.jsonl"
+        assert main(["run", str(ROOT / "examples" / name), "--log", str(log)]) in (0, 1, 75)
+        return log
+
+    return of
+
+
+def world_text(folder: Path) -> str:
+    """The world of a scenario as facts, as one who reads no pictures wants it."""
+    world = read_any_world(folder)
+    facts = [f"table({world.width}, {world.height})."]
+    facts += [f'verge("{world.verge.wkt}").'] if not world.verge.is_empty else []
+    for kind, things in (("object", world.movable), ("fixed", world.fixed)):
+        facts += [f'{kind}({thing.name}, {thing.colour}, "{thing.polygon.wkt}").' for thing in things]
+    x, y = world.utak
+    return "\n".join([*facts, f'utak("POINT ({x} {y})", {world.heading}).', ""])
+
+
+@pytest.mark.skipif(not JUDGE.exists(), reason="no judge: set UTAK_JUDGE to judge.py")
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_the_judge_finds_nothing(name: str, episode, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    folder = ROOT / "examples" / name
+    (tmp_path / "world.lp").write_text(world_text(folder))
+    for part in ("start.lp", "goal.lp", "expect.lp"):
+        (tmp_path / part).write_text((folder / part).read_text())
+    command = [sys.executable, str(JUDGE), str(tmp_path), str(episode(name))]
+    found = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert found.returncode == 0, found.stdout + found.stderr
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_done_is_never_believed_and_false(name: str, episode) -> None:  # type: ignore[no-untyped-def]
+    last = json.loads(episode(name).read_text().splitlines()[-1])["result"]
+    fails = "fails." in (ROOT / "examples" / name / "expect.lp").read_text()
+    assert last["believed"] == last["achieved"] == (not fails)
+    assert last["verdict"] == "done" or last["reason"]
+    assert (last["verdict"] == "done") == last["believed"]
+
+
+def test_memory_of_what_happened(episode) -> None:  # type: ignore[no-untyped-def]
+    """Commands, motions, impressions and verdict, as they were when the memory was written."""
+    now = {name: fingerprint(episode(name)) for name in REMEMBERED}
+    if os.environ.get("UTAK_GOLDEN") == "write":
+        GOLDEN.write_text(json.dumps(now, indent=2) + "\n")
+    assert now == json.loads(GOLDEN.read_text())
+
+
+def fingerprint(log: Path) -> dict[str, object]:
+    """How many commands, and a hash of all that happened, to a millionth of a square."""
+    lines = [json.loads(line) for line in log.read_text().splitlines()]
+    kept = [[line[key] for key in ("action", "motion", "utak", "retina", "touch")] for line in lines if "step" in line]
+    result = lines[-1]["result"]
+    text = json.dumps([rounded(kept), result["verdict"], result["steps"]])
+    return {"steps": result["steps"], "sha256": hashlib.sha256(text.encode()).hexdigest()}
+
+
+def rounded(value):  # type: ignore[no-untyped-def]
+    """A JSON value with its numbers rounded."""
+    if isinstance(value, float):
+        return round(value, 6) + 0.0
+    if isinstance(value, list):
+        return [rounded(part) for part in value]
+    return {key: rounded(part) for key, part in value.items()} if isinstance(value, dict) else value
+
+
+@pytest.mark.parametrize("name", ALIKE)
+def test_the_same_seed_gives_the_same_bytes(name: str, tmp_path: Path, episode) -> None:  # type: ignore[no-untyped-def]
+    logs = [episode(name).read_bytes()]
+    for seed in ("0", "1", "2"):
+        log = tmp_path / f"{seed}.jsonl"
+        command = [sys.executable, "-m", "simulator.cli", "run", str(ROOT / "examples" / name), "--log", str(log)]
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, timeout=300, check=False)
+        logs.append(log.read_bytes())
+    assert len(set(logs)) == 1
+
+
+def test_noise_is_the_seed_s(tmp_path: Path) -> None:
+    logs = []
+    for number, seed in enumerate(("3", "3", "4")):
+        log = tmp_path / f"{number}.jsonl"
+        main(["run", str(ROOT / "examples" / "go_northeast"), "--noise", "0.05", "--seed", seed, "--log", str(log)])
+        logs.append(log.read_text().splitlines()[1:])
+    assert logs[0] == logs[1]
+    assert logs[0] != logs[2]

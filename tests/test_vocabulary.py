@@ -1,0 +1,64 @@
+"""docs/vocabulary.md is what the encodings say, and the facts of the world model are those that it declares."""
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+from kb.belief import Places, model_facts
+from kb.corners import corners
+from kb.factfile import parse_facts
+from kb.query import VOCABULARY
+from kb.rooms import rooms_of
+from kb.source import decode
+from tests.kb.drawings import seen_whole
+
+ROOT = Path(__file__).resolve().parent.parent
+SCRIPT = ROOT / "docs" / "build_vocabulary.py"
+BELIEF = ROOT / "kb" / "asp" / "belief.lp"
+spec = importlib.util.spec_from_file_location("build_vocabulary", SCRIPT)
+assert spec is not None
+assert spec.loader is not None
+build = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(build)
+
+
+def test_the_page_is_not_stale_and_every_interface_is_documented() -> None:
+    found = subprocess.run([sys.executable, str(SCRIPT), "--check"], capture_output=True, text=True, check=False)
+    assert found.returncode == 0, found.stderr
+
+
+def test_what_is_not_documented_is_found() -> None:
+    text = "% Title.\n%*! p(A, B)   Text. *%\n#defined p/2.\n#defined q/1.\nr :- p(_, _).\n#show r/0.\n"
+    assert build.undocumented(text) == {("q", 1), ("r", 0)}
+    (entry,) = build.entries(text)
+    assert entry == ("p(A, B)", ("p", 2), "Text.", (), "in")
+
+
+def test_arguments_are_told_apart() -> None:
+    block = "%*! p(A, B)\n    What it\n    says.\n    Args:\n      - A: one\n        thing\n      - B: other *%\n"
+    text = f"{block}p(1, 2).\n#show p/2.\n"
+    assert build.entries(text) == [("p(A, B)", ("p", 2), "What it says.", ("A: one thing", "B: other"), "out")]
+
+
+def declared() -> set[tuple[str, int]]:
+    return {entry.signature for entry in build.entries(BELIEF.read_text())}
+
+
+def test_queries_know_the_declared_facts() -> None:
+    assert set(VOCABULARY) - {("object", 1)} == declared()
+
+
+def test_the_world_model_writes_declared_facts_alone() -> None:
+    left, right, wall = "b" + "." * 14 + "bb", "." * 14 + "b", "b" * 32
+    rows = [wall, *[left + right] * 5, *["b" + "." * 30 + "b"] * 4, *["b..ggg" + left[6:] + right] * 2]
+    rows += ["b.....U" + left[7:] + right, left + right, wall]
+    model = seen_whole(rows)
+    facts = parse_facts(decode("facts", "".join(f"{fact}.\n" for fact in model_facts(model, places(model))).encode()))
+    written = {fact.signature for fact in facts}
+    assert written <= declared()
+    assert {("door", 1), ("connects", 3), ("segment", 7), ("corner", 3), ("in", 2)} <= written
+
+
+def places(model) -> Places:  # type: ignore[no-untyped-def]
+    return Places(rooms_of(model), corners(model))
