@@ -5,10 +5,12 @@ import statistics
 import time
 from typing import Any
 
+import shapely
 from ompl import base, geometric, util
 
 from geometry.floor import Floor
 from geometry.mover import new_mover
+from geometry.rigid import Pose
 from geometry.separation import distance_at
 
 PLANNERS = ("RRTConnect", "LBKPIECE1", "BKPIECE1", "KPIECE1", "PRM")
@@ -38,8 +40,28 @@ def quiet() -> None:
         util.setLogLevel(util.LogLevel.LOG_NONE)
 
 
+def way_exists(scene: Any, limit: float) -> bool:
+    """Whether RRTConnect finds a way whose states, looked at finely, are all free."""
+    quiet()
+    setup, _ = _search(scene, "RRTConnect", limit)
+    if not setup.haveExactSolutionPath():
+        return False
+    path = setup.getSolutionPath()
+    path.interpolate(20_000)
+    solid = shapely.union_all(scene.obstacles).buffer(-1e-6, join_style="mitre")
+    shapely.prepare(solid)
+    poses = [Pose(s.getX(), s.getY(), math.degrees(s.getYaw())) for s in path.getStates()]
+    return not shapely.intersects(solid, [pose.place(scene.body) for pose in poses]).any()
+
+
 def _solve(scene: Any, name: str, limit: float) -> float:
-    """Seconds until an exact solution is found."""
+    """Seconds until an exact solution is found; the limit when none is."""
+    setup, taken = _search(scene, name, limit)
+    return taken if setup.haveExactSolutionPath() else limit
+
+
+def _search(scene: Any, name: str, limit: float) -> tuple[Any, float]:
+    """OMPL's set-up after a search, and how many seconds that took."""
     mover = new_mover(scene.body)
     ground = Floor(scene.obstacles, scene.bounds).ground(mover)
     ox, oy = (float(v) for v in mover.reference)
@@ -71,4 +93,4 @@ def _solve(scene: Any, name: str, limit: float) -> float:
     begin = time.perf_counter()
     setup.solve(limit)
     taken = time.perf_counter() - begin
-    return taken if setup.haveExactSolutionPath() else limit
+    return setup, taken

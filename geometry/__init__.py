@@ -3,11 +3,14 @@
 In reading order: ``distance`` (clearance), ``skeleton``, ``chains`` (the pathgraph in arrays), ``pathgraph`` (for
 networkx), ``runs`` and ``rope`` (classes of paths and their tight ropes), ``ways``, ``search``, ``alternatives``
 and ``itinerary`` (routes), ``passages`` and ``parts`` (necks and rooms), ``loops``, ``goals``, and ``screen``,
-which brings all this together.
+which brings all this together. Then ``digital`` (images of shapes) and ``template`` (shapes of images), ``rigid`` and
+``contact`` (motions and what stops them), ``floor``, ``problem`` and ``motion`` (how a body can be moved).
 """
 
+from geometry.motion import Inside, Plan, plan_motion
 from geometry.passages import Passage
+from geometry.rigid import Pose, Rotate, Translate
 from geometry.route import Route
 from geometry.screen import Screen
 
-__all__ = ["Passage", "Route", "Screen"]
+__all__ = ["Inside", "Passage", "Plan", "Pose", "Rotate", "Route", "Screen", "Translate", "plan_motion"]

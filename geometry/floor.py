@@ -52,12 +52,21 @@ class Floor:
         self.frame = np.array([corner[0], corner[1], pixel])
         self.raster = _distances(self.surface.hull, self.frame, int(rows), int(columns))
         self._grounds: dict[float, Ground] = {}
+        self._around: dict[bytes, Floor] = {}
 
     def ground(self, mover: Mover) -> Ground:
         """What the kernels need to know of the floor for a body of this radius."""
         if mover.radius not in self._grounds:
             self._grounds[mover.radius] = self._prepare(mover.radius)
         return self._grounds[mover.radius]
+
+    def around(self, polygon: Any) -> "Floor":
+        """The floor on which all but a polygon is an obstacle: where a body is free it is within the polygon."""
+        key = shapely.to_wkb(polygon)
+        if key not in self._around:
+            outer = shapely.box(*self.bounds).buffer(self.side, join_style="mitre")
+            self._around[key] = Floor(outer.difference(polygon), self.bounds.tolist())
+        return self._around[key]
 
     def _prepare(self, radius: float) -> Ground:
         rows, columns = self.raster.shape

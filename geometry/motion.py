@@ -24,7 +24,7 @@ from geometry.mover import new_mover
 from geometry.problem import Inside, Problem
 from geometry.rigid import Motion, Pose, Translate
 
-__all__ = ["Inside", "Plan", "Pose", "plan_motion"]
+__all__ = ["Inside", "Plan", "plan_motion"]
 
 Floats = npt.NDArray[np.float64]
 CAPACITY = 300_000  # cells

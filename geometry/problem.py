@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import shapely
 
 from geometry.cells import Tree, leaf_at, new_tree
 from geometry.chain import REGION, SETTLED, Hunt, find_chain, new_hunt
@@ -65,8 +64,7 @@ class Problem:
             c, s = math.cos(end[2]), math.sin(end[2])
             px, py = self.mover.probes[0, :2]
             return end, self.ground, self.floor.pixel_of(end[0] + c * px - s * py, end[1] + s * px + c * py)
-        outer = shapely.box(*self.floor.bounds).buffer(self.floor.side, join_style="mitre")
-        region = Floor(outer.difference(goal.polygon), self.floor.bounds.tolist())
+        region = self.floor.around(goal.polygon)
         goals = region.raster >= self.mover.probes[0, 2] - region.frame[2]
         return np.empty(0), region.ground(self.mover), goals
 

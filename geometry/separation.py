@@ -213,8 +213,10 @@ def _in_bounds(
 def _always_overlaps(
     mover: Mover, ground: Ground, x: float, y: float, c: float, s: float, spread: float, swing: float
 ) -> bool:
-    """Whether an inscribed disc or a corner of the body, or a corner of an obstacle, stays within the other."""
+    """Whether an inscribed disc or a corner of either stays within the other, or two edges go on crossing."""
     block = block_at(ground, x, y)
+    if _keeps_crossing(mover.edges, ground.edges, ground.near, ground.first, block, x, y, c, s, spread, swing):
+        return True
     for k in range(len(mover.probes)):
         px, py, r = mover.probes[k, 0], mover.probes[k, 1], mover.probes[k, 2]
         depth = r - signed_distance(x + c * px - s * py, y + s * px + c * py, ground, block)
@@ -235,4 +237,45 @@ def _always_overlaps(
             depth2 = min(depth2, point_to_edge(wx, wy, mover.edges, i))
         if depth2 > slack * slack:
             return True
+    return False
+
+
+@compiled
+def _keeps_crossing(
+    body: Floats,
+    edges: Floats,
+    near: Ints,
+    first: Ints,
+    block: int,
+    x: float,
+    y: float,
+    c: float,
+    s: float,
+    spread: float,
+    swing: float,
+) -> bool:
+    """Whether an edge of the body crosses one of an obstacle wherever in a cell the body is.
+
+    They do while the ends of each stay on their sides of the other's line: no end is moved over it by the cell's slack.
+    """
+    for k in range(first[block], first[block + 1]):
+        j = near[k]
+        ax, ay, bx, by = edges[j, 0] - x, edges[j, 1] - y, edges[j, 2] - x, edges[j, 3] - y
+        ax, ay, bx, by = c * ax + s * ay, c * ay - s * ax, c * bx + s * by, c * by - s * bx
+        slack_a = spread + swing * math.sqrt(ax * ax + ay * ay)
+        slack_b = spread + swing * math.sqrt(bx * bx + by * by)
+        ux, uy = (bx - ax) / edges[j, 6], (by - ay) / edges[j, 6]
+        for i in range(len(body)):
+            px, py, qx, qy = body[i, 0], body[i, 1], body[i, 2], body[i, 3]
+            side_p, side_q = ux * (py - ay) - uy * (px - ax), ux * (qy - ay) - uy * (qx - ax)
+            if side_p * side_q >= 0.0:
+                continue
+            if abs(side_p) <= spread + swing * math.sqrt(px * px + py * py):
+                continue
+            if abs(side_q) <= spread + swing * math.sqrt(qx * qx + qy * qy):
+                continue
+            side_a = body[i, 4] * (ax - px) + body[i, 5] * (ay - py)
+            side_b = body[i, 4] * (bx - px) + body[i, 5] * (by - py)
+            if side_a * side_b < 0.0 and abs(side_a) > slack_a and abs(side_b) > slack_b:
+                return True
     return False

@@ -42,6 +42,11 @@ class Door:
     confidence: int
 
     @property
+    def sure(self) -> bool:
+        """Is it a door beyond reasonable doubt?"""
+        return self.confidence >= SURE
+
+    @property
     def width(self) -> float:
         """From wall to wall, in squares."""
         return math.dist(self.a, self.b)
@@ -56,8 +61,9 @@ class Door:
 class Rooms:
     """The floor's rooms.
 
-    doors : those that are sure enough. labels : (rows, columns) the room of each square, 0 for none; the one in which
-    Utak woke is 1. doorways : (rows, columns) squares between the walls of a door: part of no room.
+    doors : all that may be doors; rooms end at each of them. labels : (rows, columns) the room of each square of known
+    floor, 0 for none; the one in which Utak woke is 1. doorways : (rows, columns) squares between the walls of a door:
+    part of no room.
     """
 
     doors: tuple[Door, ...]
@@ -65,8 +71,8 @@ class Rooms:
     doorways: Mask
 
     def beyond(self, room: int) -> Mask:
-        """(rows, columns): squares of the rooms that share a door with a room, but for the doorways."""
-        others = {side for door in self.doors if room in door.sides for side in door.sides} - {room}
+        """(rows, columns): squares of the rooms that surely share a door with a room, but for the doorways."""
+        others = {side for door in self.doors if door.sure and room in door.sides for side in door.sides} - {room}
         mask: Mask = np.isin(self.labels, sorted(others)) & ~self.doorways
         return mask
 
@@ -81,13 +87,14 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = ()) -> Rooms:
         return Rooms((), np.ones(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
     screen = Screen(~verge)
     necks = [(passage, _known(passage, model, verge)) for passage in screen.passages()]
-    sure = _doors(necks, rules)
-    labels = screen.parts([passage for passage, _ in sure])
+    possible = _doors(necks, rules)
+    floor = ~verge & model.view.seen
+    labels = Screen(floor).parts([passage for passage, _ in possible])
     row, column = model.view.locate(*model.lattice.woke)
     labels = _first(labels, int(labels[row, column]))
     doors = tuple(
         Door(f"d{number}", passage.a, passage.b, _sides(passage, labels), confidence)
-        for number, (passage, confidence) in enumerate(sure, 1)
+        for number, (passage, confidence) in enumerate(possible, 1)
     )
     doorways = np.zeros(verge.shape, np.bool_)
     for door in doors:
@@ -104,7 +111,7 @@ def _doors(necks: Iterable[tuple[Passage, int]], rules: tuple[Path, ...]) -> lis
         facts.append(f"neck({number},{width},{sides[0]},{sides[1]},{certainty})")
     answer = solve([KB / "rooms.lp", *rules], facts) if facts else None
     chosen = {a.arguments[0].number: a.arguments[1].number for a in answer or () if a.match("door", 2)}
-    return [(known[number][0], confidence) for number, confidence in sorted(chosen.items()) if confidence >= SURE]
+    return [(known[number][0], confidence) for number, confidence in sorted(chosen.items())]
 
 
 def _known(passage: Passage, model: WorldModel, verge: Mask) -> int:
