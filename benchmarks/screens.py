@@ -62,7 +62,7 @@ def build(maps: dict[Path, np.ndarray], _: int) -> None:
     for path, free in maps.items():
         screen = Screen(free)
         ours = least(lambda free=free: Screen(free), 15)
-        peer = least(lambda free=free: peers.skeleton_graph(free), 5)
+        peer = least(lambda free=free: peers.skeleton_graph(free), 5) if peers.survives(free) else np.nan
         kept: list[Screen] = []
         fresh = least(lambda free=free, kept=kept: kept.append(Screen(free)), 10)
         tracemalloc.start()
@@ -70,7 +70,7 @@ def build(maps: dict[Path, np.ndarray], _: int) -> None:
         peak = tracemalloc.get_traced_memory()[1] / free.size
         tracemalloc.stop()
         right = [topology(again, r) == peers.components_and_holes(free & (screen.clearance >= r)) for r in range(6)]
-        if free.size >= 512 * 512:
+        if free.size >= 512 * 512 and peer > 0.0:
             large.append(peer / ours)
         size = f"{free.shape[0]}x{free.shape[1]}"
         verdict = "right" if all(right) else f"wrong {right}"

@@ -26,7 +26,7 @@ NO_BARS: Ints = np.zeros((0, 2), np.int32)
 
 
 def may_miss(desk: Desk, found: int) -> bool:
-    """Whether a way beyond those found may still be the shortest when tight: ways shrink by some share, and are many."""
+    """Whether a way beyond those found may be the shortest of all when tight, should it shrink a little more."""
     cost, length = desk.album.cost[:found], desk.answers.length[:found]
     return bool(length.min() > 0.0 and cost[-1] < SLACK * length.min() * (cost / length).max())
 
