@@ -86,8 +86,8 @@ def build(maps: dict[Path, np.ndarray], _: int) -> None:
 
 
 def growth(maps: dict[Path, np.ndarray], _: int) -> None:
-    name = max(maps, key=lambda path: maps[path].size)
-    free = maps[name][:1024, :1024]
+    name = min(maps, key=lambda path: (maps[path].size < 256 * 256, maps[path].size))  # one texture at every size
+    free = maps[name]
     print(f"{'growth of ' + name.stem + ', tiled':40} ms and ns a cell")
     sizes, times = [], []
     for n in (256, 512, 1024, 2048, 4096):

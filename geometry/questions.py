@@ -19,7 +19,7 @@ from geometry.skeleton import SADDLE
 from geometry.tightening import tight_route
 
 XY = tuple[float, float]
-SPARE, FEWER = 8, 2  # ways tried beyond those wanted, since their order changes when ropes are pulled tight
+SPARE, FEWER = 8, 1  # ways tried beyond those wanted, since their order changes when ropes are pulled tight
 SMALL = 128  # chains of a pathgraph up to which SPARE ways are tried, else FEWER
 SLACK = 1.03  # how much more than any way found a way beyond them may shrink
 NO_BARS: Ints = np.zeros((0, 2), np.int32)
