@@ -77,7 +77,7 @@ def count(state: States, words: Words) -> tuple[int, int, int]:
         if words[word] == 0:
             continue
         for cell in range(8 * word, min(8 * word + 8, states.shape[0])):
-            here = states[cell]
+            here = int(states[cell])
             degree = (here & 1) + (here >> 1 & 1) + (here >> 2 & 1) + (here >> 3 & 1)
             links += degree
             if is_node(here):
