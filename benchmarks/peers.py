@@ -1,4 +1,4 @@
-"""The libraries that the screens are compared with: same map, same ends, same process, everything prepared beforehand."""
+"""The libraries that screens are compared with: same map, same ends, same process, prepared beforehand."""
 
 from collections.abc import Callable
 from itertools import islice
@@ -92,7 +92,7 @@ def networkx_astar(free: np.ndarray) -> Finder:
 
 
 def simple_graph(pathgraph: nx.MultiGraph) -> nx.Graph:
-    """The pathgraph for networkx's k shortest paths, which knows no parallel edges: a node in the middle of each chain."""
+    """The pathgraph for networkx's k shortest paths, which knows no parallel edges: chains get a middle."""
     graph = nx.Graph()
     graph.add_nodes_from(pathgraph)
     for a, b, key, edge in pathgraph.edges(keys=True, data=True):

@@ -151,7 +151,7 @@ def walk(cell: int, direction: int, states: States, width: int, cells: Ints, use
 @compiled
 def onward(here: int, back: int) -> int:
     """The other direction of a cell with two links."""
-    rest = (here & LINKS) & ~(1 << back)
+    rest = (here & LINKS) ^ (1 << back)
     return (0 if rest == 1 else 1) if rest < 4 else (2 if rest == 4 else 3)
 
 

@@ -38,8 +38,8 @@ def cut(shut: Bools, passage: Passage) -> None:
         for column, row in sorted(set(near)):
             x, y = column + 0.5, row + 0.5
             if 0 <= row < shut.shape[1] - 2 and 0 <= column < shut.shape[2] - 2:
-                shut[0, row + 1, column + 1] |= crosses(passage.cut, (x, y), (x + 1.0, y))
-                shut[1, row + 1, column + 1] |= crosses(passage.cut, (x, y), (x, y + 1.0))
+                shut[0, row + 1, column + 1] |= crosses(passage, (x, y), (x + 1.0, y))
+                shut[1, row + 1, column + 1] |= crosses(passage, (x, y), (x, y + 1.0))
 
 
 @compiled

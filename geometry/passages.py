@@ -37,14 +37,19 @@ class Passage(NamedTuple):
     """The other end."""
     sides: tuple[float, float]
     """The greatest clearance on either side, before any neck that is narrower (also between squares' centres)."""
-    gates: tuple[XY, XY]
-    """The centres of two neighbouring free squares, one on either side of the neck, in the order of ``sides``."""
     cut: tuple[XY, ...]
-    """Centres of squares from wall to wall over ``place``: where the floor is cut (on the side of a little more x)."""
+    """Centres of squares from wall to wall over ``place``: where the floor is cut."""
+    towards: XY
+    """The centre of the square beside ``place`` on the way to the first side; the cut runs between the two."""
     chain: int
     """The chain of the pathgraph that leads through."""
     position: int
     """Where on it."""
+
+    @property
+    def gates(self) -> tuple[XY, XY]:
+        """The centres of two neighbouring free squares on either side of the cut, in the order of ``sides``."""
+        return self.towards, self.place
 
 
 def find_passages(square: Squares, state: States, chains: Chains) -> list[Passage]:
@@ -74,7 +79,6 @@ def describe(
     ax, ay, bx, by = neck_ends(square, saddle, int(left[-1]), int(right[-1]))
     cut = tuple(centre(cell, width) for cell in [*left[::-1].tolist(), saddle, *right.tolist()])
     place = centre(saddle, width)
-    near, far = crossing_step(square, saddle, int(first[g]), int(first[other]), cut)
     chain, position = on_chain(chains, saddle, int(first[g]), state)
     return Passage(
         place,
@@ -83,8 +87,8 @@ def describe(
         (ax, ay),
         (bx, by),
         (sides[g], sides[other]),
-        (centre(near, width), centre(far, width)),
         cut,
+        centre(int(first[g]), width),
         chain,
         position,
     )
@@ -263,17 +267,11 @@ def nearest_on_axis(a: int, b: int) -> tuple[float, float]:
     return (a + 1.0, float(b)) if a < b else (float(a), b + 1.0)
 
 
-def crossing_step(square: Squares, saddle: int, one: int, two: int, cut: tuple[XY, ...]) -> tuple[int, int]:
-    """The two neighbouring cells between which the skeleton crosses the neck, first the one towards ``one``."""
-    width = square.shape[1]
-    if crosses(cut, centre(saddle, width), centre(one, width)):
-        return one, saddle
-    return saddle, two
-
-
-def crosses(cut: tuple[XY, ...], p: XY, q: XY) -> bool:
-    """Whether the step from p to q crosses a cut, which runs a little off its squares' centres."""
-    shifted = [(x + 1e-4, y + 3e-5) for x, y in cut]
+def crosses(passage: Passage, p: XY, q: XY) -> bool:
+    """Whether the step from p to q crosses a passage's cut, which runs a little off its squares' centres."""
+    (x, y), (u, v) = passage.place, passage.towards
+    dx, dy = 1e-4 * (u - x) - 3e-5 * (v - y), 1e-4 * (v - y) + 3e-5 * (u - x)
+    shifted = [(cx + dx, cy + dy) for cx, cy in passage.cut]
     return sum(meets(a, b, p, q) for a, b in pairwise(shifted)) % 2 == 1
 
 

@@ -19,8 +19,16 @@ from geometry.skeleton import SADDLE
 from geometry.tightening import tight_route
 
 XY = tuple[float, float]
-SPARE = 8  # ways tried beyond those wanted, since their order changes when ropes are pulled tight
+SPARE, FEWER = 8, 2  # ways tried beyond those wanted, since their order changes when ropes are pulled tight
+SMALL = 128  # chains of a pathgraph up to which SPARE ways are tried, else FEWER
+SLACK = 1.03  # how much more than any way found a way beyond them may shrink
 NO_BARS: Ints = np.zeros((0, 2), np.int32)
+
+
+def may_miss(desk: Desk, found: int) -> bool:
+    """Whether a way beyond those found may still be the shortest when tight: ways shrink by some share, and are many."""
+    cost, length = desk.album.cost[:found], desk.answers.length[:found]
+    return bool(length.min() > 0.0 and cost[-1] < SLACK * length.min() * (cost / length).max())
 
 
 class Questions:
@@ -42,7 +50,7 @@ class Questions:
         """Routes between two points."""
         if k < 1:
             raise ValueError(f"k must be at least 1, but is {k}")
-        wanted = 1 if k == 1 else k + SPARE
+        wanted = 1 if k == 1 else k + (SPARE if len(self.layer.ways.length) <= SMALL else FEWER)
         ends = (*self._snap(start), *self._snap(goal))
         desk = self._desk(wanted, 0)
         if avoid:
@@ -58,7 +66,7 @@ class Questions:
             desk.query.shut[:] = 0
             desk.query.closed[:] = False
         routes = read_answers(desk.answers, found)
-        if k > 1 and routes and not avoid and not self.layer.body:
+        if 1 < found == wanted and not avoid and not self.layer.body and may_miss(desk, found):
             routes = self._with_shortest(routes, start, goal)
         routes = routes[:k]
         return [self._with_ends(route, start, goal) for route in routes] if self.layer.body else routes
@@ -169,8 +177,7 @@ class Questions:
             cell = self._cell(passage.place)
             if not state.reshape(-1)[cell] & SADDLE:
                 continue  # too narrow for this body anyway
-            near, far = (self._cell(gate) for gate in passage.gates)
-            chain, position = on_chain(chains, cell, far if near == cell else near, state)
+            chain, position = on_chain(chains, cell, self._cell(passage.towards), state)
             desk.query.shut[chain] |= 1
             bars.append((chain, position))
         bar = np.array(bars, np.int32).reshape(-1, 2)

@@ -72,7 +72,7 @@ def tighten_word(
 def funnel(xs: Floats, ys: Floats, via: Ints, queue: Ints, last: int) -> None:
     """For every corner (left and right ends of portals in turn, then the goal), the one before on the way to it.
 
-    ``queue`` holds the funnel: from ``left`` outwards to ``apex`` the left chain, from there to ``right`` the right one.
+    ``queue`` holds the funnel: from ``left`` to ``apex`` the left chain, from there to ``right`` the right one.
     """
     left = apex = right = queue.shape[0] // 2
     queue[apex] = 0

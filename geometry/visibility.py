@@ -75,6 +75,8 @@ def line_open(padded: Bools, x0: float, y0: float, x1: float, y1: float) -> bool
         a = x0 + slope * (max(y0, float(row)) - y0)
         b = x0 + slope * (min(y1, row + 1.0) - y0)
         low, high = min(a, b), max(a, b)
+        if row > y0 and pinched(padded, a, row):
+            return False
         if high - low < 1e-9 and abs(low - np.floor(low + 0.5)) < 1e-9:  # along a vertical line: either side will do
             column = int(np.floor(low + 0.5))
             if not (padded[row + 1, column] or padded[row + 1, column + 1]):
@@ -83,8 +85,6 @@ def line_open(padded: Bools, x0: float, y0: float, x1: float, y1: float) -> bool
         for column in range(int(np.floor(low + 1e-9)), int(np.ceil(high - 1e-9))):
             if not padded[row + 1, column + 1]:
                 return False
-        if row > y0 and pinched(padded, a, row):
-            return False
     return True
 
 

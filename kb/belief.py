@@ -162,7 +162,7 @@ def _rooms(model: WorldModel, rooms: Rooms) -> Iterator[str]:
     row, column = model.view.locate(*model.place)
     if rooms.labels[row, column]:
         yield f"in({ORG},r{rooms.labels[row, column]})"
-    for door in rooms.doors:
+    for door in (door for door in rooms.doors if door.sure):
         yield f"door({door.name})"
         yield f"width({door.name},{_hundredths(door.width)})"
         yield from (f"connects({door.name},r{a},r{b})" for a, b in ((door.sides), (door.sides[1], door.sides[0])))

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kb.lattice import MOST, Samples
-from kb.retina import FIELDS
 
 OPEN, FREE, FULL = -1, 0, 1
 MARGIN = 40  # squares by which the map grows beyond what is needed
@@ -199,10 +198,10 @@ class Evidence:
             changed = True
 
     def _settle_pairs(self, number: int) -> bool:
-        """Settle what a field of this look and another one do not share, from the difference of their counts."""
+        """Settle what two fields do not share, from the difference of their counts."""
         open_, weight, low, high = self._residue()
         plain = (weight > 0) & (np.where(open_, self._weight, 0).max(1, initial=0) == 1)
-        a, b, shared = _overlaps(self._where, open_ & plain[:, None], len(FIELDS))
+        a, b, shared = _overlaps(self._where, open_ & plain[:, None])
         size, other = weight[a] - shared, weight[b] - shared
         least = low[a] - np.minimum(high[b], shared)
         most = high[a] - np.maximum(low[b] - other, 0)
@@ -280,21 +279,19 @@ class Evidence:
         self._where = ((rows + south) * self.state.shape[1] + columns + west).astype(np.int32)
 
 
-def _overlaps(where: Squares, open_: Mask, new: int) -> tuple[Indices, Indices, Indices]:
-    """Pairs of fields that share open squares, and how many, both ways; one of each pair is among the last `new`."""
+def _overlaps(where: Squares, open_: Mask) -> tuple[Indices, Indices, Indices]:
+    """Pairs of fields (a, b) that share open squares, both ways round, and how many they share."""
     field, entry = np.nonzero(open_)
     square = where[field, entry]
     order = np.argsort(square, kind="stable")
     field, square = field[order], square[order]
-    latest = np.flatnonzero(field >= len(where) - new)
-    first = np.searchsorted(square, square[latest], side="left")
-    count = np.searchsorted(square, square[latest], side="right") - first
-    one = np.repeat(field[latest], count)
+    first = np.searchsorted(square, square, side="left")
+    count = np.searchsorted(square, square, side="right") - first
+    one = np.repeat(field, count)
     within = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
     two = field[np.repeat(first, count) + within]
     pairs, shared = np.unique(one[one != two] * len(where) + two[one != two], return_counts=True)
-    one, two = np.divmod(pairs, max(len(where), 1))
-    return np.concatenate([one, two]), np.concatenate([two, one]), np.concatenate([shared, shared])
+    return *np.divmod(pairs, max(len(where), 1)), shared
 
 
 def _fill_gaps(probability: NDArray[np.float32], seen: Mask) -> None:

@@ -21,10 +21,12 @@ from kb.evidence import FULL, OPEN
 from kb.worldmodel import SPACE, WorldModel
 
 Mask = NDArray[np.bool_]
+Floats = NDArray[np.float64]
 SMALLEST_WALL = 13  # squares: what is surely one thing and as long as this is no object
 SURE = 60  # percent: a door is one from here on
 DEEPEST = 12.0  # squares: how far a doorway is followed into the wall
 STEP = 0.5
+BEYOND = 1.6  # squares: how far behind the wall a room surely begins
 JAMB = 0.6  # squares beside a doorway at which its wall is looked for
 
 
@@ -42,6 +44,11 @@ class Door:
     confidence: int
 
     @property
+    def sure(self) -> bool:
+        """Is it a door beyond reasonable doubt?"""
+        return self.confidence >= SURE
+
+    @property
     def width(self) -> float:
         """From wall to wall, in squares."""
         return math.dist(self.a, self.b)
@@ -56,8 +63,9 @@ class Door:
 class Rooms:
     """The floor's rooms.
 
-    doors : those that are sure enough. labels : (rows, columns) the room of each square, 0 for none; the one in which
-    Utak woke is 1. doorways : (rows, columns) squares between the walls of a door: part of no room.
+    doors : all that may be doors; rooms end at each of them. labels : (rows, columns) the room of each square of known
+    floor, 0 for none; the one in which Utak woke is 1. doorways : (rows, columns) squares between the walls of a door:
+    part of no room.
     """
 
     doors: tuple[Door, ...]
@@ -65,8 +73,8 @@ class Rooms:
     doorways: Mask
 
     def beyond(self, room: int) -> Mask:
-        """(rows, columns): squares of the rooms that share a door with a room, but for the doorways."""
-        others = {side for door in self.doors if room in door.sides for side in door.sides} - {room}
+        """(rows, columns): squares of the rooms that surely share a door with a room, but for the doorways."""
+        others = {side for door in self.doors if door.sure and room in door.sides for side in door.sides} - {room}
         mask: Mask = np.isin(self.labels, sorted(others)) & ~self.doorways
         return mask
 
@@ -81,13 +89,16 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = ()) -> Rooms:
         return Rooms((), np.ones(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
     screen = Screen(~verge)
     necks = [(passage, _known(passage, model, verge)) for passage in screen.passages()]
-    sure = _doors(necks, rules)
-    labels = screen.parts([passage for passage, _ in sure])
+    possible = _doors(necks, rules)
+    floor = ~verge & model.view.seen
+    if not floor.any():
+        return Rooms((), np.zeros(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
+    labels = Screen(floor).parts([passage for passage, _ in possible])
     row, column = model.view.locate(*model.lattice.woke)
     labels = _first(labels, int(labels[row, column]))
     doors = tuple(
         Door(f"d{number}", passage.a, passage.b, _sides(passage, labels), confidence)
-        for number, (passage, confidence) in enumerate(sure, 1)
+        for number, (passage, confidence) in enumerate(possible, 1)
     )
     doorways = np.zeros(verge.shape, np.bool_)
     for door in doors:
@@ -104,7 +115,7 @@ def _doors(necks: Iterable[tuple[Passage, int]], rules: tuple[Path, ...]) -> lis
         facts.append(f"neck({number},{width},{sides[0]},{sides[1]},{certainty})")
     answer = solve([KB / "rooms.lp", *rules], facts) if facts else None
     chosen = {a.arguments[0].number: a.arguments[1].number for a in answer or () if a.match("door", 2)}
-    return [(known[number][0], confidence) for number, confidence in sorted(chosen.items()) if confidence >= SURE]
+    return [(known[number][0], confidence) for number, confidence in sorted(chosen.items())]
 
 
 def _known(passage: Passage, model: WorldModel, verge: Mask) -> int:
@@ -163,24 +174,29 @@ def _sides(passage: Passage, labels: NDArray[np.int32]) -> tuple[int, int]:
 
 
 def _doorway(door: Door, verge: Mask) -> Mask:
-    """The squares between a door's jambs: from the neck both ways, as long as there is wall on both sides."""
-    along = np.subtract(door.b, door.a) / door.width
+    """The squares between a door's jambs, and BEYOND squares further on both sides.
+
+    A neck may lie askew between two thick walls; the doorway is taken along the lattice.
+    """
+    along = np.abs(np.subtract(door.b, door.a))
+    along = np.array([1.0, 0.0]) if along[0] > along[1] else np.array([0.0, 1.0])
     across = np.array([-along[1], along[0]])
+    half = float(np.abs(np.subtract(door.b, door.a)) @ along) / 2
     rows, columns = np.ogrid[: verge.shape[0], : verge.shape[1]]
     x, y = columns + 0.5 - door.place[0], rows + 0.5 - door.place[1]
     sideways, forward = x * along[0] + y * along[1], x * across[0] + y * across[1]
-    depth = [_depth(door, along, sign * across, verge) for sign in (-1, 1)]
-    mask: Mask = (np.abs(sideways) <= door.width / 2 + 1) & (-depth[0] < forward) & (forward < depth[1])
+    jambs = [np.array(door.place) + side * (half + JAMB) * along for side in (-1, 1)]
+    depth = [_depth(jambs, sign * across, verge) + BEYOND for sign in (-1, 1)]
+    mask: Mask = (np.abs(sideways) <= half + 1) & (-depth[0] < forward) & (forward < depth[1])
     return mask
 
 
-def _depth(door: Door, along: NDArray[np.float64], ahead: NDArray[np.float64], verge: Mask) -> float:
-    """How deep the wall is from the neck in one direction, in squares, and half a square more."""
-    jambs = [np.array(end) + side * JAMB * along for end, side in ((door.a, -1), (door.b, 1))]
+def _depth(jambs: list[Floats], ahead: Floats, verge: Mask) -> float:
+    """How deep the wall is from the neck in one direction, in squares."""
     depth = 0.0
     while depth < DEEPEST:
         places = [jamb + ahead * (depth + STEP / 2) for jamb in jambs]
         if not all(verge[_squares(np.array([x]), np.array([y]), verge.shape)][0] for x, y in places):
             break
         depth += STEP
-    return depth + STEP
+    return depth

@@ -136,7 +136,7 @@ class Decider:
             return None
         view = situation.model.view
         before = frozenset((x - view.west, y - view.south) for x, y in self._path)
-        doors = situation.rooms.doors
+        doors = [door for door in situation.rooms.doors if door.sure]
         forbidden = frozenset(doors[0].name for goal in self.constraints if doors and str(goal.args[0]) == "utak")
         return choose_way(offered, situation.screens, before, doors, forbidden)
 

@@ -105,7 +105,11 @@ def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
     squares = np.flatnonzero(rooms.beyond(1) & situation.screens.floor)
     if len(squares):
         return Destination(squares)
-    what = "no door is seen yet" if not rooms.doors else "no next room is seen yet that can be reached"
+    what = (
+        "no door is seen yet"
+        if not any(door.sure for door in rooms.doors)
+        else "no next room is seen yet that can be reached"
+    )
     return nowhere(what, tuple(rooms_beyond(situation.screens)))
 
 

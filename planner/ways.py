@@ -10,6 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry import Screen
+from geometry.grid import grid_way
+from geometry.visibility import visibility_way
 from geometry.winding import crossings
 from kb.encodings import solve
 from kb.rooms import Door
@@ -42,13 +45,31 @@ PathFinder = Callable[[Mask, Square, Square], list[Line]]
 
 def by_skeleton(free: Mask, here: Square, there: Square) -> list[Line]:
     """Tight routes, one for each class, from the pathgraph of the skeleton: (points, length, clearance) of each."""
-    from geometry import Screen
-
     routes = Screen(free).routes(_centre(here), _centre(there), k=ROUTES)
     return [(route.points.tolist(), route.length, route.clearance) for route in routes]
 
 
-FINDERS: Mapping[str, PathFinder] = {"skeleton": by_skeleton}
+def by_visibility(free: Mask, here: Square, there: Square) -> list[Line]:
+    """The shortest way along lines of visibility between extreme points of obstacles, as Shakey went."""
+    return _single(free, visibility_way(free, _centre(here), _centre(there)))
+
+
+def by_grid(free: Mask, here: Square, there: Square) -> list[Line]:
+    """The shortest way over the squares and their eight neighbours, by A*."""
+    return _single(free, grid_way(free, _centre(here), _centre(there)))
+
+
+def _single(free: Mask, points: NDArray[np.float64] | None) -> list[Line]:
+    """A path-finder's only way, with its length and the clearance of the squares that it touches."""
+    if points is None:
+        return []
+    line = points.tolist()
+    columns, rows = np.array(squares_along(free, line)).T
+    length = float(np.hypot(*np.diff(points, axis=0).T).sum())
+    return [(line, length, float(Screen(free).clearance[rows, columns].min()))]
+
+
+FINDERS: Mapping[str, PathFinder] = {"skeleton": by_skeleton, "visibility": by_visibility, "grid": by_grid}
 
 
 def ways(screens: Screens, level: int, goals: NDArray[np.int64], finder: str) -> list[Way]:

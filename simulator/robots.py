@@ -4,6 +4,7 @@ from kb.body import Body
 from kb.task import Task
 from simulator.session import Robot
 from simulator.settings import Settings
+from simulator.warming import warm
 
 
 def make_robot(body: Body, task: Task, settings: Settings) -> Robot:
@@ -11,5 +12,6 @@ def make_robot(body: Body, task: Task, settings: Settings) -> Robot:
     from planner.cycle import Options
     from planner.cycle import Robot as Mind
 
+    warm()
     options = Options(paths=settings.paths, kb_files=settings.kb_files, max_steps=settings.max_steps)
     return Mind(body, task, options)

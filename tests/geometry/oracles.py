@@ -76,15 +76,15 @@ def rubber_band(points, free):
 def hull_between(a, v, b, corners, padded):
     """The corners that a rope from a over v to b catches on when v lets go."""
     turn = cross(a, v, b)
-    if turn == 0.0:
+    if abs(turn) < 1e-12:
         return []
     sign = 1.0 if turn > 0 else -1.0
     inside = {
         tuple(c)
         for c in corners.tolist()
-        if sign * cross(a, v, c) >= 0
-        and sign * cross(v, b, c) >= 0
-        and sign * cross(b, a, c) > 0
+        if sign * cross(a, v, c) >= -1e-9
+        and sign * cross(v, b, c) >= -1e-9
+        and sign * cross(b, a, c) > 1e-9
         and catches(a, b, c, padded)
     }
     inside = sorted(inside - {a, b}, key=lambda c: (along(a, b, c), sign * cross(a, b, c)))

@@ -100,7 +100,8 @@ def test_nothing_is_measured_of_what_is_hardly_settled() -> None:
     state[1, 1] = FULL
     thing = np.ones((4, 4), bool)
     view = MapView(0, 0, thing.astype(np.float32), state, thing, np.zeros((4, 4), np.int16))
-    assert Measurer().measure(patch_of(thing, view), view) == ((), None, 15)
+    measured = Measurer().measure(patch_of(thing, view), view)
+    assert (measured.fits, measured.polygon, measured.open) == ((), None, 15)
 
 
 ROOM = [

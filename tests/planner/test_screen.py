@@ -163,13 +163,14 @@ def test_nearest_is_by_level_first() -> None:
 def test_the_choice_of_an_aim() -> None:
     model = seen_whole(HALL)
     screens = Screens(model)
-    near, far = Aim("explore", "near", flat(model, 1, 0)), Aim("explore", "far", flat(model, 12, 0))
-    goal = Aim("attain", "there", flat(model, 12, 3))
+    near, far = Aim("explore", flat(model, 1, 0), "near"), Aim("explore", flat(model, 12, 0), "far")
+    goal = Aim("attain", flat(model, 12, 3), "there")
     assert choose([near, far], screens, frozenset()) == near
     assert choose([near, far, goal], screens, frozenset()) == goal
-    wall = Aim("attain", "in the wall", flat(model, 14, 0))
+    wall = Aim("attain", flat(model, 14, 0), "in the wall")
     assert choose([wall, far], screens, frozenset()) == far
     assert choose([wall], screens, frozenset()) is None
+    assert choose([near._replace(price=30.0), far], screens, frozenset()) == far
     assert choose([], screens, frozenset()) is None
 
 

@@ -1,0 +1,69 @@
+"""The first run of an installation compiles geometry's kernels; here that is said once, and done on both of two cores.
+
+Later runs find them in numba's cache. Nothing depends on this: a kernel that is not compiled yet is compiled when it
+is called.
+"""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import geometry
+
+NOTICE = "utak: compiling the geometry kernels, once per installation; this takes up to half a minute ..."
+INDEX = "itinerary.itineraries-*.nbi"  # numba's index of the kernel that takes longest
+
+
+def warm() -> None:
+    """Compile the kernels that a robot needs, if they are not in the cache; say so on stderr."""
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0" or not cold():
+        return
+    print(NOTICE, file=sys.stderr, flush=True)
+    command = [sys.executable, "-m", "simulator.warming"]
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL):
+        compile_routes()
+
+
+def cold() -> bool:
+    """Is there no compiled kernel in the cache of this installation?"""
+    elsewhere = os.environ.get("NUMBA_CACHE_DIR")
+    places = (
+        [Path(elsewhere)] if elsewhere else [Path(geometry.__file__).parent / "__pycache__", Path.home() / ".cache"]
+    )
+    return not any(place.is_dir() and next(place.rglob(INDEX), None) for place in places)
+
+
+def compile_routes() -> None:
+    """Find routes on a small screen, which compiles all that routes need."""
+    import numpy as np
+
+    free = np.ones((20, 20), np.bool_)
+    free[8:12, 5:16] = False
+    geometry.Screen(free).routes((2.5, 2.5), (17.5, 17.5), k=4)
+
+
+def compile_others() -> None:
+    """Use what else a run needs: necks, ways by distance, shapes and contacts."""
+    import numpy as np
+    import shapely
+
+    from geometry.contact import Body, Obstacles
+    from geometry.reach import reach
+    from geometry.rigid import Rotate, Translate
+    from geometry.template import fit_shapes
+
+    fit_shapes(np.array([[1, 1, 1, 0], [1, 1, 1, 1], [0, 1, 1, 1]], np.bool_))
+    free = np.ones((12, 20), np.bool_)
+    free[:4, 9:11] = free[7:, 9:11] = False
+    screen = geometry.Screen(free)
+    screen.parts(screen.passages())
+    reach(free, 1, 1)
+    walls = Obstacles([shapely.box(10, 0, 11, 5)])
+    for body in (Body(shapely.box(1, 1, 3, 3), [(4.0, 1.0)]), Body(None, [(4.0, 1.0)])):
+        walls.first_contact(body, Translate(8.0, 0.0))
+        walls.first_contact(body, Rotate(30.0, (4.0, 1.0)))
+
+
+if __name__ == "__main__":
+    compile_others()
