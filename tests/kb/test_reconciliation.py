@@ -13,7 +13,7 @@ from kb.worldmodel import Node
 from tests.kb.drawings import seen_whole
 
 NOWHERE = Span(0, 0, 0)
-MODEL = seen_whole(["bbbbbbbb", "b......b", "b.gg.h.b", "b......b", "b.k..U.b", "bbbbbbbb"])
+MODEL = seen_whole(["bbbbbbbbb", "b.......b", "b.ggg.h.b", "b.ggg...b", "b....U..b", "bbbbbbbbb"])
 SHAPES, COLOURS = ("square", "brick", "disc"), ("g", "h")
 
 

@@ -1,6 +1,8 @@
 """The cycle on a tiny body: a drawn world, exact moves, nothing else. And what each goal means."""
 
+import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ import pytest
 from kb.body import Command, Impression, Move
 from kb.corners import corners
 from kb.facts import Symbol
+from kb.lattice import turned
 from kb.problems import Span
 from kb.rooms import rooms_of
 from kb.task import Claim, Parameter, Task
@@ -21,29 +24,31 @@ NOWHERE = Span(0, 0, 0)
 
 
 class DrawnBody:
-    """A body in a drawing, which must never be told to walk into anything. It wakes amid a square and faces north."""
+    """A body in a drawing, which must never be told to walk into anything. It wakes amid a square."""
 
-    def __init__(self, rows: list[str]) -> None:
-        self.occupied = world_of(rows)
+    def __init__(self, rows: list[str], heading: int = 0) -> None:
+        self.occupied, self.heading = world_of(rows), heading
         i, j = utak_in(rows)
         self.place = np.array([i + 0.5, j + 0.5])
         self.track = [self.square]
+        self.commands: list[Command] = []
 
     @property
     def square(self) -> tuple[int, int]:
         return int(self.place[0]), int(self.place[1])
 
     def wake(self) -> Impression:
-        return impression(self.occupied, self.square)
+        return impression(self.occupied, self.square, self.heading)
 
     def act(self, command: Command) -> Impression:
         assert isinstance(command, Move)
-        way = np.array([command.east, command.north])
+        way = np.array(turned(command.east, command.north, self.heading))
         for part in np.linspace(0, 1, 200):
             assert not self.occupied(*(int(v) for v in self.place + part * way))
         self.place = self.place + way
         self.track.append(self.square)
-        return impression(self.occupied, self.square)
+        self.commands.append(command)
+        return impression(self.occupied, self.square, self.heading)
 
 
 def term(text: str) -> Symbol:
@@ -67,8 +72,12 @@ THINGS = ["b" * 24, *["b" + "." * 22 + "b"] * 3, *["b" + "." * 12 + "ggg" + "." 
 THINGS += ["b" + "." * 22 + "b"] * 5 + ["b...U" + "." * 18 + "b"] + ["b" + "." * 22 + "b"] * 4 + ["b" * 24]
 
 
-def run(rows: list[str], task: Task, **options: int) -> tuple[Robot, DrawnBody]:
-    body = DrawnBody(rows)
+ROOMS = ["b" * 32, *["b" + "." * 14 + "bb" + "." * 14 + "b"] * 6, *["b" + "." * 30 + "b"] * 4]
+ROOMS += ["b..U" + "." * 11 + "bb" + "." * 14 + "b", *["b" + "." * 14 + "bb" + "." * 14 + "b"] * 5, "b" * 32]
+
+
+def run(rows: list[str], task: Task, heading: int = 0, **options: int) -> tuple[Robot, DrawnBody]:
+    body = DrawnBody(rows, heading)
     robot = Robot(body, task, Options(**options))
     robot.wake()
     while not robot.finished:
@@ -128,6 +137,43 @@ def test_each_step_reports_command_belief_and_reason() -> None:
         assert report.belief["cells"].get("noise", 0) == 0
         assert all(fact.endswith(").") for fact in report.belief["facts"])
     assert set(report.belief["bound"]) == {"x"}
+
+
+@pytest.mark.parametrize("task", [Task({}, (), (NORTHEAST,)), SQUARE], ids=["corner", "square"])
+def test_a_quarter_turn_of_table_and_heading_changes_nothing(task: Task) -> None:
+    rows, want = THINGS, run(THINGS, task)[1].commands
+    for heading in (90, 180, 270):
+        rows = [row[::-1] for row in zip(*rows[::-1], strict=True)][::-1]
+        assert run(["".join(row) for row in rows], task, heading)[1].commands == want
+
+
+def test_the_next_room() -> None:
+    task = Task({}, (), (goal("in", "utak", term("room(next)")),))
+    robot, body = run(ROOMS, task)
+    assert robot.verdict.believed
+    assert body.square[0] >= 17
+
+
+def test_round_a_thing_and_back() -> None:
+    circled = goal("circled", "utak", term("x"))
+    task = Task(SQUARE.parameters, SQUARE.claims, (circled, goal("at", "utak", term("start"))))
+    robot, body = run(THINGS, task)
+    assert robot.verdict.believed
+    x, y = body.track[0]
+    assert max(abs(body.square[0] - x), abs(body.square[1] - y)) <= 1
+    about = (14.5, 10.5)
+    angles = [math.atan2(j + 0.5 - about[1], i + 0.5 - about[0]) for i, j in [*body.track, body.track[0]]]
+    turns = sum((b - a + math.pi) % (2 * math.pi) - math.pi for a, b in pairwise(angles)) / (2 * math.pi)
+    assert abs(round(turns)) == 1
+
+
+def test_one_after_the_other() -> None:
+    corner = goal("at", "utak", term("corner(southwest)"))
+    task = Task({}, (), (Symbol("first", (NORTHEAST,), NOWHERE), Symbol("then", (corner,), NOWHERE)))
+    robot, body = run(EMPTY, task)
+    assert robot.verdict.believed
+    assert body.square == (1, 1)
+    assert (20, 16) in body.track
 
 
 def test_the_same_world_is_walked_the_same_way() -> None:
