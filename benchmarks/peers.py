@@ -1,5 +1,6 @@
 """The libraries that screens are compared with: same map, same ends, same process, prepared beforehand."""
 
+import os
 from collections.abc import Callable
 from itertools import islice
 
@@ -21,6 +22,16 @@ def skeleton_graph(free: np.ndarray) -> object:
     """skimage.skeletonize, sknw and a distance transform: a pathgraph with clearance."""
     padded = np.pad(free, 1)
     return build_sknw(skeletonize(padded).astype(np.uint16), multi=True), distance_transform_edt(padded)
+
+
+def survives(free: np.ndarray) -> bool:
+    """Whether sknw gets through a map without killing its process, which on some it does; tried in another process."""
+    child = os.fork()
+    if child == 0:
+        for _ in range(6):
+            skeleton_graph(free)
+        os._exit(0)
+    return os.waitpid(child, 0)[1] == 0
 
 
 def components_and_holes(free: np.ndarray) -> tuple[int, int]:

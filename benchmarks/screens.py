@@ -62,7 +62,7 @@ def build(maps: dict[Path, np.ndarray], _: int) -> None:
     for path, free in maps.items():
         screen = Screen(free)
         ours = least(lambda free=free: Screen(free), 15)
-        peer = least(lambda free=free: peers.skeleton_graph(free), 5)
+        peer = least(lambda free=free: peers.skeleton_graph(free), 5) if peers.survives(free) else np.nan
         kept: list[Screen] = []
         fresh = least(lambda free=free, kept=kept: kept.append(Screen(free)), 10)
         tracemalloc.start()
@@ -70,7 +70,7 @@ def build(maps: dict[Path, np.ndarray], _: int) -> None:
         peak = tracemalloc.get_traced_memory()[1] / free.size
         tracemalloc.stop()
         right = [topology(again, r) == peers.components_and_holes(free & (screen.clearance >= r)) for r in range(6)]
-        if free.size >= 512 * 512:
+        if free.size >= 512 * 512 and peer > 0.0:
             large.append(peer / ours)
         size = f"{free.shape[0]}x{free.shape[1]}"
         verdict = "right" if all(right) else f"wrong {right}"
@@ -86,8 +86,8 @@ def build(maps: dict[Path, np.ndarray], _: int) -> None:
 
 
 def growth(maps: dict[Path, np.ndarray], _: int) -> None:
-    name = max(maps, key=lambda path: maps[path].size)
-    free = maps[name][:1024, :1024]
+    name = min(maps, key=lambda path: (maps[path].size < 256 * 256, maps[path].size))  # one texture at every size
+    free = maps[name]
     print(f"{'growth of ' + name.stem + ', tiled':40} ms and ns a cell")
     sizes, times = [], []
     for n in (256, 512, 1024, 2048, 4096):

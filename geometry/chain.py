@@ -71,6 +71,8 @@ def find_chain(
     have been set to 0, which forgets all searches before).
     """
     _repair(tree, mover, ground, hunt, nth)
+    if tree.kind[start] == DEAD and not dead:
+        return 0
     if hunt.state[start] == UNSEEN:
         hunt.cost[start], hunt.before[start], hunt.state[start] = 0.0, -1, OFFERED
         push(hunt.key, hunt.item, hunt.size, 0.0, start)

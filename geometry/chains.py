@@ -77,7 +77,7 @@ def count(state: States, words: Words) -> tuple[int, int, int]:
         if words[word] == 0:
             continue
         for cell in range(8 * word, min(8 * word + 8, states.shape[0])):
-            here = states[cell]
+            here = int(states[cell])
             degree = (here & 1) + (here >> 1 & 1) + (here >> 2 & 1) + (here >> 3 & 1)
             links += degree
             if is_node(here):
@@ -120,32 +120,48 @@ def walk_all(
         for direction in range(4):
             if leave[n, direction] >= 0 or not states[node[n]] >> direction & 1:
                 continue
-            first = used
-            used, back = walk(node[n], direction, states, width, cells, used)
+            used, back, neck[chain], length[chain] = walk(node[n], direction, heights, states, width, cells, used)
             other = find(node, cells[used - 1])
             leave[n, direction] = chain
             leave[other, back] = chain
             ends[chain, 0], ends[chain, 1] = n, other
             start[chain + 1] = used
-            neck[chain] = lowest(cells, first, used, heights)
-            length[chain] = measure_chain(cells, first, used, width)
             chain += 1
     return used - chain
 
 
 @compiled
-def walk(cell: int, direction: int, states: States, width: int, cells: Ints, used: int) -> tuple[int, int]:
-    """Write one chain's cells from ``used`` on; returns where they end and the direction back from the last."""
+def walk(
+    cell: int, direction: int, heights: Squares, states: States, width: int, cells: Ints, used: int
+) -> tuple[int, int, int, float]:
+    """Write one chain's cells from ``used`` on.
+
+    Returns where they end, the direction back from the last, the position of the lowest, and the chain's length.
+    """
     cells[used] = cell
-    used += 1
+    neck, low, lowest, length = used, heights[cell], cell, 0.0
+    run, rise, steps = 0, 0, 0
     while True:
-        cell += stride(direction, width)
-        cells[used] = cell
         used += 1
-        back = direction ^ 2
-        if is_node(states[cell]):
-            return used, back
-        direction = onward(states[cell], back)
+        if direction & 1:
+            rise += 2 - direction
+            cell += width if direction == 1 else -width
+        else:
+            run += 1 - direction
+            cell += 1 if direction == 0 else -1
+        cells[used] = cell
+        steps += 1
+        height = heights[cell]
+        if height < low or (height == low and cell < lowest):
+            neck, low, lowest = used, height, cell
+        here = states[cell]
+        end = is_node(here)
+        if end or steps == CHORD:
+            length += np.sqrt(float(run * run + rise * rise))
+            run, rise, steps = 0, 0, 0
+        if end:
+            return used + 1, direction ^ 2, neck, length
+        direction = onward(here, direction ^ 2)
 
 
 @compiled
@@ -176,31 +192,6 @@ def find(node: Ints, cell: int) -> int:
         else:
             high = middle
     return low
-
-
-@compiled
-def lowest(cells: Ints, first: int, last: int, heights: Squares) -> int:
-    """The position of the lowest cell among ``first <= position < last``."""
-    best = first
-    for k in range(first + 1, last):
-        here, there = heights[cells[k]], heights[cells[best]]
-        if here < there or (here == there and cells[k] < cells[best]):
-            best = k
-    return best
-
-
-@compiled
-def measure_chain(cells: Ints, first: int, last: int, width: int) -> float:
-    """The length of the chords of CHORD steps along a chain."""
-    total = 0.0
-    k = first
-    while k < last - 1:
-        onto = min(k + CHORD, last - 1)
-        rise = cells[onto] // width - cells[k] // width
-        run = cells[onto] % width - cells[k] % width
-        total += np.sqrt(rise * rise + run * run)
-        k = onto
-    return total
 
 
 @compiled

@@ -127,14 +127,16 @@ def meeting(tree: Tree, a: int, b: int) -> tuple[float, float, float]:
 def _blame(tree: Tree, scene: Scene, chain: Ints, last: int, n: int, length: int) -> int:
     """Split the cell that a failed hop leads into, and the one that it leaves when that is as doubtful and as large."""
     blamed = 0
+    if n == 0 and length > 1 and last < 0 and not splittable(tree, chain[0], scene.mover):
+        return _divide(tree, scene, chain[1])  # the start's own cell is as small as can be: come nearer to it
     if n < length and tree.kind[chain[n]] != FREE:
         blamed += _divide(tree, scene, chain[n])
     if last >= 0 and tree.kind[chain[last]] == OPEN:
         large = n < length and tree.box[chain[last], 3] <= tree.box[chain[n], 3]
         if blamed == 0 or large:
             blamed += _divide(tree, scene, chain[last])
-    if blamed == 0 and n == length:
-        blamed += _divide(tree, scene, chain[length - 1])
+    if blamed == 0:
+        blamed += _divide(tree, scene, chain[min(n, length - 1)])
     return blamed
 
 

@@ -26,10 +26,11 @@ class Layer(NamedTuple):
     """False for a point, which may use whole squares; True for a body, whose centre keeps to the lines of centres."""
 
 
-def new_state(shape: tuple[int, int]) -> tuple[States, Words]:
-    """A cleared ``state`` of that padded shape and the same memory by eights."""
+def new_state(shape: tuple[int, ...], words: Words | None = None) -> tuple[States, Words]:
+    """A ``state`` of that padded shape and the same memory by eights, fresh or as given."""
     cells = shape[0] * shape[1]
-    words = np.zeros((cells + 7) // 8, np.uint64)
+    if words is None:
+        words = np.zeros((cells + 7) // 8, np.uint64)
     return words.view(np.uint8)[:cells].reshape(shape), words
 
 

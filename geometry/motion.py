@@ -27,7 +27,7 @@ from geometry.rigid import Motion, Pose, Translate
 __all__ = ["Inside", "Plan", "plan_motion"]
 
 Floats = npt.NDArray[np.float64]
-CAPACITY = 300_000  # cells
+CAPACITY = 100_000  # cells: enough for margins of a few times the resolution
 COARSE, FEW = 1e-3, 40_000  # resolution and cells for the missing width
 
 

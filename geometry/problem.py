@@ -16,7 +16,7 @@ from geometry.hop import BLOCKED, hop
 from geometry.mover import centre_pose
 from geometry.rigid import Motion, Pose
 from geometry.separation import Ground, Mover
-from geometry.shorten import motions_along, shorten
+from geometry.shorten import loosened, motions_along, shorten
 
 Floats = npt.NDArray[np.float64]
 
@@ -74,12 +74,15 @@ class Problem:
         if straight is not None and hop(self.mover, self.ground, self.floor.surface, *straight) != BLOCKED:
             return "found", motions_along(self.mover, self.ground, self.floor.surface, straight)
         scene = Scene(self.mover, self.ground, self.floor.surface)
+        start, end = self.start, self.end
+        self.start = loosened(*scene, start, True)
+        self.end = loosened(*scene, end, False) if len(end) else end
         way = Way(np.empty((2 * len(self.tree.child) + 2, 3)), np.ones(1, np.int64), self.end)
         way.poses[0] = self.start
         while length := self._chain(False):
             if follow(self.tree, scene, self.hunt.chain, length, bool(self.hunt.seen[1]), way) == 0:
-                poses = shorten(self.mover, self.ground, self.floor.surface, way.poses[: way.used[0]])
-                return "found", motions_along(self.mover, self.ground, self.floor.surface, poses)
+                found = np.vstack([start, way.poses[: way.used[0]], end.reshape(-1, 3)])
+                return "found", motions_along(*scene, shorten(*scene, found))
         lost = bool(self.hunt.size[1])
         self.hunt.seen[0] = self.hunt.size[0] = 0
         return "limit" if lost or self._chain(True) > 0 else "impossible", ()

@@ -19,14 +19,14 @@ from geometry.skeleton import SADDLE
 from geometry.tightening import tight_route
 
 XY = tuple[float, float]
-SPARE, FEWER = 8, 2  # ways tried beyond those wanted, since their order changes when ropes are pulled tight
+SPARE, FEWER = 8, 1  # ways tried beyond those wanted, since their order changes when ropes are pulled tight
 SMALL = 128  # chains of a pathgraph up to which SPARE ways are tried, else FEWER
 SLACK = 1.03  # how much more than any way found a way beyond them may shrink
 NO_BARS: Ints = np.zeros((0, 2), np.int32)
 
 
 def may_miss(desk: Desk, found: int) -> bool:
-    """Whether a way beyond those found may still be the shortest when tight: ways shrink by some share, and are many."""
+    """Whether a way beyond those found may be the shortest of all when tight, should it shrink a little more."""
     cost, length = desk.album.cost[:found], desk.answers.length[:found]
     return bool(length.min() > 0.0 and cost[-1] < SLACK * length.min() * (cost / length).max())
 

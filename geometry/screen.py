@@ -17,6 +17,7 @@ from geometry.parts import Labels, find_parts
 from geometry.passages import Passage, find_passages
 from geometry.polyline import word_of_line
 from geometry.questions import Questions
+from geometry.recycling import take_buffers
 from geometry.route import Route
 from geometry.skeleton import States, Words
 from geometry.tightening import tight_route, word_of_crossings
@@ -55,8 +56,7 @@ class Screen:
         grid = checked_grid(free)
         rows, columns = grid.shape
         self.shape = (rows, columns)
-        self._gap = np.empty((rows + 2, columns + 2), np.int16)
-        self._square = np.empty((rows + 2, columns + 2), np.int32)
+        self._gap, self._square, self._words = take_buffers(self, (rows + 2, columns + 2))
         sites = np.empty((2, columns + 3), np.int64)
         count_columns(grid, self._gap)
         measure(self._gap, self._square, sites[0], sites[1])
@@ -217,7 +217,7 @@ class Screen:
         """The skeleton and pathgraph of the squares of at least that level."""
         found = self._skeletons.get(level)
         if found is None:
-            state, words = new_state((self.shape[0] + 2, self.shape[1] + 2))
+            state, words = new_state(self._square.shape, self._words if level == 1 else None)
             found = state, words, find_chains(self._square, level, state, words)
             self._skeletons[level] = found
         return found

@@ -152,9 +152,8 @@ def bound(sight: Floats, goal: Floats, node: int) -> float:
     """A lower bound of the way from a node to the goal by the triangle inequality over the landmarks."""
     least = 0.0
     for k in range(goal.shape[0]):
-        ahead = abs(sight[node, k] - goal[k])
-        if ahead > least:  # false for two infinities
-            least = ahead
+        if sight[node, k] != goal[k]:  # not both infinite
+            least = max(least, abs(sight[node, k] - goal[k]))
     return least
 
 

@@ -13,6 +13,7 @@ from geometry.rigid import Motion, Rotate, Translate
 from geometry.separation import Ground, Mover, distance_at
 
 Floats = npt.NDArray[np.float64]
+LOOSE = 0.01  # of the body's radius: with less room a pose counts as touching
 PULLS = 4  # times that every corner of the way is pulled straight
 
 
@@ -69,6 +70,31 @@ def _make_room(mover: Mover, ground: Ground, pose: Floats) -> None:
                 pose[k // 2] -= size
         if not better:
             step *= 0.5
+
+
+@compiled
+def loosened(mover: Mover, ground: Ground, surface: Surface, pose: Floats, leaving: bool) -> Floats:
+    """A pose near one that touches obstacles, with more room about it and a free push from there or, leaving, to there.
+
+    Where a body touches no cell is free: a search must begin and end a little away from the wall.
+    """
+    best, found, tried = _room(mover, ground, pose), pose.copy(), pose.copy()
+    if best > LOOSE * mover.radius:
+        return found
+    size = 0.2 * mover.radius
+    while size > 0.001 * mover.radius:
+        for k in range(32):
+            tried[0] = pose[0] + size * math.cos(k * math.pi / 16)
+            tried[1] = pose[1] + size * math.sin(k * math.pi / 16)
+            room = _room(mover, ground, tried)
+            if room <= best:
+                continue
+            way = hop(mover, ground, surface, pose, tried) if leaving else hop(mover, ground, surface, tried, pose)
+            if way != BLOCKED:
+                best = room
+                put(found, tried)
+        size *= 0.7
+    return found
 
 
 @compiled

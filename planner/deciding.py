@@ -26,6 +26,7 @@ from planner.walking import next_move
 from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
+ODD = -10.0  # squares: how much rather what no straight wall explains is looked at
 DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
 
 
@@ -194,7 +195,8 @@ def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconc
         return aims
     for apart in (exploring.APART, 0):
         explored = [Aim("explore", *look) for look in exploring.frontiers(screens, apart)]
-        settled = [Aim("settle", *look) for look in exploring.vague_places(screens, apart)]
+        settled = [Aim("settle", *look, ODD) for look in exploring.vague_places(screens, apart, odd=True)]
+        settled += [Aim("settle", *look) for look in exploring.vague_places(screens, apart, odd=False)]
         if explored or settled:
             break
     beyond = [Aim("pass", *look) for look in exploring.rooms_beyond(screens)]

@@ -14,7 +14,10 @@ from kb.worldmodel import SPACE, Node
 from planner.screen import Screens, Squares, grown
 
 CLOSE = 3  # squares from which a thing lies within the fovea, whichever way it is seen
+Mask = NDArray[np.bool_]
 APART = 2  # squares: a new look is first sought further than this from earlier ones
+FIELD = 4  # squares: the side of the largest retinal fields
+ALIKE = 0.2  # of a field: what is occupied of two fields that show the same wall differs by no more
 SMALLEST_ROOM = 6  # squares of floor that are worth a passage
 
 
@@ -32,10 +35,15 @@ def frontiers(screens: Screens, apart: int) -> list[Lookout]:
     return [Lookout(squares, "the floor goes on unseen") for squares in _groups(np.where(border, labels, 0))]
 
 
-def vague_places(screens: Screens, apart: int) -> list[Lookout]:
-    """Floor close to things beside it that were seen only coarsely, one Lookout for each connected stretch of them."""
+def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:
+    """Floor close to things beside it that were seen only coarsely, one Lookout for each connected stretch of them.
+
+    odd : only those that no straight wall explains, and that may so be an object or a door; else all of them.
+    """
     view = screens.model.view
     open_ = view.seen & (view.state == OPEN) & (view.probability > SPACE) & grown(screens.floor, 1)
+    if odd:
+        open_ &= ~_wall_like(view.probability, view.seen)
     labels = np.where(open_, components(grown(open_, 1)).labels, 0)
     near = np.where(_new(screens, apart), _spread(labels, CLOSE), 0)
     return [Lookout(squares, "what bounds the floor is not clear") for squares in _groups(near)]
@@ -60,6 +68,31 @@ def rooms_beyond(screens: Screens) -> list[Lookout]:
     apart = components(screens.model.space & ~screens.floor).labels
     what = "floor is seen beyond, so a passage must lead there"
     return [Lookout(squares, what) for squares in _groups(apart) if len(squares) >= SMALLEST_ROOM]
+
+
+def _wall_like(probability: NDArray[np.float32], seen: Mask) -> Mask:
+    """Squares about which it looks the same a field further on, both ways along rows or both ways along columns."""
+    share = _mean(np.where(seen, probability, 0.0)) / np.maximum(_mean(seen.astype(np.float64)), 1e-9)
+    known = _mean(seen.astype(np.float64)) > 0.5
+    alike = []
+    for axis in (0, 1):
+        same = np.ones(seen.shape, np.bool_)
+        for step in (-FIELD, FIELD):
+            further, there = np.roll(share, step, axis), np.roll(known, step, axis)
+            same &= ~there | (np.abs(further - share) <= ALIKE)
+        alike.append(same)
+    mask: Mask = alike[0] | alike[1]
+    return mask
+
+
+def _mean(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The mean over FIELD x FIELD squares about each square, as far as they lie within the array."""
+    for axis in (0, 1):
+        padded = np.pad(values, [(FIELD // 2 + 1, FIELD // 2) if a == axis else (0, 0) for a in (0, 1)])
+        sums = np.cumsum(padded, axis=axis)
+        low, high = (np.take(sums, np.arange(k, k + values.shape[axis]), axis=axis) for k in (0, FIELD))
+        values = (high - low) / FIELD
+    return values
 
 
 def _new(screens: Screens, apart: int) -> NDArray[np.bool_]:

@@ -95,6 +95,15 @@ def test_a_start_that_touches_walls() -> None:
     check(plan_motion(BRICK, walls, start, goal), BRICK, walls, start, goal)
 
 
+def test_an_exact_fit_is_never_called_impossible() -> None:
+    """Flush on both sides in a slot no cell has room for the body: the limit of the method, and said to be."""
+    slot = box(0, 0, 20, 12).difference(box(1, 1, 13, 11)).difference(box(13, 5, 19, 7))
+    assert plan_motion(BRICK, slot, Pose(16, 6, 0), Pose(5, 5, 90), cells=3000).status == "limit"
+    roomy = box(0, 0, 20, 12).difference(box(1, 1, 13, 11)).difference(box(13, 4.95, 19, 7))
+    start, goal = Pose(16, 6, 0), Pose(5, 5, 90)
+    check(plan_motion(BRICK, roomy, start, goal), BRICK, roomy, start, goal)
+
+
 def test_an_overlap_at_either_end_is_told() -> None:
     walls = two_rooms(3.0)
     assert plan_motion(BRICK, walls, Pose(12, 2), Pose(5, 5)).reason == "start"

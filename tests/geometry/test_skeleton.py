@@ -16,12 +16,13 @@ def topology(graph):
     return components, graph.number_of_edges() - graph.number_of_nodes() + components
 
 
+@settings(deadline=None)
 @given(oracles.screens())
 def test_clearance_is_exact(free):
     assert np.allclose(Screen(free).clearance, oracles.clearance(free), rtol=0, atol=1e-12)
 
 
-@settings(max_examples=200)
+@settings(max_examples=200, deadline=None)
 @given(oracles.screens(most=16))
 def test_pathgraph_has_the_components_and_holes_of_free_space_for_every_radius(free):
     screen = Screen(free)
@@ -30,7 +31,7 @@ def test_pathgraph_has_the_components_and_holes_of_free_space_for_every_radius(f
         assert topology(screen.pathgraph_for(radius)) == oracles.components_and_holes(space)
 
 
-@settings(max_examples=200)
+@settings(max_examples=200, deadline=None)
 @given(oracles.screens(most=16))
 def test_skeleton_is_thin_and_connected_as_free_space_is(free):
     skeleton = Screen(free).skeleton
@@ -44,6 +45,7 @@ def test_skeleton_is_thin_and_connected_as_free_space_is(free):
             assert oracles.components_and_holes(without) != oracles.components_and_holes(free)
 
 
+@settings(deadline=None)
 @given(oracles.screens())
 def test_chains_are_unbroken_and_their_necks_are_their_narrowest_places(free):
     screen = Screen(free)

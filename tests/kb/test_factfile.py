@@ -12,6 +12,8 @@ from kb.factfile import facts_of, read_facts
 from kb.facts import Number, Symbol, Text
 from kb.problems import BadInputError, CannotOpenError
 
+GIVEN_UP = 60.0  # seconds of the processor: far beyond what reading takes, far below what it took if it were quadratic
+
 
 def problems(text: str) -> list[str]:
     """The problems of a text, each as line:col-col: what."""
@@ -122,19 +124,19 @@ def test_at_most_twenty_problems_are_shown() -> None:
 
 @pytest.mark.parametrize("text", ["p(X).\n", "(", "\u00e9", "p(", '"', "a.", '"a\\\\"', "%*", "\n", "p(x,"])
 def test_big_files_are_soon_done_with(text: str) -> None:
-    start = time.monotonic()
+    start = time.process_time()
     with pytest.raises(BadInputError) as caught:
         facts_of(text * (1_000_000 // len(text)) + "X")
     assert len(caught.value.problems) <= 101
-    assert time.monotonic() - start < 5
+    assert time.process_time() - start < GIVEN_UP
 
 
 def test_a_long_string_is_soon_read() -> None:
-    start = time.monotonic()
+    start = time.process_time()
     (fact,) = facts_of('p("' + "1 2, " * 200_000 + '\\n").')
     assert isinstance(fact.args[0], Text)
     assert fact.args[0].value.endswith("2, \n")
-    assert time.monotonic() - start < 2
+    assert time.process_time() - start < GIVEN_UP
 
 
 def test_utf16_is_named(tmp_path: Path) -> None:
