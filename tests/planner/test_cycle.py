@@ -98,7 +98,7 @@ def test_go_to_the_square() -> None:
     assert robot.verdict.believed
     x, y = body.square
     assert 12 <= x <= 16
-    assert 8 <= y <= 12
+    assert 10 <= y <= 14
 
 
 def test_what_is_not_there_is_looked_for_and_given_up() -> None:
@@ -161,7 +161,7 @@ def test_round_a_thing_and_back() -> None:
     assert robot.verdict.believed
     x, y = body.track[0]
     assert max(abs(body.square[0] - x), abs(body.square[1] - y)) <= 1
-    about = (14.5, 10.5)
+    about = (14.5, 12.5)
     angles = [math.atan2(j + 0.5 - about[1], i + 0.5 - about[0]) for i, j in [*body.track, body.track[0]]]
     turns = sum((b - a + math.pi) % (2 * math.pi) - math.pi for a, b in pairwise(angles)) / (2 * math.pi)
     assert abs(round(turns)) == 1

@@ -183,7 +183,7 @@ def test_frontiers_border_on_what_was_never_seen() -> None:
     assert np.array_equal(found, np.flatnonzero(screens.floor & near))
     closed = Screens(seen_whole(HALL))
     assert exploring.frontiers(closed, 0) == []
-    assert exploring.vague_places(closed, 0) == []
+    assert exploring.vague_places(closed, 0, odd=False) == []
     assert exploring.rooms_beyond(closed) == []
 
 
@@ -245,3 +245,14 @@ def test_the_pivot_lies_within_the_object() -> None:
     (node,) = model.objects
     x, y = pivot(node)
     assert (int(np.floor(x)), int(np.floor(y))) in node.patch.squares()
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_what_no_wall_explains_is_part_of_what_is_vague(seed: int) -> None:
+    screens = Screens(random_walk(seed))
+
+    def squares(odd: bool) -> set[int]:
+        return {int(s) for look in exploring.vague_places(screens, 0, odd=odd) for s in look.squares}
+
+    assert squares(odd=True) <= squares(odd=False) <= set(np.flatnonzero(screens.floor).tolist())
