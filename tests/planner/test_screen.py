@@ -183,7 +183,7 @@ def test_frontiers_border_on_what_was_never_seen() -> None:
     assert np.array_equal(found, np.flatnonzero(screens.floor & near))
     closed = Screens(seen_whole(HALL))
     assert exploring.frontiers(closed, 0) == []
-    assert exploring.vague_places(closed, 0) == []
+    assert exploring.vague_places(closed, 0, odd=False) == []
     assert exploring.rooms_beyond(closed) == []
 
 
