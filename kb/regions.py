@@ -81,10 +81,10 @@ def map_regions(
     sure = np.bincount(labels.ravel(), certain.ravel(), minlength=count + 1)
     weight = occupied if probability is None else probability
     mass = np.bincount(labels.ravel(), weight.ravel(), minlength=count + 1)
-    extents = _extents(labels, count)
+    longest = extents(labels, count)
     regions = tuple(
         Region(
-            f"part{n}", n > zero.number, int(100 * sure[n] // size[n]), n in open_, int(extents[n]), round(10 * mass[n])
+            f"part{n}", n > zero.number, int(100 * sure[n] // size[n]), n in open_, int(longest[n]), round(10 * mass[n])
         )
         for n in range(1, count + 1)
     )
@@ -115,7 +115,8 @@ def _cell_region(name: str, members: Iterable[int], levels: tuple[int, ...], ran
     return Region(name, occupied, 100 * right // area, bool(rim() & set(cells)), extent, mass)
 
 
-def _extents(labels: NDArray[np.int32], count: int) -> NDArray[np.int64]:
+def extents(labels: NDArray[np.int32], count: int) -> NDArray[np.int64]:
+    """The longer side of each label's containing rectangle, for labels 0 to count of a (rows, columns) array."""
     answer = np.zeros(count + 1, np.int64)
     for positions in np.ogrid[: labels.shape[0], : labels.shape[1]]:
         place = np.broadcast_to(positions, labels.shape).ravel()

@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +19,12 @@ from geometry.components import components
 from geometry.passages import Passage
 from kb.encodings import KB, solve
 from kb.evidence import FULL, OPEN
+from kb.regions import extents
 from kb.worldmodel import SPACE, WorldModel
 
 Mask = NDArray[np.bool_]
 Floats = NDArray[np.float64]
+Indices = tuple[NDArray[np.int64], NDArray[np.int64]]
 SMALLEST_WALL = 13  # squares: what is surely one thing and as long as this is no object
 SURE = 60  # percent: a door is one from here on
 DEEPEST = 12.0  # squares: how far a doorway is followed into the wall
@@ -88,7 +91,8 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = ()) -> Rooms:
     if not verge.any():
         return Rooms((), np.ones(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
     screen = Screen(~verge)
-    necks = [(passage, _known(passage, model, verge)) for passage in screen.passages()]
+    walls, seen_verge = _walls(model), verge & model.view.seen
+    necks = [(passage, _known(passage, model, seen_verge, walls)) for passage in screen.passages()]
     possible = _doors(necks, rules)
     floor = ~verge & model.view.seen
     if not floor.any():
@@ -118,7 +122,19 @@ def _doors(necks: Iterable[tuple[Passage, int]], rules: tuple[Path, ...]) -> lis
     return [(known[number][0], confidence) for number, confidence in sorted(chosen.items())]
 
 
-def _known(passage: Passage, model: WorldModel, verge: Mask) -> int:
+class _Walls(NamedTuple):
+    """What is surely one thing: (rows, columns) labels, 0 for none, and by label how long it is, in squares."""
+
+    labels: NDArray[np.int32]
+    extents: NDArray[np.int64]
+
+
+def _walls(model: WorldModel) -> _Walls:
+    found = components(model.view.state == FULL)
+    return _Walls(found.labels, extents(found.labels, found.number))
+
+
+def _known(passage: Passage, model: WorldModel, verge: Mask, walls: _Walls) -> int:
     """Percent of belief that a neck is open from wall to wall and that its walls are verge."""
     (ax, ay), (bx, by) = passage.a, passage.b
     count = max(2, round(2 * math.dist(passage.a, passage.b)))
@@ -126,35 +142,30 @@ def _known(passage: Passage, model: WorldModel, verge: Mask) -> int:
     across = _squares(ax + (bx - ax) * parts, ay + (by - ay) * parts, verge.shape)
     if not (model.view.seen[across] & ((model.view.probability[across] <= SPACE) | ~verge[across])).all():
         return 0
-    walls: list[Mask] = [_near(verge, end) & model.view.seen for end in (passage.a, passage.b)]
-    if not all(wall.any() for wall in walls):
+    jambs = [_jamb(verge, end) for end in (passage.a, passage.b)]
+    if not all(len(rows) for rows, _ in jambs):
         return 0
-    settled = model.view.state != OPEN
-    walled = min(_extent_of_wall(model, wall) for wall in walls)
+    walled = min(int(walls.extents[walls.labels[jamb]].max()) for jamb in jambs)
     if walled < SMALLEST_WALL:
         return min(50, round(50 * walled / SMALLEST_WALL))
-    return round(50 + 50 * min(float(settled[across].mean()), *(float(settled[wall].mean()) for wall in walls)))
+    state = model.view.state
+    return round(50 + 50 * min(float((state[where] != OPEN).mean()) for where in (across, *jambs)))
 
 
-def _extent_of_wall(model: WorldModel, wall: Mask) -> int:
-    """How long that is, in squares, which is surely one thing with a jamb."""
-    full = components(model.view.state == FULL).labels
-    own = full[wall]
-    if not own.any():
-        return 0
-    rows, columns = np.nonzero(full == own[own > 0][0])
-    return int(max(np.ptp(rows), np.ptp(columns))) + 1
+def _jamb(wall: Mask, end: tuple[float, float]) -> Indices:
+    """The squares of a wall that an end of a neck touches, as rows and columns."""
+    columns, rows = (sorted({math.floor(v - 0.5), math.floor(v + 0.5)}) for v in end)
+    touched = [
+        (row, column)
+        for row in rows
+        for column in columns
+        if 0 <= row < wall.shape[0] and 0 <= column < wall.shape[1] and wall[row, column]
+    ]
+    pairs = np.array(touched, np.int64).reshape(-1, 2)
+    return pairs[:, 0], pairs[:, 1]
 
 
-def _near(verge: Mask, end: tuple[float, float]) -> Mask:
-    """The squares of the verge that an end of a neck touches."""
-    mask = np.zeros(verge.shape, np.bool_)
-    low, high = ([max(0, math.floor(v + shift)) for v in end] for shift in (-0.5, 0.5))
-    mask[low[1] : high[1] + 1, low[0] : high[0] + 1] = verge[low[1] : high[1] + 1, low[0] : high[0] + 1]
-    return mask
-
-
-def _squares(x: NDArray[np.float64], y: NDArray[np.float64], shape: tuple[int, ...]) -> tuple[NDArray[np.int64], ...]:
+def _squares(x: Floats, y: Floats, shape: tuple[int, ...]) -> Indices:
     rows = np.clip(np.floor(y).astype(int), 0, shape[0] - 1)
     return rows, np.clip(np.floor(x).astype(int), 0, shape[1] - 1)
 
