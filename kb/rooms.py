@@ -25,7 +25,7 @@ from kb.worldmodel import SPACE, WorldModel
 Mask = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Indices = tuple[NDArray[np.int64], NDArray[np.int64]]
-SMALLEST_WALL = 13  # squares: what is surely one thing and as long as this is no object
+SMALLEST_WALL = 18  # squares: what is surely one thing and as long as this is no object
 SURE = 60  # percent: a door is one from here on
 DEEPEST = 12.0  # squares: how far a doorway is followed into the wall
 STEP = 0.5
