@@ -6,6 +6,7 @@ numba is imported when the first kernel is called, never at import. A kernel is 
 
 import sys
 from collections.abc import Callable
+from functools import cache
 from threading import Timer
 from types import FunctionType
 from typing import Any, Generic, ParamSpec, TypeVar, cast
@@ -78,7 +79,7 @@ def _compile(machine: Any, args: tuple[Any, ...]) -> None:
     """Compile for these arguments without running, and say so when it takes long."""
     if not hasattr(machine, "typeof_pyval"):
         return
-    notice = Timer(PATIENCE, _tell)
+    notice = Timer(PATIENCE, tell)
     notice.daemon = True
     notice.start()
     try:
@@ -87,5 +88,7 @@ def _compile(machine: Any, args: tuple[Any, ...]) -> None:
         notice.cancel()
 
 
-def _tell() -> None:
+@cache
+def tell() -> None:
+    """Say it once in a process."""
     print("utak: compiling geometry kernels (once per installation) ...", file=sys.stderr, flush=True)

@@ -10,8 +10,8 @@ import sys
 from pathlib import Path
 
 import geometry
+from geometry.compiled import tell
 
-NOTICE = "utak: compiling the geometry kernels, once per installation; this takes up to half a minute ..."
 INDEX = "itinerary.itineraries-*.nbi"  # numba's index of the kernel that takes longest
 
 
@@ -19,7 +19,7 @@ def warm() -> None:
     """Compile the kernels that a robot needs, if they are not in the cache; say so on stderr."""
     if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0" or not cold():
         return
-    print(NOTICE, file=sys.stderr, flush=True)
+    tell()
     command = [sys.executable, "-m", "simulator.warming"]
     with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL):
         compile_routes()
