@@ -16,6 +16,7 @@ from planner.exploring import Lookout, rooms_beyond
 from planner.screen import Screens, Squares, grown
 
 Mask = NDArray[np.bool_]
+RAYS = 192  # places along a line of sight at which it may meet the verge
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,9 @@ def destination(goal: Fact, situation: Situation) -> Destination:
         return beside(str(where), situation)
     if goal.name in ("in", "through"):
         return _room(goal, where, situation)
-    return nowhere(f"how {goal} is attained")
+    if goal.name == "around":
+        return around_corner(situation)
+    raise ValueError(f"not a goal of place: {goal}")
 
 
 def corner(side: str, situation: Situation) -> Destination:
@@ -111,6 +114,26 @@ def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
         else "no next room is seen yet that can be reached"
     )
     return nowhere(what, tuple(rooms_beyond(situation.screens)))
+
+
+def around_corner(situation: Situation) -> Destination:
+    """The squares wholly out of sight of the place where Utak woke: a corner of the verge lies in between."""
+    squares = np.flatnonzero(_out_of_sight(situation.model) & situation.screens.floor)
+    return Destination(squares) if len(squares) else nowhere("no corner is seen yet that hides a place")
+
+
+def _out_of_sight(model: WorldModel) -> Mask:
+    """(rows, columns): squares none of whose corners is seen from the place of waking past the verge."""
+    verge = model.verge
+    height, width = verge.shape
+    x, y = model.lattice.woke[0] - model.view.west, model.lattice.woke[1] - model.view.south
+    corners = np.stack(np.meshgrid(np.arange(width + 1), np.arange(height + 1)), axis=-1).astype(float)
+    hidden = np.zeros(corners.shape[:2], np.bool_)
+    for part in (np.arange(RAYS) + 0.5) / RAYS:
+        columns, rows = np.moveaxis(np.floor((1 - part) * np.array([x, y]) + part * corners).astype(int), -1, 0)
+        hidden |= verge[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)]
+    mask: Mask = hidden[:-1, :-1] & hidden[1:, :-1] & hidden[:-1, 1:] & hidden[1:, 1:]
+    return mask
 
 
 def _within(model: WorldModel, point: tuple[float, float], reach: float) -> Squares:

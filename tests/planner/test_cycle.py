@@ -93,6 +93,18 @@ def test_the_northeast_corner_of_a_plain_room() -> None:
     assert robot.steps == len(body.track) - 1 <= 8
 
 
+def test_around_the_corner_is_out_of_sight() -> None:
+    rows = ["b" * 34, *["b" * 20 + "." * 13 + "b"] * 14, *["b" + "." * 32 + "b"] * 5]
+    rows += ["b..U" + "." * 29 + "b", *["b" + "." * 32 + "b"] * 2, "b" * 34]
+    robot, body = run(rows, Task({}, (), (goal("around", "utak", term("corner")),)))
+    assert robot.verdict.verdict == "done"
+    start, end = (np.array(square) + 0.5 for square in (body.track[0], body.square))
+    seen = [not body.occupied(*(int(v) for v in start + part * (end - start))) for part in np.linspace(0, 1, 500)]
+    assert not all(seen)
+    plain, _ = run(EMPTY, Task({}, (), (goal("around", "utak", term("corner")),)))
+    assert plain.verdict.verdict == "impossible"
+
+
 def test_go_to_the_square() -> None:
     robot, body = run(THINGS, SQUARE)
     assert robot.verdict.believed
