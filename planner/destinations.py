@@ -93,9 +93,13 @@ def beside(parameter: str, situation: Situation) -> Destination:
     node = situation.model.object(situation.binding.get(parameter, ""))
     if node is None:
         return nowhere(f"nothing seen so far is {parameter}")
-    near = grown(situation.model.mask(node.patch), 1) & situation.screens.floor
+    about = grown(situation.model.mask(node.patch), 1)
+    near = about & situation.screens.floor
     squares = np.flatnonzero(near)
-    if node.polygon is not None and len(squares):
+    if not len(squares):
+        what = f"no way is seen yet that leads to {parameter}"
+        return nowhere(what, (Lookout(np.flatnonzero(about & situation.model.space), what),))
+    if node.polygon is not None:
         rows, columns = np.divmod(squares, near.shape[1])
         view = situation.model.view
         away = shapely.distance(node.polygon, shapely.points(columns + view.west + 0.5, rows + view.south + 0.5))

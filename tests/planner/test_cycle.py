@@ -93,6 +93,17 @@ def test_the_northeast_corner_of_a_plain_room() -> None:
     assert robot.steps == len(body.track) - 1 <= 8
 
 
+def test_a_thing_seen_beyond_a_wall_is_reached_by_the_door() -> None:
+    rows = ["b" * 32, *["b" + "." * 14 + "bb" + "." * 14 + "b"] * 6, *["b" + "." * 30 + "b"] * 4]
+    rows += ["b" + "." * 14 + "bb" + "." * 14 + "b"] * 3
+    rows += ["b" + "." * 14 + "bb" + "." * 4 + "ggg" + "." * 7 + "b"] * 2
+    rows += ["b" + "." * 10 + "U..." + "bb" + "." * 4 + "ggg" + "." * 7 + "b"]
+    rows += ["b" + "." * 14 + "bb" + "." * 14 + "b"] * 3 + ["b" * 32]
+    robot, body = run([row[:15] + row[-17:] for row in rows], SQUARE)
+    assert robot.verdict.verdict == "done"
+    assert body.square[0] > 16
+
+
 def test_around_the_corner_is_out_of_sight() -> None:
     rows = ["b" * 34, *["b" * 20 + "." * 13 + "b"] * 14, *["b" + "." * 32 + "b"] * 5]
     rows += ["b..U" + "." * 29 + "b", *["b" + "." * 32 + "b"] * 2, "b" * 34]
