@@ -24,8 +24,11 @@ def winding(track: Sequence[Place], node: Node) -> int:
     return crossings(np.array([*track, track[0]]), pivot(node))
 
 
-def ways_round(screens: Screens, track: Sequence[Place], node: Node) -> list[Way]:
-    """The ways, at the most certain level, that complete one turn about an object and end where the track began."""
+def ways_round(screens: Screens, track: Sequence[Place], node: Node) -> dict[int, Way]:
+    """The ways, at the most certain level, that complete one turn about an object and end where the track began.
+
+    By the sign of the turn: 1 counter-clockwise, -1 clockwise.
+    """
     model = screens.model
     x, y = pivot(node)
     about = (x - model.view.west, y - model.view.south)
@@ -35,14 +38,15 @@ def ways_round(screens: Screens, track: Sequence[Place], node: Node) -> list[Way
         free = screens.free(level) & ~model.mask(node.patch)
         if not free[goal[1], goal[0]]:
             continue
-        found = []
-        for number in (1 - done, -1 - done):
+        found = {}
+        for turn in (1, -1):
+            number = turn - done
             squares = winding_way(free, screens.here, goal, about, number) if abs(number) <= MOST else None
             if squares and len(squares) > 1:
-                found.append(_way(squares, level))
+                found[turn] = _way(squares, level)
         if found:
             return found
-    return []
+    return {}
 
 
 def _way(squares: Sequence[Square], level: int) -> Way:

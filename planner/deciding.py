@@ -61,6 +61,7 @@ class Decider:
         self._aimed: frozenset[Square] = frozenset()  # squares of the lattice
         self._path: tuple[Square, ...] = ()  # squares of the lattice
         self._level = 0
+        self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
         """What to do after an impression. track: the places where Utak has been, this one included."""
@@ -110,9 +111,11 @@ class Decider:
         if home and abs(winding(track, node)) == 1:
             return None
         offered = ways_round(screens, track, node)
-        way = self._choose(offered, situation)
+        begun = [offered[self._turn]] if self._turn in offered else list(offered.values())
+        way = self._choose(begun, situation)
         if way is None:
             return Decision(None, f"{stage} cannot be attained: no way leads round {name}", "impossible")
+        self._turn = next(turn for turn, other in offered.items() if other is way)
         self._keep(way, frozenset(), model)
         x, y = pivot(node)
         about = (x - model.view.west, y - model.view.south)

@@ -216,11 +216,12 @@ def test_circling_winds_once() -> None:
     offered = ways_round(screens, track, node)
     assert len(offered) == 2
     sides = set()
-    for way in offered:
+    for turn, way in offered.items():
         assert way.squares[0] == way.squares[-1] == screens.here
         assert all(screens.free(0)[y, x] for x, y in way.squares)
         walked_track = [(x + 0.5 + model.view.west, y + 0.5 + model.view.south) for x, y in way.squares]
-        sides.add(winding(walked_track, node))
+        assert winding(walked_track, node) == turn
+        sides.add(turn)
     assert sides == {1, -1}
 
 
@@ -232,11 +233,12 @@ def test_half_a_turn_leaves_the_other_half() -> None:
     moved = replace(model, place=over[-1])
     offered = ways_round(Screens(moved), over, node)
     whole_turns = set()
-    for way in offered:
+    for turn, way in offered.items():
         rest = [(c + 0.5 + model.view.west, r + 0.5 + model.view.south) for c, r in way.squares]
-        whole_turns.add(winding([*over, *rest[1:]], node))
+        assert winding([*over, *rest[1:]], node) == turn
+        whole_turns.add(turn)
     assert whole_turns == {1, -1}
-    shortest = min(offered, key=lambda way: way.length)
+    shortest = min(offered.values(), key=lambda way: way.length)
     assert min(r for _, r in shortest.squares) + model.view.south + 0.5 < y  # under it, not back over it
 
 
