@@ -96,11 +96,6 @@ class Evidence:
         """[row, column] of a square of the lattice."""
         return y - self.south, x - self.west
 
-    def inside(self, x: int, y: int) -> bool:
-        """Is the square within the arrays?"""
-        row, column = self.index(x, y)
-        return 0 <= row < self.state.shape[0] and 0 <= column < self.state.shape[1]
-
     # -- looking ---------------------------------------------------------------------------------
 
     def misfits(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> Mask:

@@ -1,6 +1,5 @@
 """What a goal means on the screen: the squares on which it holds for Utak, or what is missing to tell."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -154,10 +153,3 @@ def contains(squares: Squares, model: WorldModel) -> bool:
     """Does Utak stand on one of these squares?"""
     row, column = model.view.locate(*model.place)
     return bool((squares == row * model.labels.shape[1] + column).any())
-
-
-def distance_to(squares: Squares, model: WorldModel) -> float:
-    """How far the nearest of some squares is as the crow flies, in squares."""
-    rows, columns = np.divmod(squares, model.labels.shape[1])
-    row, column = model.view.locate(*model.place)
-    return float(min(np.hypot(rows - row, columns - column), default=math.inf))
