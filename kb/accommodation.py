@@ -9,7 +9,7 @@ before), or as noise.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple
@@ -17,11 +17,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kb.body import Command, Impression, Move, Push
+from geometry.rigid import Motion, Rotate, Translate
+from kb.body import Command, Impression, Move, Push, Release, Turn
 from kb.encodings import KB, solve
-from kb.evidence import OPEN, Evidence
+from kb.evidence import FREE, OPEN, Evidence
+from kb.hauling import Outcome, otherwise, predicted
 from kb.heading import CENTRED, Hypothesis, Look, candidates, search, standing
-from kb.lattice import CENTRE, Lattice
+from kb.lattice import CENTRE, Lattice, Samples
+from kb.loads import Load, discounted, slack_of
 from kb.retina import FIELDS, count_ranges
 
 MEMORY = 12  # looks by which angles are judged: those that contradict older looks are gone already
@@ -41,13 +44,17 @@ class CellStatus(StrEnum):
 
 
 class Explanation(NamedTuple):
-    """A pose that may have given rise to the impression. place: a point of that lattice."""
+    """A pose that may have given rise to the impression. place: a point of that lattice.
+
+    outcome: what it means for the load in hand; None when nothing was to be moved with him.
+    """
 
     how: str
     place: Place
     lattice: Lattice
     misfits: int
     distance: float
+    outcome: Outcome | None = None
 
 
 class Accommodated(NamedTuple):
@@ -61,7 +68,8 @@ class Accommodated(NamedTuple):
 class Memory:
     """All that is held true of the pose and the map. One of the few places with state.
 
-    place is a point of the lattice; looks keep where each impression was received, in Utak's own frame.
+    place is a point of the lattice; looks keep where each impression was received, in Utak's own frame. loads are the
+    things that he has held, by name, and held the one that he holds.
     """
 
     evidence: Evidence = field(default_factory=Evidence)
@@ -73,6 +81,8 @@ class Memory:
     barred: set[tuple[int, int]] = field(default_factory=set)
     searches: int = 0
     slipped: bool = False
+    loads: dict[str, Load] = field(default_factory=dict)
+    held: str | None = None
 
     @property
     def square(self) -> tuple[int, int]:
@@ -100,11 +110,54 @@ class Memory:
 
     def accommodate(self, command: Command, impression: Impression) -> Accommodated:
         """Take in the impression that followed a command."""
+        if self.held is not None and isinstance(command, Push | Turn):
+            return self._carry(impression, self.loads[self.held], self._motion(command))
+        if isinstance(command, Release):
+            self.held = None
         shift = (0.0, 0.0)
-        if isinstance(command, Move | Push):
+        if isinstance(command, Move) and self.held is None:
             shift = self.lattice.to_lattice(command.east, command.north)
         x, y = self.place
         return self._accommodate(impression, (x + shift[0], y + shift[1]), _along((x, y), shift))
+
+    def grasp(self, load: Load) -> None:
+        """Believe that a thing is in hand: what is new as a load is taken out of the standing map.
+
+        A thing lies on the floor, so there is floor under it.
+        """
+        if load.name not in self.loads:
+            patch = load.possible
+            self.evidence.declare(self.evidence.squares(patch.west, patch.south, patch.mask), FREE, len(self.looks) - 1)
+        self.loads.setdefault(load.name, load)
+        self.held = load.name
+
+    def _motion(self, command: Push | Turn) -> Motion:
+        """A command as a motion on the lattice."""
+        if isinstance(command, Turn):
+            return Rotate(command.degrees, self.place)
+        return Translate(*self.lattice.to_lattice(command.east, command.north))
+
+    def _carry(self, impression: Impression, load: Load, motion: Motion) -> Accommodated:
+        """Take in the impression that followed a push or a turn with a load in hand."""
+        ranges = count_ranges(impression.retina)
+        chosen = self._outcome(ranges, load, predicted(self.place, load.polygon, motion))
+        if chosen.misfits:
+            others = [self._outcome(ranges, load, outcome) for outcome in otherwise(self.place, load.polygon, motion)]
+            chosen = self._choose([chosen, *others])
+        self.slipped |= chosen.how == "slipped"
+        outcome = chosen.outcome
+        if outcome is None or outcome.how == "stuck":
+            self.loads[load.name] = load.resisted()
+        else:
+            slack = load.slack if outcome.how == "predicted" else max(load.slack, slack_of(outcome.polygon))
+            self.loads[load.name] = load.moved(outcome.polygon, slack, outcome.degrees)
+        return self._take_in(chosen, ranges)
+
+    def _outcome(self, ranges: NDArray[np.int16], load: Load, outcome: Outcome) -> Explanation:
+        others = [other for other in self.loads.values() if other.name != load.name]
+        loads = [*others, load.moved(outcome.polygon, load.slack)]
+        misfits = self._clashes(ranges, outcome.place, loads)
+        return Explanation(outcome.how, outcome.place, self.lattice, misfits, outcome.distance, outcome)
 
     # -- explaining ------------------------------------------------------------------------------
 
@@ -115,28 +168,47 @@ class Memory:
             self._relay(explanation.lattice)
         self.trust = self.trust + 1 if explanation.how == "predicted" else 0
         self.slipped |= explanation.how == "slipped"
+        if explanation.how == "blocked":
+            self.barred.add(_next_square(explanation.place, predicted))
+        return self._take_in(explanation, ranges)
+
+    def _take_in(self, explanation: Explanation, ranges: NDArray[np.int16]) -> Accommodated:
+        """Take an explained impression into the evidence, freed of what the loads show."""
         x, y = math.floor(explanation.place[0]), math.floor(explanation.place[1])
-        cells = self._statuses(ranges, x, y)
+        samples, counts = discounted(self.lattice.samples(), ranges, x, y, self.loads.values())
+        cells = self._statuses(samples, counts, x, y)
         self.place = explanation.place
         self.looks.append(Look(ranges, self.lattice.place_to_utak(*self.place)))
-        self.evidence.look(self.lattice.samples(), ranges, x, y, len(self.looks) - 1)
-        if explanation.how == "blocked":
-            self.barred.add(_next_square(self.place, predicted))
-        else:
+        self.evidence.look(samples, counts, x, y, len(self.looks) - 1)
+        if explanation.how != "blocked":
             self.evidence.stand(x, y, len(self.looks) - 1)
         return Accommodated(explanation, cells)
 
     def _explain(self, ranges: NDArray[np.int16], predicted: Place, stops: tuple[Place, ...]) -> Explanation:
-        look = Look(ranges, self.lattice.place_to_utak(*predicted))
-        recent = [*self.looks[-MEMORY:], look]
-        left = standing(self.hypotheses, recent)
         first = self._explanation("predicted", predicted, ranges, predicted)
-        if any(h.lattice == self.lattice for h in left) and not first.misfits:
-            self.hypotheses = left
+        turned: list[Explanation] = []
+        if not self.loads:  # older looks saw what was moved since then where it is no more, and tell no angle
+            left, turned = self._turned(ranges, predicted, first.misfits)
+        if not first.misfits and not turned:
             return first
         explanations = [first]
         explanations += [self._explanation("blocked", stop, ranges, predicted) for stop in stops]
         explanations += [self._explanation("slipped", place, ranges, predicted) for place in _around(predicted)]
+        chosen = self._choose([*explanations, *turned])
+        if chosen.how == "turned":
+            self.hypotheses = left
+        return chosen
+
+    def _turned(
+        self, ranges: NDArray[np.int16], predicted: Place, misfits: int
+    ) -> tuple[tuple[Hypothesis, ...], list[Explanation]]:
+        """The lattices that still stand; and the one to believe instead, unless the one held explains all."""
+        look = Look(ranges, self.lattice.place_to_utak(*predicted))
+        recent = [*self.looks[-MEMORY:], look]
+        left = standing(self.hypotheses, recent)
+        if any(h.lattice == self.lattice for h in left) and not misfits:
+            self.hypotheses = left
+            return left, []
         lattice, misfits = self._borne_out(left, look)
         if misfits and self.searches < MOST_SEARCHES:
             self.searches += 1
@@ -144,13 +216,8 @@ class Memory:
             another, fewer = self._borne_out(found, look)
             if fewer < misfits:
                 left, lattice, misfits = found, another, fewer
-        if left:
-            place = lattice.place_from_utak(*look.place)
-            explanations.append(Explanation("turned", place, lattice, misfits, 0.0))
-        chosen = self._choose(explanations)
-        if chosen.how == "turned":
-            self.hypotheses = left
-        return chosen
+        place = lattice.place_from_utak(*look.place)
+        return left, [Explanation("turned", place, lattice, misfits, 0.0)] * bool(left)
 
     def _borne_out(self, left: tuple[Hypothesis, ...], look: Look) -> tuple[Lattice, int]:
         """Of the lattices left, the one that all looks bear out best, and how many fields it leaves as noise."""
@@ -166,9 +233,13 @@ class Memory:
         return lattices[number], misfits
 
     def _explanation(self, how: str, place: Place, ranges: NDArray[np.int16], predicted: Place) -> Explanation:
-        x, y = math.floor(place[0]), math.floor(place[1])
-        misfits = self.evidence.clashes(self.lattice.samples(), ranges, x, y)
+        misfits = self._clashes(ranges, place, self.loads.values())
         return Explanation(how, place, self.lattice, misfits, math.dist(place, predicted))
+
+    def _clashes(self, ranges: NDArray[np.int16], place: Place, loads: Iterable[Load]) -> int:
+        """How many fields cannot be right if the impression was received at a place, with the loads where they lie."""
+        x, y = math.floor(place[0]), math.floor(place[1])
+        return self.evidence.clashes(*discounted(self.lattice.samples(), ranges, x, y, loads), x, y)
 
     def _choose(self, explanations: list[Explanation]) -> Explanation:
         facts = [
@@ -176,6 +247,7 @@ class Memory:
             for number, e in enumerate(explanations)
         ]
         facts += [f"trust({self.trust})", *["slips"] * self.slipped]
+        facts += ["proven"] * (self.held is not None and self.loads[self.held].proven)
         answer = solve([KB / "accommodation.lp"], facts)
         if not answer:
             raise AssertionError("accommodation.lp always has an answer")
@@ -187,8 +259,7 @@ class Memory:
         self.barred = set()
         self.evidence = _replay(lattice, self.looks)[0]
 
-    def _statuses(self, ranges: NDArray[np.int16], x: int, y: int) -> tuple[CellStatus, ...]:
-        samples = self.lattice.samples()
+    def _statuses(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> tuple[CellStatus, ...]:
         noise = self.evidence.misfits(samples, ranges, x, y)
         row, column = self.evidence.index(x, y)
         state = self.evidence.state[samples.rows + row, samples.columns + column]

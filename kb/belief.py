@@ -99,7 +99,7 @@ def _object(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
         yield f"shape({name},{shape},{confidence})"
     if node.colour is not None:
         yield f"colour({name},{node.colour},99)"
-    yield f"movable({name},{50 if node.confidence >= 50 else 0})"
+    yield f"movable({name},{node.movable if node.confidence >= 50 else 0})"
     yield from _outlined(name, _object_rings(node), model)
     row, column = model.view.locate(*node.patch.centre)
     room = rooms.labels[row, column]

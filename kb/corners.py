@@ -27,10 +27,15 @@ class Corner(NamedTuple):
 
 
 def known_floor(model: WorldModel) -> NDArray[np.bool_]:
-    """(rows, columns): the floor on which Utak stands, and all other floor that is seen and large enough to be some."""
+    """(rows, columns): the floor on which Utak stands, all other floor that is seen and large enough to be some, and
+    the floor under what he has moved.
+    """
     sizes = np.bincount(model.labels.ravel())
     large = (sizes >= SMALLEST)[model.labels]
     mask: NDArray[np.bool_] = model.floor | (model.space & large)
+    for node in model.objects:
+        if node.moved:
+            mask |= model.mask(node.patch)
     return mask
 
 

@@ -96,6 +96,13 @@ class Evidence:
         """[row, column] of a square of the lattice."""
         return y - self.south, x - self.west
 
+    def squares(self, west: int, south: int, mask: Mask) -> Mask:
+        """The squares of a small mask, whose [0, 0] is the lattice square (west, south), on the arrays of the map."""
+        whole = np.zeros(self.state.shape, np.bool_)
+        row, column = self.index(west, south)
+        whole[row : row + mask.shape[0], column : column + mask.shape[1]] = mask
+        return whole
+
     # -- looking ---------------------------------------------------------------------------------
 
     def misfits(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> Mask:

@@ -9,19 +9,21 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kb.accommodation import Accommodated, Memory
-from kb.body import Command, Impression
+from kb.body import DIRECTIONS, Command, Grasp, Impression
 from kb.evidence import FREE, FULL, OPEN, MapView
 from kb.interpretation import Kinds, interpret, shapes
-from kb.lattice import turned
+from kb.loads import Load, slack_of
 from kb.measuring import Measured, Measurer
 from kb.regions import map_regions
 from kb.worldmodel import SPACE, Names, Node, Patch, WorldModel, patch_of, unsettled
 
-TOUCHES = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))  # clockwise from his north
+Mask = NDArray[np.bool_]
 LEAST_OBJECT = 5  # percent: a region is kept as a possible object from here on
 LARGEST_OBJECT = 24  # squares: what is longer than this and undecided is verge
+FIXED = 3  # pushes or turns in a row that did not move a thing: then it cannot be moved
 
 
 class Knowledge:
@@ -31,6 +33,7 @@ class Knowledge:
         self.memory = Memory()
         self.rules = rules
         self.felt: dict[tuple[int, int], str] = {}
+        self.objects: tuple[Node, ...] = ()
         self._names = Names()
         self._measurer = Measurer()
 
@@ -40,7 +43,27 @@ class Knowledge:
 
     def perceive(self, command: Command, impression: Impression) -> tuple[WorldModel, Accommodated]:
         """The world model after a command and its impression."""
+        if isinstance(command, Grasp):
+            self._grasp(command.direction)
         return self._model(impression, self.memory.accommodate(command, impression))
+
+    def _grasp(self, direction: str) -> None:
+        """Believe that the thing on an adjacent square is in hand, if one with a known outline is believed there."""
+        x, y = self.memory.square
+        column, row = self.memory.lattice.beside(direction)
+        node = next((n for n in self.objects if (x + column, y + row) in n.patch.squares()), None)
+        if node is None or node.polygon is None or self.memory.held is not None:
+            return
+        load = Load(
+            name=node.name,
+            polygon=node.polygon,
+            first=node.polygon,
+            slack=slack_of(node.polygon),
+            shape=node.shape,
+            colour=node.colour,
+            support=node.support,
+        )
+        self.memory.grasp(load)
 
     def _model(self, impression: Impression, accommodated: Accommodated) -> tuple[WorldModel, Accommodated]:
         if accommodated.explanation.how == "turned":
@@ -62,14 +85,21 @@ class Knowledge:
             looked_from=self.memory.looked_from,
             barred=frozenset(self.memory.barred),
             spread=self.memory.spread,
+            held=self.memory.held,
         )
-        return replace(model, objects=self._objects(model)), accommodated
+        self.objects = self._objects(model)
+        for load in self.memory.loads.values():
+            model = _laid(model, load)
+            self.objects += (_node(load, int(model.labels.max())),)
+        self.objects = tuple(sorted(self.objects, key=lambda node: int(node.name[1:])))
+        return replace(model, objects=self.objects), accommodated
 
     def _feel(self, impression: Impression) -> None:
         x, y = self.memory.square
-        for (east, north), colour in zip(TOUCHES, impression.touch, strict=True):
-            column, row = (round(v) for v in turned(east, north, self.memory.lattice.angle))
-            if colour is None:
+        loaded = {square for load in self.memory.loads.values() for square in load.possible.squares()}
+        for direction, colour in zip(DIRECTIONS, impression.touch, strict=True):
+            column, row = self.memory.lattice.beside(direction)
+            if colour is None or (x + column, y + row) in loaded:
                 self.felt.pop((x + column, y + row), None)
             else:
                 self.felt[x + column, y + row] = colour
@@ -104,6 +134,48 @@ class Knowledge:
         return colours[0] if colours else None
 
 
+def _node(load: Load, label: int) -> Node:
+    """The node of a thing that he has held."""
+    movable = 99 if load.proven else 0 if load.stuck >= FIXED else 50
+    return Node(
+        name=load.name,
+        kind="object",
+        confidence=100,
+        region=f"part{label}",
+        patch=load.possible,
+        open=0,
+        shape=load.shape,
+        polygon=load.polygon,
+        colour=load.colour,
+        support=load.support,
+        movable=movable,
+        moved=load.proven,
+        turned=load.turned,
+        stuck=load.stuck,
+    )
+
+
+def _laid(model: WorldModel, load: Load) -> WorldModel:
+    """The model with a load laid upon its map, as a region of its own; Utak's own square stays his."""
+    view, labels = model.view, model.labels.copy()
+    sure, possible = (_upon(patch, model) for patch in (load.sure, load.possible))
+    label = int(labels.max()) + 1
+    labels[possible & (view.state != FULL)] = label
+    state = np.where(sure, np.int8(FULL), np.where(possible & (view.state == FREE), np.int8(OPEN), view.state))
+    probability = np.where(sure, np.float32(1), np.where(possible, np.float32(0.5), view.probability))
+    seen = view.seen | possible
+    kinds = Kinds({**model.kinds.kind, f"part{label}": {"object": 100}}, model.kinds.hidden_passages)
+    laid = view._replace(state=state.astype(np.int8), probability=probability, seen=seen)
+    return replace(model, view=laid, labels=labels, kinds=kinds)
+
+
+def _upon(patch: Patch, model: WorldModel) -> Mask:
+    """(rows, columns): the squares of a patch on the arrays of the view, but for Utak's own."""
+    mask = model.squares(patch.squares())
+    mask[model.view.locate(*model.place)] = False
+    return mask
+
+
 def _may_be_object(region: str, extent: int, kinds: Kinds) -> bool:
     return extent <= LARGEST_OBJECT and kinds.of(region, "object") >= LEAST_OBJECT
 
@@ -116,6 +188,6 @@ def _shape_facts(measured: Mapping[str, Measured]) -> list[str]:
     return facts
 
 
-def _support(mask: np.ndarray[tuple[int, ...], np.dtype[np.bool_]], view: MapView) -> tuple[int, ...]:
+def _support(mask: Mask, view: MapView) -> tuple[int, ...]:
     numbers = np.unique(view.settled_by[mask & ((view.state == FULL) | (view.state == FREE))])
     return tuple(int(n) for n in numbers if n >= 0)

@@ -19,11 +19,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kb.body import DIRECTIONS
 from kb.retina import FIELDS, OWN
 
 CENTRE = (0.5, 0.5)
 TIE = 1e-9  # an offset that falls this near to the middle between two squares may be sampled from either
 MOST = 16  # squares under the largest field
+AROUND = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))  # clockwise from his north
 
 
 class Samples(NamedTuple):
@@ -65,6 +67,11 @@ class Lattice:
         """A point of Utak's frame as a point of the lattice."""
         x, y = self.to_lattice(east, north)
         return x + self.woke[0], y + self.woke[1]
+
+    def beside(self, direction: str) -> tuple[int, int]:
+        """The adjacent square, as (columns, rows), in one of the eight directions of Utak's frame."""
+        column, row = self.to_lattice(*AROUND[DIRECTIONS.index(direction)])
+        return round(column), round(row)
 
     def samples(self) -> Samples:
         """The squares that each field samples."""

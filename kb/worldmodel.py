@@ -57,6 +57,8 @@ class Node:
     open : how many of them (and of their neighbours) are not settled.
     shape : class -> confidence. polygon : its believed outline (shapely, lattice frame), None while nothing fits.
     colour : as felt, or None. support : the impressions that settled its squares.
+    movable : that it can be moved, in percent. moved : he has moved it. turned : degrees by which, since he first held
+    it. stuck : motions in a row that did not move it.
     """
 
     name: str
@@ -69,6 +71,10 @@ class Node:
     polygon: Any = None
     colour: str | None = None
     support: tuple[int, ...] = ()
+    movable: int = 50
+    moved: bool = False
+    turned: float = 0.0
+    stuck: int = 0
 
 
 @dataclass(frozen=True)
@@ -137,6 +143,18 @@ class WorldModel:
         mask = np.zeros(self.labels.shape, np.bool_)
         row, column = patch.south - self.view.south, patch.west - self.view.west
         mask[row : row + patch.mask.shape[0], column : column + patch.mask.shape[1]] = patch.mask
+        return mask
+
+    def mask_within(self, patch: Patch) -> Mask:
+        """(rows, columns): what lies within the view of a patch that may reach beyond it."""
+        mask: Mask = np.zeros(self.labels.shape, np.bool_)
+        height, width = mask.shape
+        row, column = patch.south - self.view.south, patch.west - self.view.west
+        rows, columns = patch.mask.shape
+        top, right = min(height, row + rows), min(width, column + columns)
+        low, left = max(row, 0), max(column, 0)
+        if top > low and right > left:
+            mask[low:top, left:right] = patch.mask[low - row : top - row, left - column : right - column]
         return mask
 
 

@@ -9,17 +9,21 @@ from pathlib import Path
 
 import numpy as np
 
-from kb.body import Command
+from kb.body import Command, Release
 from kb.corners import Corner, corners
+from kb.facts import Fact
 from kb.reconciliation import Reconciled, reconcile
 from kb.rooms import NOTHING, Rooms, rooms_of
 from kb.task import Task
 from kb.worldmodel import WorldModel
 from planner import exploring
 from planner.aims import Aim, choose
+from planner.carrier import Act, Carrier, Go, See
 from planner.circling import pivot, ways_round, winding
-from planner.destinations import Destination, Situation, contains, destination
+from planner.destinations import Destination, Situation, contains, destination, nowhere
 from planner.goals import BY_THE_WAY, Stage, constraints, stages
+from planner.haulage import Refusal
+from planner.landing import landing, met
 from planner.screen import Screens, Squares, grown
 from planner.steps import Square
 from planner.walking import next_move
@@ -50,6 +54,7 @@ class Decider:
     task: Task
     paths: str = "skeleton"
     rules: tuple[Path, ...] = ()
+    pull: bool = True
     bound: Mapping[str, str] = field(default_factory=dict)
     attained: int = 0
     rooms: Rooms = NOTHING
@@ -58,6 +63,7 @@ class Decider:
     def __post_init__(self) -> None:
         self.stages = stages(self.task)
         self.constraints = constraints(self.task)
+        self.carrier = Carrier(self.pull)
         self._aimed: frozenset[Square] = frozenset()  # squares of the lattice
         self._path: tuple[Square, ...] = ()  # squares of the lattice
         self._level = 0
@@ -82,25 +88,64 @@ class Decider:
         self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[Place]
     ) -> Decision | None:
         """The next command towards a stage, the verdict when it cannot be attained, or None when it is."""
-        carried = sorted({str(goal.args[0]) for goal in stage.goals} - {"utak"})
-        if carried:
-            return Decision(None, f"{stage} is not attempted: Utak does not carry things yet", "limit")
-        if stage.goals[0].name in BY_THE_WAY:
-            node = situation.model.object(self.bound.get(str(stage.goals[0].args[1]), ""))
+        for goal in stage.goals:
+            if str(goal.args[0]) != "utak":
+                decision = self._carry(goal, stage, situation, reconciled)
+                if decision is not None:
+                    return decision
+        goals = [goal for goal in stage.goals if str(goal.args[0]) == "utak"]
+        if not goals:
+            return None
+        if goals[0].name in BY_THE_WAY:
+            node = situation.model.object(self.bound.get(str(goals[0].args[1]), ""))
             if node is not None:
                 return self._round(stage, node.name, situation, track)
-            where = [destination(stage.goals[0], situation)]
+            where = [destination(goals[0], situation)]
         else:
-            where = [destination(goal, situation) for goal in stage.goals]
+            where = [destination(goal, situation) for goal in goals]
             if all(not d.missing and contains(d.squares, situation.model) for d in where):
                 return None
-        aims = _aims(where, situation, reconciled)
+        missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
+        return self._pursue(_aims(where, situation, reconciled), stage, situation, missing)
+
+    def _pursue(
+        self, aims: Sequence[Aim], stage: Stage, situation: Situation, missing: str, verdict: str = "impossible"
+    ) -> Decision:
+        """The next command towards the best of some aims, or the verdict when none can be reached."""
         aim = choose(aims, situation.screens, self._old_aim(situation.model))
         if aim is None:
-            missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
             why = f"{stage} cannot be attained: {missing}, and nothing is left to look at"
-            return Decision(None, why, "impossible")
+            return Decision(None, why, verdict)
+        if situation.model.held is not None:
+            return Decision(Release(), f"{situation.model.held} is let go, to walk; {stage}")
         return self._walk(aim, stage, situation)
+
+    def _carry(self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciled) -> Decision | None:
+        """The next command towards a goal for something that must be carried, or None when it holds."""
+        x = str(goal.args[0])
+        node = situation.model.object(self.bound.get(x, ""))
+        if node is None:
+            missing = [nowhere(f"nothing seen so far is {x}")]
+            return self._pursue(_aims(missing, situation, reconciled), stage, situation, missing[0].missing)
+        if node.polygon is None or node.open:
+            look = exploring.inspection(situation.screens, node, touch=False)
+            if len(look.squares):
+                return self._pursue([Aim("inspect", *look)], stage, situation, look.what)
+        if node.polygon is None:
+            return Decision(None, f"{stage} is not attempted: the outline of {node.name} is not known", "limit")
+        land = landing(goal, node, self.carrier.began_at(node), situation)
+        if land.ends and any(met(end, node, situation) for end in land.ends.values()):
+            return None
+        advice = self.carrier.advise(node, land.ends, situation) if land.ends else Refusal(True, land.missing)
+        if isinstance(advice, Act):
+            return Decision(advice.command, f"{advice.why}; {stage}")
+        if isinstance(advice, Go):
+            return self._pursue([Aim("attain", np.array([advice.square]), advice.why)], stage, situation, advice.why)
+        if isinstance(advice, See):
+            return self._pursue([Aim("inspect", *advice.lookout)], stage, situation, advice.lookout.what)
+        unknown = nowhere(advice.why, land.lookouts)
+        verdict = "impossible" if advice.proved else "limit"
+        return self._pursue(_aims([unknown], situation, reconciled), stage, situation, advice.why, verdict)
 
     def _round(self, stage: Stage, name: str, situation: Situation, track: Sequence[Place]) -> Decision | None:
         """The next command on the way round an object."""

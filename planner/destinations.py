@@ -121,15 +121,16 @@ def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
 
 def around_corner(situation: Situation) -> Destination:
     """The squares wholly out of sight of the place where Utak woke: a corner of the verge lies in between."""
-    squares = np.flatnonzero(_out_of_sight(situation.model) & situation.screens.floor)
+    model = situation.model
+    squares = np.flatnonzero(out_of_sight(model, model.lattice.woke) & situation.screens.floor)
     return Destination(squares) if len(squares) else nowhere("no corner is seen yet that hides a place")
 
 
-def _out_of_sight(model: WorldModel) -> Mask:
-    """(rows, columns): squares none of whose corners is seen from the place of waking past the verge."""
+def out_of_sight(model: WorldModel, place: tuple[float, float]) -> Mask:
+    """(rows, columns): squares none of whose corners is seen from a point of the lattice past the verge."""
     verge = model.verge
     height, width = verge.shape
-    x, y = model.lattice.woke[0] - model.view.west, model.lattice.woke[1] - model.view.south
+    x, y = place[0] - model.view.west, place[1] - model.view.south
     corners = np.stack(np.meshgrid(np.arange(width + 1), np.arange(height + 1)), axis=-1).astype(float)
     hidden = np.zeros(corners.shape[:2], np.bool_)
     for part in (np.arange(RAYS) + 0.5) / RAYS:

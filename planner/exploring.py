@@ -13,6 +13,7 @@ from kb.evidence import OPEN
 from kb.worldmodel import SPACE, Node
 from planner.screen import Screens, Squares, grown
 
+FURTHER = 7  # squares from which a thing lies within the middle zone of the eye
 CLOSE = 3  # squares from which a thing lies within the fovea, whichever way it is seen
 Mask = NDArray[np.bool_]
 APART = 2  # squares: a new look is first sought further than this from earlier ones
@@ -61,6 +62,15 @@ def inspection(screens: Screens, node: Node, touch: bool) -> Lookout:
         if len(near):
             break
     return Lookout(near, f"what {node.name} is is not clear")
+
+
+def sight_of(screens: Screens, mask: NDArray[np.bool_], what: str) -> Lookout:
+    """Floor close to some squares, from which they are seen as well as can be; none when all of it was looked from."""
+    for reach, apart in ((CLOSE, APART), (CLOSE, 0), (FURTHER, APART)):
+        near = np.flatnonzero(_new(screens, apart) & grown(mask, reach))
+        if len(near):
+            return Lookout(near, what)
+    return Lookout(np.zeros(0, np.int64), what)
 
 
 def rooms_beyond(screens: Screens) -> list[Lookout]:

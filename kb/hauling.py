@@ -1,0 +1,74 @@
+"""What may have come of a push or a turn with something in hand: where Utak and his load may be now.
+
+It may have gone as predicted, not at all (nothing was in his hand, or it cannot be moved), as far as something stood in
+the way, or a little otherwise. Which of these is believed is for kb/asp/accommodation.lp.
+"""
+
+import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from geometry.rigid import Motion, Rotate, Translate
+
+Place = tuple[float, float]
+STRIDE = 0.25  # squares between places at which a motion may have ended
+ASTRAY = 1.0  # squares by which a push may end beside the predicted place
+ASKEW = 6.0  # degrees by which a turn may end beside the predicted one
+
+
+class Outcome(NamedTuple):
+    """What a motion may have led to.
+
+    how : predicted, stuck, blocked or slipped. place : of Utak; polygon : of the load, both on the lattice.
+    degrees : by which the load was turned. distance : from what was predicted, in squares.
+    """
+
+    how: str
+    place: Place
+    polygon: Any
+    degrees: float
+    distance: float
+
+
+def predicted(place: Place, polygon: Any, motion: Motion) -> Outcome:
+    """The motion as it was commanded."""
+    return _after("predicted", place, polygon, motion, 0.0)
+
+
+def otherwise(place: Place, polygon: Any, motion: Motion) -> Iterator[Outcome]:
+    """All else that may have happened, the likeliest of each kind first."""
+    length = _length(place, polygon, motion)
+    yield Outcome("stuck", place, polygon, 0.0, length)
+    steps = math.ceil(length / STRIDE)
+    for step in range(steps - 1, 0, -1):
+        yield _after("blocked", place, polygon, motion.part(step / steps), length * (1 - step / steps))
+    for other, distance in _beside(motion, length):
+        yield _after("slipped", place, polygon, other, distance)
+
+
+def _after(how: str, place: Place, polygon: Any, motion: Motion, distance: float) -> Outcome:
+    if isinstance(motion, Translate):
+        place = (place[0] + motion.dx, place[1] + motion.dy)
+    degrees = motion.degrees if isinstance(motion, Rotate) else 0.0
+    return Outcome(how, place, motion.carry(polygon), degrees, distance)
+
+
+def _length(place: Place, polygon: Any, motion: Motion) -> float:
+    """How far the outermost point of the load goes, in squares."""
+    if isinstance(motion, Translate):
+        return math.hypot(motion.dx, motion.dy)
+    corners = np.array(polygon.exterior.coords) - np.array(place)
+    return abs(math.radians(motion.degrees)) * float(np.hypot(*corners.T).max())
+
+
+def _beside(motion: Motion, length: float) -> list[tuple[Motion, float]]:
+    """Motions a little other than a motion, by how far they end from it."""
+    if isinstance(motion, Rotate):
+        per_degree = length / max(abs(motion.degrees), 1.0)
+        askew = [sign * step * 0.5 for step in range(1, round(2 * ASKEW) + 1) for sign in (1, -1)]
+        return [(motion._replace(degrees=motion.degrees + d), abs(d) * per_degree) for d in askew]
+    steps = range(-round(ASTRAY / STRIDE), round(ASTRAY / STRIDE) + 1)
+    offsets = sorted((math.hypot(i, j) * STRIDE, i * STRIDE, j * STRIDE) for i in steps for j in steps if i or j)
+    return [(Translate(motion.dx + dx, motion.dy + dy), distance) for distance, dx, dy in offsets]

@@ -1,0 +1,123 @@
+"""Loads: things that Utak has taken hold of, and what he believes of where they lie now.
+
+What never moves is known from the counts of all looks together (kb.evidence). A thing that he carries would contradict
+them, so it is taken out of the standing map when he grasps it: from then on it is a shape with a place of its own, and
+every look is freed of what the shape itself shows before it is counted as evidence of the rest.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from geometry.digital import squares
+from kb.lattice import Samples
+from kb.worldmodel import Patch
+
+Mask = NDArray[np.bool_]
+WHOLE = 1e-6  # squares: corners this near to corners of the lattice are taken to be there
+SLIGHT = 0.3  # squares by which the outline of a thing that is not whole may lie otherwise
+
+
+@dataclass(frozen=True)
+class Load:
+    """Something that Utak has held.
+
+    Attributes
+    ----------
+    name : of its node in the world model. polygon : where it is believed to lie (shapely, lattice frame).
+    first : where it lay when he first took hold of it. slack : squares by which its outline may lie otherwise.
+    shape, colour, support : as of the node, from before it was grasped; support grows with every look at it.
+    turned : degrees that it was turned since then. proven : it was seen to move. stuck : motions in a row that did not
+    move it.
+    """
+
+    name: str
+    polygon: Any
+    first: Any
+    slack: float = 0.0
+    turned: float = 0.0
+    shape: Mapping[str, int] = field(default_factory=dict)
+    colour: str | None = None
+    support: tuple[int, ...] = ()
+    proven: bool = False
+    stuck: int = 0
+
+    @cached_property
+    def sure(self) -> Patch:
+        """The squares that it surely covers."""
+        inner = self.polygon.buffer(-self.slack, join_style="mitre") if self.slack else self.polygon
+        return covered(inner if not inner.is_empty else self.polygon.centroid.buffer(0.1))
+
+    @cached_property
+    def possible(self) -> Patch:
+        """The squares that it covers or may cover."""
+        return covered(self.polygon.buffer(self.slack, join_style="mitre")) if self.slack else self.sure
+
+    def moved(self, polygon: Any, slack: float, degrees: float = 0.0) -> "Load":
+        """The load after a motion that it was seen to make. degrees: by which it was turned."""
+        turned = self.turned + degrees
+        return replace(
+            self, polygon=whole(polygon), slack=slack_of(polygon, slack), turned=turned, proven=True, stuck=0
+        )
+
+    def resisted(self) -> "Load":
+        """The load after a motion that it was expected to make and did not."""
+        return replace(self, stuck=self.stuck + 1)
+
+
+def covered(polygon: Any) -> Patch:
+    """The squares of the lattice that a polygon covers."""
+    x0, y0, x1, y1 = polygon.bounds
+    west, south = int(np.floor(x0)), int(np.floor(y0))
+    placed = shapely.transform(polygon, lambda points: points - np.array([west, south]))
+    return Patch(west, south, squares(placed, int(np.ceil(x1)) - west, int(np.ceil(y1)) - south))
+
+
+def whole(polygon: Any) -> Any:
+    """The polygon with its corners exactly on corners of the lattice, if all of them lie there but for rounding."""
+    return shapely.transform(polygon, np.rint) if is_whole(polygon) else polygon
+
+
+def is_whole(polygon: Any) -> bool:
+    """Do all corners lie on corners of the lattice?"""
+    points = shapely.get_coordinates(polygon)
+    return bool(np.abs(points - np.rint(points)).max() < WHOLE)
+
+
+def slack_of(polygon: Any, otherwise: float = SLIGHT) -> float:
+    """By how much an outline may lie otherwise: not at all where it is whole, for then its image tells it exactly."""
+    return 0.0 if is_whole(polygon) else otherwise
+
+
+def discounted(
+    samples: Samples, ranges: NDArray[np.int16], x: int, y: int, loads: Iterable[Load]
+) -> tuple[Samples, NDArray[np.int16]]:
+    """What a look from square (x, y) says of all but the loads: their squares are not sampled, and not counted.
+
+    ranges : (160, 2) least and greatest counts. A greatest count below 0 means that a load cannot be where it is
+    believed to be.
+    """
+    left = ranges.copy()
+    weight = samples.weight
+    for load in loads:
+        sure = _under(load.sure, samples, x, y) & (weight > 0)
+        possible = _under(load.possible, samples, x, y) & (weight > 0)
+        left[:, 0] -= np.where(possible, weight, 0).sum(1, dtype=np.int16)
+        left[:, 1] -= np.where(sure, weight, 0).sum(1, dtype=np.int16)
+        weight = np.where(possible, np.int16(0), weight)
+    return samples._replace(weight=weight), left
+
+
+def _under(patch: Patch, samples: Samples, x: int, y: int) -> Mask:
+    """(160, 16): which samples of a look from (x, y) fall on the squares of a patch."""
+    rows, columns = samples.rows + (y - patch.south), samples.columns + (x - patch.west)
+    height, width = patch.mask.shape
+    inside = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
+    found: Mask = np.zeros(rows.shape, np.bool_)
+    found[inside] = patch.mask[rows[inside], columns[inside]]
+    return found

@@ -1,0 +1,260 @@
+"""Carrying something somewhere: the plan that is being followed, checked after every look, and made anew when it fails.
+
+A plan is a sequence of legs: walk to a place, grasp, push and turn, let go. It is kept while the object and Utak are
+where it says and while the squares that it needs are still believed free.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from geometry.carrying import Inside, Leg
+from geometry.ends import End
+from geometry.rigid import Motion, Rotate, Translate
+from kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
+from kb.worldmodel import Node, Patch, WorldModel
+from planner.destinations import Situation
+from planner.exploring import Lookout, sight_of
+from planner.haulage import Haul, Hauler, Refusal, Request
+from planner.landing import region_of
+
+Mask = NDArray[np.bool_]
+Place = tuple[float, float]
+NEAR = 1e-6  # squares: within which Utak is where a plan says
+ALIKE = 1e-3  # squares^2 by which an object may lie otherwise than a plan says
+MOST_PLANS = 60  # in one task
+
+
+@dataclass(frozen=True)
+class Act:
+    """A command to give now."""
+
+    command: Command
+    why: str
+
+
+@dataclass(frozen=True)
+class Go:
+    """A square to walk to (flat index on the view's arrays)."""
+
+    square: int
+    why: str
+
+
+@dataclass(frozen=True)
+class See:
+    """Squares that must be seen before the way over them is relied upon."""
+
+    lookout: Lookout
+
+
+Advice = Act | Go | See | Refusal
+
+
+@dataclass(frozen=True)
+class Course:
+    """What is left of a plan, in the frame of the lattice.
+
+    name : of the object. polygon, place : where it and Utak must be now for the plan to hold; place None while he
+    walks. legs : the first is under way; grasped tells whether he should hold the object.
+    needed : squares that must stay free, level : of certainty at which they were.
+    """
+
+    name: str
+    target: str
+    polygon: Any
+    legs: tuple[Leg, ...]
+    needed: Patch
+    level: int
+    place: Place | None = None
+    grasped: bool = False
+
+
+@dataclass
+class Carrier:
+    """Carries things, one plan after the other.
+
+    began : where each thing's middle lay when it was first spoken of. failed : holds by which a thing did not move, in
+    its own frame.
+    """
+
+    pull: bool = True
+    began: dict[str, Place] = field(default_factory=dict)
+    failed: dict[str, tuple[Place, ...]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._hauler = Hauler(self.pull)
+        self._course: Course | None = None
+        self._plans = 0
+
+    def began_at(self, node: Node) -> Place:
+        """The point of the lattice where the middle of an object lay at first."""
+        middle = node.polygon.centroid
+        return self.began.setdefault(node.name, (middle.x, middle.y))
+
+    def advise(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Advice:
+        """What to do to carry an object to one of several ends."""
+        model = situation.model
+        course = self._kept(situation)
+        if course is None:
+            failure = self._failure(model)
+            if failure is not None:
+                return failure
+            found = self._planned(node, ends, situation)
+            if isinstance(found, See | Refusal):
+                return found
+            course = found
+        self._course = course
+        return self._next(course, model)
+
+    # -- keeping a plan --------------------------------------------------------------------------
+
+    def _kept(self, situation: Situation) -> Course | None:
+        """The plan under way, if the world is still as it says."""
+        course, model = self._course, situation.model
+        node = None if course is None else model.object(course.name)
+        if course is None or node is None or not course.legs:
+            return None
+        if not _lies(node, course.polygon) or (course.place is not None and not _stands(model, course.place)):
+            return None
+        if course.grasped and model.held != course.name:
+            return None
+        free = situation.screens.free(course.level) | model.mask(node.patch)
+        return course if bool(free[model.mask_within(course.needed)].all()) else None
+
+    def _failure(self, model: WorldModel) -> Advice | None:
+        """What to do when a motion with something in hand did not move it: try once more, then from elsewhere."""
+        held = model.object(model.held) if model.held else None
+        if held is None or not held.stuck:
+            return None
+        if held.movable == 0:
+            return Refusal(True, f"{held.name} cannot be moved")
+        if held.stuck > 1:
+            middle = held.polygon.centroid
+            hold = Rotate(-held.turned, (0.0, 0.0)).points(
+                np.array([[model.place[0] - middle.x, model.place[1] - middle.y]])
+            )
+            self.failed[held.name] = (*self.failed.get(held.name, ()), (float(hold[0, 0]), float(hold[0, 1])))
+        self._course = None
+        return Act(Release(), f"{held.name} did not move")
+
+    # -- making one ------------------------------------------------------------------------------
+
+    def _planned(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Course | See | Refusal:
+        self._plans += 1
+        if self._plans > MOST_PLANS:
+            return Refusal(False, f"gave up after {MOST_PLANS} plans")
+        last = self._course.target if self._course is not None else ""
+        haul = self._hauler.find(Request(node, ends, self._avoided(node), last), situation)
+        if isinstance(haul, Refusal):
+            return haul
+        for name in haul.aside:
+            other = situation.model.object(name)
+            cleared = self._clearing(other, haul, situation) if other is not None else None
+            if other is not None and isinstance(cleared, Haul):
+                node, haul = other, cleared
+                break
+        else:
+            if haul.aside:
+                return Refusal(False, f"{haul.aside[0]} is in the way of {node.name}, and cannot be cleared")
+        return self._seen(haul, node, situation) or _course(haul, node, situation.model)
+
+    def _clearing(self, other: Node, haul: Haul, situation: Situation) -> Haul | Refusal:
+        """A way to carry a thing off the squares that a plan needs."""
+        if other.polygon is None:
+            return Refusal(False, "its outline is not known")
+        room = situation.screens.free(0) | situation.model.mask(other.patch)
+        request = Request(other, {"away": Inside(region_of(room & ~haul.swept))}, self._avoided(other))
+        found = self._hauler.find(request, situation)
+        return found if isinstance(found, Haul) and not found.aside else Refusal(False, "it cannot be moved away")
+
+    def _avoided(self, node: Node) -> tuple[Place, ...]:
+        """The holds that failed, as the object lies now."""
+        turn = Rotate(node.turned, (0.0, 0.0))
+        holds = turn.points(np.array(self.failed.get(node.name, ())).reshape(-1, 2))
+        return tuple((float(x), float(y)) for x, y in holds)
+
+    def _seen(self, haul: Haul, node: Node, situation: Situation) -> See | None:
+        """What must be looked at before a plan is begun, as long as a look may tell more."""
+        model = situation.model
+        unsure = haul.swept & ~situation.screens.free(0) & ~model.mask(node.patch)
+        if not unsure.any():
+            return None
+        lookout = sight_of(situation.screens, unsure, f"the way for {node.name} is not clear")
+        return See(lookout) if len(lookout.squares) else None
+
+    # -- following it ----------------------------------------------------------------------------
+
+    def _next(self, course: Course, model: WorldModel) -> Act | Go:
+        """The next command of a plan."""
+        leg = course.legs[0]
+        if not course.grasped:
+            return self._taking(course, leg, model)
+        if not leg.motions:
+            self._course = replace(course, legs=course.legs[1:], grasped=False, place=None)
+            return Act(Release(), f"{course.name} is where it shall be let go")
+        motion = leg.motions[0]
+        polygon = motion.carry(course.polygon)
+        x, y = model.place
+        place = (x + motion.dx, y + motion.dy) if isinstance(motion, Translate) else (x, y)
+        rest = replace(leg, motions=leg.motions[1:])
+        self._course = replace(course, legs=(rest, *course.legs[1:]), polygon=polygon, place=place)
+        return Act(_command(motion, model), f"{course.name} is brought to {course.target}")
+
+    def _taking(self, course: Course, leg: Leg, model: WorldModel) -> Act | Go:
+        """Walk to where the object is taken, and take it."""
+        here = _stands(model, leg.place)
+        if here and model.held == course.name:
+            self._course = replace(course, grasped=True, place=leg.place)
+            return self._next(self._course, model)
+        if model.held is not None:
+            return Act(Release(), f"{model.held} is let go, to be taken elsewhere")
+        if here:
+            self._course = replace(course, grasped=True, place=leg.place)
+            return Act(
+                Grasp(_direction(leg, course, model)), f"{course.name} is taken to be carried to {course.target}"
+            )
+        row, column = model.view.locate(*leg.place)
+        if model.view.locate(*model.place) == (row, column):
+            dx, dy = leg.place[0] - model.place[0], leg.place[1] - model.place[1]
+            return Act(Move(*model.lattice.to_utak(dx, dy)), "to the middle of the square")
+        return Go(row * model.labels.shape[1] + column, f"{course.name} can be taken from there")
+
+
+def _course(haul: Haul, node: Node, model: WorldModel) -> Course:
+    """A plan in the frame of the lattice."""
+    west, south = model.view.west, model.view.south
+    legs = tuple(replace(leg, place=(leg.place[0] + west, leg.place[1] + south)) for leg in haul.plan.legs)
+    needed = Patch(west, south, haul.swept)
+    return Course(node.name, haul.target, node.polygon, legs, needed, haul.level)
+
+
+def _lies(node: Node, polygon: Any) -> bool:
+    return bool(shapely.symmetric_difference(node.polygon, polygon).area < ALIKE)
+
+
+def _stands(model: WorldModel, place: Place) -> bool:
+    return math.dist(model.place, place) < NEAR
+
+
+def _direction(leg: Leg, course: Course, model: WorldModel) -> str:
+    """The compass point of the square by which the object is taken, or of another one that it covers."""
+    node = model.object(course.name)
+    assert node is not None
+    x, y = math.floor(leg.place[0]), math.floor(leg.place[1])
+    ways = {direction: model.lattice.beside(direction) for direction in DIRECTIONS}
+    wanted = [direction for direction, square in ways.items() if square == leg.direction_square]
+    covered = node.patch.squares()
+    other = [direction for direction, (dx, dy) in ways.items() if (x + dx, y + dy) in covered]
+    return next(iter([*wanted, *other]), DIRECTIONS[0])
+
+
+def _command(motion: Motion, model: WorldModel) -> Command:
+    if isinstance(motion, Rotate):
+        return Turn(motion.degrees)
+    return Push(*model.lattice.to_utak(motion.dx, motion.dy))

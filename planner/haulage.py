@@ -1,0 +1,196 @@
+"""Asking geometry how something can be carried, in the order that planner/asp/transport.lp chooses.
+
+Choices are tried one after the other: what geometry proves impossible comes back as a fact, and rules out all that is
+harder still. What it finds may lead over squares that are not surely free: then they are what must be seen first.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from geometry.carrying import At, Carrying, InCorner, plan_carrying
+from geometry.digital import squares
+from geometry.ends import End
+from geometry.rigid import Translate
+from kb.encodings import solve
+from kb.worldmodel import Node
+from planner.aims import ASP
+from planner.destinations import Situation
+from planner.landing import in_view
+from planner.screen import UNSEEN
+
+Mask = NDArray[np.bool_]
+LEVELS = (0, 2, UNSEEN)  # of certainty, that are tried
+MOST_ROUNDS = 12  # choices that geometry is asked to verify
+STRIDE = 0.25  # squares between the places at which the squares of a motion are taken down
+MARGIN = 0.3  # squares kept free about a thing whose outline is not whole
+
+
+@dataclass(frozen=True)
+class Haul:
+    """A way to carry something that geometry verified.
+
+    Attributes
+    ----------
+    plan : frame of the view's arrays. target : where to. level : of certainty of the squares it needs.
+    swept : (rows, columns) the squares that the object or Utak holding it cross.
+    aside : nodes that must be moved out of the way first.
+    """
+
+    plan: Carrying
+    target: str
+    level: int
+    swept: Mask
+    aside: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """No way was found. proved : there is none, whatever the unseen holds. why : in words."""
+
+    proved: bool
+    why: str
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is to be carried, and where to. avoid : holds that failed. last : the target chosen last."""
+
+    node: Node
+    ends: Mapping[str, End]
+    avoid: tuple[tuple[float, float], ...] = ()
+    last: str = ""
+
+
+class Hauler:
+    """Finds ways to carry things, and remembers what it was last told for the same question."""
+
+    def __init__(self, pull: bool = True) -> None:
+        self._pull = pull
+        self._known: dict[tuple[Any, ...], Carrying] = {}
+
+    def find(self, request: Request, situation: Situation) -> Haul | Refusal:
+        """The way that is chosen and verified, or why there is none."""
+        shape = in_view(request.node.polygon, situation)
+        floors = {(level, aside): _free(request.node, situation, level, aside) for level, aside in _kinds(situation)}
+        options = [
+            f"option({name},{level},{aside},{round(10 * _way(end, shape))})"
+            for name, end in sorted(request.ends.items())
+            for level, aside in floors
+        ]
+        options += [f"last({request.last})"] * (request.last in request.ends)
+        verdicts: list[str] = []
+        plans: list[Carrying] = []
+        for _ in range(MOST_ROUNDS):
+            choice = _choice([*options, *verdicts])
+            if choice is None:
+                break
+            name, level, aside = choice
+            plan = self._plan(request, shape, floors[level, aside], name, situation)
+            if plan.status == "found":
+                return _haul(plan, shape, name, level, situation, request.node)
+            plans.append(plan)
+            fact = "refuted" if plan.status == "impossible" else "undecided"
+            verdicts.append(f"{fact}({name},{level},{aside})")
+        return _refusal(request.node, plans)
+
+    def _plan(self, request: Request, shape: Any, free: Mask, name: str, situation: Situation) -> Carrying:
+        x, y = situation.model.place
+        view = situation.model.view
+        utak = (x - view.west, y - view.south)
+        key = (shape.wkb, free.tobytes(), free.shape, name, repr(request.ends[name]), utak, request.avoid)
+        if key not in self._known:
+            if len(self._known) > 64:
+                self._known.clear()
+            margin = 0.0 if _is_whole(shape) else MARGIN
+            self._known[key] = plan_carrying(
+                shape, free, utak, request.ends[name], margin=margin, pull=self._pull, avoid=request.avoid
+            )
+        return self._known[key]
+
+
+def _is_whole(shape: Any) -> bool:
+    points = shapely.get_coordinates(shape)
+    return bool(np.array_equal(points, np.rint(points)))
+
+
+def _kinds(situation: Situation) -> list[tuple[int, str]]:
+    """The levels of certainty that differ, with other things where they are and without them."""
+    others = len(situation.model.objects) > 1
+    return [(level, aside) for level in LEVELS for aside in (("clear", "aside") if others else ("clear",))]
+
+
+def _free(node: Node, situation: Situation, level: int, aside: str) -> Mask:
+    """The squares that may be used for carrying an object: those of the level, its own, and those of movable things."""
+    model = situation.model
+    free = situation.screens.free(level) | model.mask(node.patch)
+    if aside == "aside":
+        for other in model.objects:
+            if other.movable > 0 and other.confidence >= 95:
+                free |= model.mask(other.patch)
+    return free
+
+
+def _way(end: End, shape: Any) -> float:
+    """The least way to a target as the crow flies, in squares."""
+    if isinstance(end, At):
+        return math.hypot(end.pose.x, end.pose.y)
+    if isinstance(end, InCorner):
+        return float(shape.distance(shapely.Point(end.x, end.y)))
+    return float(shape.distance(end.polygon))
+
+
+def _choice(facts: Sequence[str]) -> tuple[str, int, str] | None:
+    answer = solve([ASP / "transport.lp"], facts)
+    if not answer:
+        return None
+    name, level, aside = answer[0].arguments
+    return str(name), level.number, str(aside)
+
+
+def _haul(plan: Carrying, shape: Any, name: str, level: int, situation: Situation, node: Node) -> Haul:
+    swept = swept_squares(plan, shape, situation.model.labels.shape)
+    aside = tuple(
+        other.name
+        for other in situation.model.objects
+        if other.name != node.name and (situation.model.mask(other.patch) & swept).any()
+    )
+    return Haul(plan, name, level, swept, aside)
+
+
+def swept_squares(plan: Carrying, shape: Any, size: tuple[int, ...]) -> Mask:
+    """(rows, columns): the squares that an object, and Utak with it in his hand, cross on a plan."""
+    rows, columns = size
+    mask: Mask = squares(shape, columns, rows)
+    for leg in plan.legs:
+        x, y = leg.place
+        for motion in leg.motions:
+            far = math.hypot(motion.dx, motion.dy) if isinstance(motion, Translate) else 0.4 * abs(motion.degrees)
+            steps = max(1, math.ceil(far / STRIDE))
+            for step in range(1, steps + 1):
+                mask |= squares(motion.part(step / steps).carry(shape), columns, rows)
+                if isinstance(motion, Translate):
+                    here = (x + motion.dx * step / steps, y + motion.dy * step / steps)
+                    mask[min(max(int(here[1]), 0), rows - 1), min(max(int(here[0]), 0), columns - 1)] = True
+            shape = motion.carry(shape)
+            if isinstance(motion, Translate):
+                x, y = x + motion.dx, y + motion.dy
+    return mask
+
+
+def _refusal(node: Node, plans: Sequence[Carrying]) -> Refusal:
+    """Why nothing was found. It is proved when every target was refuted, whatever lies in the unseen."""
+    if not plans:
+        return Refusal(False, f"nothing is known of where {node.name} could be carried")
+    last = plans[-1]
+    proved = all(plan.status == "impossible" for plan in plans)
+    if not proved:
+        return Refusal(False, f"no way was found to carry {node.name} there, and no proof that there is none")
+    if last.passage is None:
+        return Refusal(True, f"{node.name} cannot be carried there")
+    return Refusal(True, f"the passage for {node.name} is too narrow by {last.missing:.2f} squares")
