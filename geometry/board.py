@@ -1,6 +1,7 @@
 """The squares on which something is carried: where it can lie, what each push costs, and where Utak can walk.
 
-A pose on the board is a quarter turn 0..3 and a place, the square of the body's centroid (row * columns + column).
+A pose on the board is a quarter turn 0..3 and a place, the square of the body's centroid. Squares are counted row by
+row on a table that is padded all round with solid squares, so that no step or turn leads out of the arrays.
 Costs are whole numbers: COMMAND for a command, SIDE and DIAGONAL for the squares travelled.
 """
 
@@ -21,20 +22,27 @@ REGRASP = 2 * COMMAND  # to let go and take again, without the walk between
 AWKWARD = COMMAND // 5  # a grasp of a square that is reached over a corner only
 
 
-class Board(NamedTuple):
-    """All that the search asks of table and body, in arrays for numba.
+class Lists(NamedTuple):
+    """Lists of numbers one after another: list n is items[first[n] : first[n + 1]]."""
 
-    frame : (5,) columns, rows, pad, stride of padded rows, least distance of the window of a walk.
-    solid, walk : padded squares, flat: what stops a body; where Utak may walk when nothing is in his way.
-    holds : (4, n, 2) the offsets of the holds in each quarter turn. grip : (n,) the cost of a grasp there, -1 unusable.
-    push : (4, 8, places) the cost of a push by one square, 0 when it is blocked; utak : (8, places) whether he can go.
-    lies : (4, places) whether the body can lie there; image, image_first : padded offsets of its squares, by quarter.
-    turns, turns_first : padded offsets, from the body's place, of what a turn counter-clockwise about a hold meets, by
-    hold * 4 + quarter; wide, wide_first : the same of the body with its margin.
+    items: Ints
+    first: Ints
+
+
+class Board(NamedTuple):
+    """All that the search asks of table and body, in arrays for numba. Offsets are differences of square numbers.
+
+    solid, walk : (squares,) what stops a body; where Utak may walk when nothing is in his way.
+    holds : (4, n) the offset of each hold from the body's place, by quarter turn. grip : (n,) the price of a grasp
+    there, -1 where it is not to be used.
+    push : (4, 8, squares) the price of a push by one square, 0 when it is blocked. utak : (8, squares) whether he can
+    make the step himself. lies : (4, squares) whether the body can lie at a place.
+    image : by quarter turn, the squares of the body. turns : by hold * 4 + quarter turn, those that it meets in a turn
+    counter-clockwise about the hold. wide : the same of the body with its margin.
     allowed : (4, n, 8) whether one may push in a direction from a hold.
+    steps : (8,) the offset of each direction.
     """
 
-    frame: Ints
     solid: Mask
     walk: Mask
     holds: Ints
@@ -42,42 +50,88 @@ class Board(NamedTuple):
     push: Costs
     utak: Mask
     lies: Mask
-    image: Ints
-    image_first: Ints
-    turns: Ints
-    turns_first: Ints
-    wide: Ints
-    wide_first: Ints
+    image: Lists
+    turns: Lists
+    wide: Lists
     allowed: Mask
+    steps: Ints
 
 
-def new_board(free: Mask, walk: Mask, body: Stencil, wide: Stencil, grip: Costs, allowed: Mask) -> Board:
-    """The board of free squares for a body, and for the same body with its margin around it."""
-    rows, columns = free.shape
-    pad = int(max(np.abs(part).max() for part in (*body.turns, *wide.turns, *wide.steps))) + 2
-    stride = columns + 2 * pad
-    solid = np.pad(~free, pad, constant_values=True).ravel()
-    holds = np.array([quarter(body.holds, k) for k in range(4)], dtype=np.int64).reshape(4, -1, 2)
-    places = _places(rows, columns, pad, stride)
-    push = np.zeros((4, 8, rows * columns), np.int32)
-    for k in range(4):
-        for d in range(8):
-            size = SIDE if d % 2 == 0 else DIAGONAL
-            seen = _clear(solid, places, _flat(quarter(body.steps[(d - 2 * k) % 8], k), stride))
-            roomy = _clear(solid, places, _flat(quarter(wide.steps[(d - 2 * k) % 8], k), stride))
-            push[k, d] = np.where(seen, np.where(roomy, size, size + TIGHT_PUSH), 0)
-    lying = [_flat(quarter(body.lying, k), stride) for k in range(4)]
-    lies = np.array([_clear(solid, places, offsets) for offsets in lying])
-    utak = np.array([_clear(solid, places, _flat(_corner(dx, dy), stride)) for dx, dy in DIRECTIONS])
-    image, image_first = _listed(lying)
-    turns, turns_first = _listed([_flat(quarter(turn, k), stride) for turn in body.turns for k in range(4)])
-    fat, fat_first = _listed([_flat(quarter(turn, k), stride) for turn in wide.turns for k in range(4)])
-    frame = np.array([columns, rows, pad, stride], np.int64)
-    walking = np.pad(walk, pad, constant_values=False).ravel()
+class Grid(NamedTuple):
+    """How the squares of a table of columns x rows are counted: padded by `pad` all round, row by row."""
+
+    columns: int
+    rows: int
+    pad: int
+
+    @property
+    def stride(self) -> int:
+        """How many squares there are in a padded row."""
+        return self.columns + 2 * self.pad
+
+    def number(self, column: int, row: int) -> int:
+        """The number of a square."""
+        return (row + self.pad) * self.stride + column + self.pad
+
+    def square(self, number: int) -> tuple[int, int]:
+        """The (column, row) of a number."""
+        return number % self.stride - self.pad, number // self.stride - self.pad
+
+    def padded(self, squares: Mask, value: bool) -> Mask:
+        """A (rows, columns) array as (squares,)."""
+        return np.pad(squares, self.pad, constant_values=value).ravel()
+
+    def offsets(self, offsets: Ints) -> Ints:
+        """Offsets (n, 2) of columns and rows as differences of numbers."""
+        flat: Ints = offsets[:, 1] * self.stride + offsets[:, 0]
+        return flat
+
+    def places(self) -> Ints:
+        """The numbers of all squares of the table."""
+        row, column = np.divmod(np.arange(self.rows * self.columns), self.columns)
+        return (row + self.pad) * self.stride + column + self.pad
+
+    def clear(self, solid: Mask, offsets: Ints) -> Mask:
+        """At which squares of the table none of the offsets (n, 2) is solid: (squares,), False off the table."""
+        return _clear(solid, self.places(), self.offsets(offsets))
+
+
+def new_grid(free: Mask, body: Stencil, wide: Stencil) -> Grid:
+    """A grid padded widely enough for every step and turn of a body."""
+    reach = max(int(np.abs(part).max()) for part in (*body.turns, *wide.turns, *wide.steps))
+    return Grid(free.shape[1], free.shape[0], max(reach, 2 * int(np.abs(body.holds).max())) + 2)
+
+
+def new_board(grid: Grid, free: Mask, walk: Mask, body: Stencil, wide: Stencil, grip: Costs, allowed: Mask) -> Board:
+    """The board of free squares (rows, columns) for a body, and for the same body with its margin."""
+    solid = grid.padded(~free, True)
+    places, quarters = grid.places(), [quarter(body.lying, k) for k in range(4)]
+    push = _pushes(solid, places, _stepped(grid, body), _stepped(grid, wide), wide is not body)
+    image, turns = _listed([grid.offsets(lying) for lying in quarters]), _turned(grid, body)
     return Board(
-        frame, solid, walking, holds, grip, push, utak, lies,
-        image, image_first, turns, turns_first, fat, fat_first, allowed,
-    )  # fmt: skip
+        solid,
+        grid.padded(walk, False),
+        np.array([grid.offsets(quarter(body.holds, k)) for k in range(4)]),
+        grip,
+        push,
+        np.array([_clear(solid, places, grid.offsets(_corner(dx, dy))) for dx, dy in DIRECTIONS]),
+        np.array([_clear(solid, places, grid.offsets(lying)) for lying in quarters]),
+        image,
+        turns,
+        turns if wide is body else _turned(grid, wide),
+        allowed,
+        grid.offsets(np.array(DIRECTIONS)),
+    )
+
+
+def _stepped(grid: Grid, body: Stencil) -> Lists:
+    """The squares met by a push, by quarter turn * 8 + direction."""
+    return _listed([grid.offsets(quarter(body.steps[(d - 2 * k) % 8], k)) for k in range(4) for d in range(8)])
+
+
+def _turned(grid: Grid, body: Stencil) -> Lists:
+    """The squares met by a quarter turn counter-clockwise, by hold * 4 + quarter turn."""
+    return _listed([grid.offsets(quarter(turn, k)) for turn in body.turns for k in range(4)])
 
 
 def _corner(dx: int, dy: int) -> Ints:
@@ -85,76 +139,61 @@ def _corner(dx: int, dy: int) -> Ints:
     return np.array(sorted({(0, 0), (dx, 0), (0, dy), (dx, dy)}), dtype=np.int64)
 
 
-def _flat(offsets: Ints, stride: int) -> Ints:
-    """Offsets (columns, rows) as offsets in the padded, flat array."""
-    flat: Ints = offsets[:, 1] * stride + offsets[:, 0]
-    return flat
-
-
-def _places(rows: int, columns: int, pad: int, stride: int) -> Ints:
-    """The padded index of each place."""
-    row, column = np.divmod(np.arange(rows * columns), columns)
-    return (row + pad) * stride + column + pad
-
-
-def _listed(lists: list[Ints]) -> tuple[Ints, Ints]:
-    """Lists one after another, and where each begins."""
+def _listed(lists: list[Ints]) -> Lists:
+    """Lists one after another."""
     first = np.concatenate([[0], np.cumsum([len(each) for each in lists])]).astype(np.int64)
-    return np.concatenate([np.empty(0, np.int64), *lists]), first
-
-
-def _clear(solid: Mask, places: Ints, offsets: Ints) -> Mask:
-    """At which places none of the offsets is solid: (places,)."""
-    clear: Mask = _unmet(solid, places, offsets)
-    return clear
+    return Lists(np.concatenate([np.empty(0, np.int64), *lists]), first)
 
 
 @compiled
-def _unmet(solid: Mask, places: Ints, offsets: Ints) -> Mask:
-    clear = np.ones(len(places), np.bool_)
-    for n in range(len(places)):
+def _clear(solid: Mask, places: Ints, offsets: Ints) -> Mask:
+    clear = np.zeros(len(solid), np.bool_)
+    for place in places:
+        clear[place] = True
         for offset in offsets:
-            if solid[places[n] + offset]:
-                clear[n] = False
+            if solid[place + offset]:
+                clear[place] = False
                 break
     return clear
 
 
 @compiled
-def fits(board: Board, offsets: Ints, first: int, stop: int, place: int) -> bool:
-    """Whether none of the listed offsets from a place is solid."""
-    columns, pad, stride = board.frame[0], board.frame[2], board.frame[3]
-    at = (place // columns + pad) * stride + place % columns + pad
-    for n in range(first, stop):  # noqa: SIM110 (numba)
-        if board.solid[at + offsets[n]]:
-            return False
-    return True
-
-
-@compiled
-def shifted(board: Board, place: int, dx: int, dy: int) -> int:
-    """The place so many squares away, or -1 beyond the board."""
-    columns, rows = board.frame[0], board.frame[1]
-    x, y = place % columns + dx, place // columns + dy
-    return int(y * columns + x) if 0 <= x < columns and 0 <= y < rows else -1
+def _pushes(solid: Mask, places: Ints, body: Lists, wide: Lists, with_margin: bool) -> Costs:
+    """The prices of Board.push."""
+    push = np.zeros((4, 8, len(solid)), np.int32)
+    for k in range(4):
+        for d in range(8):
+            for place in places:
+                if _fits(solid, body, k * 8 + d, place):
+                    tight = with_margin and not _fits(solid, wide, k * 8 + d, place)
+                    push[k, d, place] = (SIDE if d % 2 == 0 else DIAGONAL) + (TIGHT_PUSH if tight else 0)
+    return push
 
 
 @compiled
 def turned_place(board: Board, hold: int, quarters: int, place: int, way: int) -> int:
-    """Where the body's centroid comes to in a quarter turn about a hold: way 1 counter-clockwise, -1 clockwise."""
-    here, there = board.holds[quarters, hold], board.holds[(quarters + way) % 4, hold]
-    return shifted(board, place, here[0] - there[0], here[1] - there[1])
+    """Where the body's centroid comes to in so many quarter turns about a hold, counter-clockwise positive."""
+    return int(place + board.holds[quarters, hold] - board.holds[(quarters + way) % 4, hold])
 
 
 @compiled
 def turn_cost(board: Board, hold: int, quarters: int, place: int, way: int) -> int:
-    """The cost of a quarter turn about a hold without the command itself, -1 when it is blocked."""
-    after = turned_place(board, hold, quarters, place, way)
-    if after < 0:
-        return -1
+    """The cost of a quarter turn (way 1 or -1) about a hold without the command itself, -1 when it is blocked."""
     if way < 0:
-        quarters, place = (quarters + 3) % 4, after
-    at = hold * 4 + quarters
-    if not fits(board, board.turns, board.turns_first[at], board.turns_first[at + 1], place):
+        place = turned_place(board, hold, quarters, place, way)
+        quarters = (quarters + 3) % 4
+    if not board.lies[quarters, place]:
         return -1
-    return 0 if fits(board, board.wide, board.wide_first[at], board.wide_first[at + 1], place) else TIGHT_TURN
+    which = hold * 4 + quarters
+    if not _fits(board.solid, board.turns, which, place):
+        return -1
+    return 0 if _fits(board.solid, board.wide, which, place) else TIGHT_TURN
+
+
+@compiled
+def _fits(solid: Mask, lists: Lists, which: int, place: int) -> bool:
+    """Whether none of the offsets in a list, seen from a place, is solid."""
+    for n in range(lists.first[which], lists.first[which + 1]):  # noqa: SIM110 (numba)
+        if solid[place + lists.items[n]]:
+            return False
+    return True

@@ -8,11 +8,11 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from geometry.board import COMMAND, Board, Costs
+from geometry.board import COMMAND, Board, Costs, Grid
 from geometry.digital import areas
 from geometry.problem import Inside
 from geometry.rigid import Pose, turned
-from geometry.stencil import DIRECTIONS, Mask, Stencil, quarter
+from geometry.stencil import DIRECTIONS, Stencil, quarter
 
 __all__ = ["At", "End", "InCorner", "Inside"]
 
@@ -65,51 +65,37 @@ def placed(shape: Any, pose: Pose) -> Any:
     return shapely.transform(shape, lambda p: turned(p - middle, pose.degrees) + middle + np.array([pose.x, pose.y]))
 
 
-def prices(goal: End, shape: Any, body: Stencil, board: Board) -> Costs:
-    """The price of ending at each pose of the board, -1 where the goal is not met: (4, places).
+def prices(goal: End, shape: Any, body: Stencil, board: Board, grid: Grid) -> Costs:
+    """The price of ending at each pose of the board, -1 where the goal is not met: (4, squares).
 
     For a pose off the lattice the places beside it count, when it is a whole number of quarter turns away.
     """
-    columns, rows = int(board.frame[0]), int(board.frame[1])
-    found = np.full((4, rows * columns), -1, np.int32)
     if isinstance(goal, At):
-        _beside(goal.pose, shape, body, columns, rows, found)
-        return found
-    for k in range(4):
-        if isinstance(goal, Inside):
-            priced = _inside(goal, quarter(body.lying, k), board)
-        else:
-            priced = _cornered(goal, shape, body, k, columns, rows)
-        found[k] = np.where(board.lies[k], priced, -1)
-    return found
+        return _beside(goal.pose, shape, body, grid)
+    if isinstance(goal, Inside):
+        found = [_inside(goal, quarter(body.lying, k), board, grid) for k in range(4)]
+    else:
+        found = [_cornered(goal, shape, body, k, grid) for k in range(4)]
+    return np.where(board.lies, np.array(found), -1).astype(np.int32)
 
 
-def _inside(goal: Inside, lying: npt.NDArray[np.int64], board: Board) -> Costs:
+def _inside(goal: Inside, lying: npt.NDArray[np.int64], board: Board, grid: Grid) -> Costs:
     """The prices of one quarter: dear where the body, were it a square larger, would reach free squares outside."""
-    columns, rows, pad, stride = (int(v) for v in board.frame[:4])
-    free = ~board.solid.reshape(-1, stride)
-    price = np.full(rows * columns, -1, np.int32)
+    price = np.full(len(board.solid), -1, np.int32)
     fat = np.unique(np.vstack([lying, *(lying + np.array(step) for step in DIRECTIONS)]), axis=0)
     for part in shapely.get_parts(goal.polygon):
-        whole = np.pad(areas(part, columns, rows) > 1 - CLOSE, pad)
-        inside, easy = _all_on(whole, lying, rows, columns, pad), _all_on(whole | ~free, fat, rows, columns, pad)
-        price = np.where(inside, np.where(easy, 0, np.where(price == 0, 0, UNEASY)), price).astype(np.int32)
+        outside = grid.padded(areas(part, grid.columns, grid.rows) < 1 - CLOSE, True)
+        inside, easy = grid.clear(outside, lying), grid.clear(outside & ~board.solid, fat)
+        price[inside & (price != 0)] = UNEASY
+        price[inside & easy] = 0
     return price
 
 
-def _all_on(squares: Mask, offsets: npt.NDArray[np.int64], rows: int, columns: int, pad: int) -> Mask:
-    """At which places all the offsets are on the given (padded) squares: (places,)."""
-    on = np.ones((rows, columns), np.bool_)
-    for dx, dy in offsets:
-        on &= squares[pad + dy : pad + dy + rows, pad + dx : pad + dx + columns]
-    return on.ravel()
-
-
-def _cornered(goal: InCorner, shape: Any, body: Stencil, k: int, columns: int, rows: int) -> Costs:
+def _cornered(goal: InCorner, shape: Any, body: Stencil, k: int, grid: Grid) -> Costs:
     """The prices of one quarter: dear where a gap to a wall is more than half of what is allowed."""
     x0, y0, x1, y1 = lying_at(shape, body, k, body.home).bounds
-    row, column = np.divmod(np.arange(rows * columns), columns)
-    dx, dy = column - body.home[0], row - body.home[1]
+    row, column = np.divmod(np.arange((grid.rows + 2 * grid.pad) * grid.stride), grid.stride)
+    dx, dy = column - grid.pad - body.home[0], row - grid.pad - body.home[1]
     along = goal.x - x1 - dx if goal.sx > 0 else x0 + dx - goal.x
     up = goal.y - y1 - dy if goal.sy > 0 else y0 + dy - goal.y
     gap = np.maximum(along, up)
@@ -124,15 +110,16 @@ def lying_at(shape: Any, body: Stencil, k: int, place: tuple[int, int]) -> Any:
     return shapely.transform(shape, lambda p: turned(p - home, 90.0 * k) + move)
 
 
-def _beside(pose: Pose, shape: Any, body: Stencil, columns: int, rows: int, found: Costs) -> None:
-    """Mark the pose's own place on the board, or the up to four about it."""
-    quarters = round(pose.degrees / 90.0)
-    if abs(pose.degrees - 90.0 * quarters) > 1e-7:
-        return
-    k = quarters % 4
+def _beside(pose: Pose, shape: Any, body: Stencil, grid: Grid) -> Costs:
+    """The pose's own place on the board, or the up to four about it."""
+    found = np.full((4, (grid.rows + 2 * grid.pad) * grid.stride), -1, np.int32)
+    k = round(pose.degrees / 90.0)
+    if abs(pose.degrees - 90.0 * k) > 1e-7:
+        return found
     there, here = placed(shape, pose).centroid, lying_at(shape, body, k, body.home).centroid
     dx, dy = there.x - here.x + body.home[0], there.y - here.y + body.home[1]
     for x in {math.floor(dx + CLOSE), math.ceil(dx - CLOSE)}:
         for y in {math.floor(dy + CLOSE), math.ceil(dy - CLOSE)}:
-            if 0 <= x < columns and 0 <= y < rows:
-                found[k, y * columns + x] = round(100 * math.hypot(x - dx, y - dy))
+            if 0 <= x < grid.columns and 0 <= y < grid.rows:
+                found[k % 4, grid.number(x, y)] = round(100 * math.hypot(x - dx, y - dy))
+    return found

@@ -5,107 +5,121 @@
 # buckets (Dial 1969) holds the queue.
 """
 
+from typing import NamedTuple
+
 import numpy as np
+import numpy.typing as npt
 
-from geometry.board import COMMAND, Board, Costs, shifted, turned_place
+from geometry.board import COMMAND, Board, Costs, turn_cost, turned_place
 from geometry.compiled import compiled
-from geometry.stencil import DIRECTIONS
 
-ACROSS = np.array([d[0] for d in DIRECTIONS])
-ALONG = np.array([d[1] for d in DIRECTIONS])
-NEVER = np.int32(2**30)
-RING = 4096
+STILL = 8  # the direction of a body that lies
+NEVER = 2**30
+RING = 2048  # buckets: more than the dearest step
+PUTS = 64  # entries for each pose: far more than come to be, and memory that is not touched costs nothing
+
+
+class Queue(NamedTuple):
+    """Nodes by cost: first[cost % RING] is the last entry put there, before[entry] the one before it, -1 none.
+
+    used : (2,) entries used, entries that wait.
+    """
+
+    first: npt.NDArray[np.int32]
+    node: npt.NDArray[np.int32]
+    before: npt.NDArray[np.int32]
+    used: npt.NDArray[np.int64]
 
 
 @compiled
 def guess(board: Board, ends: Costs) -> Costs:
-    """The least cost left: (4, 9, places), by quarter turn and direction of the push that is under way (8: none).
+    """The least cost left: (4, 9, squares), by quarter turn and direction of the push that is under way.
 
-    ends : (4, places) the price of ending at a pose, -1 where the goal is not met. Below RING - 1200.
+    ends : (4, squares) the price of ending at a pose, -1 where the goal is not met; below RING.
+    NEVER where the goal cannot be reached; -1 where a body that lies would overlap something.
     """
-    places = ends.shape[1]
-    left = np.full((4, 9, places), NEVER, np.int32)
-    first = np.full(RING, -1, np.int64)
-    size = 1 << 16
-    entry, before = np.empty(size, np.int64), np.empty(size, np.int64)
-    used, waiting, now = 0, 0, 0
-    around = np.empty(3 * board.holds.shape[1] + 16, np.int64)
-    price = np.empty(len(around), np.int64)
+    squares = ends.shape[1]
+    left = np.full((4, 9, squares), NEVER, np.int32)
+    size = PUTS * 4 * squares
+    first = np.full(RING, -1, np.int32)
+    queue = Queue(first, np.empty(size, np.int32), np.empty(size, np.int32), np.zeros(2, np.int64))
     for k in range(4):
-        for p in range(places):
-            if ends[k, p] >= 0 and board.lies[k, p]:
-                left[k, 8, p] = ends[k, p]
-                if used == size:
-                    entry, before, size = _doubled(entry), _doubled(before), 2 * size
-                entry[used], before[used] = (k * 9 + 8) * places + p, first[ends[k, p] % RING]
-                first[ends[k, p] % RING] = used
-                used += 1
-                waiting += 1
-    while waiting > 0:
-        slot = now % RING
-        at = first[slot]
-        if at < 0:
+        for p in range(squares):
+            if not board.lies[k, p]:
+                left[k, STILL, p] = -1
+            elif ends[k, p] >= 0:
+                left[k, STILL, p] = ends[k, p]
+                _put(queue, ends[k, p], (p << 8) + (STILL << 4) + k)
+    now = 0
+    while queue.used[1] > 0:
+        entry = queue.first[now % RING]
+        if entry < 0:
             now += 1
             continue
-        first[slot] = before[at]
-        waiting -= 1
-        node = entry[at]
-        p, km = node % places, node // places
-        k, m = km // 9, km % 9
+        queue.first[now % RING] = queue.before[entry]
+        queue.used[1] -= 1
+        node = int(queue.node[entry])
+        p, m, k = node >> 8, (node >> 4) & 15, node & 15
         if left[k, m, p] != now:
             continue
-        count = _befores(board, k, m, p, around, price)
-        for n in range(count):
-            k0, m0, p0 = around[n] // places // 9, around[n] // places % 9, around[n] % places
-            cost = now + price[n]
-            if cost < left[k0, m0, p0]:
-                left[k0, m0, p0] = cost
-                if used == size:
-                    entry, before, size = _doubled(entry), _doubled(before), 2 * size
-                entry[used], before[used] = around[n], first[cost % RING]
-                first[cost % RING] = used
-                used += 1
-                waiting += 1
+        if m < STILL:
+            _back(board, left, queue, k, m, p, now)
+            continue
+        for d in range(8):
+            if now < left[k, d, p]:
+                left[k, d, p] = now
+                _back(board, left, queue, k, d, p, now)
+        _turn_back(board, left, queue, k, p, now + COMMAND)
     return left
 
 
 @compiled
-def _doubled(queue):  # type: ignore[no-untyped-def]
-    """A copy twice as long."""
-    longer = np.empty(2 * len(queue), queue.dtype)
-    longer[: len(queue)] = queue
-    return longer
+def _turn_back(board, left, queue, k, p, then):  # type: ignore[no-untyped-def]
+    """Go back over the turns that end at a pose, about every hold."""
+    for hold in range(len(board.grip)):
+        if board.grip[hold] < 0 or board.solid[p + board.holds[k, hold]]:
+            continue
+        for way in (1, -1):
+            p1, p2 = turned_place(board, hold, k, p, way), turned_place(board, hold, k, p, 2 * way)
+            k1, k2 = (k + way) % 4, (k + 2) % 4
+            if then >= left[k1, STILL, p1] and then >= left[k2, STILL, p2]:
+                continue
+            extra = turn_cost(board, hold, k, p, way)
+            if extra < 0:
+                continue
+            if then + extra < left[k1, STILL, p1]:
+                left[k1, STILL, p1] = then + extra
+                _put(queue, then + extra, (p1 << 8) + (STILL << 4) + k1)
+            if then + extra < left[k2, STILL, p2]:
+                more = turn_cost(board, hold, k1, p1, way)
+                if more >= 0 and then + max(extra, more) < left[k2, STILL, p2]:
+                    left[k2, STILL, p2] = then + max(extra, more)
+                    _put(queue, then + max(extra, more), (p2 << 8) + (STILL << 4) + k2)
 
 
 @compiled
-def _befores(board, k, m, p, around, price):  # type: ignore[no-untyped-def]
-    """The nodes from which one step leads to a node, and its price; how many."""
-    places = board.lies.shape[1]
-    count = 0
-    if m < 8:
-        p0 = shifted(board, p, -ACROSS[m], -ALONG[m])
-        if p0 >= 0 and board.push[k, m, p0] > 0:
-            around[count], price[count] = (k * 9 + m) * places + p0, board.push[k, m, p0]
-            around[count + 1], price[count + 1] = (k * 9 + 8) * places + p0, COMMAND + board.push[k, m, p0]
-            count += 2
-        return count
-    for d in range(8):
-        around[count], price[count] = (k * 9 + d) * places + p, 0
-        count += 1
-    for hold in range(board.holds.shape[1]):
-        if board.grip[hold] < 0:
-            continue
-        p1 = turned_place(board, hold, k, p, 1)
-        p2 = turned_place(board, hold, k, p, -1)
-        if p1 >= 0 and board.lies[(k + 1) % 4, p1]:
-            around[count], price[count] = (((k + 1) % 4) * 9 + 8) * places + p1, COMMAND
-            count += 1
-        if p2 >= 0 and board.lies[(k + 3) % 4, p2]:
-            around[count], price[count] = (((k + 3) % 4) * 9 + 8) * places + p2, COMMAND
-            count += 1
-        here, there = board.holds[k, hold], board.holds[(k + 2) % 4, hold]
-        p3 = shifted(board, p, here[0] - there[0], here[1] - there[1])
-        if p3 >= 0 and board.lies[(k + 2) % 4, p3]:
-            around[count], price[count] = (((k + 2) % 4) * 9 + 8) * places + p3, COMMAND
-            count += 1
-    return count
+def _back(board, left, queue, k, m, p, now):  # type: ignore[no-untyped-def]
+    """Go back a step of a push: to the same push under way, and to where it began."""
+    before = p - board.steps[m]
+    price = board.push[k, m, before]
+    if price == 0:
+        return
+    then = now + price
+    if then < left[k, m, before]:
+        left[k, m, before] = then
+        _put(queue, then, (before << 8) + (m << 4) + k)
+    if then + COMMAND < left[k, STILL, before]:
+        left[k, STILL, before] = then + COMMAND
+        _put(queue, then + COMMAND, (before << 8) + (STILL << 4) + k)
+
+
+@compiled
+def _put(queue, cost, node):  # type: ignore[no-untyped-def]
+    """Put a node into the queue."""
+    entry = queue.used[0]
+    if entry == len(queue.node):
+        return
+    queue.node[entry], queue.before[entry] = node, queue.first[cost % RING]
+    queue.first[cost % RING] = entry
+    queue.used[0] += 1
+    queue.used[1] += 1

@@ -1,51 +1,62 @@
 """Carrying by whole squares and quarter turns: all stays on the lattice on which it began, so beliefs stay certain."""
 
 import math
+from dataclasses import replace
 from functools import lru_cache
 from itertools import groupby, pairwise
+from typing import Any
 
 import numpy as np
 import shapely
 
-from geometry.board import AWKWARD, Board, Costs, new_board
+from geometry.board import AWKWARD, Costs, Grid, new_board, new_grid
 from geometry.ends import At, placed, prices
 from geometry.errand import Errand
-from geometry.guess import NEVER, guess
+from geometry.guess import NEVER, STILL, guess
 from geometry.hauling import first_walk, haul
-from geometry.legs import Leg, Point, grip_square, may_push, rounded, straight
+from geometry.legs import NUMBERS, Leg, Point, grip_square, may_push, rounded, straight
 from geometry.rigid import Motion, Rotate, Translate
-from geometry.stencil import DIRECTIONS, Floats, Ints, Mask, Stencil, new_stencil
+from geometry.stencil import DIRECTIONS, Floats, Ints, Mask, Stencil, new_stencil, quarter
 from geometry.yard import padded
 
 MOST = 400_000  # nodes looked at before giving up
 Step = tuple[int, int, int, int]  # hold, quarter, direction, place
 
 
-@lru_cache(maxsize=16)
-def _stencils(wkb: bytes, margin: float) -> tuple[Stencil, Stencil]:
+def _stencils(shape: Any, margin: float) -> tuple[Stencil, Stencil]:
     """The stencils of a shape and of the shape with its margin."""
+    home = (math.floor(shape.centroid.x), math.floor(shape.centroid.y))
+    near = shapely.transform(shape, lambda p: np.round(p - np.array(home), NUMBERS))
+    body, wide = _stencils_near(shapely.to_wkb(near), margin)
+    return replace(body, home=home), body if wide is body else replace(wide, home=home)
+
+
+@lru_cache(maxsize=32)
+def _stencils_near(wkb: bytes, margin: float) -> tuple[Stencil, Stencil]:
+    """The stencils of a shape whose centroid lies in the square (0, 0)."""
     shape = shapely.from_wkb(wkb)
     body = new_stencil(shape)
-    return body, new_stencil(padded(shape, margin), body.holds, body.home) if margin > 0.0 else body
+    return body, new_stencil(padded(shape, margin), body.holds) if margin > 0.0 else body
 
 
 def carry_squarewise(errand: Errand, most: int = MOST) -> list[Leg] | None:
     """The cheapest legs by whole squares; None when there are none or they are not found among `most` nodes."""
-    body, wide = _stencils(shapely.to_wkb(errand.shape), errand.margin)
+    body, wide = _stencils(errand.shape, errand.margin)
     rows, columns = errand.walk.shape
     if not (0 <= body.home[0] < columns and 0 <= body.home[1] < rows):
         return None
-    board = new_board(errand.yard.free, errand.walk, body, wide, _grips(errand, body), _allowed(errand, body))
-    place = body.home[1] * columns + body.home[0]
-    if not board.lies[0, place]:
-        return None
-    ends = prices(errand.goal, errand.shape, body, board)
+    grid, free = new_grid(errand.walk, body, wide), errand.yard.free
+    board = new_board(grid, free, errand.walk, body, wide, _grips(errand, body), _allowed(errand, body))
+    place = grid.number(*body.home)
+    ends = prices(errand.goal, errand.shape, body, board, grid)
     left = guess(board, ends)
-    if left[0, 8, place] >= NEVER:
+    if not 0 <= left[0, STILL, place] < NEVER:
         return None
-    begin = first_walk(board, place, *errand.square)
-    nodes = haul(board, left, ends, begin, place, most)
-    return _Retelling(errand, body, board).legs(nodes) if len(nodes) else None
+    begin = first_walk(board, place, grid.number(*errand.square))
+    count = 36 * len(begin) * len(board.solid)
+    cost, parent = np.zeros(count, np.int32), np.empty(count, np.int32)
+    nodes = haul(board, left, ends, begin, place, most, cost, parent)
+    return _Retelling(errand, body, grid).legs(nodes) if len(nodes) else None
 
 
 def _grips(errand: Errand, body: Stencil) -> Costs:
@@ -77,23 +88,24 @@ def _allowed(errand: Errand, body: Stencil) -> Mask:
 class _Retelling:
     """The nodes of a search told as legs."""
 
-    def __init__(self, errand: Errand, body: Stencil, board: Board) -> None:
-        self.errand, self.body, self.board = errand, body, board
-        self.columns = int(board.frame[0])
+    def __init__(self, errand: Errand, body: Stencil, grid: Grid) -> None:
+        self.errand, self.body, self.grid = errand, body, grid
+        self.holds = [quarter(body.holds, k) for k in range(4)]
         self.shape = errand.shape
         self.at = errand.square
 
     def legs(self, nodes: Ints) -> list[Leg]:
         """The legs, one for each run of nodes with the same hold."""
-        places = self.board.lies.shape[1]
-        steps = [(n // places // 36, n // places // 9 % 4, n // places % 9, n % places) for n in nodes.tolist()]
+        count = (self.grid.rows + 2 * self.grid.pad) * self.grid.stride
+        steps = [(n // count // 36, n // count // 9 % 4, n // count % 9, n % count) for n in nodes.tolist()]
         runs = [list(run) for _, run in groupby(steps, key=lambda step: step[0])]
         return [self._leg(run, run is runs[-1]) for run in runs]
 
     def _utak(self, step: Step) -> Point:
         """The middle of Utak's square at a step."""
-        x, y = self.board.holds[step[1], step[0]].tolist()
-        return step[3] % self.columns + x + 0.5, step[3] // self.columns + y + 0.5
+        x, y = self.holds[step[1]][step[0]].tolist()
+        column, row = self.grid.square(step[3])
+        return column + x + 0.5, row + y + 0.5
 
     def _leg(self, run: list[Step], last: bool) -> Leg:
         place = self._utak(run[0])
@@ -108,7 +120,7 @@ class _Retelling:
                 motions.append(self._turned((k - quarters) % 4, self._utak(steps[0])))
             quarters = k
             motions += self._pushed(steps, last and steps[-1] is run[-1])
-        x, y = self.board.holds[0, run[0][0]].tolist()
+        x, y = self.body.holds[run[0][0]].tolist()
         middle = self.errand.shape.centroid
         hold = (x + self.body.home[0] + 0.5 - middle.x, y + self.body.home[1] + 0.5 - middle.y)
         self.at = self._square(run[-1])

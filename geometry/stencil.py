@@ -46,15 +46,13 @@ class Stencil:
     turns: tuple[Ints, ...]
 
 
-def new_stencil(shape: Any, holds: Ints | None = None, home: tuple[int, int] | None = None) -> Stencil:
-    """The stencil of a shape where it lies; about the holds and the home square of another one when they are given."""
-    if home is None:
-        home = (math.floor(shape.centroid.x), math.floor(shape.centroid.y))
-    near = affinity.translate(shape, -home[0], -home[1])
+def new_stencil(near: Any, holds: Ints | None = None) -> Stencil:
+    """The stencil of a shape whose centroid lies in the square (0, 0); about given holds, or all that there are."""
     lying = _offsets(near)
     holds = _ring(lying) if holds is None else holds
+    body = Body(near)
     steps = tuple(_step(near, lying, dx, dy) for dx, dy in DIRECTIONS)
-    return Stencil(home, holds, lying, steps, tuple(_turn(near, lying, hold) for hold in holds))
+    return Stencil((0, 0), holds, lying, steps, tuple(_turn(body, lying, hold) for hold in holds))
 
 
 def quarter(offsets: Ints, count: int) -> Ints:
@@ -96,15 +94,16 @@ def swept(shape: Any, dx: float, dy: float) -> Any:
     return shapely.union_all(parts)
 
 
-def _turn(near: Any, lying: Ints, hold: Ints) -> Ints:
+def _turn(body: Body, lying: Ints, hold: Ints) -> Ints:
     """The squares met by a quarter turn counter-clockwise about the middle of a square."""
-    body = Body(near)
     pivot = hold + 0.5
     far = math.ceil(float(np.hypot(*(body.corners - pivot).T).max())) + 1
-    met = _met(body.corners, body.edges, far, int(hold[0]), int(hold[1]), *UNIT)
+    met = np.zeros((2 * far + 1, 2 * far + 1), np.bool_)
+    for known in (lying - hold, quarter(lying - hold, 1)):
+        met[known[:, 1] + far, known[:, 0] + far] = True
+    _meet(body.corners, body.edges, met, float(pivot[0]), float(pivot[1]), *UNIT)
     rows, columns = np.nonzero(met)
-    swept_over = np.column_stack([columns, rows]) - far + hold
-    return np.unique(np.vstack([lying, quarter(lying - hold, 1) + hold, swept_over]), axis=0)
+    return np.column_stack([columns, rows]) - far + hold
 
 
 def _unit() -> tuple[Floats, Floats, Floats]:
@@ -117,16 +116,21 @@ UNIT = _unit()
 
 
 @compiled
-def _met(
-    corners: Floats, body: Floats, far: int, column: int, row: int, hull: Floats, skin: Floats, chunks: Floats
-) -> Mask:
-    """Which squares of the window of half-width `far` about a square a body runs into in a quarter turn about it."""
-    met = np.zeros((2 * far + 1, 2 * far + 1), np.bool_)
+def _meet(
+    corners: Floats, body: Floats, met: Mask, cx: float, cy: float, hull: Floats, skin: Floats, chunks: Floats
+) -> None:
+    """Mark the squares of a window about a place that a body runs into in a quarter turn about it."""
+    far = len(met) // 2
+    reach = 0.0
+    for corner in corners:
+        reach = max(reach, (corner[0] - cx) ** 2 + (corner[1] - cy) ** 2)
     shifted, inner, box = hull.copy(), skin.copy(), chunks.copy()
-    cx, cy = column + 0.5, row + 0.5
     for i in range(2 * far + 1):
         for j in range(2 * far + 1):
-            dx, dy = float(column + j - far), float(row + i - far)
+            u, v = max(abs(j - far) - 0.5, 0.0), max(abs(i - far) - 0.5, 0.0)
+            if met[i, j] or u * u + v * v >= reach:
+                continue
+            dx, dy = cx - 0.5 + j - far, cy - 0.5 + i - far
             for k in range(4):
                 for n in range(4):
                     step = dx if n % 2 == 0 else dy
@@ -136,4 +140,3 @@ def _met(
                 box[0, 2 + n] = chunks[0, 2 + n] + (dx if n % 2 == 0 else dy)
             turn = math.pi / 2
             met[i, j] = turn_through_skin(corners, body, shifted, inner, box, cx, cy, 1.0, turn)[1] != 0
-    return met
