@@ -16,7 +16,7 @@ import shapely
 from geometry.digital import areas
 from geometry.rigid import Motion, Rotate, Translate
 from geometry.stencil import DIRECTIONS, Floats, Ints
-from geometry.yard import Yard
+from geometry.yard import Yard, broad
 
 Point = tuple[float, float]
 NUMBERS = 9  # digits that commands are given with
@@ -73,11 +73,10 @@ def straight(yard: Yard, shape: Any, utak: Point, stops: Floats, corners: Ints, 
         return list(corners)
     known = {(int(a), int(b)) for a, b in pairwise(corners)}
     best: list[tuple[int, float, int]] = [(0, 0.0, -1)] + [(len(stops), math.inf, -1)] * (len(stops) - 1)
+    body = broad(shape, utak, margin)
     for i in range(len(stops) - 1):
         vectors = stops[i + 1 :] - stops[i]
-        move = stops[i] - np.array(utak)
-        moved = shapely.transform(shape, lambda p, move=move: p + move)
-        free = yard.far(moved, (float(stops[i, 0]), float(stops[i, 1])), margin, vectors)
+        free = yard.far(body.after(Translate(*(stops[i] - stops[0]))), vectors)
         for n, (dx, dy) in enumerate(vectors.tolist()):
             j = i + 1 + n
             if (i, j) in known or (free[n] and (pull or may_push(shape, utak, dx, dy))):

@@ -8,7 +8,7 @@ import shapely
 
 from geometry.contact import Body, Obstacles
 from geometry.floor import Floor
-from geometry.rigid import Motion, Translate
+from geometry.rigid import Motion
 from geometry.stencil import Floats, Mask
 
 EDGE = 4.0  # squares: how thick the outside of the array is drawn
@@ -42,15 +42,15 @@ class Yard:
         """Whether shape and Utak as one body can make a motion."""
         return self.obstacles.first_contact(Body(shape, [utak]), motion).fraction >= WHOLE
 
-    def far(self, shape: Any, utak: tuple[float, float], margin: float, vectors: Floats) -> Mask:
-        """Which pushes (n, 2) the body can make with a margin about the shape, and Utak with an arm's length: (n,)."""
-        body = Body(shapely.MultiPolygon(shapely.get_parts([padded(shape, margin), arms(utak)])))
+    def far(self, body: Body, vectors: Floats) -> Mask:
+        """Which pushes (n, 2) a body can make to the end: (n,)."""
         free: Mask = self.obstacles.pushes(body, vectors) >= WHOLE
         return free
 
-    def push_lets(self, shape: Any, utak: tuple[float, float], dx: float, dy: float) -> bool:
-        """Whether shape and Utak can be pushed."""
-        return self.lets(shape, utak, Translate(dx, dy))
+
+def broad(shape: Any, utak: tuple[float, float], margin: float) -> Body:
+    """Shape and Utak with all the room about them that they should have: a margin, and an arm's length."""
+    return Body(shapely.MultiPolygon(shapely.get_parts([padded(shape, margin), arms(utak)])))
 
 
 def padded(shape: Any, margin: float) -> Any:
