@@ -65,7 +65,9 @@ class Floor:
         key = shapely.to_wkb(polygon)
         if key not in self._around:
             outer = shapely.box(*self.bounds).buffer(self.side, join_style="mitre")
-            self._around[key] = Floor(outer.difference(polygon), self.bounds.tolist())
+            for part in shapely.get_parts(polygon):
+                outer = outer.difference(part)
+            self._around[key] = Floor(outer, self.bounds.tolist())
         return self._around[key]
 
     def _prepare(self, radius: float) -> Ground:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import shapely
 
 from geometry.cells import Tree, leaf_at, new_tree
 from geometry.chain import REGION, SETTLED, Hunt, find_chain, new_hunt
@@ -23,12 +24,19 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Inside:
-    """A goal: the whole body within a polygon, at any place and angle.
+    """A goal: the whole body within a polygon, or one of several, at any place and angle.
 
-    polygon : shapely Polygon or MultiPolygon, table frame.
+    polygons : shapely Polygon or MultiPolygon, or a sequence of them, table frame. They should not overlap.
     """
 
-    polygon: Any
+    polygons: Any
+
+    @property
+    def polygon(self) -> Any:
+        """All of them as one shapely geometry; those that touch stay apart."""
+        several = self.polygons if isinstance(self.polygons, list | tuple) else [self.polygons]
+        parts = [part for each in several for part in shapely.get_parts(each)]
+        return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
 
 
 class Problem:

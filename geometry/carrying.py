@@ -1,0 +1,174 @@
+"""Carrying: how Utak brings a body to a goal, letting go of it and taking it again where he must.
+
+    plan = plan_carrying(brick, free, (3.5, 3.5), Inside(room))
+    for leg in plan.legs:
+        ...  # walk to leg.place, grasp, push and turn, release
+
+# Strategy: first by whole squares and quarter turns (geometry.squarewise): all stays on the lattice, and what Utak
+# believes of places stays certain. Only where that finds nothing are the body alone (a proof when it cannot pass) and
+# any place and angle tried.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import shapely
+
+from geometry.bottleneck import Neck
+from geometry.ends import At, End, InCorner, Inside, met
+from geometry.errand import Errand
+from geometry.legs import Leg, Point, verified
+from geometry.motion import Plan, plan_motion
+from geometry.rigid import Pose, Rotate, Translate
+from geometry.squarewise import carry_squarewise
+from geometry.stencil import Mask
+from geometry.yard import Yard
+
+__all__ = ["At", "Carrying", "InCorner", "Inside", "Leg", "Pose", "plan_carrying"]
+
+STRIDE = 12  # squares walked by a command, about
+
+
+@dataclass(frozen=True)
+class Carrying:
+    """What plan_carrying found.
+
+    Attributes
+    ----------
+    status : "found"; "impossible": proved, the body cannot be moved there even by itself; "limit": not found, and not
+        proved either.
+    legs : what Utak does, in order; () unless found, or when the goal is met already.
+    pose : how the body ends: turned about its centroid by degrees, then moved by (x, y), as in At.
+    polygon : the body as it ends. Both None unless found.
+    reason : when not found, what was in the way: "body" (the body by itself cannot pass), "hold" (it could, but Utak
+        with it was not found to), "start" (it overlaps a wall where it lies), "goal" (no such end); else "".
+    body : the plan of the body by itself, when that was asked; None else.
+    """
+
+    status: str
+    legs: tuple[Leg, ...] = ()
+    pose: Pose | None = None
+    polygon: Any = None
+    reason: str = ""
+    body: Plan | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def commands(self) -> int:
+        """About how many commands this takes: walks, grasps, pushes, turns, releases."""
+        return sum(math.ceil(leg.walk / STRIDE) + 2 + len(leg.motions) for leg in self.legs)
+
+    @property
+    def length(self) -> float:
+        """How far the body's centroid is pushed, in squares, turns left out; nan unless found."""
+        if self.status != "found":
+            return math.nan
+        pushes = [m for leg in self.legs for m in leg.motions if isinstance(m, Translate)]
+        return math.fsum(math.hypot(push.dx, push.dy) for push in pushes)
+
+    @cached_property
+    def passage(self) -> Neck | None:
+        """The neck that is too narrow for the body; None unless impossible for want of one. Worked out when asked."""
+        return None if self.body is None else self.body.passage
+
+    @cached_property
+    def missing(self) -> float:
+        """By how much it is too narrow, in squares: see Plan.missing. nan unless there is a passage."""
+        return math.nan if self.body is None else self.body.missing
+
+
+def plan_carrying(
+    shape: Any,
+    free: Mask,
+    utak: Point,
+    goal: End,
+    margin: float = 0.0,
+    pull: bool = True,
+    avoid: Sequence[Point] = (),
+    walk: Mask | None = None,
+) -> Carrying:
+    """Plan how Utak carries a body to a goal.
+
+    Parameters
+    ----------
+    shape : shapely Polygon where it lies, in squares, table frame.
+    free : (rows, columns) bool, row 0 in the south: squares that nothing but the body may cover. All else, and all
+        outside the array, is wall for the body and for Utak.
+    utak : (x, y) where he stands, empty-handed.
+    goal : At(pose), Inside(polygons) or InCorner(x, y, sx, sy).
+    margin : squares of clearance that pushes and turns of the body should keep from walls; kept where that is possible
+        without going far out of the way.
+    pull : False: every push must have a component from Utak towards the body's centroid.
+    avoid : holds not to be used, as told by Leg.hold.
+    walk : (rows, columns) bool: where Utak may walk with empty hands, from square to square by their edges; None for
+        `free`. The squares under the body are closed wherever it then lies; where it lay they open when it has gone.
+
+    Returns
+    -------
+    Carrying : every motion free by exact first contact for body and Utak as one, with its numbers as they are told.
+
+    Raises
+    ------
+    ValueError : when the body has no area, or shapes of arrays or numbers do not make sense.
+    """
+    free = np.ascontiguousarray(free, dtype=bool)
+    _check(shape, free, utak, margin, walk)
+    walk = free if walk is None else np.ascontiguousarray(walk, dtype=bool)
+    errand = Errand(shape, Yard(free), utak, goal, margin, pull, tuple(avoid), walk)
+    if met(goal, shape, shape):
+        return Carrying("found", pose=Pose(0.0, 0.0), polygon=shape)
+    legs = carry_squarewise(errand)
+    end = None if legs is None else verified(errand.yard, shape, legs)
+    if legs is not None and end is not None and met(goal, shape, end):
+        return _found(shape, legs, end)
+    return _alone(errand)
+
+
+def _check(shape: Any, free: Mask, utak: Point, margin: float, walk: Mask | None) -> None:
+    """Raise for what makes no sense."""
+    if shape.geom_type != "Polygon" or shape.area <= 0.0:
+        raise ValueError("the body must be a polygon with an area")
+    if free.ndim != 2 or (walk is not None and walk.shape != free.shape):
+        raise ValueError("free and walk must be arrays of the same rows and columns")
+    if not all(math.isfinite(v) for v in (*utak, margin)) or margin < 0.0:
+        raise ValueError("utak and margin must be finite, the margin not negative")
+
+
+def _found(shape: Any, legs: Sequence[Leg], end: Any) -> Carrying:
+    """The plan of legs that lead to an end."""
+    degrees = math.fsum(m.degrees for leg in legs for m in leg.motions if isinstance(m, Rotate))
+    dx, dy = end.centroid.x - shape.centroid.x, end.centroid.y - shape.centroid.y
+    return Carrying("found", tuple(legs), Pose(dx, dy, degrees), end)
+
+
+def _alone(errand: Errand) -> Carrying:
+    """What can be said of the body by itself."""
+    plan = _body_alone(errand)
+    if plan.status == "impossible":
+        return Carrying("impossible", reason=plan.reason or "body", body=plan)
+    return Carrying("limit", reason="hold" if plan.status == "found" else "body", body=plan)
+
+
+def _body_alone(errand: Errand) -> Plan:
+    """Plan the body's way without Utak."""
+    middle = errand.shape.centroid
+    centred = shapely.transform(errand.shape, lambda p: p - np.array([middle.x, middle.y]))
+    goal = errand.goal
+    if isinstance(goal, At):
+        there: Pose | Inside = Pose(middle.x + goal.pose.x, middle.y + goal.pose.y, goal.pose.degrees)
+    elif isinstance(goal, InCorner):
+        there = Inside(_about(goal, errand))
+    else:
+        there = goal
+    return plan_motion(centred, errand.yard.floor, Pose(middle.x, middle.y, 0.0), there)
+
+
+def _about(goal: InCorner, errand: Errand) -> Any:
+    """A square in which the body lies wherever it is in a corner: what cannot be brought into it cannot be there."""
+    reach = 2.0 * shapely.minimum_bounding_radius(errand.shape) + goal.slack
+    x0, x1 = sorted([goal.x, goal.x - goal.sx * reach])
+    y0, y1 = sorted([goal.y, goal.y - goal.sy * reach])
+    return shapely.box(x0, y0, x1, y1)

@@ -1,0 +1,125 @@
+"""Where something that is carried shall end: at a pose, inside a region, in a corner; and what such an end is worth."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from geometry.board import COMMAND, Board, Costs, Grid
+from geometry.digital import areas
+from geometry.problem import Inside
+from geometry.rigid import Pose, turned
+from geometry.stencil import DIRECTIONS, Stencil, quarter
+
+__all__ = ["At", "End", "InCorner", "Inside"]
+
+CLOSE = 1e-6  # squares: by which an end may miss a region's border
+UNEASY = 2 * COMMAND // 5  # the price of an end that meets the goal only just
+
+
+@dataclass(frozen=True)
+class At:
+    """A goal: the shape turned about its own centroid by pose.degrees and then moved by (pose.x, pose.y)."""
+
+    pose: Pose
+
+
+@dataclass(frozen=True)
+class InCorner:
+    """A goal: the containing rectangle of the shape within `slack` squares of both walls of a corner, at any angle.
+
+    x, y : the corner, where the walls meet, in squares. sx, sy : 1 when it is an eastern, a northern corner, else -1.
+    """
+
+    x: float
+    y: float
+    sx: int
+    sy: int
+    slack: float = 1.0
+
+    def gaps(self, bounds: tuple[float, float, float, float]) -> tuple[float, float]:
+        """How far the rectangle x0, y0, x1, y1 is from the two walls; negative beyond them."""
+        x = self.x - bounds[2] if self.sx > 0 else bounds[0] - self.x
+        y = self.y - bounds[3] if self.sy > 0 else bounds[1] - self.y
+        return x, y
+
+
+End = At | Inside | InCorner
+
+
+def met(goal: End, shape: Any, now: Any) -> bool:
+    """Whether a shape that began as `shape` meets the goal as it lies now."""
+    if isinstance(goal, Inside):
+        return any(part.buffer(CLOSE).covers(now) for part in shapely.get_parts(goal.polygon))
+    if isinstance(goal, InCorner):
+        return all(-CLOSE <= gap <= goal.slack + CLOSE for gap in goal.gaps(now.bounds))
+    return bool(shapely.hausdorff_distance(placed(shape, goal.pose), now) <= CLOSE)
+
+
+def placed(shape: Any, pose: Pose) -> Any:
+    """A shape turned about its centroid by pose.degrees, then moved by (pose.x, pose.y)."""
+    middle = np.array([shape.centroid.x, shape.centroid.y])
+    return shapely.transform(shape, lambda p: turned(p - middle, pose.degrees) + middle + np.array([pose.x, pose.y]))
+
+
+def prices(goal: End, shape: Any, body: Stencil, board: Board, grid: Grid) -> Costs:
+    """The price of ending at each pose of the board, -1 where the goal is not met: (4, squares).
+
+    For a pose off the lattice the places beside it count, when it is a whole number of quarter turns away.
+    """
+    if isinstance(goal, At):
+        return _beside(goal.pose, shape, body, grid)
+    if isinstance(goal, Inside):
+        found = [_inside(goal, quarter(body.lying, k), board, grid) for k in range(4)]
+    else:
+        found = [_cornered(goal, shape, body, k, grid) for k in range(4)]
+    return np.where(board.lies, np.array(found), -1).astype(np.int32)
+
+
+def _inside(goal: Inside, lying: npt.NDArray[np.int64], board: Board, grid: Grid) -> Costs:
+    """The prices of one quarter: dear where the body, were it a square larger, would reach free squares outside."""
+    price = np.full(len(board.solid), -1, np.int32)
+    fat = np.unique(np.vstack([lying, *(lying + np.array(step) for step in DIRECTIONS)]), axis=0)
+    for part in shapely.get_parts(goal.polygon):
+        outside = grid.padded(areas(part, grid.columns, grid.rows) < 1 - CLOSE, True)
+        inside, easy = grid.clear(outside, lying), grid.clear(outside & ~board.solid, fat)
+        price[inside & (price != 0)] = UNEASY
+        price[inside & easy] = 0
+    return price
+
+
+def _cornered(goal: InCorner, shape: Any, body: Stencil, k: int, grid: Grid) -> Costs:
+    """The prices of one quarter: dear where a gap to a wall is more than half of what is allowed."""
+    x0, y0, x1, y1 = lying_at(shape, body, k, body.home).bounds
+    row, column = np.divmod(np.arange((grid.rows + 2 * grid.pad) * grid.stride), grid.stride)
+    dx, dy = column - grid.pad - body.home[0], row - grid.pad - body.home[1]
+    along = goal.x - x1 - dx if goal.sx > 0 else x0 + dx - goal.x
+    up = goal.y - y1 - dy if goal.sy > 0 else y0 + dy - goal.y
+    gap = np.maximum(along, up)
+    good = (np.minimum(along, up) >= -CLOSE) & (gap <= goal.slack + CLOSE)
+    return np.where(good, np.where(gap <= goal.slack / 2 + CLOSE, 0, UNEASY), -1).astype(np.int32)
+
+
+def lying_at(shape: Any, body: Stencil, k: int, place: tuple[int, int]) -> Any:
+    """The shape in a pose of the board: k quarter turns about the middle of its home square, then moved."""
+    home = np.array(body.home) + 0.5
+    move = np.array(place) + 0.5
+    return shapely.transform(shape, lambda p: turned(p - home, 90.0 * k) + move)
+
+
+def _beside(pose: Pose, shape: Any, body: Stencil, grid: Grid) -> Costs:
+    """The pose's own place on the board, or the up to four about it."""
+    found = np.full((4, (grid.rows + 2 * grid.pad) * grid.stride), -1, np.int32)
+    k = round(pose.degrees / 90.0)
+    if abs(pose.degrees - 90.0 * k) > 1e-7:
+        return found
+    there, here = placed(shape, pose).centroid, lying_at(shape, body, k, body.home).centroid
+    dx, dy = there.x - here.x + body.home[0], there.y - here.y + body.home[1]
+    for x in {math.floor(dx + CLOSE), math.ceil(dx - CLOSE)}:
+        for y in {math.floor(dy + CLOSE), math.ceil(dy - CLOSE)}:
+            if 0 <= x < grid.columns and 0 <= y < grid.rows:
+                found[k % 4, grid.number(x, y)] = round(100 * math.hypot(x - dx, y - dy))
+    return found

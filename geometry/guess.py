@@ -1,0 +1,125 @@
+"""What is left to be done at least, from every pose on the board: carrying with Utak's own body and walks left out.
+
+# Strategy: Dijkstra's algorithm backwards from the goal, over poses and the direction in which the body is being pushed
+# (none: it lies), so that going on in the same direction is no new command. Costs are small whole numbers: a ring of
+# buckets (Dial 1969) holds the queue.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from geometry.board import COMMAND, Board, Costs, turn_cost, turned_place
+from geometry.compiled import compiled
+
+STILL = 8  # the direction of a body that lies
+NEVER = 2**30
+RING = 2048  # buckets: more than the dearest step
+PUTS = 64  # entries for each pose: far more than come to be, and memory that is not touched costs nothing
+
+
+class Queue(NamedTuple):
+    """Nodes by cost: first[cost % RING] is the last entry put there, before[entry] the one before it, -1 none.
+
+    used : (2,) entries used, entries that wait.
+    """
+
+    first: npt.NDArray[np.int32]
+    node: npt.NDArray[np.int32]
+    before: npt.NDArray[np.int32]
+    used: npt.NDArray[np.int64]
+
+
+@compiled
+def guess(board: Board, ends: Costs) -> Costs:
+    """The least cost left: (4, 9, squares), by quarter turn and direction of the push that is under way.
+
+    ends : (4, squares) the price of ending at a pose, -1 where the goal is not met; below RING.
+    NEVER where the goal cannot be reached; -1 where a body that lies would overlap something.
+    """
+    squares = ends.shape[1]
+    left = np.full((4, 9, squares), NEVER, np.int32)
+    size = PUTS * 4 * squares
+    first = np.full(RING, -1, np.int32)
+    queue = Queue(first, np.empty(size, np.int32), np.empty(size, np.int32), np.zeros(2, np.int64))
+    for k in range(4):
+        for p in range(squares):
+            if not board.lies[k, p]:
+                left[k, STILL, p] = -1
+            elif ends[k, p] >= 0:
+                left[k, STILL, p] = ends[k, p]
+                _put(queue, ends[k, p], (p << 8) + (STILL << 4) + k)
+    now = 0
+    while queue.used[1] > 0:
+        entry = queue.first[now % RING]
+        if entry < 0:
+            now += 1
+            continue
+        queue.first[now % RING] = queue.before[entry]
+        queue.used[1] -= 1
+        node = int(queue.node[entry])
+        p, m, k = node >> 8, (node >> 4) & 15, node & 15
+        if left[k, m, p] != now:
+            continue
+        if m < STILL:
+            _back(board, left, queue, k, m, p, now)
+            continue
+        for d in range(8):
+            if now < left[k, d, p]:
+                left[k, d, p] = now
+                _back(board, left, queue, k, d, p, now)
+        _turn_back(board, left, queue, k, p, now + COMMAND)
+    return left
+
+
+@compiled
+def _turn_back(board, left, queue, k, p, then):  # type: ignore[no-untyped-def]
+    """Go back over the turns that end at a pose, about every hold."""
+    for hold in range(len(board.grip)):
+        if board.grip[hold] < 0 or board.solid[p + board.holds[k, hold]]:
+            continue
+        for way in (1, -1):
+            p1, p2 = turned_place(board, hold, k, p, way), turned_place(board, hold, k, p, 2 * way)
+            k1, k2 = (k + way) % 4, (k + 2) % 4
+            if then >= left[k1, STILL, p1] and then >= left[k2, STILL, p2]:
+                continue
+            extra = turn_cost(board, hold, k, p, way)
+            if extra < 0:
+                continue
+            if then + extra < left[k1, STILL, p1]:
+                left[k1, STILL, p1] = then + extra
+                _put(queue, then + extra, (p1 << 8) + (STILL << 4) + k1)
+            if then + extra < left[k2, STILL, p2]:
+                more = turn_cost(board, hold, k1, p1, way)
+                if more >= 0 and then + max(extra, more) < left[k2, STILL, p2]:
+                    left[k2, STILL, p2] = then + max(extra, more)
+                    _put(queue, then + max(extra, more), (p2 << 8) + (STILL << 4) + k2)
+
+
+@compiled
+def _back(board, left, queue, k, m, p, now):  # type: ignore[no-untyped-def]
+    """Go back a step of a push: to the same push under way, and to where it began."""
+    before = p - board.steps[m]
+    price = board.push[k, m, before]
+    if price == 0:
+        return
+    then = now + price
+    if then < left[k, m, before]:
+        left[k, m, before] = then
+        _put(queue, then, (before << 8) + (m << 4) + k)
+    if then + COMMAND < left[k, STILL, before]:
+        left[k, STILL, before] = then + COMMAND
+        _put(queue, then + COMMAND, (before << 8) + (STILL << 4) + k)
+
+
+@compiled
+def _put(queue, cost, node):  # type: ignore[no-untyped-def]
+    """Put a node into the queue."""
+    entry = queue.used[0]
+    if entry == len(queue.node):
+        return
+    queue.node[entry], queue.before[entry] = node, queue.first[cost % RING]
+    queue.first[cost % RING] = entry
+    queue.used[0] += 1
+    queue.used[1] += 1
