@@ -175,6 +175,8 @@ class Memory:
     def _take_in(self, explanation: Explanation, ranges: NDArray[np.int16]) -> Accommodated:
         """Take an explained impression into the evidence, freed of what the loads show."""
         x, y = math.floor(explanation.place[0]), math.floor(explanation.place[1])
+        for name, load in self.loads.items():
+            self.loads[name] = load.seen(self.lattice.samples(), ranges, x, y)
         samples, counts = discounted(self.lattice.samples(), ranges, x, y, self.loads.values())
         cells = self._statuses(samples, counts, x, y)
         self.place = explanation.place

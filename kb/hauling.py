@@ -14,8 +14,10 @@ from geometry.rigid import Motion, Rotate, Translate
 
 Place = tuple[float, float]
 STRIDE = 0.25  # squares between places at which a motion may have ended
-ASTRAY = 1.0  # squares by which a push may end beside the predicted place
+ASTRAY = 1.0  # squares by which a load may end beside the predicted place
 ASKEW = 6.0  # degrees by which a turn may end beside the predicted one
+STEPS = range(-round(ASTRAY / STRIDE), round(ASTRAY / STRIDE) + 1)
+OFFSETS = sorted((math.hypot(i, j) * STRIDE, i * STRIDE, j * STRIDE) for i in STEPS for j in STEPS if i or j)
 
 
 class Outcome(NamedTuple):
@@ -46,6 +48,11 @@ def otherwise(place: Place, polygon: Any, motion: Motion) -> Iterator[Outcome]:
         yield _after("blocked", place, polygon, motion.part(step / steps), length * (1 - step / steps))
     for other, distance in _beside(motion, length):
         yield _after("slipped", place, polygon, other, distance)
+    if isinstance(motion, Rotate):
+        # Where in his square he stands he only assumes, and so what exactly the turn was about.
+        turned = motion.carry(polygon)
+        for distance, dx, dy in OFFSETS:
+            yield Outcome("slipped", place, Translate(dx, dy).carry(turned), motion.degrees, distance)
 
 
 def _after(how: str, place: Place, polygon: Any, motion: Motion, distance: float) -> Outcome:
@@ -69,6 +76,4 @@ def _beside(motion: Motion, length: float) -> list[tuple[Motion, float]]:
         per_degree = length / max(abs(motion.degrees), 1.0)
         askew = [sign * step * 0.5 for step in range(1, round(2 * ASKEW) + 1) for sign in (1, -1)]
         return [(motion._replace(degrees=motion.degrees + d), abs(d) * per_degree) for d in askew]
-    steps = range(-round(ASTRAY / STRIDE), round(ASTRAY / STRIDE) + 1)
-    offsets = sorted((math.hypot(i, j) * STRIDE, i * STRIDE, j * STRIDE) for i in steps for j in steps if i or j)
-    return [(Translate(motion.dx + dx, motion.dy + dy), distance) for distance, dx, dy in offsets]
+    return [(Translate(motion.dx + dx, motion.dy + dy), distance) for distance, dx, dy in OFFSETS]

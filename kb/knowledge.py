@@ -23,6 +23,7 @@ from kb.worldmodel import SPACE, Names, Node, Patch, WorldModel, patch_of, unset
 Mask = NDArray[np.bool_]
 LEAST_OBJECT = 5  # percent: a region is kept as a possible object from here on
 LARGEST_OBJECT = 24  # squares: what is longer than this and undecided is verge
+MAYBE = 0.4  # that a square is covered which the slack of a load's outline leaves open
 FIXED = 3  # pushes or turns in a row that did not move a thing: then it cannot be moved
 
 
@@ -51,7 +52,8 @@ class Knowledge:
         """Believe that the thing on an adjacent square is in hand, if one with a known outline is believed there."""
         x, y = self.memory.square
         column, row = self.memory.lattice.beside(direction)
-        node = next((n for n in self.objects if (x + column, y + row) in n.patch.squares()), None)
+        there = [n for n in self.objects if (x + column, y + row) in n.patch.squares()]
+        node = min(there, key=lambda n: n.name not in self.memory.loads, default=None)
         if node is None or node.polygon is None or self.memory.held is not None:
             return
         load = Load(
@@ -162,7 +164,7 @@ def _laid(model: WorldModel, load: Load) -> WorldModel:
     label = int(labels.max()) + 1
     labels[possible & (view.state != FULL)] = label
     state = np.where(sure, np.int8(FULL), np.where(possible & (view.state == FREE), np.int8(OPEN), view.state))
-    probability = np.where(sure, np.float32(1), np.where(possible, np.float32(0.5), view.probability))
+    probability = np.where(sure, np.float32(1), np.where(possible, np.float32(MAYBE), view.probability))
     seen = view.seen | possible
     kinds = Kinds({**model.kinds.kind, f"part{label}": {"object": 100}}, model.kinds.hidden_passages)
     laid = view._replace(state=state.astype(np.int8), probability=probability, seen=seen)

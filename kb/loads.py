@@ -19,6 +19,7 @@ from kb.lattice import Samples
 from kb.worldmodel import Patch
 
 Mask = NDArray[np.bool_]
+Square = tuple[int, int]  # (x, y) of the lattice
 WHOLE = 1e-6  # squares: corners this near to corners of the lattice are taken to be there
 SLIGHT = 0.3  # squares by which the outline of a thing that is not whole may lie otherwise
 
@@ -31,6 +32,7 @@ class Load:
     ----------
     name : of its node in the world model. polygon : where it is believed to lie (shapely, lattice frame).
     first : where it lay when he first took hold of it. slack : squares by which its outline may lie otherwise.
+    full, empty : squares, of those that the slack leaves open, that were seen to be covered or not since it last moved.
     shape, colour, support : as of the node, from before it was grasped; support grows with every look at it.
     turned : degrees that it was turned since then. proven : it was seen to move. stuck : motions in a row that did not
     move it.
@@ -40,6 +42,8 @@ class Load:
     polygon: Any
     first: Any
     slack: float = 0.0
+    full: frozenset[Square] = frozenset()
+    empty: frozenset[Square] = frozenset()
     turned: float = 0.0
     shape: Mapping[str, int] = field(default_factory=dict)
     colour: str | None = None
@@ -51,19 +55,37 @@ class Load:
     def sure(self) -> Patch:
         """The squares that it surely covers."""
         inner = self.polygon.buffer(-self.slack, join_style="mitre") if self.slack else self.polygon
-        return covered(inner if not inner.is_empty else self.polygon.centroid.buffer(0.1))
+        patch = covered(inner if not inner.is_empty else self.polygon.centroid.buffer(0.1))
+        return patch if not self.full else patch_of_squares(patch.squares() | self.full)
 
     @cached_property
     def possible(self) -> Patch:
         """The squares that it covers or may cover."""
-        return covered(self.polygon.buffer(self.slack, join_style="mitre")) if self.slack else self.sure
+        if not self.slack:
+            return self.sure
+        patch = covered(self.polygon.buffer(self.slack, join_style="mitre"))
+        return patch if not self.empty else patch_of_squares(patch.squares() - self.empty)
 
     def moved(self, polygon: Any, slack: float, degrees: float = 0.0) -> "Load":
         """The load after a motion that it was seen to make. degrees: by which it was turned."""
         turned = self.turned + degrees
+        placed, slack = whole(polygon), slack_of(polygon, slack)
+        nothing: frozenset[Square] = frozenset()
         return replace(
-            self, polygon=whole(polygon), slack=slack_of(polygon, slack), turned=turned, proven=True, stuck=0
+            self, polygon=placed, slack=slack, full=nothing, empty=nothing, turned=turned, proven=True, stuck=0
         )
+
+    def seen(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> "Load":
+        """The load after a look from square (x, y): fields of a single square tell which of the open ones it covers."""
+        single = (samples.weight.sum(1) == 1) & (samples.slack == 0)
+        open_ = self.possible.squares() - self.sure.squares()
+        if not open_ or not single.any():
+            return self
+        columns, rows = (samples.columns[single, 0] + x).tolist(), (samples.rows[single, 0] + y).tolist()
+        counts = dict(zip(zip(columns, rows, strict=True), ranges[single].tolist(), strict=True))
+        full = self.full | {square for square in open_ if counts.get(square, (0, 1))[0] > 0}
+        empty = self.empty | {square for square in open_ if counts.get(square, (0, 1))[1] == 0}
+        return replace(self, full=full, empty=empty)
 
     def resisted(self) -> "Load":
         """The load after a motion that it was expected to make and did not."""
@@ -76,6 +98,15 @@ def covered(polygon: Any) -> Patch:
     west, south = int(np.floor(x0)), int(np.floor(y0))
     placed = shapely.transform(polygon, lambda points: points - np.array([west, south]))
     return Patch(west, south, squares(placed, int(np.ceil(x1)) - west, int(np.ceil(y1)) - south))
+
+
+def patch_of_squares(squares_: Iterable[Square]) -> Patch:
+    """The patch of some squares, at least one."""
+    columns, rows = np.array(sorted(squares_)).T
+    west, south = int(columns.min()), int(rows.min())
+    mask = np.zeros((int(rows.max()) + 1 - south, int(columns.max()) + 1 - west), np.bool_)
+    mask[rows - south, columns - west] = True
+    return Patch(west, south, mask)
 
 
 def whole(polygon: Any) -> Any:

@@ -102,10 +102,11 @@ class Carrier:
         model = situation.model
         course = self._kept(situation)
         if course is None:
+            last = self._course.target if self._course is not None else ""
             failure = self._failure(model)
             if failure is not None:
                 return failure
-            found = self._planned(node, ends, situation)
+            found = self._planned(node, ends, last, situation)
             if isinstance(found, See | Refusal):
                 return found
             course = found
@@ -130,48 +131,55 @@ class Carrier:
     def _failure(self, model: WorldModel) -> Advice | None:
         """What to do when a motion with something in hand did not move it: try once more, then from elsewhere."""
         held = model.object(model.held) if model.held else None
+        course, self._course = self._course, None
+        if held is None and course is not None and course.grasped:
+            self._blame(model.object(course.name), model)
         if held is None or not held.stuck:
             return None
         if held.movable == 0:
-            return Refusal(True, f"{held.name} cannot be moved")
+            return Refusal(True, lambda: f"{held.name} cannot be moved")
         if held.stuck > 1:
-            middle = held.polygon.centroid
-            hold = Rotate(-held.turned, (0.0, 0.0)).points(
-                np.array([[model.place[0] - middle.x, model.place[1] - middle.y]])
-            )
-            self.failed[held.name] = (*self.failed.get(held.name, ()), (float(hold[0, 0]), float(hold[0, 1])))
-        self._course = None
+            self._blame(held, model)
         return Act(Release(), f"{held.name} did not move")
+
+    def _blame(self, node: Node | None, model: WorldModel) -> None:
+        """Do not take a thing again from where Utak stands now."""
+        if node is None or node.polygon is None:
+            return
+        middle = node.polygon.centroid
+        away = np.array([[model.place[0] - middle.x, model.place[1] - middle.y]])
+        x, y = Rotate(-node.turned, (0.0, 0.0)).points(away)[0]
+        self.failed[node.name] = (*self.failed.get(node.name, ()), (float(x), float(y)))
 
     # -- making one ------------------------------------------------------------------------------
 
-    def _planned(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Course | See | Refusal:
-        self._plans += 1
-        if self._plans > MOST_PLANS:
-            return Refusal(False, f"gave up after {MOST_PLANS} plans")
-        last = self._course.target if self._course is not None else ""
+    def _planned(self, node: Node, ends: Mapping[str, End], last: str, situation: Situation) -> Course | See | Refusal:
         haul = self._hauler.find(Request(node, ends, self._avoided(node), last), situation)
         if isinstance(haul, Refusal):
             return haul
-        for name in haul.aside:
-            other = situation.model.object(name)
-            cleared = self._clearing(other, haul, situation) if other is not None else None
-            if other is not None and isinstance(cleared, Haul):
-                node, haul = other, cleared
-                break
-        else:
-            if haul.aside:
-                return Refusal(False, f"{haul.aside[0]} is in the way of {node.name}, and cannot be cleared")
-        return self._seen(haul, node, situation) or _course(haul, node, situation.model)
+        if haul.aside:
+            cleared = (self._clearing(other, haul, situation) for other in situation.model.objects)
+            first = next((found for found in cleared if found is not None), None)
+            if first is None:
+                why = f"{haul.aside[0]} is in the way of {node.name}, and cannot be cleared"
+                return Refusal(False, lambda: why)
+            node, haul = first
+        seen = self._seen(haul, node, situation)
+        if seen is not None:
+            return seen
+        self._plans += 1
+        if self._plans > MOST_PLANS:
+            return Refusal(False, lambda: f"gave up after {MOST_PLANS} plans")
+        return _course(haul, node, situation.model)
 
-    def _clearing(self, other: Node, haul: Haul, situation: Situation) -> Haul | Refusal:
-        """A way to carry a thing off the squares that a plan needs."""
-        if other.polygon is None:
-            return Refusal(False, "its outline is not known")
+    def _clearing(self, other: Node, haul: Haul, situation: Situation) -> tuple[Node, Haul] | None:
+        """A way to carry a thing off the squares that a plan needs, if it stands there and there is one."""
+        if other.name not in haul.aside or other.polygon is None:
+            return None
         room = situation.screens.free(0) | situation.model.mask(other.patch)
         request = Request(other, {"away": Inside(region_of(room & ~haul.swept))}, self._avoided(other))
         found = self._hauler.find(request, situation)
-        return found if isinstance(found, Haul) and not found.aside else Refusal(False, "it cannot be moved away")
+        return (other, found) if isinstance(found, Haul) and found.plan.legs and not found.aside else None
 
     def _avoided(self, node: Node) -> tuple[Place, ...]:
         """The holds that failed, as the object lies now."""
@@ -235,7 +243,7 @@ def _course(haul: Haul, node: Node, model: WorldModel) -> Course:
 
 
 def _lies(node: Node, polygon: Any) -> bool:
-    return bool(shapely.symmetric_difference(node.polygon, polygon).area < ALIKE)
+    return node.polygon is not None and shapely.symmetric_difference(node.polygon, polygon).area < ALIKE
 
 
 def _stands(model: WorldModel, place: Place) -> bool:

@@ -3,7 +3,7 @@
 A way is kept while it holds: its aim is still wanted, and the squares ahead are still believed free.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -106,15 +106,23 @@ class Decider:
             if all(not d.missing and contains(d.squares, situation.model) for d in where):
                 return None
         missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
-        return self._pursue(_aims(where, situation, reconciled), stage, situation, missing)
+        return self._pursue(_aims(where, situation, reconciled), stage, situation, lambda: missing)
 
     def _pursue(
-        self, aims: Sequence[Aim], stage: Stage, situation: Situation, missing: str, verdict: str = "impossible"
+        self,
+        aims: Sequence[Aim],
+        stage: Stage,
+        situation: Situation,
+        missing: Callable[[], str],
+        verdict: str = "impossible",
     ) -> Decision:
-        """The next command towards the best of some aims, or the verdict when none can be reached."""
+        """The next command towards the best of some aims, or the verdict when none can be reached.
+
+        missing : says in words what is missing; asked only for a verdict.
+        """
         aim = choose(aims, situation.screens, self._old_aim(situation.model))
         if aim is None:
-            why = f"{stage} cannot be attained: {missing}, and nothing is left to look at"
+            why = f"{stage} cannot be attained: {missing()}, and nothing is left to look at"
             return Decision(None, why, verdict)
         if situation.model.held is not None:
             return Decision(Release(), f"{situation.model.held} is let go, to walk; {stage}")
@@ -125,27 +133,30 @@ class Decider:
         x = str(goal.args[0])
         node = situation.model.object(self.bound.get(x, ""))
         if node is None:
-            missing = [nowhere(f"nothing seen so far is {x}")]
-            return self._pursue(_aims(missing, situation, reconciled), stage, situation, missing[0].missing)
+            unseen = nowhere(f"nothing seen so far is {x}")
+            aims = _aims([unseen], situation, reconciled)
+            return self._pursue(aims, stage, situation, lambda: unseen.missing)
         if node.polygon is None or node.open:
             look = exploring.inspection(situation.screens, node, touch=False)
             if len(look.squares):
-                return self._pursue([Aim("inspect", *look)], stage, situation, look.what)
+                return self._pursue([Aim("inspect", *look)], stage, situation, lambda: look.what)
         if node.polygon is None:
             return Decision(None, f"{stage} is not attempted: the outline of {node.name} is not known", "limit")
         land = landing(goal, node, self.carrier.began_at(node), situation)
         if land.ends and any(met(end, node, situation) for end in land.ends.values()):
             return None
-        advice = self.carrier.advise(node, land.ends, situation) if land.ends else Refusal(True, land.missing)
+        missing = Refusal(True, lambda: land.missing)
+        advice = self.carrier.advise(node, land.ends, situation) if land.ends else missing
         if isinstance(advice, Act):
             return Decision(advice.command, f"{advice.why}; {stage}")
         if isinstance(advice, Go):
-            return self._pursue([Aim("attain", np.array([advice.square]), advice.why)], stage, situation, advice.why)
+            aim = Aim("attain", np.array([advice.square]), advice.why)
+            return self._pursue([aim], stage, situation, lambda: f"no way leads to where {node.name} can be taken")
         if isinstance(advice, See):
-            return self._pursue([Aim("inspect", *advice.lookout)], stage, situation, advice.lookout.what)
-        unknown = nowhere(advice.why, land.lookouts)
+            return self._pursue([Aim("inspect", *advice.lookout)], stage, situation, lambda: "")
+        unknown = nowhere(land.missing or "no way is known to carry it there", land.lookouts)
         verdict = "impossible" if advice.proved else "limit"
-        return self._pursue(_aims([unknown], situation, reconciled), stage, situation, advice.why, verdict)
+        return self._pursue(_aims([unknown], situation, reconciled), stage, situation, advice.reason, verdict)
 
     def _round(self, stage: Stage, name: str, situation: Situation, track: Sequence[Place]) -> Decision | None:
         """The next command on the way round an object."""

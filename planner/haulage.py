@@ -5,7 +5,7 @@ harder still. What it finds may lead over squares that are not surely free: then
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -51,10 +51,10 @@ class Haul:
 
 @dataclass(frozen=True)
 class Refusal:
-    """No way was found. proved : there is none, whatever the unseen holds. why : in words."""
+    """No way was found. proved : there is none, whatever the unseen holds. reason : in words, worked out when asked."""
 
     proved: bool
-    why: str
+    reason: Callable[[], str]
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class Hauler:
             if choice is None:
                 break
             name, level, aside = choice
-            plan = self._plan(request, shape, floors[level, aside], name, situation)
+            plan = self._plan(request, shape, floors[level, aside], situation.screens.free(level), name, situation)
             if plan.status == "found":
                 return _haul(plan, shape, name, level, situation, request.node)
             plans.append(plan)
@@ -99,7 +99,7 @@ class Hauler:
             verdicts.append(f"{fact}({name},{level},{aside})")
         return _refusal(request.node, plans)
 
-    def _plan(self, request: Request, shape: Any, free: Mask, name: str, situation: Situation) -> Carrying:
+    def _plan(self, request: Request, shape: Any, free: Mask, walk: Mask, name: str, situation: Situation) -> Carrying:
         x, y = situation.model.place
         view = situation.model.view
         utak = (x - view.west, y - view.south)
@@ -109,7 +109,7 @@ class Hauler:
                 self._known.clear()
             margin = 0.0 if _is_whole(shape) else MARGIN
             self._known[key] = plan_carrying(
-                shape, free, utak, request.ends[name], margin=margin, pull=self._pull, avoid=request.avoid
+                shape, free, utak, request.ends[name], margin, self._pull, request.avoid, walk
             )
         return self._known[key]
 
@@ -186,11 +186,14 @@ def swept_squares(plan: Carrying, shape: Any, size: tuple[int, ...]) -> Mask:
 def _refusal(node: Node, plans: Sequence[Carrying]) -> Refusal:
     """Why nothing was found. It is proved when every target was refuted, whatever lies in the unseen."""
     if not plans:
-        return Refusal(False, f"nothing is known of where {node.name} could be carried")
+        return Refusal(False, lambda: f"nothing is known of where {node.name} could be carried")
     last = plans[-1]
-    proved = all(plan.status == "impossible" for plan in plans)
-    if not proved:
-        return Refusal(False, f"no way was found to carry {node.name} there, and no proof that there is none")
-    if last.passage is None:
-        return Refusal(True, f"{node.name} cannot be carried there")
-    return Refusal(True, f"the passage for {node.name} is too narrow by {last.missing:.2f} squares")
+    if any(plan.status != "impossible" for plan in plans):
+        return Refusal(False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none")
+
+    def reason() -> str:
+        if last.passage is None:
+            return f"{node.name} cannot be carried there"
+        return f"the passage for {node.name} is too narrow by {last.missing:.2f} squares"
+
+    return Refusal(True, reason)
