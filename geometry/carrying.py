@@ -167,8 +167,15 @@ def _body_alone(errand: Errand) -> Plan:
 
 
 def _about(goal: InCorner, errand: Errand) -> Any:
-    """A square in which the body lies wherever it is in a corner: what cannot be brought into it cannot be there."""
+    """The floor near a corner in which a body must lie to be in it: what cannot be brought there cannot be in it."""
     reach = 2.0 * shapely.minimum_bounding_radius(errand.shape) + goal.slack
-    x0, x1 = sorted([goal.x, goal.x - goal.sx * reach])
-    y0, y1 = sorted([goal.y, goal.y - goal.sy * reach])
-    return shapely.box(x0, y0, x1, y1)
+
+    def back(across: float, up: float) -> Any:
+        x0, x1 = sorted([goal.x, goal.x - goal.sx * across])
+        y0, y1 = sorted([goal.y, goal.y - goal.sy * up])
+        return shapely.box(x0, y0, x1, y1)
+
+    ends = [back(goal.slack, reach), back(reach, goal.slack)]
+    parts = shapely.get_parts(errand.yard.floor_polygon.intersection(back(reach, reach)))
+    fitting = [part for part in parts if part.area > 0.0 and all(part.intersects(end) for end in ends)]
+    return shapely.MultiPolygon(fitting)
