@@ -21,6 +21,7 @@ import shapely
 from geometry.bottleneck import Neck
 from geometry.ends import At, End, InCorner, Inside, met
 from geometry.errand import Errand
+from geometry.held import carry_held
 from geometry.legs import Leg, Point, verified
 from geometry.motion import Plan, plan_motion
 from geometry.rigid import Pose, Rotate, Translate
@@ -89,6 +90,7 @@ def plan_carrying(
     pull: bool = True,
     avoid: Sequence[Point] = (),
     walk: Mask | None = None,
+    walls: Any = None,
 ) -> Carrying:
     """Plan how Utak carries a body to a goal.
 
@@ -105,6 +107,8 @@ def plan_carrying(
     avoid : holds not to be used, as told by Leg.hold.
     walk : (rows, columns) bool: where Utak may walk with empty hands, from square to square by their edges; None for
         `free`. The squares under the body are closed wherever it then lies; where it lay they open when it has gone.
+    walls : shapely geometry, the walls where they are known better than by squares; `free` are then the squares that
+        they leave whole. None for all that is not free.
 
     Returns
     -------
@@ -117,14 +121,17 @@ def plan_carrying(
     free = np.ascontiguousarray(free, dtype=bool)
     _check(shape, free, utak, margin, walk)
     walk = free if walk is None else np.ascontiguousarray(walk, dtype=bool)
-    errand = Errand(shape, Yard(free), utak, goal, margin, pull, tuple(avoid), walk)
+    errand = Errand(shape, Yard(free, walls), utak, goal, margin, pull, tuple(avoid), walk)
     if met(goal, shape, shape):
         return Carrying("found", pose=Pose(0.0, 0.0), polygon=shape)
-    legs = carry_squarewise(errand)
-    end = None if legs is None else verified(errand.yard, shape, legs)
-    if legs is not None and end is not None and met(goal, shape, end):
-        return _found(shape, legs, end)
-    return _alone(errand)
+    plan = _told(errand, carry_squarewise(errand))
+    if plan is not None:
+        return plan
+    body = _body_alone(errand)
+    if body.status == "impossible":
+        return Carrying("impossible", reason=body.reason or "body", body=body)
+    plan = _told(errand, carry_held(errand))
+    return plan or Carrying("limit", reason="hold" if body.status == "found" else "body", body=body)
 
 
 def _check(shape: Any, free: Mask, utak: Point, margin: float, walk: Mask | None) -> None:
@@ -137,19 +144,15 @@ def _check(shape: Any, free: Mask, utak: Point, margin: float, walk: Mask | None
         raise ValueError("utak and margin must be finite, the margin not negative")
 
 
-def _found(shape: Any, legs: Sequence[Leg], end: Any) -> Carrying:
-    """The plan of legs that lead to an end."""
+def _told(errand: Errand, legs: Sequence[Leg] | None) -> Carrying | None:
+    """The plan of some legs, when they are free and lead to the goal; else None."""
+    shape = errand.shape
+    end = None if legs is None else verified(errand.yard, shape, legs)
+    if legs is None or end is None or not met(errand.goal, shape, end):
+        return None
     degrees = math.fsum(m.degrees for leg in legs for m in leg.motions if isinstance(m, Rotate))
     dx, dy = end.centroid.x - shape.centroid.x, end.centroid.y - shape.centroid.y
     return Carrying("found", tuple(legs), Pose(dx, dy, degrees), end)
-
-
-def _alone(errand: Errand) -> Carrying:
-    """What can be said of the body by itself."""
-    plan = _body_alone(errand)
-    if plan.status == "impossible":
-        return Carrying("impossible", reason=plan.reason or "body", body=plan)
-    return Carrying("limit", reason="hold" if plan.status == "found" else "body", body=plan)
 
 
 def _body_alone(errand: Errand) -> Plan:

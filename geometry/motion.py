@@ -125,6 +125,7 @@ def plan_motion(
     resolution: float = 2e-4,
     points: Sequence[tuple[float, float]] = (),
     cells: int = CAPACITY,
+    pivot: tuple[float, float] | None = None,
 ) -> Plan:
     """Find how to move a polygon among polygons from a pose to a goal, or prove that it cannot be done.
 
@@ -138,6 +139,7 @@ def plan_motion(
     resolution : cells smaller than this times the bounds' greater side are not split.
     points : (x, y) in the body's own frame that move with it and must not enter obstacles, such as Utak.
     cells : no more than so many cells are looked at.
+    pivot : (x, y) in the body's own frame that it is turned about in every motion; None for what is quickest.
 
     Returns
     -------
@@ -147,7 +149,7 @@ def plan_motion(
     ------
     ValueError : when the body has no area, or a number is not finite.
     """
-    mover = new_mover(shape, points)
+    mover = new_mover(shape, points, pivot)
     floor = obstacles if isinstance(obstacles, Floor) else Floor(obstacles, _bounds(obstacles, start, goal, bounds))
     problem = Problem(mover, floor, start, goal, resolution, cells)
     for name, pose in (("start", start), ("goal", goal)):
