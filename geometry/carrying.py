@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from geometry.aligning import carry_straightened
 from geometry.bottleneck import Neck
 from geometry.ends import At, End, InCorner, Inside, met
 from geometry.errand import Errand
@@ -32,6 +33,7 @@ from geometry.yard import Yard
 __all__ = ["At", "Carrying", "InCorner", "Inside", "Leg", "Pose", "plan_carrying"]
 
 STRIDE = 12  # squares walked by a command, about
+CELLS = 40_000  # looked at to prove that the body by itself cannot pass
 
 
 @dataclass(frozen=True)
@@ -124,7 +126,7 @@ def plan_carrying(
     errand = Errand(shape, Yard(free, walls), utak, goal, margin, pull, tuple(avoid), walk)
     if met(goal, shape, shape):
         return Carrying("found", pose=Pose(0.0, 0.0), polygon=shape)
-    plan = _told(errand, carry_squarewise(errand))
+    plan = _told(errand, carry_squarewise(errand)) or _told(errand, carry_straightened(errand))
     if plan is not None:
         return plan
     body = _body_alone(errand)
@@ -166,7 +168,7 @@ def _body_alone(errand: Errand) -> Plan:
         there = Inside(_about(goal, errand))
     else:
         there = goal
-    return plan_motion(centred, errand.yard.floor, Pose(middle.x, middle.y, 0.0), there)
+    return plan_motion(centred, errand.yard.floor, Pose(middle.x, middle.y, 0.0), there, cells=CELLS)
 
 
 def _about(goal: InCorner, errand: Errand) -> Any:
