@@ -1,10 +1,11 @@
 """Where a body cannot pass, and by how much: the neck that stops it, and how much wider it would have to be.
 
-# Strategy: the disc that fits in the body has a way to the goal. Its narrowest place near the pose nearest to the goal
-# that the search got to is the neck. The walls are then moved apart across the neck, along the
-# line between its two sides alone, until the body passes: what it takes is what is missing.
+# Strategy: of all ways to the goal through empty space the widest is taken. Its narrowest place near the pose nearest
+# to the goal that the search got to is the neck. The walls are then moved apart across the neck, along the line between
+# its two sides alone, until the body passes: what it takes is what is missing.
 """
 
+import heapq
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,11 +16,14 @@ import numpy.typing as npt
 import shapely
 from shapely import affinity
 
+from geometry.compiled import compiled
 from geometry.floor import Floor
 
 Floats = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 CLOSE = 0.02  # squares: to which the missing width is found
 SHIFTS = 9  # copies of the free space that stand for moving a wall
+DETOUR = 1000.0  # going through pixels narrower than need be looks so much dearer
 LOOK = 2.5  # radii of the body: how far from where it is stuck the neck is looked for
 
 
@@ -35,16 +39,18 @@ class Neck:
     width: float
 
 
-def neck_near(
-    floor: Floor, ways: Floats, start: tuple[float, float], stuck: tuple[float, float], radius: float
-) -> Neck | None:
-    """The narrowest place on a disc's way, not further than LOOK radii from where a body is stuck; None without walls.
+def neck_near(floor: Floor, goals: Mask, reached: Floats, radius: float) -> Neck | None:
+    """The narrowest place on the widest way to the goal, not further than LOOK radii from where a body came to.
 
-    ways : (rows, columns) what is left to go from every pixel of the floor's raster. start : where the way begins.
+    goals : the goal's pixels in the floor's raster. reached : (n, 2) places that the body came to, the start first.
+    Of these the one counts from which there is least to go. None without walls.
     """
-    track = _descent(floor, ways, start)
+    ways = widest_ways(floor, goals, _pixels(floor, reached[:1])[0])
+    pixels = _pixels(floor, reached)
+    stuck = reached[int(np.argmin(ways[pixels[:, 0], pixels[:, 1]]))]
+    track = _descent(ways, pixels[0])
     centres = floor.frame[:2] + (track[:, ::-1] + 0.5) * floor.frame[2]
-    near = np.hypot(*(centres - np.array(stuck)).T) <= LOOK * radius
+    near = np.hypot(*(centres - stuck).T) <= LOOK * radius
     if not near.any():
         near[:] = True
     room = np.where(near, floor.raster[track[:, 0], track[:, 1]], np.inf)
@@ -52,11 +58,52 @@ def neck_near(
     return _neck_at(floor, (float(x), float(y)))
 
 
-def _descent(floor: Floor, ways: Floats, start: tuple[float, float]) -> npt.NDArray[np.intp]:
-    """The pixels (n, 2) row, column from a place downhill to the goal."""
-    rows, columns = ways.shape
-    column, row = ((np.array(start) - floor.frame[:2]) / floor.frame[2]).astype(int)
-    row, column = min(max(int(row), 0), rows - 1), min(max(int(column), 0), columns - 1)
+def _pixels(floor: Floor, places: Floats) -> npt.NDArray[np.intp]:
+    """The pixels (n, 2) row, column of places (n, 2) x, y."""
+    found = np.floor((places - floor.frame[:2]) / floor.frame[2]).astype(np.intp)[:, ::-1]
+    pixels: npt.NDArray[np.intp] = np.clip(found, 0, np.array(floor.raster.shape) - 1)
+    return pixels
+
+
+def widest_ways(floor: Floor, goals: Mask, start: npt.NDArray[np.intp]) -> Floats:
+    """How far it is to the goal from every pixel, by ways nowhere narrower than the widest way from the start is."""
+    wide = _widest(floor.raster, goals, int(start[0]), int(start[1]), floor.frame[2])
+    return floor.ways(goals, wide + floor.frame[2], DETOUR)
+
+
+@compiled
+def _widest(raster: Floats, goals: Mask, row: int, column: int, pixel: float) -> float:
+    """The least distance to walls on the way from the goal pixels to a pixel where that is greatest (maximin)."""
+    rows, columns = raster.shape
+    wide = np.full((rows, columns), -1e9)
+    heap = [(0.0, 0, 0)]
+    heap.pop()
+    for r in range(rows):
+        for c in range(columns):
+            if goals[r, c]:
+                wide[r, c] = raster[r, c]
+                heapq.heappush(heap, (-raster[r, c], r, c))
+    while len(heap) > 0:
+        minus, r, c = heapq.heappop(heap)
+        if r == row and c == column:
+            return -minus
+        if -minus < wide[r, c]:
+            continue
+        for up in range(max(r - 1, 0), min(r + 2, rows)):
+            for along in range(max(c - 1, 0), min(c + 2, columns)):
+                step = pixel * (1.4142135623730951 if up != r and along != c else 1.0)
+                room = min(-minus, raster[up, along])
+                if raster[r, c] + raster[up, along] < step:  # there may be a thin wall between the two
+                    room = min(room, 0.0)
+                if room > wide[up, along]:
+                    wide[up, along] = room
+                    heapq.heappush(heap, (-room, up, along))
+    return 0.0
+
+
+def _descent(ways: Floats, start: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+    """The pixels (n, 2) row, column from one downhill to the goal."""
+    row, column = int(start[0]), int(start[1])
     track = [(row, column)]
     while ways[row, column] > 0.0:
         window = ways[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
@@ -117,18 +164,22 @@ def widened(solid: Any, neck: Neck, extra: float, reach: float) -> Any:
     return solid.difference(shapely.union_all(copies).intersection(window))
 
 
-def missing_width(solid: Any, neck: Neck, radius: float, passes: Callable[[Any], bool]) -> float:
+def missing_width(solid: Any, neck: Neck, radius: float, answer: Callable[[Any], str]) -> float:
     """How much wider a neck must be, in squares, for a body of some radius to pass; inf when that is not enough.
 
-    passes : whether the body can be moved when the obstacles are these.
+    answer : the status of planning the body's motion when the obstacles are these. What is not decided lies within the
+    resolution of the very width that is sought.
     """
     low, high = 0.0, max(2.2 * radius - neck.width, 4 * CLOSE)
     reach = neck.width + 2 * radius + high
-    if not passes(widened(solid, neck, high, reach)):
+    if answer(widened(solid, neck, high, reach)) != "found":
         return math.inf
     while high - low > CLOSE:
         middle = (low + high) / 2
-        if passes(widened(solid, neck, middle, reach)):
+        status = answer(widened(solid, neck, middle, reach))
+        if status == "limit":
+            return middle
+        if status == "found":
             high = middle
         else:
             low = middle

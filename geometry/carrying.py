@@ -18,9 +18,11 @@ from typing import Any
 import numpy as np
 import shapely
 
+from geometry.aligning import carry_straightened
 from geometry.bottleneck import Neck
 from geometry.ends import At, End, InCorner, Inside, met
 from geometry.errand import Errand
+from geometry.held import carry_held
 from geometry.legs import Leg, Point, verified
 from geometry.motion import Plan, plan_motion
 from geometry.rigid import Pose, Rotate, Translate
@@ -31,6 +33,7 @@ from geometry.yard import Yard
 __all__ = ["At", "Carrying", "InCorner", "Inside", "Leg", "Pose", "plan_carrying"]
 
 STRIDE = 12  # squares walked by a command, about
+CELLS = 40_000  # looked at to prove that the body by itself cannot pass
 
 
 @dataclass(frozen=True)
@@ -89,6 +92,7 @@ def plan_carrying(
     pull: bool = True,
     avoid: Sequence[Point] = (),
     walk: Mask | None = None,
+    walls: Any = None,
 ) -> Carrying:
     """Plan how Utak carries a body to a goal.
 
@@ -105,6 +109,8 @@ def plan_carrying(
     avoid : holds not to be used, as told by Leg.hold.
     walk : (rows, columns) bool: where Utak may walk with empty hands, from square to square by their edges; None for
         `free`. The squares under the body are closed wherever it then lies; where it lay they open when it has gone.
+    walls : shapely geometry, the walls where they are known better than by squares; `free` are then the squares that
+        they leave whole. None for all that is not free.
 
     Returns
     -------
@@ -117,14 +123,17 @@ def plan_carrying(
     free = np.ascontiguousarray(free, dtype=bool)
     _check(shape, free, utak, margin, walk)
     walk = free if walk is None else np.ascontiguousarray(walk, dtype=bool)
-    errand = Errand(shape, Yard(free), utak, goal, margin, pull, tuple(avoid), walk)
+    errand = Errand(shape, Yard(free, walls), utak, goal, margin, pull, tuple(avoid), walk)
     if met(goal, shape, shape):
         return Carrying("found", pose=Pose(0.0, 0.0), polygon=shape)
-    legs = carry_squarewise(errand)
-    end = None if legs is None else verified(errand.yard, shape, legs)
-    if legs is not None and end is not None and met(goal, shape, end):
-        return _found(shape, legs, end)
-    return _alone(errand)
+    plan = _told(errand, carry_squarewise(errand)) or _told(errand, carry_straightened(errand))
+    if plan is not None:
+        return plan
+    body = _body_alone(errand)
+    if body.status == "impossible":
+        return Carrying("impossible", reason=body.reason or "body", body=body)
+    plan = _told(errand, carry_held(errand))
+    return plan or Carrying("limit", reason="hold" if body.status == "found" else "body", body=body)
 
 
 def _check(shape: Any, free: Mask, utak: Point, margin: float, walk: Mask | None) -> None:
@@ -137,19 +146,15 @@ def _check(shape: Any, free: Mask, utak: Point, margin: float, walk: Mask | None
         raise ValueError("utak and margin must be finite, the margin not negative")
 
 
-def _found(shape: Any, legs: Sequence[Leg], end: Any) -> Carrying:
-    """The plan of legs that lead to an end."""
+def _told(errand: Errand, legs: Sequence[Leg] | None) -> Carrying | None:
+    """The plan of some legs, when they are free and lead to the goal; else None."""
+    shape = errand.shape
+    end = None if legs is None else verified(errand.yard, shape, legs)
+    if legs is None or end is None or not met(errand.goal, shape, end):
+        return None
     degrees = math.fsum(m.degrees for leg in legs for m in leg.motions if isinstance(m, Rotate))
     dx, dy = end.centroid.x - shape.centroid.x, end.centroid.y - shape.centroid.y
     return Carrying("found", tuple(legs), Pose(dx, dy, degrees), end)
-
-
-def _alone(errand: Errand) -> Carrying:
-    """What can be said of the body by itself."""
-    plan = _body_alone(errand)
-    if plan.status == "impossible":
-        return Carrying("impossible", reason=plan.reason or "body", body=plan)
-    return Carrying("limit", reason="hold" if plan.status == "found" else "body", body=plan)
 
 
 def _body_alone(errand: Errand) -> Plan:
@@ -163,12 +168,19 @@ def _body_alone(errand: Errand) -> Plan:
         there = Inside(_about(goal, errand))
     else:
         there = goal
-    return plan_motion(centred, errand.yard.floor, Pose(middle.x, middle.y, 0.0), there)
+    return plan_motion(centred, errand.yard.floor, Pose(middle.x, middle.y, 0.0), there, cells=CELLS)
 
 
 def _about(goal: InCorner, errand: Errand) -> Any:
-    """A square in which the body lies wherever it is in a corner: what cannot be brought into it cannot be there."""
+    """The floor near a corner in which a body must lie to be in it: what cannot be brought there cannot be in it."""
     reach = 2.0 * shapely.minimum_bounding_radius(errand.shape) + goal.slack
-    x0, x1 = sorted([goal.x, goal.x - goal.sx * reach])
-    y0, y1 = sorted([goal.y, goal.y - goal.sy * reach])
-    return shapely.box(x0, y0, x1, y1)
+
+    def back(across: float, up: float) -> Any:
+        x0, x1 = sorted([goal.x, goal.x - goal.sx * across])
+        y0, y1 = sorted([goal.y, goal.y - goal.sy * up])
+        return shapely.box(x0, y0, x1, y1)
+
+    ends = [back(goal.slack, reach), back(reach, goal.slack)]
+    parts = shapely.get_parts(errand.yard.floor_polygon.intersection(back(reach, reach)))
+    fitting = [part for part in parts if part.area > 0.0 and all(part.intersects(end) for end in ends)]
+    return shapely.MultiPolygon(fitting)

@@ -28,14 +28,15 @@ __all__ = ["Inside", "Plan", "plan_motion"]
 
 Floats = npt.NDArray[np.float64]
 CAPACITY = 100_000  # cells: enough for margins of a few times the resolution
-COARSE, FEW = 1e-3, 40_000  # resolution and cells for the missing width
+COARSE, FEW = 4e-4, 40_000  # resolution and cells for the missing width
 
 
 @dataclass(frozen=True)
 class Question:
-    """What plan_motion was asked, and where its search was stuck: the place nearest to the goal that it got to.
+    """What plan_motion was asked, and how far its search got.
 
-    stuck : (x, y) of the middle of the body's greatest inscribed disc. ways : what is left to go from every pixel.
+    reached : (n, 2) where the middle of the body's greatest inscribed disc came to, the start first. goals : the pixels
+    of the floor's raster that are its goal.
     """
 
     shape: Any
@@ -44,8 +45,8 @@ class Question:
     goal: "Pose | Inside"
     points: Sequence[tuple[float, float]]
     radius: float
-    stuck: tuple[float, float]
-    ways: Floats
+    reached: Floats
+    goals: npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -76,11 +77,11 @@ class Plan:
     def passage(self) -> Neck | None:
         """The neck that is too narrow; None unless impossible for want of one. Worked out when asked for."""
         q = self.question
-        return None if q is None else neck_near(q.floor, q.ways, (q.start.x, q.start.y), q.stuck, q.radius)
+        return None if q is None else neck_near(q.floor, q.goals, q.reached, q.radius)
 
     @cached_property
     def missing(self) -> float:
-        """How much wider the passage must be, in squares, to about 0.02: a second or so of work when asked for.
+        """How much wider the passage must be, in squares, to about 0.03: a second or so of work when asked for.
 
         nan unless there is a passage; inf when widening that passage alone does not help.
         """
@@ -88,11 +89,17 @@ class Plan:
         if q is None or neck is None:
             return math.nan
 
-        def passes(walls: Any) -> bool:
-            floor = Floor(walls, q.floor.bounds.tolist())
-            return plan_motion(q.shape, floor, q.start, q.goal, None, COARSE, q.points, FEW).status == "found"
+        solid = shapely.union_all(q.floor.polygons)
 
-        return missing_width(shapely.union_all(q.floor.polygons), neck, q.radius, passes)
+        def answer(walls: Any) -> str:
+            floor = Floor(walls, q.floor.bounds.tolist())
+            goal = q.goal
+            if isinstance(goal, Inside):
+                opened = solid.difference(walls)
+                goal = Inside([shapely.union_all([part, opened]) for part in shapely.get_parts(goal.polygon)])
+            return plan_motion(q.shape, floor, q.start, goal, None, COARSE, q.points, FEW).status
+
+        return missing_width(solid, neck, q.radius, answer)
 
     @cached_property
     def length(self) -> float:
@@ -118,6 +125,7 @@ def plan_motion(
     resolution: float = 2e-4,
     points: Sequence[tuple[float, float]] = (),
     cells: int = CAPACITY,
+    pivot: tuple[float, float] | None = None,
 ) -> Plan:
     """Find how to move a polygon among polygons from a pose to a goal, or prove that it cannot be done.
 
@@ -131,6 +139,7 @@ def plan_motion(
     resolution : cells smaller than this times the bounds' greater side are not split.
     points : (x, y) in the body's own frame that move with it and must not enter obstacles, such as Utak.
     cells : no more than so many cells are looked at.
+    pivot : (x, y) in the body's own frame that it is turned about in every motion; None for what is quickest.
 
     Returns
     -------
@@ -140,7 +149,7 @@ def plan_motion(
     ------
     ValueError : when the body has no area, or a number is not finite.
     """
-    mover = new_mover(shape, points)
+    mover = new_mover(shape, points, pivot)
     floor = obstacles if isinstance(obstacles, Floor) else Floor(obstacles, _bounds(obstacles, start, goal, bounds))
     problem = Problem(mover, floor, start, goal, resolution, cells)
     for name, pose in (("start", start), ("goal", goal)):
@@ -152,7 +161,7 @@ def plan_motion(
         poses.append(motion.pose(poses[-1]))
     asked = None
     if status == "impossible":
-        asked = Question(shape, floor, start, goal, tuple(points), mover.radius, problem.stuck(), problem.hunt.ways)
+        asked = Question(shape, floor, start, goal, tuple(points), mover.radius, problem.reached(), problem.goals)
     looked = int(problem.tree.used[0])
     return Plan(status, motions, tuple(poses), looked, problem.rounds, problem.least, question=asked)
 

@@ -1,4 +1,4 @@
-"""A body made ready to be moved: drawn about the centre of its enclosing circle, with discs inscribed in it."""
+"""A body made ready to be moved: drawn about the centre that it is turned about, with discs inscribed in it."""
 
 import math
 from collections.abc import Iterable
@@ -18,8 +18,12 @@ GRID = 16  # places along the body's longer side where discs are tried
 SPECK = 1e-3  # squares: half the diagonal of what stands for a point that moves with the body
 
 
-def new_mover(shape: Any, points: Iterable[tuple[float, float]] = ()) -> Mover:
+def new_mover(
+    shape: Any, points: Iterable[tuple[float, float]] = (), pivot: tuple[float, float] | None = None
+) -> Mover:
     """A body from its shape, its own origin being the reference point, and points that move with it.
+
+    pivot : what it is turned about; None for the centre of the enclosing circle, about which it moves least.
 
     Raises
     ------
@@ -29,8 +33,7 @@ def new_mover(shape: Any, points: Iterable[tuple[float, float]] = ()) -> Mover:
     whole = shapely.union_all([shape, *specks]) if specks else shape
     if whole is None or whole.area <= 0.0:
         raise ValueError("the body has no area")
-    circle = shapely.minimum_bounding_circle(whole)
-    middle = np.array(circle.centroid.coords[0])
+    middle = np.array(shapely.minimum_bounding_circle(whole).centroid.coords[0] if pivot is None else pivot)
     edges = boundary_edges(whole) - np.tile(middle, 2)
     radius = float(np.hypot(edges[:, 0], edges[:, 1]).max())
     corners = np.column_stack([edges[:, :2], np.zeros(len(edges))])

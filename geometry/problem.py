@@ -73,7 +73,8 @@ class Problem:
             px, py = self.mover.probes[0, :2]
             return end, self.ground, self.floor.pixel_of(end[0] + c * px - s * py, end[1] + s * px + c * py)
         region = self.floor.around(goal.polygon)
-        goals = region.raster >= self.mover.probes[0, 2] - region.frame[2]
+        room = min(float(self.mover.probes[0, 2]) - region.frame[2], float(region.raster.max()))
+        goals = region.raster >= room  # where the region is too narrow for the body, its widest place
         return np.empty(0), region.ground(self.mover), goals
 
     def solve(self) -> tuple[str, tuple[Motion, ...]]:
@@ -104,12 +105,10 @@ class Problem:
             return 0
         return find_chain(self.tree, self.mover, self.ground, self.region, self.hunt, first, last, self.rounds, dead)
 
-    def stuck(self) -> tuple[float, float]:
-        """The place of the greatest inscribed disc's middle in the settled cell that is nearest to the goal."""
+    def reached(self) -> Floats:
+        """Where the middle of the body's greatest inscribed disc got to: (n, 2), the start first."""
         known = self.hunt.seen[0]
         settled = np.nonzero((self.hunt.state[:known] >= SETTLED) & (self.tree.child[:known] < 0))[0]
-        if len(settled) == 0:
-            return float(self.start[0]), float(self.start[1])
-        x, y, angle = self.tree.middle[settled[np.argmin(self.hunt.guess[settled])]]
-        c, s, (px, py) = math.cos(angle), math.sin(angle), self.hunt.eye
-        return float(x + c * px - s * py), float(y + s * px + c * py)
+        x, y, angle = np.vstack([self.start, self.tree.middle[settled]]).T
+        c, s, (px, py) = np.cos(angle), np.sin(angle), self.hunt.eye
+        return np.column_stack([x + c * px - s * py, y + s * px + c * py])

@@ -1,7 +1,8 @@
 """How far apart a placed body and the obstacles are, and whether they overlap wherever in a cell the body is.
 
-Plain loops for numba. The body is drawn about the centre of its enclosing circle; a pose is a place (x, y) of that
-centre and an angle as (cosine, sine). Obstacle edges that may matter near a place are found in the ground's blocks.
+Plain loops for numba. The body is drawn about a centre, as a rule that of its enclosing circle; a pose
+is a place (x, y) of that centre and an angle as (cosine, sine). Obstacle edges that may matter near a place are found
+in the ground's blocks.
 """
 
 import math
@@ -18,11 +19,11 @@ FREE, OPEN, SHUT, FULL, DEAD = 0, 1, 2, 3, 4
 
 
 class Mover(NamedTuple):
-    """A body about the centre of its enclosing circle.
+    """A body about a centre.
 
     edges: (m, 7) rows x0, y0, x1, y1, outward normal, length. probes: (k, 4) rows x, y, r, distance from the centre:
-    the body covers the disc of radius r about (x, y); r is 0 at its corners. radius: of the enclosing circle.
-    reference: the (x, y) of the body's own origin. seeds: (parts, 2) a corner of each part of the body.
+    the body covers the disc of radius r about (x, y); r is 0 at its corners. radius: of the circle about the centre
+    that encloses it. reference: the (x, y) of the body's own origin. seeds: (parts, 2) a corner of each part of it.
     """
 
     edges: Floats

@@ -14,11 +14,12 @@ from geometry.ends import At, placed, prices
 from geometry.errand import Errand
 from geometry.guess import NEVER, STILL, guess
 from geometry.hauling import first_walk, haul
-from geometry.legs import NUMBERS, Leg, Point, grip_square, may_push, rounded, straight
+from geometry.legs import Leg, Point, grip_square, may_push, rounded, straight
 from geometry.rigid import Motion, Rotate, Translate
 from geometry.stencil import DIRECTIONS, Floats, Ints, Mask, Stencil, new_stencil, quarter
 from geometry.yard import padded
 
+EXACT = 8  # digits of places: what is off by less, after motions whose numbers were rounded, is not off
 MOST = 400_000  # nodes looked at before giving up
 Step = tuple[int, int, int, int]  # hold, quarter, direction, place
 
@@ -26,7 +27,7 @@ Step = tuple[int, int, int, int]  # hold, quarter, direction, place
 def _stencils(shape: Any, margin: float) -> tuple[Stencil, Stencil]:
     """The stencils of a shape and of the shape with its margin."""
     home = (math.floor(shape.centroid.x), math.floor(shape.centroid.y))
-    near = shapely.transform(shape, lambda p: np.round(p - np.array(home), NUMBERS))
+    near = shapely.transform(shape, lambda p: np.round(p - np.array(home), EXACT))
     body, wide = _stencils_near(shapely.to_wkb(near), margin)
     return replace(body, home=home), body if wide is body else replace(wide, home=home)
 

@@ -22,13 +22,16 @@ class Yard:
     Parameters
     ----------
     free : (rows, columns) bool.
+    walls : shapely geometry, what is wall among and around the squares; None for all that is not free. Where walls are
+        known better than by squares, `free` are those squares that they leave whole.
     """
 
-    def __init__(self, free: Mask) -> None:
+    def __init__(self, free: Mask, walls: Any = None) -> None:
         rows, columns = free.shape
         self.free = free
         self.outer = shapely.box(-EDGE, -EDGE, columns + EDGE, rows + EDGE)
-        self.floor_polygon = shapely.union_all(_strips(free)) if free.any() else shapely.Polygon()
+        whole = shapely.union_all(_strips(free)) if free.any() else shapely.Polygon()
+        self.floor_polygon = whole if walls is None else shapely.box(0, 0, columns, rows).difference(walls)
         self.walls = list(shapely.get_parts(self.outer.difference(self.floor_polygon)))
         self.obstacles = Obstacles(self.walls)
 
