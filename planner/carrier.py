@@ -15,13 +15,15 @@ from numpy.typing import NDArray
 
 from geometry.carrying import Inside, Leg
 from geometry.ends import End
+from geometry.legs import verified
 from geometry.rigid import Motion, Rotate, Translate
+from geometry.yard import Yard
 from kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
 from kb.worldmodel import Node, Patch, WorldModel
 from planner.destinations import Situation
 from planner.exploring import Lookout, sight_of
 from planner.haulage import Haul, Hauler, Refusal, Request
-from planner.landing import region_of
+from planner.landing import in_view, lands, region_of
 
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
@@ -100,7 +102,7 @@ class Carrier:
     def advise(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Advice:
         """What to do to carry an object to one of several ends."""
         model = situation.model
-        course = self._kept(situation)
+        course = self._kept(ends if self._course is None or self._course.name == node.name else None, situation)
         if course is None:
             last = self._course.target if self._course is not None else ""
             failure = self._failure(model)
@@ -115,18 +117,28 @@ class Carrier:
 
     # -- keeping a plan --------------------------------------------------------------------------
 
-    def _kept(self, situation: Situation) -> Course | None:
-        """The plan under way, if the world is still as it says."""
+    def _kept(self, ends: Mapping[str, End] | None, situation: Situation) -> Course | None:
+        """The plan under way, if the world is still as it says.
+
+        ends : where it must lead; None where the plan is to clear the way for another thing.
+        """
         course, model = self._course, situation.model
         node = None if course is None else model.object(course.name)
         if course is None or node is None or not course.legs:
             return None
-        if not _lies(node, course.polygon) or (course.place is not None and not _stands(model, course.place)):
+        if node.polygon is None or (course.place is not None and not _stands(model, course.place)):
             return None
         if course.grasped and model.held != course.name:
             return None
         free = situation.screens.free(course.level) | model.mask(node.patch)
-        return course if bool(free[model.mask_within(course.needed)].all()) else None
+        if not free[model.mask_within(course.needed)].all():
+            return None
+        if shapely.symmetric_difference(node.polygon, course.polygon).area < ALIKE:
+            return course
+        end = None if node.stuck else _led(course, node, free, situation)
+        if end is None or (ends is not None and not any(lands(goal, end) for goal in ends.values())):
+            return None
+        return replace(course, polygon=node.polygon)
 
     def _failure(self, model: WorldModel) -> Advice | None:
         """What to do when a motion with something in hand did not move it: try once more, then from elsewhere."""
@@ -242,8 +254,13 @@ def _course(haul: Haul, node: Node, model: WorldModel) -> Course:
     return Course(node.name, haul.target, node.polygon, legs, needed, haul.level)
 
 
-def _lies(node: Node, polygon: Any) -> bool:
-    return node.polygon is not None and shapely.symmetric_difference(node.polygon, polygon).area < ALIKE
+def _led(course: Course, node: Node, free: Mask, situation: Situation) -> Any:
+    """Where what is left of a plan leads from where the object really lies, or None when something is in the way."""
+    west, south = situation.model.view.west, situation.model.view.south
+    first, *others = course.legs
+    legs = [first if course.place is None else replace(first, place=course.place), *others]
+    placed = [replace(leg, place=(leg.place[0] - west, leg.place[1] - south)) for leg in legs]
+    return verified(Yard(free), in_view(node.polygon, situation), placed)
 
 
 def _stands(model: WorldModel, place: Place) -> bool:

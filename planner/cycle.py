@@ -19,12 +19,13 @@ from planner.deciding import Decider, Decision
 class Options:
     """paths: which path-finder (skeleton, visibility, grid). kb_files: the user's own encodings. max_steps.
 
-    Commands until he gives up.
+    Commands until he gives up. pull: may what is held be pulled, or only pushed?
     """
 
     paths: str = "skeleton"
     kb_files: tuple[str, ...] = ()
     max_steps: int = 200
+    pull: bool = True
 
 
 class StepReport(NamedTuple):
@@ -63,7 +64,7 @@ class Robot:
         self.options = options or Options()
         rules = tuple(Path(file) for file in self.options.kb_files)
         self.knowledge = Knowledge(rules)  # (1) the default world model
-        self.decider = Decider(task, self.options.paths, rules)  # (6) the task
+        self.decider = Decider(task, self.options.paths, rules, self.options.pull)  # (6) the task
         self.verdict = Verdict(False, "limit", "not awake yet")
         self.finished = False
         self.steps = 0

@@ -23,7 +23,7 @@ from planner.circling import pivot, ways_round, winding
 from planner.destinations import Destination, Situation, contains, destination, nowhere
 from planner.goals import BY_THE_WAY, Stage, constraints, stages
 from planner.haulage import Refusal
-from planner.landing import landing, met
+from planner.landing import landing
 from planner.screen import Screens, Squares, grown
 from planner.steps import Square
 from planner.walking import next_move
@@ -143,7 +143,7 @@ class Decider:
         if node.polygon is None:
             return Decision(None, f"{stage} is not attempted: the outline of {node.name} is not known", "limit")
         land = landing(goal, node, self.carrier.began_at(node), situation)
-        if land.ends and any(met(end, node, situation) for end in land.ends.values()):
+        if land.holds:
             return None
         missing = Refusal(True, lambda: land.missing)
         advice = self.carrier.advise(node, land.ends, situation) if land.ends else missing

@@ -3,17 +3,17 @@
 Goals of geometry.carrying are in the frame of the view's arrays, as all of planning on a screen is.
 """
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from geometry import ends
 from geometry.carrying import At, InCorner, Inside
-from geometry.ends import End
+from geometry.ends import End, met
 from geometry.rigid import Pose
 from kb.facts import Fact, Number, Symbol, Text
 from kb.wkt import parse_wkt
@@ -23,6 +23,8 @@ from planner.exploring import Lookout, rooms_beyond
 
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
+BESIDE = 1.0  # squares from a thing within which it is reached
+POSED, TURNED = 0.25, 2.0  # squares and degrees within which a pose is attained
 
 
 @dataclass(frozen=True)
@@ -33,15 +35,23 @@ class Landing:
     ----------
     ends : target's name -> where the object must lie; empty while that is not known.
     missing, lookouts : what must be known first, in words, and where just that may be seen (as of a Destination).
+    holds : the goal holds as the object lies now.
     """
 
     ends: Mapping[str, End]
     missing: str = ""
     lookouts: tuple[Lookout, ...] = ()
+    holds: bool = False
 
 
 def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
     """Where an object must end. began : the point of the lattice where its middle lay at first."""
+    found = _landing(goal, node, began, situation)
+    shape = in_view(node.polygon, situation)
+    return replace(found, holds=found.holds or any(lands(end, shape) for end in found.ends.values()))
+
+
+def _landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
     where = goal.args[1]
     if goal.name == "at" and isinstance(where, Symbol) and where.name == "corner":
         return _cornered(str(where.args[0]), node, situation)
@@ -58,10 +68,9 @@ def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landi
     raise ValueError(f"not a goal for something carried: {goal}")
 
 
-def met(end: End, node: Node, situation: Situation) -> bool:
-    """Does an object lie where a goal holds?"""
-    shape = in_view(node.polygon, situation)
-    return ends.met(end, shape, shape)
+def lands(end: End, shape: Any) -> bool:
+    """Does a shape, in the frame of the view's arrays, lie where a goal holds?"""
+    return met(end, shape, shape)
 
 
 def in_view(shape: Any, situation: Situation) -> Any:
@@ -107,9 +116,8 @@ def _around_corner(began: Place, node: Node, situation: Situation) -> Landing:
 
 def _around_start(node: Node, situation: Situation) -> Landing:
     """At the place where Utak woke: within one square of it."""
-    x, y = situation.model.lattice.woke
-    place = in_view(shapely.Point(x, y), situation)
-    return Landing(dict(_sides(in_view(node.polygon, situation), place.buffer(0.5, cap_style="square"), "start")))
+    place = in_view(shapely.Point(*situation.model.lattice.woke), situation)
+    return _touching(in_view(node.polygon, situation), place.buffer(0.5, cap_style="square"), "start")
 
 
 def _beside(other: str, node: Node, situation: Situation) -> Landing:
@@ -117,22 +125,20 @@ def _beside(other: str, node: Node, situation: Situation) -> Landing:
     target = situation.model.object(situation.binding.get(other, ""))
     if target is None:
         return Landing({}, f"nothing seen so far is {other}")
-    squares = in_view(
-        shapely.union_all([shapely.box(x, y, x + 1, y + 1) for x, y in target.patch.squares()]), situation
-    )
-    return Landing(dict(_sides(in_view(node.polygon, situation), squares, target.name)))
+    squares = region_of(situation.model.mask(target.patch))
+    return _touching(in_view(node.polygon, situation), squares, target.name)
 
 
-def _sides(shape: Any, target: Any, name: str) -> Iterator[tuple[str, End]]:
-    """Poses with the shape's containing rectangle against the target's, half a square or less away, on each side."""
+def _touching(shape: Any, target: Any, name: str) -> Landing:
+    """Within one square of a target: best with the containing rectangles against each other, on one of four sides."""
     west, south, east, north = shape.bounds
     x0, y0, x1, y1 = target.bounds
     level = ((x0 + x1) - (west + east)) / 2, ((y0 + y1) - (south + north)) / 2
     level = (float(np.rint(level[0])), float(np.rint(level[1])))
     shifts = {"east": (x1 - west, level[1]), "north": (level[0], y1 - south)}
     shifts |= {"west": (x0 - east, level[1]), "south": (level[0], y0 - north)}
-    for side, (dx, dy) in shifts.items():
-        yield f"{name}_{side}", At(Pose(dx, dy, 0.0))
+    ends = {f"{name}_{side}": At(Pose(dx, dy, 0.0)) for side, (dx, dy) in shifts.items()}
+    return Landing(ends, holds=shape.distance(target) <= BESIDE)
 
 
 def _posed(goal: Fact, node: Node, situation: Situation) -> Landing:
@@ -144,4 +150,5 @@ def _posed(goal: Fact, node: Node, situation: Situation) -> Landing:
     x, y = situation.model.lattice.place_from_utak(point.x, point.y)
     middle = node.polygon.centroid
     left = (degrees.value - node.turned + 180.0) % 360.0 - 180.0
-    return Landing({"pose": At(Pose(x - middle.x, y - middle.y, left))})
+    holds = math.dist((x, y), (middle.x, middle.y)) <= POSED and abs(left) <= TURNED
+    return Landing({"pose": At(Pose(x - middle.x, y - middle.y, left))}, holds=holds)

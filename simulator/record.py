@@ -46,6 +46,7 @@ def header(scenario: Scenario, settings: Settings) -> Line:
         "noise": settings.noise,
         "paths": settings.paths,
         "max_steps": settings.max_steps,
+        "pull": settings.pull,
         "kb": [hashlib.sha256(text.encode()).hexdigest() for text in rules],
     }
     told = {

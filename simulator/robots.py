@@ -13,5 +13,7 @@ def make_robot(body: Body, task: Task, settings: Settings) -> Robot:
     from planner.cycle import Robot as Mind
 
     warm()
-    options = Options(paths=settings.paths, kb_files=settings.kb_files, max_steps=settings.max_steps)
+    options = Options(
+        paths=settings.paths, kb_files=settings.kb_files, max_steps=settings.max_steps, pull=settings.pull
+    )
     return Mind(body, task, options)

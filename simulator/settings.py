@@ -15,6 +15,7 @@ class Settings:
     paths: str = "skeleton"
     max_steps: int = 200
     kb_files: tuple[str, ...] = ()
+    pull: bool = True
 
 
 def kb_files_named(paths: list[str]) -> tuple[str, ...]:

@@ -31,6 +31,9 @@ def add_settings(part: argparse.ArgumentParser) -> None:
     part.add_argument("--seed", type=_seed, metavar="N", help="seed of all randomness (default 0)")
     part.add_argument("--noise", type=_noise, metavar="S", help="how much motions are disturbed, 0 to 1 (default 0)")
     part.add_argument("--paths", choices=PATHS, help="how ways are found (default skeleton)")
+    part.add_argument(
+        "--no-pull", dest="pull", action="store_false", default=None, help="push what is held, never pull"
+    )
     part.add_argument("--max-steps", type=_steps, metavar="N", help="give up after so many commands (default 200)")
     part.add_argument("--kb", action="append", metavar="FILE", default=[], help="a file of rules to add; repeatable")
 
@@ -60,9 +63,9 @@ def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = N
 
     from simulator.settings import Settings, kb_files_named
 
-    given = {"seed": options.seed, "noise": options.noise, "paths": options.paths, "max_steps": options.max_steps}
-    given = {name: value for name, value in given.items() if value is not None}
-    kept = {name: value for name, value in (recorded or {}).items() if name in ("seed", "noise", "paths", "max_steps")}
+    names = ("seed", "noise", "paths", "max_steps", "pull")
+    given = {name: getattr(options, name) for name in names if getattr(options, name) is not None}
+    kept = {name: value for name, value in (recorded or {}).items() if name in names}
     return replace(Settings(kb_files=kb_files_named(options.kb)), **{**kept, **given})
 
 

@@ -20,6 +20,7 @@ class Options:
     paths: str = "skeleton"
     kb_files: tuple[str, ...] = ()
     max_steps: int = 200
+    pull: bool = True
 
 
 @dataclass(frozen=True)

@@ -44,7 +44,14 @@ def test_an_episode_says_what_happened(tmp_path: Path) -> None:
     folder, path = write_scene(tmp_path / "s", 3), tmp_path / "ep.jsonl"
     assert main(["run", str(folder), "--log", str(path), "--seed", "5", "--noise", "0.1", "--max-steps", "7"]) == 75
     episode = read_episode(path)
-    assert episode.header["options"] == {"seed": 5, "noise": 0.1, "paths": "skeleton", "max_steps": 7, "kb": []}
+    assert episode.header["options"] == {
+        "seed": 5,
+        "noise": 0.1,
+        "paths": "skeleton",
+        "max_steps": 7,
+        "pull": True,
+        "kb": [],
+    }
     assert len(episode.steps) == 8
     keys = ["step", "action", "motion", "utak", "held", "objects", "retina", "touch", "belief", "why"]
     assert all(list(step) == keys for step in episode.steps)
