@@ -94,6 +94,11 @@ class Carrier:
         self._course: Course | None = None
         self._plans = 0
 
+    @property
+    def begun(self) -> bool:
+        """Has he begun to carry anything?"""
+        return self._plans > 0
+
     def began_at(self, node: Node) -> Place:
         """The point of the lattice where the middle of an object lay at first."""
         middle = node.polygon.centroid
@@ -202,7 +207,7 @@ class Carrier:
     def _seen(self, haul: Haul, node: Node, situation: Situation) -> See | None:
         """What must be looked at before a plan is begun, as long as a look may tell more."""
         model = situation.model
-        unsure = haul.swept & ~situation.screens.free(0) & ~model.mask(node.patch)
+        unsure = haul.swept & ~situation.screens.safe & ~model.mask(node.patch)
         if not unsure.any():
             return None
         lookout = sight_of(situation.screens, unsure, f"the way for {node.name} is not clear")

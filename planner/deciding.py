@@ -145,7 +145,7 @@ class Decider:
         land = landing(goal, node, self.carrier.began_at(node), situation)
         if land.holds:
             return None
-        missing = Refusal(True, lambda: land.missing)
+        missing = Refusal(not self.carrier.begun, lambda: land.missing)
         advice = self.carrier.advise(node, land.ends, situation) if land.ends else missing
         if isinstance(advice, Act):
             return Decision(advice.command, f"{advice.why}; {stage}")
