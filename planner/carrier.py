@@ -153,8 +153,6 @@ class Carrier:
             self._blame(model.object(course.name), model)
         if held is None or not held.stuck:
             return None
-        if held.movable == 0:
-            return Refusal(True, lambda: f"{held.name} cannot be moved")
         if held.stuck > 1:
             self._blame(held, model)
         return Act(Release(), f"{held.name} did not move")

@@ -145,6 +145,8 @@ class Decider:
         land = landing(goal, node, self.carrier.began_at(node), situation)
         if land.holds:
             return None
+        if node.movable == 0:
+            return Decision(None, f"{stage} cannot be attained: {node.name} cannot be moved", "impossible")
         missing = Refusal(not self.carrier.begun, lambda: land.missing)
         advice = self.carrier.advise(node, land.ends, situation) if land.ends else missing
         if isinstance(advice, Act):

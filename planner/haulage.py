@@ -73,6 +73,7 @@ class Hauler:
     def __init__(self, pull: bool = True) -> None:
         self._pull = pull
         self._known: dict[tuple[Any, ...], Carrying] = {}
+        self._hopeless = False
 
     def find(self, request: Request, situation: Situation) -> Haul | Refusal:
         """The way that is chosen and verified, or why there is none."""
@@ -87,16 +88,20 @@ class Hauler:
         verdicts: list[str] = []
         plans: list[Carrying] = []
         for _ in range(MOST_ROUNDS):
-            choice = _choice([*options, *verdicts])
+            choice = _choice([*options, *verdicts, *["hopeless"] * self._hopeless])
             if choice is None:
                 break
             name, level, aside = choice
             plan = self._plan(request, shape, floors[level, aside], situation.screens.free(level), name, situation)
+            if plan.status == "found" and self._hopeless:
+                self._hopeless = False  # what was hopeless is no more: now the best way is asked for
+                continue
             if plan.status == "found":
                 return _haul(plan, shape, name, level, situation, request.node)
             plans.append(plan)
             fact = "refuted" if plan.status == "impossible" else "undecided"
             verdicts.append(f"{fact}({name},{level},{aside})")
+        self._hopeless = True
         return _refusal(request.node, plans)
 
     def _plan(self, request: Request, shape: Any, free: Mask, walk: Mask, name: str, situation: Situation) -> Carrying:
