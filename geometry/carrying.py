@@ -132,7 +132,8 @@ def plan_carrying(
     body = _body_alone(errand)
     if body.status == "impossible":
         return Carrying("impossible", reason=body.reason or "body", body=body)
-    plan = _told(errand, carry_held(errand))
+    track = np.empty((0, 3)) if body.track is None else body.track
+    plan = _told(errand, carry_held(errand, track))
     return plan or Carrying("limit", reason="hold" if body.status == "found" else "body", body=body)
 
 

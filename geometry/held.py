@@ -1,9 +1,10 @@
 """Carrying at any place and angle with one hold all the way: body and Utak are one thing that is turned about him.
 
 # Strategy: with one hold Utak can bring the body wherever body and he as one rigid thing can go, for turns about him
-# and pushes make up all rigid motions. So it is one question to plan_motion whether a hold will do. Holds that make the
-# whole no broader than the body is and that have its corners near are asked first, with an arm's length of room about
-# Utak and a margin about the body, then without.
+# and pushes make up all rigid motions. So it is one question to plan_motion whether a hold will do. Asked first are
+# holds that would seldom bring Utak into a wall if the body went as it goes by itself, and of these the ones that have
+# all its corners near: a turn about them moves it least. Each is asked with an arm's length of room about Utak and a
+# margin about the body, then without.
 """
 
 import math
@@ -17,16 +18,19 @@ import shapely
 from geometry.digital import squares
 from geometry.ends import At, InCorner, Inside, placed
 from geometry.errand import Errand
-from geometry.fewest import fewest_motions
+from geometry.fewest import evenly, fewest_motions
 from geometry.legs import Leg, Point, grip_square, may_push, rounded, verified
 from geometry.motion import plan_motion
-from geometry.mover import new_mover
+from geometry.mover import centre_pose, new_mover
 from geometry.reach import reach
 from geometry.rigid import Motion, Pose, Translate
-from geometry.stencil import DIRECTIONS
+from geometry.stencil import DIRECTIONS, Floats
 from geometry.yard import ARM, padded
 
 HOLDS = 6  # asked at most
+SHORT = 9  # motions that are few enough
+ENOUGH = 3  # holds that will do, of which the best is taken
+SAMPLES = 60  # of a track
 CELLS = 20_000  # looked at for each of them
 AWAY = 0.1  # squares: how far from the walls of a corner a body is put
 FIFTHS = 5  # of a square: the unit of geometry.reach
@@ -54,27 +58,48 @@ def holds_about(errand: Errand, shape: Any, utak: Point) -> list[Hold]:
         beside |= framed[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns]
     found = np.argwhere(beside & ~lying & errand.yard.free & (ways >= 0))
     holds = [Hold((column + 0.5, row + 0.5), int(ways[row, column]) // FIFTHS) for row, column in found.tolist()]
-    return sorted(holds, key=lambda hold: (*promise(shape, hold.place), hold.walk, hold.place))
+    return sorted(holds, key=lambda hold: (hold.walk, hold.place))
 
 
-def promise(shape: Any, place: Point) -> tuple[float, float]:
-    """How broad shape and Utak are as one, at the narrowest, and how far he is from the furthest corner."""
-    whole = shapely.union_all([shape, shapely.Point(place)]).convex_hull
-    box = shapely.get_coordinates(whole.minimum_rotated_rectangle)
-    broad = min(math.dist(box[0], box[1]), math.dist(box[1], box[2]))
-    return round(broad, 6), round(float(shapely.hausdorff_distance(shape, shapely.Point(place))), 6)
+def carry_held(errand: Errand, track: Floats, most: int = HOLDS) -> list[Leg] | None:
+    """One leg that leads to the goal, the first that is short enough or the best of some; None when none is found.
 
-
-def carry_held(errand: Errand, most: int = HOLDS) -> list[Leg] | None:
-    """One leg that leads to the goal; None when none is found."""
-    middle = errand.shape.centroid
+    track : (n, 3) a way of the body by itself, places and angles of some point of it, or nothing.
+    """
+    middle, best = errand.shape.centroid, None
     fit = [h for h in holds_about(errand, errand.shape, errand.utak) if not _avoided(errand, h, middle)]
-    for hold in fit[:most]:
-        for roomy in (True, False):
-            for goal in ends_of(errand):
-                leg = _leg(errand, hold, goal, roomy)
-                if leg is not None and verified(errand.yard, errand.shape, [leg]) is not None:
-                    return [leg]
+    found = 0
+    for hold in sorted(fit, key=lambda hold: _promise(errand, hold, track))[:most]:
+        leg = _best_leg(errand, hold)
+        found += leg is not None
+        if leg is not None and (best is None or len(leg.motions) < len(best.motions)):
+            best = leg
+        if best is not None and (len(best.motions) <= SHORT or found == ENOUGH):
+            break
+    return None if best is None else [best]
+
+
+def _promise(errand: Errand, hold: Hold, track: Floats) -> tuple[int, float, int, Point]:
+    """How often the track would bring Utak into a wall; how far the furthest corner is; how far he has to walk."""
+    inside = 0
+    if len(track):
+        way = evenly(track, 1.0, SAMPLES)
+        away = np.array(hold.place) - way[0, :2]
+        turn = way[:, 2] - way[0, 2]
+        x = way[:, 0] + np.cos(turn) * away[0] - np.sin(turn) * away[1]
+        y = way[:, 1] + np.sin(turn) * away[0] + np.cos(turn) * away[1]
+        inside = int(shapely.contains_xy(shapely.union_all(errand.yard.walls), x, y).sum())
+    far = round(float(shapely.hausdorff_distance(errand.shape, shapely.Point(hold.place))), 6)
+    return inside, far, hold.walk, hold.place
+
+
+def _best_leg(errand: Errand, hold: Hold) -> Leg | None:
+    """A leg with one hold, with room about body and Utak where there is some."""
+    for roomy in (True, False):
+        for goal in ends_of(errand):
+            leg = _leg(errand, hold, goal, roomy)
+            if leg is not None and verified(errand.yard, errand.shape, [leg]) is not None:
+                return leg
     return None
 
 
@@ -130,7 +155,8 @@ def held_motions(
     if plan.status != "found":
         return None
     mover = new_mover(body, [utak], utak)
-    few = fewest_motions(mover, floor.ground(mover), floor.surface, list(plan.poses), slant(shape))
+    way = np.array([centre_pose(mover, pose) for pose in plan.poses])
+    few = fewest_motions(mover, floor.ground(mover), floor.surface, way, slant(shape))
     motions = few if few and len(few) < len(plan.motions) else plan.motions
     return at_utak(place, [rounded(motion) for motion in motions])
 
