@@ -47,7 +47,12 @@ class InCorner:
         return x, y
 
 
-End = At | Inside | InCorner
+@dataclass(frozen=True)
+class Roomy:
+    """A goal on the way to others: two free squares all round, so that Utak can take the shape wherever he likes."""
+
+
+End = At | Inside | InCorner | Roomy
 
 
 def met(goal: End, shape: Any, now: Any) -> bool:
@@ -56,6 +61,8 @@ def met(goal: End, shape: Any, now: Any) -> bool:
         return any(part.buffer(CLOSE).covers(now) for part in shapely.get_parts(goal.polygon))
     if isinstance(goal, InCorner):
         return all(-CLOSE <= gap <= goal.slack + CLOSE for gap in goal.gaps(now.bounds))
+    if isinstance(goal, Roomy):
+        return False
     return bool(shapely.hausdorff_distance(placed(shape, goal.pose), now) <= CLOSE)
 
 
@@ -74,6 +81,8 @@ def prices(goal: End, shape: Any, body: Stencil, board: Board, grid: Grid) -> Co
         return _beside(goal.pose, shape, body, grid)
     if isinstance(goal, Inside):
         found = [_inside(goal, quarter(body.lying, k), board, grid) for k in range(4)]
+    elif isinstance(goal, Roomy):
+        found = [_roomy(quarter(body.lying, k), board, grid) for k in range(4)]
     else:
         found = [_cornered(goal, shape, body, k, grid) for k in range(4)]
     return np.where(board.lies, np.array(found), -1).astype(np.int32)
@@ -89,6 +98,13 @@ def _inside(goal: Inside, lying: npt.NDArray[np.int64], board: Board, grid: Grid
         price[inside & (price != 0)] = UNEASY
         price[inside & easy] = 0
     return price
+
+
+def _roomy(lying: npt.NDArray[np.int64], board: Board, grid: Grid) -> Costs:
+    """The prices of one quarter: nothing where all squares within two of the body's are free."""
+    near = range(-2, 3)
+    fat = np.unique(np.vstack([lying + np.array((dx, dy)) for dx in near for dy in near]), axis=0)
+    return np.where(grid.clear(board.solid, fat), 0, -1).astype(np.int32)
 
 
 def _cornered(goal: InCorner, shape: Any, body: Stencil, k: int, grid: Grid) -> Costs:

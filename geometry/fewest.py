@@ -6,9 +6,11 @@
 """
 
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import shapely
 
 from geometry.compiled import compiled
 from geometry.hop import BLOCKED, EVEN, hop, shorter_turn
@@ -35,6 +37,14 @@ def fewest_motions(mover: Mover, ground: Ground, surface: Surface, track: Floats
     candidates = _candidates(mover, ground, track, edge)
     order = _fewest(mover, ground, surface, candidates)
     return motions_along(mover, ground, surface, candidates[order]) if len(order) else ()
+
+
+def slant(shape: Any) -> float:
+    """The direction of a shape's longest edge, in radians."""
+    corners = shapely.get_coordinates(shape.exterior)
+    along = np.diff(corners, axis=0)
+    x, y = along[int(np.argmax(np.round(np.hypot(along[:, 0], along[:, 1]), 6)))]
+    return math.atan2(y, x)
 
 
 def _candidates(mover: Mover, ground: Ground, track: Floats, edge: float) -> Floats:

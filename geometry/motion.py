@@ -72,7 +72,7 @@ class Plan:
     rounds: int = 0
     resolution: float = 0.0
     reason: str = ""
-    track: Floats | None = field(default=None, repr=False, compare=False)
+    track: Floats = field(default_factory=lambda: np.empty((0, 3)), repr=False, compare=False)
     question: Question | None = field(default=None, repr=False, compare=False)
 
     @cached_property
