@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from geometry.aligning import carry_straightened
 from geometry.alone import move_alone
 from geometry.ends import At, InCorner, Inside, Roomy, placed
 from geometry.errand import Errand
@@ -32,7 +33,7 @@ from geometry.yard import ARM, padded
 HOLDS = 6  # asked at most
 SHORT = 9  # motions that are few enough
 ENOUGH = 3  # holds that will do, of which the best is taken
-EACH, CELLS = 20_000, 60_000  # cells looked at for each of them, and for all
+EACH, CELLS = 12_000, 40_000  # cells looked at for each of them, and for all
 AWAY = 0.1  # squares: how far from the walls of a corner a body is put
 
 
@@ -56,8 +57,13 @@ def carry_held(errand: Errand, track: Floats) -> list[Leg] | None:
 
 
 def carry_freed(errand: Errand) -> list[Leg] | None:
-    """Legs by whole squares to where there is room all round, and then one leg that leads to the goal."""
-    first = carry_squarewise(replace(errand, goal=Roomy()))
+    """Legs by whole squares to where there is room all round, near the pose to be reached, and then one leg there."""
+    near = None
+    if isinstance(errand.goal, At):
+        there = placed(errand.shape, errand.goal.pose).centroid
+        near = (there.x, there.y)
+    on_the_way = replace(errand, goal=Roomy(near))
+    first = carry_squarewise(on_the_way) or carry_straightened(on_the_way)
     if not first or not first[-1].motions or verified(errand.yard, errand.shape, first) is None:
         return None
     freed = after(errand, first)
