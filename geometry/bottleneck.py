@@ -68,7 +68,7 @@ def _pixels(floor: Floor, places: Floats) -> npt.NDArray[np.intp]:
 def widest_ways(floor: Floor, goals: Mask, start: npt.NDArray[np.intp]) -> Floats:
     """How far it is to the goal from every pixel, by ways nowhere narrower than the widest way from the start is."""
     wide = _widest(floor.raster, goals, int(start[0]), int(start[1]), floor.frame[2])
-    return floor.ways(goals, wide + floor.frame[2], DETOUR)
+    return floor.ways(goals, wide - 1e-9 + floor.frame[2], DETOUR)
 
 
 @compiled
