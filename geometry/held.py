@@ -33,7 +33,7 @@ from geometry.yard import ARM, padded
 HOLDS = 6  # asked at most
 SHORT = 9  # motions that are few enough
 ENOUGH = 3  # holds that will do, of which the best is taken
-EACH, CELLS = 12_000, 40_000  # cells looked at for each of them, and for all
+EACH, LEAST, CELLS = 12_000, 1_000, 40_000  # cells looked at for each of them at most and at least, and for all
 AWAY = 0.1  # squares: how far from the walls of a corner a body is put
 
 
@@ -46,7 +46,7 @@ def carry_held(errand: Errand, track: Floats) -> list[Leg] | None:
     left, legs = CELLS, list[Leg]()
     for hold in holds:
         for goal, roomy in product(ends_of(errand), (True, False)):
-            leg, cells = _leg(errand, hold, goal, roomy, min(left, EACH))
+            leg, cells = _leg(errand, hold, goal, roomy, max(min(left, EACH), LEAST))
             left -= cells
             if leg is not None and verified(errand.yard, errand.shape, [leg]) is not None:
                 legs.append(leg)
