@@ -41,7 +41,7 @@ def _stencils_near(wkb: bytes, margin: float) -> tuple[Stencil, Stencil]:
 
 
 def carry_squarewise(errand: Errand) -> list[Leg] | None:
-    """The cheapest legs by whole squares; in haste where that takes long; None when there are none or none are found."""
+    """The cheapest legs by whole squares, or some in haste where that takes long; None when none are found."""
     body, wide = _stencils(errand.shape, errand.margin)
     rows, columns = errand.walk.shape
     if not (0 <= body.home[0] < columns and 0 <= body.home[1] < rows):
