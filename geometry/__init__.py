@@ -4,7 +4,8 @@ In reading order: ``distance`` (clearance), ``skeleton``, ``chains`` (the pathgr
 networkx), ``runs`` and ``rope`` (classes of paths and their tight ropes), ``ways``, ``search``, ``alternatives``
 and ``itinerary`` (routes), ``passages`` and ``parts`` (necks and rooms), ``loops``, ``goals``, and ``screen``,
 which brings all this together. Then ``digital`` (images of shapes) and ``template`` (shapes of images), ``rigid`` and
-``contact`` (motions and what stops them), ``floor``, ``problem`` and ``motion`` (how a body can be moved).
+``contact`` (motions and what stops them), ``floor``, ``problem`` and ``motion`` (how a body can be moved), and
+``carrying`` (how Utak brings it there).
 """
 
 from geometry.motion import Inside, Plan, plan_motion

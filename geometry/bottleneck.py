@@ -17,7 +17,7 @@ import shapely
 from shapely import affinity
 
 from geometry.compiled import compiled
-from geometry.floor import Floor
+from geometry.floor import Floor, cheapest
 
 Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -66,9 +66,13 @@ def _pixels(floor: Floor, places: Floats) -> npt.NDArray[np.intp]:
 
 
 def widest_ways(floor: Floor, goals: Mask, start: npt.NDArray[np.intp]) -> Floats:
-    """How far it is to the goal from every pixel, by ways nowhere narrower than the widest way from the start is."""
-    wide = _widest(floor.raster, goals, int(start[0]), int(start[1]), floor.frame[2])
-    return floor.ways(goals, wide + floor.frame[2], DETOUR)
+    """What it costs to the goal from every pixel, by ways nowhere narrower than the widest way from the start is.
+
+    Room is cheap, so that ways keep off walls and are narrow only where they must be.
+    """
+    wide = max(_widest(floor.raster, goals, int(start[0]), int(start[1]), floor.frame[2]), floor.frame[2] / 10)
+    room = np.maximum(floor.raster, wide)
+    return cheapest(np.where(floor.raster < wide - 1e-9, DETOUR, (wide / room) ** 3), goals)
 
 
 @compiled

@@ -16,15 +16,15 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import shapely
 
 from geometry.aligning import carry_straightened
+from geometry.alone import move_alone
 from geometry.bottleneck import Neck
 from geometry.ends import At, End, InCorner, Inside, met
 from geometry.errand import Errand
-from geometry.held import carry_held
+from geometry.held import carry_freed, carry_held
 from geometry.legs import Leg, Point, verified
-from geometry.motion import Plan, plan_motion
+from geometry.motion import Plan
 from geometry.rigid import Pose, Rotate, Translate
 from geometry.squarewise import carry_squarewise
 from geometry.stencil import Mask
@@ -33,7 +33,6 @@ from geometry.yard import Yard
 __all__ = ["At", "Carrying", "InCorner", "Inside", "Leg", "Pose", "plan_carrying"]
 
 STRIDE = 12  # squares walked by a command, about
-CELLS = 40_000  # looked at to prove that the body by itself cannot pass
 
 
 @dataclass(frozen=True)
@@ -129,10 +128,13 @@ def plan_carrying(
     plan = _told(errand, carry_squarewise(errand)) or _told(errand, carry_straightened(errand))
     if plan is not None:
         return plan
-    body = _body_alone(errand)
+    body = move_alone(errand)
     if body.status == "impossible":
         return Carrying("impossible", reason=body.reason or "body", body=body)
-    plan = _told(errand, carry_held(errand))
+    if body.status == "found":
+        plan = _told(errand, carry_held(errand, body.track)) or _told(errand, carry_freed(errand))
+    else:  # where it lies too tightly to be told what it can do, it had better be brought out first
+        plan = _told(errand, carry_freed(errand)) or _told(errand, carry_held(errand, body.track))
     return plan or Carrying("limit", reason="hold" if body.status == "found" else "body", body=body)
 
 
@@ -155,32 +157,3 @@ def _told(errand: Errand, legs: Sequence[Leg] | None) -> Carrying | None:
     degrees = math.fsum(m.degrees for leg in legs for m in leg.motions if isinstance(m, Rotate))
     dx, dy = end.centroid.x - shape.centroid.x, end.centroid.y - shape.centroid.y
     return Carrying("found", tuple(legs), Pose(dx, dy, degrees), end)
-
-
-def _body_alone(errand: Errand) -> Plan:
-    """Plan the body's way without Utak."""
-    middle = errand.shape.centroid
-    centred = shapely.transform(errand.shape, lambda p: p - np.array([middle.x, middle.y]))
-    goal = errand.goal
-    if isinstance(goal, At):
-        there: Pose | Inside = Pose(middle.x + goal.pose.x, middle.y + goal.pose.y, goal.pose.degrees)
-    elif isinstance(goal, InCorner):
-        there = Inside(_about(goal, errand))
-    else:
-        there = goal
-    return plan_motion(centred, errand.yard.floor, Pose(middle.x, middle.y, 0.0), there, cells=CELLS)
-
-
-def _about(goal: InCorner, errand: Errand) -> Any:
-    """The floor near a corner in which a body must lie to be in it: what cannot be brought there cannot be in it."""
-    reach = 2.0 * shapely.minimum_bounding_radius(errand.shape) + goal.slack
-
-    def back(across: float, up: float) -> Any:
-        x0, x1 = sorted([goal.x, goal.x - goal.sx * across])
-        y0, y1 = sorted([goal.y, goal.y - goal.sy * up])
-        return shapely.box(x0, y0, x1, y1)
-
-    ends = [back(goal.slack, reach), back(reach, goal.slack)]
-    parts = shapely.get_parts(errand.yard.floor_polygon.intersection(back(reach, reach)))
-    fitting = [part for part in parts if part.area > 0.0 and all(part.intersects(end) for end in ends)]
-    return shapely.MultiPolygon(fitting)

@@ -17,6 +17,7 @@ from geometry.stencil import DIRECTIONS, Stencil, quarter
 __all__ = ["At", "End", "InCorner", "Inside"]
 
 CLOSE = 1e-6  # squares: by which an end may miss a region's border
+VICINITY = 10.0  # squares: how near is near
 UNEASY = 2 * COMMAND // 5  # the price of an end that meets the goal only just
 
 
@@ -47,7 +48,17 @@ class InCorner:
         return x, y
 
 
-End = At | Inside | InCorner
+@dataclass(frozen=True)
+class Roomy:
+    """A goal on the way to others: two free squares all round, so that Utak can take the shape wherever he likes.
+
+    near : (x, y) that the shape's centroid shall be near to, the nearer the better; None for anywhere.
+    """
+
+    near: tuple[float, float] | None = None
+
+
+End = At | Inside | InCorner | Roomy
 
 
 def met(goal: End, shape: Any, now: Any) -> bool:
@@ -56,6 +67,8 @@ def met(goal: End, shape: Any, now: Any) -> bool:
         return any(part.buffer(CLOSE).covers(now) for part in shapely.get_parts(goal.polygon))
     if isinstance(goal, InCorner):
         return all(-CLOSE <= gap <= goal.slack + CLOSE for gap in goal.gaps(now.bounds))
+    if isinstance(goal, Roomy):
+        return False
     return bool(shapely.hausdorff_distance(placed(shape, goal.pose), now) <= CLOSE)
 
 
@@ -74,6 +87,8 @@ def prices(goal: End, shape: Any, body: Stencil, board: Board, grid: Grid) -> Co
         return _beside(goal.pose, shape, body, grid)
     if isinstance(goal, Inside):
         found = [_inside(goal, quarter(body.lying, k), board, grid) for k in range(4)]
+    elif isinstance(goal, Roomy):
+        found = [_roomy(goal, quarter(body.lying, k), board, grid) for k in range(4)]
     else:
         found = [_cornered(goal, shape, body, k, grid) for k in range(4)]
     return np.where(board.lies, np.array(found), -1).astype(np.int32)
@@ -89,6 +104,18 @@ def _inside(goal: Inside, lying: npt.NDArray[np.int64], board: Board, grid: Grid
         price[inside & (price != 0)] = UNEASY
         price[inside & easy] = 0
     return price
+
+
+def _roomy(goal: Roomy, lying: npt.NDArray[np.int64], board: Board, grid: Grid) -> Costs:
+    """The prices of one quarter where all squares within two of the body's are free: a tenth of a command a square."""
+    reach = range(-2, 3)
+    fat = np.unique(np.vstack([lying + np.array((dx, dy)) for dx in reach for dy in reach]), axis=0)
+    roomy = grid.clear(board.solid, fat)
+    if goal.near is None:
+        return np.where(roomy, 0, -1).astype(np.int32)
+    row, column = np.divmod(np.arange(len(roomy)), grid.stride)
+    far = np.hypot(column - grid.pad + 0.5 - goal.near[0], row - grid.pad + 0.5 - goal.near[1])
+    return np.where(roomy & (far <= VICINITY), np.round(far * COMMAND / 10), -1).astype(np.int32)
 
 
 def _cornered(goal: InCorner, shape: Any, body: Stencil, k: int, grid: Grid) -> Costs:

@@ -1,76 +1,87 @@
-"""Fewer motions for a way that is known: other places and angles near it are tried, the way with least motions kept.
+"""Fewer motions for a way that is known: other places near it are tried, and the way with least motions kept.
 
-# Strategy: candidates are the poses of the way, the same with the body straight to the nearest axis, and both moved to
-# where the body has more room. Dijkstra's algorithm over all pairs of them: what leads from one to another is a push, a
-# turn, or one of each in either order, all checked by exact first contact.
+# Strategy: candidates are poses along the way, moved without turning to where the body has most room, and some more
+# that lie straight to the axes. Dijkstra's algorithm over all pairs of them: what leads from one to another is a push,
+# a turn, or one of each in either order, all checked by exact first contact.
 """
 
 import math
-from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import shapely
 
 from geometry.compiled import compiled
 from geometry.hop import BLOCKED, EVEN, hop, shorter_turn
 from geometry.impact import Surface
-from geometry.mover import centre_pose
-from geometry.rigid import Motion, Pose
+from geometry.rigid import Motion
 from geometry.separation import Ground, Mover, distance_at
 from geometry.shorten import motions_along
 
 Floats = npt.NDArray[np.float64]
-STEPS = 40.0  # squares that count as much as one motion
-PIECE = 0.35  # of the body's radius: long pushes are cut in pieces, for more candidates
-MOST = 90  # candidates
+STEPS, SWING = 40.0, 20.0  # squares pushed, radians turned that count as much as one motion
+BESIDE = 30  # candidates along the way
+ROOMY = 0.2  # of the body's radius: more room is not looked for
 
 
-def fewest_motions(mover: Mover, ground: Ground, surface: Surface, way: list[Pose], edge: float) -> tuple[Motion, ...]:
-    """The motions of a way made few.
+def fewest_motions(mover: Mover, ground: Ground, surface: Surface, track: Floats, edge: float) -> tuple[Motion, ...]:
+    """The motions of a way made few; () when a hop of it is not free.
 
     Parameters
     ----------
     mover : the body with its pivot as centre.
-    way : poses of its reference point, each led to from the one before by one motion.
-    edge : radians, the direction of the body's edge that should lie along an axis.
+    track : (n, 3) a way of that centre, x, y, radians; hops from one to the next are free.
+    edge : radians, the direction of the body's edge that may well lie along an axis.
     """
-    poses = np.array([centre_pose(mover, pose) for pose in way])
-    candidates = _candidates(mover, ground, poses, edge)
+    candidates = _candidates(mover, ground, track, edge)
     order = _fewest(mover, ground, surface, candidates)
     return motions_along(mover, ground, surface, candidates[order]) if len(order) else ()
 
 
-def _candidates(mover: Mover, ground: Ground, poses: Floats, edge: float) -> Floats:
+def slant(shape: Any) -> float:
+    """The direction of a shape's longest edge, in radians."""
+    corners = shapely.get_coordinates(shape.exterior)
+    along = np.diff(corners, axis=0)
+    x, y = along[int(np.argmax(np.round(np.hypot(along[:, 0], along[:, 1]), 6)))]
+    return math.atan2(y, x)
+
+
+def _candidates(mover: Mover, ground: Ground, track: Floats, edge: float) -> Floats:
     """Poses on and near a way: (n, 3), the first its start, the last its end."""
-    dense = [poses[0]]
-    for here, there in pairwise(poses):
-        count = max(1, min(8, math.ceil(math.dist(here[:2], there[:2]) / (PIECE * mover.radius))))
-        dense += [here + (there - here) * (n + 1) / count for n in range(count)]
-    step = max(1, math.ceil(len(dense) / (MOST // 3)))
-    way = np.array([*dense[:-1:step], dense[-1]])
-    straight = way.copy()
-    straight[:, 2] = np.round((way[:, 2] + edge) / (math.pi / 2)) * (math.pi / 2) - edge
-    roomy = np.vstack([straight, way[1:-1]])
+    along = evenly(track, mover.radius, BESIDE)
+    straight = along[::2].copy()
+    straight[:, 2] = np.round((straight[:, 2] + edge) / (math.pi / 2)) * (math.pi / 2) - edge
+    roomy = np.vstack([along[1:-1], straight])
     for pose in roomy:
         centred(mover, ground, pose)
-    return np.vstack([way[:-1], straight, roomy, way[-1:]])
+    return np.vstack([track[:-1], along[1:-1], roomy, straight, track[-1:]])
+
+
+def evenly(track: Floats, radius: float, count: int) -> Floats:
+    """Poses at even distances along a way, turns counted by how far they move the rim: (count, 3)."""
+    angles = np.unwrap(track[:, 2])
+    step = np.hypot(*np.diff(track[:, :2], axis=0).T) + radius * np.abs(np.diff(angles))
+    far = np.concatenate([[0.0], np.cumsum(step)])
+    at = np.linspace(0.0, far[-1], count)
+    return np.column_stack([np.interp(at, far, column) for column in (track[:, 0], track[:, 1], angles)])
 
 
 @compiled
 def centred(mover: Mover, ground: Ground, pose: Floats) -> None:
-    """Move a pose, in place and without turning it, to where the body has more room."""
-    best = distance_at(mover, ground, pose[0], pose[1], math.cos(pose[2]), math.sin(pose[2]))
-    step = 0.3 * mover.radius
-    while step > 1e-3 * mover.radius and best < 0.3 * mover.radius:
+    """Move a pose, in place and without turning it, to where the body has more room: steps in eight directions."""
+    c, s = math.cos(pose[2]), math.sin(pose[2])
+    enough = ROOMY * mover.radius
+    best = distance_at(mover, ground, pose[0], pose[1], c, s)
+    step = 0.1 * mover.radius
+    while step > 1e-4 * mover.radius and best < enough:
         better = False
-        for k in range(4):
-            size = step if k % 2 == 0 else -step
-            pose[k // 2] += size
-            room = distance_at(mover, ground, pose[0], pose[1], math.cos(pose[2]), math.sin(pose[2]))
+        for k in range(8):
+            x, y = pose[0] + step * math.cos(k * math.pi / 4), pose[1] + step * math.sin(k * math.pi / 4)
+            room = distance_at(mover, ground, x, y, c, s)
             if room > best + 1e-9:
                 best, better = room, True
-            else:
-                pose[k // 2] -= size
+                pose[0], pose[1] = x, y
         if not better:
             step *= 0.5
 
@@ -95,7 +106,7 @@ def _fewest(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> np
                 continue
             far = math.hypot(poses[n, 0] - poses[here, 0], poses[n, 1] - poses[here, 1])
             turn = abs(shorter_turn(poses[n, 2] - poses[here, 2]))
-            price = (1.0 if far > EVEN else 0.0) + (1.0 if turn > EVEN else 0.0) + far / STEPS + turn / 20.0
+            price = (1.0 if far > EVEN else 0.0) + (1.0 if turn > EVEN else 0.0) + far / STEPS + turn / SWING
             if cost[here] + price < cost[n] and hop(mover, ground, surface, poses[here], poses[n]) != BLOCKED:
                 cost[n], before[n] = cost[here] + price, here
     length, n = 0, count - 1

@@ -15,16 +15,19 @@ from geometry.compiled import compiled
 from geometry.guess import NEVER, STILL
 from geometry.stencil import Ints
 
+CALM = 4  # the haste of a search that takes the time it needs
+
 
 @compiled
 def haul(
-    board: Board, left: Costs, ends: Costs, begin: Costs, place: int, most: int, cost: Costs, parent: Costs
+    board: Board, left: Costs, ends: Costs, begin: Costs, place: int, haste: int, most: int, cost: Costs, parent: Costs
 ) -> Ints:
     """The nodes from the first grasp to the goal, in order; empty when there is none.
 
     left : geometry.guess.guess. ends : the price of ending at each pose, -1 off the goal. begin : (holds,) the price of
     having walked to each hold and taken the body, -1 where Utak cannot. place : where the body lies, unturned.
     A node is ((hold * 4 + quarter) * 9 + direction) * squares + place, direction STILL when it lies.
+    haste : CALM for the cheapest way; above it ways are found sooner that may be dearer by the same factor.
     most : so many nodes are settled at most. cost, parent : a number for each node, all of cost 0.
     """
     squares, holds = ends.shape[1], len(begin)
@@ -40,7 +43,7 @@ def haul(
         if begin[hold] >= 0 and left[0, STILL, place] < NEVER:
             node = (hold * 36 + STILL) * squares + place
             cost[node], parent[node] = begin[hold] + 1, -1
-            heapq.heappush(heap, (begin[hold] + left[0, STILL, place], -begin[hold], node))
+            heapq.heappush(heap, (begin[hold] + left[0, STILL, place] * haste // CALM, -begin[hold], node))
     settled = 0
     while len(heap) > 0 and settled < most:
         whole, minus, node = heapq.heappop(heap)
@@ -64,19 +67,20 @@ def haul(
                     then = spent + REGRASP + walk[other] + board.grip[other]
                     if cost[after] == 0 or then < cost[after] - 1:
                         cost[after], parent[after] = then + 1, node
-                        heapq.heappush(heap, (then + left[k, STILL, p], -then, after))
+                        heapq.heappush(heap, (then + left[k, STILL, p] * haste // CALM, -then, after))
             continue
         if m == STILL:
             if ends[k, p] >= 0 and spent + ends[k, p] < final_cost:
                 final, final_cost = node, spent + ends[k, p]
-            heapq.heappush(heap, (spent + REGRASP + COMMAND + left[k, STILL, p], -spent, node + total))
+            ahead = left[k, STILL, p] * haste // CALM
+            heapq.heappush(heap, (spent + REGRASP + COMMAND + ahead, -spent, node + total))
         count = _nexts(board, hold, k, m, p, around, price)
         for n in range(count):
             after, then = around[n], spent + price[n]
             ahead = left[after // squares // 9 % 4, after // squares % 9, after % squares]
             if ahead < NEVER and (cost[after] == 0 or then < cost[after] - 1):
                 cost[after], parent[after] = then + 1, node
-                heapq.heappush(heap, (then + ahead, -then, after))
+                heapq.heappush(heap, (then + ahead * haste // CALM, -then, after))
     return _traced(parent, final)
 
 

@@ -1,86 +1,74 @@
 """Carrying at any place and angle with one hold all the way: body and Utak are one thing that is turned about him.
 
 # Strategy: with one hold Utak can bring the body wherever body and he as one rigid thing can go, for turns about him
-# and pushes make up all rigid motions. So it is one question to plan_motion whether a hold will do. Holds that make the
-# whole no broader than the body is and that have its corners near are asked first, with an arm's length of room about
-# Utak and a margin about the body, then without.
+# and pushes make up all rigid motions. So it is one question to plan_motion whether a hold will do. Asked first are
+# holds that would seldom bring Utak into a wall if the body went as it goes by itself, and of these the ones that have
+# all its corners near: a turn about them moves it least. Each is asked with an arm's length of room about Utak and a
+# margin about the body, then without.
 """
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
 import shapely
 
-from geometry.digital import squares
-from geometry.ends import At, InCorner, Inside, placed
+from geometry.aligning import carry_straightened
+from geometry.alone import move_alone
+from geometry.ends import At, InCorner, Inside, Roomy, placed
 from geometry.errand import Errand
-from geometry.fewest import fewest_motions
+from geometry.fewest import fewest_motions, slant
+from geometry.holds import Hold, holds_about, promise
 from geometry.legs import Leg, Point, grip_square, may_push, rounded, verified
 from geometry.motion import plan_motion
-from geometry.mover import new_mover
-from geometry.reach import reach
+from geometry.mover import centre_pose, new_mover
 from geometry.rigid import Motion, Pose, Translate
-from geometry.stencil import DIRECTIONS
+from geometry.sequel import after, joined
+from geometry.squarewise import carry_squarewise
+from geometry.stencil import Floats
 from geometry.yard import ARM, padded
 
 HOLDS = 6  # asked at most
-CELLS = 20_000  # looked at for each of them
+SHORT = 9  # motions that are few enough
+ENOUGH = 3  # holds that will do, of which the best is taken
+EACH, LEAST, CELLS = 12_000, 1_000, 40_000  # cells looked at for each of them at most and at least, and for all
 AWAY = 0.1  # squares: how far from the walls of a corner a body is put
-FIFTHS = 5  # of a square: the unit of geometry.reach
 
 
-@dataclass(frozen=True)
-class Hold:
-    """A place where Utak can take the body where it lies: (x, y), the middle of a square, and the squares to walk."""
+def carry_held(errand: Errand, track: Floats) -> list[Leg] | None:
+    """One leg that leads to the goal, the first that is short enough or the best of some; None when none is found.
 
-    place: Point
-    walk: int
-
-
-def holds_about(errand: Errand, shape: Any, utak: Point) -> list[Hold]:
-    """The holds that he can walk to while the shape lies so, the most promising first."""
-    rows, columns = errand.walk.shape
-    lying = squares(shape, columns, rows)
-    walk = errand.walk & ~lying
-    at = (min(max(math.floor(utak[0]), 0), columns - 1), min(max(math.floor(utak[1]), 0), rows - 1))
-    walk[at[1], at[0]] = True
-    ways = reach(walk, *at)
-    beside = np.zeros_like(lying)
-    framed = np.pad(lying, 1)
-    for dx, dy in DIRECTIONS:
-        beside |= framed[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns]
-    found = np.argwhere(beside & ~lying & errand.yard.free & (ways >= 0))
-    holds = [Hold((column + 0.5, row + 0.5), int(ways[row, column]) // FIFTHS) for row, column in found.tolist()]
-    return sorted(holds, key=lambda hold: (*promise(shape, hold.place), hold.walk, hold.place))
+    track : (n, 3) a way of the body by itself, places and angles of some point of it, or nothing.
+    """
+    holds = sorted(holds_about(errand), key=lambda hold: promise(errand, hold, track))[:HOLDS]
+    left, legs = CELLS, list[Leg]()
+    for hold in holds:
+        for goal, roomy in product(ends_of(errand), (True, False)):
+            leg, cells = _leg(errand, hold, goal, roomy, max(min(left, EACH), LEAST))
+            left -= cells
+            if leg is not None and verified(errand.yard, errand.shape, [leg]) is not None:
+                legs.append(leg)
+                break
+        if left <= 0 or len(legs) == ENOUGH or any(len(leg.motions) <= SHORT for leg in legs):
+            break
+    return [min(legs, key=lambda leg: len(leg.motions))] if legs else None
 
 
-def promise(shape: Any, place: Point) -> tuple[float, float]:
-    """How broad shape and Utak are as one, at the narrowest, and how far he is from the furthest corner."""
-    whole = shapely.union_all([shape, shapely.Point(place)]).convex_hull
-    box = shapely.get_coordinates(whole.minimum_rotated_rectangle)
-    broad = min(math.dist(box[0], box[1]), math.dist(box[1], box[2]))
-    return round(broad, 6), round(float(shapely.hausdorff_distance(shape, shapely.Point(place))), 6)
-
-
-def carry_held(errand: Errand, most: int = HOLDS) -> list[Leg] | None:
-    """One leg that leads to the goal; None when none is found."""
-    middle = errand.shape.centroid
-    fit = [h for h in holds_about(errand, errand.shape, errand.utak) if not _avoided(errand, h, middle)]
-    for hold in fit[:most]:
-        for roomy in (True, False):
-            for goal in ends_of(errand):
-                leg = _leg(errand, hold, goal, roomy)
-                if leg is not None and verified(errand.yard, errand.shape, [leg]) is not None:
-                    return [leg]
-    return None
-
-
-def _avoided(errand: Errand, hold: Hold, middle: Any) -> bool:
-    """Whether a hold was refuted."""
-    return errand.avoids(hold.place[0] - middle.x, hold.place[1] - middle.y)
+def carry_freed(errand: Errand) -> list[Leg] | None:
+    """Legs by whole squares to where there is room all round, near the pose to be reached, and then one leg there."""
+    near = None
+    if isinstance(errand.goal, At):
+        there = placed(errand.shape, errand.goal.pose).centroid
+        near = (there.x, there.y)
+    on_the_way = replace(errand, goal=Roomy(near))
+    first = carry_squarewise(on_the_way) or carry_straightened(on_the_way)
+    if not first or not first[-1].motions or verified(errand.yard, errand.shape, first) is None:
+        return None
+    freed = after(errand, first)
+    rest = carry_held(freed, move_alone(freed).track)
+    return None if rest is None else joined(first, rest)
 
 
 def ends_of(errand: Errand) -> list[Pose | Inside]:
@@ -90,6 +78,8 @@ def ends_of(errand: Errand) -> list[Pose | Inside]:
         return [goal]
     if isinstance(goal, At):
         return [Pose(middle.x + goal.pose.x, middle.y + goal.pose.y, goal.pose.degrees)]
+    if isinstance(goal, Roomy):
+        return []
     return [_cornered(goal, errand.shape, degrees) for degrees in (0.0, 90.0, -90.0, 180.0)]
 
 
@@ -102,45 +92,37 @@ def _cornered(goal: InCorner, shape: Any, degrees: float) -> Pose:
     return Pose(shape.centroid.x + dx, shape.centroid.y + dy, degrees)
 
 
-def _leg(errand: Errand, hold: Hold, goal: Pose | Inside, roomy: bool) -> Leg | None:
-    """The leg with one hold, with room about body and Utak or without; None when plan_motion finds none."""
+def _leg(errand: Errand, hold: Hold, goal: Pose | Inside, roomy: bool, cells: int) -> tuple[Leg | None, int]:
+    """The leg with one hold, with room about body and Utak or without, and how many cells that took."""
     square = grip_square(errand.shape, hold.place)
-    motions = held_motions(errand, errand.shape, hold.place, goal, roomy) if square else None
-    if motions is None or square is None:
-        return None
-    if not errand.pull and not _only_pushes(errand.shape, hold.place, motions):
-        return None
+    if square is None:
+        return None, 0
+    motions, looked = _motions(errand, hold.place, goal, roomy, cells)
+    if not motions or not (errand.pull or _only_pushes(errand.shape, hold.place, motions)):
+        return None, looked
     middle = errand.shape.centroid
     relative = (hold.place[0] - middle.x, hold.place[1] - middle.y)
-    return Leg(hold.place, square, motions, relative, hold.walk)
+    return Leg(hold.place, square, motions, relative, hold.walk), looked
 
 
-def held_motions(
-    errand: Errand, shape: Any, place: Point, goal: Pose | Inside, roomy: bool
-) -> tuple[Motion, ...] | None:
-    """The motions that bring a shape to a goal with a hold; None when plan_motion does not find them."""
-    middle = np.array([shape.centroid.x, shape.centroid.y])
+def _motions(
+    errand: Errand, place: Point, goal: Pose | Inside, roomy: bool, cells: int
+) -> tuple[tuple[Motion, ...], int]:
+    """The motions that bring the shape to a goal with a hold, () when none are found; how many cells were looked at."""
+    middle = np.array([errand.shape.centroid.x, errand.shape.centroid.y])
     utak = (place[0] - middle[0], place[1] - middle[1])
-    body = shapely.transform(padded(shape, errand.margin if roomy else 0.0), lambda p: p - middle)
+    body = shapely.transform(padded(errand.shape, errand.margin if roomy else 0.0), lambda p: p - middle)
     if roomy:
         body = shapely.union_all([body, shapely.Point(utak).buffer(ARM, quad_segs=2)])
-    start = Pose(float(middle[0]), float(middle[1]), 0.0)
-    floor = errand.yard.floor
-    plan = plan_motion(body, floor, start, goal, points=[utak], cells=CELLS, pivot=utak)
+    floor, start = errand.yard.floor, Pose(float(middle[0]), float(middle[1]), 0.0)
+    plan = plan_motion(body, floor, start, goal, points=[utak], cells=cells, pivot=utak)
     if plan.status != "found":
-        return None
+        return (), plan.cells
     mover = new_mover(body, [utak], utak)
-    few = fewest_motions(mover, floor.ground(mover), floor.surface, list(plan.poses), slant(shape))
+    way = np.array([centre_pose(mover, pose) for pose in plan.poses])
+    few = fewest_motions(mover, floor.ground(mover), floor.surface, way, slant(errand.shape))
     motions = few if few and len(few) < len(plan.motions) else plan.motions
-    return at_utak(place, [rounded(motion) for motion in motions])
-
-
-def slant(shape: Any) -> float:
-    """The direction of a shape's longest edge, in radians."""
-    corners = shapely.get_coordinates(shape.exterior)
-    along = np.diff(corners, axis=0)
-    x, y = along[int(np.argmax(np.round(np.hypot(along[:, 0], along[:, 1]), 6)))]
-    return math.atan2(y, x)
+    return at_utak(place, [rounded(motion) for motion in motions]), plan.cells
 
 
 def at_utak(place: Point, motions: Sequence[Motion]) -> tuple[Motion, ...]:

@@ -19,6 +19,7 @@ from geometry.stencil import DIRECTIONS, Floats, Ints
 from geometry.yard import Yard, broad
 
 Point = tuple[float, float]
+STOPS = 40  # of a push that are looked at, or all where it turns
 NUMBERS = 9  # digits that commands are given with
 
 
@@ -71,6 +72,11 @@ def straight(yard: Yard, shape: Any, utak: Point, stops: Floats, corners: Ints, 
     """
     if len(corners) <= 2:
         return list(corners)
+    some = np.union1d(corners, np.arange(0, len(stops), math.ceil(len(stops) / STOPS)))
+    if len(some) < len(stops):
+        return [
+            int(some[n]) for n in straight(yard, shape, utak, stops[some], np.searchsorted(some, corners), margin, pull)
+        ]
     known = {(int(a), int(b)) for a, b in pairwise(corners)}
     best: list[tuple[int, float, int]] = [(0, 0.0, -1)] + [(len(stops), math.inf, -1)] * (len(stops) - 1)
     body = broad(shape, utak, margin)

@@ -61,6 +61,7 @@ class Plan:
     cells : how many cells were looked at; rounds : how many chains.
     resolution : the least size of a cell, in squares.
     reason : "start", "goal" when impossible because the body overlaps an obstacle there; else "".
+    track : (n, 3) the way before it was shortened: x, y, radians of the centre that the body is turned about.
     question : what was asked, for passage and missing; None unless impossible.
     """
 
@@ -71,6 +72,7 @@ class Plan:
     rounds: int = 0
     resolution: float = 0.0
     reason: str = ""
+    track: Floats = field(default_factory=lambda: np.empty((0, 3)), repr=False, compare=False)
     question: Question | None = field(default=None, repr=False, compare=False)
 
     @cached_property
@@ -163,7 +165,7 @@ def plan_motion(
     if status == "impossible":
         asked = Question(shape, floor, start, goal, tuple(points), mover.radius, problem.reached(), problem.goals)
     looked = int(problem.tree.used[0])
-    return Plan(status, motions, tuple(poses), looked, problem.rounds, problem.least, question=asked)
+    return Plan(status, motions, tuple(poses), looked, problem.rounds, problem.least, "", problem.track, asked)
 
 
 def _bounds(obstacles: Any, start: Pose, goal: Pose | Inside, bounds: Sequence[float] | None) -> Sequence[float]:

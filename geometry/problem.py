@@ -50,6 +50,7 @@ class Problem:
         self.ground = floor.ground(mover)
         self.least = resolution * floor.side
         self.rounds = 0
+        self.track = np.empty((0, 3))
         if not np.all(np.isfinite(self.start)) or not self.least > 0.0:
             raise ValueError("start and resolution must be finite, the resolution positive")
         self.end, self.region, self.goals = self._goal(goal)
@@ -81,6 +82,7 @@ class Problem:
         """Search and split until there is an answer: the status of a Plan, and its motions."""
         straight = np.array([self.start, self.end]) if len(self.end) else None
         if straight is not None and hop(self.mover, self.ground, self.floor.surface, *straight) != BLOCKED:
+            self.track = straight
             return "found", motions_along(self.mover, self.ground, self.floor.surface, straight)
         scene = Scene(self.mover, self.ground, self.floor.surface)
         start, end = self.start, self.end
@@ -90,8 +92,8 @@ class Problem:
         way.poses[0] = self.start
         while length := self._chain(False):
             if follow(self.tree, scene, self.hunt.chain, length, bool(self.hunt.seen[1]), way) == 0:
-                found = np.vstack([start, way.poses[: way.used[0]], end.reshape(-1, 3)])
-                return "found", motions_along(*scene, shorten(*scene, found))
+                self.track = np.vstack([start, way.poses[: way.used[0]], end.reshape(-1, 3)])
+                return "found", motions_along(*scene, shorten(*scene, self.track))
         lost = bool(self.hunt.size[1])
         self.hunt.seen[0] = self.hunt.size[0] = 0
         return "limit" if lost or self._chain(True) > 0 else "impossible", ()

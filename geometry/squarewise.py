@@ -13,14 +13,14 @@ from geometry.board import AWKWARD, Costs, Grid, new_board, new_grid
 from geometry.ends import At, placed, prices
 from geometry.errand import Errand
 from geometry.guess import NEVER, STILL, guess
-from geometry.hauling import first_walk, haul
+from geometry.hauling import CALM, first_walk, haul
 from geometry.legs import Leg, Point, grip_square, may_push, rounded, straight
 from geometry.rigid import Motion, Rotate, Translate
 from geometry.stencil import DIRECTIONS, Floats, Ints, Mask, Stencil, new_stencil, quarter
 from geometry.yard import padded
 
 EXACT = 8  # digits of places: what is off by less, after motions whose numbers were rounded, is not off
-MOST = 400_000  # nodes looked at before giving up
+SEARCHES = ((CALM, 60_000), (2 * CALM, 400_000))  # haste, and nodes looked at before giving up
 Step = tuple[int, int, int, int]  # hold, quarter, direction, place
 
 
@@ -40,8 +40,8 @@ def _stencils_near(wkb: bytes, margin: float) -> tuple[Stencil, Stencil]:
     return body, new_stencil(padded(shape, margin), body.holds) if margin > 0.0 else body
 
 
-def carry_squarewise(errand: Errand, most: int = MOST) -> list[Leg] | None:
-    """The cheapest legs by whole squares; None when there are none or they are not found among `most` nodes."""
+def carry_squarewise(errand: Errand) -> list[Leg] | None:
+    """The cheapest legs by whole squares, or some in haste where that takes long; None when none are found."""
     body, wide = _stencils(errand.shape, errand.margin)
     rows, columns = errand.walk.shape
     if not (0 <= body.home[0] < columns and 0 <= body.home[1] < rows):
@@ -55,9 +55,12 @@ def carry_squarewise(errand: Errand, most: int = MOST) -> list[Leg] | None:
         return None
     begin = first_walk(board, place, grid.number(*errand.square))
     count = 36 * len(begin) * len(board.solid)
-    cost, parent = np.zeros(count, np.int32), np.empty(count, np.int32)
-    nodes = haul(board, left, ends, begin, place, most, cost, parent)
-    return _Retelling(errand, body, grid).legs(nodes) if len(nodes) else None
+    for haste, most in SEARCHES:
+        cost, parent = np.zeros(count, np.int32), np.empty(count, np.int32)
+        nodes = haul(board, left, ends, begin, place, haste, most, cost, parent)
+        if len(nodes):
+            return _Retelling(errand, body, grid).legs(nodes)
+    return None
 
 
 def _grips(errand: Errand, body: Stencil) -> Costs:

@@ -1,10 +1,16 @@
 """Carrying plans: done again with shapely alone, and refused where closed forms say so."""
 
+import math
+
 import numpy as np
 import pytest
 import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from shapely import affinity, box
 
+from benchmarks.errands import faults, free_squares, goal_of
+from benchmarks.worlds import scenario
 from geometry.carrying import At, InCorner, Inside, Pose, plan_carrying
 from geometry.rigid import Rotate, Translate
 from tests.geometry.replay import replay, walls_of
@@ -90,3 +96,119 @@ def test_a_margin_keeps_turns_from_walls() -> None:
                 swept = [motion.part(t).carry(shape).buffer(0.39) for t in np.linspace(0, 1, 65)]
                 assert not shapely.intersects(solid, swept).any()
             shape = motion.carry(shape)
+
+
+@st.composite
+def bricks_and_doors(draw: st.DrawFn) -> tuple[shapely.Polygon, np.ndarray, int]:
+    """A brick in the western of two rooms, any way round; the floor; how much wider the door is than the brick."""
+    thin, more, door = draw(st.integers(1, 3)), draw(st.integers(0, 3)), draw(st.integers(1, 5))
+    brick = affinity.translate(box(0, 0, thin + more, thin), draw(st.integers(6, 13)), draw(st.integers(6, 13)))
+    degrees = draw(st.sampled_from([0, 0, 90, 17, -38, 45, 131]))
+    free = two_rooms(door, draw(st.integers(1, 3)))
+    return affinity.rotate(brick, degrees, origin=(13, 12)), free, door - thin
+
+
+@settings(max_examples=25, deadline=None, derandomize=True)
+@given(bricks_and_doors(), st.sampled_from([(3.5, 3.5), (22.5, 20.5), (2.2, 20.7)]), st.booleans())
+def test_a_brick_passes_just_the_doors_that_are_wide_enough(
+    scene: tuple[shapely.Polygon, np.ndarray, int], utak: tuple[float, float], pull: bool
+) -> None:
+    brick, free, spare = scene
+    plan = plan_carrying(brick, free, utak, Inside([ROOM]), pull=pull)
+    if spare < 0:
+        assert plan.status == "impossible"
+    else:
+        assert plan.status == "found" or (not pull and plan.status == "limit")
+        assert plan.status != "found" or ROOM.buffer(1e-6).covers(replay(plan, brick, free, utak, pull))
+
+
+def exact(floor: shapely.Polygon, columns: int = 25, rows: int = 12) -> tuple[np.ndarray, shapely.Polygon]:
+    """The squares that a floor covers whole, and its walls."""
+    x, y = np.meshgrid(np.arange(columns), np.arange(rows))
+    free = shapely.covers(floor, box(x, y, x + 1, y + 1))
+    return free, box(-4, -4, columns + 4, rows + 4).difference(floor)
+
+
+def door_of(width: float) -> shapely.Polygon:
+    """Two rooms of 12 x 12, a door in a wall 1 thick between them."""
+    return box(0, 0, 12, 12).union(box(13, 0, 25, 12)).union(box(12, 6 - width / 2, 13, 6 + width / 2))
+
+
+def test_an_ell_passes_a_door_that_only_just_lets_it() -> None:
+    floor = door_of(3.6)
+    free, walls = exact(floor)
+    ell = affinity.translate(ELL, 3, 3)
+    plan = plan_carrying(ell, free, (1.5, 1.5), Inside([box(13, 0, 25, 12)]), walls=walls)
+    assert plan.status == "found" and plan.commands <= 13
+    replay(plan, ell, free, (1.5, 1.5), walls=walls)
+
+
+@pytest.mark.parametrize(("door", "status"), [(2.2, "found"), (2.05, "found"), (1.95, "impossible")])
+def test_a_brick_at_a_door_that_no_squares_make(door: float, status: str) -> None:
+    free, walls = exact(door_of(door))
+    for degrees in (0, 90, 33):
+        brick = affinity.rotate(box(4, 4, 8, 6), degrees)
+        plan = plan_carrying(brick, free, (1.5, 1.5), Inside([box(13, 0, 25, 12)]), walls=walls)
+        assert plan.status == status and plan.commands <= 12
+        replay(plan, brick, free, (1.5, 1.5), walls=walls)
+
+
+@pytest.mark.parametrize(("part", "status"), [(0.97, "found"), (1.005, "impossible")])
+def test_a_brick_round_a_corner_on_both_sides_of_the_threshold(part: float, status: str) -> None:
+    free, walls = exact(box(0, 0, 20, 4).union(box(16, 0, 20, 20)), 20, 20)
+    half = part * (math.sqrt(2) * 4 - 1.6)
+    brick = box(5 - half, 1.2, 5 + half, 2.8)
+    plan = plan_carrying(brick, free, (0.5, 0.5), Inside([box(16, 4, 20, 20)]))
+    assert plan.status == status
+    replay(plan, brick, free, (0.5, 0.5), walls=walls)
+
+
+def test_what_lies_askew_is_laid_straight_where_it_must_be() -> None:
+    free, brick = two_rooms(3), affinity.rotate(box(8, 4, 12, 7), 33)
+    plan = plan_carrying(brick, free, (3.5, 3.5), Inside([ROOM]))
+    assert plan.status == "found" and len(plan.legs) == 2
+    end = replay(plan, brick, free, (3.5, 3.5))
+    assert np.abs(shapely.get_coordinates(end) - shapely.get_coordinates(end).round()).max() < 1e-7
+
+
+def test_the_body_is_taken_again_from_the_other_side() -> None:
+    free = np.zeros((12, 20), bool)
+    free[1:3, 1:19] = free[9:11, 1:19] = free[1:11, 1:3] = free[1:11, 17:19] = True  # a ring two squares wide
+    brick = box(6, 1, 10, 3)
+    plan = plan_carrying(brick, free, (4.5, 1.5), InCorner(1, 1, -1, -1), pull=False)
+    assert plan.status == "found" and plan.legs[0].place[0] > 10
+    replay(plan, brick, free, (4.5, 1.5), pull=False)
+    there_and_back = At(Pose(-5, 0, 0))
+    plan = plan_carrying(brick, free, (4.5, 1.5), there_and_back)
+    assert plan.status == "found"
+    replay(plan, brick, free, (4.5, 1.5))
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("task", [5, 6, 7, 8, 9])
+def test_random_worlds(task: int, seed: int) -> None:
+    world = scenario(task, 8 + seed)
+    shape, free, goal = world.things[0].polygon, free_squares(world), goal_of(world)
+    plan = plan_carrying(shape, free, (world.utak.x, world.utak.y), goal)
+    assert plan.status == ("found" if world.possible else "impossible")
+    if plan.status == "found":
+        assert faults(plan, shape, free, goal) == []
+    else:
+        assert plan.missing == pytest.approx(world.missing, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"shape": shapely.Point(1, 1)},
+        {"free": np.ones(5, bool)},
+        {"walk": np.ones((2, 2), bool)},
+        {"margin": -1.0},
+        {"utak": (math.nan, 0.0)},
+    ],
+)
+def test_nonsense_is_refused(wrong: dict[str, object]) -> None:
+    goal = At(Pose(1, 0))
+    asked: dict[str, object] = {"shape": box(2, 2, 4, 4), "free": two_rooms(5), "utak": (9.5, 9.5), "goal": goal}
+    with pytest.raises(ValueError):
+        plan_carrying(**(asked | wrong))

@@ -1,0 +1,51 @@
+"""What is left of an errand after some legs, and its own legs told as the errand before would tell them."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from geometry.ends import At, End, placed
+from geometry.errand import Errand
+from geometry.legs import Leg, Point
+from geometry.rigid import Pose, Rotate, Translate, turned
+
+
+def after(errand: Errand, legs: Sequence[Leg]) -> Errand:
+    """The errand that is left after some legs: shape and Utak are elsewhere, the goal is the same."""
+    shape, utak = errand.shape, errand.utak
+    for leg in legs:
+        utak = leg.place
+        for motion in leg.motions:
+            shape = motion.carry(shape)
+            utak = (utak[0] + motion.dx, utak[1] + motion.dy) if isinstance(motion, Translate) else utak
+    degrees = turned_by(legs)
+    avoid = tuple(_turned(hold, degrees) for hold in errand.avoid)
+    goal = _goal_after(errand.goal, errand.shape, shape, degrees)
+    return replace(errand, shape=shape, utak=utak, goal=goal, avoid=avoid)
+
+
+def joined(first: Sequence[Leg], then: Sequence[Leg]) -> list[Leg]:
+    """Legs and the legs of the errand after them, their holds told in the frame of the errand before."""
+    degrees = turned_by(first)
+    return [*first, *(replace(leg, hold=_turned(leg.hold, -degrees)) for leg in then)]
+
+
+def turned_by(legs: Sequence[Leg]) -> float:
+    """By how much legs turn the shape, in degrees."""
+    return sum(motion.degrees for leg in legs for motion in leg.motions if isinstance(motion, Rotate))
+
+
+def _goal_after(goal: End, before: Any, now: Any, degrees: float) -> End:
+    """The same goal for a shape that has been moved."""
+    if not isinstance(goal, At):
+        return goal
+    there, here = placed(before, goal.pose).centroid, now.centroid
+    return At(Pose(there.x - here.x, there.y - here.y, round(goal.pose.degrees - degrees, 7)))
+
+
+def _turned(hold: Point, degrees: float) -> Point:
+    """A hold in a frame turned by some degrees."""
+    x, y = turned(np.array([hold]), degrees)[0]
+    return float(x), float(y)
