@@ -40,36 +40,6 @@ def count_columns(free: Bools, gap: Gaps) -> None:
 
 
 @compiled
-def measure(gap: Gaps, square: Squares, sites: Sites, heights: Sites) -> None:
-    """Complete ``gap`` with the squares above, and fill ``square`` row by row."""
-    rows, width = gap.shape[0] - 2, gap.shape[1]
-    square[0, :] = 0
-    square[rows + 1, :] = 0
-    for row in range(rows, 0, -1):
-        above = gap[row + 1]
-        out = gap[row]
-        for column in range(width):
-            out[column] = min(out[column], above[column] + np.int16(1))
-        measure_row(out, square[row], sites, heights)
-
-
-@compiled
-def measure_row(gap: Gaps, square: Squares, sites: Sites, heights: Sites) -> None:
-    """Fill one row of ``square`` from its row of ``gap``."""
-    width = gap.shape[0]
-    column = 0
-    while column < width:
-        if gap[column] == 0:
-            square[column] = 0
-            column += 1
-            continue
-        first = column
-        while gap[column] != 0:
-            column += 1
-        measure_run(gap, square, first, column, sites, heights)
-
-
-@compiled
 def measure_run(gap: Gaps, square: Squares, first: int, last: int, sites: Sites, heights: Sites) -> None:
     """Fill the run ``first <= column < last`` of free squares, blocked on both sides."""
     top = envelope(gap, first, last, sites, heights)

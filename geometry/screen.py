@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geometry.chains import Chains, Ints
 from geometry.change import change_squares
-from geometry.distance import Bools, count_columns, measure
+from geometry.distance import Bools, count_columns
 from geometry.goals import checked_goal
 from geometry.layer import find_chains, find_layer, level_of, new_state, retrace
 from geometry.parts import Labels, find_parts
@@ -21,6 +21,7 @@ from geometry.recycling import take_buffers
 from geometry.route import Route
 from geometry.skeleton import States, Words
 from geometry.tightening import tight_route, word_of_crossings
+from geometry.windows import measure
 
 if TYPE_CHECKING:
     import networkx
@@ -57,9 +58,8 @@ class Screen:
         rows, columns = grid.shape
         self.shape = (rows, columns)
         self._gap, self._square, self._words = take_buffers(self, (rows + 2, columns + 2))
-        sites = np.empty((2, columns + 3), np.int64)
         count_columns(grid, self._gap)
-        measure(self._gap, self._square, sites[0], sites[1])
+        measure(self._gap, self._square)
         self._skeletons: dict[int, tuple[States, Words, Chains]] = {}
         self._questions: dict[tuple[int, bool], Questions] = {}
         self._skeleton_at(1)
