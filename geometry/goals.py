@@ -88,7 +88,7 @@ def way_in(place: Region, cell: int) -> list[int]:
 
 def word_of_cells(runs: Runs, cells: list[int], width: int) -> Ints:
     """The portals crossed from cell to cell, not reduced."""
-    symbols = [symbol_between(runs, a, b, width) for a, b in pairwise(cells)]
+    symbols = [symbol_between(runs.row, runs.up, runs.left, a, b, width) for a, b in pairwise(cells)]
     return np.array([s for s in symbols if s], np.int32)
 
 

@@ -19,6 +19,10 @@ from geometry.compiled import compiled
 from geometry.distance import Squares
 
 States = NDArray[np.uint8]
+Heights = Squares
+"""(cells,) squares, flat."""
+Flags = States
+"""(cells,) states, flat."""
 Words = NDArray[np.uint64]
 
 LINKS = 15
