@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.chains import Floats, Ints
+from geometry.bones import Floats, Ints
 from geometry.compiled import compiled
 from geometry.search import Query, Search, seek, survey
 from geometry.ways import Ways

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.chains import Floats, Ints
+from geometry.bones import Floats, Ints
 from geometry.compiled import compiled
 from geometry.heap import pop, push
 from geometry.rope import Ends, Rope, measure_line, new_rope, reach, tighten_word

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.chains import Floats, Ints
+from geometry.bones import Floats, Ints
 from geometry.distance import Bools, Squares
 from geometry.parts import Labels, number_parts
 from geometry.runs import Runs, symbol_between

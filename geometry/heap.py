@@ -1,6 +1,6 @@
 """A binary heap in two arrays, keys and what they belong to; the caller keeps its size."""
 
-from geometry.chains import Floats, Ints
+from geometry.bones import Floats, Ints
 from geometry.compiled import compiled
 
 

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.alternatives import Album, new_album, shortest_ways
-from geometry.chains import Chains, Floats, Ints
+from geometry.bones import Floats, Ints
+from geometry.chains import Chains
 from geometry.compiled import compiled
 from geometry.layer import Layer
 from geometry.rope import Ends, Rope, measure_line, new_rope, tighten_word

@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.chains import Chains, Ints
+from geometry.bones import Ints
+from geometry.chains import Chains
 from geometry.compiled import compiled
 from geometry.distance import Squares
 from geometry.runs import root

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.chains import Ints
+from geometry.bones import Ints
 from geometry.runs import Runs, extend, run_at
 
 XY = tuple[float, float]

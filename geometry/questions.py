@@ -6,7 +6,7 @@ from math import nan
 import numpy as np
 
 from geometry.anyangle import FULL, NONE, Scout, new_scout, shortest_line
-from geometry.chains import Ints
+from geometry.bones import Ints
 from geometry.distance import Bools
 from geometry.goals import Region, entry, regions, way_in, word_of_cells
 from geometry.itinerary import OVERFLOW, Desk, Ground, ground_of, itineraries, new_desk

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.chains import Floats, Ints
+from geometry.bones import Floats, Ints
 from geometry.compiled import compiled
 
 Ends = tuple[float, float, float, float]  # x and y of the start, x and y of the goal

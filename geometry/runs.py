@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.chains import Ints
+from geometry.bones import Ints
 from geometry.compiled import compiled
 from geometry.distance import Squares
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.chains import Floats, Ints
+from geometry.bones import Floats, Ints
 from geometry.compiled import compiled
 from geometry.heap import pop, push
 from geometry.skeleton import States

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geometry.chains import Ints
+from geometry.bones import Ints
 from geometry.layer import Layer
 from geometry.polyline import crossings_of, join_words
 from geometry.rope import Ends, measure_line, new_rope, tighten_word

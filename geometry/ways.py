@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.chains import Chains, Floats, Ints, find, is_node, onward, stride
+from geometry.bones import Floats, Ints, find, is_node, onward, stride
+from geometry.chains import Chains
 from geometry.compiled import compiled
 from geometry.distance import Squares
 from geometry.heap import pop, push

@@ -8,9 +8,9 @@ at once, many times as fast as an envelope; far from them the envelope of distan
 
 import numpy as np
 
-from geometry.chains import Ints
+from geometry.bones import Ints
 from geometry.compiled import compiled
-from geometry.distance import Gaps, Sites, Squares, measure_run
+from geometry.distance import Bools, Gaps, Sites, Squares, count_columns, measure_run
 
 STRETCH = 128  # columns that share one reach
 FARTHEST = 60
@@ -18,47 +18,49 @@ ROOM = FARTHEST + 4  # room on either side of a row of own distances, where ther
 TALLEST = 67  # squares; own distances beyond count as so much, lest 16 bits overflow; more than FARTHEST + 1
 
 
-def measure(gap: Gaps, square: Squares) -> None:
-    """Complete ``gap`` with the squares above, and fill ``square``."""
-    width = gap.shape[1]
+def measure(free: Bools, square: Squares) -> None:
+    """Fill ``square`` (rows + 2, columns + 2) for free squares (rows, columns)."""
+    width = square.shape[1]
     sites, stretches = np.empty((2, width + 1), np.int64), -(-width // STRETCH)
-    own, value = np.zeros(width + 2 * ROOM, np.int16), np.empty(width, np.int16)
-    measure_all(gap, square, sites[0], sites[1], own, value, np.zeros(stretches, np.int32))
+    own, value, gap = np.zeros(width + 2 * ROOM, np.int16), np.empty(width, np.int16), np.zeros(width, np.int16)
+    count_columns(free, square)
+    measure_all(square, gap, sites[0], sites[1], own, value, np.zeros(stretches, np.int32))
 
 
 @compiled
-def measure_all(gap: Gaps, square: Squares, sites: Sites, heights: Sites, own: Gaps, value: Gaps, reach: Ints) -> None:
-    """Complete ``gap`` with the squares above, and fill ``square`` row by row.
+def measure_all(square: Squares, gap: Gaps, sites: Sites, heights: Sites, own: Gaps, value: Gaps, reach: Ints) -> None:
+    """Replace the steps to the nearest square below by the squared distances, row by row from the top.
 
-    Scratch: ``own`` (2 ROOM + width) zeros, ``value`` (width), ``reach`` (width / STRETCH, rounded up) zeros.
+    Scratch: ``gap`` (width) zeros, ``own`` (2 ROOM + width) zeros, ``value`` (width), ``reach`` (width / STRETCH,
+    rounded up) zeros.
     """
-    rows, width = gap.shape[0] - 2, gap.shape[1]
-    square[0, :] = 0
-    square[rows + 1, :] = 0
+    rows, width = square.shape[0] - 2, square.shape[1]
     for row in range(rows, 0, -1):
-        complete(gap[row], gap[row + 1], own[ROOM : ROOM + width])
         out = square[row]
+        complete(out, gap, own[ROOM : ROOM + width])
         for k in range(reach.shape[0]):
-            first, last = k * STRETCH, min((k + 1) * STRETCH, width)
+            first, last = k * STRETCH, (k + 1) * STRETCH if (k + 1) * STRETCH < width else width
             if reach[k] < FARTHEST:
                 look_about(own[first : last + 2 * ROOM], value[first:last], reach[k] + 1)
                 reach[k] = steps_for(publish(value[first:last], out[first:last]))
         far = 0
         for k in range(reach.shape[0]):
             if reach[k] >= FARTHEST:
-                far = measure_far(gap[row], out, k * STRETCH, min((k + 1) * STRETCH, width), far, sites, heights)
-                reach[k] = steps_for(greatest(out[k * STRETCH : min((k + 1) * STRETCH, width)]))
+                first, last = k * STRETCH, (k + 1) * STRETCH if (k + 1) * STRETCH < width else width
+                far = measure_far(gap, out, first, last, far, sites, heights)
+                reach[k] = steps_for(greatest(out[first:last]))
 
 
 @compiled
-def complete(gap: Gaps, above: Gaps, own: Gaps) -> None:
-    """The steps to the nearest blocked square in the column, and the squared distance to it in half squares."""
+def complete(steps: Squares, gap: Gaps, own: Gaps) -> None:
+    """From the steps down, and those of the row above in ``gap``, the steps to the nearest blocked square in the
+    column, and the squared distance to it in half squares."""
     for j in range(gap.shape[0]):
-        other = np.int16(above[j] + 1)
-        steps = gap[j] if gap[j] < other else other
-        gap[j] = steps
-        near = 2 * (steps if steps < TALLEST else TALLEST) - 1
-        own[j] = np.int16(near * near) if steps > 0 else np.int16(0)
+        down, up = np.int16(steps[j]), np.int16(gap[j] + 1)
+        nearest = down if down < up else up
+        gap[j] = nearest
+        edge = np.int16(2 * (nearest if nearest < TALLEST else TALLEST) - 1)
+        own[j] = np.int16(edge * edge) if nearest > 0 else np.int16(0)
 
 
 @compiled
@@ -115,7 +117,7 @@ def steps_for(most: int) -> int:
 @compiled
 def measure_far(gap: Gaps, out: Squares, first: int, last: int, done: int, sites: Sites, heights: Sites) -> int:
     """Measure the runs that meet a stretch, but for columns up to ``done``; returns how far these runs go."""
-    column = max(first, done)
+    column = first if first > done else done
     while column < last:
         if gap[column] == 0:
             out[column] = 0
@@ -127,4 +129,4 @@ def measure_far(gap: Gaps, out: Squares, first: int, last: int, done: int, sites
         while gap[column] != 0:
             column += 1
         measure_run(gap, out, begin, column, sites, heights)
-    return max(column, done)
+    return column if column > done else done
