@@ -7,6 +7,7 @@ import numpy as np
 
 from geometry.anyangle import FULL, NONE, Scout, new_scout, shortest_line
 from geometry.bones import Ints
+from geometry.chains import Chains
 from geometry.distance import Bools
 from geometry.goals import Region, entry, regions, way_in, word_of_cells
 from geometry.itinerary import OVERFLOW, Desk, Ground, ground_of, itineraries, new_desk
@@ -16,15 +17,26 @@ from geometry.passages import Passage, on_chain
 from geometry.polyline import crossings_of, join_words, word_of_line
 from geometry.rope import Ends
 from geometry.route import Route, read_answers
+from geometry.runs import Runs
 from geometry.skeleton import SADDLE
 from geometry.tightening import tight_route
-from geometry.ways import ascend, locate
+from geometry.ways import Ways, ascend, locate
 
 XY = tuple[float, float]
 SPARE, FEWER = 8, 1  # ways tried beyond those wanted, since their order changes when ropes are pulled tight
 SMALL = 128  # chains of a pathgraph up to which SPARE ways are tried, else FEWER
 SLACK = 1.03  # how much more than any way found a way beyond them may shrink
 NO_BARS: Ints = np.zeros((0, 2), np.int32)
+
+
+def rehearse() -> None:
+    """Compile what takes longest, ``itineraries``, before there is a screen: for arrays of the types it will meet."""
+    ints, table, reals, grid = np.empty(1, np.int32), np.empty((1, 4), np.int32), np.empty(1), np.empty((1, 4))
+    chains = Chains(ints, table, table, ints, ints, ints, reals)
+    runs = Runs(*[ints] * len(Runs._fields))
+    ways = Ways(ints, reals, grid, table, table, grid, grid)
+    ground = Ground(ints, np.empty(1, np.uint8), 1, chains, runs, ways, False)
+    itineraries.entry(ground, (0.0, 0.0, 0.0, 0.0), 1, new_desk(1, 1, 1, 1, 8, NO_BARS))
 
 
 def may_miss(desk: Desk, found: int) -> bool:
