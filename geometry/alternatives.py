@@ -10,176 +10,169 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.chains import Chains, Floats, Ints
+from geometry.bones import Floats, Ints
 from geometry.compiled import compiled
-from geometry.search import Query, Search, arc_cost, fresh, head_of, seek, survey, tail_of
+from geometry.search import Query, Search, seek, survey
 from geometry.ways import Ways
+
+MANY = 2000  # chains from which on distances to the goal are first sought close about the shortest way alone
 
 
 class Album(NamedTuple):
     """Ways found: those taken come first, shortest first, then those in hand, shortest first."""
 
-    arcs: Ints
-    """(room, longest) arcs of each way, from start to goal."""
-    size: Ints
-    """(room,) number of arcs of each."""
-    fork: Ints
-    """(room,) where each leaves the way it comes from."""
+    place: Ints
+    """(room,) in which row of the others each way stands."""
     cost: Floats
-    """(room,) length of each."""
+    """(room,) its length."""
+    arcs: Ints
+    """(room, longest) arcs, from start to goal."""
+    size: Ints
+    """(room,) number of arcs."""
+    fork: Ints
+    """(room,) where it leaves the way it comes from."""
+    shared: Ints
+    """(room,) how many first arcs it has in common with the way that is being varied."""
 
 
 def new_album(room: int, longest: int) -> Album:
     """Room for some ways of at most ``longest`` arcs."""
-    return Album(
-        np.empty((room, longest), np.int32), np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room)
-    )
+    place, size, fork, shared = (np.empty(room, np.int32) for _ in range(4))
+    return Album(place, np.empty(room), np.empty((room, longest), np.int32), size, fork, shared)
 
 
 @compiled
-def shortest_ways(chains: Chains, ways: Ways, query: Query, search: Search, album: Album, wanted: int) -> int:
-    """Fill the album with up to ``wanted`` shortest ways; returns their number. Its room must exceed ``wanted``."""
+def shortest_ways(ends: Ints, ways: Ways, query: Query, search: Search, album: Album, wanted: int) -> int:
+    """Fill the album with up to ``wanted`` shortest ways; returns their number. ``ends`` are those of the chains."""
+    n = ways.head.shape[0]
     search.stamp[1] = 0
-    fresh(search)
-    start = chains.node.shape[0]
-    if not seek(chains, ways, query, search, start):
+    search.stamp[0] += 1
+    if not seek(ways, query, search, n):
         return 0
-    record(chains, ways, query, search, album, 0, 0, start, 0.0)
+    album.place[0], album.fork[0], album.cost[0] = 0, 0, search.best[n + 1]
+    record(ends, query.joint, search.came, album.arcs, album.size, 0, 0, n)
     if wanted == 1:
         return 1
-    limit = 1.5 * album.cost[0] + 1.0
-    survey(chains, ways, query, search, limit)
-    found = fan_out(chains, ways, query, search, album, wanted)
-    if found < wanted or album.cost[found - 1] > limit:  # ways beyond the survey's limit may be missing
-        survey(chains, ways, query, search, np.inf)
-        found = fan_out(chains, ways, query, search, album, wanted)
-    return found
+    limit = (1.5 if ends.shape[0] < MANY else 1.1) * album.cost[0] + 1.0
+    while True:
+        survey(ways, query, search, limit)
+        taken, have = 0, 1
+        while taken < have and taken < wanted:
+            taken += 1
+            if taken < wanted:
+                have = branch(ends, ways, query, search, album, taken - 1, have, wanted)
+        if limit == np.inf or (taken == wanted and album.cost[taken - 1] <= limit):
+            return taken
+        limit = np.inf  # ways beyond the survey's limit may be missing
 
 
 @compiled
-def fan_out(chains: Chains, ways: Ways, query: Query, search: Search, album: Album, wanted: int) -> int:
-    """Branch off the ways taken, shortest first, until there are enough."""
-    have, taken = 1, 1
-    while taken < wanted:
-        have = branch(chains, ways, query, search, album, taken - 1, have, wanted)
-        if have == taken:
-            break
-        taken += 1
-    return taken
-
-
-@compiled
-def branch(
-    chains: Chains, ways: Ways, query: Query, search: Search, album: Album, way: int, have: int, wanted: int
-) -> int:
+def branch(ends: Ints, ways: Ways, query: Query, search: Search, album: Album, way: int, have: int, wanted: int) -> int:
     """Put the best ways that leave a taken way, at each of its arcs from its fork on; returns how many there are."""
+    joint, extra, length = query.joint, query.cost, ways.length
+    path, barred, sealed, stamps = search.path, search.barred, search.sealed, search.stamp
+    best, came = search.best, search.came
+    place, cost, arcs, size, fork, shared = album
+    n, first, row = ways.head.shape[0], 2 * ends.shape[0], 0 + place[way]
+    walk(ends, joint, arcs, size, row, n, path)
+    for other in range(way + 1):
+        shared[other] = in_common(arcs, size, row, 0 + place[other])
     so_far = 0.0
-    for k in range(album.size[way]):
-        origin = tail_of(chains, query, album.arcs[way, k])
-        if k >= album.fork[way]:
-            limit = album.cost[wanted - 1] if have >= wanted else np.inf
-            stamp = fresh(search)
-            seal(album, way, k, search, stamp)
-            if so_far + promise(chains, ways, query, search, origin) < limit:
-                for j in range(k):
-                    search.barred[tail_of(chains, query, album.arcs[way, j])] = stamp
-                search.barred[origin] = stamp
-                if seek(chains, ways, query, search, origin):
-                    have = insert(chains, ways, query, search, album, way, k, origin, so_far, have, wanted)
-        so_far += arc_cost(ways, query, album.arcs[way, k])
+    for k in range(size[row]):
+        origin, code = 0 + path[k], 0 + arcs[row, k]
+        if k >= fork[row]:
+            stamps[0] += 1
+            stamp = stamps[0]
+            for other in range(way + 1):
+                if shared[other] >= k and size[place[other]] > k:
+                    sealed[arcs[place[other], k]] = stamp
+            for j in range(k + 1):
+                barred[path[j]] = stamp
+            limit = cost[wanted - 1] if have >= wanted else np.inf
+            if so_far + promise(ways, query, search, origin) < limit and seek(ways, query, search, origin):
+                total = so_far + best[n + 1]
+                if total < limit:
+                    new = insert(place, cost, way, have, wanted, total)
+                    for j in range(k):
+                        arcs[new, j] = arcs[row, j]
+                    fork[new] = k
+                    record(ends, joint, came, arcs, size, new, k, origin)
+                    have = have + 1 if have < wanted else have
+        so_far += length[code >> 1] if code < first else extra[code - first]
     return have
 
 
 @compiled
-def seal(album: Album, way: int, k: int, search: Search, stamp: int) -> None:
-    """Seal the arcs by which taken ways with the same beginning go on."""
-    for other in range(way + 1):
-        if album.size[other] > k and same_beginning(album, way, other, k):
-            search.sealed[album.arcs[other, k]] = stamp
+def walk(ends: Ints, joint: Ints, arcs: Ints, size: Ints, row: int, start: int, path: Ints) -> None:
+    """Write the node that each arc of a way comes from."""
+    path[0] = start
+    for k in range(size[row] - 1):
+        extra = arcs[row, k] - 2 * ends.shape[0]
+        path[k + 1] = ends[arcs[row, k] >> 1, 1 - (arcs[row, k] & 1)] if extra < 0 else joint[extra]
 
 
 @compiled
-def same_beginning(album: Album, way: int, other: int, size: int) -> bool:
-    """Whether two ways agree in their first arcs."""
-    k = size - 1
-    while k >= 0 and album.arcs[way, k] == album.arcs[other, k]:
-        k -= 1
-    return k < 0
+def in_common(arcs: Ints, size: Ints, row: int, other: int) -> int:
+    """How many first arcs two ways have in common."""
+    k = 0
+    while k < size[row] and k < size[other] and arcs[row, k] == arcs[other, k]:
+        k += 1
+    return k
 
 
 @compiled
-def promise(chains: Chains, ways: Ways, query: Query, search: Search, origin: int) -> float:
+def promise(ways: Ways, query: Query, search: Search, origin: int) -> float:
     """The least that a way from a node over an unsealed arc can cost."""
-    stamp, best, first = search.stamp[0], np.inf, 2 * chains.ends.shape[0]
-    if origin == chains.node.shape[0]:
-        for k in (0, 1, 4):
-            if search.sealed[first + k] != stamp and query.cost[k] < np.inf:
-                best = min(best, query.cost[k] + search.ahead[head_of(chains, query, first + k)])
-        return best
-    for direction in range(4):
-        chain = chains.leave[origin, direction]
-        if chain >= 0 and not query.shut[chain]:
-            code = 2 * chain if chains.ends[chain, 0] == origin else 2 * chain + 1
-            if search.sealed[code] != stamp:
-                best = min(best, ways.length[chain] + search.ahead[head_of(chains, query, code)])
-    for k in (2, 3):
-        if query.joint[k] == origin and search.sealed[first + k] != stamp:
-            best = min(best, query.cost[k])
-    return best
+    arc, head, step = ways.arc, ways.head, ways.step
+    joint, extra, shut = query.joint, query.cost, query.shut
+    sealed, barred, ahead, stamp = search.sealed, search.barred, search.ahead, search.stamp[0]
+    n, arcs, least = head.shape[0], 2 * shut.shape[0], np.inf
+    if origin == n:
+        for k in range(2):
+            if sealed[arcs + k] != stamp and extra[k] < np.inf and extra[k] + ahead[joint[k]] < least:
+                least = extra[k] + ahead[joint[k]]
+        return extra[4] if sealed[arcs + 4] != stamp and extra[4] < least else least
+    for slot in range(4):
+        to, code = head[origin, slot], arc[origin, slot]
+        if to >= 0 and barred[to] != stamp and not shut[code >> 1] and sealed[code] != stamp:
+            rest = step[origin, slot] + ahead[to]
+            least = rest if rest < least else least
+    for k in range(2, 4):
+        if joint[k] == origin and sealed[arcs + k] != stamp and extra[k] < least:
+            least = extra[k]
+    return least
 
 
 @compiled
-def insert(
-    chains: Chains,
-    ways: Ways,
-    query: Query,
-    search: Search,
-    album: Album,
-    way: int,
-    fork: int,
-    origin: int,
-    so_far: float,
-    have: int,
-    wanted: int,
-) -> int:
-    """Keep the way just found among those in hand, in its place; returns how many ways there are."""
-    goal = chains.node.shape[0] + 1
-    total = so_far + search.best[goal]
-    last = min(have, wanted - 1)
-    if have >= wanted and total >= album.cost[wanted - 1]:
-        return have
-    place = last
-    while place > way + 1 and album.cost[place - 1] > total:
-        album.arcs[place, : album.size[place - 1]] = album.arcs[place - 1, : album.size[place - 1]]
-        album.size[place], album.fork[place] = album.size[place - 1], album.fork[place - 1]
-        album.cost[place] = album.cost[place - 1]
-        place -= 1
-    album.arcs[place, :fork] = album.arcs[way, :fork]
-    record(chains, ways, query, search, album, place, fork, origin, so_far)
-    return min(have + 1, wanted)
+def insert(place: Ints, cost: Floats, way: int, have: int, wanted: int, total: float) -> int:
+    """Make room for a way among those in hand; returns the row where its arcs belong."""
+    at = have if have < wanted else wanted - 1
+    row = have if have < wanted else 0 + place[at]
+    while at > way + 1 and cost[at - 1] > total:
+        place[at], cost[at] = place[at - 1], cost[at - 1]
+        at -= 1
+    place[at], cost[at] = row, total
+    return row
 
 
 @compiled
-def record(
-    chains: Chains,
-    ways: Ways,
-    query: Query,
-    search: Search,
-    album: Album,
-    place: int,
-    fork: int,
-    origin: int,
-    so_far: float,
-) -> None:
-    """Write the way just found behind its first ``fork`` arcs."""
-    goal = chains.node.shape[0] + 1
-    size, node = fork, goal
+def record(ends: Ints, joint: Ints, came: Ints, arcs: Ints, size: Ints, row: int, fork: int, origin: int) -> None:
+    """Write the way just found from a node on behind its first ``fork`` arcs."""
+    first, goal = 2 * ends.shape[0], came.shape[0] - 1
+    k, node = fork, goal
     while node != origin:
-        node = tail_of(chains, query, search.came[node])
-        size += 1
-    album.size[place], album.fork[place] = size, fork
-    album.cost[place] = so_far + search.best[goal]
-    node = goal
-    for k in range(size - 1, fork - 1, -1):
-        album.arcs[place, k] = search.came[node]
-        node = tail_of(chains, query, search.came[node])
+        node = tail(ends, joint, first, goal, 0 + came[node])
+        k += 1
+    size[row], node = k, goal
+    while node != origin:
+        k -= 1
+        arcs[row, k] = came[node]
+        node = tail(ends, joint, first, goal, 0 + came[node])
+
+
+@compiled
+def tail(ends: Ints, joint: Ints, first: int, goal: int, code: int) -> int:
+    """The node an arc comes from."""
+    if code < first:
+        return int(ends[code >> 1, code & 1])
+    return int(joint[code - first]) if code - first in (2, 3) else goal - 1

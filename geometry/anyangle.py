@@ -4,224 +4,220 @@
 bends (at first the start). Entering the next run, the interval casts a cone: what the cone meets of the run's other
 portals stays visible from the root; beyond a side of the cone that is a corner the rope may bend, which makes that
 corner the root. Nodes are taken by the least length of a way through their interval, so the first way to reach the
-goal is the shortest.
+goal is the shortest. Dead ends are entered on the way to a goal in them alone.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from geometry.chains import Floats, Ints
+from geometry.bones import Floats, Ints
 from geometry.compiled import compiled
-from geometry.rope import Rope, measure_line, new_rope, reach, tighten_word
+from geometry.heap import pop, push
+from geometry.rope import Ends, Rope, measure_line, new_rope, reach, tighten_word
 from geometry.runs import Runs, extend, run_at
 
 CLOSE = 1e-9  # squares: two ways to a corner that differ by less are equally long
+WEST, EAST, DONE = 0, 1, 2  # columns of ``span``
+PORTAL, ROOT, PARENT = 0, 1, 2  # columns of ``link``
+MADE, WAITING, STAMP = 0, 1, 2  # entries of ``tally``
+FULL = -2
+NONE = -1
 
 
 class Nodes(NamedTuple):
-    """Search nodes, in the order of their making."""
+    """Search nodes, in the order of their making, and the shortest way known to each corner.
 
-    left: Floats
-    """West end of the interval."""
-    right: Floats
-    """East end."""
-    portal: Ints
-    """Signed portal entered, from 1; 0 for a bend between two portals of one run."""
-    root: Ints
-    """The corner that sees the interval: 2 portal for a west end, 2 portal + 1 for an east end, -1 the start."""
-    done: Floats
-    """Length of the way to the root."""
-    parent: Ints
-    """The node before, -1 for none."""
+    A corner is 2 portal for a portal's west end, 2 portal + 1 for its east end; -1 is the start.
+    """
+
+    span: Floats
+    """(room, 3) west and east end of the interval, and the length of the way to the root; a goal has east < west."""
+    link: Ints
+    """(room, 3) signed portal entered, from 1, or 0 for a bend between two portals of one run; the root, which is the
+    corner that sees the interval; the node before, -1 for none."""
     key: Floats
-    """Heap: least length of a way through the node."""
+    """(room,) heap: least length of a way through the node."""
     heap: Ints
-    """Heap: the node."""
-    size: Ints
-    """(2,) the number of nodes and of heap entries."""
-
-
-class Corners(NamedTuple):
-    """The shortest way known to each corner; an entry counts if its mark equals the stamp."""
-
+    """(room,) heap: the node."""
     best: Floats
+    """(2 portals,) length of the shortest way known to a corner."""
     seen: Ints
-    stamp: Ints
-
-
-FULL = -2
-NONE = -1
+    """(2 portals,) ``best`` counts where this equals the stamp."""
+    tally: Ints
+    """(3,) the number of nodes, the size of the heap, the stamp."""
+    enter: Ints
+    """(runs,) the stamp on dead ends that may be entered, for the goal lies in them."""
 
 
 class Scout(NamedTuple):
     """All scratch of a search."""
 
     nodes: Nodes
-    corners: Corners
     word: Ints
     rope: Rope
     line: Floats
     sizes: Ints
 
 
-def new_scout(room: int, portals: int) -> Scout:
-    """Scratch for that many nodes on a screen with that many portals."""
+def new_scout(room: int, runs: Runs) -> Scout:
+    """Scratch for that many nodes."""
+    portals = len(runs.left)
     nodes = Nodes(
-        np.empty(room),
-        np.empty(room),
-        np.empty(room, np.int32),
-        np.empty(room, np.int32),
+        np.empty((room, 3)),
+        np.empty((room, 3), np.int32),
         np.empty(room),
         np.empty(room, np.int32),
-        np.empty(room),
-        np.empty(room, np.int32),
-        np.zeros(2, np.int32),
+        np.empty(2 * portals),
+        np.zeros(2 * portals, np.int32),
+        np.zeros(3, np.int32),
+        np.zeros(len(runs.low), np.int32),
     )
-    corners = Corners(np.empty(2 * portals), np.zeros(2 * portals, np.int32), np.zeros(1, np.int32))
     words = room // 8
-    return Scout(
-        nodes, corners, np.empty(words, np.int32), new_rope(words), np.empty((4 * words + 8, 2)), np.zeros(2, np.int32)
-    )
+    return Scout(nodes, np.empty(words, np.int32), new_rope(words), np.empty((4 * words + 8, 2)), np.zeros(2, np.int32))
 
 
 @compiled
-def shortest_word(
-    runs: Runs, ends: tuple[float, float, float, float], nodes: Nodes, corners: Corners, word: Ints
-) -> int:
-    """Write the reduced word of the shortest way; returns its size, NONE when there is no way, FULL without room."""
-    start = run_at(runs, int(ends[1]), int(ends[0]))
-    goal = run_at(runs, int(ends[3]), int(ends[2]))
-    if start == goal:
-        return 0
-    nodes.size[:] = 0
-    corners.stamp[0] += 1
-    depart(runs, ends, start, nodes, corners)
-    while nodes.size[1] > 0:
-        if nodes.size[0] + 4 * runs.row.shape[0] >= nodes.left.shape[0]:
-            return FULL
-        node = take(nodes)
-        symbol = nodes.portal[node]
-        if nodes.right[node] < nodes.left[node]:
-            return spell_word(nodes, node, word)
-        root = nodes.root[node]
-        if root >= 0 and nodes.done[node] > corners.best[root] + CLOSE:
-            continue
-        run = runs.upper[symbol - 1] if symbol > 0 else runs.lower[-symbol - 1]
-        if run == goal:
-            arrive(runs, ends, nodes, node)
-        spread(runs, ends, nodes, corners, node, run)
-    return NONE
-
-
-@compiled
-def shortest_line(
-    runs: Runs,
-    ends: tuple[float, float, float, float],
-    nodes: Nodes,
-    corners: Corners,
-    word: Ints,
-    rope: Rope,
-    line: Floats,
-    sizes: Ints,
-) -> float:
+def shortest_line(runs: Runs, ends: Ends, nodes: Nodes, word: Ints, rope: Rope, line: Floats, sizes: Ints) -> float:
     """The length of the shortest way; its numbers of symbols and corners go to ``sizes``, NONE or FULL to the first."""
-    size = shortest_word(runs, ends, nodes, corners, word)
+    size = shortest_word(runs, ends, nodes, word)
     if size == word.shape[0] or 4 * size + 8 > rope.x.shape[0]:
         size = FULL
     sizes[0] = size
     if size < 0:
         return np.inf
-    sizes[1] = tighten_word(runs, False, word, size, ends, rope, line)
+    sizes[1] = tighten_word(runs.left, runs.right, runs.line, False, word, size, ends, rope, line)
     return measure_line(line, sizes[1])
 
 
 @compiled
-def depart(runs: Runs, ends: tuple[float, float, float, float], run: int, nodes: Nodes, corners: Corners) -> None:
+def shortest_word(runs: Runs, ends: Ends, nodes: Nodes, word: Ints) -> int:
+    """Write the reduced word of the shortest way; returns its size, NONE when there is no way, FULL without room."""
+    rows, lows, up, down, line = runs.row, runs.low, runs.up, runs.down, runs.line
+    left, right, lower, upper = runs.left, runs.right, runs.lower, runs.upper
+    exits, (span, link, key, heap, best, seen, tally, enter) = runs.exit, nodes
+    start = run_at(rows, lows, int(ends[1]), int(ends[0]))
+    goal = run_at(rows, lows, int(ends[3]), int(ends[2]))
+    if start == goal:
+        return 0
+    tally[MADE], tally[WAITING], tally[STAMP] = 0, 0, tally[STAMP] + 1
+    mark_inwards(exits, lower, upper, goal, enter, tally[STAMP])
+    depart(up, down, left, right, line, ends, start, span, link, tally)
+    enqueue(left, right, line, ends, span, link, key, heap, best, seen, tally, 0)
+    while tally[WAITING] > 0:
+        made = tally[MADE]
+        if made + 4 * rows.shape[0] >= key.shape[0]:
+            return FULL
+        node, tally[WAITING] = pop(key, heap, tally[WAITING])
+        if span[node, EAST] < span[node, WEST]:
+            return spell_word(link, node, word)
+        root, symbol = link[node, ROOT], link[node, PORTAL]
+        if root >= 0 and span[node, DONE] > best[root] + CLOSE:
+            continue
+        run = upper[symbol - 1] if symbol > 0 else lower[-symbol - 1]
+        if run == goal:
+            arrive(left, right, line, ends, span, link, tally, node)
+        spread(up, down, left, right, line, lower, upper, exits, enter, ends, span, link, best, seen, tally, node, run)
+        enqueue(left, right, line, ends, span, link, key, heap, best, seen, tally, made)
+    return NONE
+
+
+@compiled
+def mark_inwards(exits: Ints, lower: Ints, upper: Ints, goal: int, enter: Ints, stamp: int) -> None:
+    """Mark the runs by which one comes to the goal where that lies in a dead end."""
+    run = goal
+    while exits[run] != 0:
+        enter[run] = stamp
+        run = upper[exits[run] - 1] if exits[run] > 0 else lower[-exits[run] - 1]
+
+
+@compiled
+def depart(
+    up: Ints,
+    down: Ints,
+    left: Ints,
+    right: Ints,
+    line: Ints,
+    ends: Ends,
+    run: int,
+    span: Floats,
+    link: Ints,
+    tally: Ints,
+) -> None:
     """All portals of the start's run."""
-    for portal in range(runs.up[run], runs.up[run + 1]):
-        add(runs, ends, nodes, corners, 1.0 * runs.left[portal], runs.right[portal] + 1.0, portal + 1, -1, 0.0, -1)
-    for portal in range(runs.down[run], runs.down[run + 1]):
-        left, right = 1.0 * runs.left[portal], runs.right[portal] + 1.0
-        if ends[1] > runs.line[portal] + 1 or left <= ends[0] <= right:
-            add(runs, ends, nodes, corners, left, right, -portal - 1, -1, 0.0, -1)
-        elif ends[0] < left:
-            add(runs, ends, nodes, corners, left, right, -portal - 1, 2 * portal, left - ends[0], -1)
-        else:
-            add(runs, ends, nodes, corners, left, right, -portal - 1, 2 * portal + 1, ends[0] - right, -1)
-
-
-@compiled
-def corner_x(runs: Runs, ends: tuple[float, float, float, float], root: int) -> float:
-    """The x of a root."""
-    if root < 0:
-        return ends[0]
-    return float(runs.left[root >> 1] if root & 1 == 0 else runs.right[root >> 1] + 1)
-
-
-@compiled
-def corner_y(runs: Runs, ends: tuple[float, float, float, float], root: int) -> float:
-    """The y of a root."""
-    return ends[1] if root < 0 else float(runs.line[root >> 1] + 1)
+    for portal in range(up[run], up[run + 1]):
+        note(span, link, tally, 1.0 * left[portal], right[portal] + 1.0, 0.0, portal + 1, -1, -1)
+    for portal in range(down[run], down[run + 1]):
+        west, east, root, done = 1.0 * left[portal], right[portal] + 1.0, -1, 0.0
+        if ends[1] == line[portal] + 1 and ends[0] < west:
+            root, done = 2 * portal, west - ends[0]
+        elif ends[1] == line[portal] + 1 and ends[0] > east:
+            root, done = 2 * portal + 1, ends[0] - east
+        note(span, link, tally, west, east, done, -portal - 1, root, -1)
 
 
 @compiled
 def spread(
-    runs: Runs,
-    ends: tuple[float, float, float, float],
-    nodes: Nodes,
-    corners: Corners,
+    up: Ints,
+    down: Ints,
+    left: Ints,
+    right: Ints,
+    line: Ints,
+    lower: Ints,
+    upper: Ints,
+    exits: Ints,
+    enter: Ints,
+    ends: Ends,
+    span: Floats,
+    link: Ints,
+    best: Floats,
+    seen: Ints,
+    tally: Ints,
     node: int,
     run: int,
 ) -> None:
-    """Make the nodes behind one that enters a run."""
-    symbol, left, right = nodes.portal[node], nodes.left[node], nodes.right[node]
-    portal = abs(symbol) - 1
-    up = symbol > 0
-    rx, ry = corner_x(runs, ends, nodes.root[node]), corner_y(runs, ends, nodes.root[node])
-    depth = abs(runs.line[portal] + 1.0 - ry)
+    """Note the nodes behind one that enters a run."""
+    west, east, done = span[node, WEST], span[node, EAST], span[node, DONE]
+    symbol, root = link[node, PORTAL], link[node, ROOT]
+    portal, upward, stamp = abs(symbol) - 1, symbol > 0, tally[STAMP]
+    corner = 2 * portal
+    x, y = ends[0], ends[1]
+    if root >= 0:
+        x, y = 1.0 * (right[root >> 1] + 1 if root & 1 else left[root >> 1]), line[root >> 1] + 1.0
+    depth = abs(line[portal] + 1.0 - y)
     if depth > 0.0:
-        west = snapped(rx + (left - rx) * (depth + 1.0) / depth)
-        east = snapped(rx + (right - rx) * (depth + 1.0) / depth)
+        low, high = snapped(x + (west - x) * (depth + 1.0) / depth), snapped(x + (east - x) * (depth + 1.0) / depth)
     else:
-        west = -np.inf if rx > left else rx
-        east = np.inf if rx < right else rx
-    to_west = nodes.done[node] + reach(left - rx, depth)
-    to_east = nodes.done[node] + reach(right - rx, depth)
-    bend_west = left == runs.left[portal] and (nodes.root[node] == 2 * portal or known(corners, 2 * portal, to_west))
-    bend_east = right == runs.right[portal] + 1 and (
-        nodes.root[node] == 2 * portal + 1 or known(corners, 2 * portal + 1, to_east)
-    )
-    first, last = (runs.up[run], runs.up[run + 1]) if up else (runs.down[run], runs.down[run + 1])
-    sign = 1 if up else -1
+        low, high = -np.inf if x > west else x, np.inf if x < east else x
+    to_west, to_east = done + reach(west - x, depth), done + reach(east - x, depth)
+    bend_west = west == left[portal] and (root == corner or known(best, seen, stamp, corner, to_west))
+    bend_east = east == right[portal] + 1 and (root == corner + 1 or known(best, seen, stamp, corner + 1, to_east))
+    first, last, sign = (up[run], up[run + 1], 1) if upward else (down[run], down[run + 1], -1)
     for far in range(first, last):
-        low, high = 1.0 * runs.left[far], runs.right[far] + 1.0
-        if bend_west and low < west:
-            add(runs, ends, nodes, corners, low, min(high, west), sign * (far + 1), 2 * portal, to_west, node)
-        if max(low, west) < min(high, east):
-            add(
-                runs,
-                ends,
-                nodes,
-                corners,
-                max(low, west),
-                min(high, east),
-                sign * (far + 1),
-                nodes.root[node],
-                nodes.done[node],
-                node,
-            )
-        if bend_east and high > east:
-            add(runs, ends, nodes, corners, max(low, east), high, sign * (far + 1), 2 * portal + 1, to_east, node)
-    first, last = (runs.down[run], runs.down[run + 1]) if up else (runs.up[run], runs.up[run + 1])
+        a, b, code = 1.0 * left[far], right[far] + 1.0, sign * (far + 1)
+        other = upper[far] if upward else lower[far]
+        if exits[other] == -code and enter[other] != stamp:
+            continue
+        if bend_west and a < low:
+            note(span, link, tally, a, b if b < low else low, to_west, code, corner, node)
+        if (a if a > low else low) < (b if b < high else high):
+            note(span, link, tally, a if a > low else low, b if b < high else high, done, code, root, node)
+        if bend_east and b > high:
+            note(span, link, tally, a if a > high else high, b, to_east, code, corner + 1, node)
+    if not (bend_west or bend_east):
+        return
+    first, last = (down[run], down[run + 1]) if upward else (up[run], up[run + 1])
     for near in range(first, last):
-        low, high = 1.0 * runs.left[near], runs.right[near] + 1.0
+        a, b, code = 1.0 * left[near], right[near] + 1.0, -sign * (near + 1)
+        other = lower[near] if upward else upper[near]
+        if exits[other] == -code and enter[other] != stamp:
+            continue
         if near < portal and bend_west:
-            bend = note_bend(nodes, 2 * portal, to_west, node)
-            add(runs, ends, nodes, corners, low, high, -sign * (near + 1), 2 * near + 1, to_west + left - high, bend)
+            bend = note(span, link, tally, west, west, to_west, 0, corner, node)
+            note(span, link, tally, a, b, to_west + west - b, code, 2 * near + 1, bend)
         elif near > portal and bend_east:
-            bend = note_bend(nodes, 2 * portal + 1, to_east, node)
-            add(runs, ends, nodes, corners, low, high, -sign * (near + 1), 2 * near, to_east + low - right, bend)
+            bend = note(span, link, tally, east, east, to_east, 0, corner + 1, node)
+            note(span, link, tally, a, b, to_east + a - east, code, 2 * near, bend)
 
 
 @compiled
@@ -232,121 +228,91 @@ def snapped(x: float) -> float:
 
 
 @compiled
-def known(corners: Corners, corner: int, length: float) -> bool:
+def known(best: Floats, seen: Ints, stamp: int, corner: int, length: float) -> bool:
     """Note a way to a corner; False when a shorter one is known."""
-    stamp = corners.stamp[0]
-    if corners.seen[corner] == stamp and length > corners.best[corner] + CLOSE:
-        return False
-    if corners.seen[corner] != stamp or length < corners.best[corner]:
-        corners.best[corner] = length
-        corners.seen[corner] = stamp
-    return True
+    if seen[corner] != stamp:
+        best[corner], seen[corner] = length, stamp
+        return True
+    if length < best[corner]:
+        best[corner] = length
+    return bool(length <= best[corner] + CLOSE)
 
 
 @compiled
-def note_bend(nodes: Nodes, corner: int, done: float, parent: int) -> int:
-    """A node for a bend, off the heap."""
-    node = nodes.size[0]
-    nodes.size[0] += 1
-    nodes.portal[node], nodes.root[node], nodes.done[node], nodes.parent[node] = 0, corner, done, parent
+def note(
+    span: Floats, link: Ints, tally: Ints, west: float, east: float, done: float, symbol: int, root: int, parent: int
+) -> int:
+    """Write a node, off the heap."""
+    node = tally[MADE]
+    tally[MADE] = node + 1
+    span[node, WEST], span[node, EAST], span[node, DONE] = west, east, done
+    link[node, PORTAL], link[node, ROOT], link[node, PARENT] = symbol, root, parent
     return int(node)
 
 
 @compiled
-def add(
-    runs: Runs,
-    ends: tuple[float, float, float, float],
-    nodes: Nodes,
-    corners: Corners,
-    left: float,
-    right: float,
-    symbol: int,
-    root: int,
-    done: float,
-    parent: int,
+def enqueue(
+    left: Ints,
+    right: Ints,
+    line: Ints,
+    ends: Ends,
+    span: Floats,
+    link: Ints,
+    key: Floats,
+    heap: Ints,
+    best: Floats,
+    seen: Ints,
+    tally: Ints,
+    first: int,
 ) -> None:
-    """Make a node, unless a shorter way to its root is known."""
-    if root >= 0 and not known(corners, root, done):
-        return
-    y = runs.line[abs(symbol) - 1] + 1.0
-    rx, ry = corner_x(runs, ends, root), corner_y(runs, ends, root)
-    near, far = abs(y - ry), abs(ends[3] - y)
-    cross = rx + (ends[2] - rx) * near / (near + far) if near + far > 0.0 else ends[2]
-    cross = min(max(cross, left), right)
-    put(
-        nodes,
-        left,
-        right,
-        symbol,
-        root,
-        done,
-        parent,
-        done + reach(cross - rx, near) + reach(ends[2] - cross, far),
-    )
+    """Put the nodes from ``first`` on the heap, but for bends and where a shorter way to the root is known."""
+    size, stamp = tally[WAITING], tally[STAMP]
+    for node in range(first, tally[MADE]):
+        west, east, done, root = span[node, WEST], span[node, EAST], span[node, DONE], link[node, ROOT]
+        if east < west:
+            size = push(key, heap, size, done, node)
+            continue
+        if link[node, PORTAL] == 0:
+            continue
+        x, y = ends[0], ends[1]
+        if root >= 0:
+            if not known(best, seen, stamp, root, done):
+                continue
+            x, y = 1.0 * (right[root >> 1] + 1 if root & 1 else left[root >> 1]), line[root >> 1] + 1.0
+        at = line[abs(link[node, PORTAL]) - 1] + 1.0
+        near, far = abs(at - y), abs(ends[3] - at)
+        cross = x + (ends[2] - x) * near / (near + far) if near + far > 0.0 else ends[2]
+        cross = west if cross < west else east if cross > east else cross
+        size = push(key, heap, size, done + reach(cross - x, near) + reach(ends[2] - cross, far), node)
+    tally[WAITING] = size
 
 
 @compiled
-def arrive(runs: Runs, ends: tuple[float, float, float, float], nodes: Nodes, node: int) -> None:
+def arrive(left: Ints, right: Ints, line: Ints, ends: Ends, span: Floats, link: Ints, tally: Ints, node: int) -> None:
     """The way from a node's root to the goal, in the run that the node enters."""
-    portal = abs(nodes.portal[node]) - 1
-    left, right, root = nodes.left[node], nodes.right[node], nodes.root[node]
-    rx, ry = corner_x(runs, ends, root), corner_y(runs, ends, root)
-    near, far = abs(runs.line[portal] + 1.0 - ry), abs(ends[3] - runs.line[portal] - 1.0)
-    cross = rx + (ends[2] - rx) * near / (near + far) if near + far > 0.0 else rx
-    if cross < left - CLOSE and left != runs.left[portal]:
+    portal, root = abs(link[node, PORTAL]) - 1, link[node, ROOT]
+    west, east = span[node, WEST], span[node, EAST]
+    x, y = ends[0], ends[1]
+    if root >= 0:
+        x, y = 1.0 * (right[root >> 1] + 1 if root & 1 else left[root >> 1]), line[root >> 1] + 1.0
+    near, far = abs(line[portal] + 1.0 - y), abs(ends[3] - line[portal] - 1.0)
+    cross = x + (ends[2] - x) * near / (near + far) if near + far > 0.0 else x
+    if cross < west - CLOSE and west != left[portal]:
         return
-    if cross > right + CLOSE and right != runs.right[portal] + 1:
+    if cross > east + CLOSE and east != right[portal] + 1:
         return
-    cross = min(max(cross, left), right)
-    total = nodes.done[node] + reach(cross - rx, near) + reach(ends[2] - cross, far)
-    put(nodes, 1.0, 0.0, 0, root, total, node, total)
+    cross = west if cross < west else east if cross > east else cross
+    total = span[node, DONE] + reach(cross - x, near) + reach(ends[2] - cross, far)
+    note(span, link, tally, 1.0, 0.0, total, 0, root, node)
 
 
 @compiled
-def put(nodes: Nodes, left: float, right: float, symbol: int, root: int, done: float, parent: int, key: float) -> None:
-    """Write a node and put it on the heap."""
-    node = nodes.size[0]
-    nodes.left[node], nodes.right[node], nodes.portal[node] = left, right, symbol
-    nodes.root[node], nodes.done[node], nodes.parent[node] = root, done, parent
-    nodes.size[0] += 1
-    k = nodes.size[1]
-    nodes.size[1] += 1
-    while k > 0:
-        up = (k - 1) >> 1
-        if nodes.key[up] <= key:
-            break
-        nodes.key[k], nodes.heap[k] = nodes.key[up], nodes.heap[up]
-        k = up
-    nodes.key[k], nodes.heap[k] = key, node
-
-
-@compiled
-def take(nodes: Nodes) -> int:
-    """The most promising node, off the heap."""
-    top = nodes.heap[0]
-    nodes.size[1] -= 1
-    size = nodes.size[1]
-    key, node = nodes.key[size], nodes.heap[size]
-    k = 0
-    while 2 * k + 1 < size:
-        child = 2 * k + 1
-        if child + 1 < size and nodes.key[child + 1] < nodes.key[child]:
-            child += 1
-        if nodes.key[child] >= key:
-            break
-        nodes.key[k], nodes.heap[k] = nodes.key[child], nodes.heap[child]
-        k = child
-    nodes.key[k], nodes.heap[k] = key, node
-    return int(top)
-
-
-@compiled
-def spell_word(nodes: Nodes, node: int, word: Ints) -> int:
+def spell_word(link: Ints, node: int, word: Ints) -> int:
     """The reduced word of the portals on the way to a node."""
     size = 0
     while node >= 0:
-        size = extend(word, size, -nodes.portal[node])
-        node = nodes.parent[node]
+        size = extend(word, size, -link[node, PORTAL])
+        node = link[node, PARENT]
     for k in range((size + 1) // 2):
         word[k], word[size - 1 - k] = -word[size - 1 - k], -word[k]
     return size

@@ -1,125 +1,133 @@
-"""Small changes of a screen: measure again only where a distance can have changed.
+"""A few squares change: what hangs on them is made anew, and the rest stands.
 
 # Strategy: a changed square alters the column distances between the next blocked squares above and below it, and
-through them the runs of those rows that cross its column. Those runs are measured anew, the cells about them
-classified anew; the flags of all other cells stand. The ways up are then traced again from all saddles, which costs
-little beside the rest.
+through them the runs of those rows that cross its column. Those runs are measured anew beside the old clearances. Where
+these really differ, and one cell about, the skeleton is grown again (regrowth.py) and the pathgraph joined again
+(rejoining.py).
 """
 
 import numpy as np
 
-from geometry.chains import Ints
+from geometry.bones import Bones, Ints
 from geometry.compiled import compiled
 from geometry.distance import Bools, Gaps, Sites, Squares, measure_run
-from geometry.skeleton import KINDS, SADDLE, SUMMIT, States, Words, classify_part
+from geometry.regrowth import regrow
+from geometry.rejoining import rejoin
+from geometry.skeleton import States
 
-FLAGS = int.from_bytes(bytes([SADDLE | SUMMIT] * 8), "little")
+FREED = 1 << 30  # stands for a square that is to be free, and the negative of its clearance for one to be blocked
 
 
-def change_squares(
-    gap: Gaps, square: Squares, state: States, words: Words, rows: Ints, columns: Ints, free: Bools
-) -> None:
-    """Change squares, measure and classify again; links are all dropped.
+def change_squares(square: Squares, state: States, bones: Bones, rows: Ints, columns: Ints, free: Bools) -> Bones:
+    """Change squares (unpadded rows and columns) in ``square`` and ``state``; returns the changed pathgraph.
 
     Raises
     ------
     ValueError
         When no square would be left free (nothing changes then).
     """
-    before = gap[rows + 1, columns + 1] > 0
-    if not free.any() and np.count_nonzero(before) == np.count_nonzero(gap):
+    heights, width = square.reshape(-1), square.shape[1]
+    cells = (rows + 1) * width + columns + 1
+    old = heights[cells]
+    if not free.any() and len(bones.node) <= len(cells) and np.count_nonzero(old) == np.count_nonzero(heights):
         raise ValueError("the change leaves no free square")
-    stretch = np.empty((square.shape[0], 4), np.int32)
-    sites = np.empty((2, square.shape[1] + 1), np.int64)
-    turned = free != before
-    rows, columns, free = rows[turned], columns[turned], free[turned]
-    set_squares(gap, rows, columns, free)
-    update_squares(gap, square, rows, columns, stretch, sites[0], sites[1])
-    update_flags(square, state, words, FLAGS, stretch, np.zeros(square.shape[1], np.uint8), KINDS)
+    turned = free != (old > 0)
+    if not turned.any():
+        return bones
+    cells, old, free = cells[turned], old[turned], free[turned]
+    heights[cells] = np.where(free, FREED, -old)
+    bounds = np.empty((square.shape[0], 4), np.int32)
+    find_stretches(square, cells, bounds)
+    fresh = np.empty(int((bounds[:, 1] - bounds[:, 0]).clip(0).sum()), np.int32)
+    scratch = np.empty((4, width), np.int32)
+    scratch[0] = -2
+    measure_again(square, bounds, fresh, scratch, np.empty(width, np.int16), *np.empty((2, width + 1), np.int64))
+    heights[cells] = old
+    return rejoin(heights, width, bones, regrow(square, state, bounds, fresh))
 
 
 @compiled
-def set_squares(gap: Gaps, rows: Ints, columns: Ints, free: Bools) -> None:
-    """Block or free squares (unpadded) in ``gap``; distances are left to ``update_column``."""
-    for k in range(rows.shape[0]):
-        gap[rows[k] + 1, columns[k] + 1] = 1 if free[k] else 0
-
-
-@compiled
-def update_squares(
-    gap: Gaps, square: Squares, rows: Ints, columns: Ints, stretch: Ints, sites: Sites, heights: Sites
-) -> None:
-    """Measure again after ``set_squares``; ``stretch`` (rows + 2, 4) gets, per row, the outermost
-    columns measured and those measured last, or -1."""
-    stretch[:] = -1
-    for k in range(rows.shape[0]):
-        update_column(gap, rows[k] + 1, columns[k] + 1)
-    for k in range(rows.shape[0]):
-        column = columns[k] + 1
-        low = rows[k] + 1
-        while low > 1 and gap[low - 1, column] > 0:
+def find_stretches(square: Squares, cells: Ints, bounds: Ints) -> None:
+    """Fill the first two columns of ``bounds`` with the blocked cells before and behind what is to be measured."""
+    width = square.shape[1]
+    for row in range(bounds.shape[0]):
+        bounds[row, 0], bounds[row, 1], bounds[row, 2], bounds[row, 3] = width, -1, -1, -1
+    for k in range(cells.shape[0]):
+        middle, column = cells[k] // width, cells[k] % width
+        low, high = middle, middle
+        while square[low - 1, column] > 0:
             low -= 1
-        high = rows[k] + 1
-        while high < gap.shape[0] - 2 and gap[high + 1, column] > 0:
+        while square[high + 1, column] > 0:
             high += 1
         for row in range(low, high + 1):
-            if not stretch[row, 2] < column < stretch[row, 3]:
-                update_row(gap[row], square[row], column, stretch[row], sites, heights)
+            if row != middle and bounds[row, 2] < column < bounds[row, 3]:
+                continue
+            first, last = column - 1, column + 1
+            while square[row, first] > 0:
+                first -= 1
+            while square[row, last] > 0:
+                last += 1
+            if square[row, column] > 0:  # the run last seen in this row
+                bounds[row, 2], bounds[row, 3] = first, last
+            bounds[row, 0] = first if first < bounds[row, 0] else bounds[row, 0]
+            bounds[row, 1] = last if last > bounds[row, 1] else bounds[row, 1]
 
 
 @compiled
-def update_column(gap: Gaps, row: int, column: int) -> None:
-    """Count again the steps between the blocked squares next above and below a square, itself perhaps blocked."""
-    low = row - 1
-    while gap[low, column] > 0:
-        low -= 1
-    high = row + 1
-    while gap[high, column] > 0:
-        high += 1
-    middle = row if gap[row, column] == 0 else low
-    for i in range(low + 1, high):
-        if i < row and middle == row:
-            gap[i, column] = min(i - low, row - i)
-        elif i != row or middle != row:
-            gap[i, column] = min(i - middle, high - i)
-
-
-@compiled
-def update_row(gap: Gaps, square: Squares, column: int, stretch: Ints, sites: Sites, heights: Sites) -> None:
-    """Measure again the runs at or beside a column of one row, and note from where to where."""
-    first = column - 1
-    while gap[first] > 0:
-        first -= 1
-    last = column + 1
-    while gap[last] > 0:
-        last += 1
-    if gap[column] == 0:
-        square[column] = 0
-        if column > first + 1:
-            measure_run(gap, square, first + 1, column, sites, heights)
-        if last > column + 1:
-            measure_run(gap, square, column + 1, last, sites, heights)
-    elif last > first + 1:
-        measure_run(gap, square, first + 1, last, sites, heights)
-    stretch[2], stretch[3] = first, last
-    if stretch[0] < 0:
-        stretch[0], stretch[1] = first, last
-    else:
-        stretch[0], stretch[1] = min(stretch[0], first), max(stretch[1], last)
-
-
-@compiled
-def update_flags(
-    square: Squares, state: States, words: Words, flags: int, stretch: Ints, ring: States, kind: States
+def measure_again(
+    square: Squares, bounds: Ints, fresh: Squares, scratch: Ints, gap: Gaps, sites: Sites, heights: Sites
 ) -> None:
-    """Drop all links and classify again the cells on and about the stretches measured."""
-    for word in range(words.shape[0]):
-        words[word] &= np.uint64(flags)
-    rows, width = square.shape
-    for row in range(1, rows - 1):
-        first, last = width, -1
-        for near in range(row - 1, row + 2):
-            if stretch[near, 0] >= 0:
-                first, last = min(first, stretch[near, 0] - 1), max(last, stretch[near, 1] + 1)
-        if last >= 0:
-            classify_part(square, 1, state, ring, kind, row, max(first, 1), min(last + 1, width - 1))
+    """Write new values one after the other to ``fresh``, and narrow the bounds to those that differ.
+
+    ``bounds`` gets, per row, the first and last column that differ and where in ``fresh`` the first stands.
+    """
+    seen, below, above, line = scratch[0], scratch[1], scratch[2], scratch[3]
+    used = 0
+    for row in range(bounds.shape[0]):
+        first, last = bounds[row, 0], bounds[row, 1]
+        if last < 0:
+            continue
+        begin = -1
+        for j in range(first, last + 1):
+            gap[j] = steps_at(square, row, j, seen, below, above)
+            if gap[j] > 0 and begin < 0:
+                begin = j
+            elif gap[j] == 0:
+                if begin >= 0:
+                    measure_run(gap, line, begin, j, sites, heights)
+                begin, line[j] = -1, 0
+        while last >= first and line[last] == square[row, last]:
+            last -= 1
+        while first <= last and line[first] == square[row, first]:
+            first += 1
+        bounds[row, 0], bounds[row, 1], bounds[row, 2] = first, last, used
+        if last < first:
+            bounds[row, 0], bounds[row, 1] = square.shape[1], -1
+        for j in range(first, last + 1):
+            fresh[used] = line[j]
+            used += 1
+
+
+@compiled
+def steps_at(square: Squares, row: int, column: int, seen: Ints, below: Ints, above: Ints) -> int:
+    """The steps to the nearest blocked square in a column, from those of the row before if it was ``seen``."""
+    known = seen[column] == row - 1
+    seen[column] = row
+    if square[row, column] <= 0:
+        below[column], above[column] = 0, 0
+        return 0
+    if known:
+        below[column] += 1
+    else:
+        other = row
+        while square[other, column] > 0:
+            other -= 1
+        below[column] = row - other
+    if known and above[column] > 1:
+        above[column] -= 1
+    else:
+        other = row
+        while square[other, column] > 0:
+            other += 1
+        above[column] = other - row
+    return int(below[column] if below[column] < above[column] else above[column])

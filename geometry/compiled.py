@@ -63,9 +63,24 @@ def _dispatcher(function: Callable[P, R]) -> Callable[P, R]:
     import numba
 
     try:
-        return cast(Callable[P, R], numba.njit(cache=True, error_model="numpy")(function))
+        machine = numba.njit(cache=True, error_model="numpy")(function)
     except RuntimeError:  # no directory to keep the cache in: compile anew in each process
-        return cast(Callable[P, R], numba.njit(error_model="numpy")(function))
+        machine = numba.njit(error_model="numpy")(function)
+    if hasattr(machine, "overloads"):
+        _compile_wide(machine)
+    return cast(Callable[P, R], machine)
+
+
+def _compile_wide(machine: Any) -> None:
+    """One copy for all whole numbers: else every constant and every width of integer would get a copy of its own."""
+    from numba.core import types
+
+    compile_exactly = machine.compile
+
+    def compile_wide(signature: tuple[Any, ...]) -> Any:
+        return compile_exactly(tuple(types.int64 if isinstance(t, types.Integer) else t for t in signature))
+
+    machine.compile = compile_wide
 
 
 def _link(names: dict[str, Any]) -> None:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.chains import Floats, Ints
+from geometry.bones import Floats, Ints
 from geometry.distance import Bools, Squares
 from geometry.parts import Labels, number_parts
 from geometry.runs import Runs, symbol_between
@@ -88,7 +88,7 @@ def way_in(place: Region, cell: int) -> list[int]:
 
 def word_of_cells(runs: Runs, cells: list[int], width: int) -> Ints:
     """The portals crossed from cell to cell, not reduced."""
-    symbols = [symbol_between(runs, a, b, width) for a, b in pairwise(cells)]
+    symbols = [symbol_between(runs.row, runs.up, runs.left, a, b, width) for a, b in pairwise(cells)]
     return np.array([s for s in symbols if s], np.int32)
 
 

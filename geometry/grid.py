@@ -8,7 +8,7 @@ from math import sqrt
 
 import numpy as np
 
-from geometry.chains import Floats
+from geometry.bones import Floats
 from geometry.distance import Bools
 
 DIAGONAL = sqrt(2.0)

@@ -1,29 +1,29 @@
 """A binary heap in two arrays, keys and what they belong to; the caller keeps its size."""
 
-from geometry.chains import Floats, Ints
+from geometry.bones import Floats, Ints
 from geometry.compiled import compiled
 
 
 @compiled
-def push(keys: Floats, nodes: Ints, size: int, key: float, node: int) -> int:
-    """Put a node on the heap; returns the heap's size."""
+def push(keys: Floats, items: Ints, size: int, key: float, item: int) -> int:
+    """Put an item on the heap; returns the heap's size."""
     k = size
     while k > 0:
         parent = (k - 1) >> 1
         if keys[parent] <= key:
             break
-        keys[k], nodes[k] = keys[parent], nodes[parent]
+        keys[k], items[k] = keys[parent], items[parent]
         k = parent
-    keys[k], nodes[k] = key, node
+    keys[k], items[k] = key, item
     return size + 1
 
 
 @compiled
-def pop(keys: Floats, nodes: Ints, size: int) -> tuple[int, int]:
-    """Take the most promising node; returns it and the heap's size."""
-    top = nodes[0]
+def pop(keys: Floats, items: Ints, size: int) -> tuple[int, int]:
+    """Take the item with the least key, which is ``keys[0]``; returns it and the heap's size."""
+    top = 0 + items[0]
     size -= 1
-    key, node = keys[size], nodes[size]
+    key, item = keys[size], items[size]
     k = 0
     while 2 * k + 1 < size:
         child = 2 * k + 1
@@ -31,7 +31,7 @@ def pop(keys: Floats, nodes: Ints, size: int) -> tuple[int, int]:
             child += 1
         if keys[child] >= key:
             break
-        keys[k], nodes[k] = keys[child], nodes[child]
+        keys[k], items[k] = keys[child], items[child]
         k = child
-    keys[k], nodes[k] = key, node
+    keys[k], items[k] = key, item
     return top, size

@@ -7,13 +7,15 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.alternatives import Album, new_album, shortest_ways
-from geometry.chains import Chains, Floats, Ints
+from geometry.bones import Floats, Ints
+from geometry.chains import Chains
 from geometry.compiled import compiled
 from geometry.layer import Layer
-from geometry.rope import Rope, measure_line, new_rope, tighten_word
-from geometry.runs import extend
+from geometry.rope import Ends, Rope, measure_line, new_rope, tighten_word
+from geometry.runs import Runs, extend
 from geometry.search import Query, Search, new_search
-from geometry.ways import Anchor, add_chain, ascend, locate
+from geometry.skeleton import Flags, Heights, States
+from geometry.ways import Anchor, Ways, add_chain, ascend, locate
 
 
 class Answers(NamedTuple):
@@ -47,6 +49,8 @@ class Desk(NamedTuple):
     """From the goal up to the skeleton."""
     whole: Ints
     """From start to goal."""
+    stretch: Ints
+    """(n + 2, 3) chains that a way walks, and the positions between which."""
 
 
 def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars: Ints) -> Desk:
@@ -54,7 +58,7 @@ def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars:
     query = Query(
         np.empty(4, np.int32),
         np.empty(5),
-        np.empty(sights),
+        np.empty((2, sights)),
         np.zeros(4),
         np.zeros(chains, np.uint8),
         bars,
@@ -68,174 +72,235 @@ def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars:
         np.empty(wanted),
         np.empty(wanted, np.int32),
     )
-    words = (np.empty(room, np.int32) for _ in range(3))
-    return Desk(query, new_search(nodes, chains), new_album(wanted, nodes + 2), new_rope(room), answers, *words)
+    start, goal, whole = (np.empty(room, np.int32) for _ in range(3))
+    stretch = np.empty((nodes + 2, 3), np.int32)
+    return Desk(
+        query,
+        new_search(nodes, chains),
+        new_album(wanted, nodes + 2),
+        new_rope(room),
+        answers,
+        start,
+        goal,
+        whole,
+        stretch,
+    )
 
 
 OVERFLOW = -1
 BOW = 1.0  # chosen by trial on the benchmark maps: 0 gives 1.014 of the optimum in the mean, 0.1 1.010, 1 1.009
-Ends = tuple[float, float, float, float]  # x and y of the start, x and y of the goal
+
+
+class Ground(NamedTuple):
+    """What a query reads of a layer, for kernels."""
+
+    heights: Heights
+    states: Flags
+    width: int
+    chains: Chains
+    runs: Runs
+    ways: Ways
+    body: bool
+
+
+def ground_of(layer: Layer) -> Ground:
+    """The same arrays, flat where they are read by cell."""
+    heights, states = layer.square.reshape(-1), layer.state.reshape(-1)
+    return Ground(heights, states, layer.square.shape[1], layer.chains, layer.runs, layer.ways, layer.body)
 
 
 @compiled
-def itineraries(layer: Layer, ends: Ends, wanted: int, desk: Desk) -> int:
+def itineraries(ground: Ground, ends: Ends, wanted: int, desk: Desk) -> int:
     """Fill the desk's answers with up to ``wanted`` tight routes, by the length of their ways over the pathgraph.
 
     Returns their number, or OVERFLOW when some scratch is too small.
     """
-    width = layer.square.shape[1]
+    heights, states, width, chains, runs, ways, body = ground
+    query, album = desk.query, desk.album
+    rows, up, left = runs.row, runs.up, runs.left
     first = (int(ends[1]) + 1) * width + int(ends[0]) + 1
     last = (int(ends[3]) + 1) * width + int(ends[2]) + 1
-    start, rise = anchor_at(layer, first, desk.start)
-    goal, fall = anchor_at(layer, last, desk.goal)
-    if max(rise, fall) >= desk.start.shape[0]:
+    above, rise = ascend(first, heights, states, width, rows, up, left, desk.start)
+    start = locate(above, states, width, chains.node, chains.leave, chains.start, chains.cells)
+    above, fall = ascend(last, heights, states, width, rows, up, left, desk.goal)
+    goal = locate(above, states, width, chains.node, chains.leave, chains.start, chains.cells)
+    if rise >= desk.start.shape[0] or fall >= desk.start.shape[0]:
         return OVERFLOW
-    pose(layer, desk.query, start, goal)
-    bow(desk.query.line, ends, BOW if wanted == 1 else 0.0)
-    found = shortest_ways(layer.chains, layer.ways, desk.query, desk.search, desk.album, wanted)
-    settle(desk.query, start, goal, False)
-    heights = layer.square.reshape(-1)
-    floor = min(heights[first], heights[last])
+    pose(query, start, goal, chains.ends, chains.start, ways.length)
+    sight_ends(query.joint, query.cost, ways.sight, query.sight)
+    bow(query.line, ends, BOW if wanted == 1 else 0.0)
+    split(query.shut, start, goal, 2)
+    found = shortest_ways(chains.ends, ways, query, desk.search, album, wanted)
+    split(query.shut, start, goal, 0)
+    floor = heights[first] if heights[first] < heights[last] else heights[last]
+    stretch = desk.stretch
     for k in range(found):
-        desk.whole[:rise] = desk.start[:rise]
-        size, desk.answers.lowest[k] = spell(layer, desk, k, start, goal, rise, floor)
-        for j in range(fall - 1, -1, -1):
-            size = extend(desk.whole, size, -desk.goal[j])
-        if not publish(layer, desk, size, ends, start, goal, k):
+        row = 0 + album.place[k]
+        steps = stretches(chains.ends, chains.start, album.arcs, row, 0 + album.size[row], start, goal, stretch)
+        desk.answers.lowest[k] = lowest_on(chains.start, chains.cells, chains.neck, heights, stretch, steps, floor)
+        size = spell(chains.start, ways.symbol, desk.start, rise, stretch, steps, desk.goal, fall, desk.whole)
+        if not publish(runs, body, desk.whole, size, ends, desk.rope, stretch, steps, desk.answers, k):
             return OVERFLOW
     return found
 
 
 @compiled
-def anchor_at(layer: Layer, cell: int, word: Ints) -> tuple[Anchor, int]:
-    """Where a cell's steepest way up meets the skeleton, and the size of the word on it."""
-    cell, size = ascend(cell, layer.square, layer.state, layer.runs, word, 0)
-    return locate(cell, layer.state, layer.chains), size
-
-
-@compiled
-def settle(query: Query, start: Anchor, goal: Anchor, split: bool) -> None:
-    """Shut the chains that an anchor splits, or open them again."""
+def split(shut: States, start: Anchor, goal: Anchor, flag: int) -> None:
+    """Shut the chains that an anchor splits (flag 2), or open them again (0)."""
     if start.node < 0:
-        query.shut[start.chain] = query.shut[start.chain] | 2 if split else query.shut[start.chain] & 1
+        shut[start.chain] = shut[start.chain] & 1 | flag
     if goal.node < 0:
-        query.shut[goal.chain] = query.shut[goal.chain] | 2 if split else query.shut[goal.chain] & 1
+        shut[goal.chain] = shut[goal.chain] & 1 | flag
 
 
 @compiled
 def bow(line: Floats, ends: Ends, share: float) -> None:
     """Make arcs dearer by that share of their length times their distance from the straight line, in its lengths."""
     dx, dy = ends[2] - ends[0], ends[3] - ends[1]
-    square = max(dx * dx + dy * dy, 1.0)
+    square = dx * dx + dy * dy
+    if square < 1.0:
+        square = 1.0
     line[0], line[1] = ends[0], ends[1]
     line[2], line[3] = -dy * share / square, dx * share / square
 
 
 @compiled
-def pose(layer: Layer, query: Query, start: Anchor, goal: Anchor) -> None:
-    """Set the query's five arcs, and the goal's distances from the landmarks."""
-    query.joint[:] = -1
-    query.cost[:] = np.inf
-    pose_end(layer, query, start, 0)
-    pose_end(layer, query, goal, 2)
+def pose(query: Query, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, length: Floats) -> None:
+    """Set the query's five arcs."""
+    joint, cost, bars, closed = query.joint, query.cost, query.bars, query.closed
+    for k in range(2):
+        anchor = goal if k else start
+        for j in range(2):
+            if anchor.node < 0:
+                end = j * (starts[anchor.chain + 1] - starts[anchor.chain] - 1)
+                joint[2 * k + j] = ends[anchor.chain, j]
+                cost[2 * k + j] = part(bars, starts, length, anchor.chain, anchor.position, end)
+            else:
+                joint[2 * k + j] = anchor.node if j == 0 else -1
+                cost[2 * k + j] = 0.0 if j == 0 and not closed[anchor.node] else np.inf
+    cost[4] = np.inf
     if start.cell == goal.cell:
-        query.cost[:4] = np.inf
-        query.cost[4] = 0.0
+        for k in range(4):
+            cost[k] = np.inf
+        cost[4] = 0.0
     elif start.chain == goal.chain and start.node < 0 and goal.node < 0:
-        query.cost[4] = part(layer, query, start.chain, start.position, goal.position)
+        cost[4] = part(bars, starts, length, start.chain, start.position, goal.position)
         backward = int(start.position > goal.position)  # the arcs that would pass the other end and come back
-        query.cost[1 - backward] = query.cost[2 + backward] = np.inf
-    settle(query, start, goal, True)
-    for k in range(query.sight.shape[0]):
-        query.sight[k] = np.inf
-        for j in (2, 3):
-            if query.cost[j] < np.inf:
-                query.sight[k] = min(query.sight[k], query.cost[j] + layer.ways.sight[query.joint[j], k])
+        cost[1 - backward] = cost[2 + backward] = np.inf
 
 
 @compiled
-def pose_end(layer: Layer, query: Query, anchor: Anchor, k: int) -> None:
-    """Set the two arcs of one end."""
-    if anchor.node >= 0:
-        query.joint[k] = anchor.node
-        query.cost[k] = np.inf if query.closed[anchor.node] else 0.0
-        return
-    chains = layer.chains
-    size = chains.start[anchor.chain + 1] - chains.start[anchor.chain]
-    for j in range(2):
-        query.joint[k + j] = chains.ends[anchor.chain, j]
-        query.cost[k + j] = part(layer, query, anchor.chain, anchor.position, j * (size - 1))
-
-
-@compiled
-def part(layer: Layer, query: Query, chain: int, begin: int, end: int) -> float:
+def part(bars: Ints, starts: Ints, length: Floats, chain: int, begin: int, end: int) -> float:
     """The length of a part of a chain, in proportion to its cells; infinite when it passes a barred place."""
-    chains = layer.chains
-    for k in range(query.bars.shape[0]):
-        if query.bars[k, 0] == chain and min(begin, end) <= query.bars[k, 1] <= max(begin, end):
+    low, high = (begin, end) if begin < end else (end, begin)
+    for k in range(bars.shape[0]):
+        if bars[k, 0] == chain and low <= bars[k, 1] <= high:
             return np.inf
-    steps = chains.start[chain + 1] - chains.start[chain] - 1
-    return float(layer.ways.length[chain] * abs(end - begin) / steps)
+    return float(length[chain] * (high - low) / (starts[chain + 1] - starts[chain] - 1))
 
 
 @compiled
-def stretch_of(chains: Chains, code: int, start: Anchor, goal: Anchor) -> tuple[int, int, int]:
-    """The chain and the positions between which an arc walks; chain -1 for an arc without length."""
-    extra = code - 2 * chains.ends.shape[0]
-    if extra < 0:
-        last = chains.start[(code >> 1) + 1] - chains.start[code >> 1] - 1
-        return code >> 1, last * (code & 1), last * (1 - (code & 1))
-    if extra == 4:
-        return (start.chain, start.position, goal.position) if start.cell != goal.cell else (-1, 0, 0)
-    anchor = start if extra < 2 else goal
-    if anchor.node >= 0:
-        return -1, 0, 0
-    end = (chains.start[anchor.chain + 1] - chains.start[anchor.chain] - 1) * (extra & 1)
-    return (anchor.chain, anchor.position, end) if extra < 2 else (anchor.chain, end, anchor.position)
+def sight_ends(joint: Ints, cost: Floats, sight: Floats, out: Floats) -> None:
+    """The distances of goal and start from the landmarks."""
+    for k in range(sight.shape[1]):
+        for end in range(2):
+            least = np.inf
+            for j in range(2 - 2 * end, 4 - 2 * end):
+                if cost[j] < np.inf and cost[j] + sight[joint[j], k] < least:
+                    least = cost[j] + sight[joint[j], k]
+            out[end, k] = least
 
 
 @compiled
-def spell(layer: Layer, desk: Desk, way: int, start: Anchor, goal: Anchor, size: int, lowest: int) -> tuple[int, int]:
-    """Add a way's portals to the whole word; returns the word's size and the least square met."""
-    chains, heights = layer.chains, layer.square.reshape(-1)
-    for k in range(desk.album.size[way]):
-        chain, begin, end = stretch_of(chains, desk.album.arcs[way, k], start, goal)
-        if chain < 0:
-            continue
-        size = add_chain(chains, layer.ways, chain, begin, end, desk.whole, size)
-        neck, first = chains.neck[chain], chains.start[chain]
-        if min(begin, end) <= neck - first <= max(begin, end):
-            lowest = min(lowest, heights[chains.cells[neck]])
+def stretches(ends: Ints, starts: Ints, arcs: Ints, row: int, size: int, start: Anchor, goal: Anchor, out: Ints) -> int:
+    """Write the chains that a way walks, and the positions between which; returns how many."""
+    first, used = 2 * ends.shape[0], 0
+    for k in range(size):
+        code = arcs[row, k]
+        extra = code - first
+        if extra < 0:
+            chain, last = code >> 1, starts[(code >> 1) + 1] - starts[code >> 1] - 1
+            begin, end = last * (code & 1), last * (1 - (code & 1))
+        elif extra == 4:
+            chain, begin, end = start.chain, start.position, goal.position
+            if start.cell == goal.cell:
+                continue
         else:
-            for j in range(first + min(begin, end), first + max(begin, end) + 1):
-                lowest = min(lowest, heights[chains.cells[j]])
-    return size, lowest
+            anchor = start if extra < 2 else goal
+            if anchor.node >= 0:
+                continue
+            chain, begin = anchor.chain, anchor.position
+            end = (starts[chain + 1] - starts[chain] - 1) * (extra & 1)
+            if extra >= 2:
+                begin, end = end, begin
+        out[used, 0], out[used, 1], out[used, 2] = chain, begin, end
+        used += 1
+    return used
 
 
 @compiled
-def publish(layer: Layer, desk: Desk, size: int, ends: Ends, start: Anchor, goal: Anchor, k: int) -> bool:
+def lowest_on(starts: Ints, cells: Ints, neck: Ints, heights: Heights, stretch: Ints, steps: int, lowest: int) -> int:
+    """The least square on a way, at most the given one."""
+    for k in range(steps):
+        chain = stretch[k, 0]
+        low, high = stretch[k, 1], stretch[k, 2]
+        if low > high:
+            low, high = high, low
+        first = starts[chain]
+        if low <= neck[chain] - first <= high:
+            low = high = neck[chain] - first
+        for j in range(first + low, first + high + 1):
+            lowest = heights[cells[j]] if heights[cells[j]] < lowest else lowest
+    return lowest
+
+
+@compiled
+def spell(
+    starts: Ints, symbol: Ints, rise: Ints, risen: int, stretch: Ints, steps: int, fall: Ints, fallen: int, word: Ints
+) -> int:
+    """Write the portals of a way from start to goal; returns the word's size."""
+    for k in range(risen):
+        word[k] = rise[k]
+    size = risen
+    for k in range(steps):
+        chain, begin, end = 0 + stretch[k, 0], 0 + stretch[k, 1], 0 + stretch[k, 2]
+        size = add_chain(starts, symbol, chain, begin, end, word, size)
+    for k in range(fallen - 1, -1, -1):
+        size = extend(word, size, 0 - fall[k])
+    return size
+
+
+@compiled
+def publish(
+    runs: Runs,
+    body: bool,
+    word: Ints,
+    size: int,
+    ends: Ends,
+    rope: Rope,
+    stretch: Ints,
+    steps: int,
+    answers: Answers,
+    k: int,
+) -> bool:
     """Pull the rope tight and write the k-th route; False when there is no room."""
-    answers, rope = desk.answers, desk.rope
-    corner, crossing, chain = answers.bounds[k, 0], answers.bounds[k, 1], answers.bounds[k, 2]
-    if (
-        size >= desk.whole.shape[0]
-        or min(answers.corners.shape[0] - corner, rope.x.shape[0]) < 4 * size + 8
-        or answers.crossings.shape[0] < crossing + size
-        or answers.chains.shape[0] < chain + desk.album.size[k]
-    ):
+    bounds, line, crossings, chains = answers.bounds, answers.corners, answers.crossings, answers.chains
+    corner, crossing, chain = bounds[k, 0], bounds[k, 1], bounds[k, 2]
+    room, needed = line.shape[0] - corner, 4 * size + 8
+    if size >= word.shape[0] or room < needed or rope.x.shape[0] < needed:
         return False
-    line = answers.corners[corner:]
-    corners = tighten_word(layer.runs, layer.body, desk.whole, size, ends, rope, line)
+    if crossings.shape[0] < crossing + size or chains.shape[0] < chain + steps:
+        return False
+    line = line[corner:]
+    corners = tighten_word(runs.left, runs.right, runs.line, body, word, size, ends, rope, line)
     answers.length[k] = measure_line(line, corners)
+    number = runs.crossing
     for j in range(size):
-        number = layer.runs.crossing[abs(desk.whole[j]) - 1]
-        if number != 0:
-            answers.crossings[crossing] = number if desk.whole[j] > 0 else -number
+        crossed = number[abs(word[j]) - 1]
+        if crossed != 0:
+            crossings[crossing] = crossed if word[j] > 0 else -crossed
             crossing += 1
-    for j in range(desk.album.size[k]):
-        walked, _, _ = stretch_of(layer.chains, desk.album.arcs[k, j], start, goal)
-        if walked >= 0:
-            answers.chains[chain] = walked
-            chain += 1
-    answers.bounds[k + 1, 0], answers.bounds[k + 1, 1], answers.bounds[k + 1, 2] = corner + corners, crossing, chain
+    for j in range(steps):
+        chains[chain + j] = stretch[j, 0]
+    bounds[k + 1, 0], bounds[k + 1, 1], bounds[k + 1, 2] = corner + corners, crossing, chain + steps
     return True

@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.chains import Chains, contract
+from geometry.bones import Bones, contract
+from geometry.chains import Chains
 from geometry.distance import Squares
 from geometry.runs import Runs, find_runs
 from geometry.skeleton import KINDS, States, Words, classify, trace
@@ -34,15 +35,10 @@ def new_state(shape: tuple[int, ...], words: Words | None = None) -> tuple[State
     return words.view(np.uint8)[:cells].reshape(shape), words
 
 
-def find_chains(square: Squares, level: int, state: States, words: Words) -> Chains:
+def find_bones(square: Squares, level: int, state: States, words: Words) -> Bones:
     """The pathgraph of the cells whose ``square`` is at least ``level``; fills ``state``."""
     classify(square, level, state, np.zeros(square.shape[1], np.uint8), KINDS)
-    return retrace(square, state, words)
-
-
-def retrace(square: Squares, state: States, words: Words) -> Chains:
-    """The pathgraph of cells that are already classified."""
-    trace(square, state, words)
+    trace(square.reshape(-1), state.reshape(-1), square.shape[1], words, np.empty(4, np.int32))
     return contract(square, state, words)
 
 

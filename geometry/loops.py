@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.chains import Chains, Ints
+from geometry.bones import Ints
+from geometry.chains import Chains
 from geometry.distance import Bools
 from geometry.layer import Layer
 from geometry.ways import Anchor

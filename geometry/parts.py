@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.chains import Ints
+from geometry.bones import Ints
 from geometry.compiled import compiled
 from geometry.distance import Bools, Squares
 from geometry.passages import Passage, crosses

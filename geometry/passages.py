@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.chains import Chains, Ints
+from geometry.bones import Ints
+from geometry.chains import Chains
 from geometry.compiled import compiled
 from geometry.distance import Squares
 from geometry.runs import root
@@ -96,7 +97,8 @@ def describe(
 
 def on_chain(chains: Chains, saddle: int, side: int, state: States) -> tuple[int, int]:
     """The chain that leads from a saddle to one side, and the saddle's position on it."""
-    anchor = locate(saddle, state, chains)
+    width, tracks = state.shape[1], (chains.node, chains.leave, chains.start, chains.cells)
+    anchor = locate(saddle, state.reshape(-1), width, *tracks)
     if anchor.node < 0:
         return anchor.chain, anchor.position
     for chain in sorted(set(chains.leave[anchor.node].tolist()) - {-1}):

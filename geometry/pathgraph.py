@@ -4,7 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from geometry.chains import Chains, Floats
+from geometry.bones import Floats
+from geometry.chains import Chains
 from geometry.distance import Squares
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from geometry.chains import Floats
+from geometry.bones import Floats
 from geometry.distance import Bools
 from geometry.passages import Passage
 from geometry.route import Route

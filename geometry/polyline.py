@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.chains import Ints
+from geometry.bones import Ints
 from geometry.runs import Runs, extend, run_at
 
 XY = tuple[float, float]
@@ -41,7 +41,7 @@ def word_of_line(runs: Runs, points: Sequence[Sequence[float]]) -> Ints:
 def first_run(runs: Runs, point: XY) -> tuple[int, int]:
     """The run and row of a line's first point."""
     row = min(int(point[1]), len(runs.row) - 2)
-    run = int(run_at(runs, row, int(point[0])))
+    run = int(run_at(runs.row, runs.low, row, int(point[0])))
     if runs.row[row] == runs.row[row + 1] or not runs.low[run] <= point[0] <= runs.high[run] + 1:
         raise ValueError(f"the line starts in a blocked square, at {point}")
     return run, row

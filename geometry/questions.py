@@ -6,23 +6,37 @@ from math import nan
 import numpy as np
 
 from geometry.anyangle import FULL, NONE, Scout, new_scout, shortest_line
-from geometry.chains import Ints
+from geometry.bones import Ints
+from geometry.chains import Chains
 from geometry.distance import Bools
 from geometry.goals import Region, entry, regions, way_in, word_of_cells
-from geometry.itinerary import OVERFLOW, Desk, Ends, anchor_at, itineraries, new_desk
+from geometry.itinerary import OVERFLOW, Desk, Ground, ground_of, itineraries, new_desk
 from geometry.layer import Layer
 from geometry.loops import Arc, cells_of_way, closed_ways
 from geometry.passages import Passage, on_chain
 from geometry.polyline import crossings_of, join_words, word_of_line
+from geometry.rope import Ends
 from geometry.route import Route, read_answers
+from geometry.runs import Runs
 from geometry.skeleton import SADDLE
 from geometry.tightening import tight_route
+from geometry.ways import Ways, ascend, locate
 
 XY = tuple[float, float]
 SPARE, FEWER = 8, 1  # ways tried beyond those wanted, since their order changes when ropes are pulled tight
 SMALL = 128  # chains of a pathgraph up to which SPARE ways are tried, else FEWER
 SLACK = 1.03  # how much more than any way found a way beyond them may shrink
 NO_BARS: Ints = np.zeros((0, 2), np.int32)
+
+
+def rehearse() -> None:
+    """Compile what takes longest, ``itineraries``, before there is a screen: for arrays of the types it will meet."""
+    ints, table, reals, grid = np.empty(1, np.int32), np.empty((1, 4), np.int32), np.empty(1), np.empty((1, 4))
+    chains = Chains(ints, table, table, ints, ints, ints, reals)
+    runs = Runs(*[ints] * len(Runs._fields))
+    ways = Ways(ints, reals, grid, table, table, grid, grid)
+    ground = Ground(ints, np.empty(1, np.uint8), 1, chains, runs, ways, False)
+    itineraries.entry(ground, (0.0, 0.0, 0.0, 0.0), 1, new_desk(1, 1, 1, 1, 8, NO_BARS))
 
 
 def may_miss(desk: Desk, found: int) -> bool:
@@ -40,7 +54,8 @@ class Questions:
         self._width: int = layer.square.shape[1]
         self._desks: dict[int, Desk] = {}
         self._scout: Scout | None = None
-        self._solve: Callable[[Layer, Ends, int, Desk], int] | None = None
+        self._ground = ground_of(layer)
+        self._solve: Callable[[Ground, Ends, int, Desk], int] | None = None
 
     def admits(self, point: XY) -> bool:
         """Whether the body may be in the square of a point."""
@@ -56,12 +71,12 @@ class Questions:
         if avoid:
             desk = self._forbid(desk, avoid)
         if self._solve is None:
-            self._solve = itineraries.entry(self.layer, ends, wanted, desk)
-        found = self._solve(self.layer, ends, wanted, desk)
+            self._solve = itineraries.entry(self._ground, ends, wanted, desk)
+        found = self._solve(self._ground, ends, wanted, desk)
         while found == OVERFLOW:
             desk = self._desk(wanted, 4 * len(desk.start))
             desk = self._forbid(desk, avoid) if avoid else desk
-            found = self._solve(self.layer, ends, wanted, desk)
+            found = self._solve(self._ground, ends, wanted, desk)
         if avoid:
             desk.query.shut[:] = 0
             desk.query.closed[:] = False
@@ -88,10 +103,10 @@ class Questions:
         """The shortest way of all, or None."""
         runs = self.layer.runs
         if self._scout is None:
-            self._scout = new_scout(1 << 14, len(runs.left))
+            self._scout = new_scout(1 << 14, runs)
         length = shortest_line(runs, (*start, *goal), *self._scout)
         while self._scout.sizes[0] == FULL:
-            self._scout = new_scout(4 * len(self._scout.nodes.left), len(runs.left))
+            self._scout = new_scout(4 * len(self._scout.nodes.key), runs)
             length = shortest_line(runs, (*start, *goal), *self._scout)
         size, corners = self._scout.sizes.tolist()
         if size == NONE:
@@ -119,9 +134,11 @@ class Questions:
     def loops(self, start: XY, around: Bools, k: int) -> list[Route]:
         """Closed routes that wind once about blocked squares."""
         cell = (int(start[1]) + 1) * self._width + int(start[0]) + 1
-        anchor, size = anchor_at(self.layer, cell, np.empty(self.layer.square.size, np.int32))
-        rise = np.empty(size + 1, np.int32)
-        anchor, size = anchor_at(self.layer, cell, rise)
+        ground, runs, chains = self._ground, self.layer.runs, self.layer.chains
+        rise = np.empty(self.layer.square.size, np.int32)
+        cell, size = ascend(cell, ground.heights, ground.states, ground.width, runs.row, runs.up, runs.left, rise)
+        tracks = chains.node, chains.leave, chains.start, chains.cells
+        anchor = locate(cell, ground.states, ground.width, *tracks)
         ways = closed_ways(self.layer, anchor, around, k + SPARE)
         routes = [self._loop(start, rise[:size], way) for way in ways]
         return sorted(routes, key=lambda route: route.length)[:k]

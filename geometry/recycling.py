@@ -9,14 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.distance import Gaps, Squares
+from geometry.distance import Squares
 from geometry.skeleton import Words
 
 
 class Buffers(NamedTuple):
     """The arrays of a screen, by padded shape."""
 
-    gap: Gaps
     square: Squares
     words: Words
 
@@ -29,7 +28,7 @@ def take_buffers(owner: object, shape: tuple[int, int]) -> Buffers:
     buffers = SPARE.pop(shape, None)
     if buffers is None:
         words = np.zeros((shape[0] * shape[1] + 7) // 8, np.uint64)
-        buffers = Buffers(np.empty(shape, np.int16), np.empty(shape, np.int32), words)
+        buffers = Buffers(np.empty(shape, np.int32), words)
     weakref.finalize(owner, give_back, shape, buffers).atexit = False
     return buffers
 

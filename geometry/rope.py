@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.chains import Floats, Ints
+from geometry.bones import Floats, Ints
 from geometry.compiled import compiled
-from geometry.runs import Runs
+
+Ends = tuple[float, float, float, float]  # x and y of the start, x and y of the goal
 
 
 class Rope(NamedTuple):
@@ -41,22 +42,23 @@ def new_rope(portals: int) -> Rope:
 
 @compiled
 def tighten_word(
-    runs: Runs, body: bool, word: Ints, size: int, ends: tuple[float, float, float, float], rope: Rope, out: Floats
+    lefts: Ints, rights: Ints, lines: Ints, body: bool, word: Ints, size: int, ends: Ends, rope: Rope, out: Floats
 ) -> int:
     """Write the corners of the tight rope to ``out`` (corners, 2), both ends included; returns their number.
 
     A point may use whole squares; a body moves on the lines between the centres of its squares and in the meshes of
     four, so each portal counts twice: where the rope leaves the lower line of centres and where it meets the upper.
+    ``lefts``, ``rights`` and ``lines`` are those of the portals (see runs.py).
     """
-    xs, ys = rope.x, rope.y
+    xs, ys, via = rope.x, rope.y, rope.via
     xs[0], ys[0] = ends[0], ends[1]
     inset, times = (0.5, 2) if body else (0.0, 1)
     used = 1
     for k in range(size):
         symbol = word[k]
         portal = abs(symbol) - 1
-        left, right = runs.left[portal] + inset, runs.right[portal] + 1.0 - inset
-        y = runs.line[portal] + 1.0
+        left, right = lefts[portal] + inset, rights[portal] + 1.0 - inset
+        y = lines[portal] + 1.0
         if symbol < 0:
             left, right = right, left
         for n in range(times):
@@ -64,8 +66,8 @@ def tighten_word(
             xs[used], xs[used + 1] = left, right
             used += 2
     xs[used], ys[used] = ends[2], ends[3]
-    funnel(xs, ys, rope.via, rope.queue, used)
-    return unwind(rope, used, out)
+    funnel(xs, ys, via, rope.queue, used)
+    return unwind(xs, ys, via, used, out)
 
 
 @compiled
@@ -107,16 +109,16 @@ def turn(xs: Floats, ys: Floats, a: int, b: int, x: float, y: float) -> float:
 
 
 @compiled
-def unwind(rope: Rope, last: int, out: Floats) -> int:
+def unwind(xs: Floats, ys: Floats, via: Ints, last: int, out: Floats) -> int:
     """Write the way to a corner, without corners met twice in a row; returns their number."""
     size, corner = 1, last
     while corner != 0:
-        corner = rope.via[corner]
+        corner = 0 + via[corner]
         size += 1
     corner = last
     for k in range(size - 1, -1, -1):
-        out[k, 0], out[k, 1] = rope.x[corner], rope.y[corner]
-        corner = rope.via[corner]
+        out[k, 0], out[k, 1] = xs[corner], ys[corner]
+        corner = 0 + via[corner]
     kept = 1
     for k in range(1, size):
         if out[k, 0] != out[kept - 1, 0] or out[k, 1] != out[kept - 1, 1]:

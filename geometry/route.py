@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.chains import Floats
+from geometry.bones import Floats
 from geometry.itinerary import Answers
 
 

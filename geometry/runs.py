@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.chains import Ints
+from geometry.bones import Ints
 from geometry.compiled import compiled
 from geometry.distance import Squares
 
@@ -40,6 +40,8 @@ class Runs(NamedTuple):
     """(p,) the row of the run below."""
     crossing: Ints
     """(p,) the crossing number, 0 in the spanning forest."""
+    exit: Ints
+    """(n,) the signed portal out of a run from which there is no other way on, however one goes; else 0."""
 
 
 def find_runs(square: Squares, level: int) -> Runs:
@@ -53,7 +55,9 @@ def find_runs(square: Squares, level: int) -> Runs:
     p = fill_portals(row, low, high, up, down, left, right, lower, upper, line)
     crossing = np.zeros(p, np.int32)
     number_crossings(lower, upper, np.arange(n, dtype=np.int32), crossing)
-    return Runs(row, low, high, up, down, *trimmed(p, left, right, lower), *trimmed(p, upper, line, crossing))
+    exits = np.zeros(n, np.int32)
+    find_exits(up, down, lower, upper, exits, (np.diff(up) + np.diff(down)).astype(np.int32), np.empty(n, np.int32))
+    return Runs(row, low, high, up, down, *trimmed(p, left, right, lower), *trimmed(p, upper, line, crossing), exits)
 
 
 def trimmed(size: int, a: Ints, b: Ints, c: Ints) -> tuple[Ints, Ints, Ints]:
@@ -136,6 +140,33 @@ def number_crossings(lower: Ints, upper: Ints, parent: Ints, crossing: Ints) -> 
 
 
 @compiled
+def find_exits(up: Ints, down: Ints, lower: Ints, upper: Ints, exits: Ints, degree: Ints, queue: Ints) -> None:
+    """Peel off runs with one portal left, until there are none: the dead ends of free space."""
+    size = 0
+    for run in range(exits.shape[0]):
+        if degree[run] == 1:
+            queue[size] = run
+            size += 1
+    done = 0
+    while done < size:
+        run = queue[done]
+        done += 1
+        if degree[run] != 1:
+            continue
+        for k in range(up[run], up[run + 1] + down[run + 1] - down[run]):
+            above = k < up[run + 1]
+            portal = k if above else k - up[run + 1] + down[run]
+            other = upper[portal] if above else lower[portal]
+            if exits[other] == 0:  # the one not yet peeled
+                exits[run] = portal + 1 if above else -portal - 1
+                degree[other] -= 1
+                if degree[other] == 1:
+                    queue[size] = other
+                    size += 1
+        degree[run] = 0
+
+
+@compiled
 def root(parent: Ints, run: int) -> int:
     """The representative of a run's component, halving the way."""
     while parent[run] != run:
@@ -145,12 +176,12 @@ def root(parent: Ints, run: int) -> int:
 
 
 @compiled
-def run_at(runs: Runs, row: int, column: int) -> int:
-    """The run of a square that lies in one."""
-    low, high = runs.row[row], runs.row[row + 1] - 1
+def run_at(rows: Ints, lows: Ints, row: int, column: int) -> int:
+    """The run of a square that lies in one; ``rows`` and ``lows`` are ``row`` and ``low`` of the runs."""
+    low, high = 0 + rows[row], rows[row + 1] - 1
     while low < high:
         middle = (low + high + 1) >> 1
-        if runs.low[middle] <= column:
+        if lows[middle] <= column:
             low = middle
         else:
             high = middle - 1
@@ -158,17 +189,20 @@ def run_at(runs: Runs, row: int, column: int) -> int:
 
 
 @compiled
-def symbol_between(runs: Runs, cell: int, other: int, width: int) -> int:
-    """The signed portal crossed between two edge neighbours (padded cells); 0 within a row."""
+def symbol_between(rows: Ints, up: Ints, left: Ints, cell: int, other: int, width: int) -> int:
+    """The signed portal crossed between two edge neighbours (padded cells); 0 within a row.
+
+    ``rows``, ``up`` and ``left`` are ``row``, ``up`` and ``left`` of the runs.
+    """
     step = other - cell
     if step == 1 or step == -1:
         return 0
     bottom = cell if step > 0 else other
     row, column = bottom // width - 1, bottom % width - 1
-    low, high = runs.up[runs.row[row]], runs.up[runs.row[row + 1]] - 1
+    low, high = 0 + up[rows[row]], up[rows[row + 1]] - 1
     while low < high:
         middle = (low + high + 1) >> 1
-        if runs.left[middle] <= column:
+        if left[middle] <= column:
             low = middle
         else:
             high = middle - 1

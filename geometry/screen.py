@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.chains import Chains, Ints
+from geometry.bones import Bones, Ints
+from geometry.chains import Chains, find_chains
 from geometry.change import change_squares
-from geometry.distance import Bools, count_columns, measure
+from geometry.distance import Bools
 from geometry.goals import checked_goal
-from geometry.layer import find_chains, find_layer, level_of, new_state, retrace
+from geometry.layer import find_bones, find_layer, level_of, new_state
 from geometry.parts import Labels, find_parts
 from geometry.passages import Passage, find_passages
 from geometry.polyline import word_of_line
@@ -21,6 +22,7 @@ from geometry.recycling import take_buffers
 from geometry.route import Route
 from geometry.skeleton import States, Words
 from geometry.tightening import tight_route, word_of_crossings
+from geometry.windows import measure
 
 if TYPE_CHECKING:
     import networkx
@@ -56,11 +58,10 @@ class Screen:
         grid = checked_grid(free)
         rows, columns = grid.shape
         self.shape = (rows, columns)
-        self._gap, self._square, self._words = take_buffers(self, (rows + 2, columns + 2))
-        sites = np.empty((2, columns + 3), np.int64)
-        count_columns(grid, self._gap)
-        measure(self._gap, self._square, sites[0], sites[1])
-        self._skeletons: dict[int, tuple[States, Words, Chains]] = {}
+        self._square, self._words = take_buffers(self, (rows + 2, columns + 2))
+        measure(grid, self._square)
+        self._skeletons: dict[int, tuple[States, Words, Bones]] = {}
+        self._chains: dict[int, Chains] = {}
         self._questions: dict[tuple[int, bool], Questions] = {}
         self._skeleton_at(1)
 
@@ -76,10 +77,9 @@ class Screen:
             When a square lies outside, the three do not match, or no square would be left free (nothing changes then).
         """
         where = checked_squares(rows, columns, values, self.shape)
-        state, words, _ = self._skeletons[1]
-        change_squares(self._gap, self._square, state, words, *where)
-        self._skeletons = {1: (state, words, retrace(self._square, state, words))}
-        self._questions = {}
+        state, words, bones = self._skeletons[1]
+        self._skeletons = {1: (state, words, change_squares(self._square, state, bones, *where))}
+        self._chains, self._questions = {}, {}
         for name in ("clearance", "skeleton", "pathgraph"):
             self.__dict__.pop(name, None)
         return self
@@ -110,7 +110,7 @@ class Screen:
         """The pathgraph of a body: that of the squares whose clearance is at least its radius."""
         from geometry.pathgraph import networkx_graph
 
-        return networkx_graph(self._square, self._skeleton_at(level_of(radius))[2])
+        return networkx_graph(self._square, self._chains_at(level_of(radius)))
 
     def routes(
         self,
@@ -197,8 +197,7 @@ class Screen:
 
     def passages(self) -> list[Passage]:
         """All necks of free space (see passages.py), in the order of their squares."""
-        state, _, chains = self._skeleton_at(1)
-        return find_passages(self._square, state, chains)
+        return find_passages(self._square, self._skeleton_at(1)[0], self._chains_at(1))
 
     def parts(self, passages: Iterable[Passage]) -> Labels:
         """(rows, columns) int: 0 blocked, else the number of the part of the floor, cut along the passages' necks."""
@@ -213,13 +212,21 @@ class Screen:
             raise ValueError(f"{name} ({x}, {y}) lies in a blocked square")
         return x, y
 
-    def _skeleton_at(self, level: int) -> tuple[States, Words, Chains]:
+    def _skeleton_at(self, level: int) -> tuple[States, Words, Bones]:
         """The skeleton and pathgraph of the squares of at least that level."""
         found = self._skeletons.get(level)
         if found is None:
             state, words = new_state(self._square.shape, self._words if level == 1 else None)
-            found = state, words, find_chains(self._square, level, state, words)
+            found = state, words, find_bones(self._square, level, state, words)
             self._skeletons[level] = found
+        return found
+
+    def _chains_at(self, level: int) -> Chains:
+        """The same pathgraph with the cells of its chains."""
+        found = self._chains.get(level)
+        if found is None:
+            state, _, bones = self._skeleton_at(level)
+            found = self._chains[level] = find_chains(bones, state)
         return found
 
     def _ask(self, radius: float) -> Questions:
@@ -229,7 +236,7 @@ class Screen:
         key = level_of(radius), radius > 0.0
         found = self._questions.get(key)
         if found is None:
-            state, _, chains = self._skeleton_at(key[0])
+            state, chains = self._skeleton_at(key[0])[0], self._chains_at(key[0])
             found = Questions(find_layer(self._square, key[0], key[1], state, chains), key[0])
             self._questions[key] = found
         return found

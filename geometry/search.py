@@ -1,4 +1,4 @@
-"""Shortest ways over the pathgraph: A* and the k shortest ways without a repeated node.
+"""Shortest ways over the pathgraph: A*, and exact distances to the goal.
 
 A query adds two nodes to the n of the pathgraph: the start (n) and the goal (n + 1). An arc is coded as 2 chain + 1
 when walked backwards, 2 chain when forwards; with m chains, 2m and 2m + 1 lead from the start to the ends of its
@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.chains import Chains, Floats, Ints
+from geometry.bones import Floats, Ints
 from geometry.compiled import compiled
 from geometry.heap import pop, push
 from geometry.skeleton import States
@@ -28,7 +28,7 @@ class Query(NamedTuple):
     cost: Floats
     """(5,) the lengths of the five arcs; infinite where there is none."""
     sight: Floats
-    """(landmarks,) the goal's distances from the landmarks."""
+    """(2, landmarks) the goal's distances from the landmarks, and the start's."""
     line: Floats
     """(4,) a point of the straight line from start to goal and the line's normal, scaled: how much dearer an arc is."""
     shut: States
@@ -54,6 +54,8 @@ class Search(NamedTuple):
     """(2m + 5,) mark of arcs that the present search must not use from its origin."""
     ahead: Floats
     """(n + 2,) exact distance to the goal, when ``known``."""
+    path: Ints
+    """(n + 2,) the nodes of the way that is being varied."""
     key: Floats
     """(2m + 8,) heap of promising nodes."""
     node: Ints
@@ -71,6 +73,7 @@ def new_search(nodes: int, chains: int) -> Search:
         np.zeros(nodes + 2, np.int32),
         np.zeros(2 * chains + 5, np.int32),
         np.empty(nodes + 2),
+        np.empty(nodes + 2, np.int32),
         np.empty(2 * chains + 8),
         np.empty(2 * chains + 8, np.int32),
         np.zeros(2, np.int32),
@@ -78,66 +81,56 @@ def new_search(nodes: int, chains: int) -> Search:
 
 
 @compiled
-def fresh(search: Search) -> int:
-    """Begin a new search: all marks of earlier ones become void."""
-    search.stamp[0] += 1
-    return int(search.stamp[0])
-
-
-@compiled
-def seek(chains: Chains, ways: Ways, query: Query, search: Search, origin: int) -> bool:
+def seek(ways: Ways, query: Query, search: Search, origin: int) -> bool:
     """A* from a node to the goal, under the stamp's bars and seals; the way is then in ``came``.
 
-    One loop without calls that pass many arrays: each would cost more than the arc it serves.
+    One loop without calls that pass many arrays, all of them local names: taking an array out of a tuple, or handing
+    it on, costs more than the arc it serves.
     """
-    leave, ends, length, shut = chains.leave, chains.ends, ways.length, query.shut
-    best, came, seen, barred = search.best, search.came, search.seen, search.barred
-    n, arcs, stamp, exact = leave.shape[0], 2 * length.shape[0], search.stamp[0], search.stamp[1] != 0
+    arc, head, step, place, sight = ways.arc, ways.head, ways.step, ways.place, ways.sight
+    joint, extra, line, goal = query.joint, query.cost, query.line, query.sight
+    shut, closed = query.shut, query.closed
+    best, came, seen, barred, sealed = search.best, search.came, search.seen, search.barred, search.sealed
+    ahead, key, spot = search.ahead, search.key, search.node
+    n, arcs, stamp, exact = head.shape[0], 2 * shut.shape[0], search.stamp[0], search.stamp[1] != 0
+    bowed = line[2] != 0.0 or line[3] != 0.0
     best[origin], came[origin], seen[origin] = 0.0, -1, stamp
-    place, line, bowed = ways.place, query.line, query.line[2] != 0.0 or query.line[3] != 0.0
     node, size = origin, 0
     while node != n + 1:
         for slot in range(6):
             if node == n:
-                code = arcs + (0 if slot == 0 else 1 if slot == 1 else 4)
                 if slot > 2:
                     break
+                to = n + 1 if slot == 2 else 0 + joint[slot]
+                code = arcs + (4 if slot == 2 else slot)
+                cost = extra[code - arcs]
             elif slot < 4:
-                chain = leave[node, slot]
-                if chain < 0 or shut[chain] or ends[chain, 0] == ends[chain, 1]:
+                to, code, cost = 0 + head[node, slot], 0 + arc[node, slot], step[node, slot]
+                if to < 0 or shut[code >> 1]:
                     continue
-                code = 2 * chain if ends[chain, 0] == node else 2 * chain + 1
             else:
-                code = arcs + slot - 2
-                if query.joint[slot - 2] != node:
+                to, code, cost = n + 1, arcs + slot - 2, extra[slot - 2]
+                if joint[slot - 2] != node:
                     continue
-            if node == origin and search.sealed[code] == stamp:
+            if node == origin and sealed[code] == stamp:
                 continue
-            head, cost = n + 1, 0.0
-            if code < arcs:
-                head, cost = ends[code >> 1, 1 - (code & 1)], length[code >> 1]
-            else:
-                cost = query.cost[code - arcs]
-                if code < arcs + 2:
-                    head = query.joint[code - arcs]
             if (
-                head < n and bowed
+                to < n and bowed
             ):  # among ways of one length, the one nearest to the straight line is shortest when tight
-                off = (place[head, 0] - line[0]) * line[2] + (place[head, 1] - line[1]) * line[3]
-                cost *= 1.0 + abs(off)
+                cost *= 1.0 + abs((place[to, 0] - line[0]) * line[2] + (place[to, 1] - line[1]) * line[3])
             total = best[node] + cost
-            if total == np.inf or barred[head] == stamp or (seen[head] == stamp and best[head] <= total):
+            if total == np.inf or barred[to] == stamp or (seen[to] == stamp and best[to] <= total):
                 continue
-            if head < n and query.closed[head]:
+            if to < n and closed[to]:
                 continue
-            best[head], came[head], seen[head] = total, code, stamp
+            best[to], came[to], seen[to] = total, code, stamp
             rest = 0.0
-            if head < n:
-                rest = search.ahead[head] if exact else bound(ways.sight, query.sight, head)
+            if to < n:
+                rest = ahead[to] if exact else bound(sight, goal, 0, to)
             if rest < np.inf:
-                size = push(search.key, search.node, size, total + rest, head)
+                size = push(key, spot, size, total + rest, to)
         while size > 0 and (node == origin or barred[node] == stamp):
-            node, size = pop(search.key, search.node, size)
+            node, size = pop(key, spot, size)
             if barred[node] != stamp:
                 break
         else:
@@ -148,71 +141,48 @@ def seek(chains: Chains, ways: Ways, query: Query, search: Search, origin: int) 
 
 
 @compiled
-def bound(sight: Floats, goal: Floats, node: int) -> float:
-    """A lower bound of the way from a node to the goal by the triangle inequality over the landmarks."""
+def bound(sight: Floats, ends: Floats, end: int, node: int) -> float:
+    """A lower bound of the way from a node to the goal (end 0) or the start (1), by the landmarks' triangles."""
     least = 0.0
-    for k in range(goal.shape[0]):
-        if sight[node, k] != goal[k]:  # not both infinite
-            least = max(least, abs(sight[node, k] - goal[k]))
+    for k in range(sight.shape[1]):
+        if sight[node, k] != ends[end, k]:  # not both infinite
+            gap = abs(sight[node, k] - ends[end, k])
+            least = gap if gap > least else least
     return least
 
 
 @compiled
-def arc_cost(ways: Ways, query: Query, code: int) -> float:
-    """The length of an arc."""
-    arcs = 2 * ways.length.shape[0]
-    return float(ways.length[code >> 1] if code < arcs else query.cost[code - arcs])
+def survey(ways: Ways, query: Query, search: Search, limit: float) -> None:
+    """Fill ``ahead`` with the exact distances to the goal: Dijkstra, backwards.
 
-
-@compiled
-def head_of(chains: Chains, query: Query, code: int) -> int:
-    """The node an arc leads to."""
-    extra = code - 2 * chains.ends.shape[0]
-    if extra < 0:
-        return int(chains.ends[code >> 1, 1 - (code & 1)])
-    return int(query.joint[extra]) if extra < 2 else chains.node.shape[0] + 1
-
-
-@compiled
-def tail_of(chains: Chains, query: Query, code: int) -> int:
-    """The node an arc comes from."""
-    extra = code - 2 * chains.ends.shape[0]
-    if extra < 0:
-        return int(chains.ends[code >> 1, code & 1])
-    return int(query.joint[extra]) if extra in (2, 3) else chains.node.shape[0]
-
-
-@compiled
-def survey(chains: Chains, ways: Ways, query: Query, search: Search, limit: float) -> None:
-    """Fill ``ahead`` with the exact distances to the goal as far as a limit: Dijkstra, backwards."""
-    leave, ends, length, ahead = chains.leave, chains.ends, ways.length, search.ahead
-    n = leave.shape[0]
-    ahead[:] = np.inf
-    size = 0
-    for k in (2, 3):
-        node = query.joint[k]
-        if query.cost[k] < np.inf and query.cost[k] < ahead[node] and not query.closed[node]:
-            ahead[node] = query.cost[k]
-            size = push(search.key, search.node, size, query.cost[k], node)
+    Nodes that no way up to the limit can pass are left out.
+    """
+    arc, head, step, sight = ways.arc, ways.head, ways.step, ways.sight
+    joint, cost, ends, shut, closed = query.joint, query.cost, query.sight, query.shut, query.closed
+    ahead, key, spot = search.ahead, search.key, search.node
+    n, size = head.shape[0], 0
+    for k in range(n + 2):
+        ahead[k] = np.inf
+    for k in range(2, 4):
+        if cost[k] < np.inf and cost[k] < ahead[joint[k]] and not closed[joint[k]]:
+            ahead[joint[k]] = cost[k]
+            size = push(key, spot, size, cost[k], 0 + joint[k])
     while size > 0:
-        key = search.key[0]
-        node, size = pop(search.key, search.node, size)
-        if key > limit:
-            break
-        if key > ahead[node]:
+        done = key[0]
+        node, size = pop(key, spot, size)
+        if done > ahead[node]:
             continue
-        for direction in range(4):
-            chain = leave[node, direction]
-            if chain < 0 or query.shut[chain]:
+        for slot in range(4):
+            other = 0 + head[node, slot]
+            if other < 0 or shut[arc[node, slot] >> 1] or closed[other]:
                 continue
-            other = ends[chain, 0] if ends[chain, 1] == node else ends[chain, 1]
-            total = key + length[chain]
-            if total < ahead[other] and not query.closed[other]:
+            total = done + step[node, slot]
+            if total < ahead[other] and total + bound(sight, ends, 1, other) <= limit:
                 ahead[other] = total
-                size = push(search.key, search.node, size, total, other)
+                size = push(key, spot, size, total, other)
     ahead[n + 1] = 0.0
-    ahead[n] = query.cost[4]
-    for k in (0, 1):
-        if query.cost[k] < np.inf:
-            ahead[n] = min(ahead[n], query.cost[k] + ahead[query.joint[k]])
+    ahead[n] = cost[4]
+    for k in range(2):
+        if cost[k] < np.inf and cost[k] + ahead[joint[k]] < ahead[n]:
+            ahead[n] = cost[k] + ahead[joint[k]]
     search.stamp[1] = 1

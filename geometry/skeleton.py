@@ -19,6 +19,10 @@ from geometry.compiled import compiled
 from geometry.distance import Squares
 
 States = NDArray[np.uint8]
+Heights = Squares
+"""(cells,) squares, flat."""
+Flags = States
+"""(cells,) states, flat."""
 Words = NDArray[np.uint64]
 
 LINKS = 15
@@ -76,33 +80,33 @@ def classify_part(
 
 
 @compiled
-def trace(square: Squares, state: States, words: Words) -> None:
-    """Link the ways up from all saddles. ``words`` is ``state`` by eights."""
-    width = square.shape[1]
-    heights, states = square.reshape(-1), state.reshape(-1)
+def trace(heights: Heights, states: Flags, width: int, words: Words, starts: NDArray[np.int32]) -> None:
+    """Link the ways up from all saddles. ``words`` is ``states`` by eights; ``starts`` is scratch (4,)."""
     for word in range(words.shape[0]):
         if words[word] == 0:
             continue
-        for cell in range(8 * word, min(8 * word + 8, heights.shape[0])):
-            if states[cell] & SADDLE:
-                leave(cell, heights, states, width)
+        for cell in range(8 * word, 8 * word + 8):
+            if cell < states.shape[0] and states[cell] & SADDLE:
+                for k in range(ways_up(cell, heights, width, starts)):
+                    climb(cell, starts[k], heights, states, width)
 
 
 @compiled
-def leave(saddle: int, heights: Squares, states: States, width: int) -> None:
-    """Go up once into each group of higher neighbours of a saddle."""
-    start = 0
+def ways_up(saddle: int, heights: Heights, width: int, starts: NDArray[np.int32]) -> int:
+    """Write the highest edge neighbour in each group of higher neighbours of a saddle; returns how many."""
+    start, found, best = 0, 0, -1
     while above(saddle + beside(start, width), saddle, heights):
         start += 1
-    best = -1
     for k in range(start + 1, start + 9):
         cell = saddle + beside(k, width)
         if not above(cell, saddle, heights):
             if best >= 0:
-                climb(saddle, best, heights, states, width)
+                starts[found] = best
+                found += 1
             best = -1
         elif k % 2 == 0 and (best < 0 or above(cell, best, heights)):
             best = cell
+    return found
 
 
 @compiled

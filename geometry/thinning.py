@@ -8,7 +8,7 @@ lines.
 
 import numpy as np
 
-from geometry.chains import Ints
+from geometry.bones import Ints
 from geometry.compiled import compiled
 from geometry.distance import Bools, Squares
 from geometry.skeleton import KINDS, States, beside

@@ -4,22 +4,23 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geometry.chains import Ints
-from geometry.itinerary import Ends
+from geometry.bones import Ints
 from geometry.layer import Layer
 from geometry.polyline import crossings_of, join_words
-from geometry.rope import measure_line, new_rope, tighten_word
+from geometry.rope import Ends, measure_line, new_rope, tighten_word
 from geometry.route import Route
 from geometry.runs import Runs, run_at
 
 
 def tight_route(layer: Layer, ends: Ends, word: Ints, clearance: float, chains: tuple[int, ...]) -> Route:
     """The tight route of a reduced word."""
-    line = np.empty((4 * len(word) + 8, 2))
-    corners = tighten_word(layer.runs, layer.body, word, len(word), ends, new_rope(len(word)), line)
+    runs, line = layer.runs, np.empty((4 * len(word) + 8, 2))
+    corners = tighten_word(
+        runs.left, runs.right, runs.line, layer.body, word, len(word), ends, new_rope(len(word)), line
+    )
     points = line[:corners].copy()
     points.flags.writeable = False
-    return Route(points, measure_line(points, corners), clearance, crossings_of(layer.runs, word), chains)
+    return Route(points, measure_line(points, corners), clearance, crossings_of(runs, word), chains)
 
 
 def word_of_crossings(runs: Runs, ends: Ends, crossings: Sequence[int]) -> Ints | None:
@@ -30,8 +31,8 @@ def word_of_crossings(runs: Runs, ends: Ends, crossings: Sequence[int]) -> Ints 
     ValueError
         When there is no such crossing number, or none that can be reached.
     """
-    run = run_at(runs, int(ends[1]), int(ends[0]))
-    goal = run_at(runs, int(ends[3]), int(ends[2]))
+    run = run_at(runs.row, runs.low, int(ends[1]), int(ends[0]))
+    goal = run_at(runs.row, runs.low, int(ends[3]), int(ends[2]))
     tree = forest(runs)
     portals = {int(number): portal + 1 for portal, number in enumerate(runs.crossing.tolist()) if number}
     pieces: list[Ints] = []

@@ -9,7 +9,7 @@ from heapq import heappop, heappush
 
 import numpy as np
 
-from geometry.chains import Floats
+from geometry.bones import Floats
 from geometry.compiled import compiled
 from geometry.distance import Bools
 

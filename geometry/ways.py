@@ -6,13 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.chains import Chains, Floats, Ints, find, is_node, onward, stride
+from geometry.bones import Floats, Ints, find, is_node, onward, stride
+from geometry.chains import Chains
 from geometry.compiled import compiled
 from geometry.distance import Squares
 from geometry.heap import pop, push
 from geometry.rope import Rope, measure_line, new_rope, tighten_word
 from geometry.runs import Runs, extend, symbol_between
-from geometry.skeleton import States, steepest
+from geometry.skeleton import Flags, Heights, steepest
 
 LANDMARKS = 6
 
@@ -26,6 +27,12 @@ class Ways(NamedTuple):
     """(m,) the length of the tight rope between the chain's ends, in squares."""
     place: Floats
     """(n, 2) the nodes' centres, in squares."""
+    head: Ints
+    """(n, 4) the node to which the chain leads that leaves a node to the east, north, west, south; -1 for none."""
+    arc: Ints
+    """(n, 4) the code of that arc (see search.py)."""
+    step: Floats
+    """(n, 4) its length."""
     sight: Floats
     """(n, landmarks) distances over the pathgraph from the landmarks; infinite where there is no way."""
 
@@ -49,57 +56,83 @@ def find_ways(square: Squares, chains: Chains, runs: Runs, body: bool) -> Ways:
     symbol = np.zeros(chains.cells.shape[0], np.int32)
     length = np.empty(chains.length.shape[0])
     longest = int(np.diff(chains.start).max(initial=1))
-    word, line = np.empty(longest, np.int32), np.empty((4 * longest + 8, 2))
-    measure_ways(chains, runs, body, width, symbol, length, word, line, new_rope(2 * longest))
+    word, line, rope = np.empty(longest, np.int32), np.empty((4 * longest + 8, 2)), new_rope(2 * longest)
+    find_symbols(chains.start, chains.cells, runs.row, runs.up, runs.left, width, symbol)
+    portals = runs.left, runs.right, runs.line
+    measure_ways(chains.start, chains.cells, symbol, *portals, body, width, length, word, line, rope)
     place = np.stack([chains.node % width - 0.5, chains.node // width - 0.5], axis=1)
-    return Ways(symbol, length, place, sights(chains, length))
+    shape = len(chains.node), 4
+    head, arc, step = np.full(shape, -1, np.int32), np.zeros(shape, np.int32), np.zeros(shape)
+    find_arcs(chains.leave, chains.ends, length, head, arc, step)
+    return Ways(symbol, length, place, head, arc, step, sights(head, step))
+
+
+@compiled
+def find_symbols(start: Ints, cells: Ints, row: Ints, up: Ints, left: Ints, width: int, symbol: Ints) -> None:
+    """Fill the symbols of all chains."""
+    for chain in range(start.shape[0] - 1):
+        for k in range(start[chain], start[chain + 1] - 1):
+            symbol[k] = symbol_between(row, up, left, 0 + cells[k], 0 + cells[k + 1], width)
 
 
 @compiled
 def measure_ways(
-    chains: Chains,
-    runs: Runs,
+    start: Ints,
+    cells: Ints,
+    symbol: Ints,
+    left: Ints,
+    right: Ints,
+    line: Ints,
     body: bool,
     width: int,
-    symbol: Ints,
     length: Floats,
     word: Ints,
-    line: Floats,
+    out: Floats,
     rope: Rope,
 ) -> None:
-    """Fill the symbols and tight lengths of all chains."""
+    """Fill the tight lengths of all chains."""
     for chain in range(length.shape[0]):
         size = 0
-        first, last = chains.start[chain], chains.start[chain + 1] - 1
+        first, last = start[chain], start[chain + 1] - 1
         for k in range(first, last):
-            symbol[k] = symbol_between(runs, chains.cells[k], chains.cells[k + 1], width)
-            size = extend(word, size, symbol[k])
-        a, b = chains.cells[first], chains.cells[last]
+            size = extend(word, size, 0 + symbol[k])
+        a, b = cells[first], cells[last]
         ends = (a % width - 0.5, a // width - 0.5, b % width - 0.5, b // width - 0.5)
-        corners = tighten_word(runs, body, word, size, ends, rope, line)
-        length[chain] = measure_line(line, corners)
-
-
-def sights(chains: Chains, length: Floats) -> Floats:
-    """Distances from landmarks: each next one is the node furthest from those before (Goldberg and Harrelson 2005)."""
-    n = len(chains.node)
-    sight = np.full((n, min(LANDMARKS, n)), np.inf)
-    key, node = np.empty(2 * len(length) + 8), np.empty(2 * len(length) + 8, np.int32)
-    nearest, spot = np.full(n, np.inf), 0
-    for k in range(sight.shape[1]):
-        distances_from(chains, length, spot, sight[:, k], key, node)
-        if k == 0:  # the first is only a place to start from
-            first = np.where(np.isfinite(sight[:, 0]), sight[:, 0], -1.0)
-            spot = int(np.argmax(first))
-            sight[:, 0] = np.inf
-            distances_from(chains, length, spot, sight[:, 0], key, node)
-        nearest = np.minimum(nearest, sight[:, k])
-        spot = int(np.argmax(nearest))
-    return sight
+        corners = tighten_word(left, right, line, body, word, size, ends, rope, out)
+        length[chain] = measure_line(out, corners)
 
 
 @compiled
-def distances_from(chains: Chains, length: Floats, spot: int, out: Floats, key: Floats, node: Ints) -> None:
+def find_arcs(leave: Ints, ends: Ints, length: Floats, head: Ints, arc: Ints, step: Floats) -> None:
+    """Fill the arcs out of every node; chains back to the same node lead nowhere."""
+    for node in range(leave.shape[0]):
+        for slot in range(4):
+            chain = leave[node, slot]
+            if chain >= 0 and ends[chain, 0] != ends[chain, 1]:
+                backward = 0 if ends[chain, 0] == node else 1
+                head[node, slot], arc[node, slot] = ends[chain, 1 - backward], 2 * chain + backward
+                step[node, slot] = length[chain]
+
+
+def sights(head: Ints, step: Floats) -> Floats:
+    """Distances from landmarks: each next one is the node furthest from those before (Goldberg and Harrelson 2005)."""
+    n = len(head)
+    sight = np.full((min(LANDMARKS, n), n), np.inf)
+    key, node = np.empty(4 * n + 8), np.empty(4 * n + 8, np.int32)
+    nearest, spot = np.full(n, np.inf), 0
+    for k in range(len(sight)):
+        distances_from(head, step, spot, sight[k], key, node)
+        if k == 0:  # the first is only a place to start from
+            spot = int(np.argmax(np.where(np.isfinite(sight[0]), sight[0], -1.0)))
+            sight[0] = np.inf
+            distances_from(head, step, spot, sight[0], key, node)
+        nearest = np.minimum(nearest, sight[k])
+        spot = int(np.argmax(nearest))
+    return np.ascontiguousarray(sight.T)
+
+
+@compiled
+def distances_from(head: Ints, step: Floats, spot: int, out: Floats, key: Floats, node: Ints) -> None:
     """Dijkstra over the whole pathgraph."""
     out[spot] = 0.0
     size = push(key, node, 0, 0.0, spot)
@@ -108,72 +141,67 @@ def distances_from(chains: Chains, length: Floats, spot: int, out: Floats, key: 
         here, size = pop(key, node, size)
         if done > out[here]:
             continue
-        for direction in range(4):
-            chain = chains.leave[here, direction]
-            if chain < 0:
-                continue
-            other = chains.ends[chain, 0] if chains.ends[chain, 1] == here else chains.ends[chain, 1]
-            if done + length[chain] < out[other]:
-                out[other] = done + length[chain]
+        for slot in range(4):
+            other = 0 + head[here, slot]
+            if other >= 0 and done + step[here, slot] < out[other]:
+                out[other] = done + step[here, slot]
                 size = push(key, node, size, out[other], other)
 
 
 @compiled
-def ascend(cell: int, square: Squares, state: States, runs: Runs, word: Ints, size: int) -> tuple[int, int]:
-    """Go up the steepest way from a cell to the skeleton, adding its portals; returns cell and word size."""
-    width = square.shape[1]
-    heights, states = square.reshape(-1), state.reshape(-1)
+def ascend(
+    cell: int, heights: Heights, states: Flags, width: int, row: Ints, up: Ints, left: Ints, word: Ints
+) -> tuple[int, int]:
+    """Go up the steepest way from a cell to the skeleton, writing its portals; returns cell and word size."""
+    size = 0
     while states[cell] == 0:
         higher = steepest(cell, heights, width)
-        size = extend(word, size, symbol_between(runs, cell, higher, width))
+        size = extend(word, size, symbol_between(row, up, left, cell, higher, width))
         cell = higher
     return cell, size
 
 
 @compiled
-def locate(cell: int, state: States, chains: Chains) -> Anchor:
+def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
     """The place of a skeleton cell on the pathgraph."""
-    width = state.shape[1]
-    states = state.reshape(-1)
-    if is_node(states[cell]):
-        return locate_node(cell, chains)
+    if is_node(0 + states[cell]):
+        return locate_node(cell, node, leave, start, cells)
     direction = 0
     while not states[cell] >> direction & 1:
         direction += 1
     steps, here = 0, cell
-    while steps == 0 or not is_node(states[here]):
+    while steps == 0 or not is_node(0 + states[here]):
         if steps > 0:
-            direction = onward(states[here], direction ^ 2)
+            direction = onward(0 + states[here], direction ^ 2)
         here += stride(direction, width)
         steps += 1
-    chain = chains.leave[find(chains.node, here), direction ^ 2]
-    first = chains.start[chain]
-    if chains.cells[first + steps] != cell:  # we came to the chain's far end (or round a ring to its near one)
-        steps = chains.start[chain + 1] - first - 1 - steps
+    chain = leave[find(node, here), direction ^ 2]
+    first = start[chain]
+    if cells[first + steps] != cell:  # we came to the chain's far end (or round a ring to its near one)
+        steps = start[chain + 1] - first - 1 - steps
     return Anchor(0 + chain, steps, -1, cell)
 
 
 @compiled
-def locate_node(cell: int, chains: Chains) -> Anchor:
+def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
     """The place of a node, as an end of one of its chains if it has any."""
-    node, found, position = find(chains.node, cell), -1, 0
+    number, found, position = find(node, cell), -1, 0
     for direction in range(4):
-        chain = chains.leave[node, direction]
+        chain = 0 + leave[number, direction]
         if chain >= 0:
             found = chain
-            at_start = chains.cells[chains.start[chain]] == cell
-            position = 0 if at_start else chains.start[chain + 1] - chains.start[chain] - 1
-    return Anchor(found, position, node, cell)
+            position = 0 if cells[start[chain]] == cell else start[chain + 1] - start[chain] - 1
+    return Anchor(found, position, number, cell)
 
 
 @compiled
-def add_chain(chains: Chains, ways: Ways, chain: int, begin: int, end: int, word: Ints, size: int) -> int:
+def add_chain(start: Ints, symbol: Ints, chain: int, begin: int, end: int, word: Ints, size: int) -> int:
     """Add the portals along a chain from one position to another, in either direction; returns the word's size."""
-    first = chains.start[chain]
+    first = start[chain]
     if begin <= end:
         for k in range(first + begin, first + end):
-            size = extend(word, size, ways.symbol[k])
+            size = extend(word, size, 0 + symbol[k])
     else:
         for k in range(first + begin - 1, first + end - 1, -1):
-            size = extend(word, size, -ways.symbol[k])
+            size = extend(word, size, 0 - symbol[k])
     return size

@@ -22,7 +22,7 @@ def warm() -> None:
     tell()
     command = [sys.executable, "-m", "simulator.warming"]
     with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL):
-        compile_routes()
+        compile_longest()
 
 
 def cold() -> bool:
@@ -34,35 +34,37 @@ def cold() -> bool:
     return not any(place.is_dir() and next(place.rglob(INDEX), None) for place in places)
 
 
-def compile_routes() -> None:
-    """Find routes on a small screen, which compiles all that routes need."""
+def compile_longest() -> None:
+    """The search for routes, which takes half of the time, and the shapes of images, which share nothing with it."""
     import numpy as np
 
-    free = np.ones((20, 20), np.bool_)
-    free[8:12, 5:16] = False
-    geometry.Screen(free).routes((2.5, 2.5), (17.5, 17.5), k=4)
+    from geometry.questions import rehearse
+    from geometry.template import fit_shapes
+
+    rehearse()
+    fit_shapes(np.array([[1, 1, 1, 0], [1, 1, 1, 1], [0, 1, 1, 1]], np.bool_))
 
 
 def compile_others() -> None:
-    """Use what else a run needs: necks, ways by distance, shapes and contacts."""
+    """Use what else a run needs: screens, necks, shortest ways, distances and contacts."""
     import numpy as np
     import shapely
 
     from geometry.contact import Body, Obstacles
     from geometry.reach import reach
     from geometry.rigid import Rotate, Translate
-    from geometry.template import fit_shapes
 
-    fit_shapes(np.array([[1, 1, 1, 0], [1, 1, 1, 1], [0, 1, 1, 1]], np.bool_))
     free = np.ones((12, 20), np.bool_)
     free[:4, 9:11] = free[7:, 9:11] = False
     screen = geometry.Screen(free)
     screen.parts(screen.passages())
+    _ = screen.pathgraph
     reach(free, 1, 1)
     walls = Obstacles([shapely.box(10, 0, 11, 5)])
     for body in (Body(shapely.box(1, 1, 3, 3), [(4.0, 1.0)]), Body(None, [(4.0, 1.0)])):
         walls.first_contact(body, Translate(8.0, 0.0))
         walls.first_contact(body, Rotate(30.0, (4.0, 1.0)))
+    screen.shortest((2.5, 2.5), (17.5, 9.5))
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ def same(screen, other):
     assert (screen.free == other.free).all()
     assert (screen.clearance == other.clearance).all()
     assert (screen.skeleton == other.skeleton).all()
+    assert np.array_equal(screen._skeleton_at(1)[0], other._skeleton_at(1)[0])
     for mine, fresh in zip(screen._skeleton_at(1)[2], other._skeleton_at(1)[2], strict=True):
         assert np.array_equal(mine, fresh)
 

@@ -5,6 +5,7 @@ import sys
 
 import numpy as np
 
+from geometry import Screen, questions
 from geometry.compiled import compiled
 
 
@@ -30,3 +31,14 @@ def test_importing_geometry_loads_neither_numba_nor_networkx() -> None:
     code = "import sys, geometry; print([m for m in ('numba', 'networkx') if m in sys.modules])"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "[]"
+
+
+def test_routes_are_rehearsed_with_the_types_they_are_played_with() -> None:
+    questions.rehearse()
+    assert len(Screen(np.ones((4, 4), bool)).routes((0.5, 0.5), (3.5, 3.5), k=4)) == 1
+    assert len(getattr(questions.itineraries.machine(), "overloads", [None])) == 1
+
+
+def test_whole_numbers_of_all_widths_share_one_copy() -> None:
+    assert [double(np.int32(3)), double(np.uint8(4)), double(5)] == [6, 8, 10]
+    assert len(getattr(double.machine() if hasattr(double, "machine") else double, "overloads", [None])) == 1

@@ -109,10 +109,11 @@ def test_a_passage_avoided_is_a_neck_cut(free):
     screen = Screen(free)
     nodes = [(node["x"], node["y"]) for _, node in screen.pathgraph.nodes(data=True)]
     start, goal = nodes[0], nodes[-1]  # on the skeleton: elsewhere a square may lie on the cut itself
+    ends = {start, goal}
     for passage in doors(screen):  # at lesser necks other chains may run where the floor is cut
         label = screen.parts([passage])
         ways = screen.routes(start, goal, avoid=[passage])
-        if passage.place not in (start, goal):
+        if not ends & {passage.place, passage.towards}:  # a junction in the cut's way may lose other chains to it
             same = label[int(start[1]), int(start[0])] == label[int(goal[1]), int(goal[0])]
             assert bool(ways) == same
 

@@ -1,0 +1,189 @@
+"""The skeleton where clearances change: ways up that may lead elsewhere are taken back, and taken anew.
+
+# Strategy: a link leads from a cell to a higher one, and hangs on the clearances about the lower cell alone. So only
+links that leave a cell on or beside a changed one go; then, from where they led, every way that nothing leads to any
+more. What is left is part of the new skeleton, and the rest grows back as it first grew (skeleton.py).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.bones import Ints, stride
+from geometry.compiled import compiled
+from geometry.distance import Squares
+from geometry.skeleton import (
+    CLIMBED,
+    KINDS,
+    LINKS,
+    SADDLE,
+    SUMMIT,
+    Flags,
+    Heights,
+    States,
+    above,
+    beside,
+    link,
+    steepest,
+    ways_up,
+)
+
+TOUCHED, MOVED, JOINED = 1, 2, 4  # marks of cells: state may differ, clearance differs, to be joined again
+
+
+class Journal(NamedTuple):
+    """What has changed."""
+
+    states: Flags
+    mark: Flags
+    """(cells,) TOUCHED and MOVED."""
+    touched: Ints
+    """The touched cells."""
+    before: Flags
+    """Their states before."""
+    size: Ints
+    """(1,) how many."""
+
+
+def regrow(square: Squares, state: States, bounds: Ints, fresh: Squares) -> Journal:
+    """Set new clearances and grow the skeleton again.
+
+    bounds : (rows, 3 or more) first and last column that change, and where in ``fresh`` their values start.
+    """
+    heights, states, width = square.reshape(-1), state.reshape(-1), square.shape[1]
+    size = len(states)
+    lists = np.empty(size, np.int32), np.empty(size, np.uint8), np.zeros(1, np.int32)
+    journal = Journal(states, np.zeros(size, np.uint8), *lists)
+    about = np.empty((len(bounds), 2), np.int32)
+    spread(bounds, width, about)
+    prune(heights, width, about, journal)
+    settle(heights, width, bounds, fresh, about, KINDS, journal)
+    grow(heights, width, about, np.empty(4, np.int32), journal)
+    return journal
+
+
+@compiled
+def spread(bounds: Ints, width: int, about: Ints) -> None:
+    """The columns on or beside a changed cell, per row."""
+    rows = bounds.shape[0]
+    for row in range(rows):
+        about[row, 0], about[row, 1] = width, -1
+    for row in range(1, rows - 1):
+        for near in range(row - 1, row + 2):
+            if bounds[near, 1] >= 0:
+                first = bounds[near, 0] - 1 if bounds[near, 0] > 1 else 1
+                last = bounds[near, 1] + 1 if bounds[near, 1] < width - 2 else width - 2
+                about[row, 0] = first if first < about[row, 0] else about[row, 0]
+                about[row, 1] = last if last > about[row, 1] else about[row, 1]
+
+
+@compiled
+def touch(journal: Journal, cell: int) -> None:
+    """Remember a cell's state before it changes."""
+    if not journal.mark[cell] & TOUCHED:
+        journal.mark[cell] |= TOUCHED
+        k = journal.size[0]
+        journal.touched[k], journal.before[k], journal.size[0] = cell, journal.states[cell], k + 1
+
+
+@compiled
+def prune(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
+    """Take back all ways up from the cells about, and what hangs on them."""
+    states = journal.states
+    for row in range(about.shape[0]):
+        for cell in range(row * width + about[row, 0], row * width + about[row, 1] + 1):
+            if not states[cell] & ~(SADDLE | SUMMIT):
+                continue
+            touch(journal, cell)
+            for direction in range(4):
+                other = cell + stride(direction, width)
+                if states[cell] >> direction & 1 and above(other, cell, heights):
+                    unlink(journal, cell, other, direction)
+                    wither(heights, width, about, journal, other)
+            states[cell] &= LINKS | SADDLE | SUMMIT
+
+
+@compiled
+def unlink(journal: Journal, cell: int, other: int, direction: int) -> None:
+    """Take back a link."""
+    touch(journal, cell)
+    touch(journal, other)
+    journal.states[cell] &= ~(1 << direction)
+    journal.states[other] &= ~(1 << (direction ^ 2))
+
+
+@compiled
+def wither(heights: Heights, width: int, about: Ints, journal: Journal, cell: int) -> None:
+    """Take back the way up from a cell outside that nothing leads to any more."""
+    states = journal.states
+    while not states[cell] & (SADDLE | SUMMIT):
+        row = cell // width
+        if about[row, 0] <= cell - row * width <= about[row, 1]:
+            return
+        up, higher = -1, cell
+        for direction in range(4):
+            if states[cell] >> direction & 1:
+                other = cell + stride(direction, width)
+                if not above(other, cell, heights):
+                    return
+                up, higher = direction, other
+        touch(journal, cell)
+        states[cell] &= LINKS
+        if up < 0:
+            return
+        unlink(journal, cell, higher, up)
+        cell = higher
+
+
+@compiled
+def settle(
+    heights: Heights, width: int, bounds: Ints, fresh: Squares, about: Ints, kind: Flags, journal: Journal
+) -> None:
+    """Set the new clearances, and the flags of the cells about."""
+    for row in range(bounds.shape[0]):
+        for k in range(bounds[row, 1] - bounds[row, 0] + 1):
+            cell, value = row * width + bounds[row, 0] + k, fresh[bounds[row, 2] + k]
+            if heights[cell] != value:
+                heights[cell] = value
+                journal.mark[cell] |= MOVED
+    for row in range(about.shape[0]):
+        for cell in range(row * width + about[row, 0], row * width + about[row, 1] + 1):
+            flag, higher = 0, 0
+            if heights[cell] > 0:
+                for k in range(8):
+                    if above(cell + beside(k, width), cell, heights):
+                        higher |= 1 << k
+                flag = kind[higher]
+            if journal.states[cell] & (SADDLE | SUMMIT) != flag:
+                touch(journal, cell)
+                journal.states[cell] = journal.states[cell] & LINKS | flag
+
+
+@compiled
+def grow(heights: Heights, width: int, about: Ints, starts: Ints, journal: Journal) -> None:
+    """Go up again from the saddles about, and from where ways from outside come in."""
+    states = journal.states
+    for row in range(about.shape[0]):
+        for cell in range(row * width + about[row, 0], row * width + about[row, 1] + 1):
+            here = states[cell]
+            if here & SADDLE:
+                for k in range(ways_up(cell, heights, width, starts)):
+                    climb(cell, starts[k], heights, width, journal)
+            elif here & LINKS and not here & (SUMMIT | CLIMBED):
+                states[cell] |= CLIMBED
+                climb(cell, steepest(cell, heights, width), heights, width, journal)
+
+
+@compiled
+def climb(cell: int, higher: int, heights: Heights, width: int, journal: Journal) -> None:
+    """As in skeleton.py, with a journal."""
+    states = journal.states
+    while True:
+        touch(journal, cell)
+        touch(journal, higher)
+        link(cell, higher, states, width)
+        cell = higher
+        if states[cell] & (CLIMBED | SADDLE | SUMMIT):
+            return
+        states[cell] |= CLIMBED
+        higher = steepest(cell, heights, width)
