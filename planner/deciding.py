@@ -8,9 +8,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kb.body import Command
 from kb.corners import Corner, corners
+from kb.imagining import Imagination
 from kb.reconciliation import Reconciled, reconcile
 from kb.rooms import NOTHING, Rooms, rooms_of
 from kb.task import Task
@@ -19,6 +21,7 @@ from planner import exploring
 from planner.aims import Aim, choose
 from planner.circling import pivot, ways_round, winding
 from planner.destinations import Destination, Situation, contains, destination
+from planner.exploring import Lookout
 from planner.goals import BY_THE_WAY, Stage, constraints, stages
 from planner.screen import Screens, Squares, grown
 from planner.steps import Square
@@ -61,6 +64,7 @@ class Decider:
         self._aimed: frozenset[Square] = frozenset()  # squares of the lattice
         self._path: tuple[Square, ...] = ()  # squares of the lattice
         self._level = 0
+        self._imagination = Imagination()
         self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
@@ -69,7 +73,7 @@ class Decider:
         self.rooms = rooms_of(model, self.rules)
         reconciled = self._reconcile(model, screens)
         self.corners = corners(model, self.rules)
-        situation = Situation(model, screens, self.bound, self.rooms, self.corners)
+        situation = Situation(model, screens, self.bound, self.rooms, self.corners, self.task)
         while self.attained < len(self.stages):
             stage = self.stages[self.attained]
             decision = self._towards(stage, situation, reconciled, track)
@@ -94,7 +98,7 @@ class Decider:
             where = [destination(goal, situation) for goal in stage.goals]
             if all(not d.missing and contains(d.squares, situation.model) for d in where):
                 return None
-        aims = _aims(where, situation, reconciled)
+        aims = _aims(where, situation, reconciled, self._imagination)
         aim = choose(aims, situation.screens, self._old_aim(situation.model))
         if aim is None:
             missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
@@ -179,7 +183,9 @@ class Decider:
         return reconciled
 
 
-def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconciled) -> list[Aim]:
+def _aims(
+    where: Sequence[Destination], situation: Situation, reconciled: Reconciled, imagination: Imagination
+) -> list[Aim]:
     """What is worth doing: go there, when it is known where; else look, first where just the missing thing may be."""
     screens, model = situation.screens, situation.model
     missing = [d for d in where if d.missing]
@@ -189,21 +195,41 @@ def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconc
             squares = np.intersect1d(squares, other.squares)
         return [Aim("attain", squares, "the way to the goal is known")]
     aims = [Aim("explore", *look) for d in missing for look in d.lookouts]
+    likely = _likely(situation, reconciled, imagination)
     for x, name in reconciled.doubtful:
         node = model.object(name)
         if node is not None and x in reconciled.hypothesised:
             look = exploring.inspection(screens, node, touch=node.open == 0)
-            aims.append(Aim("inspect", look.squares, f"{look.what}: it may be {x}", (95 - node.confidence) * DOUBT))
+            chance = 50 if likely is None else max(3, round(100 * float(likely[model.mask(node.patch)].max())))
+            aims.append(Aim("inspect", look.squares, f"{look.what}: it may be {x}", chance))
     if any(_surely_reached(aim, screens) for aim in aims if aim.kind == "explore"):
         return aims
+    if likely is not None:
+        aims += [Aim("inspect", *look) for look in exploring.sightings(screens, likely, "something may be meant there")]
     for apart in (exploring.APART, 0):
         explored = [Aim("explore", *look) for look in exploring.frontiers(screens, apart)]
-        settled = [Aim("settle", *look, ODD) for look in exploring.vague_places(screens, apart, odd=True)]
+        settled = [Aim("settle", *look, price=ODD) for look in exploring.vague_places(screens, apart, odd=True)]
         settled += [Aim("settle", *look) for look in exploring.vague_places(screens, apart, odd=False)]
         if explored or settled:
             break
     beyond = [Aim("pass", *look) for look in exploring.rooms_beyond(screens)]
+    if likely is not None:
+        explored = [Aim("explore", *exploring.promise(screens, Lookout(aim.squares, aim.what))) for aim in explored]
+        settled = [aim._replace(chance=2) for aim in settled]
+        beyond = [aim._replace(chance=20) for aim in beyond]
     return [*aims, *explored, *settled, *beyond]
+
+
+def _likely(situation: Situation, reconciled: Reconciled, imagination: Imagination) -> NDArray[np.float64] | None:
+    """(rows, columns): how likely each square belongs to a thing that is looked for; None when nothing is."""
+    wanted = sorted(
+        str(claim.fact.args[1])
+        for claim in situation.task.claims
+        if claim.fact.name == "shape" and str(claim.fact.args[0]) in reconciled.hypothesised
+    )
+    if not wanted:
+        return None
+    return imagination.likely(situation.model.view, situation.model.lattice, wanted[0])
 
 
 def _surely_reached(aim: Aim, screens: Screens) -> bool:

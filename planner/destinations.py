@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from kb.corners import Corner
 from kb.facts import Fact, Symbol, Term
 from kb.rooms import Rooms
+from kb.task import Task
 from kb.worldmodel import WorldModel
 from planner.exploring import Lookout, rooms_beyond
 from planner.screen import Screens, Squares, grown
@@ -27,6 +28,7 @@ class Situation:
     binding: Mapping[str, str]
     rooms: Rooms
     corners: Mapping[str, Corner]
+    task: Task
 
 
 @dataclass(frozen=True)

@@ -21,11 +21,22 @@ ALIKE = 0.2  # of a field: what is occupied of two fields that show the same wal
 SMALLEST_ROOM = 6  # squares of floor that are worth a passage
 
 
+REACH = 14  # squares from the edge of what is seen at which most of it is seen anew
+PROMISING = 0.1  # a place at which a thing is this likely is worth a look
+HALF = 0.5
+BARREN = 0.1  # of a square unseen beside the verge, how much less it promises than one beside the floor
+HOMELY = 800  # squares of floor unseen among which one thing that is looked for is expected
+
+
 class Lookout(NamedTuple):
-    """Squares (flat indices) from each of which something is seen that is not known yet, and what it is."""
+    """Squares (flat indices) from each of which something is seen that is not known yet, and what it is.
+
+    chance : percent of belief that it is what is looked for; 100 when it is not known to be less.
+    """
 
     squares: Squares
     what: str
+    chance: int = 100
 
 
 def frontiers(screens: Screens, apart: int) -> list[Lookout]:
@@ -33,6 +44,35 @@ def frontiers(screens: Screens, apart: int) -> list[Lookout]:
     border = _new(screens, apart) & grown(~screens.model.view.seen, 1)
     labels = components(grown(border, 1)).labels
     return [Lookout(squares, "the floor goes on unseen") for squares in _groups(np.where(border, labels, 0))]
+
+
+def sightings(screens: Screens, likely: NDArray[np.float64], what: str) -> list[Lookout]:
+    """Floor close to where something is likely that is looked for, one Lookout a place.
+
+    likely : (rows, columns), how likely each square belongs to such a thing.
+    """
+    view = screens.model.view
+    spots = _groups(components(likely >= PROMISING).labels)
+    found = []
+    for spot in spots:
+        mask = np.zeros(likely.shape, np.bool_)
+        mask.ravel()[spot] = True
+        if not (view.state.ravel()[spot] == OPEN).any():
+            continue
+        near = _close(screens, mask)
+        if len(near):
+            found.append(Lookout(near, what, round(100 * float(likely.ravel()[spot].max()))))
+    return found
+
+
+def _close(screens: Screens, mask: Mask) -> Squares:
+    """Floor within CLOSE squares of a mask from which it was not looked at yet."""
+    about = grown(mask, CLOSE)
+    for apart in (APART, 0):
+        near = np.flatnonzero(_new(screens, apart) & about)
+        if len(near):
+            break
+    return near
 
 
 def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:
@@ -55,12 +95,7 @@ def inspection(screens: Screens, node: Node, touch: bool) -> Lookout:
     mask = model.mask(node.patch)
     if touch:
         return Lookout(np.flatnonzero(_new(screens, 0) & grown(mask, 1)), f"the colour of {node.name} is not known")
-    about = grown(mask, CLOSE)
-    for apart in (APART, 0):
-        near = np.flatnonzero(_new(screens, apart) & about)
-        if len(near):
-            break
-    return Lookout(near, f"what {node.name} is is not clear")
+    return Lookout(_close(screens, mask), f"what {node.name} is is not clear")
 
 
 def rooms_beyond(screens: Screens) -> list[Lookout]:
@@ -68,6 +103,39 @@ def rooms_beyond(screens: Screens) -> list[Lookout]:
     apart = components(screens.model.space & ~screens.floor).labels
     what = "floor is seen beyond, so a passage must lead there"
     return [Lookout(squares, what) for squares in _groups(apart) if len(squares) >= SMALLEST_ROOM]
+
+
+def promise(screens: Screens, lookout: Lookout) -> Lookout:
+    """A frontier, with how likely it is that what is looked for comes into sight at its nearest square."""
+    reached = screens.nearest(lookout.squares)
+    if reached is None:
+        return lookout
+    far = screens.distances[reached.level].ravel()[lookout.squares].astype(np.int64)
+    far[far < 0] = far.max() + 1
+    new = gain(screens).ravel()[lookout.squares[int(far.argmin())]]
+    return lookout._replace(chance=max(1, min(90, round(100 * float(new) / HOMELY))))
+
+
+def gain(screens: Screens) -> NDArray[np.float64]:
+    """(rows, columns): how many squares never seen come into sight there, each by what it promises."""
+    frame = [(REACH, REACH)] * 2
+    view = screens.model.view
+    nearest = _spread_into(np.pad(np.where(view.seen, np.where(view.probability <= HALF, 1, 2), 0), frame), REACH)
+    worth = np.where(np.pad(view.seen, frame), 0.0, np.where(nearest == 1, 1.0, np.where(nearest == 2, BARREN, 0.0)))
+    sums = np.pad(worth, [(1, 0)] * 2).cumsum(0).cumsum(1)
+    side = 2 * REACH + 1
+    answer: NDArray[np.float64] = sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]
+    return np.pad(answer, [(0, view.seen.shape[a] - answer.shape[a]) for a in (0, 1)])
+
+
+def _spread_into(labels: NDArray[np.int64], squares: int) -> NDArray[np.int64]:
+    """Labels grown into squares that have none (0), so many rows and columns; of two that meet the smaller counts."""
+    for _ in range(squares):
+        framed = np.pad(labels, 1)
+        beside = np.stack([framed[:-2, 1:-1], framed[2:, 1:-1], framed[1:-1, :-2], framed[1:-1, 2:]])
+        least = np.where(beside == 0, 3, beside).min(0)
+        labels = np.where((labels == 0) & (least < 3), least, labels)
+    return labels
 
 
 def _wall_like(probability: NDArray[np.float32], seen: Mask) -> Mask:

@@ -1,0 +1,80 @@
+"""What stands where squares are not settled: pictures that agree with all counts, and what they have in common.
+
+Counts that settle no single square may yet tell that something as wide as long stands apart from the wall. Geometry
+draws simple pictures that agree with the counts (geometry.sketch); how many of them show a thing of some shape at a
+place is how likely one is there.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.sketch import DRAWN, UNSEEN, Blobs, blobs, pictures
+from kb.evidence import OPEN, MapView
+from kb.lattice import Lattice
+
+PICTURES = 8
+WARMING, AGAIN = 60, 24  # sweeps before the first picture: of a new map, of one that was pictured before
+HALF = 0.5
+SMALLEST = 4  # squares of a thing that is worth a look
+LOOSE = (0.012, 0.03)  # how far moments may be off: at least, and for a thing one square wide
+DISC = 1 / (2 * math.pi)
+OTHERS = 0.2  # the moments of what is no rectangle or disc differ from a square's by so much and more
+Floats = NDArray[np.float64]
+
+
+class Imagination:
+    """Pictures the unsettled part of the map, and remembers the last picture to begin the next one with."""
+
+    def __init__(self) -> None:
+        self._lattice: Lattice | None = None
+        self._corner = (0, 0)
+        self._last = np.zeros((0, 0), np.int8)
+
+    def likely(self, view: MapView, lattice: Lattice, shape: str) -> Floats:
+        """(rows, columns): how likely each square belongs to an isolated thing of a shape."""
+        ground = np.where(view.seen, np.where(view.state == OPEN, DRAWN, view.state), UNSEEN).astype(np.int8)
+        first, known = self._first(view, lattice)
+        drawn = pictures(ground, view.counts, first, PICTURES, AGAIN if known else WARMING, 1.0 if known else HALF)
+        self._lattice, self._corner, self._last = lattice, (view.west, view.south), drawn[-1]
+        heat = np.zeros(ground.shape)
+        for image in drawn:
+            found = blobs(image, ground)
+            like = likeness(found, shape) * found.apart * (found.area >= SMALLEST)
+            heat += np.append(0.0, like)[found.labels]
+        return heat / PICTURES
+
+    def _first(self, view: MapView, lattice: Lattice) -> tuple[NDArray[np.int8], bool]:
+        """The picture to begin with, and whether most of it was pictured before."""
+        image = (view.probability > HALF).astype(np.int8)
+        known = lattice == self._lattice
+        if known:
+            west, south = self._corner[0] - view.west, self._corner[1] - view.south
+            rows, columns = self._last.shape
+            image[south : south + rows, west : west + columns] = self._last
+        return image, known
+
+
+def likeness(found: Blobs, shape: str) -> Floats:
+    """(n,) 0 to 1: how well the moments of each part agree with a shape."""
+    loose = LOOSE[0] + LOOSE[1] / np.sqrt(found.area)
+    ratio = np.sqrt((1 + found.lengthy) / np.maximum(1 - found.lengthy, 1e-6))
+    straight = _near(found.spread - (ratio + 1 / ratio) / 12, loose)
+    even = _near(found.lengthy, 5 * loose)
+    match shape:
+        case "square":
+            return straight * even
+        case "disc":
+            return _near(found.spread - DISC, loose) * even
+        case "brick":
+            return straight * (1 - even)
+        case "rectangle":
+            return straight
+    other: Floats = np.clip((found.spread - 1 / 6) / (OTHERS - 1 / 6), 0.1, 1.0)
+    return other
+
+
+def _near(off: Floats, loose: Floats) -> Floats:
+    answer: Floats = np.exp(-((off / loose) ** 2))
+    return answer
