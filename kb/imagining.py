@@ -10,15 +10,18 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.sketch import DRAWN, UNSEEN, Blobs, blobs, pictures
-from kb.evidence import OPEN, MapView
+from geometry.sketch import DRAWN, FREE, FULL, UNSEEN, Blobs, blobs, pictures
+from kb.evidence import OPEN, STRAY, MapView
 from kb.lattice import Lattice
 
 PICTURES = 8
 WARMING, AGAIN = 60, 24  # sweeps before the first picture: of a new map, of one that was pictured before
 HALF = 0.5
 SMALLEST = 4  # squares of a thing that is worth a look
-LOOSE = (0.012, 0.03)  # how far moments may be off: at least, and for a thing one square wide
+LOOSE = (0.012, 0.03)  # how far the spread of a thing may be off: at least, and if it is one square wide
+EVEN = (0.12, 0.4)  # likewise how much longer than wide a square may seem, by the squares that it covers
+DEEP = 2  # squares: within what is full or empty so far from its edge nothing is pictured
+SURELY = 0.93  # under a field that shows the last gray level and yet may miss a square
 DISC = 1 / (2 * math.pi)
 OTHERS = 0.2  # the moments of what is no rectangle or disc differ from a square's by so much and more
 Floats = NDArray[np.float64]
@@ -34,7 +37,7 @@ class Imagination:
 
     def likely(self, view: MapView, lattice: Lattice, shape: str) -> Floats:
         """(rows, columns): how likely each square belongs to an isolated thing of a shape."""
-        ground = np.where(view.seen, np.where(view.state == OPEN, DRAWN, view.state), UNSEEN).astype(np.int8)
+        ground = _ground(view)
         first, known = self._first(view, lattice)
         drawn = pictures(ground, view.counts, first, PICTURES, AGAIN if known else WARMING, 1.0 if known else HALF)
         self._lattice, self._corner, self._last = lattice, (view.west, view.south), drawn[-1]
@@ -56,12 +59,29 @@ class Imagination:
         return image, known
 
 
+def _ground(view: MapView) -> NDArray[np.int8]:
+    """What is given of the pictures: what is settled, and what lies amid its like."""
+    ground = np.where(view.seen, np.where(view.state == OPEN, DRAWN, view.state), UNSEEN)
+    ground[(ground == DRAWN) & _amid(view.probability > SURELY)] = FULL
+    ground[(ground == DRAWN) & _amid(view.seen & (view.probability <= STRAY))] = FREE
+    return ground.astype(np.int8)
+
+
+def _amid(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The squares of a mask all of whose neighbours within DEEP rows or columns are of it."""
+    for axis in (0, 1):
+        framed = np.pad(mask, [(DEEP, DEEP) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
+        parts = [np.take(framed, np.arange(k, k + mask.shape[axis]), axis) for k in range(2 * DEEP + 1)]
+        mask = np.logical_and.reduce(parts)
+    return mask
+
+
 def likeness(found: Blobs, shape: str) -> Floats:
     """(n,) 0 to 1: how well the moments of each part agree with a shape."""
     loose = LOOSE[0] + LOOSE[1] / np.sqrt(found.area)
     ratio = np.sqrt((1 + found.lengthy) / np.maximum(1 - found.lengthy, 1e-6))
     straight = _near(found.spread - (ratio + 1 / ratio) / 12, loose)
-    even = _near(found.lengthy, 5 * loose)
+    even = _near(found.lengthy, EVEN[0] + EVEN[1] / np.sqrt(found.area))
     match shape:
         case "square":
             return straight * even

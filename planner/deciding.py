@@ -214,7 +214,8 @@ def _aims(
             break
     beyond = [Aim("pass", *look) for look in exploring.rooms_beyond(screens)]
     if likely is not None:
-        explored = [Aim("explore", *exploring.promise(screens, Lookout(aim.squares, aim.what))) for aim in explored]
+        looks = [Lookout(aim.squares, aim.what) for aim in explored]
+        explored = [Aim("explore", *look) for look in exploring.promised(screens, looks)]
         settled = [aim._replace(chance=2) for aim in settled]
         beyond = [aim._replace(chance=20) for aim in beyond]
     return [*aims, *explored, *settled, *beyond]

@@ -24,6 +24,7 @@ SMALLEST_ROOM = 6  # squares of floor that are worth a passage
 REACH = 14  # squares from the edge of what is seen at which most of it is seen anew
 PROMISING = 0.1  # a place at which a thing is this likely is worth a look
 HALF = 0.5
+FLOOR, WALL, NOTHING = 0, 1, 2
 BARREN = 0.1  # of a square unseen beside the verge, how much less it promises than one beside the floor
 HOMELY = 800  # squares of floor unseen among which one thing that is looked for is expected
 
@@ -105,37 +106,48 @@ def rooms_beyond(screens: Screens) -> list[Lookout]:
     return [Lookout(squares, what) for squares in _groups(apart) if len(squares) >= SMALLEST_ROOM]
 
 
-def promise(screens: Screens, lookout: Lookout) -> Lookout:
-    """A frontier, with how likely it is that what is looked for comes into sight at its nearest square."""
-    reached = screens.nearest(lookout.squares)
+def promised(screens: Screens, lookouts: list[Lookout]) -> list[Lookout]:
+    """Frontiers, each with how likely it is that what is looked for comes into sight at its nearest square."""
+    new = _gain(screens).ravel()
+    return [look._replace(chance=_chance(float(new[_nearest(screens, look.squares)]))) for look in lookouts]
+
+
+def _chance(squares: float) -> int:
+    return max(1, min(90, round(100 * squares / HOMELY)))
+
+
+def _nearest(screens: Screens, squares: Squares) -> int:
+    """Of some squares the one that is reached first, at the most certain level at which any is."""
+    reached = screens.nearest(squares)
     if reached is None:
-        return lookout
-    far = screens.distances[reached.level].ravel()[lookout.squares].astype(np.int64)
-    far[far < 0] = far.max() + 1
-    new = gain(screens).ravel()[lookout.squares[int(far.argmin())]]
-    return lookout._replace(chance=max(1, min(90, round(100 * float(new) / HOMELY))))
+        return int(squares[0])
+    far = screens.distances[reached.level].ravel()[squares]
+    return int(squares[np.where(far < 0, far.max() + 1, far).argmin()])
 
 
-def gain(screens: Screens) -> NDArray[np.float64]:
+def _gain(screens: Screens) -> NDArray[np.float64]:
     """(rows, columns): how many squares never seen come into sight there, each by what it promises."""
-    frame = [(REACH, REACH)] * 2
     view = screens.model.view
-    nearest = _spread_into(np.pad(np.where(view.seen, np.where(view.probability <= HALF, 1, 2), 0), frame), REACH)
-    worth = np.where(np.pad(view.seen, frame), 0.0, np.where(nearest == 1, 1.0, np.where(nearest == 2, BARREN, 0.0)))
-    sums = np.pad(worth, [(1, 0)] * 2).cumsum(0).cumsum(1)
+    seen = np.pad(view.seen, REACH)
+    beside_floor = _beside(np.pad(np.where(view.probability <= HALF, FLOOR, WALL), REACH), seen) == FLOOR
+    worth = np.where(seen, 0.0, np.where(beside_floor, 1.0, BARREN))
+    sums = np.pad(worth, 1).cumsum(0).cumsum(1)[:-1, :-1]
     side = 2 * REACH + 1
     answer: NDArray[np.float64] = sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]
-    return np.pad(answer, [(0, view.seen.shape[a] - answer.shape[a]) for a in (0, 1)])
+    return answer
 
 
-def _spread_into(labels: NDArray[np.int64], squares: int) -> NDArray[np.int64]:
-    """Labels grown into squares that have none (0), so many rows and columns; of two that meet the smaller counts."""
-    for _ in range(squares):
-        framed = np.pad(labels, 1)
-        beside = np.stack([framed[:-2, 1:-1], framed[2:, 1:-1], framed[1:-1, :-2], framed[1:-1, 2:]])
-        least = np.where(beside == 0, 3, beside).min(0)
-        labels = np.where((labels == 0) & (least < 3), least, labels)
-    return labels
+def _beside(labels: NDArray[np.int64], seen: Mask) -> NDArray[np.int8]:
+    """Of each square never seen the least label of the nearest seen ones, as far as REACH rows and columns."""
+    near = np.where(seen, labels, NOTHING).astype(np.int8)
+    for _ in range(REACH):
+        least = near.copy()
+        np.minimum(least[1:], near[:-1], out=least[1:])
+        np.minimum(least[:-1], near[1:], out=least[:-1])
+        np.minimum(least[:, 1:], near[:, :-1], out=least[:, 1:])
+        np.minimum(least[:, :-1], near[:, 1:], out=least[:, :-1])
+        near = np.where(near == NOTHING, least, near)
+    return near
 
 
 def _wall_like(probability: NDArray[np.float32], seen: Mask) -> Mask:
