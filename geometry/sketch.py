@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from geometry.compiled import compiled
 
 FREE, FULL, DRAWN, UNSEEN = 0, 1, 2, 3
-WRONG = 3.0  # edges that a square too many or too few under a field is worth
+WRONG = 8.0  # edges that a square too many or too few under a field is worth
 COLD = 1.5  # inverse temperature at which pictures are taken
 SWEEPS = 3  # between two pictures
 NEVER = 9.0  # a change that is e to this power times less likely than its contrary is not tried

@@ -18,12 +18,13 @@ PICTURES = 8
 WARMING, AGAIN = 60, 24  # sweeps before the first picture: of a new map, of one that was pictured before
 HALF = 0.5
 SMALLEST = 4  # squares of a thing that is worth a look
-LOOSE = (0.012, 0.03)  # how far the spread of a thing may be off: at least, and if it is one square wide
+LOOSE = (0.012, 0.03)  # how much wider than a rectangle a part may be spread: at least, and if it is one square wide
+TIGHT = (0.003, 0.15)  # how much less: corners seen rounded, but less than a disc's; likewise, by its squares
 EVEN = (0.12, 0.4)  # likewise how much longer than wide a square may seem, by the squares that it covers
 DEEP = 2  # squares: within what is full or empty so far from its edge nothing is pictured
 SURELY = 0.93  # under a field that shows the last gray level and yet may miss a square
 DISC = 1 / (2 * math.pi)
-OTHERS = 0.2  # the moments of what is no rectangle or disc differ from a square's by so much and more
+OTHERS = 0.04  # by so much and more is the spread of what is neither wider than a rectangle's
 Floats = NDArray[np.float64]
 
 
@@ -78,20 +79,21 @@ def _amid(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def likeness(found: Blobs, shape: str) -> Floats:
     """(n,) 0 to 1: how well the moments of each part agree with a shape."""
-    loose = LOOSE[0] + LOOSE[1] / np.sqrt(found.area)
     ratio = np.sqrt((1 + found.lengthy) / np.maximum(1 - found.lengthy, 1e-6))
-    straight = _near(found.spread - (ratio + 1 / ratio) / 12, loose)
+    longer = found.spread - (ratio + 1 / ratio) / 12
+    loose, tight = LOOSE[0] + LOOSE[1] / np.sqrt(found.area), TIGHT[0] + TIGHT[1] / found.area
+    straight = _near(longer, np.where(longer > 0, loose, tight))
     even = _near(found.lengthy, EVEN[0] + EVEN[1] / np.sqrt(found.area))
     match shape:
         case "square":
             return straight * even
         case "disc":
-            return _near(found.spread - DISC, loose) * even
+            return _near(found.spread - DISC, tight) * even
         case "brick":
             return straight * (1 - even)
         case "rectangle":
             return straight
-    other: Floats = np.clip((found.spread - 1 / 6) / (OTHERS - 1 / 6), 0.1, 1.0)
+    other: Floats = np.clip(longer / OTHERS, 0.1, 1.0)
     return other
 
 

@@ -199,9 +199,9 @@ def _aims(
     for x, name in reconciled.doubtful:
         node = model.object(name)
         if node is not None and x in reconciled.hypothesised:
-            look = exploring.inspection(screens, node, touch=node.open == 0)
-            chance = 50 if likely is None else max(3, round(100 * float(likely[model.mask(node.patch)].max())))
-            aims.append(Aim("inspect", look.squares, f"{look.what}: it may be {x}", chance))
+            chance = 0.4 if likely is None else float(likely[model.mask(node.patch)].max())
+            look = exploring.inspection(screens, node, node.open == 0, chance)
+            aims.append(Aim("inspect", look.squares, f"{look.what}: it may be {x}", max(3, round(100 * chance))))
     if any(_surely_reached(aim, screens) for aim in aims if aim.kind == "explore"):
         return aims
     if likely is not None:

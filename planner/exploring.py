@@ -25,6 +25,7 @@ REACH = 14  # squares from the edge of what is seen at which most of it is seen 
 PROMISING = 0.1  # a place at which a thing is this likely is worth a look
 HALF = 0.5
 FLOOR, WALL, NOTHING = 0, 1, 2
+LIKELY = 0.5  # what is looked for as likely as this is gone up to
 BARREN = 0.1  # of a square unseen beside the verge, how much less it promises than one beside the floor
 HOMELY = 800  # squares of floor unseen among which one thing that is looked for is expected
 
@@ -60,14 +61,21 @@ def sightings(screens: Screens, likely: NDArray[np.float64], what: str) -> list[
         mask.ravel()[spot] = True
         if not (view.state.ravel()[spot] == OPEN).any():
             continue
-        near = _close(screens, mask)
+        chance = float(likely.ravel()[spot].max())
+        near = close(screens, mask, chance)
         if len(near):
-            found.append(Lookout(near, what, round(100 * float(likely.ravel()[spot].max()))))
+            found.append(Lookout(near, what, round(100 * chance)))
     return found
 
 
-def _close(screens: Screens, mask: Mask) -> Squares:
-    """Floor within CLOSE squares of a mask from which it was not looked at yet."""
+def close(screens: Screens, mask: Mask, chance: float) -> Squares:
+    """Floor beside something, when it is rather likely what is looked for, or else so close that it is seen exactly.
+
+    Only where nothing was looked at from yet.
+    """
+    beside = np.flatnonzero(_new(screens, 0) & grown(mask, 1))
+    if chance >= LIKELY and len(beside):
+        return beside
     about = grown(mask, CLOSE)
     for apart in (APART, 0):
         near = np.flatnonzero(_new(screens, apart) & about)
@@ -90,13 +98,13 @@ def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:
     return [Lookout(squares, "what bounds the floor is not clear") for squares in _groups(near)]
 
 
-def inspection(screens: Screens, node: Node, touch: bool) -> Lookout:
-    """Floor from which an object is seen as well as can be, or felt."""
+def inspection(screens: Screens, node: Node, touch: bool, chance: float) -> Lookout:
+    """Floor from which an object is seen as well as can be, or felt. chance: that it is what is looked for."""
     model = screens.model
     mask = model.mask(node.patch)
     if touch:
         return Lookout(np.flatnonzero(_new(screens, 0) & grown(mask, 1)), f"the colour of {node.name} is not known")
-    return Lookout(_close(screens, mask), f"what {node.name} is is not clear")
+    return Lookout(close(screens, mask, chance), f"what {node.name} is is not clear")
 
 
 def rooms_beyond(screens: Screens) -> list[Lookout]:
