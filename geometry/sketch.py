@@ -15,10 +15,21 @@ from numpy.typing import NDArray
 from geometry.compiled import compiled
 
 FREE, FULL, DRAWN, UNSEEN = 0, 1, 2, 3
-WRONG = 8.0  # edges that a square too many or too few under a field is worth
+EDGE, CORNER = 0.4, 0.8
+WRONG = 4.0  # edges that a square too many or too few under a field is worth
 COLD = 1.5  # inverse temperature at which pictures are taken
 SWEEPS = 3  # between two pictures
 NEVER = 9.0  # a change that is e to this power times less likely than its contrary is not tried
+
+
+def _price(pattern: int) -> float:
+    """What four squares about a point cost: half of each edge between two of them, and each corner."""
+    a, b, c, d = (pattern >> k & 1 for k in range(4))
+    edges = (a != b) + (c != d) + (a != c) + (b != d)
+    return EDGE * edges / 2 + CORNER * (2 if edges == 4 else (a + b + c + d) % 2)
+
+
+PRICES = np.array([_price(pattern) for pattern in range(16)])
 
 
 class Counts(NamedTuple):
@@ -56,6 +67,7 @@ def pictures(
     count = (counts.weight * image.ravel()[counts.where]).sum(1)
     slopes = np.append(np.linspace(hot, COLD, max(warming, 1)), np.full(SWEEPS * (number - 1), COLD))
     _draw(
+        PRICES,
         np.ascontiguousarray(ground).ravel(),
         image.ravel(),
         squares.astype(np.int64),
@@ -81,16 +93,16 @@ def _ranks(squares: NDArray[np.int32], size: int) -> NDArray[np.int64]:
 
 
 @compiled
-def _draw(ground, image, squares, ranks, ends, field, share, where, used, fields, slopes, taken, columns):  # type: ignore[no-untyped-def]
+def _draw(price, ground, image, squares, ranks, ends, field, share, where, used, fields, slopes, taken, columns):  # type: ignore[no-untyped-def]
     chance = 20031
     first = len(slopes) - SWEEPS * (len(taken) - 1) - 1
     for sweep in range(len(slopes)):
         slope = slopes[sweep]
         for k in range(len(squares)):
             chance = (chance * 48271) % 2147483647
-            change = _flip(ground, image, squares, ends, field, share, fields, columns, k)
+            change = _flip(price, ground, image, squares, ends, field, share, fields, columns, k)
             if change > 0 and (slope * change > NEVER or chance > 2147483647 * np.exp(-slope * change)):
-                _flip(ground, image, squares, ends, field, share, fields, columns, k)
+                _flip(price, ground, image, squares, ends, field, share, fields, columns, k)
             chance = (chance * 48271) % 2147483647
             one = field[ends[k] + chance % (ends[k + 1] - ends[k])]
             chance = (chance * 48271) % 2147483647
@@ -98,30 +110,35 @@ def _draw(ground, image, squares, ranks, ends, field, share, where, used, fields
             if not used[one, entry] or image[where[one, entry]] == image[squares[k]]:
                 continue
             other = ranks[where[one, entry]]
-            change = _flip(ground, image, squares, ends, field, share, fields, columns, k)
-            change += _flip(ground, image, squares, ends, field, share, fields, columns, other)
+            change = _flip(price, ground, image, squares, ends, field, share, fields, columns, k)
+            change += _flip(price, ground, image, squares, ends, field, share, fields, columns, other)
             chance = (chance * 48271) % 2147483647
             if change > 0 and (slope * change > NEVER or chance > 2147483647 * np.exp(-slope * change)):
-                _flip(ground, image, squares, ends, field, share, fields, columns, other)
-                _flip(ground, image, squares, ends, field, share, fields, columns, k)
+                _flip(price, ground, image, squares, ends, field, share, fields, columns, other)
+                _flip(price, ground, image, squares, ends, field, share, fields, columns, k)
         if sweep >= first and (sweep - first) % SWEEPS == 0:
             taken[(sweep - first) // SWEEPS] = image
 
 
 @compiled
-def _flip(ground, image, squares, ends, field, share, fields, columns, k):  # type: ignore[no-untyped-def]
+def _flip(price, ground, image, squares, ends, field, share, fields, columns, k):  # type: ignore[no-untyped-def]
     """Change square k, and say by how much the picture has become dearer."""
     square = squares[k]
     value = image[square]
     change = 0.0
-    if square % columns > 0 and ground[square - 1] != UNSEEN:
-        change += 1 if image[square - 1] == value else -1
-    if square % columns < columns - 1 and ground[square + 1] != UNSEEN:
-        change += 1 if image[square + 1] == value else -1
-    if square >= columns and ground[square - columns] != UNSEEN:
-        change += 1 if image[square - columns] == value else -1
-    if square + columns < len(image) and ground[square + columns] != UNSEEN:
-        change += 1 if image[square + columns] == value else -1
+    for one in range(4):
+        corner = square - (one % 2) - (one // 2) * columns  # the lower left of four squares about one of its corners
+        if corner < 0 or corner % columns == columns - 1 or corner + columns + 1 >= len(image):
+            continue
+        if square % columns == 0 and one % 2 == 1:
+            continue
+        pattern, hidden = 0, False
+        for other in range(4):
+            beside = corner + other % 2 + (other // 2) * columns
+            hidden |= ground[beside] == UNSEEN
+            pattern += image[beside] << other
+        if not hidden:
+            change += price[pattern ^ (1 << one)] - price[pattern]
     for i in range(ends[k], ends[k + 1]):
         one = field[i]
         before = max(fields[one, 0] - fields[one, 2], fields[one, 2] - fields[one, 1], 0)
