@@ -17,7 +17,7 @@ from geometry.compiled import compiled
 FREE, FULL, DRAWN, UNSEEN = 0, 1, 2, 3
 EDGE, CORNER = 0.4, 0.8
 WRONG = 4.0  # edges that a square too many or too few under a field is worth
-COLD = 1.5  # inverse temperature at which pictures are taken
+COLD = 2.0
 SWEEPS = 3  # between two pictures
 NEVER = 9.0  # a change that is e to this power times less likely than its contrary is not tried
 

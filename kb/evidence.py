@@ -44,6 +44,7 @@ class MapView(NamedTuple):
     seen : (rows, columns) bool.
     settled_by : (rows, columns) int16, the impression that settled a square, or -1.
     counts : the fields that still tell something, with flat indices of this view.
+    sure : is what is settled beyond doubt? Not while the lattice may lie in several ways, or looks contradicted.
     """
 
     west: int
@@ -53,6 +54,7 @@ class MapView(NamedTuple):
     seen: Mask
     settled_by: NDArray[np.int16]
     counts: Counts = NO_COUNTS
+    sure: bool = True
 
     def locate(self, x: float, y: float) -> tuple[int, int]:
         """[row, column] of the square in which a point of the lattice lies."""
