@@ -69,13 +69,14 @@ def sightings(screens: Screens, likely: NDArray[np.float64], what: str) -> list[
 
 
 def close(screens: Screens, mask: Mask, chance: float) -> Squares:
-    """Floor beside something, when it is rather likely what is looked for, or else so close that it is seen exactly.
+    """Floor from which something is seen exactly and nothing was looked at yet.
 
-    Only where nothing was looked at from yet.
+    When it is rather likely what is looked for, the floor right beside it, until he has been there.
     """
-    beside = np.flatnonzero(_new(screens, 0) & grown(mask, 1))
-    if chance >= LIKELY and len(beside):
-        return beside
+    beside = grown(mask, 1)
+    near = np.flatnonzero(screens.floor & beside)
+    if chance >= LIKELY and len(near) and not (beside & screens.model.squares(screens.model.looked_from)).any():
+        return near
     about = grown(mask, CLOSE)
     for apart in (APART, 0):
         near = np.flatnonzero(_new(screens, apart) & about)
