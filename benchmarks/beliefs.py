@@ -83,7 +83,8 @@ def beliefs(robot: Any, woke: tuple[float, float], now: tuple[float, float], hea
     frame = Frame(quarters, math.floor(now[0]) - x, math.floor(now[1]) - y)
     drift = max(abs(frame.east - math.floor(woke[0])), abs(frame.north - math.floor(woke[1])))
     objects = [(_class(node.shape), frame.polygon(_outline(node))) for node in model.objects]
-    rows, columns = np.nonzero((model.view.state == FREE) | (model.view.state == FULL))
+    held = (model.view.state == FREE) | (model.view.state == FULL)
+    rows, columns = np.nonzero(held & getattr(model.view, "sure", True))
     full = model.view.state[rows, columns] == FULL
     west, south = model.view.west, model.view.south
     certain = [

@@ -104,6 +104,16 @@ class Memory:
         """By how many radians the angles that still stand differ from the believed one, at most."""
         return math.radians(max((abs(other.angle - self.lattice.angle) for other in self.hypotheses), default=0))
 
+    @property
+    def sure(self) -> bool:
+        """Is what the counts settle beyond doubt?
+
+        Not when a look contradicted another one, nor while several places in his square are left at which he may have
+        woken.
+        """
+        centred = all(other.box == CENTRE + CENTRE for other in self.hypotheses)
+        return not self.evidence.overruled and (centred or len(self.hypotheses) == 1)
+
     def wake(self, impression: Impression) -> Accommodated:
         """Take in the first impression."""
         return self._accommodate(impression, self.place, ())

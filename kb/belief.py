@@ -83,7 +83,12 @@ def _root(model: WorldModel) -> Iterator[str]:
 def _sureness(model: WorldModel, kind: str) -> int:
     mask = model.floor if kind == "floor" else model.verge
     squares = int(mask.sum())
-    return 100 * int((mask & (model.view.state != OPEN)).sum()) // squares if squares else 0
+    return _most(model) * int((mask & (model.view.state != OPEN)).sum()) // squares if squares else 0
+
+
+def _most(model: WorldModel) -> int:
+    """The confidence in what the counts settle, in percent."""
+    return 100 if model.view.sure else 99
 
 
 def _object(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
@@ -151,7 +156,7 @@ def _sureness_along(starts: Floats, ends: Floats, model: WorldModel) -> list[int
     columns, rows = np.floor(points).astype(int).transpose(2, 0, 1)
     framed = np.pad(model.view.state != OPEN, 1)
     settled = framed[np.clip(rows + 1, 0, framed.shape[0] - 1), np.clip(columns + 1, 0, framed.shape[1] - 1)]
-    return [int(share) for share in 100 * settled.mean(axis=1)]
+    return [int(share) for share in _most(model) * settled.mean(axis=1)]
 
 
 def _rooms(model: WorldModel, rooms: Rooms) -> Iterator[str]:

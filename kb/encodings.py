@@ -1,7 +1,7 @@
 """The one place where encodings meet clingo: files by absolute path, facts as text, every message an error.
 
-Facts come from our own values, never as raw text from a user; a user's own rules (`--kb`) are checked first by
-kb.userrules.
+Facts come from our own values, never as raw text from a user; with a user's own rules (`--kb`) all is worked on in
+another process, by kb.userrules.
 """
 
 from collections.abc import Iterable, Sequence
@@ -11,6 +11,7 @@ from pathlib import Path
 import clingo
 
 KB = Path(__file__).resolve().parent / "asp"
+OURS = (KB, KB.parent.parent / "planner" / "asp")
 
 
 class EncodingError(Exception):
@@ -28,7 +29,7 @@ def solve(files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0) ->
     facts : atoms without the full stop.
     seconds : the search stops then, with the best answer so far.
 
-    Raises EncodingError on any message of clingo.
+    Raises EncodingError on any message of clingo, and BadInputError where files that are not ours cause one.
     """
     answer = _answer(tuple(files), tuple(facts), seconds)
     return None if answer is None else list(answer)
@@ -36,6 +37,12 @@ def solve(files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0) ->
 
 @lru_cache(maxsize=256)
 def _answer(files: tuple[Path, ...], facts: tuple[str, ...], seconds: float) -> tuple[clingo.Symbol, ...] | None:
+    users = [path for path in files if path.resolve().parent not in OURS]
+    if users:
+        from kb.userrules import solve_apart  # only who has rules of his own waits for it
+
+        found = solve_apart([path for path in files if path not in users], users, facts)
+        return None if found is None else tuple(sorted(found, key=str))
     messages: list[str] = []
     control = clingo.Control(["--stats=0"], logger=lambda _code, text: messages.append(text), message_limit=20)
     try:

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.sketch import Counts
 from kb.lattice import MOST, Samples
 
 OPEN, FREE, FULL = -1, 0, 1
@@ -29,6 +30,11 @@ Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
 
+NO_COUNTS = Counts(
+    np.zeros((0, MOST), np.int32), np.zeros((0, MOST), np.int16), np.zeros(0, np.int16), np.zeros(0, np.int16)
+)
+
+
 class MapView(NamedTuple):
     """A snapshot of the part of the map that was seen, with a margin of unseen squares.
 
@@ -37,6 +43,8 @@ class MapView(NamedTuple):
     state : (rows, columns) int8, OPEN, FREE or FULL.
     seen : (rows, columns) bool.
     settled_by : (rows, columns) int16, the impression that settled a square, or -1.
+    counts : the fields that still tell something, with flat indices of this view.
+    sure : is what is settled beyond doubt? Not while the lattice may lie in several ways, or looks contradicted.
     """
 
     west: int
@@ -45,6 +53,8 @@ class MapView(NamedTuple):
     state: NDArray[np.int8]
     seen: Mask
     settled_by: NDArray[np.int16]
+    counts: Counts = NO_COUNTS
+    sure: bool = True
 
     def locate(self, x: float, y: float) -> tuple[int, int]:
         """[row, column] of the square in which a point of the lattice lies."""
@@ -90,7 +100,14 @@ class Evidence:
         seen = self.seen[part].copy()
         _fill_gaps(probability, seen)
         west, south = self.west + int(left), self.south + int(top)
-        return MapView(west, south, probability, state, seen, self.settled_by[part].copy())
+        counts = self._counts(top, left, state.shape[1])
+        return MapView(west, south, probability, state, seen, self.settled_by[part].copy(), counts)
+
+    def _counts(self, top: int, left: int, columns: int) -> Counts:
+        """The fields, with the flat indices of a part of the map that begins at [top, left]."""
+        rows, places = np.divmod(self._where, self.state.shape[1])
+        where = np.where(self._weight > 0, (rows - top) * columns + places - left, 0).astype(np.int32)
+        return Counts(where, self._weight, self._low, self._high)
 
     def index(self, x: int, y: int) -> tuple[int, int]:
         """[row, column] of a square of the lattice."""

@@ -71,7 +71,7 @@ class Knowledge:
         if accommodated.explanation.how == "turned":
             self.felt.clear()  # its squares were those of another lattice
         self._feel(impression)
-        view = self.memory.evidence.view()
+        view = self.memory.evidence.view()._replace(sure=self.memory.sure)
         occupied = view.seen & (view.probability > SPACE)
         percept, labels = map_regions(occupied, view.seen, view.state != OPEN, view.probability)
         touched = [(f"part{labels[view.locate(x, y)]}", colour) for (x, y), colour in sorted(self.felt.items())]

@@ -10,16 +10,8 @@ The answer is *don't know* when nothing makes the query hold and
   variables, or names something that no fact names.
 """
 
-import json
-import os
-import select
-import subprocess
-import sys
-import time
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass
-from pathlib import Path
 from types import TracebackType
 from typing import Any
 
@@ -27,6 +19,7 @@ from kb.factfile import parse_facts
 from kb.facts import Fact, Number, Symbol
 from kb.problems import BadInputError, Problem, Span, did_you_mean
 from kb.source import decode
+from kb.worker import Worker
 
 SECONDS = 5.0  # after which a query is given up
 LONGEST = 10_000  # characters of a query
@@ -73,7 +66,7 @@ class QueryEngine:
 
     def __init__(self, seconds: float = SECONDS) -> None:
         self.seconds = seconds
-        self._process: subprocess.Popen[bytes] | None = None
+        self._worker = Worker()
 
     def __enter__(self) -> "QueryEngine":
         return self
@@ -83,15 +76,7 @@ class QueryEngine:
 
     def close(self) -> None:
         """End the process."""
-        worker, self._process = self._process, None
-        if worker is None:
-            return
-        worker.kill()
-        worker.wait()
-        for stream in (worker.stdin, worker.stdout):
-            if stream is not None:
-                with suppress(OSError):  # what it has not read is lost
-                    stream.close()
+        self._worker.close()
 
     def ask(self, facts: Sequence[str], query: str) -> Answer:
         """Answer a query over facts such as `kind(o1,object,95).`
@@ -103,61 +88,11 @@ class QueryEngine:
         world = parse_facts(decode("belief", "\n".join(facts).encode("utf-8")))
         known = {*VOCABULARY, *(fact.signature for fact in world)}
         request = {"facts": "\n".join(f"{fact}." for fact in world), "query": text, "known": sorted(known)}
-        found = self._exchange(json.dumps(request).encode("ascii") + b"\n")
+        found = self._worker.exchange(request, self.seconds)
         if "limit" in found:
             raise QueryLimitError(f"the query was given up: {found['limit']}")
         _check_atoms(text, found, known)
         return _answer(found, world, text)
-
-    def _exchange(self, request: bytes) -> dict[str, Any]:
-        """What the worker answers; a worker that dies or takes too long is replaced for the next query."""
-        worker = self._process = self._process or _started()
-        assert worker.stdin is not None
-        line: bytes | None = b""
-        with suppress(BrokenPipeError):
-            worker.stdin.write(request)
-            worker.stdin.flush()
-            line = _line(worker, self.seconds)
-        if not line:
-            self.close()
-            late = f"it took more than {self.seconds:g} seconds"
-            return {"limit": late if line is None else "it ended the process that answers queries"}
-        found: dict[str, Any] = json.loads(line)
-        return found
-
-
-def _started() -> "subprocess.Popen[bytes]":
-    """A fresh worker, ready."""
-    home = str(Path(__file__).resolve().parent.parent)
-    path = os.pathsep.join(filter(None, [home, os.environ.get("PYTHONPATH")]))
-    command = [sys.executable, "-m", "kb.query_worker"]
-    worker = subprocess.Popen(
-        command,
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        env=os.environ | {"PYTHONPATH": path},
-        start_new_session=True,  # Ctrl-C is for the prompt, which ends the worker itself
-    )
-    if _line(worker, 30.0) != b"ready\n":
-        worker.kill()
-        raise RuntimeError("the process that answers queries does not start")
-    return worker
-
-
-def _line(worker: "subprocess.Popen[bytes]", seconds: float) -> bytes | None:
-    """The next line that a worker writes; empty when it ends, None when it does not write one in time."""
-    assert worker.stdout is not None
-    handle, found, end = worker.stdout.fileno(), b"", time.monotonic() + seconds
-    while not found.endswith(b"\n"):
-        ready, _, _ = select.select([handle], [], [], max(0.0, end - time.monotonic()))
-        if not ready:
-            return None
-        piece = os.read(handle, 1 << 20)
-        if not piece:
-            return b""
-        found += piece
-    return found
 
 
 def _problem(text: str, what: str, at: int = 0, hint: str = "") -> BadInputError:

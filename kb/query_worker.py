@@ -125,6 +125,33 @@ def _value(term: clingo.Symbol) -> int | str:
     return term.number if term.type == clingo.SymbolType.Number else str(term)
 
 
+def solved(program: str, rules: str, seconds: float) -> Answer:
+    """The shown atoms of the best answer set of a program of ours with rules of a user: {"atoms": texts or None}.
+
+    Or {"error": clingo's first message}, whose lines are those of the rules.
+    """
+    messages: list[str] = []
+    control = clingo.Control([], logger=lambda _code, text: messages.append(text), message_limit=20)
+    try:
+        control.add("base", [], program)
+        control.add("base", [], rules)
+        control.ground([("base", [])])
+    except RuntimeError as error:
+        messages.append(str(error))
+    if messages:
+        return {"error": messages[0]}
+    best: list[list[str] | None] = [None]
+
+    def keep(model: clingo.Model) -> None:
+        best[0] = [str(atom) for atom in model.symbols(shown=True)]
+
+    with control.solve(on_model=keep, async_=True) as handle:
+        if not handle.wait(seconds):
+            handle.cancel()
+        handle.get()
+    return {"atoms": best[0]}
+
+
 def _raise(code: clingo.MessageCode, message: str) -> None:
     """Turn clingo's first message into an error; columns count from the start of the query."""
     if unsafe := UNSAFE.search(message):
@@ -145,6 +172,8 @@ def _respond(line: str) -> Answer:
     _messages.clear()
     try:
         request = json.loads(line)
+        if "rules" in request:
+            return solved(request["program"], request["rules"], request["seconds"])
         found = answer(request["facts"], request["query"], request["known"])
     except QueryError as error:
         return {"error": error.what, "at": error.at}

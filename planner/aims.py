@@ -15,12 +15,13 @@ class Aim(NamedTuple):
 
     kind : attain, inspect, explore, pass or settle (planner/asp/aims.lp).
     squares : flat indices of the screen, any of which will do. what : the reason in words.
-    price : squares that it costs besides the way.
+    chance : percent of belief that it leads to what is looked for. price : squares that it costs besides the way.
     """
 
     kind: str
     squares: Squares
     what: str
+    chance: int = 100
     price: float = 0.0
 
 
@@ -36,6 +37,7 @@ def choose(aims: Sequence[Aim], screens: Screens, last: frozenset[int]) -> Aim |
         if reached is not None:
             kind = "pass" if reached.level and aim.kind == "explore" else aim.kind
             facts.append(f"aim({number},{kind},{round(10 * (reached.cost + aim.price))})")
+            facts.append(f"chance({number},{aim.chance})")
             facts += [f"last({number})"] * bool(last and not last.isdisjoint(aim.squares.tolist()))
     answer = solve([ASP / "aims.lp"], facts) if facts else None
     return aims[answer[0].arguments[0].number] if answer else None

@@ -8,10 +8,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kb.body import Command, Release
 from kb.corners import Corner, corners
 from kb.facts import Fact
+from kb.imagining import Imagination
 from kb.reconciliation import Reconciled, reconcile
 from kb.rooms import NOTHING, Rooms, rooms_of
 from kb.task import Task
@@ -21,6 +23,7 @@ from planner.aims import Aim, choose
 from planner.carrier import Act, Carrier, Go, See
 from planner.circling import pivot, ways_round, winding
 from planner.destinations import Destination, Situation, contains, destination, nowhere
+from planner.exploring import Lookout
 from planner.goals import BY_THE_WAY, Stage, constraints, stages
 from planner.haulage import Refusal
 from planner.landing import landing
@@ -67,6 +70,7 @@ class Decider:
         self._aimed: frozenset[Square] = frozenset()  # squares of the lattice
         self._path: tuple[Square, ...] = ()  # squares of the lattice
         self._level = 0
+        self._imagination = Imagination()
         self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
@@ -75,7 +79,7 @@ class Decider:
         self.rooms = rooms_of(model, self.rules)
         reconciled = self._reconcile(model, screens)
         self.corners = corners(model, self.rules)
-        situation = Situation(model, screens, self.bound, self.rooms, self.corners)
+        situation = Situation(model, screens, self.bound, self.rooms, self.corners, self.task)
         while self.attained < len(self.stages):
             stage = self.stages[self.attained]
             decision = self._towards(stage, situation, reconciled, track)
@@ -96,6 +100,8 @@ class Decider:
         goals = [goal for goal in stage.goals if str(goal.args[0]) == "utak"]
         if not goals:
             return None
+        if situation.model.held is not None:
+            return Decision(Release(), f"{situation.model.held} is let go, to walk; {stage}")
         if goals[0].name in BY_THE_WAY:
             node = situation.model.object(self.bound.get(str(goals[0].args[1]), ""))
             if node is not None:
@@ -106,7 +112,7 @@ class Decider:
             if all(not d.missing and contains(d.squares, situation.model) for d in where):
                 return None
         missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
-        return self._pursue(_aims(where, situation, reconciled), stage, situation, lambda: missing)
+        return self._pursue(_aims(where, situation, reconciled, self._imagination), stage, situation, lambda: missing)
 
     def _pursue(
         self,
@@ -134,10 +140,10 @@ class Decider:
         node = situation.model.object(self.bound.get(x, ""))
         if node is None:
             unseen = nowhere(f"nothing seen so far is {x}")
-            aims = _aims([unseen], situation, reconciled)
+            aims = _aims([unseen], situation, reconciled, self._imagination)
             return self._pursue(aims, stage, situation, lambda: unseen.missing)
         if node.polygon is None or node.open:
-            look = exploring.inspection(situation.screens, node, touch=False)
+            look = exploring.inspection(situation.screens, node, touch=False, chance=1.0)
             if len(look.squares):
                 return self._pursue([Aim("inspect", *look)], stage, situation, lambda: look.what)
         if node.polygon is None:
@@ -158,7 +164,8 @@ class Decider:
             return self._pursue([Aim("inspect", *advice.lookout)], stage, situation, lambda: "")
         unknown = nowhere(land.missing or "no way is known to carry it there", land.lookouts)
         verdict = "impossible" if advice.proved else "limit"
-        return self._pursue(_aims([unknown], situation, reconciled), stage, situation, advice.reason, verdict)
+        aims = _aims([unknown], situation, reconciled, self._imagination)
+        return self._pursue(aims, stage, situation, advice.reason, verdict)
 
     def _round(self, stage: Stage, name: str, situation: Situation, track: Sequence[Place]) -> Decision | None:
         """The next command on the way round an object."""
@@ -237,7 +244,9 @@ class Decider:
         return reconciled
 
 
-def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconciled) -> list[Aim]:
+def _aims(
+    where: Sequence[Destination], situation: Situation, reconciled: Reconciled, imagination: Imagination
+) -> list[Aim]:
     """What is worth doing: go there, when it is known where; else look, first where just the missing thing may be."""
     screens, model = situation.screens, situation.model
     missing = [d for d in where if d.missing]
@@ -247,21 +256,42 @@ def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconc
             squares = np.intersect1d(squares, other.squares)
         return [Aim("attain", squares, "the way to the goal is known")]
     aims = [Aim("explore", *look) for d in missing for look in d.lookouts]
+    likely = _likely(situation, reconciled, imagination)
     for x, name in reconciled.doubtful:
         node = model.object(name)
         if node is not None and x in reconciled.hypothesised:
-            look = exploring.inspection(screens, node, touch=node.open == 0)
-            aims.append(Aim("inspect", look.squares, f"{look.what}: it may be {x}", (95 - node.confidence) * DOUBT))
+            chance = 0.4 if likely is None else float(likely[model.mask(node.patch)].max())
+            look = exploring.inspection(screens, node, node.open == 0, chance)
+            aims.append(Aim("inspect", look.squares, f"{look.what}: it may be {x}", max(3, round(100 * chance))))
     if any(_surely_reached(aim, screens) for aim in aims if aim.kind == "explore"):
         return aims
+    if likely is not None:
+        aims += [Aim("inspect", *look) for look in exploring.sightings(screens, likely, "something may be meant there")]
     for apart in (exploring.APART, 0):
         explored = [Aim("explore", *look) for look in exploring.frontiers(screens, apart)]
-        settled = [Aim("settle", *look, ODD) for look in exploring.vague_places(screens, apart, odd=True)]
+        settled = [Aim("settle", *look, price=ODD) for look in exploring.vague_places(screens, apart, odd=True)]
         settled += [Aim("settle", *look) for look in exploring.vague_places(screens, apart, odd=False)]
         if explored or settled:
             break
     beyond = [Aim("pass", *look) for look in exploring.rooms_beyond(screens)]
+    if likely is not None:
+        looks = [Lookout(aim.squares, aim.what) for aim in explored]
+        explored = [Aim("explore", *look) for look in exploring.promised(screens, looks)]
+        settled = [aim._replace(chance=2) for aim in settled]
+        beyond = [aim._replace(chance=20) for aim in beyond]
     return [*aims, *explored, *settled, *beyond]
+
+
+def _likely(situation: Situation, reconciled: Reconciled, imagination: Imagination) -> NDArray[np.float64] | None:
+    """(rows, columns): how likely each square belongs to a thing that is looked for; None when nothing is."""
+    wanted = sorted(
+        str(claim.fact.args[1])
+        for claim in situation.task.claims
+        if claim.fact.name == "shape" and str(claim.fact.args[0]) in reconciled.hypothesised
+    )
+    if not wanted:
+        return None
+    return imagination.likely(situation.model.view, situation.model.lattice, wanted[0])
 
 
 def _surely_reached(aim: Aim, screens: Screens) -> bool:

@@ -22,11 +22,25 @@ ALIKE = 0.2  # of a field: what is occupied of two fields that show the same wal
 SMALLEST_ROOM = 6  # squares of floor that are worth a passage
 
 
+REACH = 14  # squares from the edge of what is seen at which most of it is seen anew
+PROMISING = 0.1  # a place at which a thing is this likely is worth a look
+HALF = 0.5
+FLOOR, WALL, NOTHING = 0, 1, 2
+OUTWARDS = 20.0  # squares, east and north together, that floor behind a frontier may reach beyond it
+LIKELY = 0.5  # what is looked for as likely as this is gone up to
+BARREN = 0.1  # of a square unseen beside the verge, how much less it promises than one beside the floor
+HOMELY = 800  # squares of floor unseen among which one thing that is looked for is expected
+
+
 class Lookout(NamedTuple):
-    """Squares (flat indices) from each of which something is seen that is not known yet, and what it is."""
+    """Squares (flat indices) from each of which something is seen that is not known yet, and what it is.
+
+    chance : percent of belief that it is what is looked for; 100 when it is not known to be less.
+    """
 
     squares: Squares
     what: str
+    chance: int = 100
 
 
 def frontiers(screens: Screens, apart: int) -> list[Lookout]:
@@ -34,6 +48,62 @@ def frontiers(screens: Screens, apart: int) -> list[Lookout]:
     border = _new(screens, apart) & grown(~screens.model.view.seen, 1)
     labels = components(grown(border, 1)).labels
     return [Lookout(squares, "the floor goes on unseen") for squares in _groups(np.where(border, labels, 0))]
+
+
+def sightings(screens: Screens, likely: NDArray[np.float64], what: str) -> list[Lookout]:
+    """Floor close to where something is likely that is looked for, one Lookout a place.
+
+    likely : (rows, columns), how likely each square belongs to such a thing.
+    """
+    view = screens.model.view
+    spots = _groups(components(likely >= PROMISING).labels)
+    found = []
+    for spot in spots:
+        mask = np.zeros(likely.shape, np.bool_)
+        mask.ravel()[spot] = True
+        if not (view.state.ravel()[spot] == OPEN).any():
+            continue
+        chance = float(likely.ravel()[spot].max())
+        near = close(screens, mask, chance)
+        if len(near):
+            found.append(Lookout(near, what, round(100 * chance)))
+    return found
+
+
+def close(screens: Screens, mask: Mask, chance: float) -> Squares:
+    """Floor from which something is seen exactly and nothing was looked at yet.
+
+    When it is rather likely what is looked for, the floor right beside it, until he has been there.
+    """
+    beside = grown(mask, 1)
+    near = np.flatnonzero(screens.floor & beside)
+    if chance >= LIKELY and len(near) and not (beside & screens.model.squares(screens.model.looked_from)).any():
+        return near
+    about = grown(mask, CLOSE)
+    for apart in (APART, 0):
+        near = np.flatnonzero(_new(screens, apart) & about)
+        if len(near):
+            break
+    return near
+
+
+def outwards(screens: Screens, side: tuple[int, int], best: int) -> list[Lookout]:
+    """Frontiers beyond which floor may lie further out towards a side than the best square known (a flat index).
+
+    side : the direction (east, north) in Utak's frame. The further back a frontier lies, the less likely it leads
+    there.
+    """
+    x, y = screens.model.lattice.to_lattice(*side)
+    found = []
+    for look in frontiers(screens, 0):
+        rows, columns = np.divmod(look.squares, screens.model.labels.shape[1])
+        row, column = divmod(best, screens.model.labels.shape[1])
+        behind = (column - columns) * x + (row - rows) * y
+        squares = look.squares[behind < OUTWARDS]
+        if len(squares):
+            chance = round(100 * min(1.0, 1 - float(behind.min()) / OUTWARDS))
+            found.append(Lookout(squares, "floor may lie further out where it goes on unseen", max(10, chance)))
+    return found
 
 
 def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:
@@ -50,18 +120,13 @@ def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:
     return [Lookout(squares, "what bounds the floor is not clear") for squares in _groups(near)]
 
 
-def inspection(screens: Screens, node: Node, touch: bool) -> Lookout:
-    """Floor from which an object is seen as well as can be, or felt."""
+def inspection(screens: Screens, node: Node, touch: bool, chance: float) -> Lookout:
+    """Floor from which an object is seen as well as can be, or felt. chance: that it is what is looked for."""
     model = screens.model
     mask = model.mask(node.patch)
     if touch:
         return Lookout(np.flatnonzero(_new(screens, 0) & grown(mask, 1)), f"the colour of {node.name} is not known")
-    about = grown(mask, CLOSE)
-    for apart in (APART, 0):
-        near = np.flatnonzero(_new(screens, apart) & about)
-        if len(near):
-            break
-    return Lookout(near, f"what {node.name} is is not clear")
+    return Lookout(close(screens, mask, chance), f"what {node.name} is is not clear")
 
 
 def sight_of(screens: Screens, mask: NDArray[np.bool_], what: str) -> Lookout:
@@ -78,6 +143,50 @@ def rooms_beyond(screens: Screens) -> list[Lookout]:
     apart = components(screens.model.space & ~screens.floor).labels
     what = "floor is seen beyond, so a passage must lead there"
     return [Lookout(squares, what) for squares in _groups(apart) if len(squares) >= SMALLEST_ROOM]
+
+
+def promised(screens: Screens, lookouts: list[Lookout]) -> list[Lookout]:
+    """Frontiers, each with how likely it is that what is looked for comes into sight at its nearest square."""
+    new = _gain(screens).ravel()
+    return [look._replace(chance=_chance(float(new[_nearest(screens, look.squares)]))) for look in lookouts]
+
+
+def _chance(squares: float) -> int:
+    return max(1, min(90, round(100 * squares / HOMELY)))
+
+
+def _nearest(screens: Screens, squares: Squares) -> int:
+    """Of some squares the one that is reached first, at the most certain level at which any is."""
+    reached = screens.nearest(squares)
+    if reached is None:
+        return int(squares[0])
+    far = screens.distances[reached.level].ravel()[squares]
+    return int(squares[np.where(far < 0, far.max() + 1, far).argmin()])
+
+
+def _gain(screens: Screens) -> NDArray[np.float64]:
+    """(rows, columns): how many squares never seen come into sight there, each by what it promises."""
+    view = screens.model.view
+    seen = np.pad(view.seen, REACH)
+    beside_floor = _beside(np.pad(np.where(view.probability <= HALF, FLOOR, WALL), REACH), seen) == FLOOR
+    worth = np.where(seen, 0.0, np.where(beside_floor, 1.0, BARREN))
+    sums = np.pad(worth, 1).cumsum(0).cumsum(1)[:-1, :-1]
+    side = 2 * REACH + 1
+    answer: NDArray[np.float64] = sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]
+    return answer
+
+
+def _beside(labels: NDArray[np.int64], seen: Mask) -> NDArray[np.int8]:
+    """Of each square never seen the least label of the nearest seen ones, as far as REACH rows and columns."""
+    near = np.where(seen, labels, NOTHING).astype(np.int8)
+    for _ in range(REACH):
+        least = near.copy()
+        np.minimum(least[1:], near[:-1], out=least[1:])
+        np.minimum(least[:-1], near[1:], out=least[:-1])
+        np.minimum(least[:, 1:], near[:, :-1], out=least[:, 1:])
+        np.minimum(least[:, :-1], near[:, 1:], out=least[:, :-1])
+        near = np.where(near == NOTHING, least, near)
+    return near
 
 
 def _wall_like(probability: NDArray[np.float32], seen: Mask) -> Mask:

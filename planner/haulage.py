@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from geometry.carrying import At, Carrying, InCorner, plan_carrying
+from geometry.carrying import At, Carrying, InCorner, Inside, plan_carrying
 from geometry.digital import squares
 from geometry.ends import End
 from geometry.rigid import Translate
@@ -147,7 +147,7 @@ def _way(end: End, shape: Any) -> float:
         return math.hypot(end.pose.x, end.pose.y)
     if isinstance(end, InCorner):
         return float(shape.distance(shapely.Point(end.x, end.y)))
-    return float(shape.distance(end.polygon))
+    return float(shape.distance(end.polygon)) if isinstance(end, Inside) else 0.0
 
 
 def _choice(facts: Sequence[str]) -> tuple[str, int, str] | None:

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from kb.encodings import EncodingError, solve
+from kb.encodings import solve
+from kb.problems import BadInputError
 from tests.encoding_cases import ENCODINGS, Case, cases_of, disagreement, optimal_answers, statements, without
 
 
@@ -42,7 +43,7 @@ def test_a_misspelt_predicate_is_an_error(tmp_path: Path) -> None:
     rules = tmp_path / "rules.lp"
     rules.write_text("lost(X) :- knid(X, verge, 99).\n#show lost/1.\n")
     interpretation = next(e for e in ENCODINGS if e.stem == "interpretation")
-    with pytest.raises(EncodingError, match="knid"):
+    with pytest.raises(BadInputError, match="knid"):
         solve([interpretation, rules], ["region(a,zero,100)"])
 
 
@@ -51,7 +52,7 @@ def test_a_wrong_arity_and_a_syntax_error_are_errors(tmp_path: Path, rule: str) 
     rules = tmp_path / "rules.lp"
     rules.write_text(f"{rule}\n#show lost/1.\n")
     interpretation = next(e for e in ENCODINGS if e.stem == "interpretation")
-    with pytest.raises(EncodingError):
+    with pytest.raises(BadInputError):
         solve([interpretation, rules], ["region(a,zero,100)"])
 
 

@@ -112,8 +112,8 @@ def test_a_runaway_query_is_given_up(engine: QueryEngine, query: str) -> None:
 
 def test_a_worker_that_dies_is_replaced(engine: QueryEngine) -> None:
     engine.ask(FACTS, "node(o1)")
-    assert engine._process is not None
-    engine._process.kill()
+    assert engine._worker._process is not None
+    engine._worker._process.kill()
     with pytest.raises(QueryLimitError, match="process"):
         engine.ask(FACTS, "node(o1)")
     assert engine.ask(FACTS, "node(o1)").kind == "yes"

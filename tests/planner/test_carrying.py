@@ -75,9 +75,7 @@ SQUARE = f'object(t, g, "{box(8, 6, 11, 9)}").'
 
 @pytest.mark.parametrize("heading", [0, 90, 217])
 def test_a_square_into_a_corner(tmp_path: Path, heading: int) -> None:
-    folder = scene(
-        tmp_path, room(SQUARE, heading=heading), "object(x). shape(x, square).", "at(x, corner(northeast))."
-    )
+    folder = scene(tmp_path, room(SQUARE, heading=heading), "object(x). shape(x, square).", "at(x, corner(northeast)).")
     done = run(folder)
     assert done.result.verdict == "done", done.result.reason
     lies_as_believed(done.session)
@@ -124,9 +122,7 @@ def test_without_pulling_every_push_leads_away_from_him(tmp_path: Path) -> None:
 
 
 def test_he_lets_go_before_he_walks_and_both_goals_hold_at_the_end(tmp_path: Path) -> None:
-    folder = scene(
-        tmp_path, room(SQUARE), "object(x). shape(x, square).", "at(x, corner(southwest)). at(utak, start)."
-    )
+    folder = scene(tmp_path, room(SQUARE), "object(x). shape(x, square).", "at(x, corner(southwest)). at(utak, start).")
     done = run(folder)
     assert done.result.verdict == "done", done.result.reason
     holding = False
