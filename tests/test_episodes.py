@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parent.parent
 GOLDEN = Path(__file__).with_name("golden_episodes.json")
 JUDGE = Path(os.environ.get("UTAK_JUDGE") or ROOT.parent / "shared" / "judge" / "judge.py")
 EXAMPLES = sorted(path.parent.name for path in (ROOT / "examples").glob("*/goal.lp"))
-REMEMBERED = ["go_northeast", "go_to_square", "go_round_square", "go_next_room_askew"]
+REMEMBERED = ["go_northeast", "go_to_square", "go_round_square", "go_next_room_askew", "push_square_next_room"]
 ALIKE = ["go_northeast_askew", "go_to_square_two"]  # run under several hash seeds
 
 
