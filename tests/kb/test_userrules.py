@@ -61,6 +61,6 @@ def test_an_unknown_predicate_is_told_with_a_hint(tmp_path: Path) -> None:
     assert "#defined" in said
 
 
-@pytest.mark.parametrize("rule", ["#include \"/etc/passwd\".", "#script (python)\nimport os\n#end."])
+@pytest.mark.parametrize("rule", ['#include "/etc/passwd".', "#script (python)\nimport os\n#end."])
 def test_nothing_of_the_machine_can_be_reached(tmp_path: Path, rule: str) -> None:
     assert "rules0.lp:" in complaint(tmp_path, rule)
