@@ -108,11 +108,11 @@ class Memory:
     def sure(self) -> bool:
         """Is what the counts settle beyond doubt?
 
-        Not when a look contradicted another one, nor while several places in his square are left at which he may have
-        woken.
+        Not when a look contradicted another one or a motion ended beside where it should, nor while several places in
+        his square are left at which he may have woken.
         """
         centred = all(other.box == CENTRE + CENTRE for other in self.hypotheses)
-        return not self.evidence.overruled and (centred or len(self.hypotheses) == 1)
+        return not (self.evidence.overruled or self.slipped) and (centred or len(self.hypotheses) == 1)
 
     def wake(self, impression: Impression) -> Accommodated:
         """Take in the first impression."""

@@ -8,6 +8,7 @@ one impression to the next is only which node a patch of squares belongs to (`Na
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -104,20 +105,20 @@ class WorldModel:
     barred: frozenset[tuple[int, int]] = frozenset()
     spread: float = 0.0
 
-    @property
+    @cached_property
     def floor(self) -> Mask:
         """(rows, columns): the zero region in which Utak stands."""
         row, column = self.view.locate(*self.place)
         mask: Mask = self.labels == self.labels[row, column]
         return mask
 
-    @property
+    @cached_property
     def space(self) -> Mask:
         """(rows, columns): all squares seen and taken for floor, wherever they are."""
         mask: Mask = self.view.seen & (self.view.probability <= SPACE)
         return mask
 
-    @property
+    @cached_property
     def verge(self) -> Mask:
         """(rows, columns): squares of regions taken for verge rather than for objects."""
         names = [f"part{n}" for n in range(int(self.labels.max()) + 1)]

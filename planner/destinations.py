@@ -12,11 +12,10 @@ from kb.facts import Fact, Symbol, Term
 from kb.rooms import Rooms
 from kb.task import Task
 from kb.worldmodel import WorldModel
-from planner.exploring import Lookout, outwards, rooms_beyond
+from planner.exploring import Lookout, rooms_beyond
 from planner.screen import Screens, Squares, grown
 
 Mask = NDArray[np.bool_]
-SIDES = {"northeast": (1, 1), "northwest": (-1, 1), "southeast": (1, -1), "southwest": (-1, -1)}
 RAYS = 192  # places along a line of sight at which it may meet the verge
 
 
@@ -84,9 +83,6 @@ def corner(side: str, situation: Situation) -> Destination:
     if not model.view.seen[around].all():
         lookout = Lookout(np.array([best]), f"the floor goes on to the {side}, unseen")
         return nowhere(lookout.what, (lookout,))
-    further = outwards(screens, SIDES[side], best)
-    if further:
-        return nowhere(further[0].what, tuple(further))
     return Destination(np.array([best]))
 
 

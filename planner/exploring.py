@@ -15,21 +15,18 @@ from planner.screen import Screens, Squares, grown
 
 FURTHER = 7  # squares from which a thing lies within the middle zone of the eye
 CLOSE = 3  # squares from which a thing lies within the fovea, whichever way it is seen
-Mask = NDArray[np.bool_]
 APART = 2  # squares: a new look is first sought further than this from earlier ones
 FIELD = 4  # squares: the side of the largest retinal fields
 ALIKE = 0.2  # of a field: what is occupied of two fields that show the same wall differs by no more
 SMALLEST_ROOM = 6  # squares of floor that are worth a passage
-
-
 REACH = 14  # squares from the edge of what is seen at which most of it is seen anew
 PROMISING = 0.1  # a place at which a thing is this likely is worth a look
-HALF = 0.5
-FLOOR, WALL, NOTHING = 0, 1, 2
-OUTWARDS = 20.0  # squares, east and north together, that floor behind a frontier may reach beyond it
 LIKELY = 0.5  # what is looked for as likely as this is gone up to
 BARREN = 0.1  # of a square unseen beside the verge, how much less it promises than one beside the floor
 HOMELY = 800  # squares of floor unseen among which one thing that is looked for is expected
+HALF = 0.5
+FLOOR, WALL, NOTHING = 0, 1, 2  # what a square lies beside
+Mask = NDArray[np.bool_]
 
 
 class Lookout(NamedTuple):
@@ -85,25 +82,6 @@ def close(screens: Screens, mask: Mask, chance: float) -> Squares:
         if len(near):
             break
     return near
-
-
-def outwards(screens: Screens, side: tuple[int, int], best: int) -> list[Lookout]:
-    """Frontiers beyond which floor may lie further out towards a side than the best square known (a flat index).
-
-    side : the direction (east, north) in Utak's frame. The further back a frontier lies, the less likely it leads
-    there.
-    """
-    x, y = screens.model.lattice.to_lattice(*side)
-    found = []
-    for look in frontiers(screens, 0):
-        rows, columns = np.divmod(look.squares, screens.model.labels.shape[1])
-        row, column = divmod(best, screens.model.labels.shape[1])
-        behind = (column - columns) * x + (row - rows) * y
-        squares = look.squares[behind < OUTWARDS]
-        if len(squares):
-            chance = round(100 * min(1.0, 1 - float(behind.min()) / OUTWARDS))
-            found.append(Lookout(squares, "floor may lie further out where it goes on unseen", max(10, chance)))
-    return found
 
 
 def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:

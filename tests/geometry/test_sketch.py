@@ -1,0 +1,95 @@
+"""Pictures that agree with counts, and the parts of a picture."""
+
+import numpy as np
+import pytest
+
+from geometry.sketch import DRAWN, FREE, FULL, UNSEEN, Counts, blobs, pictures
+
+
+def counted(truth: np.ndarray, side: int, shift: int = 0) -> Counts:
+    """The exact counts of fields of side x side squares laid over a picture."""
+    rows, columns = truth.shape
+    flat = np.arange(truth.size).reshape(truth.shape)
+    fields = [
+        flat[r : r + side, c : c + side].ravel()
+        for r in range(shift, rows - side + 1, side)
+        for c in range(shift, columns - side + 1, side)
+    ]
+    where = np.array(fields, np.int32)
+    count = truth.ravel()[where].sum(1).astype(np.int16)
+    return Counts(where, np.ones(where.shape, np.int16), count, count)
+
+
+def together(one: Counts, two: Counts) -> Counts:
+    return Counts(*(np.concatenate(pair) for pair in zip(one, two, strict=True)))
+
+
+def square_world() -> np.ndarray:
+    truth = np.zeros((24, 24), np.int8)
+    truth[:4] = 1
+    truth[9:14, 10:15] = 1
+    return truth
+
+
+def test_pictures_show_what_the_counts_of_two_looks_leave_no_doubt_about() -> None:
+    truth = square_world()
+    ground = np.full(truth.shape, DRAWN, np.int8)
+    counts = together(counted(truth, 4), counted(truth, 4, 2))
+    drawn = pictures(ground, counts, np.zeros_like(truth), 8, 60)
+    assert np.abs(drawn.mean(0) - truth).mean() < 0.02
+
+
+def test_pictures_agree_with_what_is_settled_and_show_nothing_unseen() -> None:
+    truth = square_world()
+    ground = np.full(truth.shape, DRAWN, np.int8)
+    ground[9:14, 10:15], ground[20:], ground[5, 5] = FULL, UNSEEN, FREE
+    drawn = pictures(ground, counted(truth, 4), np.ones_like(truth), 3, 10)
+    assert drawn.shape == (3, 24, 24)
+    assert (drawn[:, 9:14, 10:15] == 1).all()
+    assert not drawn[:, 20:].any()
+    assert not drawn[:, 5, 5].any()
+
+
+def test_the_same_arguments_give_the_same_pictures() -> None:
+    truth = square_world()
+    ground = np.full(truth.shape, DRAWN, np.int8)
+    first, again = (pictures(ground, counted(truth, 4), np.zeros_like(truth), 4, 20) for _ in range(2))
+    assert np.array_equal(first, again)
+
+
+def test_straight_sides_are_preferred() -> None:
+    truth = np.zeros((16, 16), np.int8)
+    truth[:, :6] = 1  # a field of side 4 is half full wherever the wall's edge lies in it
+    drawn = pictures(np.full(truth.shape, DRAWN, np.int8), counted(truth, 4), np.zeros_like(truth), 8, 80)
+    assert np.abs(drawn.mean(0) - truth).mean() < 0.08
+
+
+def test_without_fields_there_is_nothing_to_draw() -> None:
+    empty = Counts(
+        np.zeros((0, 16), np.int32), np.zeros((0, 16), np.int16), np.zeros(0, np.int16), np.zeros(0, np.int16)
+    )
+    assert (
+        pictures(np.full((3, 4), FULL, np.int8), empty, np.zeros((3, 4), np.int8), 2, 5).tolist() == [[[1] * 4] * 3] * 2
+    )
+
+
+@pytest.mark.parametrize(("side", "seen"), [(1, True), (5, True), (5, False)])
+def test_moments_of_a_square(side: int, seen: bool) -> None:
+    image = np.zeros((side + 2, side + 2), np.int8)
+    image[1:-1, 1:-1] = 1
+    ground = np.where(image == 1, DRAWN, DRAWN if seen else UNSEEN).astype(np.int8)
+    found = blobs(image, ground)
+    assert found.area.tolist() == [side * side]
+    assert found.apart.tolist() == [seen]
+    assert found.spread == pytest.approx([1 / 6])
+    assert found.lengthy == pytest.approx([0])
+
+
+def test_parts_that_touch_at_a_corner_are_two() -> None:
+    found = blobs(np.eye(4, dtype=np.int8), np.full((4, 4), DRAWN, np.int8))
+    assert found.area.tolist() == [1] * 4
+    assert found.labels.max() == 4
+
+
+def test_no_part_no_blob() -> None:
+    assert blobs(np.zeros((4, 4), np.int8), np.full((4, 4), DRAWN, np.int8)).area.tolist() == []
