@@ -10,7 +10,7 @@ from geometry.errand import Errand
 from geometry.motion import Plan, plan_motion
 from geometry.rigid import Pose
 
-CELLS = 20_000  # looked at at most
+CELLS = 60_000  # looked at at most
 
 
 def move_alone(errand: Errand) -> Plan:
