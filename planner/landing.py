@@ -15,11 +15,13 @@ from numpy.typing import NDArray
 from geometry.carrying import At, InCorner, Inside
 from geometry.ends import End, met
 from geometry.rigid import Pose
+from kb.evidence import OPEN
 from kb.facts import Fact, Number, Symbol, Text
 from kb.wkt import parse_wkt
-from kb.worldmodel import Node
+from kb.worldmodel import Node, WorldModel
 from planner.destinations import Situation, corner, out_of_sight
-from planner.exploring import Lookout, rooms_beyond
+from planner.exploring import Lookout, rooms_beyond, sight_of
+from planner.screen import grown
 
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
@@ -88,12 +90,24 @@ def region_of(mask: Mask) -> Any:
 
 
 def _cornered(side: str, node: Node, situation: Situation) -> Landing:
-    """The corner that Utak would go to; it need not be looked for once the object lies in it."""
+    """The corner that Utak would go to, seen closely; it need not be looked for once the object lies in it."""
     (x, y), (column, row) = situation.corners[side].point, situation.corners[side].square
     found = corner(side, situation)
     if found.missing and not situation.model.mask(node.patch)[row, column]:
         return Landing({}, found.missing, found.lookouts)
+    unclear = grown(square_mask(situation.model, column, row), 1) & (situation.model.view.state == OPEN)
+    if unclear.any():
+        lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
+        if len(lookout.squares):
+            return Landing({}, lookout.what, (lookout,))
     return Landing({side: InCorner(x, y, 1 if x > column else -1, 1 if y > row else -1)})
+
+
+def square_mask(model: WorldModel, column: int, row: int) -> Mask:
+    """(rows, columns): one square of the view."""
+    mask: Mask = np.zeros(model.labels.shape, np.bool_)
+    mask[row, column] = True
+    return mask
 
 
 def _next_room(began: Place, situation: Situation) -> Landing:
