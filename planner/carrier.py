@@ -93,6 +93,7 @@ class Carrier:
         self._hauler = Hauler(self.pull)
         self._course: Course | None = None
         self._plans = 0
+        self._tight: dict[str, int] = {}  # how often a thing stood against something unawares
 
     @property
     def begun(self) -> bool:
@@ -153,7 +154,9 @@ class Carrier:
             self._blame(model.object(course.name), model)
         if held is None or not held.stuck:
             return None
-        if held.stuck > 1:
+        if held.moved:
+            self._tight[held.name] = self._tight.get(held.name, 0) + 1
+        elif held.stuck > 1:
             self._blame(held, model)
         return Act(Release(), f"{held.name} did not move")
 
@@ -169,7 +172,7 @@ class Carrier:
     # -- making one ------------------------------------------------------------------------------
 
     def _planned(self, node: Node, ends: Mapping[str, End], last: str, situation: Situation) -> Course | See | Refusal:
-        haul = self._hauler.find(Request(node, ends, self._avoided(node), last), situation)
+        haul = self._hauler.find(self._request(node, ends, last), situation)
         if isinstance(haul, Refusal):
             return haul
         if haul.aside:
@@ -187,12 +190,15 @@ class Carrier:
             return Refusal(False, lambda: f"gave up after {MOST_PLANS} plans")
         return _course(haul, node, situation.model)
 
+    def _request(self, node: Node, ends: Mapping[str, End], last: str) -> Request:
+        return Request(node, ends, self._avoided(node), last, self._tight.get(node.name, 0))
+
     def _clearing(self, other: Node, haul: Haul, situation: Situation) -> tuple[Node, Haul] | None:
         """A way to carry a thing off the squares that a plan needs, if it stands there and there is one."""
         if other.name not in haul.aside or other.polygon is None:
             return None
         room = situation.screens.free(0) | situation.model.mask(other.patch)
-        request = Request(other, {"away": Inside(region_of(room & ~haul.swept))}, self._avoided(other))
+        request = self._request(other, {"away": Inside(region_of(room & ~haul.swept))}, "")
         found = self._hauler.find(request, situation)
         return (other, found) if isinstance(found, Haul) and found.plan.legs and not found.aside else None
 

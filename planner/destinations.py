@@ -12,7 +12,7 @@ from kb.facts import Fact, Symbol, Term
 from kb.rooms import Rooms
 from kb.task import Task
 from kb.worldmodel import WorldModel
-from planner.exploring import Lookout, rooms_beyond
+from planner.exploring import Lookout, jambs, rooms_beyond
 from planner.screen import Screens, Squares, grown
 
 Mask = NDArray[np.bool_]
@@ -118,7 +118,13 @@ def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
         if not any(door.sure for door in rooms.doors)
         else "no next room is seen yet that can be reached"
     )
-    return nowhere(what, tuple(rooms_beyond(situation.screens)))
+    return nowhere(what, doorsteps(situation))
+
+
+def doorsteps(situation: Situation) -> tuple[Lookout, ...]:
+    """Where to look for a door: at what may be one, and for a way to floor that is seen and cannot be reached yet."""
+    doubtful = jambs(situation.screens, situation.rooms.doors)
+    return (*doubtful, *rooms_beyond(situation.screens))
 
 
 def around_corner(situation: Situation) -> Destination:

@@ -3,6 +3,7 @@
 These are candidates only; planner/asp/aims.lp chooses among them.
 """
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -10,10 +11,12 @@ from numpy.typing import NDArray
 
 from geometry.components import components
 from kb.evidence import OPEN
+from kb.rooms import Door
 from kb.worldmodel import SPACE, Node
 from planner.screen import Screens, Squares, grown
 
 FURTHER = 7  # squares from which a thing lies within the middle zone of the eye
+JAMB = 8  # squares beside what may be a door within which its walls are looked at
 CLOSE = 3  # squares from which a thing lies within the fovea, whichever way it is seen
 APART = 2  # squares: a new look is first sought further than this from earlier ones
 FIELD = 4  # squares: the side of the largest retinal fields
@@ -114,6 +117,22 @@ def sight_of(screens: Screens, mask: NDArray[np.bool_], what: str) -> Lookout:
         if len(near):
             return Lookout(near, what)
     return Lookout(np.zeros(0, np.int64), what)
+
+
+def jambs(screens: Screens, doors: Iterable[Door]) -> list[Lookout]:
+    """Floor from which the walls beside what may be a door are seen closely, one Lookout for each that is not sure."""
+    view = screens.model.view
+    vague = view.seen & (view.state == OPEN) & (view.probability > SPACE)
+    found = []
+    for door in doors:
+        ends = np.zeros(vague.shape, np.bool_)
+        for x, y in (door.a, door.b):
+            row, column = round(y), round(x)
+            reach = slice(max(row - JAMB, 0), row + JAMB), slice(max(column - JAMB, 0), column + JAMB)
+            ends[reach] = True
+        look = sight_of(screens, vague & ends, "what may be a door is not clear")
+        found += [look] * bool(not door.sure and len(look.squares))
+    return found
 
 
 def rooms_beyond(screens: Screens) -> list[Lookout]:

@@ -59,12 +59,16 @@ class Refusal:
 
 @dataclass(frozen=True)
 class Request:
-    """What is to be carried, and where to. avoid : holds that failed. last : the target chosen last."""
+    """What is to be carried, and where to. avoid : holds that failed. last : the target chosen last.
+
+    tight : how often it stood against something unawares: the more room is wanted about it.
+    """
 
     node: Node
     ends: Mapping[str, End]
     avoid: tuple[tuple[float, float], ...] = ()
     last: str = ""
+    tight: int = 0
 
 
 class Hauler:
@@ -108,11 +112,20 @@ class Hauler:
         x, y = situation.model.place
         view = situation.model.view
         utak = (x - view.west, y - view.south)
-        key = (shape.wkb, free.tobytes(), free.shape, name, repr(request.ends[name]), utak, request.avoid)
+        key = (
+            shape.wkb,
+            free.tobytes(),
+            free.shape,
+            name,
+            repr(request.ends[name]),
+            utak,
+            request.avoid,
+            request.tight,
+        )
         if key not in self._known:
             if len(self._known) > 64:
                 self._known.clear()
-            margin = 0.0 if _is_whole(shape) else MARGIN
+            margin = MARGIN * (request.tight + (not _is_whole(shape)))
             self._known[key] = plan_carrying(
                 shape, free, utak, request.ends[name], margin, self._pull, request.avoid, walk
             )

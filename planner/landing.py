@@ -19,8 +19,8 @@ from kb.evidence import OPEN
 from kb.facts import Fact, Number, Symbol, Text
 from kb.wkt import parse_wkt
 from kb.worldmodel import Node, WorldModel
-from planner.destinations import Situation, corner, out_of_sight
-from planner.exploring import Lookout, rooms_beyond, sight_of
+from planner.destinations import Situation, corner, doorsteps, out_of_sight
+from planner.exploring import Lookout, sight_of
 from planner.screen import grown
 
 Mask = NDArray[np.bool_]
@@ -116,7 +116,7 @@ def _next_room(began: Place, situation: Situation) -> Landing:
     beyond = rooms.beyond(int(rooms.labels[row, column]))
     names = [int(number) for number in np.unique(rooms.labels[beyond])]
     if not names:
-        return Landing({}, "no next room is seen yet", tuple(rooms_beyond(situation.screens)))
+        return Landing({}, "no next room is seen yet", doorsteps(situation))
     return Landing({f"r{n}": Inside(region_of(beyond & (rooms.labels == n))) for n in names})
 
 
