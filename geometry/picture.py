@@ -35,13 +35,12 @@ def draw(
     for passage in passages:
         (ax, ay), (bx, by) = passage.a, passage.b
         parts.append(f'<path class="passage" d="M{ax:g} {ay:g}L{bx:g} {by:g}" stroke="#8e44ad" stroke-width="0.3"/>')
-    for number, route in enumerate(routes):
+    for number, route in reversed(list(enumerate(routes))):  # the shortest on top, the others wider: all can be seen
         colour = COLOURS[number % len(COLOURS)]
         line = "L".join(f"{x:g} {y:g}" for x, y in route.points.tolist())
         title = f"route {number + 1}: length {route.length:.3f}, clearance {route.clearance:g}"
-        parts.append(
-            f'<path class="route" d="M{line}" stroke="{colour}" stroke-width="0.35"><title>{title}</title></path>'
-        )
+        stroke = f'stroke="{colour}" stroke-width="{0.35 + 0.25 * number:g}"'
+        parts.append(f'<path class="route" d="M{line}" {stroke}><title>{title}</title></path>')
     return "\n".join([*parts, "</g>", "</svg>", ""])
 
 

@@ -41,8 +41,9 @@ def rehearse() -> None:
 
 def may_miss(desk: Desk, found: int) -> bool:
     """Whether a way beyond those found may be the shortest of all when tight, should it shrink a little more."""
-    cost, length = desk.album.cost[:found], desk.answers.length[:found]
-    return bool(length.min() > 0.0 and cost[-1] < SLACK * length.min() * (cost / length).max())
+    cost, length = desk.album.cost[:found].tolist(), desk.answers.length[:found].tolist()
+    least: float = min(length)
+    return least > 0.0 and bool(cost[-1] < SLACK * least * max(a / b for a, b in zip(cost, length, strict=True)))
 
 
 class Questions:
@@ -59,7 +60,7 @@ class Questions:
 
     def admits(self, point: XY) -> bool:
         """Whether the body may be in the square of a point."""
-        return bool(self.layer.square[int(point[1]) + 1, int(point[0]) + 1] >= self.level)
+        return bool(self.layer.square.item(int(point[1]) + 1, int(point[0]) + 1) >= self.level)
 
     def to_point(self, start: XY, goal: XY, k: int, avoid: tuple[Passage, ...]) -> list[Route]:
         """Routes between two points."""
@@ -80,10 +81,10 @@ class Questions:
         if avoid:
             desk.query.shut[:] = 0
             desk.query.closed[:] = False
-        routes = read_answers(desk.answers, found)
         if 1 < found == wanted and not avoid and not self.layer.body and may_miss(desk, found):
-            routes = self._with_shortest(routes, start, goal)
-        routes = routes[:k]
+            routes = self._with_shortest(read_answers(desk.answers, found, found), start, goal)[:k]
+        else:
+            routes = read_answers(desk.answers, found, k)
         return [self._with_ends(route, start, goal) for route in routes] if self.layer.body else routes
 
     def _with_shortest(self, routes: list[Route], start: XY, goal: XY) -> list[Route]:

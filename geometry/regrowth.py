@@ -92,7 +92,7 @@ def prune(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
     states = journal.states
     for row in range(about.shape[0]):
         for cell in range(row * width + about[row, 0], row * width + about[row, 1] + 1):
-            if not states[cell] & ~(SADDLE | SUMMIT):
+            if not states[cell] & (255 - SADDLE - SUMMIT):
                 continue
             touch(journal, cell)
             for direction in range(4):
@@ -108,8 +108,8 @@ def unlink(journal: Journal, cell: int, other: int, direction: int) -> None:
     """Take back a link."""
     touch(journal, cell)
     touch(journal, other)
-    journal.states[cell] &= ~(1 << direction)
-    journal.states[other] &= ~(1 << (direction ^ 2))
+    journal.states[cell] &= 255 - (1 << direction)
+    journal.states[other] &= 255 - (1 << (direction ^ 2))
 
 
 @compiled

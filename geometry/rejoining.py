@@ -50,7 +50,7 @@ def find_open(states: Flags, mark: Flags, width: int, cells: Ints, before: Flags
     for k in range(cells.shape[0]):
         if is_node(before[k]):
             open_ends[find(node, cells[k])] = GONE
-        states[cells[k]] &= ~HALT
+        states[cells[k]] &= 255 - HALT
         for first in range(4):
             if not before[k] >> first & 1:
                 continue
@@ -62,7 +62,7 @@ def find_open(states: Flags, mark: Flags, width: int, cells: Ints, before: Flags
             if mark[cell] & JOINED:
                 continue
             if states[cell] & HALT:  # the ring that this cell stood for has changed
-                states[cell] &= ~HALT
+                states[cell] &= 255 - HALT
                 open_ends[find(node, cell)] = GONE
             else:
                 open_ends[find(node, cell)] |= 1 << (direction ^ 2)

@@ -30,19 +30,19 @@ class Route:
     when not known."""
 
 
-def read_answers(answers: Answers, found: int) -> list[Route]:
-    """The routes of a query, shortest first."""
+def read_answers(answers: Answers, found: int, most: int) -> list[Route]:
+    """The routes of a query, shortest first, at most so many."""
     bounds = answers.bounds[: found + 1].tolist()
-    lengths = answers.length[:found].tolist()
-    lowest = answers.lowest[:found].tolist()
+    lengths, lowest = answers.length[:found].tolist(), answers.lowest[:found].tolist()
+    corners, crossings, chains = bounds[found]
+    points = answers.corners[:corners].copy()
+    points.flags.writeable = False
+    numbers, walked = answers.crossings[:crossings].tolist(), answers.chains[:chains].tolist()
     routes = []
-    for k in sorted(range(found), key=lengths.__getitem__):
+    for k in sorted(range(found), key=lengths.__getitem__)[:most]:
         (a, c, e), (b, d, f) = bounds[k], bounds[k + 1]
-        points = answers.corners[a:b].copy()
-        points.flags.writeable = False
-        signature = tuple(answers.crossings[c:d].tolist())
-        chains = tuple(answers.chains[e:f].tolist())
-        routes.append(Route(points, lengths[k], 0.5 * lowest[k] ** 0.5, signature, chains))
+        clearance = 0.5 * lowest[k] ** 0.5
+        routes.append(Route(points[a:b], lengths[k], clearance, tuple(numbers[c:d]), tuple(walked[e:f])))
     return routes
 
 

@@ -144,10 +144,13 @@ class Screen:
         """
         questions = self._ask(radius)
         begin = self._checked(start, "start")
-        area = checked_goal(goal, self.shape)
-        if area is not None:
-            return questions.to_area(begin, area, k, tuple(avoid))
-        end = self._checked(np.asarray(goal, np.float64).tolist(), "goal")
+        if isinstance(goal, tuple) and len(goal) == 2 and isinstance(goal[0], float):  # by far the most frequent
+            end = self._checked(goal, "goal")
+        else:
+            area = checked_goal(goal, self.shape)
+            if area is not None:
+                return questions.to_area(begin, area, k, tuple(avoid))
+            end = self._checked(np.asarray(goal, np.float64).tolist(), "goal")
         if not (questions.admits(begin) and questions.admits(end)):
             return []
         if word is None:
@@ -208,7 +211,7 @@ class Screen:
         x, y = float(point[0]), float(point[1])
         if not (0.0 <= x <= self.shape[1] and 0.0 <= y <= self.shape[0]):
             raise ValueError(f"{name} ({x}, {y}) lies outside the screen of {self.shape[1]} x {self.shape[0]} squares")
-        if self._square[int(y) + 1, int(x) + 1] == 0:
+        if self._square.item(int(y) + 1, int(x) + 1) == 0:
             raise ValueError(f"{name} ({x}, {y}) lies in a blocked square")
         return x, y
 

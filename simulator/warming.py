@@ -35,36 +35,35 @@ def cold() -> bool:
 
 
 def compile_longest() -> None:
-    """The search for routes, which takes half of the time, and the shapes of images, which share nothing with it."""
-    import numpy as np
-
-    from geometry.questions import rehearse
-    from geometry.template import fit_shapes
-
-    rehearse()
-    fit_shapes(np.array([[1, 1, 1, 0], [1, 1, 1, 1], [0, 1, 1, 1]], np.bool_))
-
-
-def compile_others() -> None:
-    """Use what else a run needs: screens, necks, shortest ways, distances and contacts."""
+    """The search for routes, which takes longest, and contacts and the shapes of images, which share none of it."""
     import numpy as np
     import shapely
 
     from geometry.contact import Body, Obstacles
-    from geometry.reach import reach
+    from geometry.questions import rehearse
     from geometry.rigid import Rotate, Translate
+    from geometry.template import fit_shapes
+
+    rehearse()
+    fit_shapes(np.array([[1, 1, 1, 0], [1, 1, 1, 1], [0, 1, 1, 1]], np.bool_))
+    walls = Obstacles([shapely.box(10, 0, 11, 5)])
+    for body in (Body(shapely.box(1, 1, 3, 3), [(4.0, 1.0)]), Body(None, [(4.0, 1.0)])):
+        walls.first_contact(body, Translate(8.0, 0.0))
+        walls.first_contact(body, Rotate(30.0, (4.0, 1.0)))
+
+
+def compile_others() -> None:
+    """Use what else a run needs: screens, necks, shortest ways and distances."""
+    import numpy as np
+
+    from geometry.reach import reach
 
     free = np.ones((12, 20), np.bool_)
     free[:4, 9:11] = free[7:, 9:11] = False
     screen = geometry.Screen(free)
     screen.parts(screen.passages())
-    _ = screen.pathgraph
-    reach(free, 1, 1)
-    walls = Obstacles([shapely.box(10, 0, 11, 5)])
-    for body in (Body(shapely.box(1, 1, 3, 3), [(4.0, 1.0)]), Body(None, [(4.0, 1.0)])):
-        walls.first_contact(body, Translate(8.0, 0.0))
-        walls.first_contact(body, Rotate(30.0, (4.0, 1.0)))
     screen.shortest((2.5, 2.5), (17.5, 9.5))
+    reach(free, 1, 1)
 
 
 if __name__ == "__main__":

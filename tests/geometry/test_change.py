@@ -36,6 +36,21 @@ def test_changes_give_what_a_fresh_build_gives(free, seed, times):
         same(screen.changed(rows, columns, values), Screen(changed))
 
 
+@pytest.mark.parametrize("texture", ["rooms", "noise", "open"])
+def test_many_changes_in_a_row_leave_no_trace(texture):
+    rng = np.random.default_rng(7)
+    free = rng.random((60, 70)) > {"rooms": 0.0, "noise": 0.3, "open": 0.003}[texture]
+    if texture == "rooms":
+        free = np.kron(rng.random((20, 24)) > 0.4, np.ones((3, 3))).astype(bool)
+    screen = Screen(free)
+    for _ in range(60):
+        i, j = (int(rng.integers(0, n - 8)) for n in free.shape)
+        free = free.copy()
+        free[i : i + 8, j : j + 8] = rng.random((8, 8)) < rng.choice([0.0, 0.5, 1.0])
+        rows, columns = np.mgrid[i : i + 8, j : j + 8]
+        same(screen.changed(rows, columns, free[rows, columns]), Screen(free))
+
+
 def test_routes_follow_a_change():
     free = np.ones((5, 9), bool)
     screen = Screen(free)

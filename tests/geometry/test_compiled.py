@@ -1,5 +1,6 @@
 """Kernels compile on their first call, call each other, and cost nothing at import."""
 
+import os
 import subprocess
 import sys
 
@@ -42,3 +43,14 @@ def test_routes_are_rehearsed_with_the_types_they_are_played_with() -> None:
 def test_whole_numbers_of_all_widths_share_one_copy() -> None:
     assert [double(np.int32(3)), double(np.uint8(4)), double(5)] == [6, 8, 10]
     assert len(getattr(double.machine() if hasattr(double, "machine") else double, "overloads", [None])) == 1
+
+
+def test_kernels_also_run_uncompiled() -> None:
+    code = (
+        "import numpy as np; from geometry import Screen; free = np.ones((9, 12), bool); free[4, 3:9] = False; "
+        "screen = Screen(free).changed([4, 0, 1], [6, 5, 5], [True, False, False]); "
+        "print(len(screen.routes((0.5, 4.5), (11.5, 4.5), k=4)), screen.shortest((0.5, 4.5), (11.5, 4.5)).length > 11)"
+    )
+    plain = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=plain)
+    assert found.stdout.split() == ["4", "True"]

@@ -22,6 +22,13 @@ def test_clearance_is_exact(free):
     assert np.allclose(Screen(free).clearance, oracles.clearance(free), rtol=0, atol=1e-12)
 
 
+def test_clearance_is_exact_near_walls_and_far_from_them():
+    free = np.ones((135, 290), bool)
+    free[40:43, 200:203] = free[90, 30:120:7] = free[:, 150] = False
+    free[60:75, 150] = True
+    assert np.allclose(Screen(free).clearance, oracles.clearance(free), rtol=0, atol=1e-12)
+
+
 @settings(max_examples=200, deadline=None)
 @given(oracles.screens(most=16))
 def test_pathgraph_has_the_components_and_holes_of_free_space_for_every_radius(free):
