@@ -61,22 +61,23 @@ def classify_part(
     square: Squares, level: int, state: States, ring: States, kind: States, row: int, first: int, last: int
 ) -> None:
     """Flag the cells ``first <= column < last`` of one row."""
-    below, here, above, out = square[row - 1], square[row], square[row + 1], state[row]
-    for j in range(first, last):
-        own = here[j]
-        higher = np.uint8(here[j + 1] >= own)
-        higher |= np.uint8(above[j + 1] >= own) << np.uint8(1)
-        higher |= np.uint8(above[j] >= own) << np.uint8(2)
-        higher |= np.uint8(above[j - 1] >= own) << np.uint8(3)
-        higher |= np.uint8(here[j - 1] > own) << np.uint8(4)
-        higher |= np.uint8(below[j - 1] > own) << np.uint8(5)
-        higher |= np.uint8(below[j] > own) << np.uint8(6)
-        higher |= np.uint8(below[j + 1] > own) << np.uint8(7)
+    below, here, above = square[row - 1][first - 1 :], square[row][first - 1 :], square[row + 1][first - 1 :]
+    for j in range(last - first):  # from 0, lest the loop have to allow for indices from the end
+        own = here[j + 1]
+        higher = np.uint8(here[j + 2] >= own)
+        higher |= np.uint8(above[j + 2] >= own) << np.uint8(1)
+        higher |= np.uint8(above[j + 1] >= own) << np.uint8(2)
+        higher |= np.uint8(above[j] >= own) << np.uint8(3)
+        higher |= np.uint8(here[j] > own) << np.uint8(4)
+        higher |= np.uint8(below[j] > own) << np.uint8(5)
+        higher |= np.uint8(below[j + 1] > own) << np.uint8(6)
+        higher |= np.uint8(below[j + 2] > own) << np.uint8(7)
         ring[j] = higher if own >= level else np.uint8(255)
+    out = state[row]
     out[0] = 0
     out[out.shape[0] - 1] = 0
-    for j in range(first, last):
-        out[j] = kind[ring[j]]
+    for j in range(last - first):
+        out[first + j] = kind[ring[j]]
 
 
 @compiled

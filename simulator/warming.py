@@ -35,28 +35,24 @@ def cold() -> bool:
 
 
 def compile_longest() -> None:
-    """The search for routes, which takes longest, and contacts and the shapes of images, which share none of it."""
+    """The search for routes, which takes longest, and the shapes of images, which share none of it."""
     import numpy as np
-    import shapely
 
-    from geometry.contact import Body, Obstacles
     from geometry.questions import rehearse
-    from geometry.rigid import Rotate, Translate
     from geometry.template import fit_shapes
 
     rehearse()
     fit_shapes(np.array([[1, 1, 1, 0], [1, 1, 1, 1], [0, 1, 1, 1]], np.bool_))
-    walls = Obstacles([shapely.box(10, 0, 11, 5)])
-    for body in (Body(shapely.box(1, 1, 3, 3), [(4.0, 1.0)]), Body(None, [(4.0, 1.0)])):
-        walls.first_contact(body, Translate(8.0, 0.0))
-        walls.first_contact(body, Rotate(30.0, (4.0, 1.0)))
 
 
 def compile_others() -> None:
-    """Use what else a run needs: screens, necks, shortest ways and distances."""
+    """Use what else a run needs: screens, necks, shortest ways, distances and contacts."""
     import numpy as np
+    import shapely
 
+    from geometry.contact import Body, Obstacles
     from geometry.reach import reach
+    from geometry.rigid import Rotate, Translate
 
     free = np.ones((12, 20), np.bool_)
     free[:4, 9:11] = free[7:, 9:11] = False
@@ -64,6 +60,10 @@ def compile_others() -> None:
     screen.parts(screen.passages())
     screen.shortest((2.5, 2.5), (17.5, 9.5))
     reach(free, 1, 1)
+    walls = Obstacles([shapely.box(10, 0, 11, 5)])
+    for body in (Body(shapely.box(1, 1, 3, 3), [(4.0, 1.0)]), Body(None, [(4.0, 1.0)])):
+        walls.first_contact(body, Translate(8.0, 0.0))
+        walls.first_contact(body, Rotate(30.0, (4.0, 1.0)))
 
 
 if __name__ == "__main__":
