@@ -167,8 +167,8 @@ def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
     """The parts of one picture.
 
     >>> found = blobs(np.pad(np.ones((3, 3), np.int8), 2), np.full((7, 7), DRAWN, np.int8))
-    >>> found.area.tolist(), found.apart.tolist(), round(6 * found.spread[0], 6), found.lengthy.tolist()
-    ([9], [True], 1.0, [0.0])
+    >>> found.area.tolist(), found.apart.tolist(), (6 * found.spread).round(6).tolist(), found.lengthy.tolist()
+    ([9], [True], [1.0], [0.0])
     """
     labels = np.zeros(image.shape, np.int32)
     sums = np.zeros((image.size // 2 + 2, 7))
