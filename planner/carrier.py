@@ -42,9 +42,10 @@ class Act:
 
 @dataclass(frozen=True)
 class Go:
-    """A square to walk to (flat index on the view's arrays)."""
+    """A square to walk to (flat index on the view's arrays). place : its middle, on the lattice, where to halt."""
 
     square: int
+    place: Place
     why: str
 
 
@@ -252,7 +253,7 @@ class Carrier:
         if model.view.locate(*model.place) == (row, column):
             dx, dy = leg.place[0] - model.place[0], leg.place[1] - model.place[1]
             return Act(Move(*model.lattice.to_utak(dx, dy)), "to the middle of the square")
-        return Go(row * model.labels.shape[1] + column, f"{course.name} can be taken from there")
+        return Go(row * model.labels.shape[1] + column, leg.place, f"{course.name} can be taken from there")
 
 
 def _course(haul: Haul, node: Node, model: WorldModel) -> Course:

@@ -4,7 +4,7 @@ A way is kept while it holds: its aim is still wanted, and the squares ahead are
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -29,7 +29,7 @@ from planner.haulage import Refusal
 from planner.landing import landing
 from planner.screen import Screens, Squares, grown
 from planner.steps import Square
-from planner.walking import next_move
+from planner.walking import halting, next_move
 from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
@@ -159,7 +159,8 @@ class Decider:
             return Decision(advice.command, f"{advice.why}; {stage}")
         if isinstance(advice, Go):
             aim = Aim("attain", np.array([advice.square]), advice.why)
-            return self._pursue([aim], stage, situation, lambda: f"no way leads to where {node.name} can be taken")
+            walk = self._pursue([aim], stage, situation, lambda: f"no way leads to where {node.name} can be taken")
+            return replace(walk, command=halting(walk.command, advice.place, situation.model))
         if isinstance(advice, See):
             return self._pursue([Aim("inspect", *advice.lookout)], stage, situation, lambda: "")
         unknown = nowhere(land.missing or "no way is known to carry it there", land.lookouts)

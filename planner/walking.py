@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from geometry.winding import crossings
-from kb.body import Move
+from kb.body import Command, Move
 from kb.worldmodel import WorldModel
 from planner.screen import Screens
 from planner.steps import Square, clear
@@ -41,6 +41,17 @@ def move_to(model: WorldModel, square: Square) -> Move:
     aside = ASIDE if model.spread else (0.0, 0.0)
     x, y = model.view.west + square[0] + 0.5 + aside[0], model.view.south + square[1] + 0.5 + aside[1]
     east, north = model.lattice.to_utak(x - model.place[0], y - model.place[1])
+    return Move(round(east, DIGITS) + 0.0, round(north, DIGITS) + 0.0)
+
+
+def halting(command: Command | None, place: tuple[float, float], model: WorldModel) -> Command | None:
+    """A command that halts right at a place (of the lattice), if it is a move into the square of that place."""
+    if not isinstance(command, Move):
+        return command
+    dx, dy = model.lattice.to_lattice(command.east, command.north)
+    if model.view.locate(model.place[0] + dx, model.place[1] + dy) != model.view.locate(*place):
+        return command
+    east, north = model.lattice.to_utak(place[0] - model.place[0], place[1] - model.place[1])
     return Move(round(east, DIGITS) + 0.0, round(north, DIGITS) + 0.0)
 
 
