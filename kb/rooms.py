@@ -18,14 +18,15 @@ from geometry import Screen
 from geometry.components import components
 from geometry.passages import Passage
 from kb.encodings import KB, solve
-from kb.evidence import FULL, OPEN
+from kb.evidence import OPEN
 from kb.regions import extents
 from kb.worldmodel import SPACE, WorldModel
 
 Mask = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Indices = tuple[NDArray[np.int64], NDArray[np.int64]]
-SMALLEST_WALL = 18  # squares: what is surely one thing and as long as this is no object
+SMALLEST_WALL = 18  # squares: what is one thing and as long as this is no object
+LIKELY = 0.5  # that squares are occupied which are taken for parts of one thing
 SURE = 60  # percent: a door is one from here on
 DEEPEST = 12.0  # squares: how far a doorway is followed into the wall
 STEP = 0.5
@@ -123,14 +124,14 @@ def _doors(necks: Iterable[tuple[Passage, int]], rules: tuple[Path, ...]) -> lis
 
 
 class _Walls(NamedTuple):
-    """What is surely one thing: (rows, columns) labels, 0 for none, and by label how long it is, in squares."""
+    """What is very likely one thing: (rows, columns) labels, 0 for none, and by label how long it is, in squares."""
 
     labels: NDArray[np.int32]
     extents: NDArray[np.int64]
 
 
 def _walls(model: WorldModel) -> _Walls:
-    found = components(model.view.state == FULL)
+    found = components(model.view.seen & (model.view.probability >= LIKELY))
     return _Walls(found.labels, extents(found.labels, found.number))
 
 
