@@ -18,6 +18,7 @@ from geometry.digital import squares
 from geometry.ends import End
 from geometry.rigid import Translate
 from kb.encodings import solve
+from kb.loads import is_whole
 from kb.worldmodel import Node
 from planner.aims import ASP
 from planner.destinations import Situation
@@ -125,16 +126,11 @@ class Hauler:
         if key not in self._known:
             if len(self._known) > 64:
                 self._known.clear()
-            margin = MARGIN * (request.tight + (not _is_whole(shape)))
+            margin = MARGIN * (request.tight + (not is_whole(shape)))
             self._known[key] = plan_carrying(
                 shape, free, utak, request.ends[name], margin, self._pull, request.avoid, walk
             )
         return self._known[key]
-
-
-def _is_whole(shape: Any) -> bool:
-    points = shapely.get_coordinates(shape)
-    return bool(np.array_equal(points, np.rint(points)))
 
 
 def _kinds(situation: Situation) -> list[tuple[int, str]]:

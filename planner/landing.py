@@ -18,7 +18,7 @@ from geometry.rigid import Pose
 from kb.evidence import OPEN
 from kb.facts import Fact, Number, Symbol, Text
 from kb.wkt import parse_wkt
-from kb.worldmodel import Node, WorldModel
+from kb.worldmodel import Node
 from planner.destinations import Situation, corner, doorsteps, out_of_sight
 from planner.exploring import Lookout, sight_of
 from planner.screen import grown
@@ -95,19 +95,14 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     found = corner(side, situation)
     if found.missing and not situation.model.mask(node.patch)[row, column]:
         return Landing({}, found.missing, found.lookouts)
-    unclear = grown(square_mask(situation.model, column, row), 1) & (situation.model.view.state == OPEN)
+    model = situation.model
+    around = grown(model.squares([(column + model.view.west, row + model.view.south)]), 1)
+    unclear = around & (model.view.state == OPEN)
     if unclear.any():
         lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
         if len(lookout.squares):
             return Landing({}, lookout.what, (lookout,))
     return Landing({side: InCorner(x, y, 1 if x > column else -1, 1 if y > row else -1)})
-
-
-def square_mask(model: WorldModel, column: int, row: int) -> Mask:
-    """(rows, columns): one square of the view."""
-    mask: Mask = np.zeros(model.labels.shape, np.bool_)
-    mask[row, column] = True
-    return mask
 
 
 def _next_room(began: Place, situation: Situation) -> Landing:
