@@ -19,6 +19,7 @@ EDGE, CORNER = 0.4, 0.8
 WRONG = 4.0  # edges that a square too many or too few under a field is worth
 COLD = 2.0
 SWEEPS = 3  # between two pictures
+FIRST_CHANCE, SEED_STEP = 20031, 7919  # of the linear congruential generator of chances
 NEVER = 9.0  # a change that is e to this power times less likely than its contrary is not tried
 
 
@@ -46,7 +47,13 @@ class Counts(NamedTuple):
 
 
 def pictures(
-    ground: NDArray[np.int8], counts: Counts, first: NDArray[np.int8], number: int, warming: int, hot: float = 0.5
+    ground: NDArray[np.int8],
+    counts: Counts,
+    first: NDArray[np.int8],
+    number: int,
+    warming: int,
+    hot: float = 0.5,
+    seed: int = 0,
 ) -> NDArray[np.int8]:
     """(number, rows, columns) int8, 1 where a square is occupied: so many pictures that agree with the counts.
 
@@ -54,7 +61,8 @@ def pictures(
     ----------
     ground : (rows, columns) int8. FREE, FULL, DRAWN (to be found) or UNSEEN (not part of the picture, drawn as 0).
     counts : of squares of the ground. first : the picture to begin with. warming : sweeps until the first one is taken,
-    from the inverse temperature `hot` to COLD. The same arguments give the same pictures.
+    from the inverse temperature `hot` to COLD. seed : of the chain of chances. The same arguments give the same
+    pictures; those of one chain are much alike, those of chains with other seeds differ where the counts leave it open.
     """
     image = np.where(ground == DRAWN, first, ground == FULL).astype(np.int8)
     used = (counts.weight > 0) & (ground.ravel()[counts.where] == DRAWN)
@@ -68,6 +76,7 @@ def pictures(
     slopes = np.append(np.linspace(hot, COLD, max(warming, 1)), np.full(SWEEPS * (number - 1), COLD))
     _draw(
         PRICES,
+        FIRST_CHANCE + SEED_STEP * seed,
         np.ascontiguousarray(ground).ravel(),
         image.ravel(),
         squares.astype(np.int64),
@@ -93,8 +102,7 @@ def _ranks(squares: NDArray[np.int32], size: int) -> NDArray[np.int64]:
 
 
 @compiled
-def _draw(price, ground, image, squares, ranks, ends, field, share, where, used, fields, slopes, taken, columns):  # type: ignore[no-untyped-def]
-    chance = 20031
+def _draw(price, chance, ground, image, squares, ranks, ends, field, share, where, used, fields, slopes, taken, columns):  # type: ignore[no-untyped-def]
     first = len(slopes) - SWEEPS * (len(taken) - 1) - 1
     for sweep in range(len(slopes)):
         slope = slopes[sweep]

@@ -55,6 +55,7 @@ class MapView(NamedTuple):
     settled_by: NDArray[np.int16]
     counts: Counts = NO_COUNTS
     sure: bool = True
+    by_counts: NDArray[np.float32] | None = None
 
     def locate(self, x: float, y: float) -> tuple[int, int]:
         """[row, column] of the square in which a point of the lattice lies."""

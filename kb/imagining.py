@@ -6,6 +6,7 @@ place is how likely one is there.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +15,8 @@ from geometry.sketch import DRAWN, FREE, FULL, UNSEEN, Blobs, blobs, pictures
 from kb.evidence import OPEN, STRAY, MapView
 from kb.lattice import Lattice
 
-PICTURES = 8
-WARMING, AGAIN = 60, 24  # sweeps before the first picture: of a new map, of one that was pictured before
+CHAINS, EACH = 4, 2  # chains of pictures, pictures taken of each
+WARMING, AGAIN = 30, 12  # sweeps before the first picture: of a new map, of one that was pictured before
 HALF = 0.5
 SMALLEST = 4  # squares of a thing that is worth a look
 LOOSE = (0.012, 0.03)  # how much wider than a rectangle a part may be spread: at least, and if it is one square wide
@@ -28,36 +29,64 @@ OTHERS = 0.04  # by so much and more is the spread of what is neither wider than
 Floats = NDArray[np.float64]
 
 
+class Imagined(NamedTuple):
+    """Pictures of the map as it may be.
+
+    ground : (rows, columns) int8, what is given (geometry.sketch). drawn : (pictures, rows, columns) int8, 1 where
+    occupied.
+    """
+
+    ground: NDArray[np.int8]
+    drawn: NDArray[np.int8]
+
+    def probability(self, by_counts: NDArray[np.float32]) -> NDArray[np.float32]:
+        """(rows, columns): that a square is occupied, with what counts alone say for one more picture."""
+        shares = (self.drawn.sum(0, dtype=np.float32) + by_counts) / np.float32(len(self.drawn) + 1)
+        answer: NDArray[np.float32] = np.where(self.ground == DRAWN, shares, by_counts)
+        return answer
+
+    def likely(self, shape: str) -> Floats:
+        """(rows, columns): how likely each square belongs to an isolated thing of a shape."""
+        heat = np.zeros(self.ground.shape)
+        for image in self.drawn:
+            found = blobs(image, self.ground)
+            like = likeness(found, shape) * found.apart * (found.area >= SMALLEST)
+            heat += np.append(0.0, like)[found.labels]
+        return heat / len(self.drawn)
+
+
+NOTHING_IMAGINED = Imagined(np.zeros((0, 0), np.int8), np.zeros((0, 0, 0), np.int8))
+
+
 class Imagination:
-    """Pictures the unsettled part of the map, and remembers the last picture to begin the next one with."""
+    """Pictures the unsettled part of the map, and remembers the last pictures to begin the next ones with."""
 
     def __init__(self) -> None:
         self._lattice: Lattice | None = None
         self._corner = (0, 0)
-        self._last = np.zeros((0, 0), np.int8)
+        self._last = np.zeros((CHAINS, 0, 0), np.int8)
 
-    def likely(self, view: MapView, lattice: Lattice, shape: str) -> Floats:
-        """(rows, columns): how likely each square belongs to an isolated thing of a shape."""
-        ground = _ground(view)
-        first, known = self._first(view, lattice)
-        drawn = pictures(ground, view.counts, first, PICTURES, AGAIN if known else WARMING, 1.0 if known else HALF)
-        self._lattice, self._corner, self._last = lattice, (view.west, view.south), drawn[-1]
-        heat = np.zeros(ground.shape)
-        for image in drawn:
-            found = blobs(image, ground)
-            like = likeness(found, shape) * found.apart * (found.area >= SMALLEST)
-            heat += np.append(0.0, like)[found.labels]
-        return heat / PICTURES
+    def imagine(self, view: MapView, lattice: Lattice) -> Imagined:
+        """Pictures of a map, from chains of chances that know nothing of each other."""
+        ground, known = _ground(view), lattice == self._lattice
+        warming, hot = (AGAIN, 1.0) if known else (WARMING, HALF)
+        drawn = np.concatenate(
+            [
+                pictures(ground, view.counts, self._first(chain, view, known), EACH, warming, hot, chain)
+                for chain in range(CHAINS)
+            ]
+        )
+        self._lattice, self._corner, self._last = lattice, (view.west, view.south), drawn[EACH - 1 :: EACH]
+        return Imagined(ground, drawn)
 
-    def _first(self, view: MapView, lattice: Lattice) -> tuple[NDArray[np.int8], bool]:
-        """The picture to begin with, and whether most of it was pictured before."""
+    def _first(self, chain: int, view: MapView, known: bool) -> NDArray[np.int8]:
+        """The picture to begin with: the last one where most of it was pictured before."""
         image = (view.probability > HALF).astype(np.int8)
-        known = lattice == self._lattice
         if known:
             west, south = self._corner[0] - view.west, self._corner[1] - view.south
-            rows, columns = self._last.shape
-            image[south : south + rows, west : west + columns] = self._last
-        return image, known
+            rows, columns = self._last.shape[1:]
+            image[south : south + rows, west : west + columns] = self._last[chain]
+        return image
 
 
 def _ground(view: MapView) -> NDArray[np.int8]:

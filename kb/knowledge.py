@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from kb.accommodation import Accommodated, Memory
 from kb.body import DIRECTIONS, Command, Grasp, Impression
 from kb.evidence import FREE, FULL, OPEN, MapView
+from kb.imagining import Imagination
 from kb.interpretation import Kinds, interpret, shapes
 from kb.loads import Load, slack_of
 from kb.measuring import Measured, Measurer
@@ -37,6 +38,7 @@ class Knowledge:
         self.objects: tuple[Node, ...] = ()
         self._names = Names()
         self._measurer = Measurer()
+        self._imagination = Imagination()
 
     def wake(self, impression: Impression) -> tuple[WorldModel, Accommodated]:
         """The first world model: the default one, an empty floor about Utak, accommodated to the first impression."""
@@ -71,7 +73,11 @@ class Knowledge:
         if accommodated.explanation.how == "turned":
             self.felt.clear()  # its squares were those of another lattice
         self._feel(impression)
-        view = self.memory.evidence.view()._replace(sure=self.memory.sure)
+        counted = self.memory.evidence.view()
+        imagined = self._imagination.imagine(counted, self.memory.lattice)
+        view = counted._replace(
+            probability=imagined.probability(counted.probability), by_counts=counted.probability, sure=self.memory.sure
+        )
         occupied = view.seen & (view.probability > SPACE)
         percept, labels = map_regions(occupied, view.seen, view.state != OPEN, view.probability)
         touched = [(f"part{labels[view.locate(x, y)]}", colour) for (x, y), colour in sorted(self.felt.items())]
@@ -88,6 +94,7 @@ class Knowledge:
             barred=frozenset(self.memory.barred),
             spread=self.memory.spread,
             held=self.memory.held,
+            imagined=imagined,
         )
         self.objects = self._objects(model)
         for load in self.memory.loads.values():

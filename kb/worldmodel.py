@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kb.evidence import OPEN, MapView
+from kb.imagining import NOTHING_IMAGINED, Imagined
 from kb.interpretation import Kinds
 from kb.lattice import Lattice
 from kb.regions import Percept
@@ -91,6 +92,7 @@ class WorldModel:
     held : the node that is held, or None.
     looked_from : the squares on which an impression was received. barred : squares before which a motion was stopped.
     spread : by how many radians the lattice may still lie otherwise than believed.
+    imagined : pictures that agree with all counts.
     """
 
     lattice: Lattice
@@ -104,6 +106,7 @@ class WorldModel:
     looked_from: frozenset[tuple[int, int]] = frozenset()
     barred: frozenset[tuple[int, int]] = frozenset()
     spread: float = 0.0
+    imagined: Imagined = NOTHING_IMAGINED
 
     @cached_property
     def floor(self) -> Mask:

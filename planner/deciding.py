@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from kb.body import Command, Release
 from kb.corners import Corner, corners
 from kb.facts import Fact
-from kb.imagining import Imagination
 from kb.reconciliation import Reconciled, reconcile
 from kb.rooms import NOTHING, Rooms, rooms_of
 from kb.task import Task
@@ -70,7 +69,6 @@ class Decider:
         self._aimed: frozenset[Square] = frozenset()  # squares of the lattice
         self._path: tuple[Square, ...] = ()  # squares of the lattice
         self._level = 0
-        self._imagination = Imagination()
         self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
@@ -112,7 +110,7 @@ class Decider:
             if all(not d.missing and contains(d.squares, situation.model) for d in where):
                 return None
         missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
-        return self._pursue(_aims(where, situation, reconciled, self._imagination), stage, situation, lambda: missing)
+        return self._pursue(_aims(where, situation, reconciled), stage, situation, lambda: missing)
 
     def _pursue(
         self,
@@ -140,7 +138,7 @@ class Decider:
         node = situation.model.object(self.bound.get(x, ""))
         if node is None:
             unseen = nowhere(f"nothing seen so far is {x}")
-            aims = _aims([unseen], situation, reconciled, self._imagination)
+            aims = _aims([unseen], situation, reconciled)
             return self._pursue(aims, stage, situation, lambda: unseen.missing)
         if node.polygon is None or node.open:
             look = exploring.inspection(situation.screens, node, touch=False, chance=1.0)
@@ -165,7 +163,7 @@ class Decider:
             return self._pursue([Aim("inspect", *advice.lookout)], stage, situation, lambda: "")
         unknown = nowhere(land.missing or "no way is known to carry it there", land.lookouts)
         verdict = "impossible" if advice.proved else "limit"
-        aims = _aims([unknown], situation, reconciled, self._imagination)
+        aims = _aims([unknown], situation, reconciled)
         return self._pursue(aims, stage, situation, advice.reason, verdict)
 
     def _round(self, stage: Stage, name: str, situation: Situation, track: Sequence[Place]) -> Decision | None:
@@ -246,7 +244,7 @@ class Decider:
 
 
 def _aims(
-    where: Sequence[Destination], situation: Situation, reconciled: Reconciled, imagination: Imagination
+    where: Sequence[Destination], situation: Situation, reconciled: Reconciled
 ) -> list[Aim]:
     """What is worth doing: go there, when it is known where; else look, first where just the missing thing may be."""
     screens, model = situation.screens, situation.model
@@ -257,7 +255,7 @@ def _aims(
             squares = np.intersect1d(squares, other.squares)
         return [Aim("attain", squares, "the way to the goal is known")]
     aims = [Aim("explore", *look) for d in missing for look in d.lookouts]
-    likely = _likely(situation, reconciled, imagination)
+    likely = _likely(situation, reconciled)
     for x, name in reconciled.doubtful:
         node = model.object(name)
         if node is not None and x in reconciled.hypothesised:
@@ -283,7 +281,7 @@ def _aims(
     return [*aims, *explored, *settled, *beyond]
 
 
-def _likely(situation: Situation, reconciled: Reconciled, imagination: Imagination) -> NDArray[np.float64] | None:
+def _likely(situation: Situation, reconciled: Reconciled) -> NDArray[np.float64] | None:
     """(rows, columns): how likely each square belongs to a thing that is looked for; None when nothing is."""
     wanted = sorted(
         str(claim.fact.args[1])
@@ -292,7 +290,7 @@ def _likely(situation: Situation, reconciled: Reconciled, imagination: Imaginati
     )
     if not wanted:
         return None
-    return imagination.likely(situation.model.view, situation.model.lattice, wanted[0])
+    return situation.model.imagined.likely(wanted[0])
 
 
 def _surely_reached(aim: Aim, screens: Screens) -> bool:

@@ -47,7 +47,8 @@ class Screens:
         """Squares that may be crossed at a level of certainty; Utak's own is always one."""
         view = self.model.view
         if level == UNSEEN:
-            mask = ~view.seen | (view.probability <= LEVELS[-1])
+            by_counts = view.probability if view.by_counts is None else view.by_counts
+            mask = ~view.seen | (by_counts <= LEVELS[-1])
         else:
             mask = view.seen & (view.probability <= LEVELS[level])
         mask &= ~self._barred
