@@ -28,6 +28,7 @@ Indices = tuple[NDArray[np.int64], NDArray[np.int64]]
 SMALLEST_WALL = 18  # squares: what is one thing and as long as this is no object
 LIKELY = 0.9  # that squares are occupied which are taken for parts of one thing
 SURE = 60  # percent: a door is one from here on
+LIKELY_DOOR = 50  # percent: what may be a door is tried from here on
 DEEPEST = 12.0  # squares: how far a doorway is followed into the wall
 STEP = 0.5
 BEYOND = 1.6  # squares: how far behind the wall a room surely begins
@@ -53,6 +54,11 @@ class Door:
         return self.confidence >= SURE
 
     @property
+    def likely(self) -> bool:
+        """Is it likely enough to be tried?"""
+        return self.confidence >= LIKELY_DOOR
+
+    @property
     def width(self) -> float:
         """From wall to wall, in squares."""
         return math.dist(self.a, self.b)
@@ -76,9 +82,13 @@ class Rooms:
     labels: NDArray[np.int32]
     doorways: Mask
 
-    def beyond(self, room: int) -> Mask:
-        """(rows, columns): squares of the rooms that surely share a door with a room, but for the doorways."""
-        others = {side for door in self.doors if door.sure and room in door.sides for side in door.sides} - {room}
+    def beyond(self, room: int, least: int = SURE) -> Mask:
+        """(rows, columns): squares of the rooms that share a door with a room, but for the doorways.
+
+        least : percent of belief in that door.
+        """
+        leading = [door for door in self.doors if door.confidence >= least and room in door.sides]
+        others = {side for door in leading for side in door.sides} - {room}
         mask: Mask = np.isin(self.labels, sorted(others)) & ~self.doorways
         return mask
 
@@ -86,9 +96,9 @@ class Rooms:
 NOTHING = Rooms((), np.zeros((0, 0), np.int32), np.zeros((0, 0), np.bool_))
 
 
-def rooms_of(model: WorldModel, rules: tuple[Path, ...] = ()) -> Rooms:
-    """The rooms of a world model."""
-    verge = model.verge
+def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), supposed: bool = False) -> Rooms:
+    """The rooms of a world model. supposed : as they are if what may yet be an object is one, not a piece of wall."""
+    verge = model.walls if supposed else model.verge
     if not verge.any():
         return Rooms((), np.ones(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
     screen = Screen(~verge)

@@ -21,6 +21,7 @@ from kb.lattice import Lattice
 from kb.regions import Percept
 
 SPACE = 0.06  # a square that is occupied with at most this probability counts as floor
+SURELY_VERGE = 93  # percent: what is verge as surely as this is no object
 ORG, FLOOR, VERGE = "org", "floor", "verge"
 
 Mask = NDArray[np.bool_]
@@ -124,9 +125,16 @@ class WorldModel:
     @cached_property
     def verge(self) -> Mask:
         """(rows, columns): squares of regions taken for verge rather than for objects."""
+        return self._believed_verge(51)
+
+    @cached_property
+    def walls(self) -> Mask:
+        """(rows, columns): squares of regions that are hardly anything but verge."""
+        return self._believed_verge(SURELY_VERGE)
+
+    def _believed_verge(self, least: int) -> Mask:
         names = [f"part{n}" for n in range(int(self.labels.max()) + 1)]
-        is_verge = np.array([self.kinds.of(n, "verge") > self.kinds.of(n, "object") for n in names])
-        mask: Mask = is_verge[self.labels]
+        mask: Mask = np.array([self.kinds.of(name, "verge") >= least for name in names])[self.labels]
         return mask
 
     def object(self, name: str) -> Node | None:

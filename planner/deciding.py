@@ -33,6 +33,7 @@ from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
 ODD = -10.0  # squares: how much rather what no straight wall explains is looked at
+ODDLY, HARDLY, PERHAPS = 4, 2, 20  # percent that odd squares, likely walls, floor beyond hold what is missing
 DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
 
 
@@ -77,7 +78,7 @@ class Decider:
         self.rooms = rooms_of(model, self.rules)
         reconciled = self._reconcile(model, screens)
         self.corners = corners(model, self.rules)
-        situation = Situation(model, screens, self.bound, self.rooms, self.corners, self.task)
+        situation = Situation(model, screens, self.bound, self.rooms, self.corners, self.task, self.rules)
         while self.attained < len(self.stages):
             stage = self.stages[self.attained]
             decision = self._towards(stage, situation, reconciled, track)
@@ -243,9 +244,7 @@ class Decider:
         return reconciled
 
 
-def _aims(
-    where: Sequence[Destination], situation: Situation, reconciled: Reconciled
-) -> list[Aim]:
+def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconciled) -> list[Aim]:
     """What is worth doing: go there, when it is known where; else look, first where just the missing thing may be."""
     screens, model = situation.screens, situation.model
     missing = [d for d in where if d.missing]
@@ -267,17 +266,13 @@ def _aims(
     if likely is not None:
         aims += [Aim("inspect", *look) for look in exploring.sightings(screens, likely, "something may be meant there")]
     for apart in (exploring.APART, 0):
-        explored = [Aim("explore", *look) for look in exploring.frontiers(screens, apart)]
-        settled = [Aim("settle", *look, price=ODD) for look in exploring.vague_places(screens, apart, odd=True)]
-        settled += [Aim("settle", *look) for look in exploring.vague_places(screens, apart, odd=False)]
+        explored = [Aim("explore", *look) for look in exploring.promised(screens, exploring.frontiers(screens, apart))]
+        odd, plain = (exploring.vague_places(screens, apart, odd=odd) for odd in (True, False))
+        settled = [Aim("settle", *look, price=ODD)._replace(chance=ODDLY) for look in odd]
+        settled += [Aim("settle", *look)._replace(chance=HARDLY) for look in plain]
         if explored or settled:
             break
-    beyond = [Aim("pass", *look) for look in exploring.rooms_beyond(screens)]
-    if likely is not None:
-        looks = [Lookout(aim.squares, aim.what) for aim in explored]
-        explored = [Aim("explore", *look) for look in exploring.promised(screens, looks)]
-        settled = [aim._replace(chance=2) for aim in settled]
-        beyond = [aim._replace(chance=20) for aim in beyond]
+    beyond = [Aim("pass", *look)._replace(chance=PERHAPS) for look in exploring.rooms_beyond(screens)]
     return [*aims, *explored, *settled, *beyond]
 
 

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 import shapely
@@ -9,7 +11,7 @@ from numpy.typing import NDArray
 
 from kb.corners import Corner
 from kb.facts import Fact, Symbol, Term
-from kb.rooms import Rooms
+from kb.rooms import LIKELY_DOOR, Rooms, rooms_of
 from kb.task import Task
 from kb.worldmodel import WorldModel
 from planner.exploring import Lookout, jambs, rooms_beyond
@@ -29,6 +31,21 @@ class Situation:
     rooms: Rooms
     corners: Mapping[str, Corner]
     task: Task
+    rules: tuple[Path, ...] = ()
+
+    @cached_property
+    def supposed(self) -> Rooms:
+        """The rooms as they are if what may be an object is one."""
+        return rooms_of(self.model, self.rules, supposed=True)
+
+    def likely_beyond(self, place: tuple[float, float]) -> tuple[Rooms, Mask]:
+        """The rooms, and (rows, columns) what shares a likely door with the room of a point of the lattice."""
+        row, column = self.model.view.locate(*place)
+        for rooms in (self.rooms, self.supposed):
+            mask = rooms.beyond(int(rooms.labels[row, column]), LIKELY_DOOR)
+            if mask.any():
+                break
+        return rooms, mask
 
 
 @dataclass(frozen=True)
@@ -118,7 +135,23 @@ def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
         if not any(door.sure for door in rooms.doors)
         else "no next room is seen yet that can be reached"
     )
-    return nowhere(what, doorsteps(situation))
+    return nowhere(what, (*_likely_rooms(situation), *doorsteps(situation)))
+
+
+def _likely_rooms(situation: Situation) -> list[Lookout]:
+    """What lies beyond likely doors, while he is not there: on his way he sees whether they are."""
+    rooms, beyond = situation.likely_beyond(situation.model.lattice.woke)
+    found = [np.flatnonzero(beyond & situation.screens.floor & (rooms.labels == n)) for n in numbers(rooms, beyond)]
+    return [
+        Lookout(squares, "a door seems to lead there")
+        for squares in found
+        if len(squares) and not contains(squares, situation.model)
+    ]
+
+
+def numbers(rooms: Rooms, mask: Mask) -> list[int]:
+    """The rooms that have squares of a mask."""
+    return [int(number) for number in np.unique(rooms.labels[mask])]
 
 
 def doorsteps(situation: Situation) -> tuple[Lookout, ...]:

@@ -19,8 +19,7 @@ FURTHER = 7  # squares from which a thing lies within the middle zone of the eye
 JAMB = 8  # squares beside what may be a door within which its walls are looked at
 CLOSE = 3  # squares from which a thing lies within the fovea, whichever way it is seen
 APART = 2  # squares: a new look is first sought further than this from earlier ones
-FIELD = 4  # squares: the side of the largest retinal fields
-ALIKE = 0.2  # of a field: what is occupied of two fields that show the same wall differs by no more
+WALL_LIKE = 0.85  # that a square is occupied which is taken for wall
 SMALLEST_ROOM = 6  # squares of floor that are worth a passage
 REACH = 14  # squares from the edge of what is seen at which most of it is seen anew
 PROMISING = 0.1  # a place at which a thing is this likely is worth a look
@@ -90,12 +89,12 @@ def close(screens: Screens, mask: Mask, chance: float) -> Squares:
 def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:
     """Floor close to things beside it that were seen only coarsely, one Lookout for each connected stretch of them.
 
-    odd : only those that no straight wall explains, and that may so be an object or a door; else all of them.
+    odd : only those that may well be floor, and so part of a door or of the floor behind an object; else all of them.
     """
     view = screens.model.view
     open_ = view.seen & (view.state == OPEN) & (view.probability > SPACE) & grown(screens.floor, 1)
     if odd:
-        open_ &= ~_wall_like(view.probability, view.seen)
+        open_ &= view.probability < WALL_LIKE
     labels = np.where(open_, components(grown(open_, 1)).labels, 0)
     near = np.where(_new(screens, apart), _spread(labels, CLOSE), 0)
     return [Lookout(squares, "what bounds the floor is not clear") for squares in _groups(near)]
@@ -184,31 +183,6 @@ def _beside(labels: NDArray[np.int64], seen: Mask) -> NDArray[np.int8]:
         np.minimum(least[:, :-1], near[:, 1:], out=least[:, :-1])
         near = np.where(near == NOTHING, least, near)
     return near
-
-
-def _wall_like(probability: NDArray[np.float32], seen: Mask) -> Mask:
-    """Squares about which it looks the same a field further on, both ways along rows or both ways along columns."""
-    share = _mean(np.where(seen, probability, 0.0)) / np.maximum(_mean(seen.astype(np.float64)), 1e-9)
-    known = _mean(seen.astype(np.float64)) > 0.5
-    alike = []
-    for axis in (0, 1):
-        same = np.ones(seen.shape, np.bool_)
-        for step in (-FIELD, FIELD):
-            further, there = np.roll(share, step, axis), np.roll(known, step, axis)
-            same &= ~there | (np.abs(further - share) <= ALIKE)
-        alike.append(same)
-    mask: Mask = alike[0] | alike[1]
-    return mask
-
-
-def _mean(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The mean over FIELD x FIELD squares about each square, as far as they lie within the array."""
-    for axis in (0, 1):
-        padded = np.pad(values, [(FIELD // 2 + 1, FIELD // 2) if a == axis else (0, 0) for a in (0, 1)])
-        sums = np.cumsum(padded, axis=axis)
-        low, high = (np.take(sums, np.arange(k, k + values.shape[axis]), axis=axis) for k in (0, FIELD))
-        values = (high - low) / FIELD
-    return values
 
 
 def _new(screens: Screens, apart: int) -> NDArray[np.bool_]:

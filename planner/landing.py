@@ -17,9 +17,10 @@ from geometry.ends import End, met
 from geometry.rigid import Pose
 from kb.evidence import OPEN
 from kb.facts import Fact, Number, Symbol, Text
+from kb.rooms import Rooms
 from kb.wkt import parse_wkt
 from kb.worldmodel import Node
-from planner.destinations import Situation, corner, doorsteps, out_of_sight
+from planner.destinations import Situation, corner, doorsteps, numbers, out_of_sight
 from planner.exploring import Lookout, sight_of
 from planner.screen import grown
 
@@ -62,7 +63,7 @@ def _landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Land
     if goal.name in ("at", "beside"):
         return _beside(str(where), node, situation)
     if goal.name in ("in", "through"):
-        return _next_room(began, situation)
+        return _next_room(began, node, situation)
     if goal.name == "around":
         return _around_corner(began, node, situation)
     if goal.name == "pose":
@@ -105,14 +106,23 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     return Landing({side: InCorner(x, y, 1 if x > column else -1, 1 if y > row else -1)})
 
 
-def _next_room(began: Place, situation: Situation) -> Landing:
+def _next_room(began: Place, node: Node, situation: Situation) -> Landing:
+    """Beyond a door; one that is only likely will do to begin with, for the way there shows whether it is one."""
     rooms = situation.rooms
     row, column = situation.model.view.locate(*began)
-    beyond = rooms.beyond(int(rooms.labels[row, column]))
-    names = [int(number) for number in np.unique(rooms.labels[beyond])]
-    if not names:
-        return Landing({}, "no next room is seen yet", doorsteps(situation))
-    return Landing({f"r{n}": Inside(region_of(beyond & (rooms.labels == n))) for n in names})
+    sure = _insides(rooms, rooms.beyond(int(rooms.labels[row, column])))
+    if sure:
+        return Landing(sure)
+    missing, lookouts = "no next room is seen yet", doorsteps(situation)
+    likely = _insides(*situation.likely_beyond(began))
+    shape = in_view(node.polygon, situation)
+    if any(lands(end, shape) for end in likely.values()):
+        return Landing({}, missing, lookouts)
+    return Landing(likely, missing, lookouts)
+
+
+def _insides(rooms: Rooms, beyond: Mask) -> dict[str, End]:
+    return {f"r{n}": Inside(region_of(beyond & (rooms.labels == n))) for n in numbers(rooms, beyond)}
 
 
 def _around_corner(began: Place, node: Node, situation: Situation) -> Landing:

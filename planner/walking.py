@@ -10,7 +10,7 @@ from kb.worldmodel import WorldModel
 from planner.screen import Screens
 from planner.steps import Square, clear
 
-LONGEST = {"attain": 12, "inspect": 8, "explore": 8, "pass": 6, "settle": 8}  # squares of one move, by its aim
+LONGEST = {"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}  # squares of one move, by its aim
 DIGITS = 12  # of a command
 ASIDE = (0.0618, 0.0341)  # squares from a centre, where no turn by whole degrees leads to the line between two squares
 
