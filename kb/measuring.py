@@ -14,6 +14,7 @@ from kb.evidence import FULL, OPEN, MapView
 from kb.worldmodel import Patch
 
 Mask = NDArray[np.bool_]
+LIKELY = 0.85  # that a square is covered: then it is measured as if it were
 MOST_OPEN = 2.0  # times as many open squares as settled ones: beyond that nothing is measured
 
 
@@ -40,13 +41,15 @@ class Measurer:
         """The fits of one patch of the map."""
         row, column = patch.south - view.south, patch.west - view.west
         part = (slice(row, row + patch.mask.shape[0]), slice(column, column + patch.mask.shape[1]))
-        full = patch.mask & (view.state[part] == FULL)
-        possible = patch.mask & (view.state[part] == OPEN)
+        settled = patch.mask & (view.state[part] == FULL)
+        open_ = patch.mask & (view.state[part] == OPEN)
+        full = settled | (open_ & (view.probability[part] >= LIKELY))
+        possible = open_ & ~full
         if not full.any() or possible.sum() > MOST_OPEN * full.sum():
-            return Measured((), None, int(possible.sum()), int(full.sum()))
+            return Measured((), None, int(open_.sum()), int(settled.sum()))
         fits, polygon = self._fit(full, possible)
         placed = shapely.transform(polygon, lambda points: points + np.array([patch.west, patch.south]))
-        return Measured(fits, placed, int(possible.sum()), int(full.sum()))
+        return Measured(fits, placed, int(open_.sum()), int(settled.sum()))
 
     def _fit(self, full: Mask, possible: Mask) -> tuple[tuple[tuple[str, int], ...], Any]:
         key = (full.tobytes() + bytes(full.shape), possible.tobytes())

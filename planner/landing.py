@@ -27,6 +27,7 @@ from planner.screen import grown
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
 BESIDE = 1.0  # squares from a thing within which it is reached
+CLEAR = 0.12  # a square that is occupied or free but for this probability is built upon, until the goal seems to hold
 POSED, TURNED = 0.25, 2.0  # squares and degrees within which a pose is attained
 
 
@@ -96,14 +97,17 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     found = corner(side, situation)
     if found.missing and not situation.model.mask(node.patch)[row, column]:
         return Landing({}, found.missing, found.lookouts)
+    end = InCorner(x, y, 1 if x > column else -1, 1 if y > row else -1)
     model = situation.model
-    around = grown(model.squares([(column + model.view.west, row + model.view.south)]), 1)
-    unclear = around & (model.view.state == OPEN)
-    if unclear.any():
+    view = model.view
+    around = grown(model.squares([(column + view.west, row + view.south)]), 1)
+    unclear = around & (view.state == OPEN)
+    doubtful = unclear & (view.probability > CLEAR) & (view.probability < 1 - CLEAR)
+    if doubtful.any() or (unclear.any() and lands(end, in_view(node.polygon, situation))):
         lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
         if len(lookout.squares):
             return Landing({}, lookout.what, (lookout,))
-    return Landing({side: InCorner(x, y, 1 if x > column else -1, 1 if y > row else -1)})
+    return Landing({side: end})
 
 
 def _next_room(began: Place, node: Node, situation: Situation) -> Landing:
