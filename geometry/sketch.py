@@ -102,9 +102,9 @@ def _ranks(squares: NDArray[np.int32], size: int) -> NDArray[np.int64]:
 
 
 @compiled
-def _draw(
+def _draw(  # type: ignore[no-untyped-def]
     price, chance, ground, image, squares, ranks, ends, field, share, where, used, fields, slopes, taken, columns
-):  # type: ignore[no-untyped-def]
+):
     first = len(slopes) - SWEEPS * (len(taken) - 1) - 1
     for sweep in range(len(slopes)):
         slope = slopes[sweep]

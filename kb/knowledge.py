@@ -127,7 +127,8 @@ class Knowledge:
                 confidence=model.kinds.of(region.name, "object"),
                 region=region.name,
                 patch=patch,
-                open=unsettled(mask, model.view),
+                open=left[0],
+                vague=left[1],
                 shape=shape.get(name, {}),
                 polygon=measured[name].polygon,
                 colour=self._colour(patch),
@@ -136,6 +137,7 @@ class Knowledge:
             for name, region, mask, patch in sorted(
                 zip(names, regions, masks, patches, strict=True), key=lambda entry: int(entry[0][1:])
             )
+            for left in [unsettled(mask, model.view)]
         )
 
     def _colour(self, patch: Patch) -> str | None:

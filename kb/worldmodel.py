@@ -21,6 +21,7 @@ from kb.lattice import Lattice
 from kb.regions import Percept
 
 SPACE = 0.06  # a square that is occupied with at most this probability counts as floor
+CLEAR = 0.12  # a square that is occupied, or free, but for this probability is not in doubt
 SURELY_VERGE = 93  # percent: what is verge as surely as this is no object
 ORG, FLOOR, VERGE = "org", "floor", "verge"
 
@@ -57,7 +58,7 @@ class Node:
     ----------
     kind : verge or object. confidence : that it is, in percent.
     region : its region of the map. patch : the squares that it covers, or may cover.
-    open : how many of them (and of their neighbours) are not settled.
+    open : how many of them (and of their neighbours) are not settled. vague : how many of those look doubtful.
     shape : class -> confidence. polygon : its believed outline (shapely, lattice frame), None while nothing fits.
     colour : as felt, or None. support : the impressions that settled its squares.
     movable : that it can be moved, in percent. moved : he has moved it. turned : degrees by which, since he first held
@@ -70,6 +71,7 @@ class Node:
     region: str
     patch: Patch
     open: int
+    vague: int = 0
     shape: Mapping[str, int] = field(default_factory=dict)
     polygon: Any = None
     colour: str | None = None
@@ -203,8 +205,10 @@ def patch_of(mask: Mask, view: MapView) -> Patch:
     return Patch(view.west + int(columns[0]), view.south + int(rows[0]), part.copy())
 
 
-def unsettled(mask: Mask, view: MapView) -> int:
-    """How many squares of a region, and of the squares that touch it, the counts leave open."""
+def unsettled(mask: Mask, view: MapView) -> tuple[int, int]:
+    """How many squares of a region, and of the squares that touch it, the counts leave open; how many look doubtful."""
     framed = np.pad(mask, 1)
     about = framed[1:-1, 1:-1] | framed[:-2, 1:-1] | framed[2:, 1:-1] | framed[1:-1, :-2] | framed[1:-1, 2:]
-    return int((about & (view.state == OPEN)).sum())
+    left = about & (view.state == OPEN)
+    doubtful = left & (view.probability > CLEAR) & (view.probability < 1 - CLEAR)
+    return int(left.sum()), int(doubtful.sum())

@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from kb.body import Command, Release
+from kb.body import Command, Grasp, Release
 from kb.corners import Corner, corners
 from kb.facts import Fact
 from kb.reconciliation import Reconciled, reconcile
 from kb.rooms import NOTHING, Rooms, rooms_of
 from kb.task import Task
-from kb.worldmodel import WorldModel
+from kb.worldmodel import Node, WorldModel
 from planner import exploring
 from planner.aims import Aim, choose
 from planner.carrier import Act, Carrier, Go, See
@@ -70,6 +70,7 @@ class Decider:
         self._aimed: frozenset[Square] = frozenset()  # squares of the lattice
         self._path: tuple[Square, ...] = ()  # squares of the lattice
         self._level = 0
+        self._doubted: set[str] = set()  # objects that are being looked at until they are settled
         self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
@@ -108,10 +109,22 @@ class Decider:
             where = [destination(goals[0], situation)]
         else:
             where = [destination(goal, situation) for goal in goals]
-            if all(not d.missing and contains(d.squares, situation.model) for d in where):
-                return None
+            there = all(not d.missing and contains(d.squares, situation.model) for d in where)
+            look = self._made_sure(goals, there, stage, situation)
+            if there or look is not None:
+                return look
         missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
         return self._pursue(_aims(where, situation, reconciled), stage, situation, lambda: missing)
+
+    def _made_sure(self, goals: Sequence[Fact], there: bool, stage: Stage, situation: Situation) -> Decision | None:
+        """A look at what goals are about, before they are held for attained; None when all of that is settled.
+
+        there : they seem to hold.
+        """
+        nodes = [situation.model.object(self.bound.get(str(goal.args[1]), "")) for goal in goals]
+        doubted = [n for n in nodes if n is not None and (n.name in self._doubted or (there and n.vague))]
+        looks = (self._inspect(node, stage, situation) for node in doubted)
+        return next((look for look in looks if look is not None), None)
 
     def _pursue(
         self,
@@ -141,10 +154,10 @@ class Decider:
             unseen = nowhere(f"nothing seen so far is {x}")
             aims = _aims([unseen], situation, reconciled)
             return self._pursue(aims, stage, situation, lambda: unseen.missing)
-        if node.polygon is None or node.open:
-            look = exploring.inspection(situation.screens, node, touch=False, chance=1.0)
-            if len(look.squares):
-                return self._pursue([Aim("inspect", *look)], stage, situation, lambda: look.what)
+        if node.polygon is None or node.vague or node.name in self._doubted:
+            look = self._inspect(node, stage, situation)
+            if look is not None:
+                return look
         if node.polygon is None:
             return Decision(None, f"{stage} is not attempted: the outline of {node.name} is not known", "limit")
         land = landing(goal, node, self.carrier.began_at(node), situation)
@@ -155,6 +168,9 @@ class Decider:
         missing = Refusal(not self.carrier.begun, lambda: land.missing)
         advice = self.carrier.advise(node, land.ends, situation) if land.ends else missing
         if isinstance(advice, Act):
+            look = self._inspect(node, stage, situation) if isinstance(advice.command, Grasp) else None
+            if look is not None:
+                return look
             return Decision(advice.command, f"{advice.why}; {stage}")
         if isinstance(advice, Go):
             aim = Aim("attain", np.array([advice.square]), advice.why)
@@ -166,6 +182,20 @@ class Decider:
         verdict = "impossible" if advice.proved else "limit"
         aims = _aims([unknown], situation, reconciled)
         return self._pursue(aims, stage, situation, advice.reason, verdict)
+
+    def _inspect(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
+        """A look at an object that is not settled yet; None when no look is left that may tell more.
+
+        Once begun it is gone on with.
+        """
+        self._doubted.discard(node.name)
+        if node.polygon is not None and not node.open:
+            return None
+        look = exploring.inspection(situation.screens, node, touch=False, chance=1.0)
+        if not len(look.squares):
+            return None
+        self._doubted.add(node.name)
+        return self._pursue([Aim("inspect", *look)], stage, situation, lambda: look.what)
 
     def _round(self, stage: Stage, name: str, situation: Situation, track: Sequence[Place]) -> Decision | None:
         """The next command on the way round an object."""

@@ -19,7 +19,7 @@ from kb.evidence import OPEN
 from kb.facts import Fact, Number, Symbol, Text
 from kb.rooms import Rooms
 from kb.wkt import parse_wkt
-from kb.worldmodel import Node
+from kb.worldmodel import CLEAR, Node
 from planner.destinations import Situation, corner, doorsteps, numbers, out_of_sight
 from planner.exploring import Lookout, sight_of
 from planner.screen import grown
@@ -27,7 +27,6 @@ from planner.screen import grown
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
 BESIDE = 1.0  # squares from a thing within which it is reached
-CLEAR = 0.12  # a square that is occupied or free but for this probability is built upon, until the goal seems to hold
 POSED, TURNED = 0.25, 2.0  # squares and degrees within which a pose is attained
 
 
