@@ -109,10 +109,10 @@ class Memory:
         """Is what the counts settle beyond doubt?
 
         Not when a look contradicted another one or a motion ended beside where it should, nor while several places in
-        his square are left at which he may have woken.
+        his square are left at which he may have woken, or several angles none of which is that of his own axes.
         """
-        centred = all(other.box == CENTRE + CENTRE for other in self.hypotheses)
-        return not (self.evidence.overruled or self.slipped) and (centred or len(self.hypotheses) == 1)
+        along = self.lattice.angle == 0 and all(other.box == CENTRE + CENTRE for other in self.hypotheses)
+        return not (self.evidence.overruled or self.slipped) and (along or len(self.hypotheses) == 1)
 
     def wake(self, impression: Impression) -> Accommodated:
         """Take in the first impression."""

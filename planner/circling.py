@@ -36,6 +36,7 @@ def ways_round(screens: Screens, track: Sequence[Place], node: Node) -> dict[int
     done = crossings(np.array(track), (x, y))
     for level in range(UNSEEN + 1):
         free = screens.free(level) & ~model.mask(node.patch)
+        free[screens.here[1], screens.here[0]] = True  # a thing seen coarsely may seem to reach as far as his square
         if not free[goal[1], goal[0]]:
             continue
         found = {}
