@@ -1,7 +1,6 @@
 """Parts of the floor: what remains connected when free space is cut along the necks of some passages."""
 
 from collections.abc import Iterable
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,9 +8,10 @@ from numpy.typing import NDArray
 from geometry.bones import Ints
 from geometry.compiled import compiled
 from geometry.distance import Bools, Squares
-from geometry.passages import Passage, crosses
+from geometry.passages import Passage
 
 Labels = NDArray[np.int32]
+Points = NDArray[np.float64]
 
 
 def find_parts(square: Squares, state: NDArray[np.uint8], passages: Iterable[Passage]) -> Labels:
@@ -32,14 +32,48 @@ def find_parts(square: Squares, state: NDArray[np.uint8], passages: Iterable[Pas
 
 
 def cut(shut: Bools, passage: Passage) -> None:
-    """Mark the steps to the east (0) and to the north (1) that cross a passage's neck."""
-    for a, b in pairwise(passage.cut):
-        near = [(int(x) + dx, int(y) + dy) for x, y in (a, b) for dx in (-1, 0, 1) for dy in (-1, 0, 1)]
-        for column, row in sorted(set(near)):
-            x, y = column + 0.5, row + 0.5
-            if 0 <= row < shut.shape[1] - 2 and 0 <= column < shut.shape[2] - 2:
-                shut[0, row + 1, column + 1] |= crosses(passage, (x, y), (x + 1.0, y))
-                shut[1, row + 1, column + 1] |= crosses(passage, (x, y), (x, y + 1.0))
+    """Mark the steps to the east (0) and to the north (1) that cross a passage's neck.
+
+    The cut runs a little off its squares' centres.
+    """
+    (x, y), (u, v) = passage.place, passage.towards
+    aside = 1e-4 * (u - x) - 3e-5 * (v - y), 1e-4 * (v - y) + 3e-5 * (u - x)
+    mark_crossed(shut, np.array(passage.cut) + aside)
+
+
+@compiled
+def mark_crossed(shut: Bools, line: Points) -> None:
+    """Mark the steps between centres of squares that a line crosses an odd number of times.
+
+    line : (n, 2) points (x, y), each in a square next to that of the one before.
+    """
+    west, south = int(np.floor(line[:, 0].min())) - 1, int(np.floor(line[:, 1].min())) - 1
+    wide, high = int(np.floor(line[:, 0].max())) + 2 - west, int(np.floor(line[:, 1].max())) + 2 - south
+    odd = np.zeros((2, high, wide), np.bool_)
+    for k in range(len(line) - 1):
+        (ax, ay), (bx, by) = line[k], line[k + 1]
+        for row in range(int(np.floor(min(ay, by))) - 1, int(np.floor(max(ay, by))) + 2):
+            for column in range(int(np.floor(min(ax, bx))) - 1, int(np.floor(max(ax, bx))) + 2):
+                x, y = column + 0.5, row + 0.5
+                odd[0, row - south, column - west] ^= meets(ax, ay, bx, by, x, y, x + 1.0, y)
+                odd[1, row - south, column - west] ^= meets(ax, ay, bx, by, x, y, x, y + 1.0)
+    for row in range(max(south, 0), min(south + high, shut.shape[1] - 2)):
+        for column in range(max(west, 0), min(west + wide, shut.shape[2] - 2)):
+            for k in range(2):
+                shut[k, row + 1, column + 1] |= odd[k, row - south, column - west]
+
+
+@compiled
+def meets(ax: float, ay: float, bx: float, by: float, px: float, py: float, qx: float, qy: float) -> bool:
+    """Whether the segments a-b and p-q cross."""
+    apart = (turn(ax, ay, bx, by, px, py) > 0) != (turn(ax, ay, bx, by, qx, qy) > 0)
+    return apart and (turn(px, py, qx, qy, ax, ay) > 0) != (turn(px, py, qx, qy, bx, by) > 0)
+
+
+@compiled
+def turn(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> float:
+    """Positive when c lies left of the ray from a through b."""
+    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 
 
 @compiled

@@ -6,11 +6,11 @@ between two wide parts exactly one place counts as the neck, however long and bu
 narrowest, ties broken by index.
 """
 
-from itertools import pairwise
 from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geometry.bones import Ints
 from geometry.chains import Chains
@@ -21,6 +21,8 @@ from geometry.skeleton import SADDLE, SUMMIT, States, above, beside, steepest
 from geometry.ways import locate
 
 XY = tuple[float, float]
+Bools = NDArray[np.bool_]
+OFF_CENTRE = 0.75  # squares by which a clearance may differ between a square's centre and elsewhere in it
 
 
 class Passage(NamedTuple):
@@ -53,20 +55,32 @@ class Passage(NamedTuple):
         return self.towards, self.place
 
 
-def find_passages(square: Squares, state: States, chains: Chains) -> list[Passage]:
-    """All passages, in the order of their saddles' squares."""
+def find_passages(square: Squares, state: States, chains: Chains, pinch: float = 0.0) -> list[Passage]:
+    """All passages, in the order of their saddles' squares; or those alone that are pinched.
+
+    pinch : how many times as wide as the neck the floor must be on both sides of it.
+    """
     saddles = np.flatnonzero(state.reshape(-1) & SADDLE).astype(np.int32)
     if not len(saddles):
         return []
     groups, first, peaks = compare_sides(square, state, saddles)
-    finer = {peak: finest(square, peak) for peak in np.unique(peaks).tolist()}
+    chosen = np.flatnonzero(may_be_pinched(square.reshape(-1), saddles, groups, peaks, pinch))
+    finer = {peak: finest(square, peak) for peak in np.unique(peaks[chosen]).tolist()}
     found = []
-    for k, saddle in enumerate(saddles.tolist()):
+    for k in chosen.tolist():
         count = int(groups[k])
         for g in range(1 if count == 2 else count):
             sides = [finer[peak] for peak in peaks[k, :count].tolist()]
-            found.append(describe(square, state, chains, saddle, first[k, :count], sides, g))
-    return found
+            found.append(describe(square, state, chains, int(saddles[k]), first[k, :count], sides, g))
+    return [passage for passage in found if pinch * passage.width <= 2 * min(passage.sides)]
+
+
+def may_be_pinched(heights: Squares, saddles: Ints, count: Ints, peaks: Ints, pinch: float) -> Bools:
+    """(n,): saddles that may be pinched, by what their squares' centres tell of necks and floor."""
+    neck = np.sqrt(heights[saddles].astype(np.float64)) - 2 * OFF_CENTRE
+    sides = np.sqrt(np.where(np.arange(4) < count[:, None], heights[peaks], 0)) + 2 * OFF_CENTRE
+    answer: Bools = pinch * neck <= np.sort(sides, axis=1)[:, -2]
+    return answer
 
 
 def describe(
@@ -267,24 +281,6 @@ def nearest_on_axis(a: int, b: int) -> tuple[float, float]:
     if a == b:
         return a + 0.5, a + 0.5
     return (a + 1.0, float(b)) if a < b else (float(a), b + 1.0)
-
-
-def crosses(passage: Passage, p: XY, q: XY) -> bool:
-    """Whether the step from p to q crosses a passage's cut, which runs a little off its squares' centres."""
-    (x, y), (u, v) = passage.place, passage.towards
-    dx, dy = 1e-4 * (u - x) - 3e-5 * (v - y), 1e-4 * (v - y) + 3e-5 * (u - x)
-    shifted = [(cx + dx, cy + dy) for cx, cy in passage.cut]
-    return sum(meets(a, b, p, q) for a, b in pairwise(shifted)) % 2 == 1
-
-
-def meets(a: XY, b: XY, p: XY, q: XY) -> bool:
-    """Whether two segments cross."""
-    return (turn(a, b, p) > 0) != (turn(a, b, q) > 0) and (turn(p, q, a) > 0) != (turn(p, q, b) > 0)
-
-
-def turn(a: XY, b: XY, c: XY) -> float:
-    """Positive when c lies left of the ray from a through b."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 def centre(cell: int, width: int) -> XY:

@@ -198,9 +198,12 @@ class Screen:
         tight = tight_route(layer, (x, y, u, v), word, route.clearance, route.chains)
         return replace(tight, points=tight.points)
 
-    def passages(self) -> list[Passage]:
-        """All necks of free space (see passages.py), in the order of their squares."""
-        return find_passages(self._square, self._skeleton_at(1)[0], self._chains_at(1))
+    def passages(self, pinch: float = 0.0) -> list[Passage]:
+        """All necks of free space (see passages.py), in the order of their squares.
+
+        pinch : only those on both sides of which the floor is at least so many times as wide.
+        """
+        return find_passages(self._square, self._skeleton_at(1)[0], self._chains_at(1), pinch)
 
     def parts(self, passages: Iterable[Passage]) -> Labels:
         """(rows, columns) int: 0 blocked, else the number of the part of the floor, cut along the passages' necks."""

@@ -4,14 +4,16 @@ Coordinates are hundredths of squares in Utak's own frame, whose origin is the p
 percent.
 """
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.outline import outline
+from geometry.outline import Ring, outline
 from kb.accommodation import Accommodated
 from kb.corners import Corner
 from kb.evidence import OPEN
@@ -53,9 +55,8 @@ def belief(model: WorldModel, places: Places, accommodated: Accommodated, bound:
 def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
     """The tree of the world model, its rooms and doors, as facts without their full stops."""
     yield from _root(model)
-    for name, mask in ((FLOOR, model.floor), (VERGE, model.verge)):
-        if mask.any():
-            yield from _outlined(name, _rings(mask, model), model)
+    whole = ((name, _rings(mask, model)) for name, mask in ((FLOOR, model.floor), (VERGE, model.verge)) if mask.any())
+    yield from _outlined([*whole, *((node.name, _object_rings(node)) for node in model.objects)], model)
     for node in model.objects:
         yield from _object(node, model, places.rooms)
     yield from _rooms(model, places.rooms)
@@ -105,7 +106,6 @@ def _object(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
     if node.colour is not None:
         yield f"colour({name},{node.colour},99)"
     yield f"movable({name},{node.movable if node.confidence >= 50 else 0})"
-    yield from _outlined(name, _object_rings(node), model)
     row, column = model.view.locate(*node.patch.centre)
     room = rooms.labels[row, column]
     if room:
@@ -115,34 +115,57 @@ def _object(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
 
 
 def _beside_utak(node: Node, model: WorldModel) -> bool:
-    row, column = model.view.locate(*model.place)
-    return bool(model.mask(node.patch)[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2].any())
+    row, column = math.floor(model.place[1]) - node.patch.south, math.floor(model.place[0]) - node.patch.west
+    return bool(node.patch.mask[max(row - 1, 0) : max(row + 2, 0), max(column - 1, 0) : max(column + 2, 0)].any())
 
 
-def _object_rings(node: Node) -> list[list[tuple[float, float]]]:
+def _object_rings(node: Node) -> list[Floats]:
     if node.polygon is not None:
-        return [list(node.polygon.exterior.coords)[:-1]]
-    rings = outline(node.patch.mask)
-    return [[(x + node.patch.west, y + node.patch.south) for x, y in ring] for ring in rings]
+        return [np.array(node.polygon.exterior.coords)[:-1]]
+    corner = np.array([node.patch.west, node.patch.south])
+    return [corner + ring for ring in _outline(node.patch.mask.tobytes(), node.patch.mask.shape)]
 
 
-def _rings(mask: Mask, model: WorldModel) -> list[list[tuple[float, float]]]:
-    return [[(x + model.view.west, y + model.view.south) for x, y in ring] for ring in outline(mask)]
+@lru_cache(maxsize=4096)
+def _outline(squares: bytes, shape: tuple[int, int]) -> list[Ring]:
+    """The outline of a small mask; most things look the same from one impression to the next."""
+    return outline(np.frombuffer(squares, np.bool_).reshape(shape))
 
 
-def _outlined(name: str, rings: Iterable[list[tuple[float, float]]], model: WorldModel) -> Iterator[str]:
-    """The containing rectangle and the circular boundary, ring after ring, of a node."""
-    turned = [[model.lattice.place_to_utak(*corner) for corner in ring] for ring in rings]
-    corners = np.array([corner for ring in turned for corner in ring])
-    (west, south), (east, north) = corners.min(0), corners.max(0)
-    yield f"rect({name},{_hundredths(west)},{_hundredths(south)},{_hundredths(east)},{_hundredths(north)})"
-    starts = np.array([corner for ring in rings for corner in ring])
-    ends = np.array([corner for ring in rings for corner in (*ring[1:], ring[0])])
+def _rings(mask: Mask, model: WorldModel) -> list[Floats]:
+    corner = np.array([model.view.west, model.view.south])
+    return [corner + ring for ring in outline(mask)]
+
+
+def _outlined(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel) -> Iterator[str]:
+    """The containing rectangles and the circular boundaries, ring after ring, of nodes by name.
+
+    The rings' corners are (n, 2) points of the lattice.
+    """
+    names, rings = zip(*((name, ring) for name, parts in shapes for ring in parts), strict=True)
+    starts = np.concatenate(rings)
+    ends = np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
     sure = _sureness_along(starts, ends, model)
-    following = (corner for ring in turned for corner in (*ring[1:], ring[0]))
-    for number, ((e, n), (f, m)) in enumerate(zip(corners.tolist(), following, strict=True)):
-        ends_at = ",".join(str(_hundredths(v)) for v in (e, n, f, m))
-        yield f"segment({name},{number},{ends_at},{sure[number]})"
+    corners = _in_hundredths(starts, model)
+    count = Counter[str]()
+    for name, ring in zip(names, rings, strict=True):
+        count[name] += len(ring)
+    lines = np.column_stack([corners, _in_hundredths(ends, model)]).tolist()
+    first = 0
+    for name, length in count.items():
+        part = slice(first, first + length)
+        (west, south), (east, north) = corners[part].min(0).tolist(), corners[part].max(0).tolist()
+        yield f"rect({name},{west},{south},{east},{north})"
+        for number, ((e, n, f, m), share) in enumerate(zip(lines[part], sure[part], strict=True)):
+            yield f"segment({name},{number},{e},{n},{f},{m},{share})"
+        first += length
+
+
+def _in_hundredths(points: Floats, model: WorldModel) -> NDArray[np.int64]:
+    """(n, 2): points of the lattice in hundredths of squares of Utak's frame."""
+    placed: Floats = np.column_stack(model.lattice.place_to_utak(*points.T))
+    answer: NDArray[np.int64] = np.rint(HUNDREDTHS * placed).astype(np.int64)
+    return answer
 
 
 def _sureness_along(starts: Floats, ends: Floats, model: WorldModel) -> list[int]:
@@ -160,10 +183,10 @@ def _sureness_along(starts: Floats, ends: Floats, model: WorldModel) -> list[int
 
 
 def _rooms(model: WorldModel, rooms: Rooms) -> Iterator[str]:
-    for room in range(1, int(rooms.labels.max(initial=0)) + 1):
-        squares = rooms.labels == room
+    unseen = np.bincount(rooms.labels[model.view.state == OPEN], minlength=int(rooms.labels.max(initial=0)) + 1)
+    for room in range(1, len(unseen)):
         yield f"room(r{room})"
-        yield f"unseen(r{room},{int((squares & (model.view.state == OPEN)).sum())})"
+        yield f"unseen(r{room},{unseen[room]})"
     row, column = model.view.locate(*model.place)
     if rooms.labels[row, column]:
         yield f"in({ORG},r{rooms.labels[row, column]})"

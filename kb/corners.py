@@ -61,5 +61,5 @@ def _convex(floor: NDArray[np.bool_]) -> list[Corner]:
         for height in (row, row + 1):
             owner[west, height] = (west, row)
             owner[east + 1, height] = (east, row)
-    hull = shapely.MultiPoint(sorted(owner)).convex_hull
+    hull = shapely.convex_hull(shapely.multipoints(sorted(owner)))
     return [Corner((x, y), owner[round(x), round(y)]) for x, y in sorted(set(hull.exterior.coords))]

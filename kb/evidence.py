@@ -61,6 +61,18 @@ class MapView(NamedTuple):
         """[row, column] of the square in which a point of the lattice lies."""
         return math.floor(y) - self.south, math.floor(x) - self.west
 
+    def part(self, rows: slice, columns: slice) -> "MapView":
+        """What it says of some rows and columns, but for the counts."""
+        return self._replace(
+            west=self.west + columns.start,
+            south=self.south + rows.start,
+            probability=self.probability[rows, columns],
+            state=self.state[rows, columns],
+            seen=self.seen[rows, columns],
+            settled_by=self.settled_by[rows, columns],
+            counts=NO_COUNTS,
+        )
+
 
 class Evidence:
     """The growing map. Arrays are [row, column]; square (x, y) of the lattice lies at [y - south, x - west].

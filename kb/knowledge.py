@@ -7,10 +7,12 @@ objects and their shapes, and the tree (kb.worldmodel).
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.components import boxes
 from kb.accommodation import Accommodated, Memory
 from kb.body import DIRECTIONS, Command, Grasp, Impression
 from kb.evidence import FREE, FULL, OPEN, MapView
@@ -115,8 +117,8 @@ class Knowledge:
 
     def _objects(self, model: WorldModel) -> tuple[Node, ...]:
         regions = [r for r in model.percept.regions if _may_be_object(r.name, r.extent, model.kinds)]
-        masks = [model.labels == int(r.name[4:]) for r in regions]
-        patches = [patch_of(mask, model.view) for mask in masks]
+        parts = _parts(model, [int(r.name[4:]) for r in regions])
+        patches = [patch_of(part.mask, part.view) for part in parts]
         names = self._names.assign(patches)
         measured = {n: self._measurer.measure(p, model.view) for n, p in zip(names, patches, strict=True)}
         shape = shapes(_shape_facts(measured), self.rules)
@@ -132,17 +134,35 @@ class Knowledge:
                 shape=shape.get(name, {}),
                 polygon=measured[name].polygon,
                 colour=self._colour(patch),
-                support=_support(mask, model.view),
+                support=_support(part.mask, part.view),
             )
-            for name, region, mask, patch in sorted(
-                zip(names, regions, masks, patches, strict=True), key=lambda entry: int(entry[0][1:])
+            for name, region, part, patch in sorted(
+                zip(names, regions, parts, patches, strict=True), key=lambda entry: int(entry[0][1:])
             )
-            for left in [unsettled(mask, model.view)]
+            for left in [unsettled(part.mask, part.view)]
         )
 
     def _colour(self, patch: Patch) -> str | None:
         colours = [self.felt[square] for square in sorted(patch.squares()) if square in self.felt]
         return colours[0] if colours else None
+
+
+class _Part(NamedTuple):
+    """The part of a map about one region, with a square to spare, and where the region lies on it."""
+
+    view: MapView
+    mask: Mask
+
+
+def _parts(model: WorldModel, labels: list[int]) -> list[_Part]:
+    """The parts of the map about some regions."""
+    framing = boxes(model.labels, int(model.labels.max()))
+    found = []
+    for label in labels:
+        south, west, north, east = framing[label].tolist()
+        rows, columns = slice(max(south - 1, 0), north + 2), slice(max(west - 1, 0), east + 2)
+        found.append(_Part(model.view.part(rows, columns), model.labels[rows, columns] == label))
+    return found
 
 
 def _node(load: Load, label: int) -> Node:

@@ -5,13 +5,13 @@ A region is a maximal edge-connected set of zero cells, or of non-zero ones. The
 (kb/asp); nothing here says what a region is.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.components import components
+from geometry.components import boxes, components
 from kb.retina import FIELDS, OWN, count_ranges, neighbours, rim
 
 Mask = NDArray[np.bool_]
@@ -70,13 +70,7 @@ def map_regions(
     zero, full = components(seen & ~occupied), components(seen & occupied)
     labels = np.where(full.labels > 0, full.labels + zero.number, zero.labels).astype(np.int32)
     count = zero.number + full.number
-    framed = np.pad(labels, 1)
-    touching, open_ = set(), set()
-    for a, b in ((framed[:, :-1], framed[:, 1:]), (framed[:-1], framed[1:])):
-        differ = a != b
-        for p, q in np.unique(np.stack([a[differ], b[differ]], 1), axis=0).tolist():
-            touching |= {(f"part{p}", f"part{q}"), (f"part{q}", f"part{p}")} if p and q else set()
-            open_ |= set() if p and q else {max(p, q)}
+    touching, open_ = _touching(labels, count)
     size = np.bincount(labels.ravel(), minlength=count + 1)
     sure = np.bincount(labels.ravel(), certain.ravel(), minlength=count + 1)
     weight = occupied if probability is None else probability
@@ -117,15 +111,23 @@ def _cell_region(name: str, members: Iterable[int], levels: tuple[int, ...], ran
 
 def extents(labels: NDArray[np.int32], count: int) -> NDArray[np.int64]:
     """The longer side of each label's containing rectangle, for labels 0 to count of a (rows, columns) array."""
-    answer = np.zeros(count + 1, np.int64)
-    for positions in np.ogrid[: labels.shape[0], : labels.shape[1]]:
-        place = np.broadcast_to(positions, labels.shape).ravel()
-        least = np.full(count + 1, max(labels.shape))
-        most = np.full(count + 1, -1)
-        np.minimum.at(least, labels.ravel(), place)
-        np.maximum.at(most, labels.ravel(), place)
-        answer = np.maximum(answer, most - least + 1)
-    return answer
+    south, west, north, east = boxes(labels, count).T
+    longer: NDArray[np.int64] = np.maximum(np.maximum(north - south, east - west) + 1, 0)
+    return longer
+
+
+def _touching(labels: NDArray[np.int32], count: int) -> tuple[set[tuple[str, str]], set[int]]:
+    """The pairs of regions that touch, both ways round, and the labels of those that touch what is not seen."""
+    framed = np.pad(labels, 1).astype(np.int64)
+    pairs = [np.zeros(0, np.int64)]
+    for a, b in ((framed[:, :-1], framed[:, 1:]), (framed[:-1], framed[1:])):
+        differ = a != b
+        pairs.append(np.unique(a[differ] * (count + 1) + b[differ]))
+    touching, open_ = set(), set()
+    for p, q in (divmod(pair, count + 1) for pair in np.concatenate(pairs).tolist()):
+        touching |= {(f"part{p}", f"part{q}"), (f"part{q}", f"part{p}")} if p and q else set()
+        open_ |= set() if p and q else {max(p, q)}
+    return touching, open_
 
 
 def _percept(regions: tuple[Region, ...], touching: set[tuple[str, str]]) -> Percept:
@@ -133,17 +135,33 @@ def _percept(regions: tuple[Region, ...], touching: set[tuple[str, str]]) -> Per
     for a, b in touching:
         beside[a].add(b)
     outside = [region.name for region in regions if region.rim]
-    pairs = frozenset((a, b) for a in beside for b in _cut_off(a, beside, outside))
-    return Percept(regions, frozenset(touching), pairs)
+    return Percept(regions, frozenset(touching), frozenset(_surrounding(beside, outside)))
 
 
-def _cut_off(barrier: str, beside: Mapping[str, set[str]], outside: Iterable[str]) -> set[str]:
-    """The regions from which no way leads to what is not seen, save through the barrier."""
-    edge = [name for name in outside if name != barrier]
-    reached = set(edge)
-    while edge:
-        for name in beside[edge.pop()] - reached:
-            if name != barrier:
-                reached.add(name)
-                edge.append(name)
-    return set(beside) - reached - {barrier}
+def _surrounding(beside: Mapping[str, set[str]], outside: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """The pairs (outer, inner) such that no way leads from inner to the outside, save across outer.
+
+    # Strategy: one depth-first search from the outside. Where no edge leads from what hangs below a child back past its
+    parent, the parent surrounds all that.
+    Source: Hopcroft and Tarjan (1973), articulation points.
+    """
+    open_, order, back = set(outside), dict[str, int](), dict[str, int]()  # back: the earliest that is met from below
+    for start in sorted(open_):
+        path = [(start, iter(sorted(beside[start])))] if start not in order else []
+        order.setdefault(start, len(order))
+        back.setdefault(start, -1)
+        while path:
+            here, others = path[-1]
+            other = next(others, None)
+            if other is None:
+                path.pop()
+                above = path[-1][0] if path else here
+                back[above] = min(back[above], back[here])
+                if back[here] >= order[above]:
+                    yield from ((above, inner) for inner in list(order)[order[here] :])
+            elif other in order:
+                back[here] = min(back[here], order[other])
+            else:
+                order[other] = len(order)
+                back[other] = -1 if other in open_ else order[other]
+                path.append((other, iter(sorted(beside[other]))))

@@ -31,6 +31,7 @@ SURE = 60  # percent: a door is one from here on
 LIKELY_DOOR = 50  # percent: what may be a door is tried from here on
 DEEPEST = 12.0  # squares: how far a doorway is followed into the wall
 STEP = 0.5
+PINCHED = 1.9  # times as wide as a neck must the floor be on both sides, for kb/asp to be asked whether it is a door
 BEYOND = 1.6  # squares: how far behind the wall a room surely begins
 JAMB = 0.6  # squares beside a doorway at which its wall is looked for
 
@@ -103,7 +104,7 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), supposed: bool = F
         return Rooms((), np.ones(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
     screen = Screen(~verge)
     walls, seen_verge = _walls(model), verge & model.view.seen
-    necks = [(passage, _known(passage, model, seen_verge, walls)) for passage in screen.passages()]
+    necks = [(passage, _known(passage, model, seen_verge, walls)) for passage in screen.passages(PINCHED)]
     possible = _doors(necks, rules)
     floor = ~verge & model.view.seen
     if not floor.any():
@@ -117,7 +118,7 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), supposed: bool = F
     )
     doorways = np.zeros(verge.shape, np.bool_)
     for door in doors:
-        doorways |= _doorway(door, verge)
+        _mark_doorway(doorways, door, verge)
     return Rooms(doors, labels, doorways)
 
 
@@ -195,8 +196,8 @@ def _sides(passage: Passage, labels: NDArray[np.int32]) -> tuple[int, int]:
     return one, two
 
 
-def _doorway(door: Door, verge: Mask) -> Mask:
-    """The squares between a door's jambs, and BEYOND squares further on both sides.
+def _mark_doorway(doorways: Mask, door: Door, verge: Mask) -> None:
+    """Mark the squares between a door's jambs, and BEYOND squares further on both sides.
 
     A neck may lie askew between two thick walls; the doorway is taken along the lattice.
     """
@@ -204,13 +205,16 @@ def _doorway(door: Door, verge: Mask) -> Mask:
     along = np.array([1.0, 0.0]) if along[0] > along[1] else np.array([0.0, 1.0])
     across = np.array([-along[1], along[0]])
     half = float(np.abs(np.subtract(door.b, door.a)) @ along) / 2
-    rows, columns = np.ogrid[: verge.shape[0], : verge.shape[1]]
-    x, y = columns + 0.5 - door.place[0], rows + 0.5 - door.place[1]
-    sideways, forward = x * along[0] + y * along[1], x * across[0] + y * across[1]
     jambs = [np.array(door.place) + side * (half + JAMB) * along for side in (-1, 1)]
     depth = [_depth(jambs, sign * across, verge) + BEYOND for sign in (-1, 1)]
-    mask: Mask = (np.abs(sideways) <= half + 1) & (-depth[0] < forward) & (forward < depth[1])
-    return mask
+    reach = math.ceil(max(half, *depth)) + 2
+    row, column = math.floor(door.place[1]), math.floor(door.place[0])
+    south, west = max(row - reach, 0), max(column - reach, 0)
+    about = doorways[south : row + reach, west : column + reach]
+    rows, columns = np.ogrid[south : south + about.shape[0], west : west + about.shape[1]]
+    x, y = columns + 0.5 - door.place[0], rows + 0.5 - door.place[1]
+    sideways, forward = x * along[0] + y * along[1], x * across[0] + y * across[1]
+    about |= (np.abs(sideways) <= half + 1) & (-depth[0] < forward) & (forward < depth[1])
 
 
 def _depth(jambs: list[Floats], ahead: Floats, verge: Mask) -> float:

@@ -6,6 +6,7 @@ parent, so that when Utak moves, or an object is pushed, one relation changes. V
 one impression to the next is only which node a patch of squares belongs to (`Names`).
 """
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -182,14 +183,14 @@ class Names:
     def assign(self, patches: list[Patch]) -> list[str]:
         """Names for patches, the old ones first; names that no patch continues are forgotten."""
         squares = [patch.squares() for patch in patches]
-        shares = sorted(
-            ((-len(known & own), name, i) for name, known in self._known.items() for i, own in enumerate(squares)),
-            key=lambda share: (share[0], int(share[1][1:]), share[2]),
-        )
+        owner = {square: name for name, known in self._known.items() for square in known}
+        shared = Counter((owner[square], i) for i, own in enumerate(squares) for square in own if square in owner)
         names: dict[int, str] = {}
-        for share, name, i in shares:
-            if share < 0 and i not in names and name not in names.values():
+        taken = set()
+        for name, i in sorted(shared, key=lambda share: (-shared[share], int(share[0][1:]), share[1])):
+            if i not in names and name not in taken:
                 names[i] = name
+                taken.add(name)
         for i in range(len(patches)):
             if i not in names:
                 self._count += 1

@@ -22,11 +22,10 @@ from planner.aims import Aim, choose
 from planner.carrier import Act, Carrier, Go, See
 from planner.circling import pivot, ways_round, winding
 from planner.destinations import Destination, Situation, contains, destination, nowhere
-from planner.exploring import Lookout
 from planner.goals import BY_THE_WAY, Stage, constraints, stages
 from planner.haulage import Refusal
 from planner.landing import landing
-from planner.screen import Screens, Squares, grown
+from planner.screen import Screens, Squares, vicinity
 from planner.steps import Square
 from planner.walking import halting, next_move
 from planner.ways import Way, choose_way, ways
@@ -266,7 +265,7 @@ class Decider:
     def _reconcile(self, model: WorldModel, screens: Screens) -> Reconciled:
         distances = {}
         for node in model.objects:
-            reached = screens.nearest(np.flatnonzero(grown(model.mask(node.patch), 1)))
+            reached = screens.nearest(vicinity(model, node.patch, 1))
             if reached is not None:
                 distances[node.name] = reached.cost
         reconciled = reconcile(self.task, model, distances, self.bound, self.rules)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from geometry.reach import UNREACHED, reach
 from kb.evidence import FREE, OPEN
-from kb.worldmodel import SPACE, WorldModel
+from kb.worldmodel import SPACE, Patch, WorldModel
 
 Mask = NDArray[np.bool_]
 Squares = NDArray[np.int64]  # flat indices
@@ -56,25 +56,25 @@ class Screens:
         return mask
 
     @cached_property
-    def distances(self) -> list[NDArray[np.int32]]:
+    def distances(self) -> "Distances":
         """For each level, UNSEEN included, the way to every square, in fifths of squares; -1 where none leads."""
-        return [reach(self.free(level), *self.here) for level in range(UNSEEN + 1)]
+        return Distances(self)
 
     def nearest(self, squares: Squares) -> Reached | None:
         """How the nearest of some squares (flat indices) can be reached: at the most certain level at which any can."""
-        for level, distance in enumerate(self.distances):
-            far = distance.ravel()[squares]
+        for level in range(UNSEEN + 1):
+            far = self.distances[level].ravel()[squares]
             if (far != UNREACHED).any():
                 return Reached(level, float(far[far != UNREACHED].min()) / 5 + PRICE * level)
         return None
 
-    @property
+    @cached_property
     def floor(self) -> Mask:
         """The squares that can surely be reached."""
         mask: Mask = self.distances[0] != UNREACHED
         return mask
 
-    @property
+    @cached_property
     def safe(self) -> Mask:
         """Squares over which a move is made without looking first."""
         view = self.model.view
@@ -85,12 +85,38 @@ class Screens:
         return mask
 
 
+class Distances:
+    """The ways to every square of a screen, by level; each is measured when it is first asked for."""
+
+    def __init__(self, screens: Screens) -> None:
+        self._screens = screens
+        self._known: dict[int, NDArray[np.int32]] = {}
+
+    def __getitem__(self, level: int) -> NDArray[np.int32]:
+        if level not in self._known:
+            self._known[level] = reach(self._screens.free(level), *self._screens.here)
+        return self._known[level]
+
+
+def vicinity(model: WorldModel, patch: Patch, squares: int) -> Squares:
+    """The squares of the view (flat indices) within so many rows and columns of a patch."""
+    rows, columns = np.nonzero(grown(np.pad(patch.mask, squares), squares))
+    rows, columns = rows + patch.south - squares - model.view.south, columns + patch.west - squares - model.view.west
+    high, wide = model.labels.shape
+    inside = (rows >= 0) & (rows < high) & (columns >= 0) & (columns < wide)
+    flat: Squares = rows[inside] * wide + columns[inside]
+    return flat
+
+
 def grown(mask: Mask, squares: int) -> Mask:
     """A mask, and all squares within so many rows and columns of it."""
-    for _ in range(squares):
-        for axis in (0, 1):
-            padded = np.pad(mask, [(1, 1) if a == axis else (0, 0) for a in (0, 1)])
-            lower = padded[:-2] if axis == 0 else padded[:, :-2]
-            upper = padded[2:] if axis == 0 else padded[:, 2:]
-            mask = mask | lower | upper
+    for axis in (0, 1):
+        done = 0
+        while done < squares:
+            step = min(squares - done, 2 * done + 1)
+            further = mask.copy()
+            near, far = mask.swapaxes(0, axis), further.swapaxes(0, axis)
+            far[step:] |= near[:-step]
+            far[:-step] |= near[step:]
+            mask, done = further, done + step
     return mask

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geometry.components import components
+from geometry.components import boxes, components
 
 
 def flood(mask: np.ndarray) -> np.ndarray:
@@ -36,6 +36,20 @@ def test_labels_are_those_of_flooding(rows: int, columns: int, seed: int, densit
     want = flood(mask)
     assert found.number == want.max()
     assert np.array_equal(found.labels, want)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.integers(1, 14), st.integers(1, 14), st.integers(0, 2**32 - 1), st.floats(0, 1))
+def test_boxes_hold_just_their_parts(rows: int, columns: int, seed: int, density: float) -> None:
+    found = components(np.random.default_rng(seed).random((rows, columns)) < density)
+    for label, box in enumerate(boxes(found.labels, found.number).tolist()):
+        places = np.argwhere(found.labels == label)
+        if label or len(places):
+            assert box == [*places.min(0).tolist(), *places.max(0).tolist()]
+
+
+def test_a_label_without_squares_has_no_box() -> None:
+    assert boxes(np.ones((2, 3), np.int32), 2).tolist() == [[2, 3, -1, -1], [0, 0, 1, 2], [2, 3, -1, -1]]
 
 
 def test_a_comb_and_a_spiral_are_one_part() -> None:
