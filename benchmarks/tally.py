@@ -26,6 +26,7 @@ def _row(name: str, trials: Sequence[Trial]) -> dict[str, str]:
     unable = [trial for trial in trials if not trial.possible]
     ratios = [t.walked / t.shortest for t in possible if t.achieved and t.shortest > 1]
     steps = [trial.steps for trial in trials if not trial.crash]
+    needed = [trial.steps / trial.needed for trial in possible if trial.achieved and trial.needed]
     return {
         "task": name,
         "achieved": _part(sum(t.achieved for t in possible), len(possible)),
@@ -34,6 +35,7 @@ def _row(name: str, trials: Sequence[Trial]) -> dict[str, str]:
         "judge": _judged(trials),
         "crashed": str(sum(bool(t.crash) for t in trials)),
         "commands": f"{median(steps):g} / {max(steps)}" if steps else "-",
+        "of knowing": f"{median(needed):.2f} / {max(needed):.2f}" if needed else "-",
         "way ratio": f"{median(ratios):.2f} / {max(ratios):.2f}" if ratios else "-",
         "cycle ms": _milliseconds([cycle.wall for trial in trials for cycle in trial.cycles[1:]]),
         "cpu ms": _milliseconds([cycle.processor for trial in trials for cycle in trial.cycles[1:]]),

@@ -4,7 +4,7 @@ import math
 import signal
 import traceback
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ from shapely import Polygon
 
 from benchmarks.beliefs import Score, beliefs, compare, under_fovea
 from benchmarks.judging import findings
+from benchmarks.knowing import knowing
 from benchmarks.placing import digital
 from benchmarks.scenes import Scenario, write
 from benchmarks.shortest import free_space, shortest_loop, shortest_way
@@ -32,19 +33,24 @@ LOOPS = (4,)  # tasks whose shortest way is a loop
 
 @dataclass(frozen=True)
 class Conditions:
-    """How a trial is run: noise, seed of the noise, path-finder, most commands, most seconds."""
+    """How a trial is run: noise, seed of the noise, path-finder, most commands, most seconds.
+
+    knowing : is it also run by one who knows everything?
+    """
 
     noise: float = 0.0
     seed: int = 0
     paths: str = "skeleton"
     max_steps: int = 200
     seconds: int = 120
+    knowing: bool = False
 
 
 @dataclass(frozen=True)
 class Trial:
     """What came of one world.
 
+    `needed` tells how many commands the same planner gave knowing everything (0: not tried, or not achieved),
     `judged` holds the judge's findings (None without a judge), `cycles` the times of each cycle, `walked` and
     `shortest` squares (nan where there is no such way), `crash` the last line of an error, if there was one.
     """
@@ -57,6 +63,7 @@ class Trial:
     verdict: str = "crash"
     reason: str = ""
     steps: int = 0
+    needed: int = 0
     walked: float = math.nan
     shortest: float = math.nan
     judged: list[str] | None = None
@@ -102,12 +109,21 @@ def run_trial(
     place = write(world, folder / world.name)
     try:
         with _alarm(conditions.seconds):
-            return _ran(world, place, conditions, watch, maker)
+            needed = _needed(world, place, conditions) if conditions.knowing and world.possible else 0
+            return replace(_ran(world, place, conditions, watch, maker), needed=needed)
     except Exception as error:  # a crash is a result of the trial
         (place / "crash.txt").write_text(traceback.format_exc())
         frame = traceback.extract_tb(error.__traceback__)[-1]
         where = f"{Path(frame.filename).name}:{frame.lineno}"
         return Trial(task, seed, world.possible, crash=f"{type(error).__name__}: {error} ({where})")
+
+
+def _needed(world: Scenario, place: Path, conditions: Conditions) -> int:
+    """The commands that the same planner gives knowing everything; 0 when he does not achieve the task."""
+    settings = Settings(conditions.seed, 0.0, conditions.paths, conditions.max_steps)
+    with EpisodeLog(place / "knowing.jsonl") as log:
+        result = Session(read_scenario(place), settings, knowing(world), log).run()
+    return result.steps if result.achieved else 0
 
 
 def _ran(

@@ -140,7 +140,7 @@ class Evidence:
 
         Fields that cannot show what they show if Utak stands on square (x, y) and all that is settled is right.
         """
-        self._cover(x, y)
+        self.make_room(x, y)
         where, weight = self._under(samples, x, y), samples.weight
         state = self.state.ravel()[where]
         full = np.where(state == FULL, weight, 0).sum(1)
@@ -290,7 +290,7 @@ class Evidence:
         answer: Squares = (samples.rows + (y - self.south)) * columns + samples.columns + (x - self.west)
         return answer
 
-    def _cover(self, x: int, y: int) -> None:
+    def make_room(self, x: int, y: int) -> None:
         """Grow the arrays until a look from (x, y), at any angle, fits in."""
         reach = 24
         row, column = self.index(x, y)
