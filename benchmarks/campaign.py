@@ -35,7 +35,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = _parser().parse_args(arguments)
     if judge_path() is None:
         print("campaign: NO JUDGE: set UTAK_JUDGE to judge.py; the episodes are not judged", file=sys.stderr)
-    conditions = Conditions(given.noise, given.noise_seed, given.paths, given.max_steps, given.seconds, given.knowing)
+    conditions = Conditions(
+        noise=given.noise,
+        seed=given.noise_seed,
+        paths=given.paths,
+        max_steps=given.max_steps,
+        seconds=given.seconds,
+        knowing=given.knowing,
+        plain=given.plain,
+    )
     with ExitStack() as stack:
         folder = given.keep or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="utak-campaign-")))
         _warm_up(folder)
@@ -63,6 +71,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--seconds", type=int, default=120, help="most seconds a world, 0 for no limit (%(default)s)")
     parser.add_argument("-o", "--output", type=Path, help="a JSON line for each world")
     parser.add_argument("--only", metavar="TASK:SEED", help="one world, drawn at each step on stderr")
+    parser.add_argument("--plain", action="store_true", help="plain worlds: one or two rooms, on whole squares")
     parser.add_argument("--knowing", action="store_true", help="also run the same planner knowing everything")
     parser.add_argument("--again", type=Path, metavar="RESULTS", help="the worlds that went wrong in earlier results")
     parser.add_argument("--keep", type=Path, help="folder in which scenarios and episodes stay")
@@ -115,7 +124,7 @@ def _reported(trials: Iterable[Trial], count: int, output: TextIO | None) -> Ite
 
 def _watched(task: int, seed: int, conditions: Conditions, folder: Path) -> Trial:
     """One world with a drawing of it at each step, on stderr."""
-    world = scenario(task, seed)
+    world = scenario(task, seed, conditions.plain)
     print(f"{world.name}, heading {world.heading}: {world.texts.goal}{world.texts.expect}", file=sys.stderr)
 
     def draw(at: Session) -> None:

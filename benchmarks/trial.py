@@ -35,7 +35,7 @@ LOOPS = (4,)  # tasks whose shortest way is a loop
 class Conditions:
     """How a trial is run: noise, seed of the noise, path-finder, most commands, most seconds.
 
-    knowing : is it also run by one who knows everything?
+    knowing : is it also run by one who knows everything? plain : in a plain world?
     """
 
     noise: float = 0.0
@@ -44,6 +44,7 @@ class Conditions:
     max_steps: int = 200
     seconds: int = 120
     knowing: bool = False
+    plain: bool = False
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,7 @@ def run_trial(
     maker: RobotMaker = make_robot,
 ) -> Trial:
     """Make a world, run the robot in it, and judge what he did; errors of the robot end up in the trial."""
-    world = scenario(task, seed)
+    world = scenario(task, seed, conditions.plain)
     place = write(world, folder / world.name)
     try:
         with _alarm(conditions.seconds):

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.carrying import CARRYING
+from benchmarks.plain import PLAIN
 from benchmarks.scenes import Scenario, write
 from benchmarks.walking import WALKING
 
@@ -20,13 +21,14 @@ UNABLE_EVERY = 12  # seeds
 TRIES = 20_000
 
 
-def scenario(task: int, seed: int) -> Scenario:
+def scenario(task: int, seed: int, plain: bool = False) -> Scenario:
     """A random world with a task.
 
     Parameters
     ----------
     task : 1 to 9, as in the paper: (i) to (ix).
     seed : any integer from 0; when it is 11 modulo 12 the task cannot be done.
+    plain : a world of benchmarks.plain, in which every task can be done.
 
     Raises
     ------
@@ -35,10 +37,10 @@ def scenario(task: int, seed: int) -> Scenario:
     """
     if task not in MAKERS or seed < 0:
         raise ValueError(f"no task {task} with seed {seed}: tasks are 1 to 9, seeds from 0")
-    rng = np.random.default_rng([task, seed])
+    rng = np.random.default_rng([task, seed, 1] if plain else [task, seed])
     unable = seed % UNABLE_EVERY == UNABLE_EVERY - 1
     for _ in range(TRIES):
-        made = MAKERS[task](rng, seed, unable)
+        made = (PLAIN if plain else MAKERS)[task](rng, seed, unable)
         if made is not None:
             return made
     raise RuntimeError(f"no world found for task {task}, seed {seed}")
@@ -50,11 +52,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--task", default="1,2,3,4", help="tasks, with commas between (default %(default)s)")
     parser.add_argument("--seed", type=int, default=0, help="the first seed (default %(default)s)")
     parser.add_argument("--count", type=int, default=1, help="how many of each task (default %(default)s)")
+    parser.add_argument("--plain", action="store_true", help="one or two rooms, everything on whole squares")
     parser.add_argument("-o", "--output", type=Path, default=Path("worlds"), help="folder (default %(default)s)")
     given = parser.parse_args(arguments)
     for task in [int(part) for part in given.task.split(",")]:
         for seed in range(given.seed, given.seed + given.count):
-            made = scenario(task, seed)
+            made = scenario(task, seed, given.plain)
             print(write(made, given.output / made.name))
 
 
