@@ -62,7 +62,7 @@ def follow(tree: Tree, scene: Scene, chain: Ints, length: int, doubt: bool, way:
             last = n + step - 1
             put(here, there)
         else:
-            blamed += _blame(tree, scene, chain, last, n, length)
+            blamed += _blame(tree, scene, chain, last, n, length, 1 + total - length)
             step, last = 1, -1
             if n < length:
                 put(here, tree.middle[chain[n]])
@@ -124,20 +124,32 @@ def meeting(tree: Tree, a: int, b: int) -> tuple[float, float, float]:
 
 
 @compiled
-def _blame(tree: Tree, scene: Scene, chain: Ints, last: int, n: int, length: int) -> int:
+def _blame(tree: Tree, scene: Scene, chain: Ints, last: int, n: int, length: int, ends: int) -> int:
     """Split the cell that a failed hop leads into, and the one that it leaves when that is as doubtful and as large."""
     blamed = 0
-    if n == 0 and length > 1 and last < 0 and not splittable(tree, chain[0], scene.mover):
-        return _divide(tree, scene, chain[1])  # the start's own cell is as small as can be: come nearer to it
     if n < length and tree.kind[chain[n]] != FREE:
-        blamed += _divide(tree, scene, chain[n])
+        blamed += _divide_near(tree, scene, chain, n, length, ends)
     if last >= 0 and tree.kind[chain[last]] == OPEN:
         large = n < length and tree.box[chain[last], 3] <= tree.box[chain[n], 3]
         if blamed == 0 or large:
-            blamed += _divide(tree, scene, chain[last])
+            blamed += _divide_near(tree, scene, chain, last, length, ends)
     if blamed == 0:
-        blamed += _divide(tree, scene, chain[min(n, length - 1)])
+        blamed += _divide_near(tree, scene, chain, min(n, length - 1), length, ends)
     return blamed
+
+
+@compiled
+def _divide_near(tree: Tree, scene: Scene, chain: Ints, n: int, length: int, ends: int) -> int:
+    """Divide the n-th cell of a chain; when it holds an end that is to be reached and is too small, the one beside it.
+
+    The body is free at its ends: their cells are never given up. Others come as near to them as they can.
+    """
+    if length > 1 and not splittable(tree, chain[n], scene.mover):
+        if n == 0:
+            n = 1
+        elif n == length - 1 and ends > 1:
+            n -= 1
+    return _divide(tree, scene, chain[n])
 
 
 @compiled
