@@ -28,12 +28,14 @@ class Way(NamedTuple):
     """The poses of a way found so far.
 
     poses: (n, 3) x, y, angle, the first being the start; used: (1,) how many of them are in use; goal: the pose to end
-    at, empty when the centre of the chain's last cell will do.
+    at, empty when the centre of the chain's last cell will do. free_from: for each cell one from whose middle the hop
+    to its own was found free, -1 for none: most of a chain is that of the round before.
     """
 
     poses: Floats
     used: npt.NDArray[np.int64]
     goal: Floats
+    free_from: Ints
 
 
 @compiled
@@ -90,7 +92,7 @@ def _go(
     tree: Tree, scene: Scene, chain: Ints, length: int, way: Way, last: int, n: int, here: Floats, there: Floats
 ) -> bool:
     """Hop to the n-th stop, straight or by way of the face between the two cells, and write it down."""
-    if hop(scene.mover, scene.ground, scene.surface, here, there) == BLOCKED:
+    if not _straight(scene, chain, length, way, last, n, here, there):
         if last < 0 or n >= length or n != last + 1:
             return False
         middle = np.empty(3)
@@ -103,6 +105,19 @@ def _go(
         way.used[0] += 1
     put(way.poses[way.used[0]], there)
     way.used[0] += 1
+    return True
+
+
+@compiled
+def _straight(scene: Scene, chain: Ints, length: int, way: Way, last: int, n: int, here: Floats, there: Floats) -> bool:
+    """Whether the hop to the n-th stop is free; from middle to middle of two cells that is found out only once."""
+    between = last >= 0 and n < length
+    if between and way.free_from[chain[n]] == chain[last]:
+        return True
+    if hop(scene.mover, scene.ground, scene.surface, here, there) == BLOCKED:
+        return False
+    if between:
+        way.free_from[chain[n]] = chain[last]
     return True
 
 
