@@ -13,7 +13,7 @@ import shapely
 from geometry.errand import Errand
 from geometry.fewest import slant
 from geometry.holds import holds_about
-from geometry.legs import Leg, Point, grip_square, may_push, rounded
+from geometry.legs import Leg, Point, commands, grip_square, may_push, rounded
 from geometry.rigid import Motion, Rotate, Translate
 from geometry.sequel import after, joined
 from geometry.squarewise import carry_squarewise
@@ -29,23 +29,22 @@ def carry_straightened(errand: Errand, tries: int = TRIES) -> list[Leg] | None:
         rest = carry_squarewise(after(errand, [first]))
         if rest is not None:
             legs = joined([first], rest)
-            best = min([legs, best] if best else [legs], key=lambda told: sum(3 + len(leg.motions) for leg in told))
+            best = min([legs, best] if best else [legs], key=commands)
     return best
 
 
 def _ways(errand: Errand) -> Iterator[Leg]:
     """The ways to lay the body straight, those with short walks first."""
     askew = math.degrees(slant(errand.shape)) % 90.0
-    middle = errand.shape.centroid
     for hold in holds_about(errand):
-        relative = (hold.place[0] - middle.x, hold.place[1] - middle.y)
+        relative = errand.hold_from(hold.place)
         square = grip_square(errand.shape, hold.place)
-        if square is None:
+        if square is None and not hold.taken:
             continue
         for degrees in sorted((-askew, 90.0 - askew), key=abs):
             motions = _straight(errand, hold.place, degrees)
             if motions:
-                yield Leg(hold.place, square, motions, relative, hold.walk)
+                yield Leg(hold.place, square or (0, 0), motions, relative, hold.walk, hold.taken)
                 break
 
 

@@ -11,7 +11,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -23,7 +23,7 @@ from geometry.bottleneck import Neck
 from geometry.ends import At, End, InCorner, Inside, met
 from geometry.errand import Errand
 from geometry.held import carry_freed, carry_held
-from geometry.legs import Leg, Point, verified
+from geometry.legs import Leg, Point, commands, verified
 from geometry.motion import Plan
 from geometry.rigid import Pose, Rotate, Translate
 from geometry.squarewise import carry_squarewise
@@ -31,8 +31,6 @@ from geometry.stencil import Mask
 from geometry.yard import Yard
 
 __all__ = ["At", "Carrying", "InCorner", "Inside", "Leg", "Pose", "plan_carrying"]
-
-STRIDE = 12  # squares walked by a command, about
 
 
 @dataclass(frozen=True)
@@ -49,6 +47,8 @@ class Carrying:
     reason : when not found, what was in the way: "body" (the body by itself cannot pass), "hold" (it could, but Utak
         with it was not found to), "start" (it overlaps a wall where it lies), "goal" (no such end); else "".
     body : the plan of the body by itself, when that was asked; None else.
+    held : whether Utak had hold of the body when the plan was asked for. Unless the first leg goes on with that hold
+        (Leg.taken) he lets go first.
     """
 
     status: str
@@ -57,11 +57,13 @@ class Carrying:
     polygon: Any = None
     reason: str = ""
     body: Plan | None = field(default=None, repr=False, compare=False)
+    held: bool = False
 
     @property
     def commands(self) -> int:
         """About how many commands this takes: walks, grasps, pushes, turns, releases."""
-        return sum(math.ceil(leg.walk / STRIDE) + 2 + len(leg.motions) for leg in self.legs)
+        lets_go_first = self.held and len(self.legs) > 0 and not self.legs[0].taken
+        return commands(self.legs) + int(lets_go_first)
 
     @property
     def length(self) -> float:
@@ -92,6 +94,7 @@ def plan_carrying(
     avoid: Sequence[Point] = (),
     walk: Mask | None = None,
     walls: Any = None,
+    held: bool = False,
 ) -> Carrying:
     """Plan how Utak carries a body to a goal.
 
@@ -100,7 +103,7 @@ def plan_carrying(
     shape : shapely Polygon where it lies, in squares, table frame.
     free : (rows, columns) bool, row 0 in the south: squares that nothing but the body may cover. All else, and all
         outside the array, is wall for the body and for Utak.
-    utak : (x, y) where he stands, empty-handed.
+    utak : (x, y) where he stands.
     goal : At(pose), Inside(polygons) or InCorner(x, y, sx, sy).
     margin : squares of clearance that pushes and turns of the body should keep from walls; kept where that is possible
         without going far out of the way.
@@ -110,6 +113,9 @@ def plan_carrying(
         `free`. The squares under the body are closed wherever it then lies; where it lay they open when it has gone.
     walls : shapely geometry, the walls where they are known better than by squares; `free` are then the squares that
         they leave whole. None for all that is not free.
+    held : whether Utak, where he stands, has hold of the body. The plan then goes on with that hold where that is no
+        dearer than to let go, walk and grasp, and says so by `taken` of its first leg, which begins just there. A hold
+        named in `avoid` is let go.
 
     Returns
     -------
@@ -123,8 +129,14 @@ def plan_carrying(
     _check(shape, free, utak, margin, walk)
     walk = free if walk is None else np.ascontiguousarray(walk, dtype=bool)
     errand = Errand(shape, Yard(free, walls), utak, goal, margin, pull, tuple(avoid), walk)
+    errand = replace(errand, held=held and not errand.avoids(*errand.hold_from(utak)))
     if met(goal, shape, shape):
-        return Carrying("found", pose=Pose(0.0, 0.0), polygon=shape)
+        return Carrying("found", pose=Pose(0.0, 0.0), polygon=shape, held=held)
+    return replace(_planned(errand), held=held)
+
+
+def _planned(errand: Errand) -> Carrying:
+    """The word of the first planner that finds something, or why none does."""
     plan = _told(errand, carry_squarewise(errand)) or _told(errand, carry_straightened(errand))
     if plan is not None:
         return plan

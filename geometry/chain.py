@@ -1,7 +1,9 @@
 """Chains of cells from a pose to a goal: the optimist's plan. Plain loops for numba.
 
-A chain runs over neighbouring cells that are not known to be full; doubtful ones are dearer. Best-first search, with
-the way that a disc would have to go as its guess of what is left, makes the chain that looks cheapest.
+A chain runs over neighbouring cells that are not known to be full; doubtful ones are dearer, and the dearer the
+smaller they are: what is still in doubt so finely is a tight fit or none at all, and another way round is looked at
+before it is taken apart further. Best-first search, with the way that a disc would have to go as its guess of what is
+left, makes the chain that looks cheapest.
 
 # Strategy: between two searches only the cells of one chain change. The search tree is kept: what hung on a changed
 # cell is cut off, and offered again by its neighbours that still stand. A search then costs what changed, not what was
@@ -17,12 +19,13 @@ import numpy.typing as npt
 from geometry.cells import Tree, next_neighbour, splittable
 from geometry.compiled import compiled
 from geometry.priority import pop, push
-from geometry.separation import DEAD, FULL, OPEN, SHUT, Ground, Mover, classify
+from geometry.separation import DEAD, FREE, FULL, OPEN, SHUT, Ground, Mover, classify
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 EAGER = 2.0  # how much dearer the way still to go is than the way gone
 DEAR = np.array([1.0, 2.0, 5.0, 1e9, 50.0])  # the cost of a square's way by kind of cell
+WEARY, PATIENT, WORN = 1.15, 8, 5.0  # a doubtful cell is so much dearer with each depth below so many; at most
 REGION = -2  # in place of a goal cell: the goal is a region
 UNSEEN, OFFERED, SETTLED, DOUBTED = 0, 1, 2, 3
 
@@ -152,7 +155,7 @@ def _be_offered(tree: Tree, hunt: Hunt, radius: float, cell: int) -> None:
     while link >= 0:
         other = links[link, 0]
         if hunt.state[other] >= SETTLED:
-            cost = hunt.cost[other] + _step(middle, kind, radius, other, cell)
+            cost = hunt.cost[other] + _step(middle, kind, tree.box, radius, other, cell)
             if cost < best:
                 best, by = cost, other
         link = next_neighbour(child, head, links, cell, link)
@@ -169,7 +172,7 @@ def _spread_out(tree: Tree, hunt: Hunt, radius: float, cell: int, dead: bool) ->
     while link >= 0:
         other = links[link, 0]
         if hunt.state[other] < SETTLED and (kind[other] != DEAD or dead):
-            cost = hunt.cost[cell] + _step(middle, kind, radius, cell, other)
+            cost = hunt.cost[cell] + _step(middle, kind, tree.box, radius, cell, other)
             if hunt.state[other] == UNSEEN or cost < hunt.cost[other]:
                 hunt.cost[other], hunt.before[other], hunt.state[other] = cost, cell, OFFERED
                 push(hunt.key, hunt.item, hunt.size, cost + hunt.guess[other], other)
@@ -177,12 +180,20 @@ def _spread_out(tree: Tree, hunt: Hunt, radius: float, cell: int, dead: bool) ->
 
 
 @compiled
-def _step(middle: Floats, kind: npt.NDArray[np.int8], radius: float, a: int, b: int) -> float:
+def _step(middle: Floats, kind: npt.NDArray[np.int8], box: Ints, radius: float, a: int, b: int) -> float:
     """The cost of going from the middle of one cell to that of another."""
     dx, dy = middle[b, 0] - middle[a, 0], middle[b, 1] - middle[a, 1]
     turn = abs(middle[b, 2] - middle[a, 2])
     turn = min(turn, 2 * math.pi - turn)
-    return float((math.sqrt(dx * dx + dy * dy) + 0.5 * radius * turn) * 0.5 * (DEAR[kind[a]] + DEAR[kind[b]]))
+    price = _price(kind[a], box[a, 3]) + _price(kind[b], box[b, 3])
+    return float((math.sqrt(dx * dx + dy * dy) + 0.5 * radius * turn) * 0.5 * price)
+
+
+@compiled
+def _price(kind: int, depth: int) -> float:
+    """What a square's way through a cell costs."""
+    weary = min(WEARY ** max(depth - PATIENT, 0), WORN) if kind != FREE else 1.0
+    return float(DEAR[kind] * weary)
 
 
 @compiled

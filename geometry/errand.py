@@ -18,7 +18,8 @@ class Errand:
 
     shape : as it lies. yard : where it and Utak may be. utak : where he is. goal : where the shape shall end. margin :
     clearance that pushes and turns should keep. pull : whether he may go backwards. avoid : holds not to be used, see
-    Leg.hold. walk : (rows, columns) squares where he may walk with empty hands.
+    Leg.hold. walk : (rows, columns) squares where he may walk with empty hands. held : whether he has hold of the shape
+    already, by a hold that is not to be avoided.
     """
 
     shape: Any
@@ -29,6 +30,7 @@ class Errand:
     pull: bool
     avoid: tuple[Point, ...]
     walk: Mask
+    held: bool = False
 
     @property
     def square(self) -> tuple[int, int]:
@@ -36,6 +38,10 @@ class Errand:
         rows, columns = self.walk.shape
         column, row = math.floor(self.utak[0]), math.floor(self.utak[1])
         return min(max(column, 0), columns - 1), min(max(row, 0), rows - 1)
+
+    def hold_from(self, place: Point) -> Point:
+        """Where a place is relative to the centroid of the shape as it lies now: see Leg.hold."""
+        return place[0] - self.shape.centroid.x, place[1] - self.shape.centroid.y
 
     def avoids(self, x: float, y: float) -> bool:
         """Whether a hold, relative to the centroid of the shape as it lies now, is one to be avoided."""

@@ -28,12 +28,14 @@ class Way(NamedTuple):
     """The poses of a way found so far.
 
     poses: (n, 3) x, y, angle, the first being the start; used: (1,) how many of them are in use; goal: the pose to end
-    at, empty when the centre of the chain's last cell will do.
+    at, empty when the centre of the chain's last cell will do. free_from: for each cell one from whose middle the hop
+    to its own was found free, -1 for none: most of a chain is that of the round before.
     """
 
     poses: Floats
     used: npt.NDArray[np.int64]
     goal: Floats
+    free_from: Ints
 
 
 @compiled
@@ -62,7 +64,7 @@ def follow(tree: Tree, scene: Scene, chain: Ints, length: int, doubt: bool, way:
             last = n + step - 1
             put(here, there)
         else:
-            blamed += _blame(tree, scene, chain, last, n, length)
+            blamed += _blame(tree, scene, chain, last, n, length, 1 + total - length)
             step, last = 1, -1
             if n < length:
                 put(here, tree.middle[chain[n]])
@@ -90,7 +92,7 @@ def _go(
     tree: Tree, scene: Scene, chain: Ints, length: int, way: Way, last: int, n: int, here: Floats, there: Floats
 ) -> bool:
     """Hop to the n-th stop, straight or by way of the face between the two cells, and write it down."""
-    if hop(scene.mover, scene.ground, scene.surface, here, there) == BLOCKED:
+    if not _straight(scene, chain, length, way, last, n, here, there):
         if last < 0 or n >= length or n != last + 1:
             return False
         middle = np.empty(3)
@@ -103,6 +105,19 @@ def _go(
         way.used[0] += 1
     put(way.poses[way.used[0]], there)
     way.used[0] += 1
+    return True
+
+
+@compiled
+def _straight(scene: Scene, chain: Ints, length: int, way: Way, last: int, n: int, here: Floats, there: Floats) -> bool:
+    """Whether the hop to the n-th stop is free; from middle to middle of two cells that is found out only once."""
+    between = last >= 0 and n < length
+    if between and way.free_from[chain[n]] == chain[last]:
+        return True
+    if hop(scene.mover, scene.ground, scene.surface, here, there) == BLOCKED:
+        return False
+    if between:
+        way.free_from[chain[n]] = chain[last]
     return True
 
 
@@ -124,20 +139,32 @@ def meeting(tree: Tree, a: int, b: int) -> tuple[float, float, float]:
 
 
 @compiled
-def _blame(tree: Tree, scene: Scene, chain: Ints, last: int, n: int, length: int) -> int:
+def _blame(tree: Tree, scene: Scene, chain: Ints, last: int, n: int, length: int, ends: int) -> int:
     """Split the cell that a failed hop leads into, and the one that it leaves when that is as doubtful and as large."""
     blamed = 0
-    if n == 0 and length > 1 and last < 0 and not splittable(tree, chain[0], scene.mover):
-        return _divide(tree, scene, chain[1])  # the start's own cell is as small as can be: come nearer to it
     if n < length and tree.kind[chain[n]] != FREE:
-        blamed += _divide(tree, scene, chain[n])
+        blamed += _divide_near(tree, scene, chain, n, length, ends)
     if last >= 0 and tree.kind[chain[last]] == OPEN:
         large = n < length and tree.box[chain[last], 3] <= tree.box[chain[n], 3]
         if blamed == 0 or large:
-            blamed += _divide(tree, scene, chain[last])
+            blamed += _divide_near(tree, scene, chain, last, length, ends)
     if blamed == 0:
-        blamed += _divide(tree, scene, chain[min(n, length - 1)])
+        blamed += _divide_near(tree, scene, chain, min(n, length - 1), length, ends)
     return blamed
+
+
+@compiled
+def _divide_near(tree: Tree, scene: Scene, chain: Ints, n: int, length: int, ends: int) -> int:
+    """Divide the n-th cell of a chain; when it holds an end that is to be reached and is too small, the one beside it.
+
+    The body is free at its ends: their cells are never given up. Others come as near to them as they can.
+    """
+    if length > 1 and not splittable(tree, chain[n], scene.mover):
+        if n == 0:
+            n = 1
+        elif n == length - 1 and ends > 1:
+            n -= 1
+    return _divide(tree, scene, chain[n])
 
 
 @compiled

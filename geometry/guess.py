@@ -32,10 +32,11 @@ class Queue(NamedTuple):
 
 
 @compiled
-def guess(board: Board, ends: Costs) -> Costs:
+def guess(board: Board, ends: Costs, bend: int) -> Costs:
     """The least cost left: (4, 9, squares), by quarter turn and direction of the push that is under way.
 
-    ends : (4, squares) the price of ending at a pose, -1 where the goal is not met; below RING.
+    ends : (4, squares) the price of ending at a pose, -1 where the goal is not met; below RING. bend : the price of
+    going on in another direction in the same push; COMMAND: that is another push.
     NEVER where the goal cannot be reached; -1 where a body that lies would overlap something.
     """
     squares = ends.shape[1]
@@ -63,6 +64,10 @@ def guess(board: Board, ends: Costs) -> Costs:
         if left[k, m, p] != now:
             continue
         if m < STILL:
+            for d in range(8):
+                if bend < COMMAND and now + bend < left[k, d, p]:
+                    left[k, d, p] = now + bend
+                    _put(queue, now + bend, (p << 8) + (d << 4) + k)
             _back(board, left, queue, k, m, p, now)
             continue
         for d in range(8):

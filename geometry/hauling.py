@@ -20,12 +20,22 @@ CALM = 4  # the haste of a search that takes the time it needs
 
 @compiled
 def haul(
-    board: Board, left: Costs, ends: Costs, begin: Costs, place: int, haste: int, most: int, cost: Costs, parent: Costs
+    board: Board,
+    left: Costs,
+    ends: Costs,
+    begin: Costs,
+    place: int,
+    bend: int,
+    haste: int,
+    most: int,
+    cost: Costs,
+    parent: Costs,
 ) -> Ints:
     """The nodes from the first grasp to the goal, in order; empty when there is none.
 
     left : geometry.guess.guess. ends : the price of ending at each pose, -1 off the goal. begin : (holds,) the price of
     having walked to each hold and taken the body, -1 where Utak cannot. place : where the body lies, unturned.
+    bend : the price of going on in another direction in the same push, as told to guess.
     A node is ((hold * 4 + quarter) * 9 + direction) * squares + place, direction STILL when it lies.
     haste : CALM for the cheapest way; above it ways are found sooner that may be dearer by the same factor.
     most : so many nodes are settled at most. cost, parent : a number for each node, all of cost 0.
@@ -74,7 +84,7 @@ def haul(
                 final, final_cost = node, spent + ends[k, p]
             ahead = left[k, STILL, p] * haste // CALM
             heapq.heappush(heap, (spent + REGRASP + COMMAND + ahead, -spent, node + total))
-        count = _nexts(board, hold, k, m, p, around, price)
+        count = _nexts(board, hold, k, m, p, bend, around, price)
         for n in range(count):
             after, then = around[n], spent + price[n]
             ahead = left[after // squares // 9 % 4, after // squares % 9, after % squares]
@@ -99,17 +109,22 @@ def _traced(parent: Costs, final: int) -> Ints:
 
 
 @compiled
-def _nexts(board: Board, hold: int, k: int, m: int, p: int, around: Ints, price: Ints) -> int:
+def _nexts(board: Board, hold: int, k: int, m: int, p: int, bend: int, around: Ints, price: Ints) -> int:
     """The nodes to which one step with the body in hand leads, and its price; how many."""
     squares = len(board.solid)
     base = (hold * 4 + k) * 9
     own = p + board.holds[k, hold]
     if m < STILL:
         around[0], price[0] = (base + STILL) * squares + p, 0
-        if board.push[k, m, p] == 0 or not board.utak[m, own]:
-            return 1
-        around[1], price[1] = (base + m) * squares + p + board.steps[m], board.push[k, m, p]
-        return 2
+        count = 1
+        for d in range(8):
+            if d != m and (bend == COMMAND or not board.allowed[k, hold, d]):
+                continue
+            if board.push[k, d, p] > 0 and board.utak[d, own]:
+                around[count] = (base + d) * squares + p + board.steps[d]
+                price[count] = board.push[k, d, p] + (bend if d != m else 0)
+                count += 1
+        return count
     count = 0
     for d in range(8):
         if board.allowed[k, hold, d] and board.push[k, d, p] > 0 and board.utak[d, own]:

@@ -21,7 +21,7 @@ from geometry.ends import At, InCorner, Inside, Roomy, placed
 from geometry.errand import Errand
 from geometry.fewest import fewest_motions, slant
 from geometry.holds import Hold, holds_about, promise
-from geometry.legs import Leg, Point, grip_square, may_push, rounded, verified
+from geometry.legs import Leg, Point, at_utak, grip_square, may_push, rounded, verified
 from geometry.motion import plan_motion
 from geometry.mover import centre_pose, new_mover
 from geometry.rigid import Motion, Pose, Translate
@@ -53,7 +53,7 @@ def carry_held(errand: Errand, track: Floats) -> list[Leg] | None:
                 break
         if left <= 0 or len(legs) == ENOUGH or any(len(leg.motions) <= SHORT for leg in legs):
             break
-    return [min(legs, key=lambda leg: len(leg.motions))] if legs else None
+    return [min(legs, key=lambda leg: leg.commands)] if legs else None
 
 
 def carry_freed(errand: Errand) -> list[Leg] | None:
@@ -66,7 +66,7 @@ def carry_freed(errand: Errand) -> list[Leg] | None:
     first = carry_squarewise(on_the_way) or carry_straightened(on_the_way)
     if not first or not first[-1].motions or verified(errand.yard, errand.shape, first) is None:
         return None
-    freed = after(errand, first)
+    freed = after(errand, first, held=True)
     rest = carry_held(freed, move_alone(freed).track)
     return None if rest is None else joined(first, rest)
 
@@ -95,14 +95,12 @@ def _cornered(goal: InCorner, shape: Any, degrees: float) -> Pose:
 def _leg(errand: Errand, hold: Hold, goal: Pose | Inside, roomy: bool, cells: int) -> tuple[Leg | None, int]:
     """The leg with one hold, with room about body and Utak or without, and how many cells that took."""
     square = grip_square(errand.shape, hold.place)
-    if square is None:
+    if square is None and not hold.taken:
         return None, 0
     motions, looked = _motions(errand, hold.place, goal, roomy, cells)
     if not motions or not (errand.pull or _only_pushes(errand.shape, hold.place, motions)):
         return None, looked
-    middle = errand.shape.centroid
-    relative = (hold.place[0] - middle.x, hold.place[1] - middle.y)
-    return Leg(hold.place, square, motions, relative, hold.walk), looked
+    return Leg(hold.place, square or (0, 0), motions, errand.hold_from(hold.place), hold.walk, hold.taken), looked
 
 
 def _motions(
@@ -123,18 +121,6 @@ def _motions(
     few = fewest_motions(mover, floor.ground(mover), floor.surface, way, slant(errand.shape))
     motions = few if few and len(few) < len(plan.motions) else plan.motions
     return at_utak(place, [rounded(motion) for motion in motions]), plan.cells
-
-
-def at_utak(place: Point, motions: Sequence[Motion]) -> tuple[Motion, ...]:
-    """The motions with turns about where Utak is at that time, free of rounding."""
-    told: list[Motion] = []
-    for motion in motions:
-        if isinstance(motion, Translate):
-            place = (place[0] + motion.dx, place[1] + motion.dy)
-            told.append(motion)
-        else:
-            told.append(motion._replace(about=place))
-    return tuple(told)
 
 
 def _only_pushes(shape: Any, place: Point, motions: Sequence[Motion]) -> bool:

@@ -19,14 +19,18 @@ FIFTHS = 5  # of a square: the unit of geometry.reach
 
 @dataclass(frozen=True)
 class Hold:
-    """A place where Utak can take the body where it lies: (x, y), the middle of a square, and the squares to walk."""
+    """A place where Utak can take the body where it lies: (x, y), the middle of a square, and the squares to walk.
+
+    taken : he is there and has hold of it.
+    """
 
     place: Point
     walk: int
+    taken: bool = False
 
 
 def holds_about(errand: Errand) -> list[Hold]:
-    """The holds that he can walk to, the nearest first, without those refuted."""
+    """The hold that he has, then those that he can walk to, the nearest first, without those refuted."""
     shape, utak = errand.shape, errand.utak
     rows, columns = errand.walk.shape
     lying = squares(shape, columns, rows)
@@ -40,13 +44,16 @@ def holds_about(errand: Errand) -> list[Hold]:
         beside |= framed[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns]
     found = np.argwhere(beside & ~lying & errand.yard.free & (ways >= 0))
     holds = [Hold((column + 0.5, row + 0.5), int(ways[row, column]) // FIFTHS) for row, column in found.tolist()]
-    middle = shape.centroid
-    fit = [hold for hold in holds if not errand.avoids(hold.place[0] - middle.x, hold.place[1] - middle.y)]
-    return sorted(fit, key=lambda hold: (hold.walk, hold.place))
+    fit = [hold for hold in holds if not errand.avoids(*errand.hold_from(hold.place))]
+    own = [Hold(utak, 0, True)] if errand.held else []
+    return own + sorted(fit, key=lambda hold: (hold.walk, hold.place))
 
 
-def promise(errand: Errand, hold: Hold, track: Floats) -> tuple[int, float, int, Point]:
-    """How often the track would bring Utak into a wall; how far the furthest corner is; how far he has to walk."""
+def promise(errand: Errand, hold: Hold, track: Floats) -> tuple[bool, int, float, int, Point]:
+    """How good a hold is likely to be, the least the best: the hold that he has before all others.
+
+    Then: how often the track would bring Utak into a wall; how far the furthest corner is; how far he has to walk.
+    """
     inside = 0
     if len(track):
         way = evenly(track, 1.0, SAMPLES)
@@ -56,4 +63,4 @@ def promise(errand: Errand, hold: Hold, track: Floats) -> tuple[int, float, int,
         y = way[:, 1] + np.sin(turn) * away[0] + np.cos(turn) * away[1]
         inside = int(shapely.contains_xy(shapely.union_all(errand.yard.walls), x, y).sum())
     far = round(float(shapely.hausdorff_distance(errand.shape, shapely.Point(hold.place))), 6)
-    return inside, far, hold.walk, hold.place
+    return not hold.taken, inside, far, hold.walk, hold.place

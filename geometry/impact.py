@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.compiled import compiled
+from geometry.separation import point_to_edge
 
 Floats = npt.NDArray[np.float64]
 
@@ -38,6 +39,7 @@ BESIDE = 1e-9  # an edge reaches this far beyond its ends, so that nothing slips
 BEHIND = 1e-11  # a point up to this deep behind an edge, going in, meets it at once: rounding put it there
 MARGIN = 1e-6  # squares: by how much the broad phase looks further than the motion goes
 STILL = 1e-12  # going in by less than this is rounding
+LATE = 1e-9  # squares^2 by which a cosine must tell that a turn goes on too long
 WHOLE_TURN = 2 * math.pi
 
 
@@ -64,10 +66,13 @@ def push_impact(x: float, y: float, dx: float, dy: float, edges: Floats, j: int)
 
 
 @compiled
-def turn_impact(x: float, y: float, cx: float, cy: float, sign: float, edges: Floats, j: int) -> float:
+def turn_impact(
+    x: float, y: float, cx: float, cy: float, sign: float, edges: Floats, j: int, until: float, cosine: float
+) -> float:
     """When the point (x, y), turning about (cx, cy) with the sign's sense, enters through edge j, in radians turned.
 
-    The circle cuts the edge's line twice and enters at one of them: no angle is needed to know where.
+    NEVER when that is not before `until`, whose cosine is given. The circle cuts the edge's line twice and enters at
+    one of them: no angle is needed to know where, and only its cosine to know whether it is soon enough.
     """
     nx, ny = edges[j, 4], edges[j, 5]
     hx, hy = cx - edges[j, 0], cy - edges[j, 1]
@@ -85,7 +90,11 @@ def turn_impact(x: float, y: float, cx: float, cy: float, sign: float, edges: Fl
     along = foot + half
     if along < -BESIDE or along > edges[j, 6] + BESIDE:
         return NEVER
-    time = math.atan2(sign * (up * half + across * h), across * half - up * h)
+    high, wide = sign * (up * half + across * h), across * half - up * h
+    late = wide - cosine * (qx * qx + qy * qy)
+    if (high < 0.0 or late < -LATE) if until <= math.pi else (high < 0.0 and late > LATE):
+        return NEVER
+    time = math.atan2(high, wide)
     return time if time >= 0.0 else time + WHOLE_TURN
 
 
@@ -210,39 +219,52 @@ def turn_through_skin(
     limit: float,
 ) -> Met:
     """The earliest impact on the skins within a turn of `limit` radians."""
-    reach = 0.0
-    for i in range(len(corners)):
-        reach = max(reach, (corners[i, 0] - cx) ** 2 + (corners[i, 1] - cy) ** 2)
-    reach = math.sqrt(reach)
+    low, high = _ring(corners, body, cx, cy)
     best, kind, at, edge = limit, 0, 0, 0
+    cosine = math.cos(limit) if limit < WHOLE_TURN else 1.0
     for chunk in range(len(chunks)):
-        off_x = cx - min(max(cx, chunks[chunk, 2]), chunks[chunk, 4])
-        off_y = cy - min(max(cy, chunks[chunk, 3]), chunks[chunk, 5])
-        if off_x * off_x + off_y * off_y > reach * reach:
+        x0, y0, x1, y1 = chunks[chunk, 2] - cx, chunks[chunk, 3] - cy, chunks[chunk, 4] - cx, chunks[chunk, 5] - cy
+        off_x, off_y = max(x0, -x1, 0.0), max(y0, -y1, 0.0)
+        far_x, far_y = max(-x0, x1), max(-y0, y1)
+        if off_x * off_x + off_y * off_y > high or far_x * far_x + far_y * far_y < low:
             continue
         for j in range(int(chunks[chunk, 0]), int(chunks[chunk, 1])):
-            across = hull[j, 4] * (cx - hull[j, 0]) + hull[j, 5] * (cy - hull[j, 1])
-            along = hull[j, 4] * (cy - hull[j, 1]) - hull[j, 5] * (cx - hull[j, 0])
-            if abs(across) <= reach and -reach <= along <= hull[j, 6] + reach:
+            here = (skin[j, 0] - cx) ** 2 + (skin[j, 1] - cy) ** 2
+            there = (skin[j, 2] - cx) ** 2 + (skin[j, 3] - cy) ** 2
+            if max(here, there) >= low and point_to_edge(cx, cy, skin, j) <= high:
                 for i in range(len(corners)):
-                    time = turn_impact(corners[i, 0], corners[i, 1], cx, cy, sign, skin, j)
+                    time = turn_impact(corners[i, 0], corners[i, 1], cx, cy, sign, skin, j, best, cosine)
                     if time < best:
                         best, kind, at, edge = time, 1, i, j
-            x, y = skin[j, 0], skin[j, 1]
-            if (x - cx) ** 2 + (y - cy) ** 2 <= reach * reach:
+                        cosine = math.cos(best)
+            if low <= here <= high:
                 for i in range(len(body)):
-                    time = turn_impact(x, y, cx, cy, -sign, body, i)
+                    time = turn_impact(skin[j, 0], skin[j, 1], cx, cy, -sign, body, i, best, cosine)
                     if time < best:
                         best, kind, at, edge = time, 2, i, j
+                        cosine = math.cos(best)
     return best, kind, at, edge
+
+
+@compiled
+def _ring(corners: Floats, body: Floats, cx: float, cy: float) -> tuple[float, float]:
+    """The squares of the least and the greatest distance of a body's boundary from a pivot, with a margin."""
+    low, high = 1e18, 0.0
+    for i in range(len(corners)):
+        away = (corners[i, 0] - cx) ** 2 + (corners[i, 1] - cy) ** 2
+        low, high = min(low, away), max(high, away)
+    for i in range(len(body)):
+        low = min(low, point_to_edge(cx, cy, body, i))
+    return (max(math.sqrt(low) - MARGIN, 0.0)) ** 2, (math.sqrt(high) + MARGIN) ** 2
 
 
 @compiled
 def _last_turn(x: float, y: float, cx: float, cy: float, sign: float, edges: Floats, until: float) -> tuple[float, int]:
     """The last entry through the true edges within a turn of `until` radians, told as by _last_push."""
     last, by = 0.0, -1
+    cosine = math.cos(until) if until < WHOLE_TURN else 1.0
     for k in range(len(edges)):
-        time = turn_impact(x, y, cx, cy, sign, edges, k)
+        time = turn_impact(x, y, cx, cy, sign, edges, k, until, cosine)
         if time <= until and (time > last or by < 0):
             last, by = time, k
     if by < 0:

@@ -15,12 +15,13 @@ import shapely
 
 from geometry.digital import areas
 from geometry.rigid import Motion, Rotate, Translate
-from geometry.stencil import DIRECTIONS, Floats, Ints
+from geometry.stencil import DIRECTIONS, Floats, Ints, Mask
 from geometry.yard import Yard, broad
 
 Point = tuple[float, float]
 STOPS = 40  # of a push that are looked at, or all where it turns
 NUMBERS = 9  # digits that commands are given with
+STRIDE = 12  # squares walked by a command, about
 
 
 @dataclass(frozen=True)
@@ -29,12 +30,13 @@ class Leg:
 
     Attributes
     ----------
-    place : (x, y) where he stands to take it, the middle of a square, table frame.
+    place : (x, y) where he stands to take it, table frame: the middle of a square, or where he is when he has it.
     direction_square : (columns, rows) from his own square to the one of the body that he takes, each -1, 0 or 1.
     motions : Translate (push) and Rotate (turn about where he then is), each free by exact first contact.
     hold : (x, y) his place relative to the body's centroid, seen in the frame of the body as it lay when the plan was
         asked for: if the body were turned back to how it lay then. To be given as `avoid` when the grasp fails.
     walk : squares to walk to get to the place, along rows and columns (an estimate).
+    taken : whether he has hold of the body already: he neither walks nor grasps. Only of the first leg of a plan.
     """
 
     place: Point
@@ -42,6 +44,12 @@ class Leg:
     motions: tuple[Motion, ...]
     hold: Point = (0.0, 0.0)
     walk: int = 0
+    taken: bool = False
+
+    @property
+    def commands(self) -> int:
+        """About how many commands this takes: walks, grasp, pushes, turns, release."""
+        return math.ceil(self.walk / STRIDE) + (0 if self.taken else 1) + len(self.motions) + 1
 
 
 def grip_square(shape: Any, place: Point) -> tuple[int, int] | None:
@@ -60,46 +68,91 @@ def rounded(motion: Motion) -> Motion:
     return Rotate(round(motion.degrees, NUMBERS) + 0.0, motion.about)
 
 
+def commands(legs: Sequence[Leg]) -> int:
+    """About how many commands some legs take."""
+    return sum(leg.commands for leg in legs)
+
+
+def at_utak(place: Point, motions: Sequence[Motion]) -> tuple[Motion, ...]:
+    """The motions with turns about where Utak is at that time, free of rounding."""
+    told: list[Motion] = []
+    for motion in motions:
+        if isinstance(motion, Translate):
+            place = (place[0] + motion.dx, place[1] + motion.dy)
+            told.append(motion)
+        else:
+            told.append(motion._replace(about=place))
+    return tuple(told)
+
+
 def may_push(shape: Any, utak: Point, dx: float, dy: float) -> bool:
     """Whether a push leads away from Utak towards the body: it has a component along the line to its centroid."""
     return bool(dx * (shape.centroid.x - utak[0]) + dy * (shape.centroid.y - utak[1]) > 1e-9)
 
 
-def straight(yard: Yard, shape: Any, utak: Point, stops: Floats, corners: Ints, margin: float, pull: bool) -> list[int]:
-    """Of the stops (n, 2) of a push those to keep so that it has the fewest straight pieces, then the shortest.
+@dataclass(frozen=True)
+class Push:
+    """A push in several pieces that shall have fewer.
 
-    stops : places of Utak, the first where he is. corners : of the stops, those where the push that is known turns.
+    shape : as it lies when the push begins. stops : (n, 2) places of Utak on the way that is known, the first where he
+    is. corners : of the stops, those where it turns, both ends among them. ends : (m, 2) other places where it may end.
+    margin : of clearance for the shape. pull : whether he may go backwards.
     """
-    if len(corners) <= 2:
-        return list(corners)
-    some = np.union1d(corners, np.arange(0, len(stops), math.ceil(len(stops) / STOPS)))
-    if len(some) < len(stops):
-        return [
-            int(some[n]) for n in straight(yard, shape, utak, stops[some], np.searchsorted(some, corners), margin, pull)
-        ]
-    known = {(int(a), int(b)) for a, b in pairwise(corners)}
-    best: list[tuple[int, float, int]] = [(0, 0.0, -1)] + [(len(stops), math.inf, -1)] * (len(stops) - 1)
-    body = broad(shape, utak, margin)
-    for i in range(len(stops) - 1):
-        vectors = stops[i + 1 :] - stops[i]
-        free = yard.far(body.after(Translate(*(stops[i] - stops[0]))), vectors)
-        for n, (dx, dy) in enumerate(vectors.tolist()):
-            j = i + 1 + n
-            if (i, j) in known or (free[n] and (pull or may_push(shape, utak, dx, dy))):
-                told = (best[i][0] + 1, best[i][1] + math.hypot(dx, dy), i)
-                best[j] = min(best[j], told)
-    kept, at = [], len(stops) - 1
-    while at >= 0:
-        kept.append(at)
-        at = best[at][2]
-    return kept[::-1]
+
+    shape: Any
+    stops: Floats
+    corners: Ints
+    ends: Floats
+    margin: float
+    pull: bool
+
+    def pieces(self, yard: Yard) -> Floats:
+        """The stops to keep, so that the push has the fewest straight pieces, then the shortest: (k, 2)."""
+        if len(self.corners) <= 2:
+            return self.stops[self.corners]
+        some = np.union1d(self.corners, np.arange(0, len(self.stops), math.ceil(len(self.stops) / STOPS)))
+        stops, corners = self.stops[some], np.searchsorted(some, self.corners)
+        known = {(int(a), int(b)) for a, b in pairwise(corners)}
+        best: list[tuple[int, float, int]] = [(0, 0.0, -1)] + [(len(stops), math.inf, -1)] * (len(stops) - 1)
+        for i in range(len(stops) - 1):
+            for j, free in enumerate(self._free(yard, stops[i], stops[i + 1 :]), i + 1):
+                if free or (i, j) in known:
+                    told = (best[i][0] + 1, best[i][1] + math.dist(stops[i], stops[j]), i)
+                    best[j] = min(best[j], told)
+        return self._traced(yard, stops, best)
+
+    def _traced(self, yard: Yard, stops: Floats, best: list[tuple[int, float, int]]) -> Floats:
+        """The stops of the best way to the last one, or to another end where that takes fewer pieces."""
+        final, at = (best[-1][0], best[-1][1]), len(stops) - 1
+        kept: list[Floats] = []
+        for i in range(len(stops) - 1):
+            if best[i][0] + 1 >= final[0] or not len(self.ends):
+                continue
+            free = self._free(yard, stops[i], self.ends)
+            if free.any():
+                far = np.where(free, np.hypot(*(self.ends - stops[i]).T), np.inf)
+                n = int(np.argmin(far))
+                final, at, kept = (best[i][0] + 1, best[i][1] + float(far[n])), i, [self.ends[n]]
+        while at >= 0:
+            kept.append(stops[at])
+            at = best[at][2]
+        return np.array(kept[::-1])
+
+    def _free(self, yard: Yard, here: Floats, there: Floats) -> Mask:
+        """To which of some places (n, 2) he can push straight from one: (n,)."""
+        utak = (float(self.stops[0, 0]), float(self.stops[0, 1]))
+        vectors = there - here
+        free = yard.far(broad(self.shape, utak, self.margin).after(Translate(*(here - self.stops[0]))), vectors)
+        if not self.pull:
+            free &= [may_push(self.shape, utak, dx, dy) for dx, dy in vectors.tolist()]
+        return free
 
 
 def verified(yard: Yard, shape: Any, legs: Sequence[Leg]) -> Any:
     """The shape after all legs; None when one of the motions is not free or a grasp reaches nothing."""
     for leg in legs:
         at = leg.place
-        if grip_square(shape, at) is None:
+        if not leg.taken and grip_square(shape, at) is None:
             return None
         for motion in leg.motions:
             if not yard.lets(shape, at, motion):

@@ -88,7 +88,8 @@ class Problem:
         start, end = self.start, self.end
         self.start = loosened(*scene, start, True)
         self.end = loosened(*scene, end, False) if len(end) else end
-        way = Way(np.empty((2 * len(self.tree.child) + 2, 3)), np.ones(1, np.int64), self.end)
+        cells = len(self.tree.child)
+        way = Way(np.empty((2 * cells + 2, 3)), np.ones(1, np.int64), self.end, np.full(cells, -1, np.int32))
         way.poses[0] = self.start
         while length := self._chain(False):
             if follow(self.tree, scene, self.hunt.chain, length, bool(self.hunt.seen[1]), way) == 0:

@@ -12,8 +12,11 @@ from geometry.legs import Leg, Point
 from geometry.rigid import Pose, Rotate, Translate, turned
 
 
-def after(errand: Errand, legs: Sequence[Leg]) -> Errand:
-    """The errand that is left after some legs: shape and Utak are elsewhere, the goal is the same."""
+def after(errand: Errand, legs: Sequence[Leg], held: bool = False) -> Errand:
+    """The errand that is left after some legs: shape and Utak are elsewhere, the goal is the same.
+
+    held : whether he has not let go at the end of them.
+    """
     shape, utak = errand.shape, errand.utak
     for leg in legs:
         utak = leg.place
@@ -23,13 +26,19 @@ def after(errand: Errand, legs: Sequence[Leg]) -> Errand:
     degrees = turned_by(legs)
     avoid = tuple(_turned(hold, degrees) for hold in errand.avoid)
     goal = _goal_after(errand.goal, errand.shape, shape, degrees)
-    return replace(errand, shape=shape, utak=utak, goal=goal, avoid=avoid)
+    return replace(errand, shape=shape, utak=utak, goal=goal, avoid=avoid, held=held)
 
 
 def joined(first: Sequence[Leg], then: Sequence[Leg]) -> list[Leg]:
-    """Legs and the legs of the errand after them, their holds told in the frame of the errand before."""
+    """Legs and the legs of the errand after them, their holds told in the frame of the errand before.
+
+    Where these go on with the hold that he has, the legs on both sides become one.
+    """
     degrees = turned_by(first)
-    return [*first, *(replace(leg, hold=_turned(leg.hold, -degrees)) for leg in then)]
+    rest = [replace(leg, hold=_turned(leg.hold, -degrees)) for leg in then]
+    if first and rest and rest[0].taken:
+        return [*first[:-1], replace(first[-1], motions=first[-1].motions + rest[0].motions), *rest[1:]]
+    return [*first, *rest]
 
 
 def turned_by(legs: Sequence[Leg]) -> float:

@@ -34,7 +34,8 @@ class Stencil:
     """A shape among squares, as (columns, rows) offsets from the square of its centroid.
 
     home : (column, row) of the centroid's square where the shape lies now.
-    holds : (n, 2) the squares about its own squares, where Utak can stand to take it; unturned.
+    holds : (n, 2) the squares about its own squares, where Utak can stand to take it; unturned. Also the square where
+        he stands who has it already, wherever that is.
     lying : the squares that it covers, unturned (m, 2). steps : those met by a push of one square in each direction.
     turns : for each hold those met by a quarter turn counter-clockwise about the middle of the hold.
     """
@@ -46,10 +47,13 @@ class Stencil:
     turns: tuple[Ints, ...]
 
 
-def new_stencil(near: Any, holds: Ints | None = None) -> Stencil:
-    """The stencil of a shape whose centroid lies in the square (0, 0); about given holds, or all that there are."""
+def new_stencil(near: Any, own: tuple[int, int] | None = None, holds: Ints | None = None) -> Stencil:
+    """The stencil of a shape whose centroid lies in the square (0, 0).
+
+    own : the square of the one who has hold of it. holds : those that it is about, None for all that there are.
+    """
     lying = _offsets(near)
-    holds = _ring(lying) if holds is None else holds
+    holds = _ring(lying, own) if holds is None else holds
     body = Body(near)
     steps = tuple(_step(near, lying, dx, dy) for dx, dy in DIRECTIONS)
     return Stencil((0, 0), holds, lying, steps, tuple(_turn(body, lying, hold) for hold in holds))
@@ -70,11 +74,11 @@ def _offsets(shape: Any) -> Ints:
     return offsets
 
 
-def _ring(lying: Ints) -> Ints:
-    """The squares that touch the given ones, by an edge or a corner: offsets (n, 2), in order."""
-    own = {(int(x), int(y)) for x, y in lying}
-    about = {(x + dx, y + dy) for x, y in own for dx, dy in DIRECTIONS} - own
-    return np.array(sorted(about), dtype=np.int64).reshape(-1, 2)
+def _ring(lying: Ints, own: tuple[int, int] | None) -> Ints:
+    """The squares that touch the given ones, by an edge or a corner, and one more: offsets (n, 2), in order."""
+    covered = {(int(x), int(y)) for x, y in lying}
+    about = {(x + dx, y + dy) for x, y in covered for dx, dy in DIRECTIONS} - covered
+    return np.array(sorted(about | ({own} if own else set())), dtype=np.int64).reshape(-1, 2)
 
 
 def _step(near: Any, lying: Ints, dx: int, dy: int) -> Ints:

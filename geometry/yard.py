@@ -43,7 +43,11 @@ class Yard:
 
     def lets(self, shape: Any, utak: tuple[float, float], motion: Motion) -> bool:
         """Whether shape and Utak as one body can make a motion."""
-        return self.obstacles.first_contact(Body(shape, [utak]), motion).fraction >= WHOLE
+        return self.frees(Body(shape, [utak]), motion)
+
+    def frees(self, body: Body, motion: Motion) -> bool:
+        """Whether a body can make a motion to the end."""
+        return self.obstacles.first_contact(body, motion).fraction >= WHOLE
 
     def far(self, body: Body, vectors: Floats) -> Mask:
         """Which pushes (n, 2) a body can make to the end: (n,)."""

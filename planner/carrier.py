@@ -30,6 +30,7 @@ Place = tuple[float, float]
 NEAR = 1e-6  # squares: within which Utak is where a plan says
 ALIKE = 1e-3  # squares^2 by which an object may lie otherwise than a plan says
 MOST_PLANS = 60  # in one task
+NOWHERE = 0.1  # squares: who comes no further is where he was
 
 
 @dataclass(frozen=True)
@@ -95,6 +96,7 @@ class Carrier:
         self._course: Course | None = None
         self._plans = 0
         self._tight: dict[str, int] = {}  # how often a thing stood against something unawares
+        self._went_on: Place | None = None  # where a plan was last made that goes on with the hold he has
 
     @property
     def begun(self) -> bool:
@@ -173,7 +175,8 @@ class Carrier:
     # -- making one ------------------------------------------------------------------------------
 
     def _planned(self, node: Node, ends: Mapping[str, End], last: str, situation: Situation) -> Course | See | Refusal:
-        haul = self._hauler.find(self._request(node, ends, last), situation)
+        request = self._request(node, ends, last, situation.model)
+        haul = self._hauler.find(request, situation)
         if isinstance(haul, Refusal):
             return haul
         if haul.aside:
@@ -186,20 +189,24 @@ class Carrier:
         seen = self._seen(haul, node, situation)
         if seen is not None:
             return seen
+        self._went_on = situation.model.place if request.held else None
         self._plans += 1
         if self._plans > MOST_PLANS:
             return Refusal(False, lambda: f"gave up after {MOST_PLANS} plans")
         return _course(haul, node, situation.model)
 
-    def _request(self, node: Node, ends: Mapping[str, End], last: str) -> Request:
-        return Request(node, ends, self._avoided(node), last, self._tight.get(node.name, 0))
+    def _request(self, node: Node, ends: Mapping[str, End], last: str, model: WorldModel) -> Request:
+        """What to ask for. He goes on with the hold he has, but not where doing so has brought him nowhere."""
+        nowhere = self._went_on is not None and math.dist(self._went_on, model.place) < NOWHERE
+        held = model.held == node.name and not nowhere
+        return Request(node, ends, self._avoided(node), last, self._tight.get(node.name, 0), held)
 
     def _clearing(self, other: Node, haul: Haul, situation: Situation) -> tuple[Node, Haul] | None:
         """A way to carry a thing off the squares that a plan needs, if it stands there and there is one."""
         if other.name not in haul.aside or other.polygon is None:
             return None
         room = situation.screens.free(0) | situation.model.mask(other.patch)
-        request = self._request(other, {"away": Inside(region_of(room & ~haul.swept))}, "")
+        request = self._request(other, {"away": Inside(region_of(room & ~haul.swept))}, "", situation.model)
         found = self._hauler.find(request, situation)
         return (other, found) if isinstance(found, Haul) and found.plan.legs and not found.aside else None
 

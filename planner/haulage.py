@@ -62,7 +62,8 @@ class Refusal:
 class Request:
     """What is to be carried, and where to. avoid : holds that failed. last : the target chosen last.
 
-    tight : how often it stood against something unawares: the more room is wanted about it.
+    tight : how often it stood against something unawares: the more room is wanted about it. held : whether Utak has
+    hold of it and may go on so.
     """
 
     node: Node
@@ -70,6 +71,7 @@ class Request:
     avoid: tuple[tuple[float, float], ...] = ()
     last: str = ""
     tight: int = 0
+    held: bool = False
 
 
 class Hauler:
@@ -122,13 +124,14 @@ class Hauler:
             utak,
             request.avoid,
             request.tight,
+            request.held,
         )
         if key not in self._known:
             if len(self._known) > 64:
                 self._known.clear()
             margin = MARGIN * (request.tight + (not is_whole(shape)))
             self._known[key] = plan_carrying(
-                shape, free, utak, request.ends[name], margin, self._pull, request.avoid, walk
+                shape, free, utak, request.ends[name], margin, self._pull, request.avoid, walk, held=request.held
             )
         return self._known[key]
 

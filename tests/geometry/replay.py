@@ -48,13 +48,16 @@ def replay(
     """Do what a plan says and assert that it can be done; the shape as it ends."""
     solid = (walls_of(free) if walls is None else walls).buffer(-DEEP, join_style="mitre")
     shapely.prepare(solid)
-    for leg in plan.legs:
-        x, y = int(leg.place[0]), int(leg.place[1])
-        assert leg.place == (x + 0.5, y + 0.5)
-        covered = under(shape, free.shape)
-        assert reachable(free & ~covered, (int(utak[0]), int(utak[1])))[y, x]
-        utak = leg.place
-        assert covered[y + leg.direction_square[1], x + leg.direction_square[0]]
+    for n, leg in enumerate(plan.legs):
+        if leg.taken:
+            assert plan.held and n == 0 and leg.place == utak
+        else:
+            x, y = int(leg.place[0]), int(leg.place[1])
+            assert leg.place == (x + 0.5, y + 0.5)
+            covered = under(shape, free.shape)
+            assert reachable(free & ~covered, (int(utak[0]), int(utak[1])))[y, x]
+            utak = leg.place
+            assert covered[y + leg.direction_square[1], x + leg.direction_square[0]]
         for motion in leg.motions:
             if isinstance(motion, Rotate):
                 assert motion.about == utak

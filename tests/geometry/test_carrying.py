@@ -98,6 +98,75 @@ def test_a_margin_keeps_turns_from_walls() -> None:
             shape = motion.carry(shape)
 
 
+@pytest.mark.parametrize("pull", [True, False])
+@pytest.mark.parametrize("utak", [(7.5, 9.5), (7.7, 10.3), (8.0, 8.2)])
+def test_who_has_hold_already_goes_on_with_it(utak: tuple[float, float], pull: bool) -> None:
+    """On the lattice or off it: neither released nor taken again, and a straight push is one command."""
+    dx, dy = utak[0] - 7.5, utak[1] - 9.5
+    shape = affinity.translate(box(8, 9, 12, 11), dx, dy)
+    free = two_rooms(5)
+    plan = plan_carrying(shape, free, utak, Inside([ROOM]), pull=pull, held=True)
+    assert plan.legs[0].taken and plan.legs[0].walk == 0 and plan.legs[0].place == utak
+    assert len(plan.legs) == 1 and plan.commands == len(plan.legs[0].motions) + 1
+    assert ROOM.buffer(1e-6).covers(replay(plan, shape, free, utak, pull))
+    assert plan.commands < plan_carrying(shape, free, utak, Inside([ROOM]), pull=pull).commands
+
+
+def test_a_hold_that_was_refuted_is_let_go() -> None:
+    shape, free, utak = box(8, 9, 12, 11), two_rooms(5), (7.5, 9.5)
+    middle = shape.centroid
+    refuted = [(utak[0] - middle.x, utak[1] - middle.y)]
+    plan = plan_carrying(shape, free, utak, Inside([ROOM]), avoid=refuted, held=True)
+    assert plan.status == "found" and not plan.legs[0].taken
+    bare = plan_carrying(shape, free, utak, Inside([ROOM]), avoid=refuted)
+    assert plan.legs == bare.legs and plan.commands == bare.commands + 1  # the release
+
+
+def test_a_hold_that_leads_nowhere_is_let_go() -> None:
+    """Utak is in front of a brick in a blind alley as wide as it: he must walk round, and cannot; or let go behind."""
+    free = np.zeros((8, 30), bool)
+    free[2:6, 1:29] = True
+    shape, utak = box(20, 2.2, 22, 5.8), (22.5, 3.5)
+    held = plan_carrying(shape, free, utak, Inside([box(23, 2, 29, 6)]), held=True, pull=False)
+    assert held.status == "limit" and held.reason == "hold"
+    behind = plan_carrying(shape, free, (19.5, 3.5), Inside([box(23, 2, 29, 6)]), held=True, pull=False)
+    assert behind.status == "found" and behind.legs[0].taken and behind.commands == 2
+
+
+def test_who_has_hold_of_what_is_askew_goes_on() -> None:
+    """A brick through a door that lets it through straight only: the first leg is the hold that he has."""
+    free, utak = two_rooms(3), (7.6, 6.1)
+    brick = affinity.rotate(box(8, 4, 12, 7), 13)
+    plan = plan_carrying(brick, free, utak, Inside([ROOM]), held=True)
+    assert plan.status == "found" and plan.legs[0].taken
+    replay(plan, brick, free, utak)
+
+
+@settings(max_examples=20, deadline=None, derandomize=True)
+@given(
+    st.floats(5, 12),
+    st.floats(5, 15),
+    st.floats(0, 360),
+    st.integers(0, 3),
+    st.sampled_from([Inside([ROOM]), InCorner(2, 22, -1, 1), At(Pose(24, 3, 30))]),
+    st.booleans(),
+)
+def test_any_hold_anywhere_can_be_gone_on_with(
+    x: float, y: float, degrees: float, side: int, goal: At | Inside | InCorner, pull: bool
+) -> None:
+    free, shape = two_rooms(5), affinity.rotate(box(x, y, x + 4, y + 2), degrees)
+    utak = [(x - 0.4, y + 1), (x + 4.4, y + 0.5), (x + 1, y - 0.4), (x + 3, y + 2.4)][side]
+    spoke = affinity.rotate(shapely.Point(utak), degrees, origin=shape.centroid)
+    utak = (spoke.x, spoke.y)
+    walls = walls_of(free)
+    if walls.intersects(shape) or walls.intersects(spoke):
+        return
+    plan = plan_carrying(shape, free, utak, goal, pull=pull, held=True)
+    assert plan.status == "found" or not pull
+    replay(plan, shape, free, utak, pull)
+    assert plan == plan_carrying(shape, free, utak, goal, pull=pull, held=True)
+
+
 @st.composite
 def bricks_and_doors(draw: st.DrawFn) -> tuple[shapely.Polygon, np.ndarray, int]:
     """A brick in the western of two rooms, any way round; the floor; how much wider the door is than the brick."""

@@ -104,6 +104,16 @@ def test_an_exact_fit_is_never_called_impossible() -> None:
     check(plan_motion(BRICK, roomy, start, goal), BRICK, roomy, start, goal)
 
 
+@pytest.mark.parametrize("door", [4.0, 6.0])
+def test_a_flush_way_is_left_for_a_roomy_one(door: float) -> None:
+    """An L of 6 x 6 fits a door of 6 flush, and its arms, 2 wide, one of 4: it turns instead, and soon."""
+    ell = affinity.translate(shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)]), -2.2, -2.2)
+    walls, start = two_rooms(door), Pose(5.2, 5.2, 0)
+    for goal in (Pose(19, 6, 180), Inside(box(13, 0, 25, 12))):
+        plan = plan_motion(ell, walls, start, goal, cells=5000)
+        check(plan, ell, walls, start, goal if isinstance(goal, Pose) else None)
+
+
 def test_an_overlap_at_either_end_is_told() -> None:
     walls = two_rooms(3.0)
     assert plan_motion(BRICK, walls, Pose(12, 2), Pose(5, 5)).reason == "start"
