@@ -124,6 +124,16 @@ class Carrier:
         self._course = course
         return self._next(course, model)
 
+    def gone_on(self, node: Node, situation: Situation) -> Act | None:
+        """The next command of the plan under way for what he holds, if the world is still as it says."""
+        if self._course is None or self._course.name != node.name or situation.model.held != node.name:
+            return None
+        course = self._kept(None, situation)
+        if course is None or not course.legs[0].motions:
+            return None
+        advice = self._next(course, situation.model)
+        return advice if isinstance(advice, Act) else None
+
     # -- keeping a plan --------------------------------------------------------------------------
 
     def _kept(self, ends: Mapping[str, End] | None, situation: Situation) -> Course | None:
@@ -142,7 +152,8 @@ class Carrier:
         free = situation.screens.free(course.level) | model.mask(node.patch)
         if not free[model.mask_within(course.needed)].all():
             return None
-        if shapely.symmetric_difference(node.polygon, course.polygon).area < ALIKE:
+        as_said = shapely.symmetric_difference(node.polygon, course.polygon).area < ALIKE
+        if as_said and (ends is None or course.target in ends):
             return course
         end = None if node.stuck else _led(course, node, free, situation)
         if end is None or (ends is not None and not any(lands(goal, end) for goal in ends.values())):
@@ -217,8 +228,10 @@ class Carrier:
         return tuple((float(x), float(y)) for x, y in holds)
 
     def _seen(self, haul: Haul, node: Node, situation: Situation) -> See | None:
-        """What must be looked at before a plan is begun, as long as a look may tell more."""
+        """What must be looked at before a plan is begun that leads over doubtful squares, if a look may tell more."""
         model = situation.model
+        if haul.level == 0:
+            return None
         unsure = haul.swept & ~situation.screens.safe & ~model.mask(node.patch)
         if not unsure.any():
             return None

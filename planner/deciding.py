@@ -19,12 +19,12 @@ from kb.task import Task
 from kb.worldmodel import Node, WorldModel
 from planner import exploring
 from planner.aims import Aim, choose
-from planner.carrier import Act, Carrier, Go, See
+from planner.carrier import Act, Advice, Carrier, Go, See
 from planner.circling import pivot, ways_round, winding
 from planner.destinations import Destination, Situation, contains, destination, nowhere
 from planner.goals import BY_THE_WAY, Stage, constraints, stages
 from planner.haulage import Refusal
-from planner.landing import landing
+from planner.landing import Landing, landing
 from planner.screen import Screens, Squares, vicinity
 from planner.steps import Square
 from planner.walking import halting, next_move
@@ -164,8 +164,7 @@ class Decider:
             return None
         if node.movable == 0:
             return Decision(None, f"{stage} cannot be attained: {node.name} cannot be moved", "impossible")
-        missing = Refusal(not self.carrier.begun, lambda: land.missing)
-        advice = self.carrier.advise(node, land.ends, situation) if land.ends else missing
+        advice = self._advice(node, land, situation)
         if isinstance(advice, Act):
             look = self._inspect(node, stage, situation) if isinstance(advice.command, Grasp) else None
             if look is not None:
@@ -181,6 +180,19 @@ class Decider:
         verdict = "impossible" if advice.proved else "limit"
         aims = _aims([unknown], situation, reconciled)
         return self._pursue(aims, stage, situation, advice.reason, verdict)
+
+    def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
+        """What to do to carry something to where its goal holds; while that is not known, to near it."""
+        if land.ends:
+            return self.carrier.advise(node, land.ends, situation)
+        going_on = self.carrier.gone_on(node, situation)
+        if going_on is not None:
+            return going_on
+        if land.approach:
+            advice = self.carrier.advise(node, land.approach, situation)
+            if isinstance(advice, Act | Go):
+                return advice
+        return Refusal(not self.carrier.begun, lambda: land.missing)
 
     def _inspect(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
         """A look at an object that is not settled yet; None when no look is left that may tell more.

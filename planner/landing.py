@@ -5,7 +5,7 @@ Goals of geometry.carrying are in the frame of the view's arrays, as all of plan
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -26,6 +26,8 @@ from planner.screen import grown
 
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
+IN_SIGHT = 6  # squares from a corner within which it is seen well
+FLUSH = 0.1  # squares between an object and walls that it touches
 BESIDE = 1.0  # squares from a thing within which it is reached
 POSED, TURNED = 0.25, 2.0  # squares and degrees within which a pose is attained
 
@@ -38,12 +40,14 @@ class Landing:
     ----------
     ends : target's name -> where the object must lie; empty while that is not known.
     missing, lookouts : what must be known first, in words, and where just that may be seen (as of a Destination).
+    approach : places near to where it must end, from which it can be told better where that is.
     holds : the goal holds as the object lies now.
     """
 
     ends: Mapping[str, End]
     missing: str = ""
     lookouts: tuple[Lookout, ...] = ()
+    approach: Mapping[str, End] = field(default_factory=dict)
     holds: bool = False
 
 
@@ -91,22 +95,36 @@ def region_of(mask: Mask) -> Any:
 
 
 def _cornered(side: str, node: Node, situation: Situation) -> Landing:
-    """The corner that Utak would go to, seen closely; it need not be looked for once the object lies in it."""
+    """The corner that Utak would go to; it need not be looked for once the object lies in it.
+
+    While a square about it is not settled, its walls may be a square further away: then the object must touch them.
+    """
     (x, y), (column, row) = situation.corners[side].point, situation.corners[side].square
     found = corner(side, situation)
     if found.missing and not situation.model.mask(node.patch)[row, column]:
-        return Landing({}, found.missing, found.lookouts)
+        return Landing({}, found.missing, found.lookouts, _near(side, node, situation))
     end = InCorner(x, y, 1 if x > column else -1, 1 if y > row else -1)
     model = situation.model
     view = model.view
     around = grown(model.squares([(column + view.west, row + view.south)]), 1)
     unclear = around & (view.state == OPEN)
+    if not unclear.any():
+        return Landing({side: end})
+    flush = replace(end, slack=FLUSH)
+    lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
     doubtful = unclear & (view.probability > CLEAR) & (view.probability < 1 - CLEAR)
-    if doubtful.any() or (unclear.any() and lands(end, in_view(node.polygon, situation))):
-        lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
-        if len(lookout.squares):
-            return Landing({}, lookout.what, (lookout,))
-    return Landing({side: end})
+    if doubtful.any() and lands(flush, in_view(node.polygon, situation)) and len(lookout.squares):
+        return Landing({}, lookout.what, (lookout,))
+    return Landing({side: flush}, lookout.what, (lookout,))
+
+
+def _near(side: str, node: Node, situation: Situation) -> Mapping[str, End]:
+    """Places from which Utak with the object in hand sees a corner well; none when the object is at one."""
+    column, row = situation.corners[side].square
+    mask = situation.model.space & situation.screens.floor | situation.model.mask(node.patch)
+    rows, columns = np.ogrid[: mask.shape[0], : mask.shape[1]]
+    end = Inside(region_of(mask & (abs(rows - row) <= IN_SIGHT) & (abs(columns - column) <= IN_SIGHT)))
+    return {} if end.polygon.is_empty or lands(end, in_view(node.polygon, situation)) else {f"near_{side}": end}
 
 
 def _next_room(began: Place, node: Node, situation: Situation) -> Landing:

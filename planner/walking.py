@@ -1,5 +1,6 @@
 """From a way to the next command: a straight move, as far as is safe."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,6 +12,7 @@ from planner.screen import Screens
 from planner.steps import Square, clear
 
 LONGEST = {"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}  # squares of one move, by its aim
+ASKEW = math.radians(5)  # by which the lattice may lie otherwise before he takes care where he halts
 DIGITS = 12  # of a command
 ASIDE = (0.0618, 0.0341)  # squares from a centre, where no turn by whole degrees leads to the line between two squares
 
@@ -35,10 +37,10 @@ def next_move(screens: Screens, path: Sequence[Square], kind: str, about: tuple[
 def move_to(model: WorldModel, square: Square) -> Move:
     """The move from where Utak believes himself to the centre of a square (column, row) of the view.
 
-    As long as it is not sure how the lattice lies, it is a little beside the centre: halts on the line between two
-    squares, where it would be chance which of them he sees himself in, could never be explained.
+    As long as it is open within some degrees how the lattice lies, it is a little beside the centre: halts on the line
+    between two squares, where it would be chance which of them he sees himself in, could never be explained.
     """
-    aside = ASIDE if model.spread else (0.0, 0.0)
+    aside = ASIDE if model.spread > ASKEW else (0.0, 0.0)
     x, y = model.view.west + square[0] + 0.5 + aside[0], model.view.south + square[1] + 0.5 + aside[1]
     east, north = model.lattice.to_utak(x - model.place[0], y - model.place[1])
     return Move(round(east, DIGITS) + 0.0, round(north, DIGITS) + 0.0)
