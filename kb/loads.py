@@ -21,6 +21,7 @@ from kb.worldmodel import Patch
 Mask = NDArray[np.bool_]
 Square = tuple[int, int]  # (x, y) of the lattice
 WHOLE = 1e-6  # squares: corners this near to corners of the lattice are taken to be there
+ROUNDING = 1e-4  # squares by which an outline may lie otherwise that is known but for the rounding of commands
 SLIGHT = 0.3  # squares by which the outline of a thing that is not whole may lie otherwise
 
 
@@ -122,7 +123,7 @@ def is_whole(polygon: Any) -> bool:
 
 def slack_of(polygon: Any, otherwise: float = SLIGHT) -> float:
     """By how much an outline may lie otherwise: not at all where it is whole, for then its image tells it exactly."""
-    return 0.0 if is_whole(polygon) else otherwise
+    return 0.0 if is_whole(polygon) else max(otherwise, ROUNDING)
 
 
 def discounted(

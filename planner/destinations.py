@@ -135,7 +135,8 @@ def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
         if not any(door.sure for door in rooms.doors)
         else "no next room is seen yet that can be reached"
     )
-    return nowhere(what, (*_likely_rooms(situation), *doorsteps(situation)))
+    likely = _likely_rooms(situation)
+    return nowhere(what, (*likely, *doorsteps(situation, tried=bool(likely))))
 
 
 def _likely_rooms(situation: Situation) -> list[Lookout]:
@@ -154,9 +155,12 @@ def numbers(rooms: Rooms, mask: Mask) -> list[int]:
     return [int(number) for number in np.unique(rooms.labels[mask])]
 
 
-def doorsteps(situation: Situation) -> tuple[Lookout, ...]:
-    """Where to look for a door: at what may be one, and for a way to floor that is seen and cannot be reached yet."""
-    doubtful = jambs(situation.screens, situation.rooms.doors)
+def doorsteps(situation: Situation, tried: bool = False) -> tuple[Lookout, ...]:
+    """Where to look for a door: at what may be one, and for a way to floor that is seen and cannot be reached yet.
+
+    tried : likely doors are gone through, and not looked at.
+    """
+    doubtful = jambs(situation.screens, [door for door in situation.rooms.doors if not (tried and door.likely)])
     return (*doubtful, *rooms_beyond(situation.screens))
 
 
