@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.cells import Tree, next_neighbour, splittable
+from geometry.cells import DEEPEST, Tree, next_neighbour, splittable
 from geometry.compiled import compiled
 from geometry.priority import pop, push
 from geometry.separation import DEAD, FREE, FULL, OPEN, SHUT, Ground, Mover, classify
@@ -24,8 +24,11 @@ from geometry.separation import DEAD, FREE, FULL, OPEN, SHUT, Ground, Mover, cla
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 EAGER = 2.0  # how much dearer the way still to go is than the way gone
-DEAR = np.array([1.0, 2.0, 5.0, 1e9, 50.0])  # the cost of a square's way by kind of cell
+DEAR = np.array([1.0, 2.0, 5.0, 1e9, 50.0])  # the cost of a square's way by kind of cell, while it is large
 WEARY, PATIENT, WORN = 1.15, 8, 5.0  # a doubtful cell is so much dearer with each depth below so many; at most
+TIRING = np.minimum(WEARY ** np.maximum(np.arange(DEEPEST + 2) - PATIENT, 0), WORN)
+PRICE = np.outer(DEAR, TIRING)  # of a square's way by kind and depth of cell
+PRICE[FREE] = DEAR[FREE]
 REGION = -2  # in place of a goal cell: the goal is a region
 UNSEEN, OFFERED, SETTLED, DOUBTED = 0, 1, 2, 3
 
@@ -185,15 +188,8 @@ def _step(middle: Floats, kind: npt.NDArray[np.int8], box: Ints, radius: float, 
     dx, dy = middle[b, 0] - middle[a, 0], middle[b, 1] - middle[a, 1]
     turn = abs(middle[b, 2] - middle[a, 2])
     turn = min(turn, 2 * math.pi - turn)
-    price = _price(kind[a], box[a, 3]) + _price(kind[b], box[b, 3])
+    price = PRICE[kind[a], box[a, 3]] + PRICE[kind[b], box[b, 3]]
     return float((math.sqrt(dx * dx + dy * dy) + 0.5 * radius * turn) * 0.5 * price)
-
-
-@compiled
-def _price(kind: int, depth: int) -> float:
-    """What a square's way through a cell costs."""
-    weary = min(WEARY ** max(depth - PATIENT, 0), WORN) if kind != FREE else 1.0
-    return float(DEAR[kind] * weary)
 
 
 @compiled

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
+from geometry.buckets import new_queue, put, take
 from geometry.compiled import compiled
 from geometry.contact import Obstacles
 from geometry.rigid import Pose
@@ -24,7 +25,8 @@ PIXELS = 128  # along the longer side of the raster
 BLOCK = 8  # pixels along the side of a block
 RIM = 0.1  # of the longer side, around the bounds
 TOUCH = 1e-6  # squares: a start or goal may be this deep in an obstacle, or out of bounds
-WALL = 6.0  # going through pixels where the body's disc does not fit looks so much dearer
+SIDE, DIAGONAL = 10, 14  # the cost of a pixel's way
+WALL = 6  # going through pixels where the body's disc does not fit looks so much dearer
 
 
 class Floor:
@@ -91,7 +93,8 @@ class Floor:
 
     def ways(self, goals: npt.NDArray[np.bool_], radius: float) -> Floats:
         """How far it is from every pixel to the nearest goal pixel for a disc: (rows, columns). A guess, never inf."""
-        return cheapest(np.where(self.raster < radius - self.frame[2], WALL, 1.0) * self.frame[2], goals)
+        ways: Floats = disc_ways(self.raster < radius - self.frame[2], goals) * (self.frame[2] / SIDE)
+        return ways
 
     def pixel_of(self, x: float, y: float) -> npt.NDArray[np.bool_]:
         """The raster with one pixel True: the one of a place."""
@@ -132,6 +135,39 @@ def _blocks(edges: Floats, frame: Floats, rows: int, columns: int, reach: float)
                 count += 1
         first[block + 1] = count
     return first, near[:count].copy()
+
+
+@compiled
+def disc_ways(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_]) -> Ints:
+    """Dijkstra's algorithm from the goal pixels over the eight neighbours, WALL times as dear where it is tight.
+
+    Returns (rows, columns), in units of which SIDE make a pixel's way.
+    """
+    rows, columns = tight.shape
+    ways = np.full(rows * columns, 2**40)
+    queue = new_queue(8 * rows * columns)
+    for row in range(rows):
+        for column in range(columns):
+            if goals[row, column]:
+                ways[row * columns + column] = 0
+                put(queue, 0, row * columns + column)
+    now = 0
+    while queue.used[1] > 0:
+        at = take(queue, now)
+        if at < 0:
+            now += 1
+            continue
+        if ways[at] != now:
+            continue
+        row, column = at // columns, at % columns
+        for up in range(max(row - 1, 0), min(row + 2, rows)):
+            for along in range(max(column - 1, 0), min(column + 2, columns)):
+                step = DIAGONAL if up != row and along != column else SIDE
+                then = now + (step * WALL if tight[up, along] else step)
+                if then < ways[up * columns + along]:
+                    ways[up * columns + along] = then
+                    put(queue, then, up * columns + along)
+    return ways.reshape(rows, columns)
 
 
 @compiled

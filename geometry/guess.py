@@ -2,33 +2,18 @@
 
 # Strategy: Dijkstra's algorithm backwards from the goal, over poses and the direction in which the body is being pushed
 # (none: it lies), so that going on in the same direction is no new command. Costs are small whole numbers: a ring of
-# buckets (Dial 1969) holds the queue.
+# buckets holds the queue (geometry.buckets).
 """
 
-from typing import NamedTuple
-
 import numpy as np
-import numpy.typing as npt
 
 from geometry.board import COMMAND, Board, Costs, turn_cost, turned_place
+from geometry.buckets import new_queue, put, take
 from geometry.compiled import compiled
 
 STILL = 8  # the direction of a body that lies
 NEVER = 2**30
-RING = 2048  # buckets: more than the dearest step
 PUTS = 64  # entries for each pose: far more than come to be, and memory that is not touched costs nothing
-
-
-class Queue(NamedTuple):
-    """Nodes by cost: first[cost % RING] is the last entry put there, before[entry] the one before it, -1 none.
-
-    used : (2,) entries used, entries that wait.
-    """
-
-    first: npt.NDArray[np.int32]
-    node: npt.NDArray[np.int32]
-    before: npt.NDArray[np.int32]
-    used: npt.NDArray[np.int64]
 
 
 @compiled
@@ -42,24 +27,20 @@ def guess(board: Board, ends: Costs, bend: int) -> Costs:
     squares = ends.shape[1]
     left = np.full((4, 9, squares), NEVER, np.int32)
     size = PUTS * 4 * squares
-    first = np.full(RING, -1, np.int32)
-    queue = Queue(first, np.empty(size, np.int32), np.empty(size, np.int32), np.zeros(2, np.int64))
+    queue = new_queue(size)
     for k in range(4):
         for p in range(squares):
             if not board.lies[k, p]:
                 left[k, STILL, p] = -1
             elif ends[k, p] >= 0:
                 left[k, STILL, p] = ends[k, p]
-                _put(queue, ends[k, p], (p << 8) + (STILL << 4) + k)
+                put(queue, ends[k, p], (p << 8) + (STILL << 4) + k)
     now = 0
     while queue.used[1] > 0:
-        entry = queue.first[now % RING]
-        if entry < 0:
+        node = take(queue, now)
+        if node < 0:
             now += 1
             continue
-        queue.first[now % RING] = queue.before[entry]
-        queue.used[1] -= 1
-        node = int(queue.node[entry])
         p, m, k = node >> 8, (node >> 4) & 15, node & 15
         if left[k, m, p] != now:
             continue
@@ -67,7 +48,7 @@ def guess(board: Board, ends: Costs, bend: int) -> Costs:
             for d in range(8):
                 if bend < COMMAND and now + bend < left[k, d, p]:
                     left[k, d, p] = now + bend
-                    _put(queue, now + bend, (p << 8) + (d << 4) + k)
+                    put(queue, now + bend, (p << 8) + (d << 4) + k)
             _back(board, left, queue, k, m, p, now)
             continue
         for d in range(8):
@@ -94,12 +75,12 @@ def _turn_back(board, left, queue, k, p, then):  # type: ignore[no-untyped-def]
                 continue
             if then + extra < left[k1, STILL, p1]:
                 left[k1, STILL, p1] = then + extra
-                _put(queue, then + extra, (p1 << 8) + (STILL << 4) + k1)
+                put(queue, then + extra, (p1 << 8) + (STILL << 4) + k1)
             if then + extra < left[k2, STILL, p2]:
                 more = turn_cost(board, hold, k1, p1, way)
                 if more >= 0 and then + max(extra, more) < left[k2, STILL, p2]:
                     left[k2, STILL, p2] = then + max(extra, more)
-                    _put(queue, then + max(extra, more), (p2 << 8) + (STILL << 4) + k2)
+                    put(queue, then + max(extra, more), (p2 << 8) + (STILL << 4) + k2)
 
 
 @compiled
@@ -112,19 +93,7 @@ def _back(board, left, queue, k, m, p, now):  # type: ignore[no-untyped-def]
     then = now + price
     if then < left[k, m, before]:
         left[k, m, before] = then
-        _put(queue, then, (before << 8) + (m << 4) + k)
+        put(queue, then, (before << 8) + (m << 4) + k)
     if then + COMMAND < left[k, STILL, before]:
         left[k, STILL, before] = then + COMMAND
-        _put(queue, then + COMMAND, (before << 8) + (STILL << 4) + k)
-
-
-@compiled
-def _put(queue, cost, node):  # type: ignore[no-untyped-def]
-    """Put a node into the queue."""
-    entry = queue.used[0]
-    if entry == len(queue.node):
-        return
-    queue.node[entry], queue.before[entry] = node, queue.first[cost % RING]
-    queue.first[cost % RING] = entry
-    queue.used[0] += 1
-    queue.used[1] += 1
+        put(queue, then + COMMAND, (before << 8) + (STILL << 4) + k)
