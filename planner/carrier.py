@@ -28,6 +28,7 @@ from planner.landing import in_view, lands, region_of
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
 NEAR = 1e-6  # squares: within which Utak is where a plan says
+STILL = 2  # level of certainty of squares over which a plan is not made, but kept
 ALIKE = 1e-3  # squares^2 by which an object may lie otherwise than a plan says
 MOST_PLANS = 60  # in one task
 NOWHERE = 0.1  # squares: who comes no further is where he was
@@ -149,13 +150,15 @@ class Carrier:
             return None
         if course.grasped and model.held != course.name:
             return None
-        free = situation.screens.free(course.level) | model.mask(node.patch)
+        free = situation.screens.free(max(course.level, STILL)) | model.mask(node.patch)
         if not free[model.mask_within(course.needed)].all():
             return None
-        as_said = shapely.symmetric_difference(node.polygon, course.polygon).area < ALIKE
-        if as_said and (ends is None or course.target in ends):
-            return course
-        end = None if node.stuck else _led(course, node, free, situation)
+        if shapely.symmetric_difference(node.polygon, course.polygon).area < ALIKE:
+            if ends is None or course.target in ends:
+                return course
+            end = in_view(_carried(course), situation)
+        else:
+            end = None if node.stuck else _led(course, node, free, situation)
         if end is None or (ends is not None and not any(lands(goal, end) for goal in ends.values())):
             return None
         return replace(course, polygon=node.polygon)
@@ -282,6 +285,14 @@ def _course(haul: Haul, node: Node, model: WorldModel) -> Course:
     legs = tuple(replace(leg, place=(leg.place[0] + west, leg.place[1] + south)) for leg in haul.plan.legs)
     needed = Patch(west, south, haul.swept)
     return Course(node.name, haul.target, node.polygon, legs, needed, haul.level)
+
+
+def _carried(course: Course) -> Any:
+    """Where what is left of a plan leads when all is as it says."""
+    polygon = course.polygon
+    for motion in (motion for leg in course.legs for motion in leg.motions):
+        polygon = motion.carry(polygon)
+    return polygon
 
 
 def _led(course: Course, node: Node, free: Mask, situation: Situation) -> Any:
