@@ -231,11 +231,13 @@ class Carrier:
         return tuple((float(x), float(y)) for x, y in holds)
 
     def _seen(self, haul: Haul, node: Node, situation: Situation) -> See | None:
-        """What must be looked at before a plan is begun that leads over doubtful squares, if a look may tell more."""
+        """What must be looked at before a plan is begun, if a look may tell more.
+
+        What a turn meets leaves the thing at an angle that is hard to tell; a push is just shorter.
+        """
         model = situation.model
-        if haul.level == 0:
-            return None
-        unsure = haul.swept & ~situation.screens.safe & ~model.mask(node.patch)
+        risky = haul.turned if haul.level == 0 else haul.swept
+        unsure = risky & ~situation.screens.safe & ~model.mask(node.patch)
         if not unsure.any():
             return None
         lookout = sight_of(situation.screens, unsure, f"the way for {node.name} is not clear")

@@ -39,7 +39,7 @@ class Haul:
     Attributes
     ----------
     plan : frame of the view's arrays. target : where to. level : of certainty of the squares it needs.
-    swept : (rows, columns) the squares that the object or Utak holding it cross.
+    swept : (rows, columns) the squares that the object or Utak holding it cross. turned : those crossed in turns.
     aside : nodes that must be moved out of the way first.
     """
 
@@ -47,6 +47,7 @@ class Haul:
     target: str
     level: int
     swept: Mask
+    turned: Mask
     aside: tuple[str, ...] = ()
 
 
@@ -171,33 +172,38 @@ def _choice(facts: Sequence[str]) -> tuple[str, int, str] | None:
 
 
 def _haul(plan: Carrying, shape: Any, name: str, level: int, situation: Situation, node: Node) -> Haul:
-    swept = swept_squares(plan, shape, situation.model.labels.shape)
+    swept, turned = swept_squares(plan, shape, situation.model.labels.shape)
     aside = tuple(
         other.name
         for other in situation.model.objects
         if other.name != node.name and (situation.model.mask(other.patch) & swept).any()
     )
-    return Haul(plan, name, level, swept, aside)
+    return Haul(plan, name, level, swept, turned, aside)
 
 
-def swept_squares(plan: Carrying, shape: Any, size: tuple[int, ...]) -> Mask:
-    """(rows, columns): the squares that an object, and Utak with it in his hand, cross on a plan."""
+def swept_squares(plan: Carrying, shape: Any, size: tuple[int, ...]) -> tuple[Mask, Mask]:
+    """(rows, columns): the squares that an object, and Utak with it in his hand, cross on a plan; those of turns."""
     rows, columns = size
     mask: Mask = squares(shape, columns, rows)
+    turned: Mask = np.zeros_like(mask)
     for leg in plan.legs:
         x, y = leg.place
         for motion in leg.motions:
             far = math.hypot(motion.dx, motion.dy) if isinstance(motion, Translate) else 0.4 * abs(motion.degrees)
             steps = max(1, math.ceil(far / STRIDE))
+            swept: Mask = np.zeros_like(mask)
             for step in range(1, steps + 1):
-                mask |= squares(motion.part(step / steps).carry(shape), columns, rows)
+                swept |= squares(motion.part(step / steps).carry(shape), columns, rows)
                 if isinstance(motion, Translate):
                     here = (x + motion.dx * step / steps, y + motion.dy * step / steps)
-                    mask[min(max(int(here[1]), 0), rows - 1), min(max(int(here[0]), 0), columns - 1)] = True
+                    swept[min(max(int(here[1]), 0), rows - 1), min(max(int(here[0]), 0), columns - 1)] = True
             shape = motion.carry(shape)
+            mask |= swept
             if isinstance(motion, Translate):
                 x, y = x + motion.dx, y + motion.dy
-    return mask
+            else:
+                turned |= swept
+    return mask, turned
 
 
 def _refusal(node: Node, plans: Sequence[Carrying]) -> Refusal:

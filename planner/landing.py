@@ -28,6 +28,7 @@ Mask = NDArray[np.bool_]
 Place = tuple[float, float]
 IN_SIGHT = 6  # squares from a corner within which it is seen well
 FLUSH = 0.1  # squares between an object and walls that it touches
+ABOUT = 0.5  # likewise, while he is not sure to that where the object is
 BESIDE = 1.0  # squares from a thing within which it is reached
 POSED, TURNED = 0.25, 2.0  # squares and degrees within which a pose is attained
 
@@ -97,7 +98,8 @@ def region_of(mask: Mask) -> Any:
 def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     """The corner that Utak would go to; it need not be looked for once the object lies in it.
 
-    While a square about it is not settled, its walls may be a square further away: then the object must touch them.
+    He aims at the very corner. To be within a square of its walls is enough when they are settled and he is sure of
+    where the object is; else they may be further away than he believes.
     """
     (x, y), (column, row) = situation.corners[side].point, situation.corners[side].square
     found = corner(side, situation)
@@ -108,14 +110,15 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     view = model.view
     around = grown(model.squares([(column + view.west, row + view.south)]), 1)
     unclear = around & (view.state == OPEN)
-    if not unclear.any():
-        return Landing({side: end})
-    flush = replace(end, slack=FLUSH)
-    lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
     doubtful = unclear & (view.probability > CLEAR) & (view.probability < 1 - CLEAR)
-    if doubtful.any() and lands(flush, in_view(node.polygon, situation)) and len(lookout.squares):
+    shape = in_view(node.polygon, situation)
+    near = replace(end, slack=FLUSH if view.sure else ABOUT)
+    if not unclear.any():
+        return Landing({side: near}, holds=view.sure and lands(end, shape))
+    lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
+    if (doubtful.any() or not view.sure) and lands(near, shape) and len(lookout.squares):
         return Landing({}, lookout.what, (lookout,))
-    return Landing({side: flush}, lookout.what, (lookout,))
+    return Landing({side: near}, lookout.what, (lookout,))
 
 
 def _near(side: str, node: Node, situation: Situation) -> Mapping[str, End]:
