@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from geometry.contact import boundary_edges, with_normals
 from geometry.rigid import Pose
 from geometry.separation import Mover
 
+Point = tuple[float, float]
 Floats = npt.NDArray[np.float64]
 DISCS = 16  # inscribed in a body at most
 GRID = 16  # places along the body's longer side where discs are tried
@@ -29,6 +31,14 @@ def new_mover(
     ------
     ValueError : when the shape has no area.
     """
+    at = None if pivot is None else (float(pivot[0]), float(pivot[1]))
+    return _mover(shapely.to_wkb(shape), tuple((float(x), float(y)) for x, y in points), at)
+
+
+@lru_cache(maxsize=32)
+def _mover(wkb: bytes, points: tuple[Point, ...], pivot: Point | None) -> Mover:
+    """The same: one body is planned for many times. Nobody writes into a Mover's arrays."""
+    shape = shapely.from_wkb(wkb)
     specks = [shapely.Point(p).buffer(SPECK, quad_segs=1) for p in points]
     whole = shapely.union_all([shape, *specks]) if specks else shape
     if whole is None or whole.area <= 0.0:
