@@ -19,7 +19,6 @@ EDGE, CORNER = 0.4, 0.8
 WRONG = 4.0  # edges that a square too many or too few under a field is worth
 COLD = 2.0
 SWEEPS = 3  # between two pictures
-FIRST_CHANCE, SEED_STEP = 20031, 7919  # of the linear congruential generator of chances
 NEVER = 9.0  # a change that is e to this power times less likely than its contrary is not tried
 
 
@@ -45,6 +44,10 @@ class Counts(NamedTuple):
     low: NDArray[np.int16]
     high: NDArray[np.int16]
 
+    def of(self, fields: NDArray[np.int64]) -> "Counts":
+        """What is known under some of the fields, by number."""
+        return Counts(self.where[fields], self.weight[fields], self.low[fields], self.high[fields])
+
 
 def pictures(
     ground: NDArray[np.int8],
@@ -53,7 +56,7 @@ def pictures(
     number: int,
     warming: int,
     hot: float = 0.5,
-    seed: int = 0,
+    seed: int = 20031,
 ) -> NDArray[np.int8]:
     """(number, rows, columns) int8, 1 where a square is occupied: so many pictures that agree with the counts.
 
@@ -61,8 +64,7 @@ def pictures(
     ----------
     ground : (rows, columns) int8. FREE, FULL, DRAWN (to be found) or UNSEEN (not part of the picture, drawn as 0).
     counts : of squares of the ground. first : the picture to begin with. warming : sweeps until the first one is taken,
-    from the inverse temperature `hot` to COLD. seed : of the chain of chances. The same arguments give the same
-    pictures; those of one chain are much alike, those of chains with other seeds differ where the counts leave it open.
+    from the inverse temperature `hot` to COLD. seed : from 1 to 2^31 - 2. The same arguments give the same pictures.
     """
     image = np.where(ground == DRAWN, first, ground == FULL).astype(np.int8)
     used = (counts.weight > 0) & (ground.ravel()[counts.where] == DRAWN)
@@ -76,7 +78,6 @@ def pictures(
     slopes = np.append(np.linspace(hot, COLD, max(warming, 1)), np.full(SWEEPS * (number - 1), COLD))
     _draw(
         PRICES,
-        FIRST_CHANCE + SEED_STEP * seed,
         np.ascontiguousarray(ground).ravel(),
         image.ravel(),
         squares.astype(np.int64),
@@ -90,6 +91,7 @@ def pictures(
         slopes,
         taken.reshape(number, -1),
         ground.shape[1],
+        seed,
     )
     return taken
 
@@ -102,17 +104,16 @@ def _ranks(squares: NDArray[np.int32], size: int) -> NDArray[np.int64]:
 
 
 @compiled
-def _draw(  # type: ignore[no-untyped-def]
-    price, chance, ground, image, squares, ranks, ends, field, share, where, used, fields, slopes, taken, columns
-):
+def _draw(price, ground, image, squares, ranks, ends, field, share, where, used, fields, slopes, taken, columns, seed):  # type: ignore[no-untyped-def]
+    chance = seed
     first = len(slopes) - SWEEPS * (len(taken) - 1) - 1
     for sweep in range(len(slopes)):
         slope = slopes[sweep]
         for k in range(len(squares)):
             chance = (chance * 48271) % 2147483647
-            change = _flip(price, ground, image, squares, ends, field, share, fields, columns, k)
-            if change > 0 and (slope * change > NEVER or chance > 2147483647 * np.exp(-slope * change)):
-                _flip(price, ground, image, squares, ends, field, share, fields, columns, k)
+            change = _change(price, ground, image, squares, ends, field, share, fields, columns, k)
+            if change <= 0 or (slope * change <= NEVER and chance <= 2147483647 * np.exp(-slope * change)):
+                _flip(image, squares, ends, field, share, fields, k)
             chance = (chance * 48271) % 2147483647
             one = field[ends[k] + chance % (ends[k + 1] - ends[k])]
             chance = (chance * 48271) % 2147483647
@@ -120,21 +121,23 @@ def _draw(  # type: ignore[no-untyped-def]
             if not used[one, entry] or image[where[one, entry]] == image[squares[k]]:
                 continue
             other = ranks[where[one, entry]]
-            change = _flip(price, ground, image, squares, ends, field, share, fields, columns, k)
-            change += _flip(price, ground, image, squares, ends, field, share, fields, columns, other)
+            change = _change(price, ground, image, squares, ends, field, share, fields, columns, k)
+            _flip(image, squares, ends, field, share, fields, k)
+            change += _change(price, ground, image, squares, ends, field, share, fields, columns, other)
             chance = (chance * 48271) % 2147483647
-            if change > 0 and (slope * change > NEVER or chance > 2147483647 * np.exp(-slope * change)):
-                _flip(price, ground, image, squares, ends, field, share, fields, columns, other)
-                _flip(price, ground, image, squares, ends, field, share, fields, columns, k)
+            if change <= 0 or (slope * change <= NEVER and chance <= 2147483647 * np.exp(-slope * change)):
+                _flip(image, squares, ends, field, share, fields, other)
+            else:
+                _flip(image, squares, ends, field, share, fields, k)
         if sweep >= first and (sweep - first) % SWEEPS == 0:
             taken[(sweep - first) // SWEEPS] = image
 
 
 @compiled
-def _flip(price, ground, image, squares, ends, field, share, fields, columns, k):  # type: ignore[no-untyped-def]
-    """Change square k, and say by how much the picture has become dearer."""
+def _change(price, ground, image, squares, ends, field, share, fields, columns, k):  # type: ignore[no-untyped-def]
+    """By how much the picture becomes dearer when square k changes."""
     square = squares[k]
-    value = image[square]
+    more = 1 - 2 * image[square]
     change = 0.0
     for one in range(4):
         corner = square - (one % 2) - (one // 2) * columns  # the lower left of four squares about one of its corners
@@ -150,12 +153,19 @@ def _flip(price, ground, image, squares, ends, field, share, fields, columns, k)
         if not hidden:
             change += price[pattern ^ (1 << one)] - price[pattern]
     for i in range(ends[k], ends[k + 1]):
-        one = field[i]
-        before = max(fields[one, 0] - fields[one, 2], fields[one, 2] - fields[one, 1], 0)
-        fields[one, 2] += share[i] * (1 - 2 * value)
-        change += WRONG * (max(fields[one, 0] - fields[one, 2], fields[one, 2] - fields[one, 1], 0) - before)
-    image[square] = 1 - value
+        low, high, count = fields[field[i]]
+        after = count + share[i] * more
+        change += WRONG * (max(low - after, after - high, 0) - max(low - count, count - high, 0))
     return change
+
+
+@compiled
+def _flip(image, squares, ends, field, share, fields, k):  # type: ignore[no-untyped-def]
+    """Change square k."""
+    square = squares[k]
+    for i in range(ends[k], ends[k + 1]):
+        fields[field[i], 2] += share[i] * (1 - 2 * image[square])
+    image[square] = 1 - image[square]
 
 
 class Blobs(NamedTuple):

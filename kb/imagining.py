@@ -1,8 +1,8 @@
 """What stands where squares are not settled: pictures that agree with all counts, and what they have in common.
 
-Counts that settle no single square may yet tell that something as wide as long stands apart from the wall. Geometry
-draws simple pictures that agree with the counts (geometry.sketch); how many of them show a thing of some shape at a
-place is how likely one is there.
+Counts that settle no single square may yet tell where a wall runs, where a door is in it, and that something as wide as
+long stands apart from it: simple pictures that agree with all counts (kb.picturing) show it. In how many of them a
+square is occupied is how likely it is so.
 """
 
 import math
@@ -11,19 +11,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.sketch import DRAWN, FREE, FULL, UNSEEN, Blobs, blobs, pictures
-from kb.evidence import OPEN, STRAY, MapView
-from kb.lattice import Lattice
+from geometry.sketch import DRAWN, Blobs, blobs
+from kb.evidence import MapView
+from kb.picturing import ground_of, pictured
 
-CHAINS, EACH = 4, 2  # chains of pictures, pictures taken of each
-WARMING, AGAIN = 30, 12  # sweeps before the first picture: of a new map, of one that was pictured before
-HALF = 0.5
 SMALLEST = 4  # squares of a thing that is worth a look
 LOOSE = (0.012, 0.03)  # how much wider than a rectangle a part may be spread: at least, and if it is one square wide
 TIGHT = (0.003, 0.15)  # how much less: corners seen rounded, but less than a disc's; likewise, by its squares
 EVEN = (0.12, 0.4)  # likewise how much longer than wide a square may seem, by the squares that it covers
-DEEP = 2  # squares: within what is full or empty so far from its edge nothing is pictured
-SURELY = 0.93  # under a field that shows the last gray level and yet may miss a square
 DISC = 1 / (2 * math.pi)
 OTHERS = 0.04  # by so much and more is the spread of what is neither wider than a rectangle's
 Floats = NDArray[np.float64]
@@ -58,52 +53,10 @@ class Imagined(NamedTuple):
 NOTHING_IMAGINED = Imagined(np.zeros((0, 0), np.int8), np.zeros((0, 0, 0), np.int8))
 
 
-class Imagination:
-    """Pictures the unsettled part of the map, and remembers the last pictures to begin the next ones with."""
-
-    def __init__(self) -> None:
-        self._lattice: Lattice | None = None
-        self._corner = (0, 0)
-        self._last = np.zeros((CHAINS, 0, 0), np.int8)
-
-    def imagine(self, view: MapView, lattice: Lattice) -> Imagined:
-        """Pictures of a map, from chains of chances that know nothing of each other."""
-        ground, known = _ground(view), lattice == self._lattice
-        warming, hot = (AGAIN, 1.0) if known else (WARMING, HALF)
-        drawn = np.concatenate(
-            [
-                pictures(ground, view.counts, self._first(chain, view, known), EACH, warming, hot, chain)
-                for chain in range(CHAINS)
-            ]
-        )
-        self._lattice, self._corner, self._last = lattice, (view.west, view.south), drawn[EACH - 1 :: EACH]
-        return Imagined(ground, drawn)
-
-    def _first(self, chain: int, view: MapView, known: bool) -> NDArray[np.int8]:
-        """The picture to begin with: the last one where most of it was pictured before."""
-        image = (view.probability > HALF).astype(np.int8)
-        if known:
-            west, south = self._corner[0] - view.west, self._corner[1] - view.south
-            rows, columns = self._last.shape[1:]
-            image[south : south + rows, west : west + columns] = self._last[chain]
-        return image
-
-
-def _ground(view: MapView) -> NDArray[np.int8]:
-    """What is given of the pictures: what is settled, and what lies amid its like."""
-    ground = np.where(view.seen, np.where(view.state == OPEN, DRAWN, view.state), UNSEEN)
-    ground[(ground == DRAWN) & _amid(view.probability > SURELY)] = FULL
-    ground[(ground == DRAWN) & _amid(view.seen & (view.probability <= STRAY))] = FREE
-    return ground.astype(np.int8)
-
-
-def _amid(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The squares of a mask all of whose neighbours within DEEP rows or columns are of it."""
-    for axis in (0, 1):
-        framed = np.pad(mask, [(DEEP, DEEP) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
-        parts = [np.take(framed, np.arange(k, k + mask.shape[axis]), axis) for k in range(2 * DEEP + 1)]
-        mask = np.logical_and.reduce(parts)
-    return mask
+def imagine(view: MapView) -> Imagined:
+    """Pictures of a map."""
+    ground = ground_of(view)
+    return Imagined(ground, pictured(view, ground))
 
 
 def likeness(found: Blobs, shape: str) -> Floats:

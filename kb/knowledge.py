@@ -16,7 +16,7 @@ from geometry.components import boxes
 from kb.accommodation import Accommodated, Memory
 from kb.body import DIRECTIONS, Command, Grasp, Impression
 from kb.evidence import FREE, FULL, OPEN, MapView
-from kb.imagining import Imagination
+from kb.imagining import imagine
 from kb.interpretation import Kinds, interpret, shapes
 from kb.loads import Load, slack_of
 from kb.measuring import Measured, Measurer
@@ -40,7 +40,6 @@ class Knowledge:
         self.objects: tuple[Node, ...] = ()
         self._names = Names()
         self._measurer = Measurer()
-        self._imagination = Imagination()
 
     def wake(self, impression: Impression) -> tuple[WorldModel, Accommodated]:
         """The first world model: the default one, an empty floor about Utak, accommodated to the first impression."""
@@ -76,7 +75,7 @@ class Knowledge:
             self.felt.clear()  # its squares were those of another lattice
         self._feel(impression)
         counted = self.memory.evidence.view()
-        imagined = self._imagination.imagine(counted, self.memory.lattice)
+        imagined = imagine(counted)
         view = counted._replace(
             probability=imagined.probability(counted.probability), by_counts=counted.probability, sure=self.memory.sure
         )

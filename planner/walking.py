@@ -12,6 +12,7 @@ from planner.screen import Screens
 from planner.steps import Square, clear
 
 LONGEST = {"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}  # squares of one move, by its aim
+SHORT = 6  # squares of one move while it is open how the lattice lies, and so where he goes
 ASKEW = math.radians(5)  # by which the lattice may lie otherwise before he takes care where he halts
 DIGITS = 12  # of a command
 ASIDE = (0.0618, 0.0341)  # squares from a centre, where no turn by whole degrees leads to the line between two squares
@@ -24,11 +25,12 @@ def next_move(screens: Screens, path: Sequence[Square], kind: str, about: tuple[
     about : a point (of the view's frame) about which the move must wind as the way does, when that matters.
     """
     safe, here = screens.safe, path[0]
+    longest = LONGEST[kind] if screens.model.spread <= ASKEW else min(LONGEST[kind], SHORT)
     there = path[1]
     for number in range(len(path) - 1, 1, -1):
         square = path[number]
         far = max(abs(square[0] - here[0]), abs(square[1] - here[1]))
-        if far <= LONGEST[kind] and clear(safe, here, square) and _same_side(path[: number + 1], about):
+        if far <= longest and clear(safe, here, square) and _same_side(path[: number + 1], about):
             there = square
             break
     return move_to(screens.model, there)

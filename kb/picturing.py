@@ -1,0 +1,138 @@
+"""Pictures of what no count settles: drawn for one scene at a time, and each scene only once.
+
+The squares that are not settled fall into scenes that tell nothing of each other: no field looks at two of them, and
+settled squares lie in between. So what is drawn of a scene stays as it is until a look tells something new of it.
+"""
+
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.components import Components, boxes, components
+from geometry.sketch import DRAWN, FREE, FULL, UNSEEN, Counts, pictures
+from kb.evidence import OPEN, STRAY, MapView
+from kb.lattice import MOST
+
+SEEDS = (20031, 70507, 40423)  # of as many series of pictures, each begun anew: one alone may be caught in a wrong one
+SERIES = 4  # pictures in each
+PICTURES = len(SEEDS) * SERIES
+WARMING = 30  # sweeps before the first picture
+HOT = 0.5  # the inverse temperature of the first sweep
+DEEP = 2  # squares: within what is full or empty so far from its edge nothing is pictured
+SURELY = 0.93  # under a field that shows the last gray level and yet may miss a square
+HALF = 0.5
+REMEMBERED = 1024  # scenes
+Mask = NDArray[np.bool_]
+Image = NDArray[np.int8]
+
+
+class Scene(NamedTuple):
+    """A part of the map to be pictured. ground, first: as for geometry.sketch.pictures, cut to the part.
+
+    rows, columns : where it lies on the map. counts : of the squares to be drawn alone, with flat indices of the part.
+    """
+
+    rows: slice
+    columns: slice
+    ground: Image
+    first: Image
+    counts: Counts
+
+
+def ground_of(view: MapView) -> Image:
+    """(rows, columns): what is given of the pictures, namely what is settled, and what lies amid its like."""
+    ground = np.where(view.seen, np.where(view.state == OPEN, DRAWN, view.state), UNSEEN).astype(np.int8)
+    drawn = ground == DRAWN
+    ground[drawn & amid(view.probability > SURELY, DEEP)] = FULL
+    ground[drawn & amid(~view.seen | (view.probability <= STRAY), DEEP)] = FREE
+    return ground
+
+
+def pictured(view: MapView, ground: Image) -> Image:
+    """(PICTURES, rows, columns), 1 where a square is occupied: pictures that agree with all counts."""
+    images = np.repeat((ground == FULL).astype(np.int8)[None], PICTURES, axis=0)
+    for scene in scenes(view, ground):
+        drawn = _drawn(*(a.tobytes() for a in (scene.ground, scene.first, *scene.counts)), scene.ground.shape)
+        images[:, scene.rows, scene.columns][:, scene.ground == DRAWN] = drawn
+    return images
+
+
+def scenes(view: MapView, ground: Image) -> Iterator[Scene]:
+    """The parts of a map that tell nothing of each other."""
+    open_ = ground == DRAWN
+    counts = _left(view.counts, ground)
+    near = components(~amid(~open_, 1))
+    labels = _joined(near, counts)
+    labels[~open_] = 0
+    owner = labels.ravel()[counts.where[np.arange(len(counts.where)), (counts.weight > 0).argmax(1)]]
+    order = np.argsort(owner, kind="stable")
+    first = (view.probability > HALF).astype(np.int8)
+    for label, (south, west, north, east) in enumerate(boxes(labels, near.number).tolist()):
+        if label == 0 or north < 0:
+            continue
+        rows, columns = slice(max(south - 1, 0), north + 2), slice(max(west - 1, 0), east + 2)
+        own = labels[rows, columns] == label
+        part = ground[rows, columns]
+        part = np.where(own | (part != DRAWN), part, np.int8(UNSEEN))
+        begin, end = np.searchsorted(owner[order], [label, label + 1])
+        told = counts.of(order[begin:end])
+        up, along = np.divmod(told.where, ground.shape[1])
+        inside = (up - rows.start) * part.shape[1] + along - columns.start
+        told = told._replace(where=np.where(told.weight > 0, inside, 0).astype(np.int32))
+        yield Scene(rows, columns, part, first[rows, columns], told)
+
+
+def _left(counts: Counts, ground: Image) -> Counts:
+    """What the fields that look at squares to be drawn say of these alone."""
+    under = ground.ravel()[counts.where]
+    weight = np.where(under == DRAWN, counts.weight, np.int16(0))
+    full = np.where(under == FULL, counts.weight, np.int16(0)).sum(1, dtype=np.int16)
+    left = counts._replace(weight=weight, low=counts.low - full, high=counts.high - full)
+    return left.of(np.flatnonzero(weight.any(1)))
+
+
+def _joined(near: Components, counts: Counts) -> NDArray[np.int32]:
+    """The labels of parts, those with one number that a field looks at together."""
+    under = near.labels.ravel()[counts.where]
+    used = counts.weight > 0
+    one = np.where(used, under, near.number + 1).min(1, initial=near.number + 1)
+    root = np.arange(near.number + 1, dtype=np.int32)
+    pairs = np.stack([np.repeat(one, used.sum(1)), under[used]], axis=1)
+    for a, b in np.unique(pairs[pairs[:, 0] != pairs[:, 1]], axis=0).tolist():
+        while root[a] != a:
+            a = root[a]
+        while root[b] != b:
+            b = root[b]
+        root[max(a, b)] = min(a, b)
+    for label in range(near.number + 1):  # a root comes before all that hang on it
+        root[label] = root[root[label]]
+    joined: NDArray[np.int32] = root[near.labels]
+    return joined
+
+
+def amid(mask: Mask, deep: int) -> Mask:
+    """The squares of a mask all of whose neighbours within so many rows or columns are of it."""
+    for axis in (0, 1):
+        framed = np.pad(mask, [(deep, deep) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
+        parts = [np.take(framed, np.arange(k, k + mask.shape[axis]), axis) for k in range(2 * deep + 1)]
+        mask = np.logical_and.reduce(parts)
+    return mask
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _drawn(
+    ground: bytes, first: bytes, where: bytes, weight: bytes, low: bytes, high: bytes, shape: tuple[int, int]
+) -> Image:
+    """(PICTURES, n): the pictures of a scene, at the squares that are to be drawn."""
+    given, begin = (np.frombuffer(a, np.int8).reshape(shape) for a in (ground, first))
+    counts = Counts(
+        np.frombuffer(where, np.int32).reshape(-1, MOST),
+        np.frombuffer(weight, np.int16).reshape(-1, MOST),
+        np.frombuffer(low, np.int16),
+        np.frombuffer(high, np.int16),
+    )
+    series = [pictures(given, counts, begin, SERIES, WARMING, HOT, seed) for seed in SEEDS]
+    return np.concatenate(series)[:, given == DRAWN]
