@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.bones import Bones, Floats, Ints, is_node, onward, stride
+from geometry.bones import Bones, Floats, Ints, is_node, onward
 from geometry.compiled import compiled
-from geometry.skeleton import Flags, States
+from geometry.skeleton import Flags, States, stride
 
 
 class Chains(NamedTuple):

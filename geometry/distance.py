@@ -24,22 +24,24 @@ Sites = NDArray[np.int64]
 
 
 @compiled
-def count_columns(free: Bools, square: Squares) -> None:
-    """Fill ``square`` with the steps to the nearest blocked square below, in the same column."""
+def count_columns(free: Bools, steps: Gaps) -> None:
+    """Fill ``steps`` (rows + 1, columns + 2 or more) with the steps to the nearest blocked square below, in the same
+    column."""
     rows, columns = free.shape
-    square[0, :] = 0
-    square[rows + 1, :] = 0
+    for j in range(columns + 2):
+        steps[0, j] = 0
     for row in range(rows):
-        here, below, out = free[row], square[row], square[row + 1]
+        here, below, out = free[row], steps[row], steps[row + 1]
         out[0] = 0
         out[columns + 1] = 0
         for column in range(columns):
-            out[column + 1] = np.int32((below[column + 1] + 1) * here[column])
+            out[column + 1] = np.int16((below[column + 1] + np.int16(1)) * here[column])
 
 
 @compiled
 def measure_run(gap: Gaps, square: Squares, first: int, last: int, sites: Sites, heights: Sites) -> None:
-    """Fill the run ``first <= column < last`` of free squares, blocked on both sides."""
+    """Fill the free squares ``first <= column < last``. What lies beyond the squares on either side does not count:
+    so they are blocked, or too far off to matter."""
     top = envelope(gap, first, last, sites, heights)
     best = 0
     for column in range(first, last):
@@ -58,11 +60,9 @@ def measure_run(gap: Gaps, square: Squares, first: int, last: int, sites: Sites,
 @compiled
 def envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> int:
     """The sites whose parabolas are lowest somewhere; relative to ``first``. Returns the index of the last."""
-    sites[0] = -1
-    heights[0] = 1
-    top = 0
-    before = np.int64(gap[first])
-    for column in range(first + 1, last + 1):
+    top = -1
+    before = np.int64(gap[first - 1])
+    for column in range(first, last + 1):
         here = np.int64(gap[column])
         lower = before if before < here else here
         edge = 2 * lower - 1 if lower > 0 else 0

@@ -17,7 +17,19 @@ from geometry.chains import Chains
 from geometry.compiled import compiled
 from geometry.distance import Squares
 from geometry.runs import root
-from geometry.skeleton import SADDLE, SUMMIT, States, above, beside, steepest
+from geometry.skeleton import (
+    GROUPS,
+    LINKS,
+    SADDLE,
+    SUMMIT,
+    States,
+    above,
+    beside,
+    higher_about,
+    highest_of,
+    steepest,
+    stride,
+)
 from geometry.ways import locate
 
 XY = tuple[float, float]
@@ -130,22 +142,16 @@ def find_sides(square: Squares, state: States, saddles: Ints, count: Ints, first
     width = square.shape[1]
     heights, states = square.reshape(-1), state.reshape(-1)
     for k in range(saddles.shape[0]):
-        saddle, start = saddles[k], 0
-        while above(saddle + beside(start, width), saddle, heights):
-            start += 1
-        best = -1
-        for j in range(start + 1, start + 9):
-            cell = saddle + beside(j, width)
-            if not above(cell, saddle, heights):
-                if best >= 0:
-                    first[k, count[k]] = best
-                    while not states[best] & SUMMIT:
-                        best = steepest(best, heights, width)
-                    summit[k, count[k]] = best
-                    count[k] += 1
-                best = -1
-            elif j % 2 == 0 and (best < 0 or above(cell, best, heights)):
-                best = cell
+        saddle, found = 0 + saddles[k], 0
+        rest = int(GROUPS[higher_about(saddle, heights, width)])
+        while rest != 0:
+            best = saddle + stride(highest_of(saddle, rest & LINKS, heights, width), width)
+            first[k, found] = best
+            while not states[best] & SUMMIT:
+                best = steepest(best, heights, width)
+            summit[k, found] = best
+            found, rest = found + 1, rest >> 4
+        count[k] = found
 
 
 @compiled

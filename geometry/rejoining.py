@@ -7,10 +7,10 @@ in the order that bones.py would give them.
 
 import numpy as np
 
-from geometry.bones import Bones, Floats, Ints, find, is_node, onward, pace, stride
+from geometry.bones import Bones, Floats, Ints, find, first_way, is_node, onward, pace
 from geometry.compiled import compiled
 from geometry.regrowth import JOINED, MOVED, Journal
-from geometry.skeleton import HALT, LINKS, Flags, Heights
+from geometry.skeleton import HALT, LINKS, Flags, Heights, stride
 
 GONE = 31  # a node that is none any more, or has changed: all its ends are open
 
@@ -76,9 +76,7 @@ def find_rings(states: Flags, width: int, cells: Ints, bases: Ints) -> int:
         cell = cells[k]
         if states[cell] & LINKS == 0 or is_node(states[cell]):
             continue
-        direction, lowest = 0, cell
-        while not states[cell] >> direction & 1:
-            direction += 1
+        direction, lowest = first_way(int(states[cell])), cell
         cell += stride(direction, width)
         while cell != cells[k] and not is_node(states[cell]):
             lowest = cell if cell < lowest else lowest

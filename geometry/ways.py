@@ -6,14 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.bones import Floats, Ints, find, is_node, onward, stride
+from geometry.bones import Floats, Ints, find, first_way, is_node, onward
 from geometry.chains import Chains
 from geometry.compiled import compiled
 from geometry.distance import Squares
 from geometry.heap import pop, push
 from geometry.rope import Rope, measure_line, new_rope, tighten_word
 from geometry.runs import Runs, extend, symbol_between
-from geometry.skeleton import Flags, Heights, steepest
+from geometry.skeleton import Flags, Heights, steepest, stride
 
 LANDMARKS = 6
 
@@ -166,10 +166,7 @@ def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start:
     """The place of a skeleton cell on the pathgraph."""
     if is_node(0 + states[cell]):
         return locate_node(cell, node, leave, start, cells)
-    direction = 0
-    while not states[cell] >> direction & 1:
-        direction += 1
-    steps, here = 0, cell
+    direction, steps, here = first_way(int(states[cell])), 0, cell
     while steps == 0 or not is_node(0 + states[here]):
         if steps > 0:
             direction = onward(0 + states[here], direction ^ 2)
