@@ -15,17 +15,31 @@ from geometry.windows import Ints
 TILE = 32  # changed squares in one tile of so many squares a side are taken together
 
 
-def boxes_of(cells: Ints, width: int) -> Ints:
+def boxes_of(cells: Ints, shape: tuple[int, ...]) -> Ints:
     """(n, 4) first and last row, first and last column of the boxes about changed cells, tile by tile."""
-    rows, columns = cells // width, cells % width
-    tiles = (rows // TILE) * (width // TILE + 1) + columns // TILE
-    _, where = np.unique(tiles, return_inverse=True)
-    out = np.empty((int(where.max()) + 1, 4), np.int32)
-    out[:, ::2], out[:, 1::2] = np.iinfo(np.int32).max, -1
-    for k, values in enumerate((rows, columns)):
-        np.minimum.at(out[:, 2 * k], where, values)
-        np.maximum.at(out[:, 2 * k + 1], where, values)
-    return out
+    rows, width = shape
+    boxes = np.empty((len(cells), 4), np.int32)
+    slot = np.full((rows // TILE + 1) * (width // TILE + 1), -1, np.int32)
+    return boxes[: fill_boxes(cells, width, slot, boxes)]
+
+
+@compiled
+def fill_boxes(cells: Ints, width: int, slot: Ints, boxes: Ints) -> int:
+    """Fill the boxes; returns how many. ``slot`` has, per tile, the number of its box, -1 for none."""
+    found = 0
+    for k in range(cells.shape[0]):
+        row, column = cells[k] // width, cells[k] % width
+        tile = row // TILE * (width // TILE + 1) + column // TILE
+        box = slot[tile]
+        if box < 0:
+            slot[tile] = box = found
+            boxes[box, 0], boxes[box, 1], boxes[box, 2], boxes[box, 3] = row, row, column, column
+            found += 1
+        boxes[box, 0] = row if row < boxes[box, 0] else boxes[box, 0]
+        boxes[box, 1] = row if row > boxes[box, 1] else boxes[box, 1]
+        boxes[box, 2] = column if column < boxes[box, 2] else boxes[box, 2]
+        boxes[box, 3] = column if column > boxes[box, 3] else boxes[box, 3]
+    return found
 
 
 @compiled

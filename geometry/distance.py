@@ -40,8 +40,7 @@ def count_columns(free: Bools, steps: Gaps) -> None:
 
 @compiled
 def measure_run(gap: Gaps, square: Squares, first: int, last: int, sites: Sites, heights: Sites) -> None:
-    """Fill the free squares ``first <= column < last``. What lies beyond the squares on either side does not count:
-    so they are blocked, or too far off to matter."""
+    """Fill the run ``first <= column < last`` of free squares, blocked on both sides."""
     top = envelope(gap, first, last, sites, heights)
     best = 0
     for column in range(first, last):
@@ -60,9 +59,11 @@ def measure_run(gap: Gaps, square: Squares, first: int, last: int, sites: Sites,
 @compiled
 def envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> int:
     """The sites whose parabolas are lowest somewhere; relative to ``first``. Returns the index of the last."""
-    top = -1
-    before = np.int64(gap[first - 1])
-    for column in range(first, last + 1):
+    sites[0] = -1
+    heights[0] = 1
+    top = 0
+    before = np.int64(gap[first])
+    for column in range(first + 1, last + 1):
         here = np.int64(gap[column])
         lower = before if before < here else here
         edge = 2 * lower - 1 if lower > 0 else 0

@@ -28,7 +28,7 @@ def rejoin(heights: Heights, width: int, bones: Bones, journal: Journal) -> Bone
     open_ends = np.zeros(len(bones.node), np.uint8)
     find_open(states, mark, width, cells, before, bones.node, open_ends)
     bases = np.empty(len(cells), np.int32)
-    rings = find_rings(states, width, cells, bases)
+    rings = find_rings(states, mark, width, cells, bases)
     grown = np.unique(np.concatenate([cells, bases[:rings]]))
     keep_nodes(states, grown)
     grown = grown[grown > 0]
@@ -69,8 +69,11 @@ def find_open(states: Flags, mark: Flags, width: int, cells: Ints, before: Flags
 
 
 @compiled
-def find_rings(states: Flags, width: int, cells: Ints, bases: Ints) -> int:
-    """Flag the first cell of every ring without a junction on which a changed cell lies; returns how many."""
+def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints) -> int:
+    """Flag the first cell of every ring without a junction on which a changed cell lies; returns how many.
+
+    Of the changed cells on a ring only the first comes round.
+    """
     found = 0
     for k in range(cells.shape[0]):
         cell = cells[k]
@@ -78,7 +81,7 @@ def find_rings(states: Flags, width: int, cells: Ints, bases: Ints) -> int:
             continue
         direction, lowest = first_way(int(states[cell])), cell
         cell += stride(direction, width)
-        while cell != cells[k] and not is_node(states[cell]):
+        while cell != cells[k] and not is_node(states[cell]) and (cell > cells[k] or not mark[cell] & JOINED):
             lowest = cell if cell < lowest else lowest
             direction = onward(states[cell], direction ^ 2)
             cell += stride(direction, width)

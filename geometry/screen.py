@@ -272,6 +272,9 @@ def checked_squares(
         raise ValueError("rows and columns must be whole numbers")
     if len(i) and not (i.min() >= 0 and i.max() < shape[0] and j.min() >= 0 and j.max() < shape[1]):
         raise ValueError(f"a changed square lies outside the screen of {shape[0]} rows and {shape[1]} columns")
-    last = {(a, b): v for a, b, v in zip(i.tolist(), j.tolist(), np.broadcast_to(value.ravel(), i.shape), strict=True)}
-    spots = np.array(list(last), np.int32).reshape(-1, 2)
-    return spots[:, 0].copy(), spots[:, 1].copy(), np.array(list(last.values()), np.bool_)
+    values = np.broadcast_to(value.ravel(), i.shape)
+    if len(np.unique(i.astype(np.int64) * shape[1] + j)) < len(i):
+        last = {(a, b): v for a, b, v in zip(i.tolist(), j.tolist(), values.tolist(), strict=True)}
+        i, j = np.array(list(last)).T
+        values = np.array(list(last.values()))
+    return i.astype(np.int32), j.astype(np.int32), values

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.compiled import compiled
-from geometry.distance import Gaps, Sites, Squares, measure_run
+from geometry.distance import Bools, Gaps, Sites, Squares, count_columns, measure_run
 
 Ints = NDArray[np.int32]
 
@@ -44,6 +44,13 @@ def new_window(width: int) -> Window:
     own, reach = np.zeros(width + 2 * ROOM, np.int16), np.zeros(-(-width // STRETCH), np.int32)
     sites, heights = np.empty((2, width + 1), np.int64)
     return Window(np.zeros(width, np.int16), own, np.empty(width, np.int16), reach, sites, heights)
+
+
+def measure(free: Bools, square: Squares) -> None:
+    """Fill ``square`` (rows + 2, columns + 2) for free squares (rows, columns)."""
+    steps = square.view(np.int16)
+    count_columns(free, steps)
+    measure_rows(square, steps, 1, len(free), new_window(square.shape[1]))
 
 
 @compiled
