@@ -8,7 +8,7 @@ how many cells can be skipped.
 
 import numpy as np
 
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Squares
 from geometry.windows import Ints
 
@@ -23,7 +23,7 @@ def boxes_of(cells: Ints, shape: tuple[int, ...]) -> Ints:
     return boxes[: fill_boxes(cells, width, slot, boxes)]
 
 
-@compiled
+@bare
 def fill_boxes(cells: Ints, width: int, slot: Ints, boxes: Ints) -> int:
     """Fill the boxes; returns how many. ``slot`` has, per tile, the number of its box, -1 for none."""
     found = 0
@@ -42,7 +42,7 @@ def fill_boxes(cells: Ints, width: int, slot: Ints, boxes: Ints) -> int:
     return found
 
 
-@compiled
+@bare
 def find_affected(square: Squares, boxes: Ints, bounds: Ints) -> None:
     """Fill the first two columns of ``bounds`` (rows, 2 or more), per row the first and last cell that may change."""
     for row in range(bounds.shape[0]):
@@ -56,7 +56,7 @@ def find_affected(square: Squares, boxes: Ints, bounds: Ints) -> None:
                 break
 
 
-@compiled
+@bare
 def widen(square: Squares, boxes: Ints, k: int, row: int, bounds: Ints) -> bool:
     """Include a row's cells that a box may change; returns whether there may be any in the next row."""
     left, right = boxes[k, 2], boxes[k, 3]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Squares
 from geometry.skeleton import HALT, LINKS, SADDLE, Flags, Heights, States, Words, above, stride
 
@@ -49,7 +49,7 @@ def contract(square: Squares, state: States, words: Words) -> Bones:
         halt_rings(heights, states, width, words)
 
 
-@compiled
+@bare
 def halt_rings(heights: Heights, states: Flags, width: int, words: Words) -> None:
     """Flag the first cell of every ring that has no junction. On each there is a lowest cell, a saddle."""
     for word in range(words.shape[0]):
@@ -62,7 +62,7 @@ def halt_rings(heights: Heights, states: Flags, width: int, words: Words) -> Non
                     states[first] |= HALT
 
 
-@compiled
+@bare
 def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> int:
     """The first cell of the ring without a node of which a saddle is the lowest; -1 when it is not."""
     cell, direction, first = saddle, first_way(int(states[saddle])), saddle
@@ -77,14 +77,14 @@ def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> i
         direction = onward(here, direction ^ 2)
 
 
-@compiled
+@bare
 def is_node(here: int) -> bool:
     """Whether a cell of this state is a node: flagged, or one that has links or flags but not two links."""
     links = (here & 5) + (here >> 1 & 5)
     return bool((here != 0) & ((here & HALT != 0) | ((links & 3) + (links >> 2) != 2)))
 
 
-@compiled
+@bare
 def count(states: Flags, words: Words, index: Ints) -> tuple[int, int, int]:
     """Nodes, chain ends at nodes, and links of the whole skeleton.
 
@@ -105,7 +105,7 @@ def count(states: Flags, words: Words, index: Ints) -> tuple[int, int, int]:
     return nodes, ends, links // 2
 
 
-@compiled
+@bare
 def collect(states: Flags, words: Words, node: Ints) -> None:
     """List the nodes; ``node`` has room for one more."""
     found = 0
@@ -117,7 +117,7 @@ def collect(states: Flags, words: Words, node: Ints) -> None:
             found += int(is_node(int(states[cell])))
 
 
-@compiled
+@bare
 def pace_all(
     heights: Heights,
     states: Flags,
@@ -148,7 +148,7 @@ def pace_all(
     return walked
 
 
-@compiled
+@bare
 def pace(cell: int, direction: int, heights: Heights, states: Flags, width: int) -> tuple[int, int, int, float, int]:
     """Walk one chain.
 
@@ -177,21 +177,21 @@ def pace(cell: int, direction: int, heights: Heights, states: Flags, width: int)
         direction = onward(here, direction ^ 2)
 
 
-@compiled
+@bare
 def onward(here: int, back: int) -> int:
     """The other direction of a cell with two links."""
     rest = int(here & LINKS) ^ (1 << back)
     return (rest >> 1) - (rest >> 3)
 
 
-@compiled
+@bare
 def first_way(here: int) -> int:
     """The first direction of a cell with links."""
     first = here & -here
     return (first >> 1) - (first >> 3)
 
 
-@compiled
+@bare
 def find(node: Ints, cell: int) -> int:
     """The node of a cell, or the next one, by bisection."""
     low, high = 0, node.shape[0]

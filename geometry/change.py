@@ -9,7 +9,7 @@ import numpy as np
 
 from geometry.affected import boxes_of, find_affected
 from geometry.bones import Bones, Ints, contract
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Bools, Squares
 from geometry.regrowth import regrow
 from geometry.rejoining import rejoin
@@ -59,7 +59,7 @@ def change_squares(
     return rejoin(heights, width, bones, regrow(square, state, bounds, fresh.reshape(-1)))
 
 
-@compiled
+@bare
 def block_about(square: Squares, bounds: Ints) -> tuple[int, int, int, int]:
     """First and last row, first and last column of a block in which the cells within the bounds can be measured.
 
@@ -79,13 +79,13 @@ def block_about(square: Squares, bounds: Ints) -> tuple[int, int, int, int]:
     return low, high, west if west > 0 else 0, east if east < columns - 1 else columns - 1
 
 
-@compiled
+@bare
 def reach_of(square: Squares, row: int, column: int) -> int:
     """A whole number of squares above a cell's clearance."""
     return int(0.5 * np.sqrt(float(square[row, column])) + 2.0)
 
 
-@compiled
+@bare
 def narrow(square: Squares, fresh: Squares, low: int, west: int, bounds: Ints) -> None:
     """Narrow the bounds to the cells that differ; their third column gets where in ``fresh``, flat, the first one is.
 

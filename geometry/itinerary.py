@@ -9,13 +9,13 @@ import numpy as np
 from geometry.alternatives import Album, new_album, shortest_ways
 from geometry.bones import Floats, Ints
 from geometry.chains import Chains
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.layer import Layer
 from geometry.rope import Ends, Rope, measure_line, new_rope, tighten_word
-from geometry.runs import Runs, extend
+from geometry.runs import Runs
 from geometry.search import Query, Search, new_search
 from geometry.skeleton import Flags, Heights, States
-from geometry.ways import Anchor, Ways, add_chain, ascend, locate
+from geometry.ways import Anchor, Ways, add_chain, add_word, ascend, locate
 
 
 class Answers(NamedTuple):
@@ -109,7 +109,7 @@ def ground_of(layer: Layer) -> Ground:
     return Ground(heights, states, layer.square.shape[1], layer.chains, layer.runs, layer.ways, layer.body)
 
 
-@compiled
+@bare
 def itineraries(ground: Ground, ends: Ends, wanted: int, desk: Desk) -> int:
     """Fill the desk's answers with up to ``wanted`` tight routes, by the length of their ways over the pathgraph.
 
@@ -138,13 +138,13 @@ def itineraries(ground: Ground, ends: Ends, wanted: int, desk: Desk) -> int:
         row = 0 + album.place[k]
         steps = stretches(chains.ends, chains.start, album.arcs, row, 0 + album.size[row], start, goal, stretch)
         desk.answers.lowest[k] = lowest_on(chains.start, chains.cells, chains.neck, heights, stretch, steps, floor)
-        size = spell(chains.start, ways.symbol, desk.start, rise, stretch, steps, desk.goal, fall, desk.whole)
+        size = spell(chains.start, ways, desk.start, rise, stretch, steps, desk.goal, fall, desk.whole)
         if not publish(runs, body, desk.whole, size, ends, desk.rope, stretch, steps, desk.answers, k):
             return OVERFLOW
     return found
 
 
-@compiled
+@bare
 def split(shut: States, start: Anchor, goal: Anchor, flag: int) -> None:
     """Shut the chains that an anchor splits (flag 2), or open them again (0)."""
     if start.node < 0:
@@ -153,7 +153,7 @@ def split(shut: States, start: Anchor, goal: Anchor, flag: int) -> None:
         shut[goal.chain] = shut[goal.chain] & 1 | flag
 
 
-@compiled
+@bare
 def bow(line: Floats, ends: Ends, share: float) -> None:
     """Make arcs dearer by that share of their length times their distance from the straight line, in its lengths."""
     dx, dy = ends[2] - ends[0], ends[3] - ends[1]
@@ -164,7 +164,7 @@ def bow(line: Floats, ends: Ends, share: float) -> None:
     line[2], line[3] = -dy * share / square, dx * share / square
 
 
-@compiled
+@bare
 def pose(query: Query, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, length: Floats) -> None:
     """Set the query's five arcs."""
     joint, cost, bars, closed = query.joint, query.cost, query.bars, query.closed
@@ -189,7 +189,7 @@ def pose(query: Query, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, le
         cost[1 - backward] = cost[2 + backward] = np.inf
 
 
-@compiled
+@bare
 def part(bars: Ints, starts: Ints, length: Floats, chain: int, begin: int, end: int) -> float:
     """The length of a part of a chain, in proportion to its cells; infinite when it passes a barred place."""
     low, high = (begin, end) if begin < end else (end, begin)
@@ -199,7 +199,7 @@ def part(bars: Ints, starts: Ints, length: Floats, chain: int, begin: int, end: 
     return float(length[chain] * (high - low) / (starts[chain + 1] - starts[chain] - 1))
 
 
-@compiled
+@bare
 def sight_ends(joint: Ints, cost: Floats, sight: Floats, out: Floats) -> None:
     """The distances of goal and start from the landmarks."""
     for k in range(sight.shape[1]):
@@ -211,7 +211,7 @@ def sight_ends(joint: Ints, cost: Floats, sight: Floats, out: Floats) -> None:
             out[end, k] = least
 
 
-@compiled
+@bare
 def stretches(ends: Ints, starts: Ints, arcs: Ints, row: int, size: int, start: Anchor, goal: Anchor, out: Ints) -> int:
     """Write the chains that a way walks, and the positions between which; returns how many."""
     first, used = 2 * ends.shape[0], 0
@@ -238,7 +238,7 @@ def stretches(ends: Ints, starts: Ints, arcs: Ints, row: int, size: int, start: 
     return used
 
 
-@compiled
+@bare
 def lowest_on(starts: Ints, cells: Ints, neck: Ints, heights: Heights, stretch: Ints, steps: int, lowest: int) -> int:
     """The least square on a way, at most the given one."""
     for k in range(steps):
@@ -254,23 +254,23 @@ def lowest_on(starts: Ints, cells: Ints, neck: Ints, heights: Heights, stretch: 
     return lowest
 
 
-@compiled
+@bare
 def spell(
-    starts: Ints, symbol: Ints, rise: Ints, risen: int, stretch: Ints, steps: int, fall: Ints, fallen: int, word: Ints
+    starts: Ints, ways: Ways, rise: Ints, risen: int, stretch: Ints, steps: int, fall: Ints, fallen: int, word: Ints
 ) -> int:
     """Write the portals of a way from start to goal; returns the word's size."""
-    for k in range(risen):
-        word[k] = rise[k]
-    size = risen
+    symbol, words, spelt = ways.symbol, ways.word, ways.spelt
+    size = add_word(rise, 0, risen, False, word, 0)
     for k in range(steps):
         chain, begin, end = 0 + stretch[k, 0], 0 + stretch[k, 1], 0 + stretch[k, 2]
-        size = add_chain(starts, symbol, chain, begin, end, word, size)
-    for k in range(fallen - 1, -1, -1):
-        size = extend(word, size, 0 - fall[k])
-    return size
+        if abs(end - begin) == starts[chain + 1] - starts[chain] - 1:
+            size = add_word(words, 0 + spelt[chain], 0 + spelt[chain + 1], end < begin, word, size)
+        else:
+            size = add_chain(starts, symbol, chain, begin, end, word, size)
+    return add_word(fall, 0, fallen, True, word, size)
 
 
-@compiled
+@bare
 def publish(
     runs: Runs,
     body: bool,

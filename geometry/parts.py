@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.bones import Ints
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Bools, Squares
 from geometry.passages import Passage, crosses
 
@@ -42,7 +42,7 @@ def cut(shut: Bools, passage: Passage) -> None:
                 shut[1, row + 1, column + 1] |= crosses(passage, (x, y), (x, y + 1.0))
 
 
-@compiled
+@bare
 def number_parts(free: Bools, shut: Bools, label: Labels, stack: Ints) -> int:
     """Number the parts of the padded free cells; returns how many there are."""
     width = free.shape[1]
@@ -70,7 +70,7 @@ def number_parts(free: Bools, shut: Bools, label: Labels, stack: Ints) -> int:
     return count
 
 
-@compiled
+@bare
 def join_slivers(shut: Bools, label: Labels, bones: Ints, joined: Ints) -> None:
     """Join each part without skeleton to the first part with some across a neck."""
     rows, width = label.shape

@@ -14,7 +14,7 @@ import numpy as np
 
 from geometry.bones import Ints
 from geometry.chains import Chains
-from geometry.compiled import compiled
+from geometry.compiled import bare, compiled
 from geometry.distance import Squares
 from geometry.runs import root
 from geometry.skeleton import (
@@ -136,7 +136,7 @@ def compare_sides(square: Squares, state: States, saddles: Ints) -> tuple[Ints, 
     return count, first, peaks
 
 
-@compiled
+@bare
 def find_sides(square: Squares, state: States, saddles: Ints, count: Ints, first: Ints, summit: Ints) -> None:
     """The highest neighbour in each group of higher ones, and the summit reached from it."""
     width = square.shape[1]
@@ -154,7 +154,7 @@ def find_sides(square: Squares, state: States, saddles: Ints, count: Ints, first
         count[k] = found
 
 
-@compiled
+@bare
 def merge_sides(
     order: Ints, count: Ints, summit: Ints, parent: Ints, highest: Ints, heights: Squares, peaks: Ints
 ) -> None:
@@ -169,7 +169,7 @@ def merge_sides(
             parent[max(a, b)] = min(a, b)
 
 
-@compiled
+@bare
 def finest(square: Squares, cell: int) -> float:
     """The greatest clearance at a cell's centre, corners and edges' middles."""
     rows, width = square.shape
@@ -208,7 +208,7 @@ def neck_ends(square: Squares, saddle: int, one: int, two: int) -> tuple[float, 
     return (*nearest_points(one, saddle, width)[:2], *nearest_points(two, saddle, width)[:2])
 
 
-@compiled
+@bare
 def neck_walls(square: Squares, saddle: int, one: int, two: int) -> tuple[int, int]:
     """The blocked squares nearest to each other across a saddle, starting from the feet of its slopes."""
     for _ in range(4):
@@ -237,7 +237,7 @@ def descend(heights: Squares, saddle: int, k: int, turn: int, width: int) -> Int
     return np.array(cells, np.int32)
 
 
-@compiled
+@bare
 def across(square: Squares, saddle: int, wall: int, before: int) -> int:
     """The blocked square nearest to ``wall`` on the other side of the saddle; ``before`` if none is nearer."""
     rows, width = square.shape
@@ -254,7 +254,7 @@ def across(square: Squares, saddle: int, wall: int, before: int) -> int:
     return best
 
 
-@compiled
+@bare
 def apart(rise: int, run: int) -> int:
     """The squared distance between two squares at that offset."""
     y, x = max(abs(rise) - 1, 0), max(abs(run) - 1, 0)

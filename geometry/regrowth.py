@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.bones import Ints
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Squares
 from geometry.skeleton import (
     CLIMBED,
@@ -64,7 +64,7 @@ def regrow(square: Squares, state: States, bounds: Ints, fresh: Squares) -> Jour
     return journal
 
 
-@compiled
+@bare
 def spread(bounds: Ints, width: int, about: Ints) -> None:
     """The columns on or beside a changed cell, per row."""
     rows = bounds.shape[0]
@@ -79,7 +79,7 @@ def spread(bounds: Ints, width: int, about: Ints) -> None:
                 about[row, 1] = last if last > about[row, 1] else about[row, 1]
 
 
-@compiled
+@bare
 def touch(journal: Journal, cell: int) -> None:
     """Remember a cell's state before it changes."""
     if not journal.mark[cell] & TOUCHED:
@@ -88,7 +88,7 @@ def touch(journal: Journal, cell: int) -> None:
         journal.touched[k], journal.before[k], journal.size[0] = cell, journal.states[cell], k + 1
 
 
-@compiled
+@bare
 def prune(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
     """Take back all ways up from the cells about, and what hangs on them."""
     states = journal.states
@@ -105,7 +105,7 @@ def prune(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
             states[cell] &= LINKS | SADDLE | SUMMIT
 
 
-@compiled
+@bare
 def unlink(journal: Journal, cell: int, other: int, direction: int) -> None:
     """Take back a link."""
     touch(journal, cell)
@@ -114,7 +114,7 @@ def unlink(journal: Journal, cell: int, other: int, direction: int) -> None:
     journal.states[other] &= 255 - (1 << (direction ^ 2))
 
 
-@compiled
+@bare
 def wither(heights: Heights, width: int, about: Ints, journal: Journal, cell: int) -> None:
     """Take back the way up from a cell outside that nothing leads to any more."""
     states = journal.states
@@ -137,7 +137,7 @@ def wither(heights: Heights, width: int, about: Ints, journal: Journal, cell: in
         cell = higher
 
 
-@compiled
+@bare
 def settle(heights: Heights, width: int, bounds: Ints, fresh: Squares, about: Ints, journal: Journal) -> None:
     """Set the new clearances, and the flags of the cells about."""
     for row in range(bounds.shape[0]):
@@ -154,7 +154,7 @@ def settle(heights: Heights, width: int, bounds: Ints, fresh: Squares, about: In
                 journal.states[cell] = journal.states[cell] & LINKS | flag
 
 
-@compiled
+@bare
 def grow(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
     """Go up again from the saddles about, and from where ways from outside come in."""
     states = journal.states
@@ -171,7 +171,7 @@ def grow(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
                 climb(cell, highest(cell, heights, width), heights, width, journal)
 
 
-@compiled
+@bare
 def climb(cell: int, direction: int, heights: Heights, width: int, journal: Journal) -> None:
     """As in skeleton.py, with a journal."""
     states = journal.states

@@ -8,7 +8,7 @@ in the order that bones.py would give them.
 import numpy as np
 
 from geometry.bones import Bones, Floats, Ints, find, first_way, is_node, onward, pace
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.regrowth import JOINED, MOVED, Journal
 from geometry.skeleton import HALT, LINKS, Flags, Heights, stride
 
@@ -44,7 +44,7 @@ def rejoin(heights: Heights, width: int, bones: Bones, journal: Journal) -> Bone
     return Bones(node, port[:found].copy(), neck[:found].copy(), length[:found].copy())
 
 
-@compiled
+@bare
 def find_open(states: Flags, mark: Flags, width: int, cells: Ints, before: Flags, node: Ints, open_ends: Flags) -> None:
     """The ends, as bits per node, of all chains on which a changed cell lay."""
     for k in range(cells.shape[0]):
@@ -68,7 +68,7 @@ def find_open(states: Flags, mark: Flags, width: int, cells: Ints, before: Flags
                 open_ends[find(node, cell)] |= 1 << (direction ^ 2)
 
 
-@compiled
+@bare
 def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints) -> int:
     """Flag the first cell of every ring without a junction on which a changed cell lies; returns how many.
 
@@ -92,7 +92,7 @@ def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints)
     return found
 
 
-@compiled
+@bare
 def keep_nodes(states: Flags, cells: Ints) -> None:
     """Set to 0 the cells that are no nodes."""
     for k in range(cells.shape[0]):
@@ -100,7 +100,7 @@ def keep_nodes(states: Flags, cells: Ints) -> None:
             cells[k] = 0
 
 
-@compiled
+@bare
 def merge_nodes(old: Ints, open_ends: Flags, grown: Ints, node: Ints, number: Ints) -> None:
     """The nodes kept and the new ones, in order; ``number`` gets what each old one is called now, or -1."""
     k, size = 0, 0
@@ -117,7 +117,7 @@ def merge_nodes(old: Ints, open_ends: Flags, grown: Ints, node: Ints, number: In
         size, k = size + 1, k + 1
 
 
-@compiled
+@bare
 def find_seeds(states: Flags, node: Ints, grown: Ints, number: Ints, open_ends: Flags, seeds: Ints) -> int:
     """The ends (4 node + direction) where new chains may start; returns how many."""
     found = 0
@@ -135,7 +135,7 @@ def find_seeds(states: Flags, node: Ints, grown: Ints, number: Ints, open_ends: 
     return found
 
 
-@compiled
+@bare
 def merge_chains(
     heights: Heights,
     states: Flags,

@@ -18,7 +18,7 @@ below.
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Squares
 
 States = NDArray[np.uint8]
@@ -35,7 +35,7 @@ SOUTH = 3  # a direction: from the east counter-clockwise
 CLIMBED, SADDLE, SUMMIT, HALT = 16, 32, 64, 128  # HALT: a node chosen on a ring that has no junction
 
 
-@compiled
+@bare
 def flag(e: Truth, ne: Truth, n: Truth, nw: Truth, w: Truth, sw: Truth, s: Truth, se: Truth) -> np.uint8:
     """The flag of a cell whose higher neighbours are so. A group ends behind each edge that the corner between does not
     join to the next edge; where two end, the cell is a saddle."""
@@ -72,7 +72,7 @@ def edge_groups() -> NDArray[np.uint16]:
 GROUPS = edge_groups()
 
 
-@compiled
+@bare
 def grow(
     heights: Heights,
     states: Flags,
@@ -114,7 +114,7 @@ def grow(
     return left
 
 
-@compiled
+@bare
 def classify(heights: Heights, states: Flags, width: int, level: int, row: int, flags: States) -> None:
     """Clear the states of a row and flag its summits and saddles."""
     first = row * width
@@ -131,7 +131,7 @@ def classify(heights: Heights, states: Flags, width: int, level: int, row: int, 
         out[j + 1] = flags[j]
 
 
-@compiled
+@bare
 def higher_about(cell: int, heights: Heights, width: int) -> int:
     """The set of a cell's higher neighbours: bits from the east counter-clockwise."""
     own = heights[cell]
@@ -141,7 +141,7 @@ def higher_about(cell: int, heights: Heights, width: int) -> int:
     return int(higher | int(heights[cell - width] > own) << 6 | int(heights[cell - width + 1] > own) << 7)
 
 
-@compiled
+@bare
 def highest_of(cell: int, edges: int, heights: Heights, width: int) -> int:
     """The direction of the highest among some edge neighbours of a cell (a set of links). No branches: they are not
     to be foreseen."""
@@ -156,7 +156,7 @@ def highest_of(cell: int, edges: int, heights: Heights, width: int) -> int:
     return int(0b01001011 >> 2 * (best & 3) & 3)
 
 
-@compiled
+@bare
 def highest(cell: int, heights: Heights, width: int) -> int:
     """The direction of the highest edge neighbour of a cell. With branches: along a chain they are."""
     east, north, west, south = heights[cell + 1], heights[cell + width], heights[cell - 1], heights[cell - width]
@@ -165,7 +165,7 @@ def highest(cell: int, heights: Heights, width: int) -> int:
     return 2 if west >= south else 3
 
 
-@compiled
+@bare
 def climb(cell: int, direction: int, heights: Heights, states: Flags, width: int, first: int) -> int:
     """Link a cell to a higher neighbour and go on up from there, until a way already trodden; returns -1, or the cell
     from which the way leads on to one before ``first``."""
@@ -181,32 +181,32 @@ def climb(cell: int, direction: int, heights: Heights, states: Flags, width: int
         direction = highest(cell, heights, width)
 
 
-@compiled
+@bare
 def link(cell: int, other: int, direction: int, states: Flags) -> None:
     """Set the two link bits between edge neighbours."""
     states[cell] |= 1 << direction
     states[other] |= 1 << (direction ^ 2)
 
 
-@compiled
+@bare
 def steepest(cell: int, heights: Heights, width: int) -> int:
     """The highest edge neighbour of a cell that is no summit."""
     return int(cell + stride(highest(cell, heights, width), width))
 
 
-@compiled
+@bare
 def above(cell: int, other: int, heights: Heights) -> bool:
     """The total order of cells."""
     return bool(heights[cell] > heights[other] or (heights[cell] == heights[other] and cell > other))
 
 
-@compiled
+@bare
 def stride(direction: int, width: int) -> int:
     """The index step to the east, north, west or south."""
     return (1 - (direction & 2)) * (width if direction & 1 else 1)
 
 
-@compiled
+@bare
 def beside(k: int, width: int) -> int:
     """The index step to the k-th of the eight neighbours, from the east counter-clockwise."""
     k %= 8

@@ -7,7 +7,7 @@ while it is in the processor's cache.
 
 import numpy as np
 
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Bools, Gaps, Squares, count_columns
 from geometry.skeleton import Flags, Heights, States, Waiting, Words, grow
 from geometry.windows import Window, measure_rows, new_window
@@ -36,7 +36,7 @@ def grow_all(square: Squares, level: int, state: States, words: Words) -> None:
     grow(square.reshape(-1), state.reshape(-1), words, width, level, 1, len(square) - 2, flags, waiting, 0)
 
 
-@compiled
+@bare
 def sweep(
     square: Squares,
     steps: Gaps,

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Bools, Gaps, Sites, Squares, count_columns, measure_run
 
 Ints = NDArray[np.int32]
@@ -53,7 +53,7 @@ def measure(free: Bools, square: Squares) -> None:
     measure_rows(square, steps, 1, len(free), new_window(square.shape[1]))
 
 
-@compiled
+@bare
 def measure_rows(square: Squares, steps: Gaps, south: int, north: int, window: Window) -> None:
     """Fill rows of ``square`` (rows + 2, columns + 2) from ``north`` down to ``south``, after those further north.
 
@@ -78,7 +78,7 @@ def measure_rows(square: Squares, steps: Gaps, south: int, north: int, window: W
                 reach[k] = steps_for(greatest(out[first:last]))
 
 
-@compiled
+@bare
 def complete(steps: Gaps, gap: Gaps, own: Gaps) -> None:
     """From the steps down, and those of the row above in ``gap``, the steps to the nearest blocked square in the
     column, and the squared distance to it in half squares."""
@@ -90,7 +90,7 @@ def complete(steps: Gaps, gap: Gaps, own: Gaps) -> None:
         own[j] = np.int16(edge * edge) if nearest > 0 else np.int16(0)
 
 
-@compiled
+@bare
 def look_about(own: Gaps, value: Gaps, steps: int) -> None:
     """Fill ``value`` with the least over the sites up to so many columns off; ``own`` starts ROOM columns before."""
     here = own[ROOM:]
@@ -100,7 +100,7 @@ def look_about(own: Gaps, value: Gaps, steps: int) -> None:
         four_sites(own[ROOM - t - 3 :], own[ROOM + t :], t, value)
 
 
-@compiled
+@bare
 def four_sites(west: Gaps, east: Gaps, t: int, value: Gaps) -> None:
     """Compare with the sites t to t + 3 columns off; ``west`` starts t + 3 columns before, ``east`` t behind."""
     a, b = np.int16((2 * t - 1) ** 2), np.int16((2 * t + 1) ** 2)
@@ -116,7 +116,7 @@ def four_sites(west: Gaps, east: Gaps, t: int, value: Gaps) -> None:
         value[j] = one if one < value[j] else value[j]
 
 
-@compiled
+@bare
 def publish(value: Gaps, out: Squares) -> int:
     """Copy, and return the greatest."""
     most = np.int16(0)
@@ -126,7 +126,7 @@ def publish(value: Gaps, out: Squares) -> int:
     return int(most)
 
 
-@compiled
+@bare
 def greatest(out: Squares) -> int:
     """The greatest of some values."""
     most = np.int32(0)
@@ -135,13 +135,13 @@ def greatest(out: Squares) -> int:
     return int(most)
 
 
-@compiled
+@bare
 def steps_for(most: int) -> int:
     """How many columns one must look to either side for values up to the given one."""
     return int(np.ceil(0.5 * np.sqrt(float(most)) - 0.5))
 
 
-@compiled
+@bare
 def measure_far(gap: Gaps, out: Squares, first: int, last: int, done: int, sites: Sites, heights: Sites) -> int:
     """Measure the runs that meet a stretch, but for columns up to ``done``; returns how far these runs go."""
     column = first if first > done else done
