@@ -2,8 +2,8 @@
 
     python -m benchmarks.screens [FOLDER OF .map FILES] [--queries N] [--only build,query,...]
 
-All times are the least of several, in milliseconds, warm, in this one process. Two cores shared with others make times
-noisy; ratios of least times are steadier.
+All times are the least of several, in milliseconds of the processor, warm, in this one process and thread. Nobody waits
+for anything here: on a quiet machine the clock on the wall says the same, on a busy one it says how busy that is.
 """
 
 import argparse
@@ -25,11 +25,11 @@ SECTIONS = ("build", "growth", "change", "query", "quality", "exact", "classes")
 
 def least(call: Callable[[], object], times: int = 5, seconds: float = 2.0) -> float:
     """The least time of a call, in milliseconds."""
-    best, begun = np.inf, time.perf_counter()
+    best, begun = np.inf, time.process_time()
     for n in range(times):
-        start = time.perf_counter()
+        start = time.process_time()
         call()
-        now = time.perf_counter()
+        now = time.process_time()
         best = min(best, now - start)
         if n and now - begun > seconds:
             break

@@ -78,6 +78,7 @@ def _dispatcher(function: Callable[P, R], counting: bool) -> Callable[P, R]:
         machine = numba.njit(**options)(function)
     if hasattr(machine, "overloads"):
         _compile_wide(machine)
+        _tell_when_long(machine)
     return cast(Callable[P, R], machine)
 
 
@@ -100,17 +101,27 @@ def _link(names: dict[str, Any]) -> None:
             names[name] = value.machine()
 
 
+def _tell_when_long(machine: Any) -> None:
+    """Say so when compiling takes long. What numba finds in its cache it does not compile, however long loading takes."""
+    compiler = machine._compiler
+    compile_it = compiler.compile
+
+    def compile_telling(*args: Any) -> Any:
+        notice = Timer(PATIENCE, tell)
+        notice.daemon = True
+        notice.start()
+        try:
+            return compile_it(*args)
+        finally:
+            notice.cancel()
+
+    compiler.compile = compile_telling
+
+
 def _compile(machine: Any, args: tuple[Any, ...]) -> None:
-    """Compile for these arguments without running, and say so when it takes long."""
-    if not hasattr(machine, "typeof_pyval"):
-        return
-    notice = Timer(PATIENCE, tell)
-    notice.daemon = True
-    notice.start()
-    try:
+    """Compile for these arguments without running."""
+    if hasattr(machine, "typeof_pyval"):
         machine.compile(tuple(machine.typeof_pyval(value) for value in args))
-    finally:
-        notice.cancel()
 
 
 @cache

@@ -49,6 +49,19 @@ def test_whole_numbers_of_all_widths_share_one_copy() -> None:
     assert len(getattr(double.machine() if hasattr(double, "machine") else double, "overloads", [None])) == 1
 
 
+def test_compiling_is_told_of_and_loading_is_not(tmp_path):
+    code = (
+        "import numpy as np; from geometry import compiled; compiled.PATIENCE = 0.0; "
+        "from geometry.rope import measure_line; measure_line(np.zeros((2, 2)), 2)"
+    )
+    told = []
+    for _ in range(2):
+        cache = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+        found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=cache)
+        told.append("compiling" in found.stderr)
+    assert told == [os.environ.get("NUMBA_DISABLE_JIT", "0") == "0", False]
+
+
 def test_kernels_also_run_uncompiled() -> None:
     code = (
         "import numpy as np; from geometry import Screen; free = np.ones((9, 12), bool); free[4, 3:9] = False; "
