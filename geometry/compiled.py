@@ -102,7 +102,7 @@ def _link(names: dict[str, Any]) -> None:
 
 
 def _tell_when_long(machine: Any) -> None:
-    """Say so when compiling takes long. What numba finds in its cache it does not compile, however long loading takes."""
+    """Say so when compiling takes long. What numba finds in its cache it does not compile."""
     compiler = machine._compiler
     compile_it = compiler.compile
 

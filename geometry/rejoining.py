@@ -41,7 +41,7 @@ def rejoin(heights: Heights, width: int, bones: Bones, journal: Journal) -> Bone
     room = len(bones.length) + len(seeds)
     port, neck, length = np.empty((room, 2), np.int32), np.empty(room, np.int32), np.empty(room)
     found = merge_chains(heights, states, width, *bones, open_ends, number, seeds, node, port, neck, length)
-    return Bones(node, port[:found].copy(), neck[:found].copy(), length[:found].copy())
+    return Bones(node, port[:found], neck[:found], length[:found])
 
 
 @bare
