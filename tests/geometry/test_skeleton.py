@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from geometry import Screen, sweep
 from geometry.skeleton import GROUPS, KINDS, SADDLE, SUMMIT
-from tests.geometry import oracles
+from tests.geometry import lookalikes, oracles
 
 RADII = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0)
 
@@ -123,3 +123,12 @@ def test_a_corridor_of_one_square_has_half_a_square_of_clearance():
 def test_bad_screens_are_named(free, message):
     with pytest.raises(ValueError, match=message):
         Screen(free)
+
+
+@pytest.mark.parametrize("kind", lookalikes.KINDS)
+def test_pathgraphs_of_lookalikes_of_the_benchmarks_are_right(kind):
+    screen = Screen(lookalikes.lookalike(kind, 40, 3, 6))
+    for radius in (0.0, 1.0, 2.0, 3.0, 4.0, 5.0):
+        space = screen.free & (screen.clearance >= radius)
+        if space.any():
+            assert topology(screen.pathgraph_for(radius)) == oracles.components_and_holes(space)
