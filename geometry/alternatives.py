@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.bones import Floats, Ints
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.search import Query, Search, seek, survey
 from geometry.ways import Ways
 
@@ -41,7 +41,7 @@ def new_album(room: int, longest: int) -> Album:
     return Album(place, np.empty(room), np.empty((room, longest), np.int32), size, fork, shared)
 
 
-@compiled
+@bare
 def shortest_ways(ends: Ints, ways: Ways, query: Query, search: Search, album: Album, wanted: int) -> int:
     """Fill the album with up to ``wanted`` shortest ways; returns their number. ``ends`` are those of the chains."""
     n = ways.head.shape[0]
@@ -66,7 +66,7 @@ def shortest_ways(ends: Ints, ways: Ways, query: Query, search: Search, album: A
         limit = np.inf  # ways beyond the survey's limit may be missing
 
 
-@compiled
+@bare
 def branch(ends: Ints, ways: Ways, query: Query, search: Search, album: Album, way: int, have: int, wanted: int) -> int:
     """Put the best ways that leave a taken way, at each of its arcs from its fork on; returns how many there are."""
     joint, extra, length = query.joint, query.cost, ways.length
@@ -102,7 +102,7 @@ def branch(ends: Ints, ways: Ways, query: Query, search: Search, album: Album, w
     return have
 
 
-@compiled
+@bare
 def walk(ends: Ints, joint: Ints, arcs: Ints, size: Ints, row: int, start: int, path: Ints) -> None:
     """Write the node that each arc of a way comes from."""
     path[0] = start
@@ -111,7 +111,7 @@ def walk(ends: Ints, joint: Ints, arcs: Ints, size: Ints, row: int, start: int, 
         path[k + 1] = ends[arcs[row, k] >> 1, 1 - (arcs[row, k] & 1)] if extra < 0 else joint[extra]
 
 
-@compiled
+@bare
 def in_common(arcs: Ints, size: Ints, row: int, other: int) -> int:
     """How many first arcs two ways have in common."""
     k = 0
@@ -120,7 +120,7 @@ def in_common(arcs: Ints, size: Ints, row: int, other: int) -> int:
     return k
 
 
-@compiled
+@bare
 def promise(ways: Ways, query: Query, search: Search, origin: int) -> float:
     """The least that a way from a node over an unsealed arc can cost."""
     arc, head, step = ways.arc, ways.head, ways.step
@@ -143,7 +143,7 @@ def promise(ways: Ways, query: Query, search: Search, origin: int) -> float:
     return least
 
 
-@compiled
+@bare
 def insert(place: Ints, cost: Floats, way: int, have: int, wanted: int, total: float) -> int:
     """Make room for a way among those in hand; returns the row where its arcs belong."""
     at = have if have < wanted else wanted - 1
@@ -155,7 +155,7 @@ def insert(place: Ints, cost: Floats, way: int, have: int, wanted: int, total: f
     return row
 
 
-@compiled
+@bare
 def record(ends: Ints, joint: Ints, came: Ints, arcs: Ints, size: Ints, row: int, fork: int, origin: int) -> None:
     """Write the way just found from a node on behind its first ``fork`` arcs."""
     first, goal = 2 * ends.shape[0], came.shape[0] - 1
@@ -170,7 +170,7 @@ def record(ends: Ints, joint: Ints, came: Ints, arcs: Ints, size: Ints, row: int
         node = tail(ends, joint, first, goal, 0 + came[node])
 
 
-@compiled
+@bare
 def tail(ends: Ints, joint: Ints, first: int, goal: int, code: int) -> int:
     """The node an arc comes from."""
     if code < first:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.bones import Floats, Ints
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.heap import pop, push
 from geometry.rope import Ends, Rope, measure_line, new_rope, reach, tighten_word
 from geometry.runs import Runs, extend, run_at
@@ -77,7 +77,7 @@ def new_scout(room: int, runs: Runs) -> Scout:
     return Scout(nodes, np.empty(words, np.int32), new_rope(words), np.empty((4 * words + 8, 2)), np.zeros(2, np.int32))
 
 
-@compiled
+@bare
 def shortest_line(runs: Runs, ends: Ends, nodes: Nodes, word: Ints, rope: Rope, line: Floats, sizes: Ints) -> float:
     """The length of the shortest way; its numbers of symbols and corners go to ``sizes``, NONE or FULL to the first."""
     size = shortest_word(runs, ends, nodes, word)
@@ -90,7 +90,7 @@ def shortest_line(runs: Runs, ends: Ends, nodes: Nodes, word: Ints, rope: Rope, 
     return measure_line(line, sizes[1])
 
 
-@compiled
+@bare
 def shortest_word(runs: Runs, ends: Ends, nodes: Nodes, word: Ints) -> int:
     """Write the reduced word of the shortest way; returns its size, NONE when there is no way, FULL without room."""
     rows, lows, up, down, line = runs.row, runs.low, runs.up, runs.down, runs.line
@@ -103,26 +103,28 @@ def shortest_word(runs: Runs, ends: Ends, nodes: Nodes, word: Ints) -> int:
     tally[MADE], tally[WAITING], tally[STAMP] = 0, 0, tally[STAMP] + 1
     mark_inwards(exits, lower, upper, goal, enter, tally[STAMP])
     depart(up, down, left, right, line, ends, start, span, link, tally)
-    enqueue(left, right, line, ends, span, link, key, heap, best, seen, tally, 0)
-    while tally[WAITING] > 0:
+    node = enqueue(left, right, line, ends, span, link, key, heap, best, seen, tally, 0)
+    while node >= 0 or tally[WAITING] > 0:
         made = tally[MADE]
         if made + 4 * rows.shape[0] >= key.shape[0]:
             return FULL
-        node, tally[WAITING] = pop(key, heap, tally[WAITING])
+        if node < 0:
+            node, tally[WAITING] = pop(key, heap, tally[WAITING])
         if span[node, EAST] < span[node, WEST]:
             return spell_word(link, node, word)
         root, symbol = link[node, ROOT], link[node, PORTAL]
         if root >= 0 and span[node, DONE] > best[root] + CLOSE:
+            node = NONE
             continue
         run = upper[symbol - 1] if symbol > 0 else lower[-symbol - 1]
         if run == goal:
             arrive(left, right, line, ends, span, link, tally, node)
         spread(up, down, left, right, line, lower, upper, exits, enter, ends, span, link, best, seen, tally, node, run)
-        enqueue(left, right, line, ends, span, link, key, heap, best, seen, tally, made)
+        node = enqueue(left, right, line, ends, span, link, key, heap, best, seen, tally, made)
     return NONE
 
 
-@compiled
+@bare
 def mark_inwards(exits: Ints, lower: Ints, upper: Ints, goal: int, enter: Ints, stamp: int) -> None:
     """Mark the runs by which one comes to the goal where that lies in a dead end."""
     run = goal
@@ -131,7 +133,7 @@ def mark_inwards(exits: Ints, lower: Ints, upper: Ints, goal: int, enter: Ints, 
         run = upper[exits[run] - 1] if exits[run] > 0 else lower[-exits[run] - 1]
 
 
-@compiled
+@bare
 def depart(
     up: Ints,
     down: Ints,
@@ -156,7 +158,7 @@ def depart(
         note(span, link, tally, west, east, done, -portal - 1, root, -1)
 
 
-@compiled
+@bare
 def spread(
     up: Ints,
     down: Ints,
@@ -193,8 +195,12 @@ def spread(
     bend_west = west == left[portal] and (root == corner or known(best, seen, stamp, corner, to_west))
     bend_east = east == right[portal] + 1 and (root == corner + 1 or known(best, seen, stamp, corner + 1, to_east))
     first, last, sign = (up[run], up[run + 1], 1) if upward else (down[run], down[run + 1], -1)
+    if not bend_west:
+        first = first_beyond(right, low, first, last)
     for far in range(first, last):
         a, b, code = 1.0 * left[far], right[far] + 1.0, sign * (far + 1)
+        if a >= high and not bend_east:
+            break
         other = upper[far] if upward else lower[far]
         if exits[other] == -code and enter[other] != stamp:
             continue
@@ -220,14 +226,26 @@ def spread(
             note(span, link, tally, a, b, to_east + a - east, code, 2 * near, bend)
 
 
-@compiled
+@bare
+def first_beyond(right: Ints, x: float, first: int, last: int) -> int:
+    """The first of a run's portals that reaches beyond x."""
+    while first < last:
+        middle = (first + last) >> 1
+        if right[middle] + 1.0 <= x:
+            first = middle + 1
+        else:
+            last = middle
+    return int(first)
+
+
+@bare
 def snapped(x: float) -> float:
     """Put what is a corner but for rounding onto it: else a ray along several corners may slip past one."""
     corner = np.floor(x + 0.5)
     return float(corner if abs(x - corner) < CLOSE else x)
 
 
-@compiled
+@bare
 def known(best: Floats, seen: Ints, stamp: int, corner: int, length: float) -> bool:
     """Note a way to a corner; False when a shorter one is known."""
     if seen[corner] != stamp:
@@ -238,7 +256,7 @@ def known(best: Floats, seen: Ints, stamp: int, corner: int, length: float) -> b
     return bool(length <= best[corner] + CLOSE)
 
 
-@compiled
+@bare
 def note(
     span: Floats, link: Ints, tally: Ints, west: float, east: float, done: float, symbol: int, root: int, parent: int
 ) -> int:
@@ -250,7 +268,7 @@ def note(
     return int(node)
 
 
-@compiled
+@bare
 def enqueue(
     left: Ints,
     right: Ints,
@@ -264,30 +282,39 @@ def enqueue(
     seen: Ints,
     tally: Ints,
     first: int,
-) -> None:
-    """Put the nodes from ``first`` on the heap, but for bends and where a shorter way to the root is known."""
-    size, stamp = tally[WAITING], tally[STAMP]
+) -> int:
+    """Put the nodes from ``first`` on the heap, but for bends and where a shorter way to the root is known.
+
+    Returns the best of them, off the heap, if it is to be taken next, as in open space it nearly always is; else NONE.
+    """
+    size, stamp, next_node, least = tally[WAITING], tally[STAMP], NONE, np.inf
     for node in range(first, tally[MADE]):
         west, east, done, root = span[node, WEST], span[node, EAST], span[node, DONE], link[node, ROOT]
-        if east < west:
-            size = push(key, heap, size, done, node)
-            continue
-        if link[node, PORTAL] == 0:
-            continue
-        x, y = ends[0], ends[1]
-        if root >= 0:
-            if not known(best, seen, stamp, root, done):
+        total = done
+        if east >= west:
+            if link[node, PORTAL] == 0 or (root >= 0 and not known(best, seen, stamp, root, done)):
                 continue
-            x, y = 1.0 * (right[root >> 1] + 1 if root & 1 else left[root >> 1]), line[root >> 1] + 1.0
-        at = line[abs(link[node, PORTAL]) - 1] + 1.0
-        near, far = abs(at - y), abs(ends[3] - at)
-        cross = x + (ends[2] - x) * near / (near + far) if near + far > 0.0 else ends[2]
-        cross = west if cross < west else east if cross > east else cross
-        size = push(key, heap, size, done + reach(cross - x, near) + reach(ends[2] - cross, far), node)
+            x, y = ends[0], ends[1]
+            if root >= 0:
+                x, y = 1.0 * (right[root >> 1] + 1 if root & 1 else left[root >> 1]), line[root >> 1] + 1.0
+            at = line[abs(link[node, PORTAL]) - 1] + 1.0
+            near, far = abs(at - y), abs(ends[3] - at)
+            cross = x + (ends[2] - x) * near / (near + far) if near + far > 0.0 else ends[2]
+            cross = west if cross < west else east if cross > east else cross
+            total += reach(cross - x, near) + reach(ends[2] - cross, far)
+        if total >= least:
+            size = push(key, heap, size, total, node)
+            continue
+        if next_node >= 0:
+            size = push(key, heap, size, least, next_node)
+        next_node, least = node, total
+    if size > 0 and next_node >= 0 and key[0] < least:
+        size, next_node = push(key, heap, size, least, next_node), NONE
     tally[WAITING] = size
+    return next_node
 
 
-@compiled
+@bare
 def arrive(left: Ints, right: Ints, line: Ints, ends: Ends, span: Floats, link: Ints, tally: Ints, node: int) -> None:
     """The way from a node's root to the goal, in the run that the node enters."""
     portal, root = abs(link[node, PORTAL]) - 1, link[node, ROOT]
@@ -306,7 +333,7 @@ def arrive(left: Ints, right: Ints, line: Ints, ends: Ends, span: Floats, link: 
     note(span, link, tally, 1.0, 0.0, total, 0, root, node)
 
 
-@compiled
+@bare
 def spell_word(link: Ints, node: int, word: Ints) -> int:
     """The reduced word of the portals on the way to a node."""
     size = 0

@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Squares
-from geometry.skeleton import HALT, LINKS, Flags, Heights, States, Words
+from geometry.skeleton import HALT, LINKS, SADDLE, Flags, Heights, States, Words, above, stride
 
 Ints = NDArray[np.int32]
 Floats = NDArray[np.float64]
@@ -36,78 +36,110 @@ class Bones(NamedTuple):
 def contract(square: Squares, state: States, words: Words) -> Bones:
     """The chains of the skeleton that ``state`` links."""
     heights, states, width = square.reshape(-1), state.reshape(-1), state.shape[1]
+    index = np.empty((len(words) + 3) // 4, np.int32)
     while True:
-        nodes, ends, links = count(states, words)
-        bones = Bones(
-            np.empty(nodes, np.int32),
-            np.empty((ends // 2, 2), np.int32),
-            np.empty(ends // 2, np.int32),
-            np.empty(ends // 2, np.float64),
-        )
-        collect(states, words, bones.node)
-        walked = pace_all(heights, states, width, *bones, np.zeros(nodes, np.uint8))
-        if walked == links:
+        nodes, ends, links = count(states, words, index)
+        node, port = np.empty(nodes + 1, np.int32), np.empty((ends // 2, 2), np.int32)
+        neck, length = np.empty(ends // 2, np.int32), np.empty(ends // 2, np.float64)
+        collect(states, words, node)
+        bones = Bones(node[:nodes], port, neck, length)
+        if pace_all(heights, states, width, index, *bones, np.zeros(nodes, np.uint8)) == links:
             return bones
-        trodden = np.zeros(states.shape[0], np.bool_)
-        tread(states, width, bones.node, bones.port, trodden)
-        del bones  # its memory is wanted again
-        halt_rings(states, width, trodden)
+        del node, port, neck, length, bones  # their memory is wanted again
+        halt_rings(heights, states, width, words)
 
 
-@compiled
-def is_node(here: int) -> bool:
-    """Whether a cell of this state is a node: flagged, or one that has links or flags but not two links."""
-    if here == 0:
-        return False
-    links = here & LINKS
-    links = (links & 5) + ((links >> 1) & 5)
-    return bool((here & HALT) or (links & 3) + (links >> 2) != 2)
-
-
-@compiled
-def count(states: Flags, words: Words) -> tuple[int, int, int]:
-    """Nodes, chain ends at nodes, and links of the whole skeleton."""
-    nodes, ends, links = 0, 0, 0
+@bare
+def halt_rings(heights: Heights, states: Flags, width: int, words: Words) -> None:
+    """Flag the first cell of every ring that has no junction. On each there is a lowest cell, a saddle."""
     for word in range(words.shape[0]):
         if words[word] == 0:
             continue
-        for k in range(8):
-            cell = 8 * word + k
-            here = int(states[cell]) if cell < states.shape[0] else 0
-            degree = (here & 1) + (here >> 1 & 1) + (here >> 2 & 1) + (here >> 3 & 1)
+        for cell in range(8 * word, 8 * word + 8 if 8 * word + 8 < states.shape[0] else states.shape[0]):
+            if states[cell] & SADDLE and not is_node(states[cell]):
+                first = first_on_ring(cell, heights, states, width)
+                if first >= 0:
+                    states[first] |= HALT
+
+
+@bare
+def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> int:
+    """The first cell of the ring without a node of which a saddle is the lowest; -1 when it is not."""
+    cell, direction, first = saddle, first_way(int(states[saddle])), saddle
+    while True:
+        cell += stride(direction, width)
+        here = states[cell]
+        if cell == saddle:
+            return first
+        if is_node(here) or (here & SADDLE and above(saddle, cell, heights)):
+            return -1
+        first = cell if cell < first else first
+        direction = onward(here, direction ^ 2)
+
+
+@bare
+def is_node(here: int) -> bool:
+    """Whether a cell of this state is a node: flagged, or one that has links or flags but not two links."""
+    links = (here & 5) + (here >> 1 & 5)
+    return bool((here != 0) & ((here & HALT != 0) | ((links & 3) + (links >> 2) != 2)))
+
+
+@bare
+def count(states: Flags, words: Words, index: Ints) -> tuple[int, int, int]:
+    """Nodes, chain ends at nodes, and links of the whole skeleton.
+
+    ``index`` gets the number of nodes before each 32 cells.
+    """
+    nodes, ends, links = 0, 0, 0
+    for word in range(words.shape[0]):
+        if word & 3 == 0:
+            index[word >> 2] = nodes
+        if words[word] == 0:
+            continue
+        for cell in range(8 * word, 8 * word + 8 if 8 * word + 8 < states.shape[0] else states.shape[0]):
+            here = int(states[cell])
+            found, degree = int(is_node(here)), (here & 1) + (here >> 1 & 1) + (here >> 2 & 1) + (here >> 3 & 1)
+            nodes += found
+            ends += found * degree
             links += degree
-            if is_node(here):
-                nodes += 1
-                ends += degree
     return nodes, ends, links // 2
 
 
-@compiled
+@bare
 def collect(states: Flags, words: Words, node: Ints) -> None:
-    """List the nodes."""
+    """List the nodes; ``node`` has room for one more."""
     found = 0
     for word in range(words.shape[0]):
         if words[word] == 0:
             continue
-        for k in range(8):
-            cell = 8 * word + k
-            if cell < states.shape[0] and is_node(states[cell]):
-                node[found] = cell
-                found += 1
+        for cell in range(8 * word, 8 * word + 8 if 8 * word + 8 < states.shape[0] else states.shape[0]):
+            node[found] = cell  # stands if it is a node
+            found += int(is_node(int(states[cell])))
 
 
-@compiled
+@bare
 def pace_all(
-    heights: Heights, states: Flags, width: int, node: Ints, port: Ints, neck: Ints, length: Floats, seen: States
+    heights: Heights,
+    states: Flags,
+    width: int,
+    index: Ints,
+    node: Ints,
+    port: Ints,
+    neck: Ints,
+    length: Floats,
+    seen: States,
 ) -> int:
     """Walk every chain once from its first end; returns the links walked. ``seen`` has the ends met, as bits."""
     chain, walked = 0, 0
     for n in range(node.shape[0]):
+        ends = int(states[node[n]]) & LINKS
         for direction in range(4):
-            if seen[n] >> direction & 1 or not states[node[n]] >> direction & 1:
+            if not ends >> direction & 1 or seen[n] >> direction & 1:
                 continue
-            last, back, neck[chain], length[chain], steps = pace(node[n], direction, heights, states, width)
-            other = find(node, last)
+            last, back, neck[chain], length[chain], steps = pace(0 + node[n], direction, heights, states, width)
+            other = 0 + index[last >> 5]
+            while node[other] < last:
+                other += 1
             seen[n] |= 1 << direction
             seen[other] |= 1 << back
             port[chain, 0], port[chain, 1] = 4 * n + direction, 4 * other + back
@@ -116,27 +148,27 @@ def pace_all(
     return walked
 
 
-@compiled
+@bare
 def pace(cell: int, direction: int, heights: Heights, states: Flags, width: int) -> tuple[int, int, int, float, int]:
     """Walk one chain.
 
-    Returns its last cell, the direction back from there, the lowest cell, its length, and the number of steps.
+    Returns its last cell, the direction back from there, the lowest cell (an end or a saddle), its length, and the
+    number of steps.
     """
     low, lowest, length = heights[cell], cell, 0.0
     run, rise, steps = 0, 0, 0
     while True:
-        if direction & 1:
-            rise += 2 - direction
-            cell += width if direction == 1 else -width
-        else:
-            run += 1 - direction
-            cell += 1 if direction == 0 else -1
+        step, upright = 1 - (direction & 2), direction & 1
+        rise += step * upright
+        run += step * (1 - upright)
+        cell += step * (width if upright else 1)
         steps += 1
-        height = heights[cell]
-        if height < low or (height == low and cell < lowest):
-            low, lowest = height, cell
         here = states[cell]
         end = is_node(here)
+        if end or here & SADDLE:
+            height = heights[cell]
+            if height < low or (height == low and cell < lowest):
+                low, lowest = height, cell
         if end or steps % CHORD == 0:
             length += np.sqrt(float(run * run + rise * rise))
             run, rise = 0, 0
@@ -145,24 +177,21 @@ def pace(cell: int, direction: int, heights: Heights, states: Flags, width: int)
         direction = onward(here, direction ^ 2)
 
 
-@compiled
+@bare
 def onward(here: int, back: int) -> int:
     """The other direction of a cell with two links."""
-    rest = (here & LINKS) ^ (1 << back)
-    return (0 if rest == 1 else 1) if rest < 4 else (2 if rest == 4 else 3)
+    rest = int(here & LINKS) ^ (1 << back)
+    return (rest >> 1) - (rest >> 3)
 
 
-@compiled
-def stride(direction: int, width: int) -> int:
-    """The index step to the east, north, west or south."""
-    if direction == 0:
-        return 1
-    if direction == 1:
-        return width
-    return -1 if direction == 2 else -width
+@bare
+def first_way(here: int) -> int:
+    """The first direction of a cell with links."""
+    first = here & -here
+    return (first >> 1) - (first >> 3)
 
 
-@compiled
+@bare
 def find(node: Ints, cell: int) -> int:
     """The node of a cell, or the next one, by bisection."""
     low, high = 0, node.shape[0]
@@ -173,34 +202,3 @@ def find(node: Ints, cell: int) -> int:
         else:
             high = middle
     return low
-
-
-@compiled
-def tread(states: Flags, width: int, node: Ints, port: Ints, trodden: NDArray[np.bool_]) -> None:
-    """Mark the cells of all chains."""
-    for chain in range(port.shape[0]):
-        cell, direction = node[port[chain, 0] >> 2], port[chain, 0] & 3
-        trodden[cell] = True
-        while True:
-            cell += stride(direction, width)
-            trodden[cell] = True
-            if is_node(states[cell]):
-                break
-            direction = onward(states[cell], direction ^ 2)
-
-
-@compiled
-def halt_rings(states: Flags, width: int, trodden: NDArray[np.bool_]) -> None:
-    """Flag the first cell of every ring that the chains do not meet."""
-    for cell in range(states.shape[0]):
-        if trodden[cell] or not states[cell] & LINKS:
-            continue
-        states[cell] |= HALT
-        here, back = cell, -1
-        while not trodden[here]:
-            trodden[here] = True
-            direction = 0
-            while direction == back or not states[here] >> direction & 1:
-                direction += 1
-            here += stride(direction, width)
-            back = direction ^ 2

@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.bones import Bones, Floats, Ints, is_node, onward, stride
-from geometry.compiled import compiled
-from geometry.skeleton import Flags, States
+from geometry.bones import Bones, Floats, Ints, is_node, onward
+from geometry.compiled import bare
+from geometry.skeleton import Flags, States, stride
 
 
 class Chains(NamedTuple):
@@ -39,7 +39,7 @@ def find_chains(bones: Bones, state: States) -> Chains:
     return Chains(bones.node, leave, bones.port >> 2, start, cells, neck, bones.length)
 
 
-@compiled
+@bare
 def pace_out(states: Flags, width: int, node: Ints, port: Ints, start: Ints) -> None:
     """Fill ``start``."""
     for chain in range(port.shape[0]):
@@ -52,7 +52,7 @@ def pace_out(states: Flags, width: int, node: Ints, port: Ints, start: Ints) -> 
         start[chain + 1] = start[chain] + steps
 
 
-@compiled
+@bare
 def fill(
     states: Flags, width: int, node: Ints, port: Ints, lowest: Ints, start: Ints, cells: Ints, neck: Ints, leave: Ints
 ) -> None:

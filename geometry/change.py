@@ -1,25 +1,31 @@
 """A few squares change: what hangs on them is made anew, and the rest stands.
 
-# Strategy: a changed square alters the column distances between the next blocked squares above and below it, and
-through them the runs of those rows that cross its column. Those runs are measured anew beside the old clearances. Where
-these really differ, and one cell about, the skeleton is grown again (regrowth.py) and the pathgraph joined again
-(rejoining.py).
+# Strategy: the clearances that a change can alter (affected.py) are measured anew in a block about them, so large that
+no wall beyond it counts. Where they really differ, and one cell about, the skeleton is grown again (regrowth.py) and
+the pathgraph joined again (rejoining.py). When the block is much of the screen, all is made anew.
 """
 
 import numpy as np
 
-from geometry.bones import Bones, Ints
-from geometry.compiled import compiled
-from geometry.distance import Bools, Gaps, Sites, Squares, measure_run
+from geometry.affected import boxes_of, find_affected
+from geometry.bones import Bones, Ints, contract
+from geometry.compiled import bare
+from geometry.distance import Bools, Squares
 from geometry.regrowth import regrow
 from geometry.rejoining import rejoin
-from geometry.skeleton import States
+from geometry.skeleton import States, Words
+from geometry.sweep import survey
+from geometry.windows import measure
 
-FREED = 1 << 30  # stands for a square that is to be free, and the negative of its clearance for one to be blocked
+ALL = 0.5  # share of the screen
 
 
-def change_squares(square: Squares, state: States, bones: Bones, rows: Ints, columns: Ints, free: Bools) -> Bones:
+def change_squares(
+    square: Squares, state: States, words: Words, bones: Bones, rows: Ints, columns: Ints, free: Bools
+) -> Bones:
     """Change squares (unpadded rows and columns) in ``square`` and ``state``; returns the changed pathgraph.
+
+    ``words`` is ``state`` by eights.
 
     Raises
     ------
@@ -35,99 +41,63 @@ def change_squares(square: Squares, state: States, bones: Bones, rows: Ints, col
     if not turned.any():
         return bones
     cells, old, free = cells[turned], old[turned], free[turned]
-    heights[cells] = np.where(free, FREED, -old)
-    bounds = np.empty((square.shape[0], 4), np.int32)
-    find_stretches(square, cells, bounds)
-    fresh = np.empty(int((bounds[:, 1] - bounds[:, 0]).clip(0).sum()), np.int32)
-    scratch = np.empty((4, width), np.int32)
-    scratch[0] = -2
-    measure_again(square, bounds, fresh, scratch, np.empty(width, np.int16), *np.empty((2, width + 1), np.int64))
-    heights[cells] = old
-    return rejoin(heights, width, bones, regrow(square, state, bounds, fresh))
+    bounds = np.empty((square.shape[0], 3), np.int32)
+    find_affected(square, boxes_of(cells, square.shape), bounds)
+    low, high, west, east = block_about(square, bounds)
+    if (high - low + 1) * (east - west + 1) > ALL * len(heights):
+        grid = square[1:-1, 1:-1] > 0
+        grid[cells // width - 1, cells % width - 1] = free
+        survey(grid, square, state, words)
+        return contract(square, state, words)
+    block = square[low : high + 1, west : east + 1] > 0
+    rows, columns = cells // width - low, cells % width - west
+    inside = (rows >= 0) & (rows < block.shape[0]) & (columns >= 0) & (columns < block.shape[1])
+    block[rows[inside], columns[inside]] = free[inside]
+    fresh = np.empty((block.shape[0] + 2, block.shape[1] + 2), np.int32)
+    measure(block, fresh)
+    narrow(square, fresh, low - 1, west - 1, bounds)
+    return rejoin(heights, width, bones, regrow(square, state, bounds, fresh.reshape(-1)))
 
 
-@compiled
-def find_stretches(square: Squares, cells: Ints, bounds: Ints) -> None:
-    """Fill the first two columns of ``bounds`` with the blocked cells before and behind what is to be measured."""
-    width = square.shape[1]
-    for row in range(bounds.shape[0]):
-        bounds[row, 0], bounds[row, 1], bounds[row, 2], bounds[row, 3] = width, -1, -1, -1
-    for k in range(cells.shape[0]):
-        middle, column = cells[k] // width, cells[k] % width
-        low, high = middle, middle
-        while square[low - 1, column] > 0:
-            low -= 1
-        while square[high + 1, column] > 0:
-            high += 1
-        for row in range(low, high + 1):
-            if row != middle and bounds[row, 2] < column < bounds[row, 3]:
-                continue
-            first, last = column - 1, column + 1
-            while square[row, first] > 0:
-                first -= 1
-            while square[row, last] > 0:
-                last += 1
-            if square[row, column] > 0:  # the run last seen in this row
-                bounds[row, 2], bounds[row, 3] = first, last
-            bounds[row, 0] = first if first < bounds[row, 0] else bounds[row, 0]
-            bounds[row, 1] = last if last > bounds[row, 1] else bounds[row, 1]
+@bare
+def block_about(square: Squares, bounds: Ints) -> tuple[int, int, int, int]:
+    """First and last row, first and last column of a block in which the cells within the bounds can be measured.
 
-
-@compiled
-def measure_again(
-    square: Squares, bounds: Ints, fresh: Squares, scratch: Ints, gap: Gaps, sites: Sites, heights: Sites
-) -> None:
-    """Write new values one after the other to ``fresh``, and narrow the bounds to those that differ.
-
-    ``bounds`` gets, per row, the first and last column that differ and where in ``fresh`` the first stands.
+    Beside the bounds clearances stay, and none between exceeds theirs by more than its distance from them.
     """
-    seen, below, above, line = scratch[0], scratch[1], scratch[2], scratch[3]
-    used = 0
+    low, high, west, east = bounds.shape[0], -1, square.shape[1], -1
+    for row in range(bounds.shape[0]):
+        first, last = bounds[row, 0] - 1, bounds[row, 1] + 1
+        if last > 0:
+            before, behind = reach_of(square, row, first), reach_of(square, row, last)
+            most = (before + behind + last - first) // 2 + 1
+            low, high = row - most if row - most < low else low, row + most if row + most > high else high
+            west = first - before if first - before < west else west
+            east = last + behind if last + behind > east else east
+    rows, columns = square.shape
+    low, high = low if low > 0 else 0, high if high < rows - 1 else rows - 1
+    return low, high, west if west > 0 else 0, east if east < columns - 1 else columns - 1
+
+
+@bare
+def reach_of(square: Squares, row: int, column: int) -> int:
+    """A whole number of squares above a cell's clearance."""
+    return int(0.5 * np.sqrt(float(square[row, column])) + 2.0)
+
+
+@bare
+def narrow(square: Squares, fresh: Squares, low: int, west: int, bounds: Ints) -> None:
+    """Narrow the bounds to the cells that differ; their third column gets where in ``fresh``, flat, the first one is.
+
+    ``fresh`` begins in row ``low`` and column ``west``.
+    """
+    width = fresh.shape[1]
     for row in range(bounds.shape[0]):
         first, last = bounds[row, 0], bounds[row, 1]
-        if last < 0:
-            continue
-        begin = -1
-        for j in range(first, last + 1):
-            gap[j] = steps_at(square, row, j, seen, below, above)
-            if gap[j] > 0 and begin < 0:
-                begin = j
-            elif gap[j] == 0:
-                if begin >= 0:
-                    measure_run(gap, line, begin, j, sites, heights)
-                begin, line[j] = -1, 0
-        while last >= first and line[last] == square[row, last]:
+        while last >= first and fresh[row - low, last - west] == square[row, last]:
             last -= 1
-        while first <= last and line[first] == square[row, first]:
+        while first <= last and fresh[row - low, first - west] == square[row, first]:
             first += 1
-        bounds[row, 0], bounds[row, 1], bounds[row, 2] = first, last, used
+        bounds[row, 0], bounds[row, 1], bounds[row, 2] = first, last, (row - low) * width + first - west
         if last < first:
             bounds[row, 0], bounds[row, 1] = square.shape[1], -1
-        for j in range(first, last + 1):
-            fresh[used] = line[j]
-            used += 1
-
-
-@compiled
-def steps_at(square: Squares, row: int, column: int, seen: Ints, below: Ints, above: Ints) -> int:
-    """The steps to the nearest blocked square in a column, from those of the row before if it was ``seen``."""
-    known = seen[column] == row - 1
-    seen[column] = row
-    if square[row, column] <= 0:
-        below[column], above[column] = 0, 0
-        return 0
-    if known:
-        below[column] += 1
-    else:
-        other = row
-        while square[other, column] > 0:
-            other -= 1
-        below[column] = row - other
-    if known and above[column] > 1:
-        above[column] -= 1
-    else:
-        other = row
-        while square[other, column] > 0:
-            other += 1
-        above[column] = other - row
-    return int(below[column] if below[column] < above[column] else above[column])

@@ -19,8 +19,9 @@ PATIENCE = 1.0  # seconds of compiling before the user is told
 class Kernel(Generic[P, R]):
     """A function that compiles itself when it is first called."""
 
-    def __init__(self, function: Callable[P, R]) -> None:
+    def __init__(self, function: Callable[P, R], counting: bool) -> None:
         self.function = function
+        self._counting = counting
         self.__doc__ = function.__doc__
         self.__name__ = function.__name__
         self.__module__ = function.__module__
@@ -37,7 +38,7 @@ class Kernel(Generic[P, R]):
     def machine(self) -> Callable[P, R]:
         """The numba dispatcher (or the bare function when numba is told not to compile)."""
         if self._machine is None:
-            self._machine = _dispatcher(self.function)
+            self._machine = _dispatcher(self.function, self._counting)
             _link(cast(FunctionType, self.function).__globals__)
         return self._machine
 
@@ -56,18 +57,28 @@ class Kernel(Generic[P, R]):
 
 def compiled(function: Callable[P, R]) -> Kernel[P, R]:
     """Decorate a kernel. Its arguments are arrays and numbers; it may call other kernels, also of other modules."""
-    return Kernel(function)
+    return Kernel(function, True)
 
 
-def _dispatcher(function: Callable[P, R]) -> Callable[P, R]:
+def bare(function: Callable[P, R]) -> Kernel[P, R]:
+    """Decorate a kernel that makes no arrays but views, returns none, and calls only such kernels.
+
+    Numba then counts no references to arrays, which in kernels of many small calls takes most of the time.
+    """
+    return Kernel(function, False)
+
+
+def _dispatcher(function: Callable[P, R], counting: bool) -> Callable[P, R]:
     import numba
 
+    options: Any = {"error_model": "numpy", "_nrt": counting}
     try:
-        machine = numba.njit(cache=True, error_model="numpy")(function)
+        machine = numba.njit(cache=True, **options)(function)
     except RuntimeError:  # no directory to keep the cache in: compile anew in each process
-        machine = numba.njit(error_model="numpy")(function)
+        machine = numba.njit(**options)(function)
     if hasattr(machine, "overloads"):
         _compile_wide(machine)
+        _tell_when_long(machine)
     return cast(Callable[P, R], machine)
 
 
@@ -90,17 +101,27 @@ def _link(names: dict[str, Any]) -> None:
             names[name] = value.machine()
 
 
+def _tell_when_long(machine: Any) -> None:
+    """Say so when compiling takes long. What numba finds in its cache it does not compile."""
+    compiler = machine._compiler
+    compile_it = compiler.compile
+
+    def compile_telling(*args: Any) -> Any:
+        notice = Timer(PATIENCE, tell)
+        notice.daemon = True
+        notice.start()
+        try:
+            return compile_it(*args)
+        finally:
+            notice.cancel()
+
+    compiler.compile = compile_telling
+
+
 def _compile(machine: Any, args: tuple[Any, ...]) -> None:
-    """Compile for these arguments without running, and say so when it takes long."""
-    if not hasattr(machine, "typeof_pyval"):
-        return
-    notice = Timer(PATIENCE, tell)
-    notice.daemon = True
-    notice.start()
-    try:
+    """Compile for these arguments without running."""
+    if hasattr(machine, "typeof_pyval"):
         machine.compile(tuple(machine.typeof_pyval(value) for value in args))
-    finally:
-        notice.cancel()
 
 
 @cache

@@ -15,7 +15,7 @@ the same faster. A row's ``gap`` is the number of steps to the nearest blocked s
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.compiled import compiled
+from geometry.compiled import bare
 
 Bools = NDArray[np.bool_]
 Gaps = NDArray[np.int16]
@@ -23,21 +23,22 @@ Squares = NDArray[np.int32]
 Sites = NDArray[np.int64]
 
 
-@compiled
-def count_columns(free: Bools, square: Squares) -> None:
-    """Fill ``square`` with the steps to the nearest blocked square below, in the same column."""
+@bare
+def count_columns(free: Bools, steps: Gaps) -> None:
+    """Fill ``steps`` (rows + 1, columns + 2 or more) with the steps to the nearest blocked square below, in the same
+    column."""
     rows, columns = free.shape
-    square[0, :] = 0
-    square[rows + 1, :] = 0
+    for j in range(columns + 2):
+        steps[0, j] = 0
     for row in range(rows):
-        here, below, out = free[row], square[row], square[row + 1]
+        here, below, out = free[row], steps[row], steps[row + 1]
         out[0] = 0
         out[columns + 1] = 0
         for column in range(columns):
-            out[column + 1] = np.int32((below[column + 1] + 1) * here[column])
+            out[column + 1] = np.int16((below[column + 1] + np.int16(1)) * here[column])
 
 
-@compiled
+@bare
 def measure_run(gap: Gaps, square: Squares, first: int, last: int, sites: Sites, heights: Sites) -> None:
     """Fill the run ``first <= column < last`` of free squares, blocked on both sides."""
     top = envelope(gap, first, last, sites, heights)
@@ -55,7 +56,7 @@ def measure_run(gap: Gaps, square: Squares, first: int, last: int, sites: Sites,
         square[column] = min(own * own, value + x * x)
 
 
-@compiled
+@bare
 def envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> int:
     """The sites whose parabolas are lowest somewhere; relative to ``first``. Returns the index of the last."""
     sites[0] = -1
@@ -77,7 +78,7 @@ def envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> 
     return top
 
 
-@compiled
+@bare
 def hidden(sites: Sites, heights: Sites, top: int, site: int, height: np.int64 | int) -> bool:
     """Whether the top site lies on or above the line from the one beneath it to the new one."""
     rise = (heights[top] - heights[top - 1]) * (site - sites[top])

@@ -1,10 +1,10 @@
 """A binary heap in two arrays, keys and what they belong to; the caller keeps its size."""
 
 from geometry.bones import Floats, Ints
-from geometry.compiled import compiled
+from geometry.compiled import bare
 
 
-@compiled
+@bare
 def push(keys: Floats, items: Ints, size: int, key: float, item: int) -> int:
     """Put an item on the heap; returns the heap's size."""
     k = size
@@ -18,7 +18,7 @@ def push(keys: Floats, items: Ints, size: int, key: float, item: int) -> int:
     return size + 1
 
 
-@compiled
+@bare
 def pop(keys: Floats, items: Ints, size: int) -> tuple[int, int]:
     """Take the item with the least key, which is ``keys[0]``; returns it and the heap's size."""
     top = 0 + items[0]

@@ -9,13 +9,13 @@ import numpy as np
 from geometry.alternatives import Album, new_album, shortest_ways
 from geometry.bones import Floats, Ints
 from geometry.chains import Chains
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.layer import Layer
 from geometry.rope import Ends, Rope, measure_line, new_rope, tighten_word
-from geometry.runs import Runs, extend
+from geometry.runs import Runs
 from geometry.search import Query, Search, new_search
 from geometry.skeleton import Flags, Heights, States
-from geometry.ways import Anchor, Ways, add_chain, ascend, locate
+from geometry.ways import Anchor, Ways, add_chain, add_word, ascend, locate
 
 
 class Answers(NamedTuple):
@@ -64,13 +64,14 @@ def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars:
         bars,
         np.zeros(nodes, np.bool_),
     )
+    answered = wanted if wanted > 1 else 2
     answers = Answers(
-        np.zeros((wanted + 1, 3), np.int32),
+        np.zeros((answered + 1, 3), np.int32),
         np.empty((8 * room, 2)),
-        np.empty(room * wanted, np.int32),
-        np.empty((nodes + 2) * wanted, np.int32),
-        np.empty(wanted),
-        np.empty(wanted, np.int32),
+        np.empty(room * answered, np.int32),
+        np.empty((nodes + 2) * answered, np.int32),
+        np.empty(answered),
+        np.empty(answered, np.int32),
     )
     start, goal, whole = (np.empty(room, np.int32) for _ in range(3))
     stretch = np.empty((nodes + 2, 3), np.int32)
@@ -88,7 +89,7 @@ def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars:
 
 
 OVERFLOW = -1
-BOW = 1.0  # chosen by trial on the benchmark maps: 0 gives 1.014 of the optimum in the mean, 0.1 1.010, 1 1.009
+SLIGHT, STRONG = 0.1, 4.0  # bows; by trial the best two on the benchmark maps and others like them (docs/geometry.md)
 
 
 class Ground(NamedTuple):
@@ -109,11 +110,12 @@ def ground_of(layer: Layer) -> Ground:
     return Ground(heights, states, layer.square.shape[1], layer.chains, layer.runs, layer.ways, layer.body)
 
 
-@compiled
+@bare
 def itineraries(ground: Ground, ends: Ends, wanted: int, desk: Desk) -> int:
     """Fill the desk's answers with up to ``wanted`` tight routes, by the length of their ways over the pathgraph.
 
-    Returns their number, or OVERFLOW when some scratch is too small.
+    When one is wanted, with two, the best ways for two bows, of which the shorter is meant. Returns their number, or
+    OVERFLOW when some scratch is too small.
     """
     heights, states, width, chains, runs, ways, body = ground
     query, album = desk.query, desk.album
@@ -128,23 +130,28 @@ def itineraries(ground: Ground, ends: Ends, wanted: int, desk: Desk) -> int:
         return OVERFLOW
     pose(query, start, goal, chains.ends, chains.start, ways.length)
     sight_ends(query.joint, query.cost, ways.sight, query.sight)
-    bow(query.line, ends, BOW if wanted == 1 else 0.0)
-    split(query.shut, start, goal, 2)
-    found = shortest_ways(chains.ends, ways, query, desk.search, album, wanted)
-    split(query.shut, start, goal, 0)
     floor = heights[first] if heights[first] < heights[last] else heights[last]
-    stretch = desk.stretch
-    for k in range(found):
-        row = 0 + album.place[k]
-        steps = stretches(chains.ends, chains.start, album.arcs, row, 0 + album.size[row], start, goal, stretch)
-        desk.answers.lowest[k] = lowest_on(chains.start, chains.cells, chains.neck, heights, stretch, steps, floor)
-        size = spell(chains.start, ways.symbol, desk.start, rise, stretch, steps, desk.goal, fall, desk.whole)
-        if not publish(runs, body, desk.whole, size, ends, desk.rope, stretch, steps, desk.answers, k):
-            return OVERFLOW
-    return found
+    stretch, written = desk.stretch, 0
+    for share in (SLIGHT, STRONG):
+        bow(query.line, ends, share if wanted == 1 else 0.0)
+        split(query.shut, start, goal, 2)
+        found = shortest_ways(chains.ends, ways, query, desk.search, album, wanted)
+        split(query.shut, start, goal, 0)
+        for k in range(found):
+            row = 0 + album.place[k]
+            steps = stretches(chains.ends, chains.start, album.arcs, row, 0 + album.size[row], start, goal, stretch)
+            low = lowest_on(chains.start, chains.cells, chains.neck, heights, stretch, steps, floor)
+            desk.answers.lowest[written] = low
+            size = spell(chains.start, ways, desk.start, rise, stretch, steps, desk.goal, fall, desk.whole)
+            if not publish(runs, body, desk.whole, size, ends, desk.rope, stretch, steps, desk.answers, written):
+                return OVERFLOW
+            written += 1
+        if wanted > 1 or found == 0:
+            break
+    return written
 
 
-@compiled
+@bare
 def split(shut: States, start: Anchor, goal: Anchor, flag: int) -> None:
     """Shut the chains that an anchor splits (flag 2), or open them again (0)."""
     if start.node < 0:
@@ -153,7 +160,7 @@ def split(shut: States, start: Anchor, goal: Anchor, flag: int) -> None:
         shut[goal.chain] = shut[goal.chain] & 1 | flag
 
 
-@compiled
+@bare
 def bow(line: Floats, ends: Ends, share: float) -> None:
     """Make arcs dearer by that share of their length times their distance from the straight line, in its lengths."""
     dx, dy = ends[2] - ends[0], ends[3] - ends[1]
@@ -164,7 +171,7 @@ def bow(line: Floats, ends: Ends, share: float) -> None:
     line[2], line[3] = -dy * share / square, dx * share / square
 
 
-@compiled
+@bare
 def pose(query: Query, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, length: Floats) -> None:
     """Set the query's five arcs."""
     joint, cost, bars, closed = query.joint, query.cost, query.bars, query.closed
@@ -189,7 +196,7 @@ def pose(query: Query, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, le
         cost[1 - backward] = cost[2 + backward] = np.inf
 
 
-@compiled
+@bare
 def part(bars: Ints, starts: Ints, length: Floats, chain: int, begin: int, end: int) -> float:
     """The length of a part of a chain, in proportion to its cells; infinite when it passes a barred place."""
     low, high = (begin, end) if begin < end else (end, begin)
@@ -199,7 +206,7 @@ def part(bars: Ints, starts: Ints, length: Floats, chain: int, begin: int, end: 
     return float(length[chain] * (high - low) / (starts[chain + 1] - starts[chain] - 1))
 
 
-@compiled
+@bare
 def sight_ends(joint: Ints, cost: Floats, sight: Floats, out: Floats) -> None:
     """The distances of goal and start from the landmarks."""
     for k in range(sight.shape[1]):
@@ -211,7 +218,7 @@ def sight_ends(joint: Ints, cost: Floats, sight: Floats, out: Floats) -> None:
             out[end, k] = least
 
 
-@compiled
+@bare
 def stretches(ends: Ints, starts: Ints, arcs: Ints, row: int, size: int, start: Anchor, goal: Anchor, out: Ints) -> int:
     """Write the chains that a way walks, and the positions between which; returns how many."""
     first, used = 2 * ends.shape[0], 0
@@ -238,7 +245,7 @@ def stretches(ends: Ints, starts: Ints, arcs: Ints, row: int, size: int, start: 
     return used
 
 
-@compiled
+@bare
 def lowest_on(starts: Ints, cells: Ints, neck: Ints, heights: Heights, stretch: Ints, steps: int, lowest: int) -> int:
     """The least square on a way, at most the given one."""
     for k in range(steps):
@@ -254,23 +261,23 @@ def lowest_on(starts: Ints, cells: Ints, neck: Ints, heights: Heights, stretch: 
     return lowest
 
 
-@compiled
+@bare
 def spell(
-    starts: Ints, symbol: Ints, rise: Ints, risen: int, stretch: Ints, steps: int, fall: Ints, fallen: int, word: Ints
+    starts: Ints, ways: Ways, rise: Ints, risen: int, stretch: Ints, steps: int, fall: Ints, fallen: int, word: Ints
 ) -> int:
     """Write the portals of a way from start to goal; returns the word's size."""
-    for k in range(risen):
-        word[k] = rise[k]
-    size = risen
+    symbol, words, spelt = ways.symbol, ways.word, ways.spelt
+    size = add_word(rise, 0, risen, False, word, 0)
     for k in range(steps):
         chain, begin, end = 0 + stretch[k, 0], 0 + stretch[k, 1], 0 + stretch[k, 2]
-        size = add_chain(starts, symbol, chain, begin, end, word, size)
-    for k in range(fallen - 1, -1, -1):
-        size = extend(word, size, 0 - fall[k])
-    return size
+        if abs(end - begin) == starts[chain + 1] - starts[chain] - 1:
+            size = add_word(words, 0 + spelt[chain], 0 + spelt[chain + 1], end < begin, word, size)
+        else:
+            size = add_chain(starts, symbol, chain, begin, end, word, size)
+    return add_word(fall, 0, fallen, True, word, size)
 
 
-@compiled
+@bare
 def publish(
     runs: Runs,
     body: bool,

@@ -9,7 +9,8 @@ from geometry.bones import Bones, contract
 from geometry.chains import Chains
 from geometry.distance import Squares
 from geometry.runs import Runs, find_runs
-from geometry.skeleton import KINDS, States, Words, classify, trace
+from geometry.skeleton import States, Words
+from geometry.sweep import grow_all
 from geometry.ways import Ways, find_ways
 
 
@@ -37,8 +38,7 @@ def new_state(shape: tuple[int, ...], words: Words | None = None) -> tuple[State
 
 def find_bones(square: Squares, level: int, state: States, words: Words) -> Bones:
     """The pathgraph of the cells whose ``square`` is at least ``level``; fills ``state``."""
-    classify(square, level, state, np.zeros(square.shape[1], np.uint8), KINDS)
-    trace(square.reshape(-1), state.reshape(-1), square.shape[1], words, np.empty(4, np.int32))
+    grow_all(square, level, state, words)
     return contract(square, state, words)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.bones import Ints
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Bools, Squares
 from geometry.passages import Passage
 
@@ -76,7 +76,7 @@ def turn(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> fl
     return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 
 
-@compiled
+@bare
 def number_parts(free: Bools, shut: Bools, label: Labels, stack: Ints) -> int:
     """Number the parts of the padded free cells; returns how many there are."""
     width = free.shape[1]
@@ -104,7 +104,7 @@ def number_parts(free: Bools, shut: Bools, label: Labels, stack: Ints) -> int:
     return count
 
 
-@compiled
+@bare
 def join_slivers(shut: Bools, label: Labels, bones: Ints, joined: Ints) -> None:
     """Join each part without skeleton to the first part with some across a neck."""
     rows, width = label.shape

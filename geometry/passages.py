@@ -14,10 +14,22 @@ from numpy.typing import NDArray
 
 from geometry.bones import Ints
 from geometry.chains import Chains
-from geometry.compiled import compiled
+from geometry.compiled import bare, compiled
 from geometry.distance import Squares
 from geometry.runs import root
-from geometry.skeleton import SADDLE, SUMMIT, States, above, beside, steepest
+from geometry.skeleton import (
+    GROUPS,
+    LINKS,
+    SADDLE,
+    SUMMIT,
+    States,
+    above,
+    beside,
+    higher_about,
+    highest_of,
+    steepest,
+    stride,
+)
 from geometry.ways import locate
 
 XY = tuple[float, float]
@@ -138,31 +150,25 @@ def compare_sides(square: Squares, state: States, saddles: Ints) -> tuple[Ints, 
     return count, first, peaks
 
 
-@compiled
+@bare
 def find_sides(square: Squares, state: States, saddles: Ints, count: Ints, first: Ints, summit: Ints) -> None:
     """The highest neighbour in each group of higher ones, and the summit reached from it."""
     width = square.shape[1]
     heights, states = square.reshape(-1), state.reshape(-1)
     for k in range(saddles.shape[0]):
-        saddle, start = saddles[k], 0
-        while above(saddle + beside(start, width), saddle, heights):
-            start += 1
-        best = -1
-        for j in range(start + 1, start + 9):
-            cell = saddle + beside(j, width)
-            if not above(cell, saddle, heights):
-                if best >= 0:
-                    first[k, count[k]] = best
-                    while not states[best] & SUMMIT:
-                        best = steepest(best, heights, width)
-                    summit[k, count[k]] = best
-                    count[k] += 1
-                best = -1
-            elif j % 2 == 0 and (best < 0 or above(cell, best, heights)):
-                best = cell
+        saddle, found = 0 + saddles[k], 0
+        rest = int(GROUPS[higher_about(saddle, heights, width)])
+        while rest != 0:
+            best = saddle + stride(highest_of(saddle, rest & LINKS, heights, width), width)
+            first[k, found] = best
+            while not states[best] & SUMMIT:
+                best = steepest(best, heights, width)
+            summit[k, found] = best
+            found, rest = found + 1, rest >> 4
+        count[k] = found
 
 
-@compiled
+@bare
 def merge_sides(
     order: Ints, count: Ints, summit: Ints, parent: Ints, highest: Ints, heights: Squares, peaks: Ints
 ) -> None:
@@ -177,7 +183,7 @@ def merge_sides(
             parent[max(a, b)] = min(a, b)
 
 
-@compiled
+@bare
 def finest(square: Squares, cell: int) -> float:
     """The greatest clearance at a cell's centre, corners and edges' middles."""
     rows, width = square.shape
@@ -216,7 +222,7 @@ def neck_ends(square: Squares, saddle: int, one: int, two: int) -> tuple[float, 
     return (*nearest_points(one, saddle, width)[:2], *nearest_points(two, saddle, width)[:2])
 
 
-@compiled
+@bare
 def neck_walls(square: Squares, saddle: int, one: int, two: int) -> tuple[int, int]:
     """The blocked squares nearest to each other across a saddle, starting from the feet of its slopes."""
     for _ in range(4):
@@ -245,7 +251,7 @@ def descend(heights: Squares, saddle: int, k: int, turn: int, width: int) -> Int
     return np.array(cells, np.int32)
 
 
-@compiled
+@bare
 def across(square: Squares, saddle: int, wall: int, before: int) -> int:
     """The blocked square nearest to ``wall`` on the other side of the saddle; ``before`` if none is nearer."""
     rows, width = square.shape
@@ -262,7 +268,7 @@ def across(square: Squares, saddle: int, wall: int, before: int) -> int:
     return best
 
 
-@compiled
+@bare
 def apart(rise: int, run: int) -> int:
     """The squared distance between two squares at that offset."""
     y, x = max(abs(rise) - 1, 0), max(abs(run) - 1, 0)

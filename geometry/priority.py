@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.heap import pop as take
 from geometry.heap import push as put
 
@@ -12,7 +12,7 @@ Ints = npt.NDArray[np.int32]
 Count = npt.NDArray[np.int64]
 
 
-@compiled
+@bare
 def push(key: Floats, item: Ints, size: Count, new_key: float, new_item: int) -> None:
     """Put an item on the heap. size: (2,) how many there are, and how many were lost because there was no room."""
     if size[0] >= len(key):
@@ -21,7 +21,7 @@ def push(key: Floats, item: Ints, size: Count, new_key: float, new_item: int) ->
         size[0] = put(key, item, size[0], new_key, new_item)
 
 
-@compiled
+@bare
 def pop(key: Floats, item: Ints, size: Count) -> tuple[float, int]:
     """Take the item with the least key off a heap that is not empty."""
     least = key[0]

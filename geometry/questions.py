@@ -34,7 +34,7 @@ def rehearse() -> None:
     ints, table, reals, grid = np.empty(1, np.int32), np.empty((1, 4), np.int32), np.empty(1), np.empty((1, 4))
     chains = Chains(ints, table, table, ints, ints, ints, reals)
     runs = Runs(*[ints] * len(Runs._fields))
-    ways = Ways(ints, reals, grid, table, table, grid, grid)
+    ways = Ways(ints, ints, ints, reals, grid, table, table, grid, grid)
     ground = Ground(ints, np.empty(1, np.uint8), 1, chains, runs, ways, False)
     itineraries.entry(ground, (0.0, 0.0, 0.0, 0.0), 1, new_desk(1, 1, 1, 1, 8, NO_BARS))
 

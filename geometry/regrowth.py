@@ -9,11 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.bones import Ints, stride
-from geometry.compiled import compiled
+from geometry.bones import Ints
+from geometry.compiled import bare
 from geometry.distance import Squares
 from geometry.skeleton import (
     CLIMBED,
+    GROUPS,
     KINDS,
     LINKS,
     SADDLE,
@@ -22,10 +23,11 @@ from geometry.skeleton import (
     Heights,
     States,
     above,
-    beside,
+    higher_about,
+    highest,
+    highest_of,
     link,
-    steepest,
-    ways_up,
+    stride,
 )
 
 TOUCHED, MOVED, JOINED = 1, 2, 4  # marks of cells: state may differ, clearance differs, to be joined again
@@ -57,12 +59,12 @@ def regrow(square: Squares, state: States, bounds: Ints, fresh: Squares) -> Jour
     about = np.empty((len(bounds), 2), np.int32)
     spread(bounds, width, about)
     prune(heights, width, about, journal)
-    settle(heights, width, bounds, fresh, about, KINDS, journal)
-    grow(heights, width, about, np.empty(4, np.int32), journal)
+    settle(heights, width, bounds, fresh, about, journal)
+    grow(heights, width, about, journal)
     return journal
 
 
-@compiled
+@bare
 def spread(bounds: Ints, width: int, about: Ints) -> None:
     """The columns on or beside a changed cell, per row."""
     rows = bounds.shape[0]
@@ -77,7 +79,7 @@ def spread(bounds: Ints, width: int, about: Ints) -> None:
                 about[row, 1] = last if last > about[row, 1] else about[row, 1]
 
 
-@compiled
+@bare
 def touch(journal: Journal, cell: int) -> None:
     """Remember a cell's state before it changes."""
     if not journal.mark[cell] & TOUCHED:
@@ -86,7 +88,7 @@ def touch(journal: Journal, cell: int) -> None:
         journal.touched[k], journal.before[k], journal.size[0] = cell, journal.states[cell], k + 1
 
 
-@compiled
+@bare
 def prune(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
     """Take back all ways up from the cells about, and what hangs on them."""
     states = journal.states
@@ -103,7 +105,7 @@ def prune(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
             states[cell] &= LINKS | SADDLE | SUMMIT
 
 
-@compiled
+@bare
 def unlink(journal: Journal, cell: int, other: int, direction: int) -> None:
     """Take back a link."""
     touch(journal, cell)
@@ -112,7 +114,7 @@ def unlink(journal: Journal, cell: int, other: int, direction: int) -> None:
     journal.states[other] &= 255 - (1 << (direction ^ 2))
 
 
-@compiled
+@bare
 def wither(heights: Heights, width: int, about: Ints, journal: Journal, cell: int) -> None:
     """Take back the way up from a cell outside that nothing leads to any more."""
     states = journal.states
@@ -135,10 +137,8 @@ def wither(heights: Heights, width: int, about: Ints, journal: Journal, cell: in
         cell = higher
 
 
-@compiled
-def settle(
-    heights: Heights, width: int, bounds: Ints, fresh: Squares, about: Ints, kind: Flags, journal: Journal
-) -> None:
+@bare
+def settle(heights: Heights, width: int, bounds: Ints, fresh: Squares, about: Ints, journal: Journal) -> None:
     """Set the new clearances, and the flags of the cells about."""
     for row in range(bounds.shape[0]):
         for k in range(bounds[row, 1] - bounds[row, 0] + 1):
@@ -148,42 +148,40 @@ def settle(
                 journal.mark[cell] |= MOVED
     for row in range(about.shape[0]):
         for cell in range(row * width + about[row, 0], row * width + about[row, 1] + 1):
-            flag, higher = 0, 0
-            if heights[cell] > 0:
-                for k in range(8):
-                    if above(cell + beside(k, width), cell, heights):
-                        higher |= 1 << k
-                flag = kind[higher]
+            flag = int(KINDS[higher_about(cell, heights, width)]) if heights[cell] > 0 else 0
             if journal.states[cell] & (SADDLE | SUMMIT) != flag:
                 touch(journal, cell)
                 journal.states[cell] = journal.states[cell] & LINKS | flag
 
 
-@compiled
-def grow(heights: Heights, width: int, about: Ints, starts: Ints, journal: Journal) -> None:
+@bare
+def grow(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
     """Go up again from the saddles about, and from where ways from outside come in."""
     states = journal.states
     for row in range(about.shape[0]):
         for cell in range(row * width + about[row, 0], row * width + about[row, 1] + 1):
             here = states[cell]
             if here & SADDLE:
-                for k in range(ways_up(cell, heights, width, starts)):
-                    climb(cell, starts[k], heights, width, journal)
+                rest = int(GROUPS[higher_about(cell, heights, width)])
+                while rest != 0:
+                    climb(cell, highest_of(cell, rest & LINKS, heights, width), heights, width, journal)
+                    rest >>= 4
             elif here & LINKS and not here & (SUMMIT | CLIMBED):
                 states[cell] |= CLIMBED
-                climb(cell, steepest(cell, heights, width), heights, width, journal)
+                climb(cell, highest(cell, heights, width), heights, width, journal)
 
 
-@compiled
-def climb(cell: int, higher: int, heights: Heights, width: int, journal: Journal) -> None:
+@bare
+def climb(cell: int, direction: int, heights: Heights, width: int, journal: Journal) -> None:
     """As in skeleton.py, with a journal."""
     states = journal.states
     while True:
+        other = cell + stride(direction, width)
         touch(journal, cell)
-        touch(journal, higher)
-        link(cell, higher, states, width)
-        cell = higher
+        touch(journal, other)
+        link(cell, other, direction, states)
+        cell = other
         if states[cell] & (CLIMBED | SADDLE | SUMMIT):
             return
         states[cell] |= CLIMBED
-        higher = steepest(cell, heights, width)
+        direction = highest(cell, heights, width)

@@ -7,10 +7,10 @@ in the order that bones.py would give them.
 
 import numpy as np
 
-from geometry.bones import Bones, Floats, Ints, find, is_node, onward, pace, stride
-from geometry.compiled import compiled
+from geometry.bones import Bones, Floats, Ints, find, first_way, is_node, onward, pace
+from geometry.compiled import bare
 from geometry.regrowth import JOINED, MOVED, Journal
-from geometry.skeleton import HALT, LINKS, Flags, Heights
+from geometry.skeleton import HALT, LINKS, Flags, Heights, stride
 
 GONE = 31  # a node that is none any more, or has changed: all its ends are open
 
@@ -28,7 +28,7 @@ def rejoin(heights: Heights, width: int, bones: Bones, journal: Journal) -> Bone
     open_ends = np.zeros(len(bones.node), np.uint8)
     find_open(states, mark, width, cells, before, bones.node, open_ends)
     bases = np.empty(len(cells), np.int32)
-    rings = find_rings(states, width, cells, bases)
+    rings = find_rings(states, mark, width, cells, bases)
     grown = np.unique(np.concatenate([cells, bases[:rings]]))
     keep_nodes(states, grown)
     grown = grown[grown > 0]
@@ -41,10 +41,10 @@ def rejoin(heights: Heights, width: int, bones: Bones, journal: Journal) -> Bone
     room = len(bones.length) + len(seeds)
     port, neck, length = np.empty((room, 2), np.int32), np.empty(room, np.int32), np.empty(room)
     found = merge_chains(heights, states, width, *bones, open_ends, number, seeds, node, port, neck, length)
-    return Bones(node, port[:found].copy(), neck[:found].copy(), length[:found].copy())
+    return Bones(node, port[:found], neck[:found], length[:found])
 
 
-@compiled
+@bare
 def find_open(states: Flags, mark: Flags, width: int, cells: Ints, before: Flags, node: Ints, open_ends: Flags) -> None:
     """The ends, as bits per node, of all chains on which a changed cell lay."""
     for k in range(cells.shape[0]):
@@ -68,19 +68,20 @@ def find_open(states: Flags, mark: Flags, width: int, cells: Ints, before: Flags
                 open_ends[find(node, cell)] |= 1 << (direction ^ 2)
 
 
-@compiled
-def find_rings(states: Flags, width: int, cells: Ints, bases: Ints) -> int:
-    """Flag the first cell of every ring without a junction on which a changed cell lies; returns how many."""
+@bare
+def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints) -> int:
+    """Flag the first cell of every ring without a junction on which a changed cell lies; returns how many.
+
+    Of the changed cells on a ring only the first comes round.
+    """
     found = 0
     for k in range(cells.shape[0]):
         cell = cells[k]
         if states[cell] & LINKS == 0 or is_node(states[cell]):
             continue
-        direction, lowest = 0, cell
-        while not states[cell] >> direction & 1:
-            direction += 1
+        direction, lowest = first_way(int(states[cell])), cell
         cell += stride(direction, width)
-        while cell != cells[k] and not is_node(states[cell]):
+        while cell != cells[k] and not is_node(states[cell]) and (cell > cells[k] or not mark[cell] & JOINED):
             lowest = cell if cell < lowest else lowest
             direction = onward(states[cell], direction ^ 2)
             cell += stride(direction, width)
@@ -91,7 +92,7 @@ def find_rings(states: Flags, width: int, cells: Ints, bases: Ints) -> int:
     return found
 
 
-@compiled
+@bare
 def keep_nodes(states: Flags, cells: Ints) -> None:
     """Set to 0 the cells that are no nodes."""
     for k in range(cells.shape[0]):
@@ -99,7 +100,7 @@ def keep_nodes(states: Flags, cells: Ints) -> None:
             cells[k] = 0
 
 
-@compiled
+@bare
 def merge_nodes(old: Ints, open_ends: Flags, grown: Ints, node: Ints, number: Ints) -> None:
     """The nodes kept and the new ones, in order; ``number`` gets what each old one is called now, or -1."""
     k, size = 0, 0
@@ -116,7 +117,7 @@ def merge_nodes(old: Ints, open_ends: Flags, grown: Ints, node: Ints, number: In
         size, k = size + 1, k + 1
 
 
-@compiled
+@bare
 def find_seeds(states: Flags, node: Ints, grown: Ints, number: Ints, open_ends: Flags, seeds: Ints) -> int:
     """The ends (4 node + direction) where new chains may start; returns how many."""
     found = 0
@@ -134,7 +135,7 @@ def find_seeds(states: Flags, node: Ints, grown: Ints, number: Ints, open_ends: 
     return found
 
 
-@compiled
+@bare
 def merge_chains(
     heights: Heights,
     states: Flags,

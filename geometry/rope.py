@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.bones import Floats, Ints
-from geometry.compiled import compiled
+from geometry.compiled import bare
 
 Ends = tuple[float, float, float, float]  # x and y of the start, x and y of the goal
 
@@ -40,7 +40,7 @@ def new_rope(portals: int) -> Rope:
     )
 
 
-@compiled
+@bare
 def tighten_word(
     lefts: Ints, rights: Ints, lines: Ints, body: bool, word: Ints, size: int, ends: Ends, rope: Rope, out: Floats
 ) -> int:
@@ -53,11 +53,16 @@ def tighten_word(
     xs, ys, via = rope.x, rope.y, rope.via
     xs[0], ys[0] = ends[0], ends[1]
     inset, times = (0.5, 2) if body else (0.0, 1)
-    used = 1
+    used, kept, low, high = 1, 0, 0, 0
     for k in range(size):
-        symbol = word[k]
-        portal = abs(symbol) - 1
-        left, right = lefts[portal] + inset, rights[portal] + 1.0 - inset
+        symbol, after = word[k], word[k + 1] if k + 1 < size else 0
+        portal, other = abs(symbol) - 1, abs(after) - 1
+        west, east = lefts[portal], rights[portal]
+        straight = kept != 0 and after != 0 and (symbol > 0) == (kept > 0) == (after > 0)
+        if straight and west <= low and east >= high and west <= lefts[other] and east >= rights[other]:
+            continue  # whatever goes straight from the portal before to the one behind goes through this one
+        kept, low, high = symbol, west, east
+        left, right = west + inset, east + 1.0 - inset
         y = lines[portal] + 1.0
         if symbol < 0:
             left, right = right, left
@@ -70,7 +75,7 @@ def tighten_word(
     return unwind(xs, ys, via, used, out)
 
 
-@compiled
+@bare
 def funnel(xs: Floats, ys: Floats, via: Ints, queue: Ints, last: int) -> None:
     """For every corner (left and right ends of portals in turn, then the goal), the one before on the way to it.
 
@@ -102,13 +107,13 @@ def funnel(xs: Floats, ys: Floats, via: Ints, queue: Ints, last: int) -> None:
             queue[right] = corner
 
 
-@compiled
+@bare
 def turn(xs: Floats, ys: Floats, a: int, b: int, x: float, y: float) -> float:
     """Positive when (x, y) lies left of the ray from corner a through corner b."""
     return float((xs[b] - xs[a]) * (y - ys[a]) - (ys[b] - ys[a]) * (x - xs[a]))
 
 
-@compiled
+@bare
 def unwind(xs: Floats, ys: Floats, via: Ints, last: int, out: Floats) -> int:
     """Write the way to a corner, without corners met twice in a row; returns their number."""
     size, corner = 1, last
@@ -127,7 +132,7 @@ def unwind(xs: Floats, ys: Floats, via: Ints, last: int, out: Floats) -> int:
     return kept
 
 
-@compiled
+@bare
 def measure_line(line: Floats, size: int) -> float:
     """The length of a polyline's first ``size`` corners."""
     total = 0.0
@@ -136,7 +141,7 @@ def measure_line(line: Floats, size: int) -> float:
     return total
 
 
-@compiled
+@bare
 def reach(run: float, rise: float) -> float:
     """The length of a step; many times as fast as hypot, and nothing here is near overflow."""
     return float(np.sqrt(run * run + rise * rise))

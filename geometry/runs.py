@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.bones import Ints
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Squares
 
 
@@ -65,7 +65,7 @@ def trimmed(size: int, a: Ints, b: Ints, c: Ints) -> tuple[Ints, Ints, Ints]:
     return a[:size].copy(), b[:size].copy(), c[:size].copy()
 
 
-@compiled
+@bare
 def count_runs(square: Squares, level: int, row: Ints) -> int:
     """Fill ``row`` and return the number of runs."""
     total = 0
@@ -77,7 +77,7 @@ def count_runs(square: Squares, level: int, row: Ints) -> int:
     return total
 
 
-@compiled
+@bare
 def fill_runs(square: Squares, level: int, low: Ints, high: Ints) -> None:
     """Write the ends of all runs."""
     run = 0
@@ -92,7 +92,7 @@ def fill_runs(square: Squares, level: int, low: Ints, high: Ints) -> None:
                     run += 1
 
 
-@compiled
+@bare
 def fill_portals(
     row: Ints,
     low: Ints,
@@ -126,7 +126,7 @@ def fill_portals(
     return found
 
 
-@compiled
+@bare
 def number_crossings(lower: Ints, upper: Ints, parent: Ints, crossing: Ints) -> None:
     """Number the portals that close a ring of runs, in their order."""
     number = 0
@@ -139,7 +139,7 @@ def number_crossings(lower: Ints, upper: Ints, parent: Ints, crossing: Ints) -> 
             parent[max(a, b)] = min(a, b)
 
 
-@compiled
+@bare
 def find_exits(up: Ints, down: Ints, lower: Ints, upper: Ints, exits: Ints, degree: Ints, queue: Ints) -> None:
     """Peel off runs with one portal left, until there are none: the dead ends of free space."""
     size = 0
@@ -166,7 +166,7 @@ def find_exits(up: Ints, down: Ints, lower: Ints, upper: Ints, exits: Ints, degr
         degree[run] = 0
 
 
-@compiled
+@bare
 def root(parent: Ints, run: int) -> int:
     """The representative of a run's component, halving the way."""
     while parent[run] != run:
@@ -175,7 +175,7 @@ def root(parent: Ints, run: int) -> int:
     return int(run)
 
 
-@compiled
+@bare
 def run_at(rows: Ints, lows: Ints, row: int, column: int) -> int:
     """The run of a square that lies in one; ``rows`` and ``lows`` are ``row`` and ``low`` of the runs."""
     low, high = 0 + rows[row], rows[row + 1] - 1
@@ -188,7 +188,7 @@ def run_at(rows: Ints, lows: Ints, row: int, column: int) -> int:
     return int(low)
 
 
-@compiled
+@bare
 def symbol_between(rows: Ints, up: Ints, left: Ints, cell: int, other: int, width: int) -> int:
     """The signed portal crossed between two edge neighbours (padded cells); 0 within a row.
 
@@ -209,7 +209,7 @@ def symbol_between(rows: Ints, up: Ints, left: Ints, cell: int, other: int, widt
     return int(low + 1 if step > 0 else -low - 1)
 
 
-@compiled
+@bare
 def extend(word: Ints, size: int, symbol: int) -> int:
     """Append a symbol to a reduced word; returns its new size. A word that fills its room needs a larger one."""
     if symbol == 0 or size >= word.shape[0]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.bones import Bones, Ints
+from geometry.bones import Bones, Ints, contract
 from geometry.chains import Chains, find_chains
 from geometry.change import change_squares
 from geometry.distance import Bools
@@ -21,8 +21,8 @@ from geometry.questions import Questions
 from geometry.recycling import take_buffers
 from geometry.route import Route
 from geometry.skeleton import States, Words
+from geometry.sweep import survey
 from geometry.tightening import tight_route, word_of_crossings
-from geometry.windows import measure
 
 if TYPE_CHECKING:
     import networkx
@@ -59,11 +59,12 @@ class Screen:
         rows, columns = grid.shape
         self.shape = (rows, columns)
         self._square, self._words = take_buffers(self, (rows + 2, columns + 2))
-        measure(grid, self._square)
-        self._skeletons: dict[int, tuple[States, Words, Bones]] = {}
+        state, _ = new_state(self._square.shape, self._words)
+        survey(grid, self._square, state, self._words)
+        bones = contract(self._square, state, self._words)
+        self._skeletons: dict[int, tuple[States, Words, Bones]] = {1: (state, self._words, bones)}
         self._chains: dict[int, Chains] = {}
         self._questions: dict[tuple[int, bool], Questions] = {}
-        self._skeleton_at(1)
 
     def changed(self, rows: ArrayLike, columns: ArrayLike, values: ArrayLike) -> "Screen":
         """Set some squares free (True) or blocked (False), in place, much faster than a new screen; returns itself.
@@ -78,7 +79,7 @@ class Screen:
         """
         where = checked_squares(rows, columns, values, self.shape)
         state, words, bones = self._skeletons[1]
-        self._skeletons = {1: (state, words, change_squares(self._square, state, bones, *where))}
+        self._skeletons = {1: (state, words, change_squares(self._square, state, words, bones, *where))}
         self._chains, self._questions = {}, {}
         for name in ("clearance", "skeleton", "pathgraph"):
             self.__dict__.pop(name, None)
@@ -222,7 +223,7 @@ class Screen:
         """The skeleton and pathgraph of the squares of at least that level."""
         found = self._skeletons.get(level)
         if found is None:
-            state, words = new_state(self._square.shape, self._words if level == 1 else None)
+            state, words = new_state(self._square.shape)
             found = state, words, find_bones(self._square, level, state, words)
             self._skeletons[level] = found
         return found
@@ -274,6 +275,9 @@ def checked_squares(
         raise ValueError("rows and columns must be whole numbers")
     if len(i) and not (i.min() >= 0 and i.max() < shape[0] and j.min() >= 0 and j.max() < shape[1]):
         raise ValueError(f"a changed square lies outside the screen of {shape[0]} rows and {shape[1]} columns")
-    last = {(a, b): v for a, b, v in zip(i.tolist(), j.tolist(), np.broadcast_to(value.ravel(), i.shape), strict=True)}
-    spots = np.array(list(last), np.int32).reshape(-1, 2)
-    return spots[:, 0].copy(), spots[:, 1].copy(), np.array(list(last.values()), np.bool_)
+    values = np.broadcast_to(value.ravel(), i.shape)
+    if len(np.unique(i.astype(np.int64) * shape[1] + j)) < len(i):
+        last = {(a, b): v for a, b, v in zip(i.tolist(), j.tolist(), values.tolist(), strict=True)}
+        i, j = np.array(list(last)).T
+        values = np.array(list(last.values()))
+    return i.astype(np.int32), j.astype(np.int32), values

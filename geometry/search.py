@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.bones import Floats, Ints
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.heap import pop, push
 from geometry.skeleton import States
 from geometry.ways import Ways
@@ -80,7 +80,7 @@ def new_search(nodes: int, chains: int) -> Search:
     )
 
 
-@compiled
+@bare
 def seek(ways: Ways, query: Query, search: Search, origin: int) -> bool:
     """A* from a node to the goal, under the stamp's bars and seals; the way is then in ``came``.
 
@@ -140,7 +140,7 @@ def seek(ways: Ways, query: Query, search: Search, origin: int) -> bool:
     return True
 
 
-@compiled
+@bare
 def bound(sight: Floats, ends: Floats, end: int, node: int) -> float:
     """A lower bound of the way from a node to the goal (end 0) or the start (1), by the landmarks' triangles."""
     least = 0.0
@@ -151,7 +151,7 @@ def bound(sight: Floats, ends: Floats, end: int, node: int) -> float:
     return least
 
 
-@compiled
+@bare
 def survey(ways: Ways, query: Query, search: Search, limit: float) -> None:
     """Fill ``ahead`` with the exact distances to the goal: Dijkstra, backwards.
 

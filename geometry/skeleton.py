@@ -8,6 +8,9 @@ discrete Morse theory gives maxima - sum of (groups - 1) over saddles = componen
 union has the homotopy type of free space, and so has its part at or above any level, which is free space for a body
 of that radius.
 
+Rows are classified and climbed in bands from the north, while they are in the processor's cache. A way that leads
+south out of the rows done so far waits at the last of them.
+
 ``state`` holds one byte a cell: bits 0-3 the links to the east, north, west and south neighbours, then the flags
 below.
 """
@@ -15,7 +18,7 @@ below.
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Squares
 
 States = NDArray[np.uint8]
@@ -24,137 +27,186 @@ Heights = Squares
 Flags = States
 """(cells,) states, flat."""
 Words = NDArray[np.uint64]
+Truth = np.bool_
+Waiting = NDArray[np.int32]
 
 LINKS = 15
+SOUTH = 3  # a direction: from the east counter-clockwise
 CLIMBED, SADDLE, SUMMIT, HALT = 16, 32, 64, 128  # HALT: a node chosen on a ring that has no junction
+
+
+@bare
+def flag(e: Truth, ne: Truth, n: Truth, nw: Truth, w: Truth, sw: Truth, s: Truth, se: Truth) -> np.uint8:
+    """The flag of a cell whose higher neighbours are so. A group ends behind each edge that the corner between does not
+    join to the next edge; where two end, the cell is a saddle."""
+    a, b, c, d = e & ~(ne & n), n & ~(nw & w), w & ~(sw & s), s & ~(se & e)
+    several = (a | b) & (c | d) | a & b | c & d
+    return np.uint8(np.uint8(several) << np.uint8(5) | np.uint8(~(e | n | w | s)) << np.uint8(6))
 
 
 def kinds() -> States:
     """The flag of a cell by the set of its higher neighbours: bits from the east counter-clockwise; 255 is no cell."""
-    table = np.zeros(256, dtype=np.uint8)
-    for higher in range(255):
-        ring = [bool(higher >> k & 1) for k in range(8)]
-        start = ring.index(False)
-        groups, touching = 0, False
-        for k in range(start, start + 9):
-            touching = ring[k % 8] and (touching or k % 2 == 0)
-            groups += touching and not ring[(k + 1) % 8]
-        table[higher] = SUMMIT if groups == 0 else SADDLE if groups > 1 else 0
-    return table
+    sets = [[np.bool_(higher >> k & 1) for k in range(8)] for higher in range(255)]
+    return np.array([flag.function(*ring) for ring in sets] + [0], np.uint8)
 
 
 KINDS = kinds()
 
 
-@compiled
-def classify(square: Squares, level: int, state: States, ring: States, kind: States) -> None:
-    """Clear ``state`` and flag the summits and saddles among the cells whose ``square`` is at least ``level``."""
-    rows, width = square.shape
-    state[0, :] = 0
-    state[rows - 1, :] = 0
-    for row in range(1, rows - 1):
-        classify_part(square, level, state, ring, kind, row, 1, width - 1)
+def edge_groups() -> NDArray[np.uint16]:
+    """The groups of a set of higher neighbours: for each, from the lowest four bits on, the edges by which it touches
+    the cell (bits as the links of ``state``)."""
+    table = np.zeros(256, dtype=np.uint16)
+    for higher in range(255):
+        ring = [bool(higher >> k & 1) for k in range(8)]
+        start, found, edges = ring.index(False), 0, 0
+        for k in range(start + 1, start + 9):
+            if not ring[k % 8]:
+                table[higher] |= edges << 4 * found
+                found, edges = found + (edges > 0), 0
+            elif k % 2 == 0:
+                edges |= 1 << k % 8 // 2
+    return table
 
 
-@compiled
-def classify_part(
-    square: Squares, level: int, state: States, ring: States, kind: States, row: int, first: int, last: int
-) -> None:
-    """Flag the cells ``first <= column < last`` of one row."""
-    below, here, above = square[row - 1][first - 1 :], square[row][first - 1 :], square[row + 1][first - 1 :]
-    for j in range(last - first):  # from 0, lest the loop have to allow for indices from the end
-        own = here[j + 1]
-        higher = np.uint8(here[j + 2] >= own)
-        higher |= np.uint8(above[j + 2] >= own) << np.uint8(1)
-        higher |= np.uint8(above[j + 1] >= own) << np.uint8(2)
-        higher |= np.uint8(above[j] >= own) << np.uint8(3)
-        higher |= np.uint8(here[j] > own) << np.uint8(4)
-        higher |= np.uint8(below[j] > own) << np.uint8(5)
-        higher |= np.uint8(below[j + 1] > own) << np.uint8(6)
-        higher |= np.uint8(below[j + 2] > own) << np.uint8(7)
-        ring[j] = higher if own >= level else np.uint8(255)
-    out = state[row]
-    out[0] = 0
-    out[out.shape[0] - 1] = 0
-    for j in range(last - first):
-        out[first + j] = kind[ring[j]]
+GROUPS = edge_groups()
 
 
-@compiled
-def trace(heights: Heights, states: Flags, width: int, words: Words, starts: NDArray[np.int32]) -> None:
-    """Link the ways up from all saddles. ``words`` is ``states`` by eights; ``starts`` is scratch (4,)."""
-    for word in range(words.shape[0]):
+@bare
+def grow(
+    heights: Heights,
+    states: Flags,
+    words: Words,
+    width: int,
+    level: int,
+    south: int,
+    north: int,
+    flags: States,
+    waiting: Waiting,
+    waits: int,
+) -> int:
+    """Classify rows from ``north`` down to ``south`` and link the ways up from their saddles, among the cells whose
+    square is at least ``level``.
+
+    The rows further north are done already, and in the one further south clearances are known. ``words`` is
+    ``states`` by eights. ``waiting`` (width,) has the cells, so many, whose way up leads out of the rows done so far:
+    on entry those of row ``north + 1``, on return, which tells their number, those of row ``south``. ``flags`` (width,)
+    is scratch.
+    """
+    for row in range(south, north + 1):
+        classify(heights, states, width, level, row, flags)
+    first, last, left = south * width, (north + 1) * width, 0
+    for k in range(waits):
+        waiting[left] = climb(0 + waiting[k], SOUTH, heights, states, width, first)
+        left += waiting[left] >= 0
+    for word in range(first >> 3, (last + 7) >> 3):
         if words[word] == 0:
             continue
-        for cell in range(8 * word, 8 * word + 8):
-            if cell < states.shape[0] and states[cell] & SADDLE:
-                for k in range(ways_up(cell, heights, width, starts)):
-                    climb(cell, starts[k], heights, states, width)
+        for cell in range(8 * word if 8 * word > first else first, 8 * word + 8 if 8 * word + 8 < last else last):
+            if states[cell] & SADDLE:
+                rest = int(GROUPS[higher_about(cell, heights, width)])
+                while rest != 0:
+                    way = climb(cell, highest_of(cell, rest & LINKS, heights, width), heights, states, width, first)
+                    if way >= 0:
+                        waiting[left] = way
+                        left += 1
+                    rest >>= 4
+    return left
 
 
-@compiled
-def ways_up(saddle: int, heights: Heights, width: int, starts: NDArray[np.int32]) -> int:
-    """Write the highest edge neighbour in each group of higher neighbours of a saddle; returns how many."""
-    start, found, best = 0, 0, -1
-    while above(saddle + beside(start, width), saddle, heights):
-        start += 1
-    for k in range(start + 1, start + 9):
-        cell = saddle + beside(k, width)
-        if not above(cell, saddle, heights):
-            if best >= 0:
-                starts[found] = best
-                found += 1
-            best = -1
-        elif k % 2 == 0 and (best < 0 or above(cell, best, heights)):
-            best = cell
-    return found
+@bare
+def classify(heights: Heights, states: Flags, width: int, level: int, row: int, flags: States) -> None:
+    """Clear the states of a row and flag its summits and saddles."""
+    first = row * width
+    below, here = heights[first - width : first], heights[first : first + width]
+    above, out = heights[first + width : first + 2 * width], states[first : first + width]
+    for j in range(width - 2):  # from 0, lest the loop have to allow for indices from the end
+        own = here[j + 1]
+        e, ne, n, nw = here[j + 2] >= own, above[j + 2] >= own, above[j + 1] >= own, above[j] >= own
+        w, sw, s, se = here[j] > own, below[j] > own, below[j + 1] > own, below[j + 2] > own
+        flags[j] = flag(e, ne, n, nw, w, sw, s, se) if own >= level else np.uint8(0)
+    out[0] = 0
+    out[width - 1] = 0
+    for j in range(width - 2):
+        out[j + 1] = flags[j]
 
 
-@compiled
-def climb(cell: int, higher: int, heights: Squares, states: States, width: int) -> None:
-    """Link a cell to a higher one and go on up from there, until a way already trodden."""
+@bare
+def higher_about(cell: int, heights: Heights, width: int) -> int:
+    """The set of a cell's higher neighbours: bits from the east counter-clockwise."""
+    own = heights[cell]
+    higher = int(heights[cell + 1] >= own) | int(heights[cell + width + 1] >= own) << 1
+    higher |= int(heights[cell + width] >= own) << 2 | int(heights[cell + width - 1] >= own) << 3
+    higher |= int(heights[cell - 1] > own) << 4 | int(heights[cell - width - 1] > own) << 5
+    return int(higher | int(heights[cell - width] > own) << 6 | int(heights[cell - width + 1] > own) << 7)
+
+
+@bare
+def highest_of(cell: int, edges: int, heights: Heights, width: int) -> int:
+    """The direction of the highest among some edge neighbours of a cell (a set of links). No branches: they are not
+    to be foreseen."""
+    south = np.int64(heights[cell - width]) << 2
+    west = np.int64(heights[cell - 1]) << 2 | 1
+    east = np.int64(heights[cell + 1]) << 2 | 2
+    north = np.int64(heights[cell + width]) << 2 | 3
+    best = south if edges & 8 else -1
+    best = west if edges & 4 and west > best else best
+    best = east if edges & 1 and east > best else best
+    best = north if edges & 2 and north > best else best
+    return int(0b01001011 >> 2 * (best & 3) & 3)
+
+
+@bare
+def highest(cell: int, heights: Heights, width: int) -> int:
+    """The direction of the highest edge neighbour of a cell. With branches: along a chain they are."""
+    east, north, west, south = heights[cell + 1], heights[cell + width], heights[cell - 1], heights[cell - width]
+    if (north if north >= east else east) >= (west if west >= south else south):
+        return 1 if north >= east else 0
+    return 2 if west >= south else 3
+
+
+@bare
+def climb(cell: int, direction: int, heights: Heights, states: Flags, width: int, first: int) -> int:
+    """Link a cell to a higher neighbour and go on up from there, until a way already trodden; returns -1, or the cell
+    from which the way leads on to one before ``first``."""
     while True:
-        link(cell, higher, states, width)
-        cell = higher
+        other = cell + stride(direction, width)
+        if other < first:
+            return cell
+        link(cell, other, direction, states)
+        cell = other
         if states[cell] & (CLIMBED | SADDLE | SUMMIT):
-            return
+            return -1
         states[cell] |= CLIMBED
-        higher = steepest(cell, heights, width)
+        direction = highest(cell, heights, width)
 
 
-@compiled
-def link(cell: int, other: int, states: States, width: int) -> None:
+@bare
+def link(cell: int, other: int, direction: int, states: Flags) -> None:
     """Set the two link bits between edge neighbours."""
-    step = other - cell
-    if step == 1:
-        one, back = 1, 4
-    elif step == width:
-        one, back = 2, 8
-    elif step == -1:
-        one, back = 4, 1
-    else:
-        one, back = 8, 2
-    states[cell] |= one
-    states[other] |= back
+    states[cell] |= 1 << direction
+    states[other] |= 1 << (direction ^ 2)
 
 
-@compiled
-def steepest(cell: int, heights: Squares, width: int) -> int:
-    """The highest edge neighbour of a cell, or the cell itself when none is higher."""
-    best = cell
-    for other in (cell + 1, cell + width, cell - 1, cell - width):
-        if above(other, best, heights):
-            best = other
-    return best
+@bare
+def steepest(cell: int, heights: Heights, width: int) -> int:
+    """The highest edge neighbour of a cell that is no summit."""
+    return int(cell + stride(highest(cell, heights, width), width))
 
 
-@compiled
-def above(cell: int, other: int, heights: Squares) -> bool:
+@bare
+def above(cell: int, other: int, heights: Heights) -> bool:
     """The total order of cells."""
     return bool(heights[cell] > heights[other] or (heights[cell] == heights[other] and cell > other))
 
 
-@compiled
+@bare
+def stride(direction: int, width: int) -> int:
+    """The index step to the east, north, west or south."""
+    return (1 - (direction & 2)) * (width if direction & 1 else 1)
+
+
+@bare
 def beside(k: int, width: int) -> int:
     """The index step to the k-th of the eight neighbours, from the east counter-clockwise."""
     k %= 8

@@ -9,7 +9,7 @@ lines.
 import numpy as np
 
 from geometry.bones import Ints
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Bools, Squares
 from geometry.skeleton import KINDS, States, beside
 
@@ -25,7 +25,7 @@ def thin_skeleton(square: Squares, state: States) -> Bools:
     return line[1:-1, 1:-1].copy()
 
 
-@compiled
+@bare
 def flood(line: Bools, reached: Bools, seeds: Ints, stack: Ints) -> None:
     """Reach all cells off the line from the seeds, through sides and corners."""
     width, cells = line.shape[1], line.size
@@ -44,7 +44,7 @@ def flood(line: Bools, reached: Bools, seeds: Ints, stack: Ints) -> None:
                     size += 1
 
 
-@compiled
+@bare
 def thin(line: Bools, kind: States) -> bool:
     """Remove, one after the other, all cells that do not matter; returns whether there were any."""
     width = line.shape[1]

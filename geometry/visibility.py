@@ -10,7 +10,7 @@ from heapq import heappop, heappush
 import numpy as np
 
 from geometry.bones import Floats
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Bools
 
 XY = tuple[float, float]
@@ -63,7 +63,7 @@ def trail(points: Floats, came: np.ndarray[tuple[int], np.dtype[np.int64]], at: 
     return points[order[::-1]]
 
 
-@compiled
+@bare
 def line_open(padded: Bools, x0: float, y0: float, x1: float, y1: float) -> bool:
     """Whether a segment stays in free space: row by row, the squares that it enters."""
     if y0 > y1:
@@ -88,7 +88,7 @@ def line_open(padded: Bools, x0: float, y0: float, x1: float, y1: float) -> bool
     return True
 
 
-@compiled
+@bare
 def level_open(padded: Bools, low: float, high: float, y: float) -> bool:
     """Whether a horizontal segment stays in free space; along a line between rows either side will do."""
     row = int(np.floor(y))
@@ -105,7 +105,7 @@ def level_open(padded: Bools, low: float, high: float, y: float) -> bool:
     return True
 
 
-@compiled
+@bare
 def pinched(padded: Bools, x: float, row: int) -> bool:
     """Whether a point on the line below a row is where two blocked squares touch at a corner."""
     column = int(np.floor(x + 0.5))

@@ -6,14 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.bones import Floats, Ints, find, is_node, onward, stride
+from geometry.bones import Floats, Ints, find, first_way, is_node, onward
 from geometry.chains import Chains
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.distance import Squares
 from geometry.heap import pop, push
 from geometry.rope import Rope, measure_line, new_rope, tighten_word
 from geometry.runs import Runs, extend, symbol_between
-from geometry.skeleton import Flags, Heights, steepest
+from geometry.skeleton import Flags, Heights, steepest, stride
 
 LANDMARKS = 6
 
@@ -23,6 +23,10 @@ class Ways(NamedTuple):
 
     symbol: Ints
     """Per chain cell, the signed portal (from 1) between it and the next cell of its chain; 0 within a row."""
+    word: Ints
+    """The reduced words of all whole chains."""
+    spelt: Ints
+    """(m + 1,) where each chain's word starts in ``word``."""
     length: Floats
     """(m,) the length of the tight rope between the chain's ends, in squares."""
     place: Floats
@@ -56,18 +60,19 @@ def find_ways(square: Squares, chains: Chains, runs: Runs, body: bool) -> Ways:
     symbol = np.zeros(chains.cells.shape[0], np.int32)
     length = np.empty(chains.length.shape[0])
     longest = int(np.diff(chains.start).max(initial=1))
-    word, line, rope = np.empty(longest, np.int32), np.empty((4 * longest + 8, 2)), new_rope(2 * longest)
+    words, spelt = np.empty(len(symbol) + 1, np.int32), np.zeros(len(length) + 1, np.int32)
+    line, rope = np.empty((4 * longest + 8, 2)), new_rope(2 * longest)
     find_symbols(chains.start, chains.cells, runs.row, runs.up, runs.left, width, symbol)
     portals = runs.left, runs.right, runs.line
-    measure_ways(chains.start, chains.cells, symbol, *portals, body, width, length, word, line, rope)
+    measure_ways(chains.start, chains.cells, symbol, *portals, body, width, length, words, spelt, line, rope)
     place = np.stack([chains.node % width - 0.5, chains.node // width - 0.5], axis=1)
     shape = len(chains.node), 4
     head, arc, step = np.full(shape, -1, np.int32), np.zeros(shape, np.int32), np.zeros(shape)
     find_arcs(chains.leave, chains.ends, length, head, arc, step)
-    return Ways(symbol, length, place, head, arc, step, sights(head, step))
+    return Ways(symbol, words[: spelt[-1]].copy(), spelt, length, place, head, arc, step, sights(head, step))
 
 
-@compiled
+@bare
 def find_symbols(start: Ints, cells: Ints, row: Ints, up: Ints, left: Ints, width: int, symbol: Ints) -> None:
     """Fill the symbols of all chains."""
     for chain in range(start.shape[0] - 1):
@@ -75,7 +80,7 @@ def find_symbols(start: Ints, cells: Ints, row: Ints, up: Ints, left: Ints, widt
             symbol[k] = symbol_between(row, up, left, 0 + cells[k], 0 + cells[k + 1], width)
 
 
-@compiled
+@bare
 def measure_ways(
     start: Ints,
     cells: Ints,
@@ -86,13 +91,14 @@ def measure_ways(
     body: bool,
     width: int,
     length: Floats,
-    word: Ints,
+    words: Ints,
+    spelt: Ints,
     out: Floats,
     rope: Rope,
 ) -> None:
-    """Fill the tight lengths of all chains."""
+    """Fill the words and the tight lengths of all chains."""
     for chain in range(length.shape[0]):
-        size = 0
+        word, size = words[spelt[chain] :], 0
         first, last = start[chain], start[chain + 1] - 1
         for k in range(first, last):
             size = extend(word, size, 0 + symbol[k])
@@ -100,9 +106,10 @@ def measure_ways(
         ends = (a % width - 0.5, a // width - 0.5, b % width - 0.5, b // width - 0.5)
         corners = tighten_word(left, right, line, body, word, size, ends, rope, out)
         length[chain] = measure_line(out, corners)
+        spelt[chain + 1] = spelt[chain] + size
 
 
-@compiled
+@bare
 def find_arcs(leave: Ints, ends: Ints, length: Floats, head: Ints, arc: Ints, step: Floats) -> None:
     """Fill the arcs out of every node; chains back to the same node lead nowhere."""
     for node in range(leave.shape[0]):
@@ -131,7 +138,7 @@ def sights(head: Ints, step: Floats) -> Floats:
     return np.ascontiguousarray(sight.T)
 
 
-@compiled
+@bare
 def distances_from(head: Ints, step: Floats, spot: int, out: Floats, key: Floats, node: Ints) -> None:
     """Dijkstra over the whole pathgraph."""
     out[spot] = 0.0
@@ -148,7 +155,7 @@ def distances_from(head: Ints, step: Floats, spot: int, out: Floats, key: Floats
                 size = push(key, node, size, out[other], other)
 
 
-@compiled
+@bare
 def ascend(
     cell: int, heights: Heights, states: Flags, width: int, row: Ints, up: Ints, left: Ints, word: Ints
 ) -> tuple[int, int]:
@@ -161,15 +168,12 @@ def ascend(
     return cell, size
 
 
-@compiled
+@bare
 def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
     """The place of a skeleton cell on the pathgraph."""
     if is_node(0 + states[cell]):
         return locate_node(cell, node, leave, start, cells)
-    direction = 0
-    while not states[cell] >> direction & 1:
-        direction += 1
-    steps, here = 0, cell
+    direction, steps, here = first_way(int(states[cell])), 0, cell
     while steps == 0 or not is_node(0 + states[here]):
         if steps > 0:
             direction = onward(0 + states[here], direction ^ 2)
@@ -182,7 +186,7 @@ def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start:
     return Anchor(0 + chain, steps, -1, cell)
 
 
-@compiled
+@bare
 def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
     """The place of a node, as an end of one of its chains if it has any."""
     number, found, position = find(node, cell), -1, 0
@@ -194,7 +198,7 @@ def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) ->
     return Anchor(found, position, number, cell)
 
 
-@compiled
+@bare
 def add_chain(start: Ints, symbol: Ints, chain: int, begin: int, end: int, word: Ints, size: int) -> int:
     """Add the portals along a chain from one position to another, in either direction; returns the word's size."""
     first = start[chain]
@@ -205,3 +209,19 @@ def add_chain(start: Ints, symbol: Ints, chain: int, begin: int, end: int, word:
         for k in range(first + begin - 1, first + end - 1, -1):
             size = extend(word, size, 0 - symbol[k])
     return size
+
+
+@bare
+def add_word(other: Ints, first: int, last: int, backwards: bool, word: Ints, size: int) -> int:
+    """Add a part of a reduced word, or its inverse, to another; returns the word's size."""
+    if backwards:
+        while last > first and size > 0 and word[size - 1] == other[last - 1]:
+            last, size = last - 1, size - 1
+    else:
+        while last > first and size > 0 and word[size - 1] == -other[first]:
+            first, size = first + 1, size - 1
+    if size + last - first >= word.shape[0]:
+        return int(word.shape[0])
+    for k in range(last - first):
+        word[size + k] = -other[last - 1 - k] if backwards else other[first + k]
+    return size + last - first

@@ -6,11 +6,15 @@ greatest value of the row before says how far to look. Near walls that is few st
 at once, many times as fast as an envelope; far from them the envelope of distance.py takes over.
 """
 
-import numpy as np
+from typing import NamedTuple
 
-from geometry.bones import Ints
-from geometry.compiled import compiled
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.compiled import bare
 from geometry.distance import Bools, Gaps, Sites, Squares, count_columns, measure_run
+
+Ints = NDArray[np.int32]
 
 STRETCH = 128  # columns that share one reach
 FARTHEST = 60
@@ -18,26 +22,49 @@ ROOM = FARTHEST + 4  # room on either side of a row of own distances, where ther
 TALLEST = 67  # squares; own distances beyond count as so much, lest 16 bits overflow; more than FARTHEST + 1
 
 
+class Window(NamedTuple):
+    """Scratch of measuring rows of a padded width, from the north."""
+
+    gap: Gaps
+    """(width,) the steps to the nearest blocked square in each column of the row last measured."""
+    own: Gaps
+    """(2 ROOM + width) the squared distances to those, between walls."""
+    value: Gaps
+    """(width,)"""
+    reach: Ints
+    """(width / STRETCH, rounded up) how far each stretch of the row last measured made one look."""
+    sites: Sites
+    """(width + 1,) of an envelope."""
+    heights: Sites
+    """(width + 1,)"""
+
+
+def new_window(width: int) -> Window:
+    """Scratch as it is north of all rows."""
+    own, reach = np.zeros(width + 2 * ROOM, np.int16), np.zeros(-(-width // STRETCH), np.int32)
+    sites, heights = np.empty((2, width + 1), np.int64)
+    return Window(np.zeros(width, np.int16), own, np.empty(width, np.int16), reach, sites, heights)
+
+
 def measure(free: Bools, square: Squares) -> None:
     """Fill ``square`` (rows + 2, columns + 2) for free squares (rows, columns)."""
-    width = square.shape[1]
-    sites, stretches = np.empty((2, width + 1), np.int64), -(-width // STRETCH)
-    own, value, gap = np.zeros(width + 2 * ROOM, np.int16), np.empty(width, np.int16), np.zeros(width, np.int16)
-    count_columns(free, square)
-    measure_all(square, gap, sites[0], sites[1], own, value, np.zeros(stretches, np.int32))
+    steps = square.view(np.int16)
+    count_columns(free, steps)
+    measure_rows(square, steps, 1, len(free), new_window(square.shape[1]))
 
 
-@compiled
-def measure_all(square: Squares, gap: Gaps, sites: Sites, heights: Sites, own: Gaps, value: Gaps, reach: Ints) -> None:
-    """Replace the steps to the nearest square below by the squared distances, row by row from the top.
+@bare
+def measure_rows(square: Squares, steps: Gaps, south: int, north: int, window: Window) -> None:
+    """Fill rows of ``square`` (rows + 2, columns + 2) from ``north`` down to ``south``, after those further north.
 
-    Scratch: ``gap`` (width) zeros, ``own`` (2 ROOM + width) zeros, ``value`` (width), ``reach`` (width / STRETCH,
-    rounded up) zeros.
+    ``steps`` (rows + 2, columns + 2 or more) has the steps to the nearest blocked square below; it may lie in the same
+    memory, row by row.
     """
-    rows, width = square.shape[0] - 2, square.shape[1]
-    for row in range(rows, 0, -1):
+    width = square.shape[1]
+    gap, own, value, reach, sites, heights = window
+    for row in range(north, south - 1, -1):
         out = square[row]
-        complete(out, gap, own[ROOM : ROOM + width])
+        complete(steps[row], gap, own[ROOM : ROOM + width])
         for k in range(reach.shape[0]):
             first, last = k * STRETCH, (k + 1) * STRETCH if (k + 1) * STRETCH < width else width
             if reach[k] < FARTHEST:
@@ -51,19 +78,19 @@ def measure_all(square: Squares, gap: Gaps, sites: Sites, heights: Sites, own: G
                 reach[k] = steps_for(greatest(out[first:last]))
 
 
-@compiled
-def complete(steps: Squares, gap: Gaps, own: Gaps) -> None:
+@bare
+def complete(steps: Gaps, gap: Gaps, own: Gaps) -> None:
     """From the steps down, and those of the row above in ``gap``, the steps to the nearest blocked square in the
     column, and the squared distance to it in half squares."""
     for j in range(gap.shape[0]):
-        down, up = np.int16(steps[j]), np.int16(gap[j] + 1)
+        down, up = steps[j], np.int16(gap[j] + 1)
         nearest = down if down < up else up
         gap[j] = nearest
         edge = np.int16(2 * (nearest if nearest < TALLEST else TALLEST) - 1)
         own[j] = np.int16(edge * edge) if nearest > 0 else np.int16(0)
 
 
-@compiled
+@bare
 def look_about(own: Gaps, value: Gaps, steps: int) -> None:
     """Fill ``value`` with the least over the sites up to so many columns off; ``own`` starts ROOM columns before."""
     here = own[ROOM:]
@@ -73,7 +100,7 @@ def look_about(own: Gaps, value: Gaps, steps: int) -> None:
         four_sites(own[ROOM - t - 3 :], own[ROOM + t :], t, value)
 
 
-@compiled
+@bare
 def four_sites(west: Gaps, east: Gaps, t: int, value: Gaps) -> None:
     """Compare with the sites t to t + 3 columns off; ``west`` starts t + 3 columns before, ``east`` t behind."""
     a, b = np.int16((2 * t - 1) ** 2), np.int16((2 * t + 1) ** 2)
@@ -89,7 +116,7 @@ def four_sites(west: Gaps, east: Gaps, t: int, value: Gaps) -> None:
         value[j] = one if one < value[j] else value[j]
 
 
-@compiled
+@bare
 def publish(value: Gaps, out: Squares) -> int:
     """Copy, and return the greatest."""
     most = np.int16(0)
@@ -99,7 +126,7 @@ def publish(value: Gaps, out: Squares) -> int:
     return int(most)
 
 
-@compiled
+@bare
 def greatest(out: Squares) -> int:
     """The greatest of some values."""
     most = np.int32(0)
@@ -108,13 +135,13 @@ def greatest(out: Squares) -> int:
     return int(most)
 
 
-@compiled
+@bare
 def steps_for(most: int) -> int:
     """How many columns one must look to either side for values up to the given one."""
     return int(np.ceil(0.5 * np.sqrt(float(most)) - 0.5))
 
 
-@compiled
+@bare
 def measure_far(gap: Gaps, out: Squares, first: int, last: int, done: int, sites: Sites, heights: Sites) -> int:
     """Measure the runs that meet a stretch, but for columns up to ``done``; returns how far these runs go."""
     column = first if first > done else done

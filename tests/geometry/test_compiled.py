@@ -1,11 +1,15 @@
 """Kernels compile on their first call, call each other, and cost nothing at import."""
 
+import ast
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
+import pytest
 
+import geometry
 from geometry import Screen, questions
 from geometry.compiled import compiled
 
@@ -45,6 +49,19 @@ def test_whole_numbers_of_all_widths_share_one_copy() -> None:
     assert len(getattr(double.machine() if hasattr(double, "machine") else double, "overloads", [None])) == 1
 
 
+def test_compiling_is_told_of_and_loading_is_not(tmp_path):
+    code = (
+        "import numpy as np; from geometry import compiled; compiled.PATIENCE = 0.0; "
+        "from geometry.rope import measure_line; measure_line(np.zeros((2, 2)), 2)"
+    )
+    told = []
+    for _ in range(2):
+        cache = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+        found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=cache)
+        told.append("compiling" in found.stderr)
+    assert told == [os.environ.get("NUMBA_DISABLE_JIT", "0") == "0", False]
+
+
 def test_kernels_also_run_uncompiled() -> None:
     code = (
         "import numpy as np; from geometry import Screen; free = np.ones((9, 12), bool); free[4, 3:9] = False; "
@@ -54,3 +71,28 @@ def test_kernels_also_run_uncompiled() -> None:
     plain = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=plain)
     assert found.stdout.split() == ["4", "True"]
+
+
+MAKERS = {"empty", "zeros", "ones", "full", "arange", "array", "copy", "concatenate", "where", "unique", "append"}
+NUMBERS = {"None", "int", "float", "bool", "np.uint8", "tuple", "Anchor"}
+
+
+def kernels(path, decorator):
+    """All kernels of a module so decorated, by name."""
+    functions = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.FunctionDef)]
+    return {f.name: f for f in functions if decorator in [getattr(d, "id", "") for d in f.decorator_list]}
+
+
+@pytest.mark.parametrize("path", sorted(Path(geometry.__file__).parent.glob("*.py")), ids=lambda path: path.stem)
+def test_bare_kernels_make_and_return_no_arrays(path):
+    """numba would neither free them nor keep them alive."""
+    bare, counting = kernels(path, "bare"), set(kernels(path, "compiled"))
+    for name, function in bare.items():
+        returned = {ast.unparse(n) for n in ast.walk(function.returns) if isinstance(n, ast.Name | ast.Attribute)}
+        assert returned - {"np"} <= NUMBERS, name
+        for node in ast.walk(function):
+            assert not isinstance(node, ast.List | ast.ListComp), name
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+                assert node.func.attr not in MAKERS, name
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+                assert node.func.id not in counting, name

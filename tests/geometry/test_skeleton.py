@@ -4,9 +4,11 @@ import networkx as nx
 import numpy as np
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from geometry import Screen
-from tests.geometry import oracles
+from geometry import Screen, sweep
+from geometry.skeleton import GROUPS, KINDS, SADDLE, SUMMIT
+from tests.geometry import lookalikes, oracles
 
 RADII = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0)
 
@@ -50,6 +52,29 @@ def test_skeleton_is_thin_and_connected_as_free_space_is(free):
             without = skeleton.copy()
             without[cell] = False
             assert oracles.components_and_holes(without) != oracles.components_and_holes(free)
+
+
+@settings(deadline=None)
+@given(oracles.screens(most=16), st.sampled_from([1, 20, 40]))
+def test_bands_leave_no_trace(free, band):
+    whole = Screen(free)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sweep, "BAND", band)
+        parts = Screen(free)
+    for mine, other in zip(parts._skeleton_at(1), whole._skeleton_at(1), strict=True):
+        assert all(np.array_equal(a, b) for a, b in zip(mine, other, strict=True))
+
+
+def test_saddles_are_where_several_groups_of_higher_neighbours_touch_by_edges():
+    for higher, (kind, groups) in enumerate(zip(KINDS[:255].tolist(), GROUPS[:255].tolist(), strict=True)):
+        ring = [k for k in range(8) if higher >> k & 1]
+        parts = nx.Graph()
+        parts.add_nodes_from(ring)
+        parts.add_edges_from((k, (k + 1) % 8) for k in ring if (k + 1) % 8 in ring)
+        edges = [sum(1 << k // 2 for k in part if k % 2 == 0) for part in nx.connected_components(parts)]
+        edges = sorted(part for part in edges if part)
+        assert kind == (SUMMIT if not edges else SADDLE if len(edges) > 1 else 0)
+        assert sorted(groups >> n & 15 for n in (0, 4, 8, 12) if groups >> n & 15) == edges
 
 
 @settings(deadline=None)
@@ -98,3 +123,12 @@ def test_a_corridor_of_one_square_has_half_a_square_of_clearance():
 def test_bad_screens_are_named(free, message):
     with pytest.raises(ValueError, match=message):
         Screen(free)
+
+
+@pytest.mark.parametrize("kind", lookalikes.KINDS)
+def test_pathgraphs_of_lookalikes_of_the_benchmarks_are_right(kind):
+    screen = Screen(lookalikes.lookalike(kind, 40, 3, 6))
+    for radius in (0.0, 1.0, 2.0, 3.0, 4.0, 5.0):
+        space = screen.free & (screen.clearance >= radius)
+        if space.any():
+            assert topology(screen.pathgraph_for(radius)) == oracles.components_and_holes(space)
