@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.bones import Ints
-from geometry.compiled import bare
+from geometry.compiled import bare, compiled
 from geometry.distance import Bools, Squares
 from geometry.passages import Passage
 
