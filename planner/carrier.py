@@ -79,6 +79,11 @@ class Course:
     place: Place | None = None
     grasped: bool = False
 
+    @property
+    def ended(self) -> bool:
+        """Is nothing left of it but to let go? That is done only when something else is wanted of his hand."""
+        return not self.legs or (self.grasped and len(self.legs) == 1 and not self.legs[0].motions)
+
 
 @dataclass
 class Carrier:
@@ -130,7 +135,7 @@ class Carrier:
         if self._course is None or self._course.name != node.name or situation.model.held != node.name:
             return None
         course = self._kept(None, situation)
-        if course is None or not course.legs[0].motions:
+        if course is None:
             return None
         advice = self._next(course, situation.model)
         return advice if isinstance(advice, Act) else None
@@ -144,7 +149,7 @@ class Carrier:
         """
         course, model = self._course, situation.model
         node = None if course is None else model.object(course.name)
-        if course is None or node is None or not course.legs:
+        if course is None or node is None or course.ended:
             return None
         if node.polygon is None or (course.place is not None and not _stands(model, course.place)):
             return None

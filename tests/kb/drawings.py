@@ -5,13 +5,37 @@ from typing import NamedTuple
 import numpy as np
 
 from kb.body import Move
-from kb.evidence import FREE, FULL, MapView
+from kb.evidence import FREE, FULL, Evidence, MapView
 from kb.interpretation import interpret
 from kb.knowledge import Knowledge
 from kb.lattice import Lattice
 from kb.regions import map_regions
+from kb.retina import count_ranges
 from kb.worldmodel import Node, WorldModel, patch_of
 from tests.kb.eyes import impression, utak_in, world_of
+
+LARGE_ROOM = ["b" * 44, *["b" + "." * 42 + "b"] * 42, "b" * 44]
+
+
+def drawing(east: int, north: int, wide: int, high: int) -> list[str]:
+    """A room with a thing whose lower left square is (east, north)."""
+    rows = [list(row) for row in LARGE_ROOM]
+    for row in range(north, north + high):
+        for column in range(east, east + wide):
+            rows[len(rows) - 1 - row][column] = "g"
+    return ["".join(row) for row in rows]
+
+
+def looked(rows: list[str], squares: list[tuple[int, int]]) -> Evidence:
+    """The evidence of looks from some squares; the first one is (0, 0) of the lattice."""
+    occupied, evidence = world_of(rows), Evidence()
+    samples = Lattice().samples()
+    for number, (x, y) in enumerate(squares):
+        seen = count_ranges(impression(occupied, (x, y), 0).retina)
+        at = (x - squares[0][0], y - squares[0][1])
+        evidence.look(samples, seen, *at, number)
+        evidence.stand(*at, number)
+    return evidence
 
 
 def seen_whole(rows: list[str], objects: bool = True) -> WorldModel:

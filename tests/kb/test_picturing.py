@@ -1,0 +1,61 @@
+"""Scenes, and the pictures that are drawn of them."""
+
+import numpy as np
+import pytest
+
+from geometry.sketch import DRAWN, FULL
+from kb.evidence import MapView
+from kb.picturing import PICTURES, ground_of, pictured, scenes
+from tests.kb.drawings import LARGE_ROOM, drawing, looked
+
+LOOKS = [(20, 20), (22, 21), (23, 23)]
+NEAR_THE_WALL = (34, 20, 6, 3)  # east, north, wide, high
+
+
+def views() -> list[MapView]:
+    rooms = (LARGE_ROOM, drawing(31, 30, 5, 5), drawing(*NEAR_THE_WALL), drawing(10, 33, 6, 2))
+    return [looked(rows, LOOKS[:count]).view() for rows in rooms for count in (1, 3)]
+
+
+@pytest.mark.parametrize("view", views())
+def test_a_square_is_drawn_in_one_scene_and_a_field_looks_at_one(view: MapView) -> None:
+    ground = ground_of(view)
+    owner = np.zeros(ground.shape, int)
+    for number, scene in enumerate(scenes(view, ground), 1):
+        part = owner[scene.rows, scene.columns]
+        assert not part[scene.ground == DRAWN].any()
+        part[scene.ground == DRAWN] = number
+    assert ((owner > 0) == (ground == DRAWN)).all()
+    beside = [(owner[1:], owner[:-1]), (owner[:, 1:], owner[:, :-1]), (owner[1:, 1:], owner[:-1, :-1])]
+    assert not any(((a != b) & (a > 0) & (b > 0)).any() for a, b in beside)
+    for where, weight in zip(view.counts.where, view.counts.weight, strict=True):
+        assert len(set(owner.ravel()[where[weight > 0]].tolist()) - {0}) <= 1
+
+
+@pytest.mark.parametrize("view", views())
+def test_pictures_agree_with_what_is_settled_and_with_nearly_all_counts(view: MapView) -> None:
+    ground = ground_of(view)
+    images = pictured(view, ground)
+    assert images.shape == (PICTURES, *ground.shape)
+    settled = ground != DRAWN
+    assert all((image[settled] == (ground[settled] == FULL)).all() for image in images)
+    where, weight, low, high = view.counts
+    for image in images:
+        count = (image.ravel()[where] * weight).sum(1)
+        assert ((low <= count) & (count <= high)).mean() > 0.9
+
+
+def test_a_scene_stays_the_same_when_only_others_change() -> None:
+    plain = ["b" * 100, *["b" + "." * 98 + "b"] * 98, "b" * 100]
+    rows = [row[:54] + "ggg" + row[57:] if n in (40, 41) else row for n, row in enumerate(plain)]
+    found = []
+    for looks in ([(50, 50)], [(50, 50), (50, 16)]):
+        view = looked(rows, looks).view()
+        places = {}
+        for scene in scenes(view, ground_of(view)):
+            corner = view.west + scene.columns.start, view.south + scene.rows.start
+            places[corner] = [part.tobytes() for part in (scene.ground, scene.first, *scene.counts)]
+        found.append(places)
+    before, after = found
+    assert len(after) > len(before)
+    assert all(after[corner] == scene for corner, scene in before.items())
