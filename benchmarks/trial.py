@@ -64,13 +64,13 @@ class Trial:
     verdict: str = "crash"
     reason: str = ""
     steps: int = 0
-    needed: int = 0
     walked: float = math.nan
     shortest: float = math.nan
     judged: list[str] | None = None
     cycles: list[Seconds] = field(default_factory=list)
     score: Score | None = None
     crash: str = ""
+    needed: int = 0
 
     @property
     def false_done(self) -> bool:

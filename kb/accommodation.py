@@ -156,7 +156,7 @@ class Memory:
             chosen = self._choose([chosen, *others])
         self.slipped |= chosen.how == "slipped"
         outcome = chosen.outcome
-        if outcome is None or outcome.how == "stuck":
+        if outcome is None or outcome.how == "stuck" or outcome.polygon.equals(load.polygon):
             self.loads[load.name] = load.resisted()
         else:
             slack = load.slack if outcome.how == "predicted" else max(load.slack, slack_of(outcome.polygon))
@@ -178,7 +178,7 @@ class Memory:
             self._relay(explanation.lattice)
         self.trust = self.trust + 1 if explanation.how == "predicted" else 0
         self.slipped |= explanation.how == "slipped"
-        if explanation.how == "blocked":
+        if explanation.how == "blocked" or explanation.place == self.place != predicted:
             self.barred.add(_next_square(explanation.place, predicted))
         return self._take_in(explanation, ranges)
 

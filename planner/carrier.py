@@ -21,7 +21,7 @@ from geometry.yard import Yard
 from kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
 from kb.worldmodel import Node, Patch, WorldModel
 from planner.destinations import Situation
-from planner.exploring import Lookout, sight_of
+from planner.exploring import Lookout, inspection, sight_of
 from planner.haulage import Haul, Hauler, Refusal, Request
 from planner.landing import in_view, lands, region_of
 
@@ -30,7 +30,8 @@ Place = tuple[float, float]
 NEAR = 1e-6  # squares: within which Utak is where a plan says
 STILL = 2  # level of certainty of squares over which a plan is not made, but kept
 ALIKE = 1e-3  # squares^2 by which an object may lie otherwise than a plan says
-MOST_PLANS = 60  # in one task
+TIGHTEST = 2  # times that a thing stood against something unawares before he takes it elsewhere
+MOST_PLANS = 40  # in one task
 NOWHERE = 0.1  # squares: who comes no further is where he was
 
 
@@ -90,12 +91,13 @@ class Carrier:
     """Carries things, one plan after the other.
 
     began : where each thing's middle lay when it was first spoken of. failed : holds by which a thing did not move, in
-    its own frame.
+    its own frame. missed : plans that did not lead where they should, with the thing in hand, since this was last set.
     """
 
     pull: bool = True
     began: dict[str, Place] = field(default_factory=dict)
     failed: dict[str, tuple[Place, ...]] = field(default_factory=dict)
+    missed: int = 0
 
     def __post_init__(self) -> None:
         self._hauler = Hauler(self.pull)
@@ -119,6 +121,7 @@ class Carrier:
         model = situation.model
         course = self._kept(ends if self._course is None or self._course.name == node.name else None, situation)
         if course is None:
+            self.missed += self._course is not None and self._course.grasped and not self._course.ended
             last = self._course.target if self._course is not None else ""
             failure = self._failure(model)
             if failure is not None:
@@ -178,7 +181,7 @@ class Carrier:
             return None
         if held.moved:
             self._tight[held.name] = self._tight.get(held.name, 0) + 1
-        elif held.stuck > 1:
+        if held.stuck > 1 or self._tight.get(held.name, 0) > TIGHTEST:
             self._blame(held, model)
         return Act(Release(), f"{held.name} did not move")
 
@@ -202,6 +205,11 @@ class Carrier:
             cleared = (self._clearing(other, haul, situation) for other in situation.model.objects)
             first = next((found for found in cleared if found is not None), None)
             if first is None:
+                unclear = (situation.model.object(name) for name in haul.aside)
+                looks = (inspection(situation.screens, o, False, 1.0) for o in unclear if o is not None and o.open)
+                look = next((look for look in looks if len(look.squares)), None)
+                if look is not None:
+                    return See(look)
                 why = f"{haul.aside[0]} is in the way of {node.name}, and cannot be cleared"
                 return Refusal(False, lambda: why)
             node, haul = first

@@ -33,6 +33,7 @@ from planner.ways import Way, choose_way, ways
 Place = tuple[float, float]
 ODD = -10.0  # squares: how much rather what no straight wall explains is looked at
 ODDLY, HARDLY, PERHAPS = 4, 2, 20  # percent that odd squares, likely walls, floor beyond hold what is missing
+MISSED = 2  # plans that miss before where they should lead to is looked at
 DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
 
 
@@ -183,6 +184,9 @@ class Decider:
 
     def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
         """What to do to carry something to where its goal holds; while that is not known, to near it."""
+        if land.ends and land.lookouts and self.carrier.missed >= MISSED:
+            self.carrier.missed = 0
+            return Refusal(False, lambda: land.missing)
         if land.ends:
             return self.carrier.advise(node, land.ends, situation)
         going_on = self.carrier.gone_on(node, situation)

@@ -140,14 +140,13 @@ def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
 
 
 def _likely_rooms(situation: Situation) -> list[Lookout]:
-    """What lies beyond likely doors, while he is not there: on his way he sees whether they are."""
+    """What lies beyond likely doors, while he is not there: on his way he sees whether they are some."""
     rooms, beyond = situation.likely_beyond(situation.model.lattice.woke)
-    found = [np.flatnonzero(beyond & situation.screens.floor & (rooms.labels == n)) for n in numbers(rooms, beyond)]
-    return [
-        Lookout(squares, "a door seems to lead there")
-        for squares in found
-        if len(squares) and not contains(squares, situation.model)
-    ]
+    beyond &= situation.screens.floor
+    if contains(np.flatnonzero(beyond), situation.model):
+        return []
+    found = [np.flatnonzero(beyond & (rooms.labels == n)) for n in numbers(rooms, beyond)]
+    return [Lookout(squares, "a door seems to lead there") for squares in found]
 
 
 def numbers(rooms: Rooms, mask: Mask) -> list[int]:

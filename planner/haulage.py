@@ -173,11 +173,10 @@ def _choice(facts: Sequence[str]) -> tuple[str, int, str] | None:
 
 def _haul(plan: Carrying, shape: Any, name: str, level: int, situation: Situation, node: Node) -> Haul:
     swept, turned = swept_squares(plan, shape, situation.model.labels.shape)
-    aside = tuple(
-        other.name
-        for other in situation.model.objects
-        if other.name != node.name and (situation.model.mask(other.patch) & swept).any()
-    )
+    model = situation.model
+    needed = swept & ~model.mask(node.patch)  # what seems to stand where the object itself is, is not in its way
+    others = (other for other in model.objects if other.name != node.name)
+    aside = tuple(other.name for other in others if (model.mask(other.patch) & needed).any())
     return Haul(plan, name, level, swept, turned, aside)
 
 

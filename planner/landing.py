@@ -28,7 +28,8 @@ Mask = NDArray[np.bool_]
 Place = tuple[float, float]
 IN_SIGHT = 6  # squares from a corner within which it is seen well
 FLUSH = 0.1  # squares between an object and walls that it touches
-ABOUT = 0.5  # likewise, while he is not sure to that where the object is
+RIM = 1.0  # squares from the edge of a region within which he is not sure that something is in it
+ABOUT = 1.0  # likewise, while he is not sure to that where the object is
 BESIDE = 1.0  # squares from a thing within which it is reached
 POSED, TURNED = 0.25, 2.0  # squares and degrees within which a pose is attained
 
@@ -56,7 +57,15 @@ def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landi
     """Where an object must end. began : the point of the lattice where its middle lay at first."""
     found = _landing(goal, node, began, situation)
     shape = in_view(node.polygon, situation)
+    if not situation.model.view.sure:
+        found = replace(found, ends={name: _well_in(end) for name, end in found.ends.items()})
     return replace(found, holds=found.holds or any(lands(end, shape) for end in found.ends.values()))
+
+
+def _well_in(end: End) -> End:
+    """A region without its rim: for one who may be a little elsewhere than he believes."""
+    inner = Inside(end.polygon.buffer(-RIM, join_style="mitre")) if isinstance(end, Inside) else end
+    return end if isinstance(inner, Inside) and inner.polygon.is_empty else inner
 
 
 def _landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
@@ -98,8 +107,8 @@ def region_of(mask: Mask) -> Any:
 def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     """The corner that Utak would go to; it need not be looked for once the object lies in it.
 
-    He aims at the very corner. To be within a square of its walls is enough when they are settled and he is sure of
-    where the object is; else they may be further away than he believes.
+    He aims at the very corner. To be within a square of its walls is enough when they are settled; else they may be
+    further away than he believes. Who is not sure of where he and the object are looks at the corner first.
     """
     (x, y), (column, row) = situation.corners[side].point, situation.corners[side].square
     found = corner(side, situation)
@@ -114,9 +123,9 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     shape = in_view(node.polygon, situation)
     near = replace(end, slack=FLUSH if view.sure else ABOUT)
     if not unclear.any():
-        return Landing({side: near}, holds=view.sure and lands(end, shape))
+        return Landing({side: near}, holds=lands(end, shape))
     lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
-    if (doubtful.any() or not view.sure) and lands(near, shape) and len(lookout.squares):
+    if len(lookout.squares) and (not view.sure or (doubtful.any() and lands(near, shape))):
         return Landing({}, lookout.what, (lookout,))
     return Landing({side: near}, lookout.what, (lookout,))
 

@@ -46,11 +46,11 @@ class Screens:
     def free(self, level: int) -> Mask:
         """Squares that may be crossed at a level of certainty; Utak's own is always one."""
         view = self.model.view
-        if level == UNSEEN:
-            by_counts = view.probability if view.by_counts is None else view.by_counts
-            mask = ~view.seen | (by_counts <= LEVELS[-1])
+        mask = view.probability <= LEVELS[min(level, len(LEVELS) - 1)]
+        if level == UNSEEN:  # whatever pictures show: what the counts alone leave open
+            mask |= ~view.seen if view.by_counts is None else ~view.seen | (view.by_counts <= LEVELS[-1])
         else:
-            mask = view.seen & (view.probability <= LEVELS[level])
+            mask &= view.seen
         mask &= ~self._barred
         mask[self.here[1], self.here[0]] = True
         return mask

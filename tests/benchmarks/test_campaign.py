@@ -144,7 +144,7 @@ def times(*seconds: float) -> list[Seconds]:
 
 def test_the_table_counts() -> None:
     trials = [
-        Trial(1, 0, True, True, True, "done", "", 4, 12.0, 10.0, [], times(1.0, 0.01, 0.03)),
+        Trial(1, 0, True, True, True, "done", "", 4, 12.0, 10.0, [], times(1.0, 0.01, 0.03), needed=2),
         Trial(1, 1, True, False, False, "limit", "lost", 9, 3.0, 10.0, ["step 1: bad"], times(1.0, 0.02)),
         Trial(1, 11, False, False, False, "impossible", "no way", 2, 0.0, math.nan, [], times(1.0, 0.02)),
     ]
@@ -159,6 +159,9 @@ def test_the_table_counts() -> None:
         "4",
         "/",
         "9",
+        "2.00",
+        "/",
+        "2.00",
         "1.20",
         "/",
         "1.20",

@@ -69,8 +69,10 @@ def test_a_patch_is_the_squares_of_its_mask(rows: int, columns: int, seed: int, 
 def test_open_squares_are_counted_about_a_thing_too() -> None:
     state = np.array([[0, -1, 0, 0], [-1, 1, 1, 0], [0, -1, 0, -1]], np.int8)
     thing = state == FULL
-    view = MapView(0, 0, thing.astype(np.float32), state, thing, np.zeros(state.shape, np.int16))
-    assert unsettled(thing, view) == 3  # the corner to the southeast touches it at a corner only
+    likely = thing.astype(np.float32)
+    likely[1, 0] = 0.5
+    view = MapView(0, 0, likely, state, thing, np.zeros(state.shape, np.int16))
+    assert unsettled(thing, view) == (3, 1)  # the corner to the southeast touches it at a corner only
 
 
 SHAPES = {
@@ -99,7 +101,7 @@ def test_nothing_is_measured_of_what_is_hardly_settled() -> None:
     state = np.full((4, 4), OPEN, np.int8)
     state[1, 1] = FULL
     thing = np.ones((4, 4), bool)
-    view = MapView(0, 0, thing.astype(np.float32), state, thing, np.zeros((4, 4), np.int16))
+    view = MapView(0, 0, np.full((4, 4), 0.5, np.float32), state, thing, np.zeros((4, 4), np.int16))
     measured = Measurer().measure(patch_of(thing, view), view)
     assert (measured.fits, measured.polygon, measured.open) == ((), None, 15)
 

@@ -247,7 +247,7 @@ def test_the_destination_of_a_thing_is_beside_it() -> None:
 def _situation(kind, model, binding):  # type: ignore[no-untyped-def]
     """A situation, with whatever fields it has."""
     known = {"model": model, "screens": Screens(model), "binding": binding, "rooms": rooms_of(model)}
-    known |= {"corners": corners(model), "task": SQUARE}
+    known |= {"corners": corners(model), "task": SQUARE, "rules": ()}
     return kind(**{name: known[name] for name in kind.__dataclass_fields__})
 
 
