@@ -94,7 +94,8 @@ def test_objects_make_no_doors() -> None:
 
 
 def test_an_object_in_the_door_leaves_the_door() -> None:
-    rows = two_rooms(6, 2)
+    rows = [row.replace("U", ".") for row in two_rooms(6, 2)]
+    rows[14] = rows[14][:4] + "U" + rows[14][5:]
     middle = len(rows) // 2
     for j in (middle - 1, middle):
         rows[j] = rows[j][:14] + "gg" + rows[j][16:]
@@ -132,3 +133,14 @@ def test_nothing_but_floor_is_one_room() -> None:
     rooms = rooms_of(seen_whole(rows))
     assert (rooms.labels == 1).all()
     assert not rooms.doors
+
+
+def test_what_may_be_an_object_makes_no_door_of_supposed_rooms() -> None:
+    rows = [row.replace("U", ".") for row in two_rooms(6, 2)]
+    rows[14] = rows[14][:4] + "U" + rows[14][5:]
+    stub = [row[:20] + "gg" + row[22:] if 2 <= n < 9 else row for n, row in enumerate(rows)]
+    model = seen_whole(["?" * len(row) if n < 5 else row for n, row in enumerate(stub)])
+    may_be_object = model.verge & ~model.walls
+    assert set(np.argwhere(may_be_object)[:, 1].tolist()) == {20, 21}
+    assert [door.a for door in rooms_of(model).doors] == [(16.0, 6.0)]
+    assert not rooms_of(model, supposed=True).doors
