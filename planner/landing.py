@@ -29,7 +29,7 @@ Place = tuple[float, float]
 IN_SIGHT = 6  # squares from a corner within which it is seen well
 FLUSH = 0.1  # squares between an object and walls that it touches
 RIM = 1.0  # squares from the edge of a region within which he is not sure that something is in it
-ABOUT = 1.0  # likewise, while he is not sure to that where the object is
+ABOUT = 0.5  # squares from its walls at which an object is brought to a corner that is settled
 BESIDE = 1.0  # squares from a thing within which it is reached
 POSED, TURNED = 0.25, 2.0  # squares and degrees within which a pose is attained
 
@@ -121,9 +121,9 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     unclear = around & (view.state == OPEN)
     doubtful = unclear & (view.probability > CLEAR) & (view.probability < 1 - CLEAR)
     shape = in_view(node.polygon, situation)
-    near = replace(end, slack=FLUSH if view.sure else ABOUT)
     if not unclear.any():
-        return Landing({side: near}, holds=lands(end, shape))
+        return Landing({side: replace(end, slack=ABOUT)}, holds=lands(end, shape))
+    near = replace(end, slack=FLUSH if view.sure else ABOUT)
     lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
     if len(lookout.squares) and (not view.sure or (doubtful.any() and lands(near, shape))):
         return Landing({}, lookout.what, (lookout,))
