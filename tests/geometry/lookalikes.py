@@ -9,7 +9,8 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from scipy.ndimage import gaussian_filter, label
+
+from geometry.components import components
 
 KINDS = ("city", "maze", "rooms", "noise", "warehouse", "caves", "plain", "islands", "diagonals")
 
@@ -102,11 +103,18 @@ def warehouse(size, rng, scale):
 
 def caves(size, rng, scale):
     """Winding floors with ragged walls, as of games."""
-    height = gaussian_filter(rng.normal(size=(size, size)), scale) * scale
-    height += 0.4 * gaussian_filter(rng.normal(size=(size, size)), 2) * 2
+    height = smooth(rng.normal(size=(size, size)), scale) * scale
+    height += 0.4 * smooth(rng.normal(size=(size, size)), 2) * 2
     free = height > -0.02
     free[size // 2, size // 2] = True
     return free
+
+
+def smooth(field, sigma):
+    """A field blurred by a Gaussian of so many squares, as if it went on on the other side."""
+    rows, columns = (np.fft.fftfreq(n) for n in field.shape)
+    blur = np.exp(-2 * (np.pi * sigma) ** 2 * (rows[:, None] ** 2 + columns**2))
+    return np.fft.ifft2(np.fft.fft2(field) * blur).real
 
 
 def plain(size, rng, scale):
@@ -122,7 +130,7 @@ def plain(size, rng, scale):
 def islands(size, rng, scale):
     """Caves with the small parts filled, and ponds in the large ones: as of strategy games."""
     free = caves(size, rng, 2 * scale)
-    parts, _ = label(free)
+    parts = components(free).labels
     sizes = np.bincount(parts.ravel())
     keep = sizes >= min(64, sizes[1:].max())
     keep[0] = False
