@@ -210,6 +210,10 @@ def unsettled(mask: Mask, view: MapView) -> tuple[int, int]:
     """How many squares of a region, and of the squares that touch it, the counts leave open; how many look doubtful."""
     framed = np.pad(mask, 1)
     about = framed[1:-1, 1:-1] | framed[:-2, 1:-1] | framed[2:, 1:-1] | framed[1:-1, :-2] | framed[1:-1, 2:]
-    left = about & (view.state == OPEN)
-    doubtful = left & (view.probability > CLEAR) & (view.probability < 1 - CLEAR)
-    return int(left.sum()), int(doubtful.sum())
+    return int((about & (view.state == OPEN)).sum()), int((about & in_doubt(view)).sum())
+
+
+def in_doubt(view: MapView) -> Mask:
+    """(rows, columns): squares that no count settles and of which it is open how they look, too."""
+    mask: Mask = (view.state == OPEN) & (view.probability > CLEAR) & (view.probability < 1 - CLEAR)
+    return mask

@@ -19,7 +19,7 @@ from kb.evidence import OPEN
 from kb.facts import Fact, Number, Symbol, Text
 from kb.rooms import Rooms
 from kb.wkt import parse_wkt
-from kb.worldmodel import CLEAR, Node
+from kb.worldmodel import Node, in_doubt
 from planner.destinations import Situation, corner, doorsteps, numbers, out_of_sight
 from planner.exploring import Lookout, sight_of
 from planner.screen import grown
@@ -64,8 +64,10 @@ def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landi
 
 def _well_in(end: End) -> End:
     """A region without its rim: for one who may be a little elsewhere than he believes."""
-    inner = Inside(end.polygon.buffer(-RIM, join_style="mitre")) if isinstance(end, Inside) else end
-    return end if isinstance(inner, Inside) and inner.polygon.is_empty else inner
+    if not isinstance(end, Inside):
+        return end
+    inner = Inside(end.polygon.buffer(-RIM, join_style="mitre"))
+    return end if inner.polygon.is_empty else inner
 
 
 def _landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
@@ -119,13 +121,12 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     view = model.view
     around = grown(model.squares([(column + view.west, row + view.south)]), 1)
     unclear = around & (view.state == OPEN)
-    doubtful = unclear & (view.probability > CLEAR) & (view.probability < 1 - CLEAR)
     shape = in_view(node.polygon, situation)
     if not unclear.any():
         return Landing({side: replace(end, slack=ABOUT)}, holds=lands(end, shape))
     near = replace(end, slack=FLUSH if view.sure else ABOUT)
     lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
-    if len(lookout.squares) and (not view.sure or (doubtful.any() and lands(near, shape))):
+    if len(lookout.squares) and (not view.sure or ((around & in_doubt(view)).any() and lands(near, shape))):
         return Landing({}, lookout.what, (lookout,))
     return Landing({side: near}, lookout.what, (lookout,))
 
