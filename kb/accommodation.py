@@ -192,8 +192,8 @@ class Memory:
         self.place = explanation.place
         self.looks.append(Look(ranges, self.lattice.place_to_utak(*self.place)))
         self.evidence.look(samples, counts, x, y, len(self.looks) - 1)
-        if explanation.how != "blocked":
-            self.evidence.stand(x, y, len(self.looks) - 1)
+        if len(self.looks) == 1:
+            self.evidence.stand(x, y, 0)
         return Accommodated(explanation, cells)
 
     def _explain(self, ranges: NDArray[np.int16], predicted: Place, stops: tuple[Place, ...]) -> Explanation:
@@ -289,7 +289,8 @@ def _replay(lattice: Lattice, looks: Sequence[Look]) -> tuple[Evidence, int]:
         x, y = (math.floor(v) for v in lattice.place_from_utak(*look.place))
         misfits += evidence.clashes(lattice.samples(), look.ranges, x, y)
         evidence.look(lattice.samples(), look.ranges, x, y, number)
-        evidence.stand(x, y, number)
+        if number == 0:
+            evidence.stand(x, y, 0)
     return evidence, misfits
 
 

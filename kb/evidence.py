@@ -190,7 +190,10 @@ class Evidence:
         self._keep(np.logical_not(np.logical_or.reduce(touched, axis=1)))
 
     def stand(self, x: int, y: int, number: int) -> None:
-        """Utak stands on this square, so it is floor, unless it was settled otherwise: his own image hides it."""
+        """Utak wakes on this square, so it is floor, unless it was settled otherwise: his own image hides it.
+
+        Where a motion ends proves as much of no square: it may have been stopped right on the line before a wall.
+        """
         row, column = self.index(x, y)
         if self.state[row, column] == OPEN:
             self.state[row, column], self.settled_by[row, column] = FREE, number

@@ -4,6 +4,7 @@ import pytest
 
 from kb.accommodation import CellStatus, Memory
 from kb.body import Move, Turn
+from kb.evidence import FREE
 from kb.lattice import CENTRE
 from tests.kb.drawings import walked
 from tests.kb.eyes import impression, utak_in, world_of
@@ -67,6 +68,16 @@ def test_a_turned_table_is_noticed() -> None:
     assert "turned" in hows
     assert abs(memory.lattice.angle - 30) <= 8
     assert memory.evidence.overruled == 0
+
+
+def test_where_a_motion_ends_need_not_be_floor() -> None:
+    memory, occupied, (x, y) = Memory(), world_of(ROOM), utak_in(ROOM)
+    memory.wake(impression(occupied, (x, y)))
+    wall = len(ROOM[0]) - 1
+    found = memory.accommodate(Move(wall - x, 0.0), impression(occupied, (wall, y)))  # stopped as he touched it
+    assert found.explanation.how == "predicted"
+    assert memory.evidence.state[memory.evidence.index(wall - x, 0)] != FREE
+    assert memory.evidence.state[memory.evidence.index(0, 0)] == FREE
 
 
 def test_turning_what_is_held_moves_nobody() -> None:
