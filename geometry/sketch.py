@@ -7,7 +7,7 @@ Source: Geman and Geman (1984), simulated annealing and the Gibbs sampler on an 
 squares of one field are exchanged, which leaves its count as it is.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -171,14 +171,15 @@ def _flip(image, squares, ends, field, share, fields, k):  # type: ignore[no-unt
 class Blobs(NamedTuple):
     """The edge-connected occupied parts of a picture.
 
-    labels : (rows, columns) int32, 0 for none, n for the part at [n - 1] of the others. area : squares. apart : it
-    touches nothing unseen. spread : sum of its principal moments, by the square of the area (a square has 1/6, a disc
-    1/2 pi). lengthy : the difference of the principal moments, by their sum (0: as wide as long).
+    labels : (rows, columns) int32, 0 for none, n for the part at [n - 1] of the others. area : squares. outward : sides
+    of its squares beyond which nothing was seen. spread : sum of its principal moments, by the square of the area (a
+    square has 1/6, a disc 1/2 pi). lengthy : the difference of the principal moments, by their sum (0: as wide
+    as long).
     """
 
     labels: NDArray[np.int32]
     area: NDArray[np.int64]
-    apart: NDArray[np.bool_]
+    outward: NDArray[np.int64]
     spread: NDArray[np.float64]
     lengthy: NDArray[np.float64]
 
@@ -187,19 +188,18 @@ def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
     """The parts of one picture.
 
     >>> found = blobs(np.pad(np.ones((3, 3), np.int8), 2), np.full((7, 7), DRAWN, np.int8))
-    >>> found.area.tolist(), found.apart.tolist(), (6 * found.spread).round(6).tolist(), found.lengthy.tolist()
-    ([9], [True], [1.0], [0.0])
+    >>> found.area.tolist(), found.outward.tolist(), (6 * found.spread).round(6).tolist(), found.lengthy.tolist()
+    ([9], [0], [1.0], [0.0])
     """
     labels = np.zeros(image.shape, np.int32)
     sums = np.zeros((image.size // 2 + 2, 7))
     number = _parts(np.ascontiguousarray(image), np.ascontiguousarray(ground), labels, sums)
     n, x, y, xx, yy, xy, outward = sums[1 : number + 1].T
     east, north, cross = xx / n - (x / n) ** 2 + 1 / 12, yy / n - (y / n) ** 2 + 1 / 12, xy / n - x * y / n**2
-    apart: Any = outward == 0
     return Blobs(
         labels,
         n.astype(np.int64),
-        apart,
+        outward.astype(np.int64),
         (east + north) / n,
         np.hypot(east - north, 2 * cross) / (east + north),
     )

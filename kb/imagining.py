@@ -16,6 +16,8 @@ from kb.evidence import MapView
 from kb.picturing import ground_of, pictured
 
 SMALLEST = 4  # squares of a thing that is worth a look
+ENDED = 0.7  # that a thing ends at the side of a square beyond which nothing was seen
+PARTLY = ((18, 0.5), (12, 0.3), (6, 0.18), (0, 0.02))  # squares seen of what may be a thing; that it is the one meant
 LOOSE = (0.012, 0.03)  # how much wider than a rectangle a part may be spread: at least, and if it is one square wide
 TIGHT = (0.003, 0.15)  # how much less: corners seen rounded, but less than a disc's; likewise, by its squares
 EVEN = (0.12, 0.4)  # likewise how much longer than wide a square may seem, by the squares that it covers
@@ -45,7 +47,7 @@ class Imagined(NamedTuple):
         heat = np.zeros(self.ground.shape)
         for image in self.drawn:
             found = blobs(image, self.ground)
-            like = likeness(found, shape) * found.apart * (found.area >= SMALLEST)
+            like = likeness(found, shape) * ENDED**found.outward * (found.area >= SMALLEST)
             heat += np.append(0.0, like)[found.labels]
         return heat / len(self.drawn)
 
@@ -77,6 +79,11 @@ def likeness(found: Blobs, shape: str) -> Floats:
             return straight
     other: Floats = np.clip(longer / OTHERS, 0.1, 1.0)
     return other
+
+
+def seen_in_part(squares: int) -> float:
+    """0 to 1: how likely what may be a thing is the one looked for, while it is open how it goes on unseen."""
+    return next(chance for least, chance in PARTLY if squares >= least)
 
 
 def _near(off: Floats, loose: Floats) -> Floats:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from kb.body import Command, Grasp, Release
 from kb.corners import Corner, corners
 from kb.facts import Fact
+from kb.imagining import seen_in_part
 from kb.reconciliation import Reconciled, reconcile
 from kb.rooms import NOTHING, Rooms, rooms_of
 from kb.task import Task
@@ -25,7 +26,7 @@ from planner.destinations import Destination, Situation, contains, destination, 
 from planner.goals import BY_THE_WAY, Stage, constraints, stages
 from planner.haulage import Refusal
 from planner.landing import Landing, landing
-from planner.screen import Screens, Squares, vicinity
+from planner.screen import Screens, Squares, grown, vicinity
 from planner.steps import Square
 from planner.walking import halting, next_move
 from planner.ways import Way, choose_way, ways
@@ -303,7 +304,7 @@ def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconc
     for x, name in reconciled.doubtful:
         node = model.object(name)
         if node is not None and x in reconciled.hypothesised:
-            chance = 0.4 if likely is None else float(likely[model.mask(node.patch)].max())
+            chance = 0.4 if likely is None else _chance(node, likely, model)
             look = exploring.inspection(screens, node, node.open == 0, chance)
             aims.append(Aim("inspect", look.squares, f"{look.what}: it may be {x}", max(3, round(100 * chance))))
     if any(_surely_reached(aim, screens) for aim in aims if aim.kind == "explore"):
@@ -319,6 +320,14 @@ def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconc
             break
     beyond = [Aim("pass", *look)._replace(chance=PERHAPS) for look in exploring.rooms_beyond(screens)]
     return [*aims, *explored, *settled, *beyond]
+
+
+def _chance(node: Node, likely: NDArray[np.float64], model: WorldModel) -> float:
+    """How likely an object is what is looked for: as pictures show it, or as one of which a part is seen."""
+    mask = model.mask(node.patch)
+    shown = float(likely[mask].max())
+    cut = (grown(mask, 1) & ~model.view.seen).any()
+    return max(shown, seen_in_part(int(mask.sum()))) if cut else shown
 
 
 def _likely(situation: Situation, reconciled: Reconciled) -> NDArray[np.float64] | None:
