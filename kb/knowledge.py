@@ -186,24 +186,30 @@ def _node(load: Load, label: int) -> Node:
 
 
 def _laid(model: WorldModel, load: Load) -> WorldModel:
-    """The model with a load laid upon its map, as a region of its own; Utak's own square stays his."""
+    """The model with a load laid upon its map, as a region of its own.
+
+    Utak's own square stays his, for he is a point; but what a load covers in part is no longer settled.
+    """
     view, labels = model.view, model.labels.copy()
-    sure, possible = (_upon(patch, model) for patch in (load.sure, load.possible))
+    sure, possible = (model.squares(patch.squares()) for patch in (load.sure, load.possible))
+    here = view.locate(*model.place)
+    shared = view.state[here] == FREE and possible[here]
+    sure[here] = possible[here] = False
     label = int(labels.max()) + 1
     labels[possible & (view.state != FULL)] = label
     state = np.where(sure, np.int8(FULL), np.where(possible & (view.state == FREE), np.int8(OPEN), view.state))
-    probability = np.where(sure, np.float32(1), np.where(possible, np.float32(MAYBE), view.probability))
+
+    def covered(chance: NDArray[np.float32]) -> NDArray[np.float32]:
+        return np.where(sure, np.float32(1), np.where(possible, np.float32(MAYBE), chance))
+
+    probability = covered(view.probability)
+    by_counts = None if view.by_counts is None else covered(view.by_counts)
+    if shared:
+        state[here] = OPEN
     seen = view.seen | possible
     kinds = Kinds({**model.kinds.kind, f"part{label}": {"object": 100}}, model.kinds.hidden_passages)
-    laid = view._replace(state=state.astype(np.int8), probability=probability, seen=seen)
+    laid = view._replace(state=state.astype(np.int8), probability=probability, by_counts=by_counts, seen=seen)
     return replace(model, view=laid, labels=labels, kinds=kinds)
-
-
-def _upon(patch: Patch, model: WorldModel) -> Mask:
-    """(rows, columns): the squares of a patch on the arrays of the view, but for Utak's own."""
-    mask = model.squares(patch.squares())
-    mask[model.view.locate(*model.place)] = False
-    return mask
 
 
 def _may_be_object(region: str, extent: int, kinds: Kinds) -> bool:

@@ -206,7 +206,11 @@ class Carrier:
             first = next((found for found in cleared if found is not None), None)
             if first is None:
                 unclear = (situation.model.object(name) for name in haul.aside)
-                looks = (inspection(situation.screens, o, False, 1.0) for o in unclear if o is not None and o.open)
+                looks = (
+                    inspection(situation.screens, o, touch=False, chance=1.0, arrive=False)
+                    for o in unclear
+                    if o is not None and o.open
+                )
                 look = next((look for look in looks if len(look.squares)), None)
                 if look is not None:
                     return See(look)
@@ -230,7 +234,7 @@ class Carrier:
 
     def _clearing(self, other: Node, haul: Haul, situation: Situation) -> tuple[Node, Haul] | None:
         """A way to carry a thing off the squares that a plan needs, if it stands there and there is one."""
-        if other.name not in haul.aside or other.polygon is None:
+        if other.name not in haul.aside or other.polygon is None or other.movable == 0:
             return None
         room = situation.screens.free(0) | situation.model.mask(other.patch)
         request = self._request(other, {"away": Inside(region_of(room & ~haul.swept))}, "", situation.model)

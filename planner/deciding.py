@@ -115,7 +115,7 @@ class Decider:
             if there or look is not None:
                 return look
         missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
-        return self._pursue(_aims(where, situation, reconciled), stage, situation, lambda: missing)
+        return self._pursue(_aims(where, situation, reconciled, arrive=True), stage, situation, lambda: missing)
 
     def _made_sure(self, goals: Sequence[Fact], there: bool, stage: Stage, situation: Situation) -> Decision | None:
         """A look at what goals are about, before they are held for attained; None when all of that is settled.
@@ -207,7 +207,7 @@ class Decider:
         self._doubted.discard(node.name)
         if node.polygon is not None and not node.open:
             return None
-        look = exploring.inspection(situation.screens, node, touch=False, chance=1.0)
+        look = exploring.inspection(situation.screens, node, touch=False, chance=1.0, arrive=False)
         if not len(look.squares):
             return None
         self._doubted.add(node.name)
@@ -290,8 +290,13 @@ class Decider:
         return reconciled
 
 
-def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconciled) -> list[Aim]:
-    """What is worth doing: go there, when it is known where; else look, first where just the missing thing may be."""
+def _aims(
+    where: Sequence[Destination], situation: Situation, reconciled: Reconciled, arrive: bool = False
+) -> list[Aim]:
+    """What is worth doing: go there, when it is known where; else look, first where just the missing thing may be.
+
+    arrive : Utak himself is to be where the missing thing is.
+    """
     screens, model = situation.screens, situation.model
     missing = [d for d in where if d.missing]
     if not missing:
@@ -305,12 +310,15 @@ def _aims(where: Sequence[Destination], situation: Situation, reconciled: Reconc
         node = model.object(name)
         if node is not None and x in reconciled.hypothesised:
             chance = 0.4 if likely is None else _chance(node, likely, model)
-            look = exploring.inspection(screens, node, node.open == 0, chance)
+            look = exploring.inspection(screens, node, node.open == 0, chance, arrive)
             aims.append(Aim("inspect", look.squares, f"{look.what}: it may be {x}", max(3, round(100 * chance))))
     if any(_surely_reached(aim, screens) for aim in aims if aim.kind == "explore"):
         return aims
     if likely is not None:
-        aims += [Aim("inspect", *look) for look in exploring.sightings(screens, likely, "something may be meant there")]
+        aims += [
+            Aim("inspect", *look)
+            for look in exploring.sightings(screens, likely, "something may be meant there", arrive)
+        ]
     for apart in (exploring.APART, 0):
         explored = [Aim("explore", *look) for look in exploring.promised(screens, exploring.frontiers(screens, apart))]
         odd, plain = (exploring.vague_places(screens, apart, odd=odd) for odd in (True, False))

@@ -25,6 +25,8 @@ REACH = 14  # squares from the edge of what is seen at which most of it is seen 
 PROMISING = 0.1  # a place at which a thing is this likely is worth a look
 LIKELY = 0.5  # what is looked for as likely as this is gone up to
 BARREN = 0.1  # of a square unseen beside the verge, how much less it promises than one beside the floor
+SETTING_OUT = 4.0  # squares of way that a look costs besides the way there
+ALIKE = 0.9  # places worth as much as this of the best are as good
 HOMELY = 800  # squares of floor unseen among which one thing that is looked for is expected
 HALF = 0.5
 FLOOR, WALL, NOTHING = 0, 1, 2  # what a square lies beside
@@ -49,10 +51,10 @@ def frontiers(screens: Screens, apart: int) -> list[Lookout]:
     return [Lookout(squares, "the floor goes on unseen") for squares in _groups(np.where(border, labels, 0))]
 
 
-def sightings(screens: Screens, likely: NDArray[np.float64], what: str) -> list[Lookout]:
+def sightings(screens: Screens, likely: NDArray[np.float64], what: str, arrive: bool) -> list[Lookout]:
     """Floor close to where something is likely that is looked for, one Lookout a place.
 
-    likely : (rows, columns), how likely each square belongs to such a thing.
+    likely : (rows, columns), how likely each square belongs to such a thing. arrive : as for `close`.
     """
     view = screens.model.view
     spots = _groups(components(likely >= PROMISING).labels)
@@ -63,27 +65,41 @@ def sightings(screens: Screens, likely: NDArray[np.float64], what: str) -> list[
         if not (view.state.ravel()[spot] == OPEN).any():
             continue
         chance = float(likely.ravel()[spot].max())
-        near = close(screens, mask, chance)
+        near = close(screens, mask, chance, arrive)
         if len(near):
             found.append(Lookout(near, what, round(100 * chance)))
     return found
 
 
-def close(screens: Screens, mask: Mask, chance: float) -> Squares:
+def close(screens: Screens, mask: Mask, chance: float, arrive: bool) -> Squares:
     """Floor from which something is seen exactly and nothing was looked at yet.
 
-    When it is rather likely what is looked for, the floor right beside it, until he has been there.
+    When it is rather likely what is looked for, the floor right beside it, until he has been there. arrive : to be
+    beside it is all that is wanted, so there any place will do; else he goes where most of it can be told.
     """
     beside = grown(mask, 1)
     near = np.flatnonzero(screens.floor & beside)
     if chance >= LIKELY and len(near) and not (beside & screens.model.squares(screens.model.looked_from)).any():
-        return near
+        return near if arrive else _telling(screens, near, mask)
     about = grown(mask, CLOSE)
     for apart in (APART, 0):
         near = np.flatnonzero(_new(screens, apart) & about)
         if len(near):
             break
-    return near
+    return _telling(screens, near, mask)
+
+
+def _telling(screens: Screens, near: Squares, mask: Mask) -> Squares:
+    """Of some floor the squares from which most of what is open of a thing is seen exactly, for the way there."""
+    open_ = grown(mask, 1) & (screens.model.view.state == OPEN)
+    if len(near) < 2 or not open_.any():
+        return near
+    sums = np.pad(open_, ((CLOSE + 1, CLOSE), (CLOSE + 1, CLOSE))).astype(np.int32).cumsum(0).cumsum(1)
+    side = 2 * CLOSE + 1
+    seen = (sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]).ravel()[near]
+    value = (seen + 1) / (screens.distances[0].ravel()[near] / 5 + SETTING_OUT)
+    best: Squares = near[value >= ALIKE * value.max()]
+    return best
 
 
 def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:
@@ -100,13 +116,16 @@ def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:
     return [Lookout(squares, "what bounds the floor is not clear") for squares in _groups(near)]
 
 
-def inspection(screens: Screens, node: Node, touch: bool, chance: float) -> Lookout:
-    """Floor from which an object is seen as well as can be, or felt. chance: that it is what is looked for."""
+def inspection(screens: Screens, node: Node, touch: bool, chance: float, arrive: bool) -> Lookout:
+    """Floor from which an object is seen as well as can be, or felt.
+
+    chance : that it is what is looked for. arrive : as for `close`.
+    """
     model = screens.model
     mask = model.mask(node.patch)
     if touch:
         return Lookout(np.flatnonzero(_new(screens, 0) & grown(mask, 1)), f"the colour of {node.name} is not known")
-    return Lookout(close(screens, mask, chance), f"what {node.name} is is not clear")
+    return Lookout(close(screens, mask, chance, arrive), f"what {node.name} is is not clear")
 
 
 def sight_of(screens: Screens, mask: NDArray[np.bool_], what: str) -> Lookout:

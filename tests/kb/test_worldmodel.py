@@ -1,17 +1,22 @@
 """Names that last, patches, and what is measured and believed of known things."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
 from kb.belief import Places, model_facts
+from kb.body import Grasp, Release
 from kb.corners import corners
 from kb.evidence import FREE, FULL, OPEN, MapView
 from kb.measuring import Measurer
 from kb.rooms import rooms_of
 from kb.worldmodel import Names, Patch, patch_of, unsettled
 from tests.kb.drawings import seen_whole, walked
+from tests.kb.eyes import impression, utak_in, world_of
 
 
 def box(x: int, y: int, wide: int, high: int) -> Patch:
@@ -126,6 +131,22 @@ def test_a_square_seen_from_beside_is_believed() -> None:
     assert thing.polygon.area == pytest.approx(9)
     assert model.floor.sum() > 200
     assert not (model.floor & model.verge).any()
+
+
+def test_a_load_that_reaches_into_his_own_square_leaves_it_open() -> None:
+    walk = walked(ROOM, [(0, 2), (-2, 2), (3, 0), (-3, -4)], colour="g")
+    (x, y), memory = utak_in(ROOM), walk.knowledge.memory
+    seen = impression(world_of(ROOM), (x - 2, y), colour="g")
+    here = walk.model.view.locate(*walk.model.place)
+    assert walk.model.view.state[here] == FREE
+    taken, _ = walk.knowledge.perceive(Grasp("north"), seen)
+    assert taken.view.by_counts is not None
+    assert (taken.view.by_counts[taken.mask(taken.objects[0].patch)] == 1).all()
+    load = memory.loads[memory.held or ""]
+    memory.loads[load.name] = replace(load, polygon=load.polygon.union(shapely.box(-1.6, 0.9, -1.4, 1.0)))
+    model, _ = walk.knowledge.perceive(Release(), seen)
+    assert model.view.state[here] == OPEN
+    assert model.floor[here]
 
 
 def test_the_facts_of_a_known_room() -> None:
