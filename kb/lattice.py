@@ -90,22 +90,30 @@ def turned(x: float, y: float, degrees: float) -> tuple[float, float]:
 
 @cache
 def _samples(angle: int) -> Samples:
-    columns = np.zeros((len(FIELDS), MOST), np.int32)
-    rows = np.zeros_like(columns)
+    owner, east, north = _offsets()
+    c, s = turned(1.0, 0.0, angle)
+    x, y = east * c - north * s, east * s + north * c
+    tied = np.zeros(len(owner), np.bool_)
+    for v in (x, y):
+        tied |= np.abs(np.abs(v - np.trunc(v)) - 0.5) < TIE
+    slack = np.bincount(owner[tied], minlength=len(FIELDS)).astype(np.int16)
+    under = np.stack([owner, np.rint(x).astype(np.int32), np.rint(y).astype(np.int32)])[:, ~tied]
+    (number, column, row), times = np.unique(under, axis=1, return_counts=True)
+    place = np.arange(len(number)) - np.searchsorted(number, number)
+    columns, rows = np.zeros((2, len(FIELDS), MOST), np.int32)
     weight = np.zeros(columns.shape, np.int16)
-    slack = np.zeros(len(FIELDS), np.int16)
-    for number, (east, north, side) in enumerate(FIELDS):
-        seen: dict[tuple[int, int], int] = {}
-        for e in range(east, east + side):
-            for n in range(north, north + side):
-                x, y = turned(e, n, angle)
-                if number == OWN:
-                    continue
-                if any(abs(abs(v - math.trunc(v)) - 0.5) < TIE for v in (x, y)):
-                    slack[number] += 1
-                else:
-                    square = (round(x), round(y))
-                    seen[square] = seen.get(square, 0) + 1
-        for i, ((column, row), times) in enumerate(sorted(seen.items())):
-            columns[number, i], rows[number, i], weight[number, i] = column, row, times
+    columns[number, place], rows[number, place], weight[number, place] = column, row, times
     return Samples(columns, rows, weight, slack)
+
+
+@cache
+def _offsets() -> NDArray[np.int32]:
+    """(3, 1023): field, east and north of every offset under the retina but Utak's own."""
+    offsets = [
+        (number, east, north)
+        for number, field in enumerate(FIELDS)
+        for east in range(field.east, field.east + field.side)
+        for north in range(field.north, field.north + field.side)
+        if number != OWN
+    ]
+    return np.array(offsets, np.int32).T
