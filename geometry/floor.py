@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from geometry.buckets import new_queue, put, take
-from geometry.compiled import compiled
+from geometry.buckets import Queue, new_queue, put, take
+from geometry.compiled import bare, compiled
 from geometry.contact import Obstacles
 from geometry.rigid import Pose
 from geometry.separation import Ground, Mover, inside, point_to_edge
@@ -52,7 +52,8 @@ class Floor:
         corner = self.bounds[:2] - RIM * self.side
         columns, rows = np.ceil((self.bounds[2:] - self.bounds[:2] + 2 * RIM * self.side) / pixel).astype(int)
         self.frame = np.array([corner[0], corner[1], pixel])
-        self.raster = _distances(self.surface.hull, self.frame, int(rows), int(columns))
+        self.raster = np.empty((int(rows), int(columns)))
+        _measure(self.surface.hull, self.frame, self.raster)
         self._grounds: dict[float, Ground] = {}
         self._around: dict[bytes, Floor] = {}
 
@@ -104,19 +105,17 @@ class Floor:
         return goals
 
 
-@compiled
-def _distances(edges: Floats, frame: Floats, rows: int, columns: int) -> Floats:
-    """The signed distance to the obstacles at every pixel's centre."""
-    raster = np.empty((rows, columns))
-    for row in range(rows):
+@bare
+def _measure(edges: Floats, frame: Floats, raster: Floats) -> None:
+    """Fill a raster with the signed distance to the obstacles at every pixel's centre."""
+    for row in range(raster.shape[0]):
         y = frame[1] + (row + 0.5) * frame[2]
-        for column in range(columns):
+        for column in range(raster.shape[1]):
             x = frame[0] + (column + 0.5) * frame[2]
             best = 1e12
             for j in range(len(edges)):
                 best = min(best, point_to_edge(x, y, edges, j))
             raster[row, column] = -math.sqrt(best) if inside(x, y, edges) else math.sqrt(best)
-    return raster
 
 
 @compiled
@@ -137,15 +136,20 @@ def _blocks(edges: Floats, frame: Floats, rows: int, columns: int, reach: float)
     return first, near[:count].copy()
 
 
-@compiled
 def disc_ways(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_]) -> Ints:
     """Dijkstra's algorithm from the goal pixels over the eight neighbours, WALL times as dear where it is tight.
 
     Returns (rows, columns), in units of which SIDE make a pixel's way.
     """
+    ways = np.full(tight.size, 2**40)
+    _spread(tight, goals, ways, new_queue(8 * tight.size))
+    return ways.reshape(tight.shape)
+
+
+@bare
+def _spread(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_], ways: Ints, queue: Queue) -> None:
+    """Fill the ways of all pixels, row by row, which are as long as can be."""
     rows, columns = tight.shape
-    ways = np.full(rows * columns, 2**40)
-    queue = new_queue(8 * rows * columns)
     for row in range(rows):
         for column in range(columns):
             if goals[row, column]:
@@ -167,7 +171,6 @@ def disc_ways(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_]) -> Int
                 if then < ways[up * columns + along]:
                     ways[up * columns + along] = then
                     put(queue, then, up * columns + along)
-    return ways.reshape(rows, columns)
 
 
 @compiled

@@ -150,6 +150,13 @@ def test_no_point_slips_into_a_seam() -> None:
     assert contact.obstacle == 1
 
 
+@pytest.mark.parametrize("first", [0, 1])
+def test_a_turn_that_begins_along_an_edge_is_stopped_by_that_edge(first: int) -> None:
+    walls = [box(-2, 0, 0, 2), box(0, -1, 2, 1)]
+    contact = Obstacles(walls[::-1] if first else walls).first_contact(Body(box(1, 1, 2, 5)), Rotate(90, (1, 0)))
+    assert contact == Contact(0.0, (1.0, 1.0), 1 - first, (0.0, 1.0))
+
+
 def test_a_corridor_as_wide_as_the_body_lets_it_pass_and_no_wider_body() -> None:
     corridor = Obstacles([box(-9, -2, 9, 0), box(-9, 2, 9, 4)])
     assert corridor.first_contact(Body(box(-12, 0, -10, 2)), Translate(30, 0)).fraction == 1.0
