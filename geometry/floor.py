@@ -16,8 +16,9 @@ import shapely
 from geometry.buckets import Queue, new_queue, put, take
 from geometry.compiled import bare, compiled
 from geometry.contact import Obstacles
+from geometry.mover import centre_pose
 from geometry.rigid import Pose
-from geometry.separation import Ground, Mover, inside, point_to_edge
+from geometry.separation import Ground, Mover, distance_at, inside, point_to_edge
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -26,6 +27,7 @@ BLOCK = 8  # pixels along the side of a block
 RIM = 0.1  # of the longer side, around the bounds
 TOUCH = 1e-6  # squares: a start or goal may be this deep in an obstacle, or out of bounds
 SIDE, DIAGONAL = 10, 14  # the cost of a pixel's way
+FAR = 2**40  # dearer than any
 WALL = 6  # going through pixels where the body's disc does not fit looks so much dearer
 
 
@@ -80,11 +82,17 @@ class Floor:
         blocks = np.array([across, BLOCK])
         return Ground(self.surface.hull, self.raster, self.frame, first, near, blocks, radius, self.bounds)
 
-    def has_room(self, shape: Any, points: Sequence[tuple[float, float]], pose: Pose) -> bool:
-        """Whether a body at a pose of its reference point is within bounds and at most touches obstacles."""
+    def has_room(self, mover: Mover, shape: Any, points: Sequence[tuple[float, float]], pose: Pose) -> bool:
+        """Whether a body at a pose of its reference point is within bounds and at most touches obstacles.
+
+        mover : the same shape and points, ready to be moved. Only what may touch needs the shape itself looked at.
+        """
         x0, y0, x1, y1 = self.bounds
         if not (x0 - TOUCH <= pose.x <= x1 + TOUCH and y0 - TOUCH <= pose.y <= y1 + TOUCH):
             return False
+        x, y, angle = centre_pose(mover, pose).tolist()
+        if distance_at(mover, self.ground(mover), x, y, math.cos(angle), math.sin(angle)) > TOUCH:
+            return True
         body = shapely.buffer(pose.place(shape), -TOUCH, join_style="mitre")
         specks = [pose.place(shapely.Point(p)) for p in points]
         if shapely.intersects(self.polygons, body).any():
@@ -141,20 +149,19 @@ def disc_ways(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_]) -> Int
 
     Returns (rows, columns), in units of which SIDE make a pixel's way.
     """
-    ways = np.full(tight.size, 2**40)
-    _spread(tight, goals, ways, new_queue(8 * tight.size))
-    return ways.reshape(tight.shape)
+    price = np.pad(np.where(tight, WALL, 1), 1)
+    ways = np.pad(np.where(goals, 0, FAR), 1, constant_values=-1)
+    _spread(price.reshape(-1), ways.reshape(-1), tight.shape[1] + 2, new_queue(8 * tight.size))
+    return ways[1:-1, 1:-1]
 
 
 @bare
-def _spread(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_], ways: Ints, queue: Queue) -> None:
-    """Fill the ways of all pixels, row by row, which are as long as can be."""
-    rows, columns = tight.shape
-    for row in range(rows):
-        for column in range(columns):
-            if goals[row, column]:
-                ways[row * columns + column] = 0
-                put(queue, 0, row * columns + column)
+def _spread(price: Ints, ways: Ints, width: int, queue: Queue) -> None:
+    """Find the ways of all pixels, from those that are 0. The rim of pixels around them, which are -1, leads nowhere."""
+    for at in range(len(ways)):
+        if ways[at] == 0:
+            put(queue, 0, at)
+    beside = (1, -1, width, -width, width + 1, width - 1, -width + 1, -width - 1)
     now = 0
     while queue.used[1] > 0:
         at = take(queue, now)
@@ -163,14 +170,12 @@ def _spread(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_], ways: In
             continue
         if ways[at] != now:
             continue
-        row, column = at // columns, at % columns
-        for up in range(max(row - 1, 0), min(row + 2, rows)):
-            for along in range(max(column - 1, 0), min(column + 2, columns)):
-                step = DIAGONAL if up != row and along != column else SIDE
-                then = now + (step * WALL if tight[up, along] else step)
-                if then < ways[up * columns + along]:
-                    ways[up * columns + along] = then
-                    put(queue, then, up * columns + along)
+        for k in range(8):
+            other = at + beside[k]
+            then = now + (SIDE if k < 4 else DIAGONAL) * price[other]
+            if then < ways[other]:
+                ways[other] = then
+                put(queue, then, other)
 
 
 @compiled

@@ -146,9 +146,7 @@ def _pull(scene: Scene, poses: Floats) -> None:
         for _ in range(5):
             for k in range(3):
                 poses[n, k] = here[k] + pull * step[k]
-            if hop(scene, before, poses[n]) != BLOCKED and (
-                hop(scene, poses[n], after) != BLOCKED
-            ):
+            if hop(scene, before, poses[n]) != BLOCKED and (hop(scene, poses[n], after) != BLOCKED):
                 break
             pull *= 0.5
             put(poses[n], here)
