@@ -157,7 +157,7 @@ def disc_ways(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_]) -> Int
 
 @bare
 def _spread(price: Ints, ways: Ints, width: int, queue: Queue) -> None:
-    """Find the ways of all pixels, from those that are 0. The rim of pixels around them, which are -1, leads nowhere."""
+    """Find the ways of all pixels, from those that are 0. The rim of pixels around them, all -1, leads nowhere."""
     for at in range(len(ways)):
         if ways[at] == 0:
             put(queue, 0, at)
