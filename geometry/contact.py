@@ -116,23 +116,37 @@ class Obstacles:
         -------
         Contact : fraction 1 when the whole motion is free. A body that touches at the start may slide along or leave
             (fraction above 0) and may not go in (fraction 0). It ends at most 1e-7 squares deep.
+
+        Raises
+        ------
+        ValueError : when a number of the motion is not finite.
         """
+        if isinstance(motion, Translate):
+            turn, x, y = 0.0, float(motion.dx), float(motion.dy)
+        else:
+            turn, x, y = math.radians(motion.degrees), float(motion.about[0]), float(motion.about[1])
+        if not math.isfinite(turn + x + y):
+            raise ValueError(f"a motion must be finite, not {motion}")
         contact = UNSTOPPED
         for corners, edges, as_one in body.runs:
             surface = self.point_surface if as_one else self.surface
             if isinstance(motion, Translate):
-                found = first_push.swift(corners, edges, surface, float(motion.dx), float(motion.dy))
+                found = first_push.swift(corners, edges, surface, x, y)
             else:
-                x, y = motion.about
-                found = first_turn.swift(corners, edges, surface, math.radians(motion.degrees), float(x), float(y))
-            fraction, x, y, owner, nx, ny = found
+                found = first_turn.swift(corners, edges, surface, turn, x, y)
+            fraction, at_x, at_y, owner, nx, ny = found
             if owner >= 0 and fraction < contact.fraction:
-                contact = Contact(fraction, (x, y), owner, (nx, ny))
+                contact = Contact(fraction, (at_x, at_y), owner, (nx, ny))
         return contact
 
     def pushes(self, body: Body, vectors: Floats) -> Floats:
-        """Fractions travelled (n,) for many translations (n, 2) of one body from where it stands."""
-        vectors = np.ascontiguousarray(vectors, dtype=float)
+        """Fractions travelled (n,) for many translations (n, 2) of one body from where it stands.
+
+        Raises
+        ------
+        ValueError : when a number is not finite.
+        """
+        vectors = _finite(vectors)
         free = np.ones(len(vectors))
         for corners, edges, as_one in body.runs:
             surface = self.point_surface if as_one else self.surface
@@ -140,14 +154,26 @@ class Obstacles:
         return free
 
     def turns(self, body: Body, degrees: Floats, pivots: Floats) -> Floats:
-        """Fractions travelled (n,) for many turns (n,) about pivots (n, 2) of one body from where it stands."""
-        turns = np.radians(np.ascontiguousarray(degrees, dtype=float))
-        pivots = np.ascontiguousarray(pivots, dtype=float)
+        """Fractions travelled (n,) for many turns (n,), degrees, about pivots (n, 2) of one body from where it stands.
+
+        Raises
+        ------
+        ValueError : when a number is not finite.
+        """
+        turns, pivots = np.radians(_finite(degrees)), _finite(pivots)
         free = np.ones(len(turns))
         for corners, edges, as_one in body.runs:
             surface = self.point_surface if as_one else self.surface
             free = np.minimum(free, many_turns(corners, edges, surface, turns, pivots))
         return free
+
+
+def _finite(numbers: npt.ArrayLike) -> Floats:
+    """An array of finite numbers, or an error."""
+    array = np.ascontiguousarray(numbers, dtype=float)
+    if not np.isfinite(array).all():
+        raise ValueError("motions must be finite")
+    return array
 
 
 def boundary_edges(shape: Any) -> Floats:

@@ -169,6 +169,21 @@ def test_body_and_utak_move_as_one() -> None:
     assert contact == Contact(0.25, (10.0, 1.0), 1, (-1.0, 0.0))
 
 
+@pytest.mark.parametrize(
+    "motion",
+    [Translate(math.nan, 0), Translate(0, math.inf), Rotate(math.nan, (0, 0)), Rotate(90, (0, math.nan))],
+    ids=str,
+)
+def test_a_motion_of_no_length_that_is_a_number_is_an_error(motion: Motion) -> None:
+    with pytest.raises(ValueError, match="must be finite"):
+        ROOM.first_contact(Body(box(0, 0, 2, 2)), motion)
+    with pytest.raises(ValueError, match="must be finite"):
+        if isinstance(motion, Translate):
+            ROOM.pushes(Body(box(0, 0, 2, 2)), np.array([motion]))
+        else:
+            ROOM.turns(Body(box(0, 0, 2, 2)), np.array([motion.degrees]), np.array([motion.about]))
+
+
 def test_many_at_once_are_the_same_as_one_by_one() -> None:
     body = Body(box(0, 0.5, 2, 2))
     vectors = np.array([[20.0, 0.0], [0.0, -3.0], [1.0, 1.0]])
