@@ -41,16 +41,23 @@ def swept(body: Any, solid: Any, motion: Motion, steps: int = 32) -> float:
     return low
 
 
-def box2d_pushes(body: Any, obstacles: list[Any], vectors: Any) -> int:
-    """Box2D's time of impact of a pushed convex body with every convex obstacle; how many motions were stopped."""
+def box2d_motions(body: Any, obstacles: list[Any], motions: list[Motion]) -> int:
+    """Box2D's time of impact of a moved convex body with every convex obstacle; how many motions were stopped.
+
+    A turn is a sweep whose centre is the pivot. (Box2D means turns to be small: of large ones it may miss impacts.)
+    """
     import Box2D
 
     moving = Box2D.b2PolygonShape(vertices=shapely.get_coordinates(body)[:-1].tolist())
     still = [Box2D.b2PolygonShape(vertices=shapely.get_coordinates(o)[:-1].tolist()) for o in obstacles]
     rest = Box2D.b2Sweep(a0=0, a=0, c0=(0, 0), c=(0, 0), localCenter=(0, 0), alpha0=0)
     stopped = 0
-    for dx, dy in vectors.tolist():
-        sweep = Box2D.b2Sweep(a0=0, a=0, c0=(0, 0), c=(dx, dy), localCenter=(0, 0), alpha0=0)
+    for motion in motions:
+        if isinstance(motion, Translate):
+            sweep = Box2D.b2Sweep(a0=0, a=0, c0=(0, 0), c=tuple(motion), localCenter=(0, 0), alpha0=0)
+        else:
+            turn, pivot = math.radians(motion.degrees), motion.about
+            sweep = Box2D.b2Sweep(a0=0, a=turn, c0=pivot, c=pivot, localCenter=pivot, alpha0=0)
         stopped += any(
             Box2D.b2TimeOfImpact(shapeA=moving, shapeB=s, sweepA=sweep, sweepB=rest, tMax=1.0)[1] < 1.0 for s in still
         )
@@ -83,8 +90,10 @@ def speed(count: int, pieces: int) -> None:
     solid = shapely.union_all(obstacles)
     shapely.prepare(solid)
     few = max(count // 40, 20)
-    pushes = [Translate(*v) for v in vectors[:few].tolist()]
-    turns = [Rotate(d, (x, y)) for d, (x, y) in zip(degrees[:few].tolist(), vectors[:few].tolist(), strict=True)]
+    pushes: list[Motion] = [Translate(*v) for v in vectors[:few].tolist()]
+    turns: list[Motion] = [
+        Rotate(d, (x, y)) for d, (x, y) in zip(degrees[:few].tolist(), vectors[:few].tolist(), strict=True)
+    ]
     rows = [
         ("push", rate(lambda: prepared.pushes(mover, vectors), count)),
         ("turn", rate(lambda: prepared.turns(mover, degrees, vectors), count)),
@@ -94,7 +103,8 @@ def speed(count: int, pieces: int) -> None:
         ("turn, shapely sweep", rate(lambda: [swept(body, solid, m) for m in turns], few)),
     ]
     try:
-        rows.append(("push, Box2D", rate(lambda: box2d_pushes(body, obstacles, vectors[:few]), few)))
+        rows.append(("push, Box2D", rate(lambda: box2d_motions(body, obstacles, pushes), few)))
+        rows.append(("turn, Box2D", rate(lambda: box2d_motions(body, obstacles, turns), few)))
     except ImportError:
         print("Box2D is not installed (pip install Box2D)")
     print(f"{len(prepared.surface.edges)} edges")

@@ -158,9 +158,14 @@ def _beyond(here: Floats, ahead: Floats, far: float) -> Any:
 
 
 def widened(solid: Any, neck: Neck, extra: float, reach: float) -> Any:
-    """The obstacles with the two sides of a neck moved apart by `extra`, within `reach` of it."""
-    window = shapely.Point(neck.place).buffer(reach)
-    free = window.difference(solid)
+    """The obstacles with the two sides of a neck moved apart by `extra`, within `reach` of it.
+
+    Only the free space that the neck is in moves: what lies behind a wall would open it from behind.
+    """
+    middle = shapely.Point(neck.place)
+    window = middle.buffer(reach)
+    parts = shapely.get_parts(window.difference(solid))
+    free = parts[int(np.argmin(shapely.distance(parts, middle)))]
     (ax, ay), (bx, by) = neck.sides
     length = max(neck.width, 1e-9)
     dx, dy = (bx - ax) / length * extra / 2, (by - ay) / length * extra / 2

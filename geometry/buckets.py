@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.compiled import compiled
+from geometry.compiled import bare, compiled
 
 RING = 2048  # buckets: more than the dearest step
 Ints = npt.NDArray[np.int32]
@@ -33,7 +33,7 @@ def new_queue(size: int) -> Queue:
     return Queue(first, np.empty(size, np.int32), np.empty(size, np.int32), np.zeros(2, np.int64))
 
 
-@compiled
+@bare
 def put(queue: Queue, cost: int, node: int) -> None:
     """Put a node into the queue; it is lost when there is no room left."""
     entry = queue.used[0]
@@ -45,7 +45,7 @@ def put(queue: Queue, cost: int, node: int) -> None:
     queue.used[1] += 1
 
 
-@compiled
+@bare
 def take(queue: Queue, now: int) -> int:
     """A node of cost `now`, taken out of the queue; -1 when there is none."""
     entry = queue.first[now % RING]

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.separation import FULL, SHUT, Ground, Mover, classify
 
 Floats = npt.NDArray[np.float64]
@@ -73,7 +73,7 @@ def new_tree(x: float, y: float, side: float, radius: float, resolution: float, 
     return tree
 
 
-@compiled
+@bare
 def splittable(tree: Tree, cell: int, mover: Mover) -> bool:
     """Whether a cell is larger than the resolution and there is room for its children."""
     depth = tree.box[cell, 3]
@@ -84,7 +84,7 @@ def splittable(tree: Tree, cell: int, mover: Mover) -> bool:
     return bool(spread + swing > tree.frame[4])
 
 
-@compiled
+@bare
 def split(tree: Tree, cell: int, mover: Mover, ground: Ground) -> None:
     """Give a leaf its children and classify them."""
     depth = tree.box[cell, 3] + 1
@@ -122,7 +122,7 @@ def split(tree: Tree, cell: int, mover: Mover, ground: Ground) -> None:
                 _link_if_face(tree, new, other)
 
 
-@compiled
+@bare
 def leaf_at(tree: Tree, x: float, y: float, angle: float) -> int:
     """The leaf that holds a pose; -1 outside the tree."""
     ix = math.floor((x - tree.frame[0]) / tree.frame[2])
@@ -143,7 +143,7 @@ def leaf_at(tree: Tree, x: float, y: float, angle: float) -> int:
     return cell
 
 
-@compiled
+@bare
 def _link_if_face(tree: Tree, a: int, b: int) -> None:
     """Link two leaves to each other when they share a face and neither is FULL."""
     if tree.kind[a] == FULL or tree.kind[b] == FULL:
@@ -162,7 +162,7 @@ def _link_if_face(tree: Tree, a: int, b: int) -> None:
     tree.link[at + 1, 0], tree.link[at + 1, 1], tree.head[b] = a, tree.head[b], at + 1
 
 
-@compiled
+@bare
 def next_neighbour(child: Ints, head: Ints, link: Ints, cell: int, at: int) -> int:
     """The link after link `at` of a cell (-1: its first) that leads to a leaf; -1 at the end. Old links are dropped.
 
@@ -178,13 +178,13 @@ def next_neighbour(child: Ints, head: Ints, link: Ints, cell: int, at: int) -> i
             link[at, 1] = link[found, 1]
 
 
-@compiled
+@bare
 def _overlap(a: int, size_a: int, b: int, size_b: int) -> int:
     """By how much two intervals overlap: 0 when they touch, negative when they are apart."""
     return min(a + size_a, b + size_b) - max(a, b)
 
 
-@compiled
+@bare
 def _turned_overlap(a: int, size_a: int, b: int, size_b: int) -> int:
     """The same on the circle of angles."""
     best = _overlap(a, size_a, b, size_b)

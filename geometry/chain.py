@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.cells import DEEPEST, Tree, next_neighbour, splittable
-from geometry.compiled import compiled
+from geometry.compiled import bare
 from geometry.priority import pop, push
 from geometry.separation import DEAD, FREE, FULL, OPEN, SHUT, Ground, Mover, classify
 
@@ -67,7 +67,7 @@ def new_hunt(capacity: int, ways: Floats, eye: Floats) -> Hunt:
     return Hunt(np.empty(capacity), np.empty(capacity), before, state, verdict, *numbers, chain, loose, ways, eye)
 
 
-@compiled
+@bare
 def find_chain(
     tree: Tree, mover: Mover, ground: Ground, region: Ground, hunt: Hunt, start: int, goal: int, nth: int, dead: bool
 ) -> int:
@@ -103,7 +103,7 @@ def find_chain(
     return 0
 
 
-@compiled
+@bare
 def _goal_sight(tree: Tree, mover: Mover, region: Ground, cell: int) -> int:
     """FREE or OPEN when a cell's middle is in the goal region, SHUT when another pose in it may be, else FULL."""
     depth = tree.box[cell, 3]
@@ -112,7 +112,7 @@ def _goal_sight(tree: Tree, mover: Mover, region: Ground, cell: int) -> int:
     return classify(mover, region, tree.middle[cell, 0], tree.middle[cell, 1], tree.middle[cell, 2], spread, half)
 
 
-@compiled
+@bare
 def _repair(tree: Tree, mover: Mover, ground: Ground, hunt: Hunt, nth: int) -> None:
     """Cut off what hung on cells that were split or given up, and offer it and the new cells again."""
     loose = 0
@@ -133,7 +133,7 @@ def _repair(tree: Tree, mover: Mover, ground: Ground, hunt: Hunt, nth: int) -> N
             _be_offered(tree, hunt, mover.radius, cell)
 
 
-@compiled
+@bare
 def _cut_off(child: Ints, kind: npt.NDArray[np.int8], before: Ints, verdict: Ints, cell: int, nth: int) -> bool:
     """Whether the way to a cell runs through one that was split or given up. verdict: what was found out on the way."""
     at = cell
@@ -149,7 +149,7 @@ def _cut_off(child: Ints, kind: npt.NDArray[np.int8], before: Ints, verdict: Int
     return bad == 1
 
 
-@compiled
+@bare
 def _be_offered(tree: Tree, hunt: Hunt, radius: float, cell: int) -> None:
     """Let the settled neighbours of a cell offer it the cheapest way to it."""
     child, head, links, middle, kind = tree.child, tree.head, tree.link, tree.middle, tree.kind
@@ -167,7 +167,7 @@ def _be_offered(tree: Tree, hunt: Hunt, radius: float, cell: int) -> None:
         push(hunt.key, hunt.item, hunt.size, best + hunt.guess[cell], cell)
 
 
-@compiled
+@bare
 def _spread_out(tree: Tree, hunt: Hunt, radius: float, cell: int, dead: bool) -> None:
     """Offer the neighbours of a settled cell the way through it."""
     child, head, links, middle, kind = tree.child, tree.head, tree.link, tree.middle, tree.kind
@@ -182,7 +182,7 @@ def _spread_out(tree: Tree, hunt: Hunt, radius: float, cell: int, dead: bool) ->
         link = next_neighbour(child, head, links, cell, link)
 
 
-@compiled
+@bare
 def _step(middle: Floats, kind: npt.NDArray[np.int8], box: Ints, radius: float, a: int, b: int) -> float:
     """The cost of going from the middle of one cell to that of another."""
     dx, dy = middle[b, 0] - middle[a, 0], middle[b, 1] - middle[a, 1]
@@ -192,7 +192,7 @@ def _step(middle: Floats, kind: npt.NDArray[np.int8], box: Ints, radius: float, 
     return float((math.sqrt(dx * dx + dy * dy) + 0.5 * radius * turn) * 0.5 * price)
 
 
-@compiled
+@bare
 def _guess(middle: Floats, ways: Floats, eye: Floats, frame: Floats, cell: int) -> float:
     """What may be left to go from the middle of a cell."""
     c, s = math.cos(middle[cell, 2]), math.sin(middle[cell, 2])
@@ -203,7 +203,7 @@ def _guess(middle: Floats, ways: Floats, eye: Floats, frame: Floats, cell: int) 
     return float(EAGER * ways[row, column])
 
 
-@compiled
+@bare
 def _trace(before: Ints, chain: Ints, cell: int) -> int:
     """Write the chain that ends at a cell, from its start; its length."""
     length = 0

@@ -17,7 +17,11 @@ PATIENCE = 1.0  # seconds of compiling before the user is told
 
 
 class Kernel(Generic[P, R]):
-    """A function that compiles itself when it is first called."""
+    """A function that compiles itself when it is first called.
+
+    ``swift`` is the same for callers whose arguments always have the very types of the first call it gets: it looks at
+    no types again, which for short, frequent calls takes most of the time.
+    """
 
     def __init__(self, function: Callable[P, R], counting: bool) -> None:
         self.function = function
@@ -25,6 +29,7 @@ class Kernel(Generic[P, R]):
         self.__doc__ = function.__doc__
         self.__name__ = function.__name__
         self.__module__ = function.__module__
+        self.swift: Callable[P, R] = self._first
         self._ready: Callable[P, R] | None = None
         self._machine: Callable[P, R] | None = None
 
@@ -41,6 +46,11 @@ class Kernel(Generic[P, R]):
             self._machine = _dispatcher(self.function, self._counting)
             _link(cast(FunctionType, self.function).__globals__)
         return self._machine
+
+    def _first(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        """``swift`` before it is ready."""
+        self.swift = self.entry(*args, **kwargs)
+        return self.swift(*args, **kwargs)
 
     def entry(self, *args: P.args, **kwargs: P.kwargs) -> Callable[P, R]:
         """The machine code for arguments of these types, which skips looking at types again: for short, frequent calls.

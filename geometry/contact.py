@@ -12,9 +12,8 @@ point. Touching and sliding are allowed, going in is not, and nothing can be jum
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -29,8 +28,7 @@ CHUNK = 4  # edges that are looked at or left alone together
 SHORT = 1e-7  # squares: shorter edges are dropped
 
 
-@dataclass(frozen=True)
-class Contact:
+class Contact(NamedTuple):
     """How far a motion went.
 
     Attributes
@@ -47,6 +45,10 @@ class Contact:
     normal: tuple[float, float] | None = None
 
 
+UNSTOPPED = Contact(1.0)
+NO_EDGES = np.empty((0, 7))
+
+
 class Body:
     """Something rigid that moves: a polygon (or several), points, or all as one.
 
@@ -57,16 +59,27 @@ class Body:
     """
 
     def __init__(self, shape: Any = None, points: Iterable[tuple[float, float]] = ()) -> None:
-        self.edges = with_normals(boundary_edges(shape))
-        self.corners = np.ascontiguousarray(self.edges[:, :2])
-        self.points = np.array([tuple(p) for p in points], dtype=float).reshape(-1, 2)
+        self._made_of(
+            with_normals(boundary_edges(shape)), np.array([tuple(p) for p in points], dtype=float).reshape(-1, 2)
+        )
+
+    def _made_of(self, edges: Floats, points: Floats) -> None:
+        """Keep edges (n, 7) and points (n, 2), and ``runs``: what the kernels are asked of them, one after another.
+
+        A run is corners, edges, and whether it is against all obstacles as one. The shape meets them one by one, points
+        all as one as well: in the seam of two flush obstacles, which is inside of both as one, only each by itself
+        stops them.
+        """
+        self.edges, self.points = edges, points
+        solid = [(edges, edges, False)] if len(edges) else []
+        loose = [(points, NO_EDGES, True), (points, NO_EDGES, False)] if len(points) else []
+        self.runs: tuple[tuple[Floats, Floats, bool], ...] = (*solid, *loose)
 
     def after(self, motion: Motion) -> "Body":
         """The body after a motion."""
         moved = Body()
-        moved.edges = with_normals(motion.points(self.edges[:, :4].reshape(-1, 2)).reshape(-1, 4))
-        moved.corners = np.ascontiguousarray(moved.edges[:, :2])
-        moved.points = np.ascontiguousarray(motion.points(self.points))
+        edges = with_normals(motion.points(self.edges[:, :4].reshape(-1, 2)).reshape(-1, 4))
+        moved._made_of(edges, np.ascontiguousarray(motion.points(self.points)))
         return moved
 
 
@@ -103,48 +116,64 @@ class Obstacles:
         -------
         Contact : fraction 1 when the whole motion is free. A body that touches at the start may slide along or leave
             (fraction above 0) and may not go in (fraction 0). It ends at most 1e-7 squares deep.
+
+        Raises
+        ------
+        ValueError : when a number of the motion is not finite.
         """
-        contact = Contact(1.0)
-        for corners, edges, surface in self._runs(body):
+        if isinstance(motion, Translate):
+            turn, x, y = 0.0, float(motion.dx), float(motion.dy)
+        else:
+            turn, x, y = math.radians(motion.degrees), float(motion.about[0]), float(motion.about[1])
+        if not math.isfinite(turn + x + y):
+            raise ValueError(f"a motion must be finite, not {motion}")
+        contact = UNSTOPPED
+        for corners, edges, as_one in body.runs:
+            surface = self.point_surface if as_one else self.surface
             if isinstance(motion, Translate):
-                found = first_push(corners, edges, surface, float(motion.dx), float(motion.dy))
+                found = first_push.swift(corners, edges, surface, x, y)
             else:
-                x, y = motion.about
-                found = first_turn(corners, edges, surface, math.radians(motion.degrees), float(x), float(y))
-            fraction, x, y, owner, nx, ny = found
+                found = first_turn.swift(corners, edges, surface, turn, x, y)
+            fraction, at_x, at_y, owner, nx, ny = found
             if owner >= 0 and fraction < contact.fraction:
-                contact = Contact(float(fraction), (float(x), float(y)), int(owner), (float(nx), float(ny)))
+                contact = Contact(fraction, (at_x, at_y), owner, (nx, ny))
         return contact
 
     def pushes(self, body: Body, vectors: Floats) -> Floats:
-        """Fractions travelled (n,) for many translations (n, 2) of one body from where it stands."""
-        vectors = np.ascontiguousarray(vectors, dtype=float)
+        """Fractions travelled (n,) for many translations (n, 2) of one body from where it stands.
+
+        Raises
+        ------
+        ValueError : when a number is not finite.
+        """
+        vectors = _finite(vectors)
         free = np.ones(len(vectors))
-        for corners, edges, surface in self._runs(body):
+        for corners, edges, as_one in body.runs:
+            surface = self.point_surface if as_one else self.surface
             free = np.minimum(free, many_pushes(corners, edges, surface, vectors))
         return free
 
     def turns(self, body: Body, degrees: Floats, pivots: Floats) -> Floats:
-        """Fractions travelled (n,) for many turns (n,) about pivots (n, 2) of one body from where it stands."""
-        turns = np.radians(np.ascontiguousarray(degrees, dtype=float))
-        pivots = np.ascontiguousarray(pivots, dtype=float)
+        """Fractions travelled (n,) for many turns (n,), degrees, about pivots (n, 2) of one body from where it stands.
+
+        Raises
+        ------
+        ValueError : when a number is not finite.
+        """
+        turns, pivots = np.radians(_finite(degrees)), _finite(pivots)
         free = np.ones(len(turns))
-        for corners, edges, surface in self._runs(body):
+        for corners, edges, as_one in body.runs:
+            surface = self.point_surface if as_one else self.surface
             free = np.minimum(free, many_turns(corners, edges, surface, turns, pivots))
         return free
 
-    def _runs(self, body: Body) -> list[tuple[Floats, Floats, Surface]]:
-        """The kernels' arguments: the shape against the obstacles one by one, the points against all as one as well.
 
-        A point in the seam of two flush obstacles is inside of both as one: there only each by itself stops it.
-        """
-        runs = []
-        if len(body.corners) and len(self.surface.edges):
-            runs.append((body.corners, body.edges, self.surface))
-        if len(body.points) and len(self.surface.edges):
-            runs.append((body.points, np.empty((0, 7)), self.point_surface))
-            runs.append((body.points, np.empty((0, 7)), self.surface))
-        return runs
+def _finite(numbers: npt.ArrayLike) -> Floats:
+    """An array of finite numbers, or an error."""
+    array = np.ascontiguousarray(numbers, dtype=float)
+    if not np.isfinite(array).all():
+        raise ValueError("motions must be finite")
+    return array
 
 
 def boundary_edges(shape: Any) -> Floats:

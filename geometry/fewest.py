@@ -12,9 +12,8 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from geometry.compiled import compiled
-from geometry.hop import BLOCKED, EVEN, hop, shorter_turn
-from geometry.impact import Surface
+from geometry.compiled import bare, compiled
+from geometry.hop import BLOCKED, EVEN, Scene, hop, shorter_turn
 from geometry.rigid import Motion
 from geometry.separation import Ground, Mover, distance_at
 from geometry.shorten import motions_along
@@ -25,18 +24,18 @@ BESIDE = 30  # candidates along the way
 ROOMY = 0.2  # of the body's radius: more room is not looked for
 
 
-def fewest_motions(mover: Mover, ground: Ground, surface: Surface, track: Floats, edge: float) -> tuple[Motion, ...]:
+def fewest_motions(scene: Scene, track: Floats, edge: float) -> tuple[Motion, ...]:
     """The motions of a way made few; () when a hop of it is not free.
 
     Parameters
     ----------
-    mover : the body with its pivot as centre.
+    scene : the body, with its pivot as centre, among its obstacles.
     track : (n, 3) a way of that centre, x, y, radians; hops from one to the next are free.
     edge : radians, the direction of the body's edge that may well lie along an axis.
     """
-    candidates = _candidates(mover, ground, track, edge)
-    order = _fewest(mover, ground, surface, candidates)
-    return motions_along(mover, ground, surface, candidates[order]) if len(order) else ()
+    candidates = _candidates(scene.mover, scene.ground, track, edge)
+    order = _fewest(scene, candidates)
+    return motions_along(scene, candidates[order]) if len(order) else ()
 
 
 def slant(shape: Any) -> float:
@@ -67,7 +66,7 @@ def evenly(track: Floats, radius: float, count: int) -> Floats:
     return np.column_stack([np.interp(at, far, column) for column in (track[:, 0], track[:, 1], angles)])
 
 
-@compiled
+@bare
 def centred(mover: Mover, ground: Ground, pose: Floats) -> None:
     """Move a pose, in place and without turning it, to where the body has more room: steps in eight directions."""
     c, s = math.cos(pose[2]), math.sin(pose[2])
@@ -87,7 +86,7 @@ def centred(mover: Mover, ground: Ground, pose: Floats) -> None:
 
 
 @compiled
-def _fewest(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> npt.NDArray[np.int64]:
+def _fewest(scene: Scene, poses: Floats) -> npt.NDArray[np.int64]:
     """The order of the poses on the way with the fewest motions from the first to the last; empty without any."""
     count = len(poses)
     cost, before = np.full(count, np.inf), np.full(count, -1, np.int64)
@@ -107,7 +106,7 @@ def _fewest(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> np
             far = math.hypot(poses[n, 0] - poses[here, 0], poses[n, 1] - poses[here, 1])
             turn = abs(shorter_turn(poses[n, 2] - poses[here, 2]))
             price = (1.0 if far > EVEN else 0.0) + (1.0 if turn > EVEN else 0.0) + far / STEPS + turn / SWING
-            if cost[here] + price < cost[n] and hop(mover, ground, surface, poses[here], poses[n]) != BLOCKED:
+            if cost[here] + price < cost[n] and hop(scene, poses[here], poses[n]) != BLOCKED:
                 cost[n], before[n] = cost[here] + price, here
     length, n = 0, count - 1
     if cost[n] == np.inf:

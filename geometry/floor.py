@@ -13,11 +13,12 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from geometry.buckets import new_queue, put, take
-from geometry.compiled import compiled
+from geometry.buckets import Queue, new_queue, put, take
+from geometry.compiled import bare, compiled
 from geometry.contact import Obstacles
+from geometry.mover import centre_pose
 from geometry.rigid import Pose
-from geometry.separation import Ground, Mover, inside, point_to_edge
+from geometry.separation import Ground, Mover, distance_at, inside, point_to_edge
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -26,6 +27,7 @@ BLOCK = 8  # pixels along the side of a block
 RIM = 0.1  # of the longer side, around the bounds
 TOUCH = 1e-6  # squares: a start or goal may be this deep in an obstacle, or out of bounds
 SIDE, DIAGONAL = 10, 14  # the cost of a pixel's way
+FAR = 2**40  # dearer than any
 WALL = 6  # going through pixels where the body's disc does not fit looks so much dearer
 
 
@@ -52,7 +54,8 @@ class Floor:
         corner = self.bounds[:2] - RIM * self.side
         columns, rows = np.ceil((self.bounds[2:] - self.bounds[:2] + 2 * RIM * self.side) / pixel).astype(int)
         self.frame = np.array([corner[0], corner[1], pixel])
-        self.raster = _distances(self.surface.hull, self.frame, int(rows), int(columns))
+        self.raster = np.empty((int(rows), int(columns)))
+        _measure(self.surface.hull, self.frame, self.raster)
         self._grounds: dict[float, Ground] = {}
         self._around: dict[bytes, Floor] = {}
 
@@ -79,11 +82,17 @@ class Floor:
         blocks = np.array([across, BLOCK])
         return Ground(self.surface.hull, self.raster, self.frame, first, near, blocks, radius, self.bounds)
 
-    def has_room(self, shape: Any, points: Sequence[tuple[float, float]], pose: Pose) -> bool:
-        """Whether a body at a pose of its reference point is within bounds and at most touches obstacles."""
+    def has_room(self, mover: Mover, shape: Any, points: Sequence[tuple[float, float]], pose: Pose) -> bool:
+        """Whether a body at a pose of its reference point is within bounds and at most touches obstacles.
+
+        mover : the same shape and points, ready to be moved. Only what may touch needs the shape itself looked at.
+        """
         x0, y0, x1, y1 = self.bounds
         if not (x0 - TOUCH <= pose.x <= x1 + TOUCH and y0 - TOUCH <= pose.y <= y1 + TOUCH):
             return False
+        x, y, angle = centre_pose(mover, pose).tolist()
+        if distance_at(mover, self.ground(mover), x, y, math.cos(angle), math.sin(angle)) > TOUCH:
+            return True
         body = shapely.buffer(pose.place(shape), -TOUCH, join_style="mitre")
         specks = [pose.place(shapely.Point(p)) for p in points]
         if shapely.intersects(self.polygons, body).any():
@@ -104,19 +113,17 @@ class Floor:
         return goals
 
 
-@compiled
-def _distances(edges: Floats, frame: Floats, rows: int, columns: int) -> Floats:
-    """The signed distance to the obstacles at every pixel's centre."""
-    raster = np.empty((rows, columns))
-    for row in range(rows):
+@bare
+def _measure(edges: Floats, frame: Floats, raster: Floats) -> None:
+    """Fill a raster with the signed distance to the obstacles at every pixel's centre."""
+    for row in range(raster.shape[0]):
         y = frame[1] + (row + 0.5) * frame[2]
-        for column in range(columns):
+        for column in range(raster.shape[1]):
             x = frame[0] + (column + 0.5) * frame[2]
             best = 1e12
             for j in range(len(edges)):
                 best = min(best, point_to_edge(x, y, edges, j))
             raster[row, column] = -math.sqrt(best) if inside(x, y, edges) else math.sqrt(best)
-    return raster
 
 
 @compiled
@@ -137,20 +144,24 @@ def _blocks(edges: Floats, frame: Floats, rows: int, columns: int, reach: float)
     return first, near[:count].copy()
 
 
-@compiled
 def disc_ways(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_]) -> Ints:
     """Dijkstra's algorithm from the goal pixels over the eight neighbours, WALL times as dear where it is tight.
 
     Returns (rows, columns), in units of which SIDE make a pixel's way.
     """
-    rows, columns = tight.shape
-    ways = np.full(rows * columns, 2**40)
-    queue = new_queue(8 * rows * columns)
-    for row in range(rows):
-        for column in range(columns):
-            if goals[row, column]:
-                ways[row * columns + column] = 0
-                put(queue, 0, row * columns + column)
+    price = np.pad(np.where(tight, WALL, 1), 1)
+    ways = np.pad(np.where(goals, 0, FAR), 1, constant_values=-1)
+    _spread(price.reshape(-1), ways.reshape(-1), tight.shape[1] + 2, new_queue(8 * tight.size))
+    return ways[1:-1, 1:-1]
+
+
+@bare
+def _spread(price: Ints, ways: Ints, width: int, queue: Queue) -> None:
+    """Find the ways of all pixels, from those that are 0. The rim of pixels around them, all -1, leads nowhere."""
+    for at in range(len(ways)):
+        if ways[at] == 0:
+            put(queue, 0, at)
+    beside = (1, -1, width, -width, width + 1, width - 1, -width + 1, -width - 1)
     now = 0
     while queue.used[1] > 0:
         at = take(queue, now)
@@ -159,15 +170,12 @@ def disc_ways(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_]) -> Int
             continue
         if ways[at] != now:
             continue
-        row, column = at // columns, at % columns
-        for up in range(max(row - 1, 0), min(row + 2, rows)):
-            for along in range(max(column - 1, 0), min(column + 2, columns)):
-                step = DIAGONAL if up != row and along != column else SIDE
-                then = now + (step * WALL if tight[up, along] else step)
-                if then < ways[up * columns + along]:
-                    ways[up * columns + along] = then
-                    put(queue, then, up * columns + along)
-    return ways.reshape(rows, columns)
+        for k in range(8):
+            other = at + beside[k]
+            then = now + (SIDE if k < 4 else DIAGONAL) * price[other]
+            if then < ways[other]:
+                ways[other] = then
+                put(queue, then, other)
 
 
 @compiled

@@ -7,21 +7,12 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.cells import Tree, split, splittable
-from geometry.compiled import compiled
-from geometry.hop import BLOCKED, hop, put
-from geometry.impact import Surface
-from geometry.separation import DEAD, FREE, OPEN, Ground, Mover
+from geometry.compiled import bare
+from geometry.hop import BLOCKED, Scene, hop, put
+from geometry.separation import DEAD, FREE, OPEN
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
-
-
-class Scene(NamedTuple):
-    """A body, where it moves, and the surface that it must not go into."""
-
-    mover: Mover
-    ground: Ground
-    surface: Surface
 
 
 class Way(NamedTuple):
@@ -29,16 +20,25 @@ class Way(NamedTuple):
 
     poses: (n, 3) x, y, angle, the first being the start; used: (1,) how many of them are in use; goal: the pose to end
     at, empty when the centre of the chain's last cell will do. free_from: for each cell one from whose middle the hop
-    to its own was found free, -1 for none: most of a chain is that of the round before.
+    to its own was found free, -1 for none: most of a chain is that of the round before. stops: (2, 3) scratch: where a
+    hop begins and ends.
     """
 
     poses: Floats
     used: npt.NDArray[np.int64]
     goal: Floats
     free_from: Ints
+    stops: Floats
 
 
-@compiled
+def new_way(start: Floats, goal: Floats, cells: int) -> Way:
+    """A way that begins at a pose, with room for chains of so many cells."""
+    way = Way(np.empty((2 * cells + 2, 3)), np.ones(1, np.int64), goal, np.full(cells, -1, np.int32), np.empty((2, 3)))
+    way.poses[0] = start
+    return way
+
+
+@bare
 def follow(tree: Tree, scene: Scene, chain: Ints, length: int, doubt: bool, way: Way) -> int:
     """Check the hops of a chain and split what is to blame; how many cells were changed. 0: the way is free.
 
@@ -49,7 +49,7 @@ def follow(tree: Tree, scene: Scene, chain: Ints, length: int, doubt: bool, way:
     way.used[0] = 1
     total = length + (1 if len(way.goal) > 0 else 0)
     blamed, last, n = 0, -1, 0
-    here, there = np.empty(3), np.empty(3)
+    here, there = way.stops[0], way.stops[1]
     put(here, way.poses[0])
     while n < total:
         step = 0
@@ -75,7 +75,7 @@ def follow(tree: Tree, scene: Scene, chain: Ints, length: int, doubt: bool, way:
     return blamed
 
 
-@compiled
+@bare
 def _stop_at(
     middle: Floats, kind: npt.NDArray[np.int8], chain: Ints, length: int, goal: Floats, n: int, there: Floats
 ) -> bool:
@@ -87,7 +87,7 @@ def _stop_at(
     return bool(kind[chain[n]] <= OPEN)
 
 
-@compiled
+@bare
 def _go(
     tree: Tree, scene: Scene, chain: Ints, length: int, way: Way, last: int, n: int, here: Floats, there: Floats
 ) -> bool:
@@ -95,36 +95,32 @@ def _go(
     if not _straight(scene, chain, length, way, last, n, here, there):
         if last < 0 or n >= length or n != last + 1:
             return False
-        middle = np.empty(3)
-        middle[0], middle[1], middle[2] = meeting(tree, chain[last], chain[n])
-        if hop(scene.mover, scene.ground, scene.surface, here, middle) == BLOCKED:
+        middle = way.poses[way.used[0]]
+        _meet(tree, chain[last], chain[n], middle)
+        if hop(scene, here, middle) == BLOCKED or hop(scene, middle, there) == BLOCKED:
             return False
-        if hop(scene.mover, scene.ground, scene.surface, middle, there) == BLOCKED:
-            return False
-        put(way.poses[way.used[0]], middle)
         way.used[0] += 1
     put(way.poses[way.used[0]], there)
     way.used[0] += 1
     return True
 
 
-@compiled
+@bare
 def _straight(scene: Scene, chain: Ints, length: int, way: Way, last: int, n: int, here: Floats, there: Floats) -> bool:
     """Whether the hop to the n-th stop is free; from middle to middle of two cells that is found out only once."""
     between = last >= 0 and n < length
     if between and way.free_from[chain[n]] == chain[last]:
         return True
-    if hop(scene.mover, scene.ground, scene.surface, here, there) == BLOCKED:
+    if hop(scene, here, there) == BLOCKED:
         return False
     if between:
         way.free_from[chain[n]] = chain[last]
     return True
 
 
-@compiled
-def meeting(tree: Tree, a: int, b: int) -> tuple[float, float, float]:
-    """The pose in the middle of the face that two neighbouring cells share."""
-    middle = np.empty(3)
+@bare
+def _meet(tree: Tree, a: int, b: int, middle: Floats) -> None:
+    """Write the pose in the middle of the face that two neighbouring cells share."""
     for k in range(3):
         unit = tree.frame[2] if k < 2 else tree.frame[3]
         size_a = tree.sizes[tree.box[a, 3], k // 2] * unit
@@ -135,10 +131,11 @@ def meeting(tree: Tree, a: int, b: int) -> tuple[float, float, float]:
         elif k == 2 and a0 > b0 + size_b + 1e-12:
             b0 += 2 * math.pi
         middle[k] = (max(a0, b0) + min(a0 + size_a, b0 + size_b)) / 2
-    return tree.frame[0] + middle[0], tree.frame[1] + middle[1], middle[2]
+        if k < 2:
+            middle[k] += tree.frame[k]
 
 
-@compiled
+@bare
 def _blame(tree: Tree, scene: Scene, chain: Ints, last: int, n: int, length: int, ends: int) -> int:
     """Split the cell that a failed hop leads into, and the one that it leaves when that is as doubtful and as large."""
     blamed = 0
@@ -153,7 +150,7 @@ def _blame(tree: Tree, scene: Scene, chain: Ints, last: int, n: int, length: int
     return blamed
 
 
-@compiled
+@bare
 def _divide_near(tree: Tree, scene: Scene, chain: Ints, n: int, length: int, ends: int) -> int:
     """Divide the n-th cell of a chain; when it holds an end that is to be reached and is too small, the one beside it.
 
@@ -167,7 +164,7 @@ def _divide_near(tree: Tree, scene: Scene, chain: Ints, n: int, length: int, end
     return _divide(tree, scene, chain[n])
 
 
-@compiled
+@bare
 def _divide(tree: Tree, scene: Scene, cell: int) -> int:
     """Split a leaf, or give it up when it is too small. Always 1: it was changed, now or before."""
     if tree.child[cell] >= 0 or tree.kind[cell] == DEAD:

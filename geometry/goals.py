@@ -6,6 +6,7 @@ The end then moves from square to square of the part as long as that shortens th
 """
 
 from itertools import pairwise
+from numbers import Integral
 from typing import NamedTuple
 
 import numpy as np
@@ -39,6 +40,8 @@ def checked_goal(goal: ArrayLike | set[tuple[int, int]], shape: tuple[int, int])
     if isinstance(goal, set | frozenset):
         squares = np.zeros(shape, np.bool_)
         for i, j in sorted(goal):
+            if not (isinstance(i, Integral) and isinstance(j, Integral)):
+                raise ValueError(f"goal square ({i}, {j}) must be whole numbers (column, row)")
             if not (0 <= i < shape[1] and 0 <= j < shape[0]):
                 raise ValueError(f"goal square ({i}, {j}) lies outside the screen")
             squares[j, i] = True

@@ -21,6 +21,7 @@ from geometry.ends import At, InCorner, Inside, Roomy, placed
 from geometry.errand import Errand
 from geometry.fewest import fewest_motions, slant
 from geometry.holds import Hold, holds_about, promise
+from geometry.hop import new_scene
 from geometry.legs import Leg, Point, at_utak, grip_square, may_push, rounded, verified
 from geometry.motion import plan_motion
 from geometry.mover import centre_pose, new_mover
@@ -118,7 +119,7 @@ def _motions(
         return (), plan.cells
     mover = new_mover(body, [utak], utak)
     way = np.array([centre_pose(mover, pose) for pose in plan.poses])
-    few = fewest_motions(mover, floor.ground(mover), floor.surface, way, slant(errand.shape))
+    few = fewest_motions(new_scene(mover, floor.ground(mover), floor.surface), way, slant(errand.shape))
     motions = few if few and len(few) < len(plan.motions) else plan.motions
     return at_utak(place, [rounded(motion) for motion in motions]), plan.cells
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.compiled import compiled
+from geometry.compiled import bare, compiled
 from geometry.separation import point_to_edge
 
 Floats = npt.NDArray[np.float64]
@@ -43,7 +43,7 @@ LATE = 1e-9  # squares^2 by which a cosine must tell that a turn goes on too lon
 WHOLE_TURN = 2 * math.pi
 
 
-@compiled
+@bare
 def push_impact(x: float, y: float, dx: float, dy: float, edges: Floats, j: int) -> float:
     """When the point (x, y), pushed by (dx, dy), enters through edge j; NEVER when it does not, or not yet by 1."""
     nx, ny = edges[j, 4], edges[j, 5]
@@ -65,7 +65,7 @@ def push_impact(x: float, y: float, dx: float, dy: float, edges: Floats, j: int)
     return float(time)
 
 
-@compiled
+@bare
 def turn_impact(
     x: float, y: float, cx: float, cy: float, sign: float, edges: Floats, j: int, until: float, cosine: float
 ) -> float:
@@ -98,7 +98,7 @@ def turn_impact(
     return time if time >= 0.0 else time + WHOLE_TURN
 
 
-@compiled
+@bare
 def first_push(corners: Floats, body: Floats, surface: Surface, dx: float, dy: float) -> Found:
     """First contact of a pushed body."""
     hull, skin, chunks, edges, owner = surface
@@ -108,13 +108,13 @@ def first_push(corners: Floats, body: Floats, surface: Surface, dx: float, dy: f
     if kind == 1:
         x, y = corners[i, 0], corners[i, 1]
         at, k = _last_push(x, y, dx, dy, edges, time)
-        return at, x + at * dx, y + at * dy, owner[k], edges[k, 4], edges[k, 5]
+        return float(at), float(x + at * dx), float(y + at * dy), int(owner[k]), float(edges[k, 4]), float(edges[k, 5])
     x, y = hull[j, 0], hull[j, 1]
     at, k = _last_push(x, y, -dx, -dy, body, time)
-    return at, x, y, owner[j], -body[k, 4], -body[k, 5]
+    return float(at), float(x), float(y), int(owner[j]), float(-body[k, 4]), float(-body[k, 5])
 
 
-@compiled
+@bare
 def push_through_skin(
     corners: Floats, body: Floats, hull: Floats, skin: Floats, chunks: Floats, dx: float, dy: float
 ) -> Met:
@@ -152,7 +152,7 @@ def push_through_skin(
     return best, kind, at, edge
 
 
-@compiled
+@bare
 def _last_push(x: float, y: float, dx: float, dy: float, edges: Floats, until: float) -> tuple[float, int]:
     """The last entry through the true edges up to a time, and by which; at once by the nearest when there is none."""
     last, by = 0.0, -1
@@ -167,17 +167,18 @@ def _last_push(x: float, y: float, dx: float, dy: float, edges: Floats, until: f
         if time <= until and (time > last or by < 0):
             last, by = time, k
     if by < 0:
-        by = _nearest_ahead(x, y, dx, dy, edges)
+        by = _nearest_ahead(x, y, dx, dy, 0.0, 0.0, edges)
     return last, by
 
 
-@compiled
-def _nearest_ahead(x: float, y: float, dx: float, dy: float, edges: Floats) -> int:
-    """The edge nearest to a point among those that face its velocity (dx, dy)."""
+@bare
+def _nearest_ahead(x: float, y: float, dx: float, dy: float, bend_x: float, bend_y: float, edges: Floats) -> int:
+    """The edge nearest to a point among those that face its velocity (dx, dy) or, along it, what bends its way."""
     best, at = math.inf, 0
     for k in range(len(edges)):
         nx, ny = edges[k, 4], edges[k, 5]
-        if nx * dx + ny * dy < 0.0:
+        ahead = nx * dx + ny * dy
+        if ahead < 0.0 or (ahead < STILL and nx * bend_x + ny * bend_y < 0.0):
             px, py = x - edges[k, 0], y - edges[k, 1]
             along = nx * py - ny * px
             off = along - min(max(along, 0.0), edges[k, 6])
@@ -187,7 +188,7 @@ def _nearest_ahead(x: float, y: float, dx: float, dy: float, edges: Floats) -> i
     return at
 
 
-@compiled
+@bare
 def first_turn(corners: Floats, body: Floats, surface: Surface, turn: float, cx: float, cy: float) -> Found:
     """First contact of a body turned by some radians about (cx, cy)."""
     hull, skin, chunks, edges, owner = surface
@@ -199,14 +200,21 @@ def first_turn(corners: Floats, body: Floats, surface: Surface, turn: float, cx:
         x, y = corners[i, 0], corners[i, 1]
         at, k = _last_turn(x, y, cx, cy, sign, edges, time)
         x, y = _turned(x - cx, y - cy, sign * at)
-        return at / abs(turn), cx + x, cy + y, owner[k], edges[k, 4], edges[k, 5]
+        return (
+            float(at / abs(turn)),
+            float(cx + x),
+            float(cy + y),
+            int(owner[k]),
+            float(edges[k, 4]),
+            float(edges[k, 5]),
+        )
     x, y = hull[j, 0], hull[j, 1]
     at, k = _last_turn(x, y, cx, cy, -sign, body, time)
     nx, ny = _turned(-body[k, 4], -body[k, 5], sign * at)
-    return at / abs(turn), x, y, owner[j], nx, ny
+    return float(at / abs(turn)), float(x), float(y), int(owner[j]), float(nx), float(ny)
 
 
-@compiled
+@bare
 def turn_through_skin(
     corners: Floats,
     body: Floats,
@@ -220,17 +228,22 @@ def turn_through_skin(
 ) -> Met:
     """The earliest impact on the skins within a turn of `limit` radians."""
     low, high = _ring(corners, body, cx, cy)
+    low_x, low_y, high_x, high_y = _turn_bounds(corners, cx, cy, sign, limit)
     best, kind, at, edge = limit, 0, 0, 0
     cosine = math.cos(limit) if limit < WHOLE_TURN else 1.0
     for chunk in range(len(chunks)):
         x0, y0, x1, y1 = chunks[chunk, 2] - cx, chunks[chunk, 3] - cy, chunks[chunk, 4] - cx, chunks[chunk, 5] - cy
+        if x0 > high_x or y0 > high_y or x1 < low_x or y1 < low_y:
+            continue
         off_x, off_y = max(x0, -x1, 0.0), max(y0, -y1, 0.0)
         far_x, far_y = max(-x0, x1), max(-y0, y1)
         if off_x * off_x + off_y * off_y > high or far_x * far_x + far_y * far_y < low:
             continue
         for j in range(int(chunks[chunk, 0]), int(chunks[chunk, 1])):
-            here = (skin[j, 0] - cx) ** 2 + (skin[j, 1] - cy) ** 2
-            there = (skin[j, 2] - cx) ** 2 + (skin[j, 3] - cy) ** 2
+            x0, y0, x1, y1 = skin[j, 0] - cx, skin[j, 1] - cy, skin[j, 2] - cx, skin[j, 3] - cy
+            if min(x0, x1) > high_x or min(y0, y1) > high_y or max(x0, x1) < low_x or max(y0, y1) < low_y:
+                continue
+            here, there = x0 * x0 + y0 * y0, x1 * x1 + y1 * y1
             if max(here, there) >= low and point_to_edge(cx, cy, skin, j) <= high:
                 for i in range(len(corners)):
                     time = turn_impact(corners[i, 0], corners[i, 1], cx, cy, sign, skin, j, best, cosine)
@@ -246,7 +259,7 @@ def turn_through_skin(
     return best, kind, at, edge
 
 
-@compiled
+@bare
 def _ring(corners: Floats, body: Floats, cx: float, cy: float) -> tuple[float, float]:
     """The squares of the least and the greatest distance of a body's boundary from a pivot, with a margin."""
     low, high = 1e18, 0.0
@@ -258,7 +271,41 @@ def _ring(corners: Floats, body: Floats, cx: float, cy: float) -> tuple[float, f
     return (max(math.sqrt(low) - MARGIN, 0.0)) ** 2, (math.sqrt(high) + MARGIN) ** 2
 
 
-@compiled
+@bare
+def _turn_bounds(corners: Floats, cx: float, cy: float, sign: float, limit: float) -> tuple[float, float, float, float]:
+    """Least x, least y, greatest x, greatest y about (cx, cy), with a margin, of where a turn brings the corners."""
+    c, s = math.cos(limit), sign * math.sin(limit)
+    low_x = low_y = high_x = high_y = 0.0
+    for i in range(len(corners)):
+        x, y = corners[i, 0] - cx, corners[i, 1] - cy
+        u, v = c * x - s * y, s * x + c * y
+        x0, y0, x1, y1 = min(x, u), min(y, v), max(x, u), max(y, v)
+        away = math.sqrt(x * x + y * y)
+        if _sweeps(x, -sign * y, away, c, limit):
+            x1 = away
+        if _sweeps(-x, sign * y, away, c, limit):
+            x0 = -away
+        if _sweeps(y, sign * x, away, c, limit):
+            y1 = away
+        if _sweeps(-y, -sign * x, away, c, limit):
+            y0 = -away
+        if i == 0:
+            low_x, low_y, high_x, high_y = x0, y0, x1, y1
+        low_x, low_y, high_x, high_y = min(low_x, x0), min(low_y, y0), max(high_x, x1), max(high_y, y1)
+    return low_x - MARGIN, low_y - MARGIN, high_x + MARGIN, high_y + MARGIN
+
+
+@bare
+def _sweeps(along: float, across: float, away: float, cosine: float, limit: float) -> bool:
+    """Whether a turn by `limit` sweeps over a direction that lies `along` and `across`, ahead, of where it begins."""
+    if limit >= WHOLE_TURN:
+        return True
+    if limit <= math.pi:
+        return across >= 0.0 and along >= away * cosine
+    return across >= 0.0 or along <= away * cosine
+
+
+@bare
 def _last_turn(x: float, y: float, cx: float, cy: float, sign: float, edges: Floats, until: float) -> tuple[float, int]:
     """The last entry through the true edges within a turn of `until` radians, told as by _last_push."""
     last, by = 0.0, -1
@@ -268,18 +315,18 @@ def _last_turn(x: float, y: float, cx: float, cy: float, sign: float, edges: Flo
         if time <= until and (time > last or by < 0):
             last, by = time, k
     if by < 0:
-        by = _nearest_ahead(x, y, -sign * (y - cy), sign * (x - cx), edges)
+        by = _nearest_ahead(x, y, -sign * (y - cy), sign * (x - cx), cx - x, cy - y, edges)
     return last, by
 
 
-@compiled
+@bare
 def _turned(x: float, y: float, angle: float) -> tuple[float, float]:
     """The vector (x, y) turned by some radians."""
     cosine, sine = math.cos(angle), math.sin(angle)
     return cosine * x - sine * y, sine * x + cosine * y
 
 
-@compiled
+@bare
 def _bounds(points: Floats) -> tuple[float, float, float, float]:
     """Least x, least y, greatest x, greatest y, with a margin: a corner may lie a skin behind an edge."""
     low_x = high_x = points[0, 0]

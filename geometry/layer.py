@@ -1,6 +1,7 @@
 """A layer: everything known of the free space of a body of one radius."""
 
-from math import ceil, isqrt
+from math import ceil, inf, isqrt
+from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
@@ -53,7 +54,14 @@ def level_of(radius: float) -> int:
 
     Between the centres of two neighbouring squares a corner may stand half a square off both, nearer than to either.
     Where that would bring the body below its radius the next level is taken, so that a body never touches.
+
+    Raises
+    ------
+    ValueError
+        When the radius is no finite number or negative.
     """
+    if not (isinstance(radius, Real) and 0.0 <= radius < inf):
+        raise ValueError(f"radius must be a finite number and not negative, but is {radius!r}")
     level = max(1, ceil(4.0 * radius * radius - 1e-9))
     odd = isqrt(level - 1)
     return level + 1 if odd % 2 == 1 and odd * odd == level - 1 else level

@@ -155,7 +155,7 @@ def plan_motion(
     floor = obstacles if isinstance(obstacles, Floor) else Floor(obstacles, _bounds(obstacles, start, goal, bounds))
     problem = Problem(mover, floor, start, goal, resolution, cells)
     for name, pose in (("start", start), ("goal", goal)):
-        if isinstance(pose, Pose) and not floor.has_room(shape, points, pose):
+        if isinstance(pose, Pose) and not floor.has_room(mover, shape, points, pose):
             return Plan("impossible", resolution=problem.least, reason=name)
     status, motions = problem.solve()
     poses = [start] if status == "found" else []

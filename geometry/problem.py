@@ -9,17 +9,19 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from geometry.cells import Tree, leaf_at, new_tree
-from geometry.chain import REGION, SETTLED, Hunt, find_chain, new_hunt
+from geometry.cells import Tree, new_tree
+from geometry.chain import SETTLED, Hunt, new_hunt
 from geometry.floor import Floor
-from geometry.follow import Scene, Way, follow
-from geometry.hop import BLOCKED, hop
+from geometry.follow import new_way
+from geometry.hop import BLOCKED, hop, new_scene
 from geometry.mover import centre_pose
+from geometry.pursuit import FOUND, MORE, next_chain, pursue
 from geometry.rigid import Motion, Pose
 from geometry.separation import Ground, Mover
 from geometry.shorten import loosened, motions_along, shorten
 
 Floats = npt.NDArray[np.float64]
+ROUNDS = 64  # at a stretch: between two, the user may interrupt
 
 
 @dataclass(frozen=True)
@@ -80,33 +82,27 @@ class Problem:
 
     def solve(self) -> tuple[str, tuple[Motion, ...]]:
         """Search and split until there is an answer: the status of a Plan, and its motions."""
+        scene = new_scene(self.mover, self.ground, self.floor.surface)
         straight = np.array([self.start, self.end]) if len(self.end) else None
-        if straight is not None and hop(self.mover, self.ground, self.floor.surface, *straight) != BLOCKED:
+        if straight is not None and hop(scene, *straight) != BLOCKED:
             self.track = straight
-            return "found", motions_along(self.mover, self.ground, self.floor.surface, straight)
-        scene = Scene(self.mover, self.ground, self.floor.surface)
+            return "found", motions_along(scene, straight)
         start, end = self.start, self.end
-        self.start = loosened(*scene, start, True)
-        self.end = loosened(*scene, end, False) if len(end) else end
-        cells = len(self.tree.child)
-        way = Way(np.empty((2 * cells + 2, 3)), np.ones(1, np.int64), self.end, np.full(cells, -1, np.int32))
-        way.poses[0] = self.start
-        while length := self._chain(False):
-            if follow(self.tree, scene, self.hunt.chain, length, bool(self.hunt.seen[1]), way) == 0:
-                self.track = np.vstack([start, way.poses[: way.used[0]], end.reshape(-1, 3)])
-                return "found", motions_along(*scene, shorten(*scene, self.track))
+        self.start = loosened(scene, start, True)
+        self.end = loosened(scene, end, False) if len(end) else end
+        way = new_way(self.start, self.end, len(self.tree.child))
+        outcome = MORE
+        while outcome == MORE:
+            asked = self.tree, scene, self.region, self.hunt, way, self.rounds + 1, self.rounds + ROUNDS
+            outcome, self.rounds = pursue(*asked)
+        if outcome == FOUND:
+            self.track = np.vstack([start, way.poses[: way.used[0]], end.reshape(-1, 3)])
+            return "found", motions_along(scene, shorten(scene, self.track))
         lost = bool(self.hunt.size[1])
         self.hunt.seen[0] = self.hunt.size[0] = 0
-        return "limit" if lost or self._chain(True) > 0 else "impossible", ()
-
-    def _chain(self, dead: bool) -> int:
-        """The length of the next chain; 0 when there is none, dead: not even through cells given up."""
         self.rounds += 1
-        first = leaf_at(self.tree, *self.start)
-        last = leaf_at(self.tree, *self.end) if len(self.end) else REGION
-        if first < 0 or last == -1:
-            return 0
-        return find_chain(self.tree, self.mover, self.ground, self.region, self.hunt, first, last, self.rounds, dead)
+        lost = lost or next_chain(self.tree, scene, self.region, self.hunt, way, self.rounds, True) > 0
+        return "limit" if lost else "impossible", ()
 
     def reached(self) -> Floats:
         """Where the middle of the body's greatest inscribed disc got to: (n, 2), the start first."""

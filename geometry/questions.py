@@ -64,8 +64,6 @@ class Questions:
 
     def to_point(self, start: XY, goal: XY, k: int, avoid: tuple[Passage, ...]) -> list[Route]:
         """Routes between two points."""
-        if k < 1:
-            raise ValueError(f"k must be at least 1, but is {k}")
         wanted = 1 if k == 1 else k + (SPARE if len(self.layer.ways.length) <= SMALL else FEWER)
         ends = (*self._snap(start), *self._snap(goal))
         desk = self._desk(wanted, 0)

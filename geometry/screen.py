@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
+from numbers import Integral
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -141,8 +142,10 @@ class Screen:
         Raises
         ------
         ValueError
-            When start or goal lie outside the screen or in a blocked square, or the word is not of this screen.
+            When start or goal lie outside the screen or in a blocked square or are none, the word is not of this
+            screen, k is no number of routes or radius none of squares.
         """
+        check_count(k)
         questions = self._ask(radius)
         begin = self._checked(start, "start")
         if isinstance(goal, tuple) and len(goal) == 2 and isinstance(goal[0], float):  # by far the most frequent
@@ -181,6 +184,7 @@ class Screen:
             raise ValueError(f"around must be a bool array of shape {self.shape} with a square in it")
         if (mask & self.free).any():
             raise ValueError("around must not hold free squares")
+        check_count(k)
         questions = self._ask(radius)
         begin = self._checked(start, "start")
         return questions.loops(begin, mask, k) if questions.admits(begin) else []
@@ -212,7 +216,10 @@ class Screen:
 
     def _checked(self, point: Point, name: str) -> tuple[float, float]:
         """A point in a free square."""
-        x, y = float(point[0]), float(point[1])
+        try:
+            x, y = map(float, point)
+        except (TypeError, ValueError):
+            raise ValueError(f"{name} must be a point (x, y), not {point!r}") from None
         if not (0.0 <= x <= self.shape[1] and 0.0 <= y <= self.shape[0]):
             raise ValueError(f"{name} ({x}, {y}) lies outside the screen of {self.shape[1]} x {self.shape[0]} squares")
         if self._square.item(int(y) + 1, int(x) + 1) == 0:
@@ -238,8 +245,6 @@ class Screen:
 
     def _ask(self, radius: float) -> Questions:
         """What answers questions for a body of that radius."""
-        if not radius >= 0.0:
-            raise ValueError(f"radius must not be negative, but is {radius}")
         key = level_of(radius), radius > 0.0
         found = self._questions.get(key)
         if found is None:
@@ -263,12 +268,20 @@ def checked_grid(free: ArrayLike) -> Bools:
     return grid
 
 
+def check_count(k: int) -> None:
+    """An error unless k is a number of routes."""
+    if not isinstance(k, Integral) or k < 1:
+        raise ValueError(f"k must be a whole number and at least 1, but is {k!r}")
+
+
 def checked_squares(
     rows: ArrayLike, columns: ArrayLike, values: ArrayLike, shape: tuple[int, int]
 ) -> tuple[Ints, Ints, Bools]:
     """Rows, columns and values as arrays of one length, each square once (the last value counts)."""
     i, j = (np.atleast_1d(np.asarray(v)).ravel() for v in (rows, columns))
     value = np.asarray(values)
+    if len(i) == len(j) == value.size == 0:
+        return np.zeros(0, np.int32), np.zeros(0, np.int32), np.zeros(0, np.bool_)
     if value.dtype != np.bool_ or len(i) != len(j) or value.size not in (1, len(i)):
         raise ValueError("rows, columns and values must have one length, and values be True or False")
     if i.dtype.kind not in "iu" or j.dtype.kind not in "iu":

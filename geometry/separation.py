@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.compiled import compiled
+from geometry.compiled import bare
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -52,7 +52,7 @@ class Ground(NamedTuple):
     bounds: Floats
 
 
-@compiled
+@bare
 def rough_distance(ground: Ground, x: float, y: float) -> tuple[float, float]:
     """The signed distance to the obstacles at the nearest pixel, and how far that is from (x, y)."""
     rows, columns = ground.raster.shape
@@ -64,7 +64,7 @@ def rough_distance(ground: Ground, x: float, y: float) -> tuple[float, float]:
     return ground.raster[row, column], math.sqrt(dx * dx + dy * dy)
 
 
-@compiled
+@bare
 def block_at(ground: Ground, x: float, y: float) -> int:
     """The block of a place."""
     size = ground.frame[2] * ground.blocks[1]
@@ -75,7 +75,7 @@ def block_at(ground: Ground, x: float, y: float) -> int:
     return int(row * columns + column)
 
 
-@compiled
+@bare
 def point_to_edge(x: float, y: float, edges: Floats, j: int) -> float:
     """The squared distance from a point to an edge."""
     px, py = x - edges[j, 0], y - edges[j, 1]
@@ -86,7 +86,7 @@ def point_to_edge(x: float, y: float, edges: Floats, j: int) -> float:
     return float(beyond * beyond + across * across)
 
 
-@compiled
+@bare
 def inside(x: float, y: float, edges: Floats) -> bool:
     """Whether a point is inside closed rings, by counting crossings; either answer on the boundary."""
     odd = False
@@ -97,7 +97,7 @@ def inside(x: float, y: float, edges: Floats) -> bool:
     return odd
 
 
-@compiled
+@bare
 def signed_distance(x: float, y: float, ground: Ground, block: int) -> float:
     """The distance from a point of the body to the obstacles, negative inside them; at most the ground's reach."""
     edges = ground.edges
@@ -114,7 +114,7 @@ def signed_distance(x: float, y: float, ground: Ground, block: int) -> float:
     return math.copysign(math.sqrt(best), side)
 
 
-@compiled
+@bare
 def distance_at(mover: Mover, ground: Ground, x: float, y: float, c: float, s: float) -> float:
     """The distance between the placed body and the obstacles, at most the ground's reach; -1 when they overlap."""
     edges, body = ground.edges, mover.edges
@@ -138,7 +138,7 @@ def distance_at(mover: Mover, ground: Ground, x: float, y: float, c: float, s: f
     return math.sqrt(best)
 
 
-@compiled
+@bare
 def _edge_to_body(ax: float, ay: float, bx: float, by: float, length: float, body: Floats) -> float:
     """The squared distance from an edge to the body, both in the body's frame; negative when they overlap."""
     ux, uy = (bx - ax) / length, (by - ay) / length
@@ -162,7 +162,7 @@ def _edge_to_body(ax: float, ay: float, bx: float, by: float, length: float, bod
     return -1.0 if odd else best
 
 
-@compiled
+@bare
 def classify(mover: Mover, ground: Ground, x: float, y: float, angle: float, spread: float, half: float) -> int:
     """What a cell of poses is: about (x, y, angle), places at most `spread` away, angles at most `half`.
 
@@ -193,7 +193,7 @@ def classify(mover: Mover, ground: Ground, x: float, y: float, angle: float, spr
     return FULL if _always_overlaps(mover, ground, x, y, c, s, spread, swing) else SHUT
 
 
-@compiled
+@bare
 def _in_bounds(
     mover: Mover, ground: Ground, x: float, y: float, c: float, s: float, spread: float, swing: float
 ) -> int:
@@ -210,7 +210,7 @@ def _in_bounds(
     return OPEN if room >= 0.0 else SHUT
 
 
-@compiled
+@bare
 def _always_overlaps(
     mover: Mover, ground: Ground, x: float, y: float, c: float, s: float, spread: float, swing: float
 ) -> bool:
@@ -241,7 +241,7 @@ def _always_overlaps(
     return False
 
 
-@compiled
+@bare
 def _keeps_crossing(
     body: Floats,
     edges: Floats,

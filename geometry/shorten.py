@@ -6,11 +6,10 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from geometry.compiled import compiled
-from geometry.hop import BLOCKED, EVEN, TURN_FIRST, hop, put, shorter_turn
-from geometry.impact import Surface
+from geometry.compiled import bare, compiled
+from geometry.hop import BLOCKED, EVEN, TURN_FIRST, Scene, hop, put, shorter_turn
 from geometry.rigid import Motion, Rotate, Translate
-from geometry.separation import Ground, Mover, distance_at
+from geometry.separation import distance_at
 
 Floats = npt.NDArray[np.float64]
 LOOSE = 0.01  # of the body's radius: with less room a pose counts as touching
@@ -18,33 +17,33 @@ PULLS = 4  # times that every corner of the way is pulled straight
 
 
 @compiled
-def shorten(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floats:
+def shorten(scene: Scene, poses: Floats) -> Floats:
     """A shorter way from the first to the last of (n, 3) poses: hops over poses, then corners pulled straight."""
-    kept = _jump(mover, ground, surface, poses)
+    kept = _jump(scene, poses)
     if len(kept) > 2:
-        kept = _jump(mover, ground, surface, _retracted(mover, ground, surface, kept))
+        kept = _jump(scene, _retracted(scene, kept))
     for _ in range(PULLS):
-        _pull(mover, ground, surface, kept)
-        kept = _jump(mover, ground, surface, kept)
+        _pull(scene, kept)
+        kept = _jump(scene, kept)
     return kept
 
 
 @compiled
-def _retracted(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floats:
+def _retracted(scene: Scene, poses: Floats) -> Floats:
     """The way with its corners moved to where the body has most room: there the longest hops begin.
 
     Where two such corners do not see each other the old ones stay between them.
     """
     roomy = poses.copy()
     for n in range(1, len(poses) - 1):
-        _make_room(mover, ground, roomy[n])
-        if hop(mover, ground, surface, poses[n], roomy[n]) == BLOCKED:
+        _make_room(scene, roomy[n])
+        if hop(scene, poses[n], roomy[n]) == BLOCKED:
             put(roomy[n], poses[n])
     way = np.empty((3 * len(poses), 3))
     put(way[0], poses[0])
     count = 1
     for n in range(1, len(poses)):
-        if hop(mover, ground, surface, roomy[n - 1], roomy[n]) == BLOCKED:
+        if hop(scene, roomy[n - 1], roomy[n]) == BLOCKED:
             put(way[count], poses[n - 1])
             put(way[count + 1], poses[n])
             count += 2
@@ -53,17 +52,17 @@ def _retracted(mover: Mover, ground: Ground, surface: Surface, poses: Floats) ->
     return way[:count].copy()
 
 
-@compiled
-def _make_room(mover: Mover, ground: Ground, pose: Floats) -> None:
+@bare
+def _make_room(scene: Scene, pose: Floats) -> None:
     """Move a pose, in place, towards more distance from the obstacles: halving steps in place and angle."""
-    best = _room(mover, ground, pose)
-    step = min(max(best, 0.02 * mover.radius), 0.5 * mover.radius)
-    while step > 1e-4 * mover.radius:
+    best, radius = _room(scene, pose), scene.mover.radius
+    step = min(max(best, 0.02 * radius), 0.5 * radius)
+    while step > 1e-4 * radius:
         better = False
         for k in range(6):
-            size = (step if k % 2 == 0 else -step) / (mover.radius if k >= 4 else 1.0)
+            size = (step if k % 2 == 0 else -step) / (radius if k >= 4 else 1.0)
             pose[k // 2] += size
-            room = _room(mover, ground, pose)
+            room = _room(scene, pose)
             if room > best + 1e-9:
                 best, better = room, True
             else:
@@ -73,23 +72,24 @@ def _make_room(mover: Mover, ground: Ground, pose: Floats) -> None:
 
 
 @compiled
-def loosened(mover: Mover, ground: Ground, surface: Surface, pose: Floats, leaving: bool) -> Floats:
+def loosened(scene: Scene, pose: Floats, leaving: bool) -> Floats:
     """A pose near one that touches obstacles, with more room about it and a free push from there or, leaving, to there.
 
     Where a body touches no cell is free: a search must begin and end a little away from the wall.
     """
-    best, found, tried = _room(mover, ground, pose), pose.copy(), pose.copy()
-    if best > LOOSE * mover.radius:
+    best, found, tried = _room(scene, pose), pose.copy(), pose.copy()
+    radius = scene.mover.radius
+    if best > LOOSE * radius:
         return found
-    size = 0.2 * mover.radius
-    while size > 0.001 * mover.radius:
+    size = 0.2 * radius
+    while size > 0.001 * radius:
         for k in range(32):
             tried[0] = pose[0] + size * math.cos(k * math.pi / 16)
             tried[1] = pose[1] + size * math.sin(k * math.pi / 16)
-            room = _room(mover, ground, tried)
+            room = _room(scene, tried)
             if room <= best:
                 continue
-            way = hop(mover, ground, surface, pose, tried) if leaving else hop(mover, ground, surface, tried, pose)
+            way = hop(scene, pose, tried) if leaving else hop(scene, tried, pose)
             if way != BLOCKED:
                 best = room
                 put(found, tried)
@@ -97,14 +97,15 @@ def loosened(mover: Mover, ground: Ground, surface: Surface, pose: Floats, leavi
     return found
 
 
-@compiled
-def _room(mover: Mover, ground: Ground, pose: Floats) -> float:
+@bare
+def _room(scene: Scene, pose: Floats) -> float:
     """The body's distance from the obstacles at a pose, as far as it matters."""
-    return min(distance_at(mover, ground, pose[0], pose[1], math.cos(pose[2]), math.sin(pose[2])), 0.3 * mover.radius)
+    mover, c, s = scene.mover, math.cos(pose[2]), math.sin(pose[2])
+    return min(distance_at(mover, scene.ground, pose[0], pose[1], c, s), 0.3 * mover.radius)
 
 
 @compiled
-def _jump(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floats:
+def _jump(scene: Scene, poses: Floats) -> Floats:
     """From each pose hop as far ahead as doubling and halving finds."""
     kept = np.empty_like(poses)
     put(kept[0], poses[0])
@@ -112,13 +113,13 @@ def _jump(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floa
     while at < last:
         low, step = at + 1, 2
         high = last + 1
-        if hop(mover, ground, surface, poses[at], poses[last]) != BLOCKED:
+        if hop(scene, poses[at], poses[last]) != BLOCKED:
             low, high = last, last + 1
         while low + 1 < high:
             tried = min(at + step, last) if step > 0 else (low + high) // 2
             if tried <= low:
                 break
-            if hop(mover, ground, surface, poses[at], poses[tried]) != BLOCKED:
+            if hop(scene, poses[at], poses[tried]) != BLOCKED:
                 low, step = tried, 2 * step
             else:
                 high, step = tried, 0
@@ -129,7 +130,7 @@ def _jump(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> Floa
 
 
 @compiled
-def _pull(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> None:
+def _pull(scene: Scene, poses: Floats) -> None:
     """Move each pose towards the straight way between its neighbours as far as the hops stay free."""
     here, step = np.empty(3), np.empty(3)
     for n in range(1, len(poses) - 1):
@@ -145,15 +146,13 @@ def _pull(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> None
         for _ in range(5):
             for k in range(3):
                 poses[n, k] = here[k] + pull * step[k]
-            if hop(mover, ground, surface, before, poses[n]) != BLOCKED and (
-                hop(mover, ground, surface, poses[n], after) != BLOCKED
-            ):
+            if hop(scene, before, poses[n]) != BLOCKED and (hop(scene, poses[n], after) != BLOCKED):
                 break
             pull *= 0.5
             put(poses[n], here)
 
 
-def motions_along(mover: Mover, ground: Ground, surface: Surface, poses: Floats) -> tuple[Motion, ...]:
+def motions_along(scene: Scene, poses: Floats) -> tuple[Motion, ...]:
     """The turns and pushes of a way, in order, those of no size left out.
 
     Raises
@@ -162,7 +161,7 @@ def motions_along(mover: Mover, ground: Ground, surface: Surface, poses: Floats)
     """
     motions: list[Motion] = []
     for here, there in pairwise(poses):
-        way = hop(mover, ground, surface, here, there)
+        way = hop(scene, here, there)
         if way == BLOCKED:
             raise RuntimeError("a hop of the way is blocked")
         dx, dy = float(there[0] - here[0]), float(there[1] - here[1])

@@ -101,11 +101,11 @@ def swept(shape: Any, dx: float, dy: float) -> Any:
 def _turn(body: Body, lying: Ints, hold: Ints) -> Ints:
     """The squares met by a quarter turn counter-clockwise about the middle of a square."""
     pivot = hold + 0.5
-    far = math.ceil(float(np.hypot(*(body.corners - pivot).T).max())) + 1
+    far = math.ceil(float(np.hypot(*(body.edges[:, :2] - pivot).T).max())) + 1
     met = np.zeros((2 * far + 1, 2 * far + 1), np.bool_)
     for known in (lying - hold, quarter(lying - hold, 1)):
         met[known[:, 1] + far, known[:, 0] + far] = True
-    _meet(body.corners, body.edges, met, float(pivot[0]), float(pivot[1]), *UNIT)
+    _meet(body.edges, body.edges, met, float(pivot[0]), float(pivot[1]), *UNIT)
     rows, columns = np.nonzero(met)
     return np.column_stack([columns, rows]) - far + hold
 

@@ -82,3 +82,10 @@ def test_routes_follow_a_change():
 def test_bad_changes_are_named(change, message):
     with pytest.raises(ValueError, match=message):
         Screen(np.ones((5, 5), bool)).changed(*change)
+
+
+def test_no_change_is_none():
+    screen = Screen(np.ones((3, 4), bool))
+    before = screen.clearance.copy()
+    same(screen.changed([], [], []), Screen(np.ones((3, 4), bool)))
+    assert (screen.clearance == before).all()

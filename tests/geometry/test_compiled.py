@@ -74,7 +74,7 @@ def test_kernels_also_run_uncompiled() -> None:
 
 
 MAKERS = {"empty", "zeros", "ones", "full", "arange", "array", "copy", "concatenate", "where", "unique", "append"}
-NUMBERS = {"None", "int", "float", "bool", "np.uint8", "tuple", "Anchor"}
+NUMBERS = {"None", "int", "float", "bool", "np.uint8", "tuple", "Anchor", "Found", "Met"}
 
 
 def kernels(path, decorator):

@@ -150,6 +150,13 @@ def test_no_point_slips_into_a_seam() -> None:
     assert contact.obstacle == 1
 
 
+@pytest.mark.parametrize("first", [0, 1])
+def test_a_turn_that_begins_along_an_edge_is_stopped_by_that_edge(first: int) -> None:
+    walls = [box(-2, 0, 0, 2), box(0, -1, 2, 1)]
+    contact = Obstacles(walls[::-1] if first else walls).first_contact(Body(box(1, 1, 2, 5)), Rotate(90, (1, 0)))
+    assert contact == Contact(0.0, (1.0, 1.0), 1 - first, (0.0, 1.0))
+
+
 def test_a_corridor_as_wide_as_the_body_lets_it_pass_and_no_wider_body() -> None:
     corridor = Obstacles([box(-9, -2, 9, 0), box(-9, 2, 9, 4)])
     assert corridor.first_contact(Body(box(-12, 0, -10, 2)), Translate(30, 0)).fraction == 1.0
@@ -160,6 +167,21 @@ def test_body_and_utak_move_as_one() -> None:
     both = Body(box(0, 0, 2, 2), points=[(5, 1)])
     contact = ROOM.first_contact(both, Translate(20, 0))
     assert contact == Contact(0.25, (10.0, 1.0), 1, (-1.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    "motion",
+    [Translate(math.nan, 0), Translate(0, math.inf), Rotate(math.nan, (0, 0)), Rotate(90, (0, math.nan))],
+    ids=str,
+)
+def test_a_motion_of_no_length_that_is_a_number_is_an_error(motion: Motion) -> None:
+    with pytest.raises(ValueError, match="must be finite"):
+        ROOM.first_contact(Body(box(0, 0, 2, 2)), motion)
+    with pytest.raises(ValueError, match="must be finite"):
+        if isinstance(motion, Translate):
+            ROOM.pushes(Body(box(0, 0, 2, 2)), np.array([motion]))
+        else:
+            ROOM.turns(Body(box(0, 0, 2, 2)), np.array([motion.degrees]), np.array([motion.about]))
 
 
 def test_many_at_once_are_the_same_as_one_by_one() -> None:

@@ -189,6 +189,15 @@ def test_the_passage_and_what_it_lacks_are_told(door: float, missing: float) -> 
     assert plan.missing == pytest.approx(missing, abs=0.05)
 
 
+def test_moving_the_sides_of_a_door_opens_no_wall_behind_which_there_is_room() -> None:
+    """The body's reference point is beside it: were the outer walls opened, it could pass outside, within bounds."""
+    chest = box(-3.4, -1.4, -0.6, 1.4)
+    rooms = shapely.union_all([box(0, 0, 12, 10), box(14, 0, 26, 10), box(12, 5.38, 14, 6.62)])
+    walls = box(-1, -1, 27, 11).difference(rooms)
+    plan = plan_motion(chest, walls, Pose(7, 6, 180), Pose(20, 6, 180), (0, 0, 26, 10))
+    assert (plan.status, plan.missing) == ("impossible", pytest.approx(1.56, abs=0.05))
+
+
 def test_what_is_found_has_no_missing_width() -> None:
     plan = plan_motion(BRICK, two_rooms(3.0), Pose(5, 6, 90), Pose(19, 7, 30))
     assert plan.passage is None

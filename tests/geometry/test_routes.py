@@ -153,6 +153,11 @@ def test_a_loose_rope_is_tightened():
         ((0.5, 0.5), (0.5, 9.0), "goal .* outside"),
         ((0.5, 0.5), (1.0, 2.0, 3.0), "goal must be"),
         ((0.5, 0.5), {(1, 9)}, "goal square .* outside"),
+        ((0.5, 0.5), {(0.5, 1)}, "goal square .* whole"),
+        ((0.5,), (0.5, 0.5), "start must be a point"),
+        ((0.5, 0.5, 0.5), (0.5, 0.5), "start must be a point"),
+        (None, (0.5, 0.5), "start must be a point"),
+        (("east", 0.5), (0.5, 0.5), "start must be a point"),
     ],
 )
 def test_bad_ends_are_named(start, goal, message):
@@ -160,3 +165,14 @@ def test_bad_ends_are_named(start, goal, message):
     free[1, 1] = False
     with pytest.raises(ValueError, match=message):
         Screen(free).routes(start, goal)
+
+
+@pytest.mark.parametrize(
+    "wish",
+    [{"k": 0}, {"k": 1.5}, {"k": None}, {"radius": -1}, {"radius": np.inf}, {"radius": np.nan}, {"radius": "wide"}],
+    ids=str,
+)
+@pytest.mark.parametrize("goal", [(2.5, 2.5), {(2, 2)}], ids=["point", "set"])
+def test_bad_numbers_are_named(goal, wish):
+    with pytest.raises(ValueError, match=f"{next(iter(wish))} must be"):
+        Screen(np.ones((3, 3), bool)).routes((0.5, 0.5), goal, **wish)
