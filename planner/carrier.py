@@ -230,7 +230,7 @@ class Carrier:
 
     def _clearing(self, other: Node, haul: Haul, situation: Situation) -> tuple[Node, Haul] | None:
         """A way to carry a thing off the squares that a plan needs, if it stands there and there is one."""
-        if other.name not in haul.aside or other.polygon is None:
+        if other.name not in haul.aside or other.polygon is None or other.movable == 0:
             return None
         room = situation.screens.free(0) | situation.model.mask(other.patch)
         request = self._request(other, {"away": Inside(region_of(room & ~haul.swept))}, "", situation.model)
