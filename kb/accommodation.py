@@ -31,6 +31,7 @@ from kb.supposing import Surprise, agreeing, as_motion, clashes, laid_on
 
 MEMORY = 12  # looks by which angles are judged: those that contradict older looks are gone already
 MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one is believed
+NOWHERE = 0.2  # squares: what was stopped sooner than this did not move
 ALIKE = 1.0  # log odds by which the likeliest squares may differ
 NONE_FITS = 10**6  # misfits of no lattice at all
 MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are blamed for what contradicts
@@ -117,6 +118,11 @@ class Memory:
         """The squares on which something stands, or likely does, for it stopped a motion."""
         suspected = (square for square in self.suspected if self.evidence.state[self.evidence.index(*square)] == OPEN)
         return frozenset((*self.barred, *suspected))
+
+    @property
+    def _off_middle(self) -> bool:
+        """Has it turned out that he did not wake amid his square?"""
+        return self.lattice.woke != CENTRE
 
     @property
     def leeway(self) -> Box:
@@ -211,7 +217,9 @@ class Memory:
             self.loads[load.name] = load.resisted()
         else:
             slack = load.slack if outcome.how == "predicted" else max(load.slack, slack_of(outcome.polygon))
-            self.loads[load.name] = load.moved(outcome.polygon, slack, outcome.degrees)
+            moved = load.moved(outcome.polygon, slack, outcome.degrees)
+            nowhere = outcome.how == "blocked" and load.polygon.hausdorff_distance(outcome.polygon) < NOWHERE
+            self.loads[load.name] = replace(moved, stuck=load.stuck + 1) if nowhere else moved
 
     def _stray(self, ranges: NDArray[np.int16]) -> None:
         """How far what was turned may lie from where it is believed to, as it is open where in his square he woke."""
@@ -341,7 +349,7 @@ class Memory:
             f"explanation({number},{e.how},{e.misfits},{math.ceil(e.distance)})"
             for number, e in enumerate(explanations)
         ]
-        facts += [f"trust({self.trust})", *["slips"] * self.slipped]
+        facts += [f"trust({0 if self._off_middle else self.trust})", *["slips"] * self.slipped]
         facts += ["proven"] * (self.held is not None and self.loads[self.held].proven)
         answer = solve([KB / "accommodation.lp"], facts)
         if not answer:
