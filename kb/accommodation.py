@@ -244,8 +244,13 @@ class Memory:
             self.searches += 1
             return []
         self.searches += found.searched
-        far = 0.0 if found.outcome is None else found.outcome.distance
-        return [Explanation("turned", found.place, found.lattice, found.misfits, far, found.outcome, found.hypotheses)]
+        outcome = found.outcome
+        if found.lattice != self.lattice:
+            far = 0.0 if outcome is None else outcome.distance
+            return [Explanation("turned", found.place, found.lattice, found.misfits, far, outcome, found.hypotheses)]
+        if outcome is None:
+            return []
+        return [Explanation(outcome.how, outcome.place, self.lattice, found.misfits, outcome.distance, outcome)]
 
     def _outcome(self, ranges: NDArray[np.int16], load: Load, outcome: Outcome) -> Explanation:
         others = [other for other in self.loads.values() if other.name != load.name]

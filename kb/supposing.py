@@ -85,7 +85,8 @@ class Surprise:
                 if not found[-1].misfits:
                     return found[-1]
         found.sort(key=lambda one: one.misfits)
-        found += [self._tried(one.lattice, one.hypotheses, one.searched, cut_short=True) for one in found[:BEST]]
+        others = [one for one in found if one.lattice != self.lattice][:BEST]
+        found += [self._tried(one.lattice, one.hypotheses, one.searched, cut_short=True) for one in others]
         return min(found, key=lambda one: one.misfits, default=None)
 
     # -- what there is to try --------------------------------------------------------------------
