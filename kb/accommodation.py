@@ -17,22 +17,22 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.rigid import Motion, Rotate
+from geometry.rigid import Rotate
 from kb.body import Command, Impression, Move, Push, Release, Turn
 from kb.encodings import KB, solve
-from kb.evidence import FREE, FULL, OPEN, Evidence
-from kb.hauling import Outcome, ahead, otherwise, predicted
+from kb.evidence import FREE, OPEN, Evidence
+from kb.hauling import Outcome, otherwise, predicted
 from kb.heading import CENTRED, Box, Hypothesis, Look, anywhere, candidates, search, standing, within
 from kb.lattice import CENTRE, Lattice, Samples
-from kb.loads import Load, covered, discounted, slack_of
+from kb.loads import Load, discounted, slack_of
 from kb.relaying import laid, relaid
 from kb.retina import FIELDS, count_ranges
 from kb.supposing import Surprise, agreeing, as_motion, clashes, laid_on
+from kb.suspecting import suspects
 
 MEMORY = 12  # looks by which angles are judged: those that contradict older looks are gone already
 MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one is believed
 NOWHERE = 0.2  # squares: what was stopped sooner than this did not move
-ALIKE = 1.0  # log odds by which the likeliest squares may differ
 NONE_FITS = 10**6  # misfits of no lattice at all
 MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are blamed for what contradicts
 SETTLED = math.radians(5)  # by which angles may differ while that hardly is why looks contradict
@@ -180,34 +180,16 @@ class Memory:
         ranges, motion = count_ranges(impression.retina), as_motion(command, self.lattice, self.place)
         chosen = self._outcome(ranges, load, predicted(self.place, load.polygon, motion))
         if chosen.misfits:
-            others = [self._outcome(ranges, load, outcome) for outcome in otherwise(self.place, load.polygon, motion)]
-            chosen = self._choose([chosen, *others, *self._elsewhere(command, ranges, chosen.misfits)])
+            outcomes = [self._outcome(ranges, load, outcome) for outcome in otherwise(self.place, load.polygon, motion)]
+            chosen = self._choose([chosen, *outcomes, *self._elsewhere(command, ranges, chosen.misfits)])
         self._lie(chosen)
-        self._suspect(self.loads[load.name], chosen, as_motion(command, self.lattice, self.place))
+        load, motion = self.loads[load.name], as_motion(command, self.lattice, self.place)
+        others = [other for other in self.loads.values() if other.name != load.name]
+        self.suspected |= suspects(chosen.outcome, motion, load, others, self.evidence)
         self._carried(self.loads[load.name], chosen)
         self.place = chosen.place
         self._stray(ranges)
         return self._take_in(chosen, ranges)
-
-    def _suspect(self, load: Load, chosen: Explanation, motion: Motion) -> None:
-        """Where a thing that moved before was stopped by nothing that is known, something stands that is not.
-
-        Of the squares that it was about to enter it is the likeliest ones.
-        """
-        outcome = chosen.outcome
-        if outcome is None or outcome.how not in ("stuck", "blocked") or not load.proven:
-            return
-        place, polygon = ahead(outcome.place, outcome.polygon, motion)
-        there = covered(polygon).squares() | {(math.floor(place[0]), math.floor(place[1]))}
-        there -= replace(load, polygon=outcome.polygon, full=frozenset(), empty=frozenset()).possible.squares()
-        there.discard((math.floor(outcome.place[0]), math.floor(outcome.place[1])))
-        if any(there & other.possible.squares() for other in self.loads.values() if other.name != load.name):
-            return
-        where = {square: self.evidence.index(*square) for square in there}
-        if any(self.evidence.state[index] == FULL for index in where.values()):
-            return
-        doubt = {s: float(self.evidence.logit[i]) for s, i in where.items() if self.evidence.state[i] == OPEN}
-        self.suspected |= {square for square, odds in doubt.items() if odds >= max(doubt.values()) - ALIKE}
 
     def _carried(self, load: Load, chosen: Explanation) -> None:
         """Believe what came of a motion with a load in hand."""
