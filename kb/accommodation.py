@@ -9,28 +9,33 @@ before), or as noise.
 """
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.rigid import Motion, Rotate, Translate
+from geometry.rigid import Rotate
 from kb.body import Command, Impression, Move, Push, Release, Turn
 from kb.encodings import KB, solve
 from kb.evidence import FREE, OPEN, Evidence
 from kb.hauling import Outcome, otherwise, predicted
-from kb.heading import CENTRED, Hypothesis, Look, candidates, search, standing
+from kb.heading import CENTRED, Box, Hypothesis, Look, anywhere, candidates, search, standing, within
 from kb.lattice import CENTRE, Lattice, Samples
 from kb.loads import Load, discounted, slack_of
+from kb.relaying import laid, relaid
 from kb.retina import FIELDS, count_ranges
+from kb.supposing import Surprise, agreeing, as_motion, clashes, laid_on
+from kb.suspecting import suspects
 
 MEMORY = 12  # looks by which angles are judged: those that contradict older looks are gone already
 MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one is believed
+NOWHERE = 0.2  # squares: what was stopped sooner than this did not move
 NONE_FITS = 10**6  # misfits of no lattice at all
 MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are blamed for what contradicts
+SETTLED = math.radians(5)  # by which angles may differ while that hardly is why looks contradict
 NEAR = 2  # squares about the predicted place in which Utak is looked for first
 Place = tuple[float, float]
 
@@ -46,7 +51,8 @@ class CellStatus(StrEnum):
 class Explanation(NamedTuple):
     """A pose that may have given rise to the impression. place: a point of that lattice.
 
-    outcome: what it means for the load in hand; None when nothing was to be moved with him.
+    outcome: what it means for the load in hand; None when nothing was to be moved with him. hypotheses: what is left
+    if the lattice lies otherwise than believed.
     """
 
     how: str
@@ -55,6 +61,7 @@ class Explanation(NamedTuple):
     misfits: int
     distance: float
     outcome: Outcome | None = None
+    hypotheses: tuple[Hypothesis, ...] = ()
 
 
 class Accommodated(NamedTuple):
@@ -69,7 +76,8 @@ class Memory:
     """All that is held true of the pose and the map. One of the few places with state.
 
     place is a point of the lattice; looks keep where each impression was received, in Utak's own frame. loads are the
-    things that he has held, by name, and held the one that he holds.
+    things that he has held, by name, and held the one that he holds. barred : squares before which he was stopped
+    himself; suspected : those of which one stopped what he carried, for all that was known.
     """
 
     evidence: Evidence = field(default_factory=Evidence)
@@ -79,6 +87,7 @@ class Memory:
     hypotheses: tuple[Hypothesis, ...] = CENTRED
     trust: int = 0
     barred: set[tuple[int, int]] = field(default_factory=set)
+    suspected: set[tuple[int, int]] = field(default_factory=set)
     searches: int = 0
     slipped: bool = False
     loads: dict[str, Load] = field(default_factory=dict)
@@ -105,6 +114,31 @@ class Memory:
         return math.radians(max((abs(other.angle - self.lattice.angle) for other in self.hypotheses), default=0))
 
     @property
+    def closed(self) -> frozenset[tuple[int, int]]:
+        """The squares on which something stands, or likely does, for it stopped a motion."""
+        suspected = (square for square in self.suspected if self.evidence.state[self.evidence.index(*square)] == OPEN)
+        return frozenset((*self.barred, *suspected))
+
+    @property
+    def _off_middle(self) -> bool:
+        """Has it turned out that he did not wake amid his square?"""
+        return self.lattice.woke != CENTRE
+
+    @property
+    def leeway(self) -> Box:
+        """How far from where he believes it he may have woken: to the west and south (not above 0), east and north.
+
+        That he woke amid his square he only assumes.
+        """
+        west, south, east, north = within(self.lattice, self.looks)
+        boxes = np.array([h.box for h in self.hypotheses if h.angle == self.lattice.angle and h not in CENTRED])
+        if len(boxes):
+            west, south = max(west, boxes[:, 0].min()), max(south, boxes[:, 1].min())
+            east, north = min(east, boxes[:, 2].max()), min(north, boxes[:, 3].max())
+        x, y = self.lattice.woke
+        return min(west - x, 0.0), min(south - y, 0.0), max(east - x, 0.0), max(north - y, 0.0)
+
+    @property
     def sure(self) -> bool:
         """Is what the counts settle beyond doubt?
 
@@ -121,14 +155,14 @@ class Memory:
     def accommodate(self, command: Command, impression: Impression) -> Accommodated:
         """Take in the impression that followed a command."""
         if self.held is not None and isinstance(command, Push | Turn):
-            return self._carry(impression, self.loads[self.held], self._motion(command))
+            return self._carry(impression, self.loads[self.held], command)
         if isinstance(command, Release):
             self.held = None
         shift = (0.0, 0.0)
         if isinstance(command, Move) and self.held is None:
             shift = self.lattice.to_lattice(command.east, command.north)
         x, y = self.place
-        return self._accommodate(impression, (x + shift[0], y + shift[1]), _along((x, y), shift))
+        return self._accommodate(impression, (x + shift[0], y + shift[1]), _along((x, y), shift), command)
 
     def grasp(self, load: Load) -> None:
         """Believe that a thing is in hand: what is new as a load is taken out of the standing map.
@@ -138,30 +172,67 @@ class Memory:
         if load.name not in self.loads:
             patch = load.possible
             self.evidence.declare(self.evidence.squares(patch.west, patch.south, patch.mask), FREE, len(self.looks) - 1)
-        self.loads.setdefault(load.name, load)
+        self.loads.setdefault(load.name, replace(load, since=len(self.looks)))
         self.held = load.name
 
-    def _motion(self, command: Push | Turn) -> Motion:
-        """A command as a motion on the lattice."""
-        if isinstance(command, Turn):
-            return Rotate(command.degrees, self.place)
-        return Translate(*self.lattice.to_lattice(command.east, command.north))
-
-    def _carry(self, impression: Impression, load: Load, motion: Motion) -> Accommodated:
+    def _carry(self, impression: Impression, load: Load, command: Push | Turn) -> Accommodated:
         """Take in the impression that followed a push or a turn with a load in hand."""
-        ranges = count_ranges(impression.retina)
+        ranges, motion = count_ranges(impression.retina), as_motion(command, self.lattice, self.place)
         chosen = self._outcome(ranges, load, predicted(self.place, load.polygon, motion))
         if chosen.misfits:
-            others = [self._outcome(ranges, load, outcome) for outcome in otherwise(self.place, load.polygon, motion)]
-            chosen = self._choose([chosen, *others])
+            outcomes = [self._outcome(ranges, load, outcome) for outcome in otherwise(self.place, load.polygon, motion)]
+            chosen = self._choose([chosen, *outcomes, *self._elsewhere(command, ranges, chosen.misfits)])
+        self._lie(chosen)
+        load, motion = self.loads[load.name], as_motion(command, self.lattice, self.place)
+        others = [other for other in self.loads.values() if other.name != load.name]
+        self.suspected |= suspects(chosen.outcome, motion, load, others, self.evidence)
+        self._carried(self.loads[load.name], chosen)
+        self.place = chosen.place
+        self._stray(ranges)
+        return self._take_in(chosen, ranges)
+
+    def _carried(self, load: Load, chosen: Explanation) -> None:
+        """Believe what came of a motion with a load in hand."""
         self.slipped |= chosen.how == "slipped"
         outcome = chosen.outcome
         if outcome is None or outcome.how == "stuck" or outcome.polygon.equals(load.polygon):
             self.loads[load.name] = load.resisted()
         else:
             slack = load.slack if outcome.how == "predicted" else max(load.slack, slack_of(outcome.polygon))
-            self.loads[load.name] = load.moved(outcome.polygon, slack, outcome.degrees)
-        return self._take_in(chosen, ranges)
+            moved = load.moved(outcome.polygon, slack, outcome.degrees)
+            nowhere = outcome.how == "blocked" and load.polygon.hausdorff_distance(outcome.polygon) < NOWHERE
+            self.loads[load.name] = replace(moved, stuck=load.stuck + 1) if nowhere else moved
+
+    def _stray(self, ranges: NDArray[np.int16]) -> None:
+        """How far what was turned may lie from where it is believed to, as it is open where in his square he woke."""
+        within = tuple(h for h in self.hypotheses if h.angle == self.lattice.angle and h.is_point)
+        if len(within) > 1:
+            within = agreeing(within, self.lattice, self.place, self.evidence, self.looks, self.loads, ranges)
+            self.hypotheses = within
+        away = np.array([h.lattice.woke for h in within]).reshape(-1, 2) - np.array(self.lattice.woke)
+        for name, load in self.loads.items():
+            far = np.hypot(*(away - Rotate(load.turned, (0.0, 0.0)).points(away)).T)
+            self.loads[name] = replace(load, astray=float(far.max(initial=0.0)))
+
+    def _elsewhere(self, command: Command | None, ranges: NDArray[np.int16], misfits: int) -> list[Explanation]:
+        """The lattice that explains better what contradicts, now that things have been moved, if there is one."""
+        if command is None:
+            return []
+        surprise = Surprise(
+            command, ranges, self.lattice, self.place, self.evidence, self.looks, self.loads, self.held, self.hypotheses
+        )
+        found = surprise.explained(self.searches < MOST_SEARCHES)
+        if found is None or found.misfits >= misfits:
+            self.searches += 1
+            return []
+        self.searches += found.searched
+        outcome = found.outcome
+        if found.lattice != self.lattice:
+            far = 0.0 if outcome is None else outcome.distance
+            return [Explanation("turned", found.place, found.lattice, found.misfits, far, outcome, found.hypotheses)]
+        if outcome is None:
+            return []
+        return [Explanation(outcome.how, outcome.place, self.lattice, found.misfits, outcome.distance, outcome)]
 
     def _outcome(self, ranges: NDArray[np.int16], load: Load, outcome: Outcome) -> Explanation:
         others = [other for other in self.loads.values() if other.name != load.name]
@@ -171,11 +242,12 @@ class Memory:
 
     # -- explaining ------------------------------------------------------------------------------
 
-    def _accommodate(self, impression: Impression, predicted: Place, stops: tuple[Place, ...]) -> Accommodated:
+    def _accommodate(
+        self, impression: Impression, predicted: Place, stops: tuple[Place, ...], command: Command | None = None
+    ) -> Accommodated:
         ranges = count_ranges(impression.retina)
-        explanation = self._explain(ranges, predicted, stops)
-        if explanation.lattice != self.lattice:
-            self._relay(explanation.lattice)
+        explanation = self._explain(ranges, predicted, stops, command)
+        self._lie(explanation)
         self.trust = self.trust + 1 if explanation.how == "predicted" else 0
         self.slipped |= explanation.how == "slipped"
         if explanation.how == "blocked" or explanation.place == self.place != predicted:
@@ -190,38 +262,45 @@ class Memory:
         samples, counts = discounted(self.lattice.samples(), ranges, x, y, self.loads.values())
         cells = self._statuses(samples, counts, x, y)
         self.place = explanation.place
-        self.looks.append(Look(ranges, self.lattice.place_to_utak(*self.place)))
+        moved = tuple(laid(load, self.lattice) for load in self.loads.values())
+        self.looks.append(Look(ranges, self.lattice.place_to_utak(*self.place), moved))
         self.evidence.look(samples, counts, x, y, len(self.looks) - 1)
         if len(self.looks) == 1:
             self.evidence.stand(x, y, 0)
         return Accommodated(explanation, cells)
 
-    def _explain(self, ranges: NDArray[np.int16], predicted: Place, stops: tuple[Place, ...]) -> Explanation:
+    def _explain(
+        self, ranges: NDArray[np.int16], predicted: Place, stops: tuple[Place, ...], command: Command | None
+    ) -> Explanation:
         first = self._explanation("predicted", predicted, ranges, predicted)
-        turned: list[Explanation] = []
-        if not self.loads:  # older looks saw what was moved since then where it is no more, and tell no angle
-            left, turned = self._turned(ranges, predicted, first.misfits)
+        if not self.loads:
+            turned = self._turned(ranges, predicted, first.misfits)
+        else:
+            turned = self._elsewhere(command, ranges, first.misfits) if first.misfits else []
         if not first.misfits and not turned:
             return first
         explanations = [first]
         explanations += [self._explanation("blocked", stop, ranges, predicted) for stop in stops]
         explanations += [self._explanation("slipped", place, ranges, predicted) for place in _around(predicted)]
-        chosen = self._choose([*explanations, *turned])
-        if chosen.how == "turned":
-            self.hypotheses = left
-        return chosen
+        return self._choose([*explanations, *turned])
 
-    def _turned(
-        self, ranges: NDArray[np.int16], predicted: Place, misfits: int
-    ) -> tuple[tuple[Hypothesis, ...], list[Explanation]]:
-        """The lattices that still stand; and the one to believe instead, unless the one held explains all."""
+    def _turned(self, ranges: NDArray[np.int16], predicted: Place, misfits: int) -> list[Explanation]:
+        """The lattice to believe instead, unless the one held explains all."""
         look = Look(ranges, self.lattice.place_to_utak(*predicted))
         recent = [*self.looks[-MEMORY:], look]
         left = standing(self.hypotheses, recent)
-        if any(h.lattice == self.lattice for h in left) and not misfits:
+        if not misfits and any(h.holds(self.lattice) for h in left):
             self.hypotheses = left
-            return left, []
-        lattice, misfits = self._borne_out(left, look)
+            return []
+        lattice, misfits = self.lattice, NONE_FITS
+        if self.spread <= SETTLED:  # rather he woke elsewhere in his square than that the angle is another one
+            beside = search(recent, anywhere((self.lattice.angle,)))
+            lattice, misfits = self._borne_out(beside, look)
+            others = tuple(h for h in left if h.angle != self.lattice.angle)
+        if misfits:
+            lattice, misfits = self._borne_out(left, look)
+        else:
+            left = (*beside, *others)
         if misfits and self.searches < MOST_SEARCHES:
             self.searches += 1
             found = search(recent)
@@ -229,7 +308,7 @@ class Memory:
             if fewer < misfits:
                 left, lattice, misfits = found, another, fewer
         place = lattice.place_from_utak(*look.place)
-        return left, [Explanation("turned", place, lattice, misfits, 0.0)] * bool(left)
+        return [Explanation("turned", place, lattice, misfits, 0.0, None, left)] * bool(left)
 
     def _borne_out(self, left: tuple[Hypothesis, ...], look: Look) -> tuple[Lattice, int]:
         """Of the lattices left, the one that all looks bear out best, and how many fields it leaves as noise."""
@@ -238,7 +317,7 @@ class Memory:
         tried: list[tuple[int, int]] = []
         lattices = candidates(left, self.lattice)[: max(6, MOST_REPLAYS // len(self.looks))]
         for number, lattice in enumerate(lattices):
-            tried.append((_replay(lattice, [*self.looks, look])[1], number))
+            tried.append((relaid(lattice, self.lattice, [*self.looks, look], ()).misfits, number))
             if tried[-1][0] == 0:
                 break
         misfits, number = min(tried)
@@ -250,26 +329,29 @@ class Memory:
 
     def _clashes(self, ranges: NDArray[np.int16], place: Place, loads: Iterable[Load]) -> int:
         """How many fields cannot be right if the impression was received at a place, with the loads where they lie."""
-        x, y = math.floor(place[0]), math.floor(place[1])
-        return self.evidence.clashes(*discounted(self.lattice.samples(), ranges, x, y, loads), x, y)
+        return clashes(self.lattice, self.evidence, loads, place, ranges)
 
     def _choose(self, explanations: list[Explanation]) -> Explanation:
         facts = [
             f"explanation({number},{e.how},{e.misfits},{math.ceil(e.distance)})"
             for number, e in enumerate(explanations)
         ]
-        facts += [f"trust({self.trust})", *["slips"] * self.slipped]
+        facts += [f"trust({0 if self._off_middle else self.trust})", *["slips"] * self.slipped]
         facts += ["proven"] * (self.held is not None and self.loads[self.held].proven)
         answer = solve([KB / "accommodation.lp"], facts)
         if not answer:
             raise AssertionError("accommodation.lp always has an answer")
         return explanations[answer[0].arguments[0].number]
 
-    def _relay(self, lattice: Lattice) -> None:
-        """Believe that the lattice lies otherwise, and build the map anew from all looks."""
-        self.lattice = lattice
-        self.barred = set()
-        self.evidence = _replay(lattice, self.looks)[0]
+    def _lie(self, chosen: Explanation) -> None:
+        """Believe what an explanation says of the lattice; where it lies otherwise all is laid on it anew."""
+        if chosen.how == "turned":
+            self.hypotheses, self.trust = chosen.hypotheses, 0
+        if chosen.lattice != self.lattice:
+            under = laid_on(chosen.lattice, self.lattice, self.evidence, self.looks, self.loads)
+            if under.evidence is not self.evidence:
+                self.barred, self.suspected = set(), set()
+            self.lattice, self.evidence, self.loads = chosen.lattice, under.evidence, dict(under.loads)
 
     def _statuses(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> tuple[CellStatus, ...]:
         noise = self.evidence.misfits(samples, ranges, x, y)
@@ -280,18 +362,6 @@ class Memory:
             CellStatus.NOISE if noise[i] else CellStatus.EXPLAINED if new[i] else CellStatus.PREDICTED
             for i in range(len(FIELDS))
         )
-
-
-def _replay(lattice: Lattice, looks: Sequence[Look]) -> tuple[Evidence, int]:
-    """The evidence of all looks if the lattice lies like this, and how many fields contradict it."""
-    evidence, misfits = Evidence(), 0
-    for number, look in enumerate(looks):
-        x, y = (math.floor(v) for v in lattice.place_from_utak(*look.place))
-        misfits += evidence.clashes(lattice.samples(), look.ranges, x, y)
-        evidence.look(lattice.samples(), look.ranges, x, y, number)
-        if number == 0:
-            evidence.stand(x, y, 0)
-    return evidence, misfits
 
 
 def _along(start: Place, shift: tuple[float, float]) -> tuple[Place, ...]:

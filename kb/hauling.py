@@ -10,10 +10,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from geometry.contact import Body, Obstacles
 from geometry.rigid import Motion, Rotate, Translate
 
 Place = tuple[float, float]
 STRIDE = 0.25  # squares between places at which a motion may have ended
+AHEAD = 0.5  # squares in front of what was stopped in which something stands
 ASTRAY = 1.0  # squares by which a load may end beside the predicted place
 ASKEW = 6.0  # degrees by which a turn may end beside the predicted one
 STEPS = range(-round(ASTRAY / STRIDE), round(ASTRAY / STRIDE) + 1)
@@ -37,6 +39,22 @@ class Outcome(NamedTuple):
 def predicted(place: Place, polygon: Any, motion: Motion) -> Outcome:
     """The motion as it was commanded."""
     return _after("predicted", place, polygon, motion, 0.0)
+
+
+def arrested(place: Place, polygon: Any, motion: Motion, walls: Obstacles) -> Outcome | None:
+    """The motion as far as what is known to stand in the way lets it go; None when nothing does."""
+    fraction = walls.first_contact(Body(polygon, [place]), motion).fraction
+    if fraction >= 1.0:
+        return None
+    length = _length(place, polygon, motion)
+    return _after("blocked", place, polygon, motion.part(fraction), length * (1.0 - fraction))
+
+
+def ahead(place: Place, polygon: Any, motion: Motion) -> tuple[Place, Any]:
+    """Where Utak and his load would be a little further on the way: what stopped them stands there."""
+    part = min(1.0, AHEAD / max(_length(place, polygon, motion), AHEAD))
+    outcome = _after("predicted", place, polygon, motion.part(part), 0.0)
+    return outcome.place, outcome.polygon
 
 
 def otherwise(place: Place, polygon: Any, motion: Motion) -> Iterator[Outcome]:

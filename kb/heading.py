@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from kb.lattice import CENTRE, Lattice
 
+Box = tuple[float, float, float, float]  # west, south, east, north
 ANGLES = tuple(sorted(range(-44, 46), key=lambda angle: (abs(angle), angle)))
 
 
@@ -25,7 +26,7 @@ class Hypothesis(NamedTuple):
     """
 
     angle: int
-    box: tuple[float, float, float, float]
+    box: Box
 
     @property
     def lattice(self) -> Lattice:
@@ -37,6 +38,24 @@ class Hypothesis(NamedTuple):
         if west <= CENTRE[0] <= east and south <= CENTRE[1] <= north:
             return Lattice(self.angle)
         return Lattice(self.angle, ((west + east) / 2, (south + north) / 2))
+
+    @property
+    def is_point(self) -> bool:
+        """Does it say exactly where he woke?"""
+        return self.box[:2] == self.box[2:]
+
+    @property
+    def area(self) -> float:
+        """Of the box, in squares^2."""
+        west, south, east, north = self.box
+        return (east - west) * (north - south)
+
+    def holds(self, lattice: Lattice) -> bool:
+        """Does it say that a lattice may be the true one?"""
+        west, south, east, north = self.box
+        (x, y), point = lattice.woke, self.is_point
+        within = (x, y) == self.box[:2] if point else west <= x < east and south <= y < north
+        return self.angle == lattice.angle and within
 
     def split(self, place: tuple[float, float]) -> "list[Hypothesis]":
         """Cut the box where the square changes on which he stands at a place of his own frame.
@@ -52,19 +71,45 @@ class Hypothesis(NamedTuple):
 
 CENTRED = tuple(Hypothesis(angle, CENTRE + CENTRE) for angle in ANGLES)
 ANYWHERE = tuple(Hypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in ANGLES)
+GRID = 11  # points along either side of what is left of the square in which he woke
+
+
+class Laid(NamedTuple):
+    """Where a thing lay that Utak has moved, or was to move later, when he looked.
+
+    middle : of its outline, in his own frame. degrees : by which it was turned since he first held it. slack : squares
+    by which it may have lain otherwise.
+    """
+
+    name: str
+    middle: tuple[float, float]
+    degrees: float
+    slack: float
 
 
 class Look(NamedTuple):
-    """One impression's count ranges (160, 2), and where it was received: (east, north) of Utak's own frame."""
+    """One impression's count ranges (160, 2), and where it was received: (east, north) of Utak's own frame.
+
+    moved : where the things lay that he had moved by then.
+    """
 
     ranges: NDArray[np.int16]
     place: tuple[float, float]
+    moved: tuple[Laid, ...] = ()
 
 
-def contradictions(lattice: Lattice, looks: Sequence[Look]) -> int:
+class Disc(NamedTuple):
+    """A part of the table, in Utak's own frame, of which looks need not agree, for things were moved there."""
+
+    middle: tuple[float, float]
+    reach: float
+
+
+def contradictions(lattice: Lattice, looks: Sequence[Look], unsettled: Sequence[Disc] = ()) -> int:
     """How many squares and fields contradict each other if the lattice lies like this.
 
-    Squares under fields that are quite full or quite empty are compared with each other, and other fields with them.
+    Squares under fields that are quite full or quite empty are compared with each other, and other fields with them;
+    those on an unsettled part of the table with nothing.
     """
     samples = lattice.samples()
     places = [lattice.place_from_utak(*look.place) for look in looks]
@@ -79,6 +124,9 @@ def contradictions(lattice: Lattice, looks: Sequence[Look]) -> int:
         full[where[(look.ranges[:, 0] - samples.slack >= weight)[:, None] & used]] = True
         free[where[(look.ranges[:, 1] == 0)[:, None] & used]] = True
         under.append(where)
+    if unsettled:
+        apart = ~_within(unsettled, lattice, low, height, width)
+        free, full = free & apart, full & apart
     wrong = int((free & full).sum())
     for look, where in zip(looks, under, strict=True):
         surely = (samples.weight * full[where]).sum(1)
@@ -87,28 +135,88 @@ def contradictions(lattice: Lattice, looks: Sequence[Look]) -> int:
     return wrong
 
 
-def standing(hypotheses: Iterable[Hypothesis], looks: Sequence[Look]) -> tuple[Hypothesis, ...]:
-    """What is left of the hypotheses when the last of these looks is taken into account, in order of preference."""
-    parts = (part for hypothesis in hypotheses for part in hypothesis.split(looks[-1].place))
-    return tuple(part for part in parts if not contradictions(part.lattice, looks))
+def _within(
+    discs: Sequence[Disc], lattice: Lattice, low: NDArray[np.int64], height: int, width: int
+) -> NDArray[np.bool_]:
+    """(height * width,): the squares, from `low` on, whose middles lie on one of the discs."""
+    rows, columns = np.mgrid[:height, :width] + 0.5
+    found = np.zeros((height, width), np.bool_)
+    for disc in discs:
+        x, y = lattice.place_from_utak(*disc.middle)
+        found |= np.hypot(columns + low[0] - x, rows + low[1] - y) <= disc.reach
+    return found.ravel()
 
 
-def search(looks: Sequence[Look]) -> tuple[Hypothesis, ...]:
-    """All that these looks leave possible, wherever in his square Utak woke."""
-    hypotheses = ANYWHERE
+def standing(
+    hypotheses: Iterable[Hypothesis], looks: Sequence[Look], unsettled: Sequence[Disc] = ()
+) -> tuple[Hypothesis, ...]:
+    """What is left of the hypotheses when the last of these looks is taken into account, in order of preference.
+
+    Hypotheses by which every look fell on the same squares stand or fall together.
+    """
+    judged: dict[tuple[int, bytes], bool] = {}
+    left = []
+    for part in (part for hypothesis in hypotheses for part in hypothesis.split(looks[-1].place)):
+        lattice = part.lattice
+        key = (part.angle, fallen(lattice, looks).tobytes())
+        if key not in judged:
+            judged[key] = not contradictions(lattice, looks, unsettled)
+        if judged[key]:
+            left.append(part)
+    return tuple(left)
+
+
+def search(
+    looks: Sequence[Look], hypotheses: Iterable[Hypothesis] = ANYWHERE, unsettled: Sequence[Disc] = ()
+) -> tuple[Hypothesis, ...]:
+    """All that these looks leave of some hypotheses: of all that there are, wherever in his square Utak woke."""
+    left = tuple(hypotheses)
     for number in range(1, len(looks) + 1):
-        hypotheses = standing(hypotheses, looks[:number])
-    return hypotheses
+        left = standing(left, looks[:number], unsettled)
+    return left
+
+
+def anywhere(angles: Iterable[int]) -> tuple[Hypothesis, ...]:
+    """The hypotheses of some angles, wherever in his square Utak woke."""
+    return tuple(Hypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in angles)
+
+
+def fallen(lattice: Lattice, looks: Sequence[Look]) -> NDArray[np.int64]:
+    """(looks, 2): the squares of the lattice on which looks were received."""
+    return np.floor([lattice.place_from_utak(*look.place) for look in looks]).astype(np.int64)
+
+
+def within(lattice: Lattice, looks: Sequence[Look]) -> Box:
+    """Where Utak may have woken if every look fell on the square that it is believed to have fallen on.
+
+    Wherever in it that was, all that stands looked the same.
+    """
+    away = np.array([lattice.to_lattice(*look.place) for look in looks]).reshape(-1, 2)
+    corners = fallen(lattice, looks)
+    west, south = np.maximum((corners - away).max(0), 0.0).tolist()
+    east, north = np.minimum((corners + 1 - away).min(0), 1.0).tolist()
+    return west, south, east, north
+
+
+def points(lattice: Lattice, looks: Sequence[Look]) -> tuple[Hypothesis, ...]:
+    """GRID by GRID points at which Utak may have woken if every look fell on the square that it is believed to."""
+    west, south, east, north = within(lattice, looks)
+    steps = (np.arange(GRID) + 0.5) / GRID
+    places = ((float(west + (east - west) * i), float(south + (north - south) * j)) for i in steps for j in steps)
+    return tuple(Hypothesis(lattice.angle, place + place) for place in places)
 
 
 def candidates(hypotheses: Sequence[Hypothesis], held: Lattice) -> list[Lattice]:
-    """The lattices to try, the likeliest first: the one held, one along his own axes, then from the middle outwards."""
-    ordered = sorted(hypotheses)
-    middle = len(ordered) // 2
-    outwards = sorted(range(len(ordered)), key=lambda i: abs(i - middle))
-    likely = [held, *(Lattice(h.angle) for h in ordered if h.angle == 0), *(ordered[i].lattice for i in outwards)]
-    standing_still = {h.lattice for h in hypotheses}
-    return [lattice for lattice in dict.fromkeys(likely) if lattice in standing_still]
+    """The lattices to try, the likeliest first: the one held, one along his own axes, then from the middle outwards.
+
+    Of one angle that first which leaves the most room for where he woke.
+    """
+    angles = sorted({h.angle for h in hypotheses})
+    middle = (len(angles) - 1) / 2
+    outwards = sorted(angles, key=lambda angle: (angle != 0, abs(angles.index(angle) - middle)))
+    ordered = sorted(hypotheses, key=lambda h: (outwards.index(h.angle), -h.area, h.box))
+    lattices = [h.lattice for h in ordered]
+    return list(dict.fromkeys([held] * (held in lattices) + lattices))
 
 
 def _cut(low: float, high: float, at: float) -> list[tuple[float, float]]:

@@ -92,8 +92,9 @@ class Knowledge:
             kinds,
             objects=(),
             looked_from=self.memory.looked_from,
-            barred=frozenset(self.memory.barred),
+            barred=self.memory.closed,
             spread=self.memory.spread,
+            leeway=self.memory.leeway,
             held=self.memory.held,
             imagined=imagined,
         )

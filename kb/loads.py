@@ -36,7 +36,8 @@ class Load:
     full, empty : squares, of those that the slack leaves open, that were seen to be covered or not since it last moved.
     shape, colour, support : as of the node, from before it was grasped; support grows with every look at it.
     turned : degrees that it was turned since then. proven : it was seen to move. stuck : motions in a row that did not
-    move it.
+    move it. since : how many looks had been received when it was first held. astray : squares by which it may lie
+    otherwise besides, for it is not known where in his square Utak stands, and so about what it was turned.
     """
 
     name: str
@@ -51,20 +52,27 @@ class Load:
     support: tuple[int, ...] = ()
     proven: bool = False
     stuck: int = 0
+    since: int = 0
+    astray: float = 0.0
+
+    @property
+    def play(self) -> float:
+        """By how many squares its outline may lie otherwise, for whatever reason."""
+        return max(self.slack, self.astray)
 
     @cached_property
     def sure(self) -> Patch:
         """The squares that it surely covers."""
-        inner = self.polygon.buffer(-self.slack, join_style="mitre") if self.slack else self.polygon
+        inner = self.polygon.buffer(-self.play, join_style="mitre") if self.play else self.polygon
         patch = covered(inner if not inner.is_empty else self.polygon.centroid.buffer(0.1))
         return patch if not self.full else patch_of_squares(patch.squares() | self.full)
 
     @cached_property
     def possible(self) -> Patch:
         """The squares that it covers or may cover."""
-        if not self.slack:
+        if not self.play:
             return self.sure
-        patch = covered(self.polygon.buffer(self.slack, join_style="mitre"))
+        patch = covered(self.polygon.buffer(self.play, join_style="mitre"))
         return patch if not self.empty else patch_of_squares(patch.squares() - self.empty)
 
     def moved(self, polygon: Any, slack: float, degrees: float = 0.0) -> "Load":

@@ -94,8 +94,10 @@ class WorldModel:
     percept, kinds : the regions and what they are taken for.
     objects : the isolated objects, and what may be one, by name.
     held : the node that is held, or None.
-    looked_from : the squares on which an impression was received. barred : squares before which a motion was stopped.
-    spread : by how many radians the lattice may still lie otherwise than believed.
+    looked_from : the squares on which an impression was received. barred : squares that stopped a motion, or likely
+    did.
+    spread : by how many radians the lattice may still lie otherwise than believed. leeway : (west, south, east, north)
+    how far from where he believes it he may have woken in his square, the first two not above 0.
     imagined : pictures that agree with all counts.
     """
 
@@ -110,6 +112,7 @@ class WorldModel:
     looked_from: frozenset[tuple[int, int]] = frozenset()
     barred: frozenset[tuple[int, int]] = frozenset()
     spread: float = 0.0
+    leeway: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     imagined: Imagined = NOTHING_IMAGINED
 
     @cached_property

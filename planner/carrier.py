@@ -19,6 +19,7 @@ from geometry.legs import verified
 from geometry.rigid import Motion, Rotate, Translate
 from geometry.yard import Yard
 from kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
+from kb.lattice import CENTRE
 from kb.worldmodel import Node, Patch, WorldModel
 from planner.destinations import Situation
 from planner.exploring import Lookout, inspection, sight_of
@@ -32,6 +33,7 @@ STILL = 2  # level of certainty of squares over which a plan is not made, but ke
 ALIKE = 1e-3  # squares^2 by which an object may lie otherwise than a plan says
 TIGHTEST = 2  # times that a thing stood against something unawares before he takes it elsewhere
 MOST_PLANS = 40  # in one task
+LOOSE = 0.02  # squares by which he may stand elsewhere in his square before a turn needs more room
 NOWHERE = 0.1  # squares: who comes no further is where he was
 
 
@@ -230,7 +232,8 @@ class Carrier:
         """What to ask for. He goes on with the hold he has, but not where doing so has brought him nowhere."""
         nowhere = self._went_on is not None and math.dist(self._went_on, model.place) < NOWHERE
         held = model.held == node.name and not nowhere
-        return Request(node, ends, self._avoided(node), last, self._tight.get(node.name, 0), held)
+        tight = self._tight.get(node.name, 0) + (model.lattice.woke != CENTRE and max(model.leeway) > LOOSE)
+        return Request(node, ends, self._avoided(node), last, tight, held)
 
     def _clearing(self, other: Node, haul: Haul, situation: Situation) -> tuple[Node, Haul] | None:
         """A way to carry a thing off the squares that a plan needs, if it stands there and there is one."""

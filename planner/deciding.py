@@ -26,6 +26,7 @@ from planner.destinations import Destination, Situation, contains, destination, 
 from planner.goals import BY_THE_WAY, Stage, constraints, stages
 from planner.haulage import Refusal
 from planner.landing import Landing, landing
+from planner.repeating import Circles
 from planner.screen import Screens, Squares, grown, vicinity
 from planner.steps import Square
 from planner.walking import halting, next_move
@@ -72,6 +73,7 @@ class Decider:
         self._path: tuple[Square, ...] = ()  # squares of the lattice
         self._level = 0
         self._doubted: set[str] = set()  # objects that are being looked at until they are settled
+        self._circles = Circles()
         self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
@@ -139,13 +141,22 @@ class Decider:
 
         missing : says in words what is missing; asked only for a verdict.
         """
-        aim = choose(aims, situation.screens, self._old_aim(situation.model))
-        if aim is None:
-            why = f"{stage} cannot be attained: {missing()}, and nothing is left to look at"
-            return Decision(None, why, verdict)
-        if situation.model.held is not None:
-            return Decision(Release(), f"{situation.model.held} is let go, to walk; {stage}")
-        return self._walk(aim, stage, situation)
+        model = situation.model
+        while True:
+            offered = self._circles.priced(aims, model)
+            aim = choose(offered, situation.screens, self._old_aim(model))
+            if aim is None and len(offered) < len(aims):
+                why = f"{stage} cannot be attained: {missing()}, and he goes round in circles"
+                return Decision(None, why, "limit")
+            if aim is None:
+                why = f"{stage} cannot be attained: {missing()}, and nothing is left to look at"
+                return Decision(None, why, verdict)
+            if model.held is not None:
+                return Decision(Release(), f"{model.held} is let go, to walk; {stage}")
+            decision = self._walk(aim, stage, situation)
+            if decision.command is None or not self._circles.noticed(model, decision.command):
+                return decision
+            self._circles.tire(_lattice_squares(aim.squares, model))
 
     def _carry(self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciled) -> Decision | None:
         """The next command towards a goal for something that must be carried, or None when it holds."""

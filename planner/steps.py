@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Square = tuple[int, int]  # (column, row)
+Point = tuple[float, float]  # (x, y)
 Mask = NDArray[np.bool_]
 TOUCH = 1e-9  # squares
 
@@ -39,6 +40,27 @@ def clear(free: Mask, a: Square, b: Square) -> bool:
     """Is every square free that a unit square sweeps from a to b? free: (rows, columns)."""
     columns, rows = swept(b[0] - a[0], b[1] - a[1])
     return bool(free[rows + a[1], columns + a[0]].all())
+
+
+def clear_line(free: Mask, a: Point, b: Point) -> bool:
+    """Is every square free that a unit square sweeps whose middle goes straight from a to b?
+
+    free: (rows, columns); a, b: (x, y) in the frame of the array, anywhere within squares. Outside of it nothing is.
+    """
+    reach = [np.arange(math.floor(min(p, q) - 0.5), math.ceil(max(p, q) + 0.5)) for p, q in zip(a, b, strict=True)]
+    columns, rows = np.meshgrid(*reach, indexing="xy")
+    first, last = np.zeros(columns.shape), np.ones(columns.shape)
+    for square, p, q in ((columns, a[0], b[0]), (rows, a[1], b[1])):
+        if abs(q - p) > TOUCH:
+            ends = np.stack([(square + 0.5 - p + side) / (q - p) for side in (-1, 1)])
+            first, last = np.maximum(first, ends.min(0)), np.minimum(last, ends.max(0))
+        else:
+            last = np.where(np.abs(square + 0.5 - p) < 1 - TOUCH, last, -1.0)
+    met = first < last - TOUCH
+    columns, rows = columns[met], rows[met]
+    height, width = free.shape
+    inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
+    return bool(inside.all() and free[rows, columns].all())
 
 
 def squares_along(free: Mask, points: Sequence[Sequence[float]]) -> list[Square]:

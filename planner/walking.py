@@ -9,11 +9,14 @@ from geometry.winding import crossings
 from kb.body import Command, Move
 from kb.worldmodel import WorldModel
 from planner.screen import Screens
-from planner.steps import Square, clear
+from planner.steps import Square, clear, clear_line
 
 LONGEST = {"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}  # squares of one move, by its aim
 SHORT = 6  # squares of one move while it is open how the lattice lies, and so where he goes
 ASKEW = math.radians(5)  # by which the lattice may lie otherwise before he takes care where he halts
+TESTING = ("explore", "inspect", "settle")  # aims that do not mind where in a square he halts
+EDGE = 0.4618  # squares from a centre, not far from the line between two squares
+LOOSE = 0.1  # squares by which he may have woken elsewhere in his square before he tries it
 DIGITS = 12  # of a command
 ASIDE = (0.0618, 0.0341)  # squares from a centre, where no turn by whole degrees leads to the line between two squares
 
@@ -33,19 +36,34 @@ def next_move(screens: Screens, path: Sequence[Square], kind: str, about: tuple[
         if far <= longest and clear(safe, here, square) and _same_side(path[: number + 1], about):
             there = square
             break
-    return move_to(screens.model, there)
+    return move_to(screens.model, there, _aside(screens, there, kind if about is None else "attain"))
 
 
-def move_to(model: WorldModel, square: Square) -> Move:
-    """The move from where Utak believes himself to the centre of a square (column, row) of the view.
-
-    As long as it is open within some degrees how the lattice lies, it is a little beside the centre: halts on the line
-    between two squares, where it would be chance which of them he sees himself in, could never be explained.
-    """
-    aside = ASIDE if model.spread > ASKEW else (0.0, 0.0)
+def move_to(model: WorldModel, square: Square, aside: tuple[float, float]) -> Move:
+    """The move from where Utak believes himself to a square (column, row) of the view, aside from its centre."""
     x, y = model.view.west + square[0] + 0.5 + aside[0], model.view.south + square[1] + 0.5 + aside[1]
     east, north = model.lattice.to_utak(x - model.place[0], y - model.place[1])
     return Move(round(east, DIGITS) + 0.0, round(north, DIGITS) + 0.0)
+
+
+def _aside(screens: Screens, square: Square, kind: str) -> tuple[float, float]:
+    """How far from the centre of a square he halts.
+
+    As long as it is open within some degrees how the lattice lies, it is a little beside the centre: halts on the line
+    between two squares, where it would be chance which of them he sees himself in, could never be explained. After
+    that he halts, where it costs nothing, near to that line: if he woke elsewhere in his square than he thinks, he sees
+    himself in the next one.
+    """
+    model = screens.model
+    if model.spread > ASKEW:
+        return ASIDE
+    west, south, east, north = model.leeway
+    test = tuple(EDGE if up > LOOSE else -EDGE if -down > LOOSE else 0.0 for down, up in ((west, east), (south, north)))
+    here = (model.place[0] - model.view.west, model.place[1] - model.view.south)
+    there = (square[0] + 0.5 + test[0], square[1] + 0.5 + test[1])
+    if kind not in TESTING or not clear_line(screens.safe, here, there):
+        return (0.0, 0.0)
+    return test[0], test[1]
 
 
 def halting(command: Command | None, place: tuple[float, float], model: WorldModel) -> Command | None:

@@ -1,13 +1,20 @@
 """How an impression that differs from the predicted one is explained."""
 
+import math
+
 import pytest
+import shapely
+from shapely.affinity import rotate, translate
 
 from kb.accommodation import CellStatus, Memory
-from kb.body import Move, Turn
-from kb.evidence import FREE
+from kb.body import Move, Push, Turn
+from kb.evidence import FREE, OPEN
+from kb.heading import CENTRED
 from kb.lattice import CENTRE
-from tests.kb.drawings import walked
-from tests.kb.eyes import impression, utak_in, world_of
+from kb.loads import Load
+from tests.kb.drawings import LARGE_ROOM, walked
+from tests.kb.eyes import Occupied, impression, utak_in, world_of
+from tests.kb.test_relaying import around
 
 ROOM = [
     "b" * 30,
@@ -86,3 +93,83 @@ def test_turning_what_is_held_moves_nobody() -> None:
     found = memory.accommodate(Turn(90.0), impression(occupied, square))
     assert found.explanation.how == "predicted"
     assert memory.place == CENTRE
+
+
+ELL = shapely.Polygon([(0, 0), (5, 0), (5, 2), (2, 2), (2, 5), (0, 5)])
+PLAIN = world_of(LARGE_ROOM)
+
+
+def holding(thing: shapely.Polygon, place: tuple[float, float], room: Occupied = PLAIN) -> Memory:
+    """One who has just taken a thing of the table, where he woke."""
+    memory, square = Memory(), (math.floor(place[0]), math.floor(place[1]))
+    memory.wake(impression(around(thing, room), square))
+    lies = translate(thing, -square[0], -square[1])
+    memory.grasp(Load("o1", lies, lies, proven=True))
+    return memory
+
+
+@pytest.mark.parametrize("place", [(20.85, 20.05), (20.2, 20.6), (20.4, 20.1)])
+def test_where_a_turn_leaves_a_thing_tells_where_in_his_square_he_stands(place: tuple[float, float]) -> None:
+    thing = translate(ELL, 21, 18)
+    memory = holding(thing, place)
+    after = rotate(thing, 90, origin=place)
+    found = memory.accommodate(Turn(90.0), impression(around(after, PLAIN), (20, 20)))
+    assert found.explanation.how == "turned"
+    assert memory.place == memory.lattice.woke
+    assert math.dist(memory.lattice.woke, (place[0] - 20, place[1] - 20)) < math.dist(
+        CENTRE, (place[0] - 20, place[1] - 20)
+    )
+    load = memory.loads["o1"]
+    true = translate(after, -20, -20)
+    assert load.polygon.hausdorff_distance(true) <= load.play + 0.2
+    assert not memory.sure
+    back = memory.accommodate(Turn(-90.0), impression(around(thing, PLAIN), (20, 20)))
+    assert back.explanation.misfits == 0
+    assert memory.loads["o1"].polygon.hausdorff_distance(translate(thing, -20, -20)) < 1e-6
+    assert memory.loads["o1"].play == 0
+
+
+def test_a_turn_by_one_who_stands_amid_his_square_teaches_nothing() -> None:
+    thing = translate(ELL, 21, 18)
+    memory = holding(thing, (20.5, 20.5))
+    found = memory.accommodate(Turn(90.0), impression(around(rotate(thing, 90, origin=(20.5, 20.5)), PLAIN), (20, 20)))
+    assert found.explanation.how == "predicted"
+    assert memory.lattice.woke == CENTRE
+    assert memory.loads["o1"].play == 0
+
+
+def test_a_halt_beside_the_middle_tells_where_in_his_square_he_woke() -> None:
+    room = world_of(ROOM)
+    x, y = utak_in(ROOM)
+    truly = (x + 0.8, y + 0.3)
+    memory = Memory()
+    memory.wake(impression(room, (x, y)))
+    now = truly
+    for east, north in ((0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (0.46, 3.46)):
+        now = (now[0] + east, now[1] + north)
+        memory.accommodate(Move(east, north), impression(room, (math.floor(now[0]), math.floor(now[1]))))
+    assert memory.lattice.angle == 0
+    assert memory.lattice.woke[0] > 0.5
+    assert math.floor(memory.place[0]) + x == math.floor(now[0])
+    assert math.floor(memory.place[1]) + y == math.floor(now[1])
+    west, south, east, north = memory.leeway
+    assert west <= 0.8 - memory.lattice.woke[0] <= east
+    assert south <= 0.3 - memory.lattice.woke[1] <= north
+
+
+def test_what_stops_a_thing_unawares_makes_the_squares_before_it_suspect() -> None:
+    def posts(i: int, j: int) -> bool:
+        return PLAIN(i, j) or (j == 16 and i % 7 == 0)
+
+    thing = shapely.box(22, 18, 27, 21)
+    memory = holding(thing, (21.5, 19.5), posts)
+    memory.hypotheses, memory.searches = CENTRED[:1], 99  # how the lattice lies is known
+    row, column = memory.evidence.index(29 - 21, -1)
+    memory.evidence.state[row - 3 : row + 6, column] = OPEN  # not looked at closely
+    stopped = translate(thing, 2, 0)  # of 6
+    found = memory.accommodate(Push(6.0, 0.0), impression(around(stopped, posts), (23, 19)))
+    assert found.explanation.how == "blocked"
+    assert memory.suspected
+    assert {column for column, _ in memory.suspected} == {29 - 21}
+    memory.evidence.state[memory.evidence.index(*min(memory.suspected))] = FREE
+    assert min(memory.suspected) not in memory.closed

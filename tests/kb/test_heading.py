@@ -7,7 +7,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kb.heading import ANGLES, ANYWHERE, CENTRED, Hypothesis, Look, candidates, contradictions, search, standing
+from kb.heading import (
+    ANGLES,
+    ANYWHERE,
+    CENTRED,
+    Disc,
+    Hypothesis,
+    Look,
+    anywhere,
+    candidates,
+    contradictions,
+    points,
+    search,
+    standing,
+    within,
+)
 from kb.lattice import CENTRE, Lattice, turned
 from kb.retina import count_ranges
 from tests.kb.eyes import random_room, retina, world_of
@@ -148,3 +162,49 @@ def test_every_angle_is_tried_once_the_axes_first() -> None:
     assert sorted(ANGLES) == list(range(-44, 46))
     assert ANGLES[0] == 0
     assert all(h.lattice.woke == CENTRE for h in CENTRED)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_wherever_within_he_woke_every_look_fell_on_the_same_square(seed: int) -> None:
+    rows, heading, places = scene(seed, 4)
+    looks = looks_of(rows, heading, places)
+    true = Lattice(angle_of(heading), woke(heading, places[0]))
+    west, south, east, north = within(true, looks)
+    assert west <= true.woke[0] <= east
+    assert south <= true.woke[1] <= north
+    squares = {tuple(math.floor(v) for v in true.place_from_utak(*look.place)) for look in looks}
+    for point in points(true, looks):
+        other = point.lattice
+        assert {tuple(math.floor(v) for v in other.place_from_utak(*look.place)) for look in looks} == squares
+    if east < 1:
+        other = Lattice(true.angle, (east + 1e-6, true.woke[1]))
+        assert {tuple(math.floor(v) for v in other.place_from_utak(*look.place)) for look in looks} != squares
+
+
+def test_looks_need_not_agree_where_a_thing_was_moved() -> None:
+    gone = [row.replace("ggg", "...") for row in ROOM]
+    looks = [*looks_of(ROOM, 0, [(12.5, 10.5)]), *looks_of(gone, 0, [(12.5, 10.5)])]
+    assert contradictions(Lattice(), looks) > 0
+    away = Disc((7.5 - 12.5, 11.5 - 10.5), 4.0)
+    assert contradictions(Lattice(), looks, [away]) == 0
+    assert contradictions(Lattice(), looks, [Disc((9.0, -7.0), 2.0)]) > 0
+    turned_looks = looks_of(ROOM, 3, [(12.5, 10.5), (14.7, 6.2), (5.5, 15.5), (20.1, 4.4)])
+    assert 0 not in {h.angle for h in search(turned_looks, anywhere((0,)), [away])}
+    assert 3 in {h.angle for h in search(turned_looks, anywhere((0, 3)), [away])}
+
+
+def test_a_hypothesis_holds_what_lies_in_its_box() -> None:
+    half = Hypothesis(2, (0.0, 0.0, 0.5, 1.0))
+    assert half.holds(Lattice(2, (0.2, 0.9)))
+    assert not half.holds(Lattice(2, (0.7, 0.9)))
+    assert not half.holds(Lattice(1, (0.2, 0.9)))
+    point = Hypothesis(0, CENTRE + CENTRE)
+    assert point.is_point
+    assert point.holds(Lattice())
+    assert not point.holds(Lattice(0, (0.5, 0.6)))
+
+
+def test_of_one_angle_the_widest_box_is_tried_first() -> None:
+    boxes = (Hypothesis(0, (0.0, 0.0, 0.1, 0.1)), Hypothesis(0, (0.6, 0.0, 1.0, 1.0)))
+    assert candidates(boxes, Lattice())[0].woke == (0.8, 0.5)

@@ -1,6 +1,7 @@
 """The projection is monotone; what is aimed at, looked for and walked over is what it must be."""
 
 import itertools
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -14,8 +15,8 @@ from planner import exploring
 from planner.aims import Aim, choose
 from planner.circling import pivot, ways_round, winding
 from planner.screen import UNSEEN, Screens, grown
-from planner.steps import swept
-from planner.walking import LONGEST, next_move
+from planner.steps import clear_line, swept
+from planner.walking import LONGEST, LOOSE, next_move
 from planner.ways import choose_way, ways
 from tests.kb.drawings import seen_whole, walked
 from tests.kb.eyes import random_room
@@ -258,3 +259,36 @@ def test_what_no_wall_explains_is_part_of_what_is_vague(seed: int) -> None:
         return {int(s) for look in exploring.vague_places(screens, 0, odd=odd) for s in look.squares}
 
     assert squares(odd=True) <= squares(odd=False) <= set(np.flatnonzero(screens.floor).tolist())
+
+
+@pytest.mark.parametrize("leeway", [(-0.5, -0.5, 0.5, 0.5), (-0.5, 0.0, 0.0, 0.5), (-0.05, -0.05, 0.05, 0.05)])
+def test_he_halts_near_the_edge_of_a_square_while_he_may_have_woken_elsewhere(leeway: tuple[float, ...]) -> None:
+    model = replace(seen_whole(HALL), leeway=leeway)
+    screens = Screens(model)
+    for goal in ((4, 3), (-3, -2), (5, -4)):
+        way = ways(screens, 0, flat(model, *goal), "skeleton")[0]
+        move = next_move(screens, way.squares, "explore")
+        plain = next_move(screens, way.squares, "attain")
+        assert (plain.east, plain.north) == (round(plain.east), round(plain.north))
+        west, south, east, north = leeway
+        for gone, back, forth in ((move.east, west, east), (move.north, south, north)):
+            aside = gone - round(gone)
+            assert math.floor(gone + 0.5) == round(gone)  # in the square that he goes to
+            assert -0.5 < aside < 0.5
+            assert aside == 0 or (aside > 0.4 and forth > LOOSE) or (aside < -0.4 and -back > LOOSE)
+        assert (round(move.east), round(move.north)) == (move.east, move.north) or max(leeway) > LOOSE
+    assert any(
+        next_move(screens, ways(screens, 0, flat(model, *goal), "skeleton")[0].squares, "explore").east % 1
+        for goal in ((4, 3), (-3, -2), (5, -4))
+    ) == (max(leeway) > LOOSE)
+
+
+def test_he_does_not_halt_near_an_edge_where_what_lies_beyond_it_may_stop_him() -> None:
+    model = replace(seen_whole(HALL), leeway=(-0.5, -0.5, 0.5, 0.5))
+    screens = Screens(model)
+    for goal in np.flatnonzero(screens.floor).tolist():
+        for way in ways(screens, 0, np.array([goal]), "skeleton")[:1]:
+            if len(way.squares) > 1:
+                move = next_move(screens, way.squares, "explore")
+                here = (screens.here[0] + 0.5, screens.here[1] + 0.5)
+                assert clear_line(screens.safe, here, (here[0] + move.east, here[1] + move.north))

@@ -8,7 +8,7 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from planner.steps import clear, squares_along, swept
+from planner.steps import clear, clear_line, squares_along, swept
 
 whole = st.integers(-9, 9)
 
@@ -41,6 +41,22 @@ def test_clear_is_an_exact_sweep(rows: int, columns: int, seed: int) -> None:
     blocked = shapely.union_all([shapely.box(x, y, x + 1, y + 1) for y, x in np.argwhere(~free).tolist()])
     assert clear(free, a, b) == (shapely.area(shapely.intersection(covered, blocked)) < 1e-9)
     assert clear(free, a, b) == clear(free, b, a)
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.integers(3, 12), st.integers(3, 12), st.integers(0, 2**32 - 1), st.booleans())
+def test_a_line_is_clear_when_a_unit_square_sweeps_free_squares_alone(
+    rows: int, columns: int, seed: int, straight: bool
+) -> None:
+    rng = np.random.default_rng(seed)
+    free = rng.random((rows, columns)) < 0.85
+    a, b = ((float(rng.uniform(0, columns)), float(rng.uniform(0, rows))) for _ in range(2))
+    b = (b[0], a[1]) if straight else b
+    corners = [(x + i, y + j) for x, y in (a, b) for i in (-0.5, 0.5) for j in (-0.5, 0.5)]
+    covered = shapely.MultiPoint(corners).convex_hull
+    walls = [shapely.box(x, y, x + 1, y + 1) for y, x in np.argwhere(~np.pad(free, 2)).tolist()]
+    blocked = shapely.transform(shapely.union_all(walls), lambda p: p - 2)
+    assert clear_line(free, a, b) == (shapely.area(shapely.intersection(covered, blocked)) < 1e-9)
 
 
 @settings(max_examples=150, deadline=None)

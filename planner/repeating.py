@@ -1,0 +1,66 @@
+"""Going round in circles: the same command in the same state of belief leads where it led before.
+
+What a walk was to show it has not shown then, and whatever made it seem worth while will do so again. So the aim that
+leads there gets dearer, until another one is chosen; what is chosen all the same is given up.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+from kb.body import Command
+from kb.evidence import OPEN
+from kb.worldmodel import WorldModel
+from planner.aims import Aim
+from planner.steps import Square
+
+WEARY = 25.0  # squares that an aim gets dearer each time
+MOST = 4  # times that an aim may lead in circles before it is given up
+State = tuple[object, ...]
+
+
+class Circles:
+    """Remembers what was done in which state of belief, and which squares were aimed at in vain."""
+
+    def __init__(self) -> None:
+        self._done: set[tuple[State, Command]] = set()
+        self._vain: Counter[Square] = Counter()  # of the lattice
+
+    def noticed(self, model: WorldModel, command: Command) -> bool:
+        """Was this command given before when just as much was known? It is remembered that it is given now."""
+        key = (_state(model), command)
+        again = key in self._done
+        self._done.add(key)
+        return again
+
+    def tire(self, squares: frozenset[Square]) -> None:
+        """An aim at these squares of the lattice led in circles."""
+        self._vain.update(squares)
+
+    def priced(self, aims: Sequence[Aim], model: WorldModel) -> list[Aim]:
+        """The aims, dearer by what was aimed at in vain; without those that were so too often."""
+        if not self._vain:
+            return list(aims)
+        rows, columns = model.labels.shape
+        vain = np.zeros((rows, columns), np.int64)
+        for (x, y), times in self._vain.items():
+            row, column = y - model.view.south, x - model.view.west
+            if 0 <= row < rows and 0 <= column < columns:
+                vain[row, column] = times
+        found = []
+        for aim in aims:
+            times = int(vain.ravel()[aim.squares].max(initial=0))
+            if times < MOST:
+                found.append(aim._replace(price=aim.price + WEARY * times))
+        return found
+
+
+def _state(model: WorldModel) -> State:
+    """What tells whether anything new is known: where he is, what he holds, how much was seen and is settled."""
+    x, y = model.place
+    settled = int((model.view.state != OPEN).sum())
+    things = tuple(
+        (node.name, node.stuck, node.patch.west, node.patch.south) for node in model.objects if node.moved or node.stuck
+    )
+    return round(x, 3), round(y, 3), model.held, int(model.view.seen.sum()), settled, len(model.barred), things

@@ -1,0 +1,109 @@
+"""What was seen and carried, laid on another lattice, lies where it truly is: shapely and eyes.py tell where."""
+
+import math
+
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely.affinity import rotate, translate
+
+from kb.heading import Laid, Look
+from kb.lattice import CENTRE, Lattice
+from kb.loads import Load
+from kb.relaying import laid, relaid, shifted
+from kb.retina import count_ranges
+from tests.kb.eyes import Occupied, retina, world_of
+
+ELL = shapely.Polygon([(0, 0), (5, 0), (5, 2), (2, 2), (2, 5), (0, 5)])
+ROOM = [
+    "b" * 34,
+    *["b" + "." * 32 + "b"] * 9,
+    "b" + "." * 20 + "ggg" + "." * 9 + "b",
+    *["b" + "." * 32 + "b"] * 14,
+    "b" * 34,
+]
+MOST_ASIDE = 1e-6  # squares
+within = st.floats(0.02, 0.98)
+
+
+def around(polygon: shapely.Polygon, room: Occupied) -> Occupied:
+    """A world with a thing in it."""
+    x0, y0, x1, y1 = (math.floor(v) for v in polygon.bounds)
+    own = {
+        (i, j)
+        for i in range(x0, x1 + 1)
+        for j in range(y0, y1 + 1)
+        if shapely.box(i, j, i + 1, j + 1).intersection(polygon).area > 1e-9
+    }
+    return lambda i, j: (i, j) in own or room(i, j)
+
+
+@settings(max_examples=60, deadline=None)
+@given(within, within, st.lists(st.tuples(st.integers(-180, 180), st.integers(-4, 4), st.integers(-4, 4)), max_size=4))
+def test_what_was_turned_lies_elsewhere_by_where_he_woke(
+    fx: float, fy: float, motions: list[tuple[int, int, int]]
+) -> None:
+    believed = true = translate(ELL, 2, -1)
+    here, truly, turned = CENTRE, (fx, fy), 0.0
+    for degrees, dx, dy in motions:
+        believed, true = rotate(believed, degrees, origin=here), rotate(true, degrees, origin=truly)
+        believed, true = translate(believed, dx, dy), translate(true, dx, dy)
+        here, truly = (here[0] + dx, here[1] + dy), (truly[0] + dx, truly[1] + dy)
+        turned += degrees
+    load = Load("o1", believed, translate(ELL, 2, -1), turned=turned)
+    found = shifted(load, Lattice(0, (fx, fy)), Lattice())
+    assert found.polygon.hausdorff_distance(true) < MOST_ASIDE
+
+
+@pytest.mark.parametrize("heading", [1, 2, 88, 359])
+@pytest.mark.parametrize(("fx", "fy"), [(0.5, 0.5), (0.3, 0.8)])
+def test_a_thing_that_was_carried_lies_right_on_the_true_lattice(heading: int, fx: float, fy: float) -> None:
+    """He holds the lattice for one along his own axes, a degree or two amiss, and carries a thing."""
+    room = world_of(ROOM)
+    start, thing = (9 + fx, 9 + fy), translate(ELL, 11, 8)
+    angle = (heading + 44) % 90 - 44
+    quarters = heading - angle
+    looks, now, moved, lay = (
+        [],
+        start,
+        False,
+        Load("o1", _felt(thing, start, heading), _felt(thing, start, heading), since=2),
+    )
+    for step, (dx, dy) in enumerate([(0, 0), (1.0, -2.0), (3.0, 4.0)]):
+        away = _turned((dx, dy), heading)
+        if step == 2:  # with the thing in hand
+            moved, thing = True, translate(thing, *away)
+            lay = Load("o1", translate(lay.polygon, dx, dy), lay.first, since=2)
+        now = (now[0] + away[0], now[1] + away[1])
+        seen = retina(around(thing, room), (math.floor(now[0]), math.floor(now[1])), heading)
+        own = _turned((now[0] - start[0], now[1] - start[1]), -heading)
+        there = (laid(lay, Lattice()),) if moved else ()
+        looks.append(Look(count_ranges(seen), own, there))
+    woke = _turned((fx - 0.5, fy - 0.5), -quarters)
+    new = Lattice(angle, (woke[0] + 0.5, woke[1] + 0.5))
+    found = relaid(new, Lattice(), looks, [lay])
+    assert found.misfits == 0
+    true = _felt(thing, start, heading)  # in his own frame, the origin where he woke, but for the centre
+    told = [new.place_to_utak(x, y) for x, y in found.loads["o1"].polygon.exterior.coords]
+    aside = shapely.Polygon(told).hausdorff_distance(translate(true, -0.5, -0.5))
+    assert aside < MOST_ASIDE
+
+
+def test_where_a_load_lies_is_told_in_his_own_frame() -> None:
+    lattice = Lattice(30, (0.2, 0.7))
+    load = Load("o1", translate(ELL, 3, 4), ELL, slack=0.3, turned=90.0)
+    told = laid(load, lattice)
+    assert told == Laid("o1", told.middle, 90.0, 0.3)
+    middle = load.polygon.centroid
+    assert lattice.place_from_utak(*told.middle) == pytest.approx((middle.x, middle.y))
+
+
+def _turned(vector: tuple[float, float], degrees: float) -> tuple[float, float]:
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return vector[0] * c - vector[1] * s, vector[0] * s + vector[1] * c
+
+
+def _felt(thing: shapely.Polygon, woke: tuple[float, float], heading: float) -> shapely.Polygon:
+    """A thing of the table on a lattice along his own axes, where he woke amid square (0, 0)."""
+    return translate(rotate(translate(thing, -woke[0], -woke[1]), -heading, origin=(0, 0)), 0.5, 0.5)
