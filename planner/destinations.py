@@ -140,10 +140,11 @@ def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
 
 
 def _likely_rooms(situation: Situation) -> list[Lookout]:
-    """What lies beyond likely doors, while he is not there: on his way he sees whether they are some."""
-    rooms, beyond = situation.likely_beyond(situation.model.lattice.woke)
+    """What lies beyond likely doors, until he has been there: on his way he sees whether they are some."""
+    model = situation.model
+    rooms, beyond = situation.likely_beyond(model.lattice.woke)
     beyond &= situation.screens.floor
-    if contains(np.flatnonzero(beyond), situation.model):
+    if (beyond & model.squares(model.looked_from)).any():
         return []
     found = [np.flatnonzero(beyond & (rooms.labels == n)) for n in numbers(rooms, beyond)]
     return [Lookout(squares, "a door seems to lead there") for squares in found]
