@@ -36,6 +36,7 @@ NOWHERE = 0.2  # squares: what was stopped sooner than this did not move
 NONE_FITS = 10**6  # misfits of no lattice at all
 MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are blamed for what contradicts
 SETTLED = math.radians(5)  # by which angles may differ while that hardly is why looks contradict
+CONTRADICTED = 2  # misfits that a contradiction of looks weighs as much as: more than any other lattice costs
 NEAR = 2  # squares about the predicted place in which Utak is looked for first
 Place = tuple[float, float]
 
@@ -279,6 +280,8 @@ class Memory:
             turned = self._elsewhere(command, ranges, first.misfits) if first.misfits else []
         if not first.misfits and not turned:
             return first
+        if not first.misfits:  # no settled square is otherwise, but two looks contradict each other on this lattice
+            first = first._replace(misfits=CONTRADICTED)
         explanations = [first]
         explanations += [self._explanation("blocked", stop, ranges, predicted) for stop in stops]
         explanations += [self._explanation("slipped", place, ranges, predicted) for place in _around(predicted)]

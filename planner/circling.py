@@ -9,6 +9,7 @@ right is made like any other choice among topologically distinct routes.
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geometry.winding import MOST, crossings, winding_way
 from kb.worldmodel import Node, WorldModel
@@ -21,7 +22,7 @@ Place = tuple[float, float]
 
 def winding(track: Sequence[Place], node: Node) -> int:
     """How often a track (points of the lattice), closed by its first point, winds about an object."""
-    return crossings(np.array([*track, track[0]]), pivot(node))
+    return crossings(_centred([*track, track[0]]), pivot(node))
 
 
 def ways_round(screens: Screens, track: Sequence[Place], node: Node) -> dict[int, Way]:
@@ -33,7 +34,7 @@ def ways_round(screens: Screens, track: Sequence[Place], node: Node) -> dict[int
     x, y = pivot(node)
     about = (x - model.view.west, y - model.view.south)
     goal = _square(track[0], model)
-    done = crossings(np.array(track), (x, y))
+    done = crossings(_centred(track), (x, y))
     for level in range(UNSEEN + 1):
         free = screens.free(level) & ~model.mask(node.patch)
         free[screens.here[1], screens.here[0]] = True  # a thing seen coarsely may seem to reach as far as his square
@@ -48,6 +49,12 @@ def ways_round(screens: Screens, track: Sequence[Place], node: Node) -> dict[int
         if found:
             return found
     return {}
+
+
+def _centred(track: Sequence[Place]) -> NDArray[np.float64]:
+    """(n, 2): a track by the centres of its squares, as a way is told: so both count on one side of the ray."""
+    centres: NDArray[np.float64] = np.floor(np.array(track)) + 0.5
+    return centres
 
 
 def _way(squares: Sequence[Square], level: int) -> Way:

@@ -226,6 +226,17 @@ def test_circling_winds_once() -> None:
     assert sides == {1, -1}
 
 
+@pytest.mark.parametrize("aside", [-0.49, -1e-12, 0.0, 0.3])
+def test_where_in_his_square_he_halts_changes_no_way_round(aside: float) -> None:
+    model = seen_whole(HALL)
+    (node,) = model.objects
+    x, y = pivot(node)
+    moved = replace(model, place=(x + 6, y + aside))
+    offered = ways_round(Screens(moved), [model.place, (x, y + 5), moved.place], node)
+    amid = ways_round(Screens(moved), [model.place, (x, y + 5), (x + 6, y)], node)
+    assert {turn: way.squares for turn, way in offered.items()} == {turn: way.squares for turn, way in amid.items()}
+
+
 def test_half_a_turn_leaves_the_other_half() -> None:
     model = seen_whole(HALL)
     (node,) = model.objects
