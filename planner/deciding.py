@@ -186,7 +186,9 @@ class Decider:
         if isinstance(advice, Go):
             aim = Aim("attain", np.array([advice.square]), advice.why)
             walk = self._pursue([aim], stage, situation, lambda: f"no way leads to where {node.name} can be taken")
-            return replace(walk, command=halting(walk.command, advice.place, situation.model))
+            if walk.command is not None:
+                return replace(walk, command=halting(walk.command, advice.place, situation.model))
+            advice = Refusal(False, lambda: f"{node.name} cannot be reached to be taken")
         if isinstance(advice, See):
             return self._pursue([Aim("inspect", *advice.lookout)], stage, situation, lambda: "")
         unknown = nowhere(land.missing or "no way is known to carry it there", land.lookouts)

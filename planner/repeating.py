@@ -1,7 +1,7 @@
 """Going round in circles: the same command in the same state of belief leads where it led before.
 
 What a walk was to show it has not shown then, and whatever made it seem worth while will do so again. So the aim that
-leads there gets dearer, until another one is chosen; what is chosen all the same is given up.
+leads there gets dearer, until another one is chosen; what is chosen all the same is given up, until more is known.
 """
 
 from collections import Counter
@@ -17,6 +17,7 @@ from planner.steps import Square
 
 WEARY = 25.0  # squares that an aim gets dearer each time
 MOST = 4  # times that an aim may lead in circles before it is given up
+KNOWN = 3  # from here on a state tells what is known, and not where he is
 State = tuple[object, ...]
 
 
@@ -26,6 +27,7 @@ class Circles:
     def __init__(self) -> None:
         self._done: set[tuple[State, Command]] = set()
         self._vain: Counter[Square] = Counter()  # of the lattice
+        self._known: State = ()  # when they were
 
     def noticed(self, model: WorldModel, command: Command) -> bool:
         """Was this command given before when just as much was known? It is remembered that it is given now."""
@@ -40,6 +42,10 @@ class Circles:
 
     def priced(self, aims: Sequence[Aim], model: WorldModel) -> list[Aim]:
         """The aims, dearer by what was aimed at in vain; without those that were so too often."""
+        known = _state(model)[KNOWN:]
+        if known != self._known:
+            self._known = known
+            self._vain.clear()
         if not self._vain:
             return list(aims)
         rows, columns = model.labels.shape
