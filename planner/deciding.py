@@ -74,6 +74,7 @@ class Decider:
         self._level = 0
         self._doubted: set[str] = set()  # objects that are being looked at until they are settled
         self._circles = Circles()
+        self._looked = 0  # squares he had looked from when he went to see where it must end, until it is one more
         self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
@@ -198,8 +199,9 @@ class Decider:
 
     def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
         """What to do to carry something to where its goal holds; while that is not known, to near it."""
-        if land.ends and land.lookouts and self.carrier.missed >= MISSED:
-            self.carrier.missed = 0
+        looked = len(situation.model.looked_from)
+        if land.lookouts and (looked == self._looked or (land.ends and self.carrier.missed >= MISSED)):
+            self.carrier.missed, self._looked = 0, looked
             return Refusal(False, lambda: land.missing)
         if land.ends:
             return self.carrier.advise(node, land.ends, situation)
@@ -210,6 +212,7 @@ class Decider:
             advice = self.carrier.advise(node, land.approach, situation)
             if isinstance(advice, Act | Go):
                 return advice
+        self._looked = looked
         return Refusal(not self.carrier.begun, lambda: land.missing)
 
     def _inspect(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:

@@ -80,7 +80,7 @@ def test_moments_of_a_square(side: int, seen: bool) -> None:
     ground = np.where(image == 1, DRAWN, DRAWN if seen else UNSEEN).astype(np.int8)
     found = blobs(image, ground)
     assert found.area.tolist() == [side * side]
-    assert found.apart.tolist() == [seen]
+    assert found.outward.tolist() == [0 if seen else 4 * side]
     assert found.spread == pytest.approx([1 / 6])
     assert found.lengthy == pytest.approx([0])
 
