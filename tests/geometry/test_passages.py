@@ -110,7 +110,10 @@ def test_a_passage_avoided_is_a_neck_cut(free):
     nodes = [(node["x"], node["y"]) for _, node in screen.pathgraph.nodes(data=True)]
     start, goal = nodes[0], nodes[-1]  # on the skeleton: elsewhere a square may lie on the cut itself
     ends = {start, goal}
-    for passage in doors(screen):  # at lesser necks other chains may run where the floor is cut
+    chains = [{tuple(point) for point in data["points"]} for _, _, data in screen.pathgraph.edges(data=True)]
+    for passage in doors(screen):
+        if sum(not chain.isdisjoint(passage.cut) for chain in chains) > 1:
+            continue  # other chains run where the floor is cut, as at lesser necks
         label = screen.parts([passage])
         ways = screen.routes(start, goal, avoid=[passage])
         if not ends & {passage.place, passage.towards}:  # a junction in the cut's way may lose other chains to it
