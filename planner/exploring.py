@@ -94,9 +94,7 @@ def _telling(screens: Screens, near: Squares, mask: Mask) -> Squares:
     open_ = grown(mask, 1) & (screens.model.view.state == OPEN)
     if len(near) < 2 or not open_.any():
         return near
-    sums = np.pad(open_, ((CLOSE + 1, CLOSE), (CLOSE + 1, CLOSE))).astype(np.int32).cumsum(0).cumsum(1)
-    side = 2 * CLOSE + 1
-    seen = (sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]).ravel()[near]
+    seen = _sums(np.pad(open_, CLOSE).astype(np.float64), CLOSE).ravel()[near]
     value = (seen + 1) / (screens.distances[0].ravel()[near] / 5 + SETTING_OUT)
     best: Squares = near[value >= ALIKE * value.max()]
     return best
@@ -185,8 +183,16 @@ def _gain(screens: Screens) -> NDArray[np.float64]:
     seen = np.pad(view.seen, REACH)
     beside_floor = _beside(np.pad(np.where(view.probability <= HALF, FLOOR, WALL), REACH), seen) == FLOOR
     worth = np.where(seen, 0.0, np.where(beside_floor, 1.0, BARREN))
-    sums = np.pad(worth, 1).cumsum(0).cumsum(1)[:-1, :-1]
-    side = 2 * REACH + 1
+    return _sums(worth, REACH)
+
+
+def _sums(framed: NDArray[np.float64], reach: int) -> NDArray[np.float64]:
+    """(rows, columns): for each square the sum over all within so many rows and columns.
+
+    framed : the values, with as many rows and columns more on each side.
+    """
+    sums = np.pad(framed, 1).cumsum(0).cumsum(1)[:-1, :-1]
+    side = 2 * reach + 1
     answer: NDArray[np.float64] = sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]
     return answer
 

@@ -17,7 +17,6 @@ from planner.steps import Square
 
 WEARY = 25.0  # squares that an aim gets dearer each time
 MOST = 4  # times that an aim may lead in circles before it is given up
-KNOWN = 3  # from here on a state tells what is known, and not where he is
 State = tuple[object, ...]
 
 
@@ -31,7 +30,8 @@ class Circles:
 
     def noticed(self, model: WorldModel, command: Command) -> bool:
         """Was this command given before when just as much was known? It is remembered that it is given now."""
-        key = (_state(model), command)
+        x, y = model.place
+        key = ((round(x, 3), round(y, 3), model.held, _known(model)), command)
         again = key in self._done
         self._done.add(key)
         return again
@@ -42,7 +42,7 @@ class Circles:
 
     def priced(self, aims: Sequence[Aim], model: WorldModel) -> list[Aim]:
         """The aims, dearer by what was aimed at in vain; without those that were so too often."""
-        known = _state(model)[KNOWN:]
+        known = _known(model)
         if known != self._known:
             self._known = known
             self._vain.clear()
@@ -62,11 +62,10 @@ class Circles:
         return found
 
 
-def _state(model: WorldModel) -> State:
-    """What tells whether anything new is known: where he is, what he holds, how much was seen and is settled."""
-    x, y = model.place
+def _known(model: WorldModel) -> State:
+    """What tells whether anything new is known: how much was seen and is settled, what stopped him, where loads lie."""
     settled = int((model.view.state != OPEN).sum())
     things = tuple(
         (node.name, node.stuck, node.patch.west, node.patch.south) for node in model.objects if node.moved or node.stuck
     )
-    return round(x, 3), round(y, 3), model.held, int(model.view.seen.sum()), settled, len(model.barred), things
+    return int(model.view.seen.sum()), settled, len(model.barred), things
