@@ -92,14 +92,16 @@ class Surprise:
     # -- what there is to try --------------------------------------------------------------------
 
     @property
-    def _moves(self) -> bool:
-        """Was the thing in hand to be moved?"""
-        return self.held is not None and isinstance(self.command, Push | Turn)
+    def _moving(self) -> tuple[str, Push | Turn] | None:
+        """The name of the thing that was to be moved, and by which command; None when none was."""
+        if self.held is not None and isinstance(self.command, Push | Turn):
+            return self.held, self.command
+        return None
 
     @property
     def _turned(self) -> bool:
         """Has anything been turned, so that it tells where in his square he stands?"""
-        turning = self._moves and isinstance(self.command, Turn)
+        turning = self._moving is not None and isinstance(self.command, Turn)
         return turning or any(load.turned % 360 for load in self.loads.values())
 
     @property
@@ -137,8 +139,8 @@ class Surprise:
         discs = set()
         for load in self.loads.values():
             lying = [load.polygon, load.first]
-            if load.name == self.held and isinstance(self.command, Push | Turn):
-                lying.append(as_motion(self.command, self.lattice, self.place).carry(load.polygon))
+            if self._moving is not None and load.name == self._moving[0]:
+                lying.append(as_motion(self._moving[1], self.lattice, self.place).carry(load.polygon))
             middles = [self.lattice.place_to_utak(lain.centroid.x, lain.centroid.y) for lain in lying]
             middles += [was.middle for look in self.looks for was in look.moved if was.name == load.name]
             corners = shapely.get_coordinates(load.polygon) - shapely.get_coordinates(load.polygon.centroid)
@@ -156,15 +158,16 @@ class Surprise:
     ) -> Supposed:
         """What contradicts a lattice. cut_short : the motion may have ended early, for whatever reason."""
         under = laid_on(lattice, self.lattice, self.evidence, self.looks, self.loads)
-        if self.held is None or not isinstance(self.command, Push | Turn):  # nothing was to be moved: it went as said
+        if self._moving is None:  # it went as said
             place = lattice.place_from_utak(*self._own)
             misfits = under.misfits + clashes(lattice, under.evidence, under.loads.values(), place, self.ranges)
             return Supposed(lattice, hypotheses, place, None, misfits, searched)
         tried = []
-        load = under.loads[self.held]
-        for outcome in self._outcomes(lattice, under, load.polygon, self.command, cut_short):
+        held, command = self._moving
+        load = under.loads[held]
+        for outcome in self._outcomes(lattice, under, load.polygon, command, cut_short):
             slack = load.slack if outcome.how == "predicted" or not cut_short else max(load.slack, STRIDE / 2)
-            after = {**under.loads, self.held: load.moved(outcome.polygon, slack)}
+            after = {**under.loads, held: load.moved(outcome.polygon, slack)}
             misfits = under.misfits + clashes(lattice, under.evidence, after.values(), outcome.place, self.ranges)
             tried.append(Supposed(lattice, hypotheses, outcome.place, outcome, misfits, searched))
             if not misfits:
@@ -190,10 +193,10 @@ class Surprise:
     @cached_property
     def _walls(self) -> Obstacles:
         """What stands about the motion on the lattice that is believed."""
-        assert self.held is not None
-        assert isinstance(self.command, Push | Turn)
-        motion = as_motion(self.command, self.lattice, self.place)
-        return walls(self.evidence, self.loads[self.held].polygon, self.place, motion)
+        assert self._moving is not None
+        held, command = self._moving
+        motion = as_motion(command, self.lattice, self.place)
+        return walls(self.evidence, self.loads[held].polygon, self.place, motion)
 
 
 def agreeing(
