@@ -81,7 +81,7 @@ def bare(function: Callable[P, R]) -> Kernel[P, R]:
 def _dispatcher(function: Callable[P, R], counting: bool) -> Callable[P, R]:
     import numba
 
-    options: Any = {"error_model": "numpy", "_nrt": counting}
+    options: Any = {"error_model": "numpy", "_nrt": counting, "no_cfunc_wrapper": True}
     try:
         machine = numba.njit(cache=True, **options)(function)
     except RuntimeError:  # no directory to keep the cache in: compile anew in each process

@@ -158,7 +158,7 @@ def _fan(kind: int, image: Image) -> Floats:
     for k in range(angles):
         angle = 2 * math.pi * k / ANGLES
         for t in range(thicknesses):
-            starts[k * thicknesses + t] = _start(kind, image, angle, 1.5 + t * 0.9)
+            _start(kind, image, angle, 1.5 + t * 0.9, starts[k * thicknesses + t])
     return starts
 
 
@@ -180,8 +180,8 @@ def _round_start(image: Image) -> Floats:
 
 
 @compiled
-def _start(kind: int, image: Image, angle: float, thick: float) -> Floats:
-    """A shape in one direction, its sizes read off the extent of the squares.
+def _start(kind: int, image: Image, angle: float, thick: float, out: Floats) -> None:
+    """Write a shape in one direction to out (6,), its sizes read off the extent of the squares.
 
     A shape reaches into its outermost squares by less than half of what a square measures across that direction; a
     little less than that is taken off.
@@ -199,13 +199,13 @@ def _start(kind: int, image: Image, angle: float, thick: float) -> Floats:
     off = (abs(c) + abs(s)) / 2 - 0.3
     u0, u1, v0, v1 = u0 + off, u1 - off, v0 + off, v1 - off
     if kind == TRIANGLE:
-        low = np.empty(6)
-        low[0], low[1] = c * u0 - s * v0, s * u0 + c * v0
-        low[2], low[3] = c * u1 - s * v0, s * u1 + c * v0
-        low[4], low[5] = c * tip - s * v1, s * tip + c * v1
-        return low
+        out[0], out[1] = c * u0 - s * v0, s * u0 + c * v0
+        out[2], out[3] = c * u1 - s * v0, s * u1 + c * v0
+        out[4], out[5] = c * tip - s * v1, s * tip + c * v1
+        return
     mid_u, mid_v = (u0 + u1) / 2, (v0 + v1) / 2
     wide, high = max(u1 - u0, 1.0), max(v1 - v0, 1.0)
     if kind == SQUARE:
         wide = (wide + high) / 2
-    return np.array([angle, c * mid_u - s * mid_v, s * mid_u + c * mid_v, wide, high, thick])
+    out[0], out[1], out[2] = angle, c * mid_u - s * mid_v, s * mid_u + c * mid_v
+    out[3], out[4], out[5] = wide, high, thick

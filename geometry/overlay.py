@@ -188,12 +188,13 @@ def settle(kind: int, shape: Floats, free: Floats, image: Image, steps: int) -> 
     """
     simplex = np.empty((7, 6))
     losses = np.empty(7)
-    simplex[0] = shape
+    middle, trial, further = np.empty(6), np.empty(6), np.empty(6)
+    _mix(1.0, shape, 0.0, shape, simplex[0])
     n = 0
     for k in range(6):
         if free[k] > 0.0:
             n += 1
-            simplex[n] = shape
+            _mix(1.0, shape, 0.0, shape, simplex[n])
             simplex[n, k] += free[k]
     for k in range(n + 1):
         losses[k] = disagreement(kind, simplex[k], image)
@@ -202,34 +203,41 @@ def settle(kind: int, shape: Floats, free: Floats, image: Image, steps: int) -> 
         low, high, second = _ends(losses, n + 1)
         if losses[low] <= 0.0 or losses[high] - losses[low] < 1e-4:
             break
-        middle = np.zeros(6)
-        for k in range(n + 1):
-            if k != high:
-                for m in range(6):
+        for m in range(6):
+            middle[m] = 0.0
+            for k in range(n + 1):
+                if k != high:
                     middle[m] += simplex[k, m] / n
-        trial = 2.0 * middle - simplex[high]
+        _mix(2.0, middle, -1.0, simplex[high], trial)
         loss = disagreement(kind, trial, image)
         if loss < losses[low]:
-            further = 3.0 * middle - 2.0 * simplex[high]
+            _mix(3.0, middle, -2.0, simplex[high], further)
             other = disagreement(kind, further, image)
             if other < loss:
-                trial, loss = further, other
+                trial, further, loss = further, trial, other
         elif loss >= losses[second]:
-            towards = trial if loss < losses[high] else simplex[high]
-            nearer = 0.5 * (middle + towards)
-            other = disagreement(kind, nearer, image)
+            _mix(0.5, middle, 0.5, trial if loss < losses[high] else simplex[high], further)
+            other = disagreement(kind, further, image)
             if other < min(loss, losses[high]):
-                trial, loss = nearer, other
+                trial, further, loss = further, trial, other
             else:
                 for k in range(n + 1):
                     if k != low:
-                        simplex[k] = 0.5 * (simplex[k] + simplex[low])
+                        _mix(0.5, simplex[k], 0.5, simplex[low], simplex[k])
                         losses[k] = disagreement(kind, simplex[k], image)
                 continue
-        simplex[high], losses[high] = trial, loss
+        _mix(1.0, trial, 0.0, trial, simplex[high])
+        losses[high] = loss
     low, high, second = _ends(losses, n + 1)
-    shape[:] = simplex[low]
+    _mix(1.0, simplex[low], 0.0, shape, shape)
     return float(losses[low])
+
+
+@compiled
+def _mix(p: float, one: Floats, q: float, other: Floats, out: Floats) -> None:
+    """Write p one + q other into out, which may be one of them (shapes of six numbers)."""
+    for k in range(6):
+        out[k] = p * one[k] + q * other[k]
 
 
 @compiled

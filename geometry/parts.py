@@ -47,8 +47,13 @@ def mark_crossed(shut: Bools, line: Points) -> None:
 
     line : (n, 2) points (x, y), each in a square next to that of the one before.
     """
-    west, south = int(np.floor(line[:, 0].min())) - 1, int(np.floor(line[:, 1].min())) - 1
-    wide, high = int(np.floor(line[:, 0].max())) + 2 - west, int(np.floor(line[:, 1].max())) + 2 - south
+    low_x = high_x = line[0, 0]
+    low_y = high_y = line[0, 1]
+    for k in range(1, len(line)):
+        low_x, high_x = min(low_x, line[k, 0]), max(high_x, line[k, 0])
+        low_y, high_y = min(low_y, line[k, 1]), max(high_y, line[k, 1])
+    west, south = int(np.floor(low_x)) - 1, int(np.floor(low_y)) - 1
+    wide, high = int(np.floor(high_x)) + 2 - west, int(np.floor(high_y)) + 2 - south
     odd = np.zeros((2, high, wide), np.bool_)
     for k in range(len(line) - 1):
         (ax, ay), (bx, by) = line[k], line[k + 1]

@@ -17,10 +17,10 @@ from geometry.passages import Passage, on_chain
 from geometry.polyline import crossings_of, join_words, word_of_line
 from geometry.rope import Ends
 from geometry.route import Route, read_answers
-from geometry.runs import Runs
+from geometry.runs import find_runs
 from geometry.skeleton import SADDLE
 from geometry.tightening import tight_route
-from geometry.ways import Ways, ascend, locate
+from geometry.ways import ascend, find_ways, locate
 
 XY = tuple[float, float]
 SPARE, FEWER = 8, 1  # ways tried beyond those wanted, since their order changes when ropes are pulled tight
@@ -30,13 +30,14 @@ NO_BARS: Ints = np.zeros((0, 2), np.int32)
 
 
 def rehearse() -> None:
-    """Compile what takes longest, ``itineraries``, before there is a screen: for arrays of the types it will meet."""
-    ints, table, reals, grid = np.empty(1, np.int32), np.empty((1, 4), np.int32), np.empty(1), np.empty((1, 4))
-    chains = Chains(ints, table, table, ints, ints, ints, reals)
-    runs = Runs(*[ints] * len(Runs._fields))
-    ways = Ways(ints, ints, ints, reals, grid, table, table, grid, grid)
-    ground = Ground(ints, np.empty(1, np.uint8), 1, chains, runs, ways, False)
-    itineraries.entry(ground, (0.0, 0.0, 0.0, 0.0), 1, new_desk(1, 1, 1, 1, 8, NO_BARS))
+    """Compile the longest, the searches for routes, before there is a screen, for arrays of the types they meet."""
+    ints, none = np.zeros(1, np.int32), np.full((1, 4), -1, np.int32)
+    chains = Chains(ints, none, np.empty((0, 2), np.int32), ints, ints, ints[:0], np.empty(0))  # one node, no chain
+    runs = find_runs(none, 1)
+    ground = Ground(ints, np.zeros(1, np.uint8), 1, chains, runs, find_ways(none, chains, runs, False), False)
+    ends = 0.0, 0.0, 0.0, 0.0
+    itineraries.entry(ground, ends, 1, new_desk(1, 1, 1, 1, 8, NO_BARS))
+    shortest_line.entry(runs, ends, *new_scout(8, runs))
 
 
 def may_miss(desk: Desk, found: int) -> bool:

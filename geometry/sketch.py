@@ -78,7 +78,7 @@ def pictures(
     slopes = np.append(np.linspace(hot, COLD, max(warming, 1)), np.full(SWEEPS * (number - 1), COLD))
     _draw(
         PRICES,
-        np.ascontiguousarray(ground).ravel(),
+        np.array(ground, order="C").ravel(),  # a copy, for a kernel is compiled once more for arrays that are read only
         image.ravel(),
         squares.astype(np.int64),
         _ranks(squares, ground.size),
@@ -130,7 +130,8 @@ def _draw(price, ground, image, squares, ranks, ends, field, share, where, used,
             else:
                 _flip(image, squares, ends, field, share, fields, k)
         if sweep >= first and (sweep - first) % SWEEPS == 0:
-            taken[(sweep - first) // SWEEPS] = image
+            for k in range(len(image)):  # an assignment in one would compile three seconds longer
+                taken[(sweep - first) // SWEEPS, k] = image[k]
 
 
 @compiled

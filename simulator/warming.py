@@ -4,6 +4,7 @@ Later runs find them in numba's cache. Nothing depends on this: a kernel that is
 is called.
 """
 
+import gc
 import os
 import subprocess
 import sys
@@ -21,8 +22,12 @@ def warm() -> None:
         return
     tell()
     command = [sys.executable, "-m", "simulator.warming"]
-    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL):
-        compile_longest()
+    gc.disable()  # a compiler makes millions of objects that live: looking for garbage among them takes a tenth of it
+    try:
+        with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL):
+            compile_longest()
+    finally:
+        gc.enable()
 
 
 def cold() -> bool:
@@ -35,36 +40,43 @@ def cold() -> bool:
 
 
 def compile_longest() -> None:
-    """The search for routes, which takes longest, and the shapes of images, which share none of it."""
+    """The searches for ways, which take half of the time and share much of their code."""
     import numpy as np
 
     from geometry.questions import rehearse
-    from geometry.template import fit_shapes
+    from geometry.reach import reach
 
     rehearse()
-    fit_shapes(np.array([[1, 1, 1, 0], [1, 1, 1, 1], [0, 1, 1, 1]], np.bool_))
+    reach(np.ones((2, 2), np.bool_), 0, 0)
 
 
 def compile_others() -> None:
-    """Use what else a run needs: screens, necks, shortest ways, distances and contacts."""
+    """Use what else a run needs: screens, necks, contacts, pictures and the shapes of images."""
     import numpy as np
     import shapely
 
+    from geometry.components import boxes, components
     from geometry.contact import Body, Obstacles
-    from geometry.reach import reach
     from geometry.rigid import Rotate, Translate
+    from geometry.sketch import DRAWN, Counts, blobs, pictures
+    from geometry.template import fit_shapes
 
     free = np.ones((12, 20), np.bool_)
     free[:4, 9:11] = free[7:, 9:11] = False
     screen = geometry.Screen(free)
     screen.parts(screen.passages())
-    screen.shortest((2.5, 2.5), (17.5, 9.5))
-    reach(free, 1, 1)
     walls = Obstacles([shapely.box(10, 0, 11, 5)])
     for body in (Body(shapely.box(1, 1, 3, 3), [(4.0, 1.0)]), Body(None, [(4.0, 1.0)])):
         walls.first_contact(body, Translate(8.0, 0.0))
         walls.first_contact(body, Rotate(30.0, (4.0, 1.0)))
+    boxes(components(np.ones((2, 2), np.bool_)).labels, 1)
+    drawn, full = np.full((1, 1), DRAWN, np.int8), np.ones((1, 1), np.int8)
+    one = np.ones(1, np.int16)
+    counts = Counts(np.zeros((1, 1), np.int32), np.ones((1, 1), np.int16), one, one)
+    blobs(pictures(drawn, counts, full, 1, 1)[0], drawn)
+    fit_shapes(np.array([[1, 1, 1, 0], [1, 1, 1, 1], [0, 1, 1, 1]], np.bool_))
 
 
 if __name__ == "__main__":
+    gc.disable()
     compile_others()

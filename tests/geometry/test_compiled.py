@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import geometry
-from geometry import Screen, questions
+from geometry import Screen, questions, ways
 from geometry.compiled import compiled
 
 
@@ -40,8 +40,11 @@ def test_importing_geometry_loads_neither_numba_nor_networkx() -> None:
 
 def test_routes_are_rehearsed_with_the_types_they_are_played_with() -> None:
     questions.rehearse()
-    assert len(Screen(np.ones((4, 4), bool)).routes((0.5, 0.5), (3.5, 3.5), k=4)) == 1
-    assert len(getattr(questions.itineraries.machine(), "overloads", [None])) == 1
+    screen = Screen(np.ones((4, 4), bool))
+    assert len(screen.routes((0.5, 0.5), (3.5, 3.5), k=4)) == 1
+    assert screen.shortest((0.5, 0.5), (3.5, 3.5)) is not None
+    for kernel in (questions.itineraries, questions.shortest_line, ways.measure_ways):
+        assert len(getattr(kernel.machine() if hasattr(kernel, "machine") else kernel, "overloads", [None])) == 1
 
 
 def test_whole_numbers_of_all_widths_share_one_copy() -> None:
