@@ -23,7 +23,7 @@ from kb.lattice import CENTRE
 from kb.worldmodel import Node, Patch, WorldModel
 from planner.destinations import Situation
 from planner.exploring import Lookout, inspection, sight_of
-from planner.haulage import Haul, Hauler, Refusal, Request
+from planner.haulage import Haul, Hauler, Refusal, Request, swept_squares
 from planner.landing import in_view, lands, region_of
 
 Mask = NDArray[np.bool_]
@@ -34,6 +34,7 @@ ALIKE = 1e-3  # squares^2 by which an object may lie otherwise than a plan says
 TIGHTEST = 2  # times that a thing stood against something unawares before he takes it elsewhere
 MOST_PLANS = 40  # in one task
 LOOSE = 0.02  # squares by which he may stand elsewhere in his square before a turn needs more room
+FARTHER = 4.0  # squares that a plan must bring a thing on to be begun before all of its way is seen
 NOWHERE = 0.1  # squares: who comes no further is where he was
 
 
@@ -221,7 +222,10 @@ class Carrier:
             node, haul = first
         seen = self._seen(haul, node, situation)
         if seen is not None:
-            return seen
+            clear = _clear_part(haul, node, situation)
+            if clear is None:
+                return seen
+            haul = clear
         self._went_on = situation.model.place if request.held else None
         self._plans += 1
         if self._plans > MOST_PLANS:
@@ -299,6 +303,45 @@ class Carrier:
             dx, dy = leg.place[0] - model.place[0], leg.place[1] - model.place[1]
             return Act(Move(*model.lattice.to_utak(dx, dy)), "to the middle of the square")
         return Go(row * model.labels.shape[1] + column, leg.place, f"{course.name} can be taken from there")
+
+
+def _clear_part(haul: Haul, node: Node, situation: Situation) -> Haul | None:
+    """As much of a plan as needs no look first, when that brings the thing on; else None.
+
+    From there he sees what he could only have seen after a walk there and back.
+    """
+    first, *others = haul.plan.legs
+    if others or haul.turned.any():  # where it must be turned, and taken anew, depends on what is not seen
+        return None
+    yard = Yard(situation.screens.safe | situation.model.mask(node.patch))
+    start = in_view(node.polygon, situation)
+    shape, place = start, first.place
+    clear: list[Motion] = []
+    for motion in first.motions:
+        part = motion if yard.lets(shape, place, motion) else _longest_push(yard, shape, place, motion)
+        if part is None:
+            break
+        clear.append(part)
+        shape = part.carry(shape)
+        if isinstance(part, Translate):
+            place = place[0] + part.dx, place[1] + part.dy
+        if part is not motion:
+            break
+    if math.dist(first.place, place) < FARTHER:
+        return None
+    plan = replace(haul.plan, legs=(replace(first, motions=tuple(clear)),))
+    swept, turned = swept_squares(plan, start, situation.model.labels.shape)
+    return replace(haul, plan=plan, swept=swept, turned=turned)
+
+
+def _longest_push(yard: Yard, shape: Any, place: Place, motion: Motion) -> Translate | None:
+    """The longest part of a push by whole squares, or nearly the same way, that is free."""
+    if not isinstance(motion, Translate):
+        return None
+    steps = math.floor(math.hypot(motion.dx, motion.dy))
+    parts = ((round(motion.dx * n / steps), round(motion.dy * n / steps)) for n in range(steps - 1, 0, -1))
+    pushes = (Translate(float(dx), float(dy)) for dx, dy in parts)
+    return next((push for push in pushes if yard.lets(shape, place, push)), None)
 
 
 def _course(haul: Haul, node: Node, model: WorldModel) -> Course:

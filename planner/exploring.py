@@ -80,22 +80,26 @@ def close(screens: Screens, mask: Mask, chance: float, arrive: bool) -> Squares:
     beside = grown(mask, 1)
     near = np.flatnonzero(screens.floor & beside)
     if chance >= LIKELY and len(near) and not (beside & screens.model.squares(screens.model.looked_from)).any():
-        return near if arrive else _telling(screens, near, mask)
+        return near if arrive else _telling(screens, near, mask, chance)
     about = grown(mask, CLOSE)
     for apart in (APART, 0):
         near = np.flatnonzero(_new(screens, apart) & about)
         if len(near):
             break
-    return _telling(screens, near, mask)
+    return _telling(screens, near, mask, chance)
 
 
-def _telling(screens: Screens, near: Squares, mask: Mask) -> Squares:
-    """Of some floor the squares from which most of what is open of a thing is seen exactly, for the way there."""
+def _telling(screens: Screens, near: Squares, mask: Mask, chance: float) -> Squares:
+    """Of some floor the squares from which most of what is open of a thing is seen exactly, for the way there.
+
+    chance : that it is what is looked for, and that who is not beside it must set out once more to be.
+    """
     open_ = grown(mask, 1) & (screens.model.view.state == OPEN)
     if len(near) < 2 or not open_.any():
         return near
     seen = _sums(np.pad(open_, CLOSE).astype(np.float64), CLOSE).ravel()[near]
-    value = (seen + 1) / (screens.distances[0].ravel()[near] / 5 + SETTING_OUT)
+    apart = ~grown(mask, 1).ravel()[near]
+    value = (seen + 1) / (screens.distances[0].ravel()[near] / 5 + SETTING_OUT * (1 + chance * apart))
     best: Squares = near[value >= ALIKE * value.max()]
     return best
 

@@ -18,6 +18,7 @@ TESTING = ("explore", "inspect", "settle")  # aims that do not mind where in a s
 EDGE = 0.4618  # squares from a centre, not far from the line between two squares
 LOOSE = 0.1  # squares by which he may have woken elsewhere in his square before he tries it
 DIGITS = 12  # of a command
+BETWEEN = 1e-3  # squares from the line between two squares that are on it
 ASIDE = (0.0618, 0.0341)  # squares from a centre, where no turn by whole degrees leads to the line between two squares
 
 
@@ -49,14 +50,14 @@ def move_to(model: WorldModel, square: Square, aside: tuple[float, float]) -> Mo
 def _aside(screens: Screens, square: Square, kind: str) -> tuple[float, float]:
     """How far from the centre of a square he halts.
 
-    As long as it is open within some degrees how the lattice lies, it is a little beside the centre: halts on the line
-    between two squares, where it would be chance which of them he sees himself in, could never be explained. After
-    that he halts, where it costs nothing, near to that line: if he woke elsewhere in his square than he thinks, he sees
-    himself in the next one.
+    As long as it is open within some degrees how the lattice lies, it is a little beside the centre where some turn by
+    whole degrees would lead from there to the line between two squares: such halts, where it would be chance in which
+    of them he sees himself, could never be explained. After that he halts, where it costs nothing, near to that line:
+    if he woke elsewhere in his square than he thinks, he sees himself in the next one.
     """
     model = screens.model
     if model.spread > ASKEW:
-        return ASIDE
+        return ASIDE if _may_halt_between(model, square) else (0.0, 0.0)
     west, south, east, north = model.leeway
     test = tuple(EDGE if up > LOOSE else -EDGE if -down > LOOSE else 0.0 for down, up in ((west, east), (south, north)))
     here = (model.place[0] - model.view.west, model.place[1] - model.view.south)
@@ -64,6 +65,13 @@ def _aside(screens: Screens, square: Square, kind: str) -> tuple[float, float]:
     if kind not in TESTING or not clear_line(screens.safe, here, there):
         return (0.0, 0.0)
     return test[0], test[1]
+
+
+def _may_halt_between(model: WorldModel, square: Square) -> bool:
+    """Might the way to a centre end between two squares, did the lattice lie otherwise by whole degrees?"""
+    x, y = model.view.west + square[0] + 0.5 - model.place[0], model.view.south + square[1] + 0.5 - model.place[1]
+    ends = np.exp(1j * np.radians(np.arange(90.0))) * complex(x, y) + complex(*model.place)
+    return bool((np.abs(np.stack([ends.real, ends.imag]) % 1.0 - 0.5) > 0.5 - BETWEEN).any())
 
 
 def halting(command: Command | None, place: tuple[float, float], model: WorldModel) -> Command | None:
