@@ -14,10 +14,12 @@ from kb.facts import Fact, Symbol, Term
 from kb.rooms import LIKELY_DOOR, Rooms, rooms_of
 from kb.task import Task
 from kb.worldmodel import WorldModel
-from planner.exploring import Lookout, jambs, rooms_beyond
+from planner.exploring import APART, Lookout, frontiers, jambs, promised, rooms_beyond
 from planner.screen import Screens, Squares, grown
 
 Mask = NDArray[np.bool_]
+ROOMY = 20  # percent that floor unseen promises, from which on it may hold a corner
+ROOM = 30.0  # squares that the next room may go further, east and north added
 RAYS = 192  # places along a line of sight at which it may meet the verge
 
 
@@ -100,7 +102,40 @@ def corner(side: str, situation: Situation) -> Destination:
     if not model.view.seen[around].all():
         lookout = Lookout(np.array([best]), f"the floor goes on to the {side}, unseen")
         return nowhere(lookout.what, (lookout,))
+    rooms = _rooms_to_see(side, situation)
+    if rooms:
+        return nowhere(rooms[0].what, rooms)
     return Destination(np.array([best]))
+
+
+def _rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
+    """Rooms that are not seen and may go further towards a side than all that is.
+
+    The floor goes on unseen behind what may be a door, or is seen where no way leads yet.
+    """
+    screens, rooms = situation.screens, situation.rooms
+    if not rooms.doors:
+        return ()
+    model, labels = screens.model, rooms.labels.ravel()
+    column, row = situation.corners[side].square
+    best = np.array([row * model.labels.shape[1] + column])
+    looks = [look for look in promised(screens, frontiers(screens, APART)) if look.chance >= ROOMY]
+    looks = [look for look in looks if (labels[look.squares] != labels[best]).any()]
+    least = _towards(side, best, model) - ROOM
+    what = f"a room is not seen that may go further to the {side}"
+    return tuple(
+        look._replace(what=what)
+        for look in [*looks, *rooms_beyond(screens)]
+        if _towards(side, look.squares, model) >= least
+    )
+
+
+def _towards(side: str, squares: Squares, model: WorldModel) -> float:
+    """How far the furthest of some squares lies towards a corner of Utak's frame: east and north added."""
+    rows, columns = np.divmod(squares, model.labels.shape[1])
+    places = zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True)
+    east, north = np.array([model.lattice.place_to_utak(x + 0.5, y + 0.5) for x, y in places]).T
+    return float(((east if "east" in side else -east) + (north if "north" in side else -north)).max())
 
 
 def beside(parameter: str, situation: Situation) -> Destination:

@@ -8,8 +8,14 @@ import pytest
 import shapely
 from shapely.affinity import rotate, translate
 
+import planner.carrier
 from benchmarks.trial import Conditions, run_trial
+from geometry.rigid import Translate
 from kb.body import Move, Push, Release, Turn
+from kb.worldmodel import Node
+from planner.carrier import _clear_part
+from planner.destinations import Situation
+from planner.haulage import Haul
 from simulator.episode import EpisodeLog
 from simulator.robots import make_robot
 from simulator.scenario import read_scenario
@@ -154,6 +160,34 @@ def test_a_grasp_that_slipped_is_made_again(tmp_path: Path) -> None:
     assert done.result.verdict == "done", done.result.reason
     _, _, east, north = done.session.table.polygons["t"].bounds
     assert max(30 - east, 20 - north) < 1.5
+
+
+def test_what_is_clear_of_a_plan_is_done_before_the_rest_is_seen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun = []
+
+    def watched(haul: Haul, node: Node, situation: Situation) -> Haul | None:
+        part = _clear_part(haul, node, situation)
+        if part is not None:
+            own = situation.model.mask(node.patch)
+            (leg,), (whole, *_) = part.plan.legs, haul.plan.legs
+            *before, last = leg.motions
+            assert not (part.swept & ~situation.screens.safe & ~own).any()
+            assert tuple(before) == whole.motions[: len(before)]
+            aim = whole.motions[len(before)]
+            assert isinstance(last, Translate)
+            assert isinstance(aim, Translate)
+            assert abs(last.dx * aim.dy - last.dy * aim.dx) <= math.hypot(aim.dx, aim.dy)  # nearly the same way
+            assert math.hypot(last.dx, last.dy) <= math.hypot(aim.dx, aim.dy) + 1
+            begun.append(part)
+        return part
+
+    monkeypatch.setattr(planner.carrier, "_clear_part", watched)
+    for seed in (27006, 27010, 27014):
+        trial = run_trial(5, seed, Conditions(plain=True), tmp_path / str(seed))
+        assert trial.right, (trial.verdict, trial.reason, trial.crash)
+    assert begun
 
 
 @pytest.mark.parametrize("task", [5, 6, 7, 8, 9])

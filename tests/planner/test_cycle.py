@@ -3,10 +3,12 @@
 import math
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from benchmarks.trial import Conditions, run_trial
 from kb.body import Command, Impression, Move
 from kb.corners import corners
 from kb.facts import Symbol
@@ -91,6 +93,34 @@ def test_the_northeast_corner_of_a_plain_room() -> None:
     assert robot.verdict.verdict == "done"
     assert body.square == (20, 16)
     assert robot.steps == len(body.track) - 1 <= 8
+
+
+def two_rooms(west: int, east: int, door: range) -> list[str]:
+    """Two rooms 14 squares wide on the same southern wall, so many squares long, with a door in between."""
+    rows = ["b" * 32]
+    for north in range(max(west, east), 0, -1):
+        left, right = ("." if north <= size else "b" for size in (west, east))
+        rows.append("b" + left * 14 + ("bb" if north not in door else "..") + right * 14 + "b")
+    return [*rows, rows[0]]
+
+
+def with_utak(rows: list[str], column: int, north: int) -> list[str]:
+    """Utak in a square; the one in the southwest corner of the floor is (1, 1)."""
+    row = len(rows) - 1 - north
+    return [r[:column] + "U" + r[column + 1 :] if k == row else r for k, r in enumerate(rows)]
+
+
+@pytest.mark.parametrize("seed", [24027, 27006])
+def test_the_furthest_corner_may_lie_in_a_room_that_is_not_seen_yet(seed: int, tmp_path: Path) -> None:
+    trial = run_trial(1, seed, Conditions(), tmp_path)
+    assert trial.right, (trial.verdict, trial.reason, trial.crash)
+
+
+def test_a_room_too_far_back_to_reach_further_is_not_gone_to() -> None:
+    robot, body = run(with_utak(two_rooms(14, 40, range(3, 7)), 22, 34), Task({}, (), (NORTHEAST,)))
+    assert robot.verdict.verdict == "done"
+    assert body.square == (30, 40)
+    assert all(x >= 17 for x, _ in body.track)
 
 
 def test_a_thing_seen_beyond_a_wall_is_reached_by_the_door() -> None:

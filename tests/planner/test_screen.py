@@ -294,6 +294,25 @@ def test_he_halts_near_the_edge_of_a_square_while_he_may_have_woken_elsewhere(le
     ) == (max(leeway) > LOOSE)
 
 
+def test_while_it_is_open_how_the_lattice_lies_no_turn_leads_to_the_line_between_two_squares() -> None:
+    model = replace(seen_whole(HALL), spread=math.pi)
+    screens = Screens(model)
+    plain = 0
+    for goal in np.flatnonzero(screens.floor).tolist():
+        for way in ways(screens, 0, np.array([goal]), "skeleton")[:1]:
+            if len(way.squares) < 2:
+                continue
+            move = next_move(screens, way.squares, "explore")
+            plain += (move.east, move.north) == (round(move.east), round(move.north))
+            for degrees in range(360):
+                c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+                x = model.place[0] + c * move.east - s * move.north
+                y = model.place[1] + s * move.east + c * move.north
+                assert 1e-4 < x % 1 < 1 - 1e-4
+                assert 1e-4 < y % 1 < 1 - 1e-4
+    assert plain > 0
+
+
 def test_he_does_not_halt_near_an_edge_where_what_lies_beyond_it_may_stop_him() -> None:
     model = replace(seen_whole(HALL), leeway=(-0.5, -0.5, 0.5, 0.5))
     screens = Screens(model)
