@@ -2,6 +2,7 @@
 
 from kb.body import Body
 from kb.task import Task
+from planner.goals import stages
 from simulator.session import Robot
 from simulator.settings import Settings
 from simulator.warming import warm
@@ -12,7 +13,7 @@ def make_robot(body: Body, task: Task, settings: Settings) -> Robot:
     from planner.cycle import Options
     from planner.cycle import Robot as Mind
 
-    warm()
+    warm(carrying=any(str(goal.args[0]) != "utak" for stage in stages(task) for goal in stage.goals))
     options = Options(
         paths=settings.paths, kb_files=settings.kb_files, max_steps=settings.max_steps, pull=settings.pull
     )

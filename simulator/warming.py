@@ -8,6 +8,7 @@ import gc
 import os
 import subprocess
 import sys
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import geometry
@@ -16,18 +17,18 @@ from geometry.compiled import tell
 INDEX = "itinerary.itineraries-*.nbi"  # numba's index of the kernel that takes longest
 
 
-def warm() -> None:
-    """Compile the kernels that a robot needs, if they are not in the cache; say so on stderr."""
+def warm(carrying: bool) -> None:
+    """Compile the kernels that a robot needs, if they are not in the cache; say so on stderr.
+
+    carrying : whether anything is to be carried.
+    """
     if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0" or not cold():
         return
     tell()
-    command = [sys.executable, "-m", "simulator.warming"]
-    gc.disable()  # a compiler makes millions of objects that live: looking for garbage among them takes a tenth of it
-    try:
-        with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL):
-            compile_longest()
-    finally:
-        gc.enable()
+    mine, others = HALVES[carrying]
+    command = [sys.executable, "-m", "simulator.warming", *(use.__name__ for use in others)]
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL):
+        compile_for(mine)
 
 
 def cold() -> bool:
@@ -39,8 +40,18 @@ def cold() -> bool:
     return not any(place.is_dir() and next(place.rglob(INDEX), None) for place in places)
 
 
-def compile_longest() -> None:
-    """The searches for ways, which take half of the time and share much of their code."""
+def compile_for(uses: Sequence[Callable[[], None]]) -> None:
+    """Do some things once, for the kernels that they need."""
+    gc.disable()  # a compiler makes millions of objects that live: looking for garbage among them takes a tenth of it
+    try:
+        for use in uses:
+            use()
+    finally:
+        gc.enable()
+
+
+def search() -> None:
+    """Look for ways: half of it all."""
     import numpy as np
 
     from geometry.questions import rehearse
@@ -50,33 +61,74 @@ def compile_longest() -> None:
     reach(np.ones((2, 2), np.bool_), 0, 0)
 
 
-def compile_others() -> None:
-    """Use what else a run needs: screens, necks, contacts, pictures and the shapes of images."""
+def see() -> None:
+    """Find regions and their shapes, and draw pictures."""
     import numpy as np
-    import shapely
 
     from geometry.components import boxes, components
-    from geometry.contact import Body, Obstacles
-    from geometry.rigid import Rotate, Translate
     from geometry.sketch import DRAWN, Counts, blobs, pictures
-    from geometry.template import fit_shapes
 
-    free = np.ones((12, 20), np.bool_)
-    free[:4, 9:11] = free[7:, 9:11] = False
-    screen = geometry.Screen(free)
-    screen.parts(screen.passages())
-    walls = Obstacles([shapely.box(10, 0, 11, 5)])
-    for body in (Body(shapely.box(1, 1, 3, 3), [(4.0, 1.0)]), Body(None, [(4.0, 1.0)])):
-        walls.first_contact(body, Translate(8.0, 0.0))
-        walls.first_contact(body, Rotate(30.0, (4.0, 1.0)))
     boxes(components(np.ones((2, 2), np.bool_)).labels, 1)
     drawn, full = np.full((1, 1), DRAWN, np.int8), np.ones((1, 1), np.int8)
     one = np.ones(1, np.int16)
     counts = Counts(np.zeros((1, 1), np.int32), np.ones((1, 1), np.int16), one, one)
     blobs(pictures(drawn, counts, full, 1, 1)[0], drawn)
+
+
+def tell_shapes() -> None:
+    """Tell what shape a thing has."""
+    import numpy as np
+
+    from geometry.template import fit_shapes
+
     fit_shapes(np.array([[1, 1, 1, 0], [1, 1, 1, 1], [0, 1, 1, 1]], np.bool_))
 
 
+def survey() -> None:
+    """Make a screen, and find its necks and parts."""
+    import numpy as np
+
+    free = np.ones((12, 20), np.bool_)
+    free[:4, 9:11] = free[7:, 9:11] = False
+    screen = geometry.Screen(free)
+    screen.parts(screen.passages())
+
+
+def walk() -> None:
+    """Run against something."""
+    import shapely
+
+    from geometry.contact import Body, Obstacles
+    from geometry.rigid import Translate
+
+    Obstacles([shapely.box(10, 0, 11, 5)]).first_contact(Body(None, [(4.0, 1.0)]), Translate(8.0, 0.0))
+
+
+def carry() -> None:
+    """Bring something somewhere, and turn it."""
+    import numpy as np
+    import shapely
+
+    from geometry.carrying import Inside, plan_carrying
+    from geometry.contact import Body, Obstacles
+    from geometry.rigid import Rotate
+
+    body = Body(shapely.box(1, 1, 3, 3), [(4.0, 1.0)])
+    Obstacles([shapely.box(10, 0, 11, 5)]).first_contact(body, Rotate(30.0, (4.0, 1.0)))
+    free = np.ones((6, 16), np.bool_)
+    plan_carrying(shapely.box(3, 2, 5, 3), free, (1.5, 1.5), Inside(shapely.box(10, 0, 16, 6)))
+
+
+HALVES: dict[bool, tuple[tuple[Callable[[], None], ...], ...]] = {
+    False: ((search,), (see, survey, walk, tell_shapes)),
+    True: ((search, see), (survey, tell_shapes, walk, carry)),
+}
+
+
+def main(names: Sequence[str]) -> None:
+    """Compile for the uses of these names: the work of the other process."""
+    compile_for([use for half in HALVES[True] for use in half if use.__name__ in names])
+
+
 if __name__ == "__main__":
-    gc.disable()
-    compile_others()
+    main(sys.argv[1:])
