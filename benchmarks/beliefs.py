@@ -84,7 +84,7 @@ def beliefs(robot: Any, woke: tuple[float, float], now: tuple[float, float], hea
     drift = max(abs(frame.east - math.floor(woke[0])), abs(frame.north - math.floor(woke[1])))
     objects = [(_class(node.shape), frame.polygon(_outline(node))) for node in model.objects]
     held = (model.view.state == FREE) | (model.view.state == FULL)
-    rows, columns = np.nonzero(held & getattr(model.view, "sure", True))
+    rows, columns = np.nonzero(held & model.certain)
     full = model.view.state[rows, columns] == FULL
     west, south = model.view.west, model.view.south
     certain = [

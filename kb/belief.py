@@ -83,13 +83,12 @@ def _root(model: WorldModel) -> Iterator[str]:
 
 def _sureness(model: WorldModel, kind: str) -> int:
     mask = model.floor if kind == "floor" else model.verge
-    squares = int(mask.sum())
-    return _most(model) * int((mask & (model.view.state != OPEN)).sum()) // squares if squares else 0
+    return int(_settled(model)[mask].sum()) // int(mask.sum()) if mask.any() else 0
 
 
-def _most(model: WorldModel) -> int:
-    """The confidence in what the counts settle, in percent."""
-    return 100 if model.view.sure else 99
+def _settled(model: WorldModel) -> NDArray[np.int64]:
+    """(rows, columns): the confidence in what the counts settle of each square, in percent; 0 where that is nothing."""
+    return np.where(model.certain, 100, 99 * (model.view.state != OPEN))
 
 
 def _object(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
@@ -177,9 +176,9 @@ def _sureness_along(starts: Floats, ends: Floats, model: WorldModel) -> list[int
     across = np.stack([-step[:, 1], step[:, 0]], axis=1)[:, None] / (2 * np.maximum(length, 1e-9))
     points = np.concatenate([along + across, along - across], axis=1) - (model.view.west, model.view.south)
     columns, rows = np.floor(points).astype(int).transpose(2, 0, 1)
-    framed = np.pad(model.view.state != OPEN, 1)
+    framed = np.pad(_settled(model), 1)
     settled = framed[np.clip(rows + 1, 0, framed.shape[0] - 1), np.clip(columns + 1, 0, framed.shape[1] - 1)]
-    return [int(share) for share in _most(model) * settled.mean(axis=1)]
+    return [int(share) for share in settled.mean(axis=1)]
 
 
 def _rooms(model: WorldModel, rooms: Rooms) -> Iterator[str]:

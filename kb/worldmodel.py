@@ -6,6 +6,7 @@ parent, so that when Utak moves, or an object is pushed, one relation changes. V
 one impression to the next is only which node a patch of squares belongs to (`Names`).
 """
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -21,6 +22,8 @@ from kb.interpretation import Kinds
 from kb.lattice import Lattice
 from kb.regions import Percept
 
+NEARLY = 5.0  # degrees by which two lattices differ little enough to explain the same impressions
+SHIFTED = 0.3  # squares by which a square may lie elsewhere and still be the same
 SPACE = 0.06  # a square that is occupied with at most this probability counts as floor
 CLEAR = 0.12  # a square that is occupied, or free, but for this probability is not in doubt
 SURELY_VERGE = 93  # percent: what is verge as surely as this is no object
@@ -114,6 +117,21 @@ class WorldModel:
     spread: float = 0.0
     leeway: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     imagined: Imagined = NOTHING_IMAGINED
+
+    @cached_property
+    def certain(self) -> Mask:
+        """(rows, columns): squares that the counts settle beyond doubt.
+
+        While the lattice may lie a few degrees otherwise, those so far from where he woke that they would be others are
+        not among them: nothing may have shown it yet. Much otherwise would have shown, wherever there is something to
+        show it.
+        """
+        mask: Mask = (self.view.state != OPEN) & self.view.sure
+        if 0 < self.spread <= math.radians(NEARLY):
+            x, y = self.lattice.woke[0] - self.view.west, self.lattice.woke[1] - self.view.south
+            rows, columns = np.ogrid[: mask.shape[0], : mask.shape[1]]
+            mask &= np.hypot(columns + 0.5 - x, rows + 0.5 - y) * self.spread <= SHIFTED
+        return mask
 
     @cached_property
     def floor(self) -> Mask:

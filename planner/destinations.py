@@ -18,7 +18,7 @@ from planner.exploring import APART, Lookout, frontiers, jambs, promised, rooms_
 from planner.screen import Screens, Squares, grown
 
 Mask = NDArray[np.bool_]
-ROOMY = 20  # percent that floor unseen promises, from which on it may hold a corner
+ROOMY = 10  # percent that floor unseen promises, from which on it may hold a corner
 ROOM = 30.0  # squares that the next room may go further, east and north added
 RAYS = 192  # places along a line of sight at which it may meet the verge
 

@@ -39,7 +39,8 @@ def robot(quarters: int, angle: int = 0, shape: str = "brick") -> tuple[Any, int
             state[dy - south, dx - west] = grid[y, x]
     node = SimpleNamespace(shape={shape: 90, "rectangle": 90, "polygon": 99}, polygon=lattice, patch=None)
     view = SimpleNamespace(west=west, south=south, state=state)
-    model = SimpleNamespace(lattice=SimpleNamespace(angle=angle), objects=(node,), view=view, place=(0.5, 0.5))
+    frame = SimpleNamespace(angle=angle)
+    model = SimpleNamespace(lattice=frame, objects=(node,), view=view, place=(0.5, 0.5), certain=state >= 0)
     return SimpleNamespace(model=model), (90 * quarters + angle) % 360
 
 

@@ -1,5 +1,6 @@
 """Names that last, patches, and what is measured and believed of known things."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -160,3 +161,27 @@ def test_the_facts_of_a_known_room() -> None:
     assert {"room(r1)", "corner(northeast,250,450)", "corner(southwest,-350,-50)"} <= facts
     assert not any(fact.startswith("door(") for fact in facts)
     assert len([fact for fact in facts if fact.startswith("segment(o1,")]) == 4
+
+
+WIDE = ["b" * 26, *["b" + "." * 24 + "b"] * 9, "b....U" + "." * 19 + "b", *["b" + "." * 24 + "b"] * 9, "b" * 26]
+
+
+@pytest.mark.parametrize("degrees", [0.0, 1.0, 4.0, 30.0])
+def test_far_squares_are_not_certain_while_the_lattice_may_lie_a_little_otherwise(degrees: float) -> None:
+    known = seen_whole(WIDE)
+    model = replace(known, spread=math.radians(degrees))
+    settled = known.view.state != OPEN
+    assert (known.certain == settled).all()
+    rows, columns = np.indices(settled.shape)
+    woke = known.lattice.woke[0] - known.view.west, known.lattice.woke[1] - known.view.south
+    far = np.hypot(columns + 0.5 - woke[0], rows + 0.5 - woke[1])
+    moved = 2 * far * math.sin(math.radians(degrees) / 2)  # by a turn about where he woke
+    if degrees > 5:  # that would have shown
+        assert (model.certain == settled).all()
+    else:
+        assert (model.certain == (settled & (moved <= 0.3))).mean() > 0.99
+        assert (model.certain <= settled).all()
+    (sure,) = (fact for fact in model_facts(model, Places(rooms_of(model), corners(model))) if "kind(floor" in fact)
+    share = int(sure.split(",")[-1].rstrip(")"))
+    assert (share == 100) == bool(model.certain[model.floor].all())
+    assert not replace(known, view=known.view._replace(sure=False)).certain.any()
