@@ -111,7 +111,7 @@ def corner(side: str, situation: Situation) -> Destination:
 def _rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
     """Rooms that are not seen and may go further towards a side than all that is.
 
-    The floor goes on unseen behind what may be a door, or is seen where no way leads yet.
+    The floor goes on unseen behind what may be a door, or is seen where no way leads yet, but one may.
     """
     screens, rooms = situation.screens, situation.rooms
     if not rooms.doors:
@@ -121,13 +121,10 @@ def _rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
     best = np.array([row * model.labels.shape[1] + column])
     looks = [look for look in promised(screens, frontiers(screens, APART)) if look.chance >= ROOMY]
     looks = [look for look in looks if (labels[look.squares] != labels[best]).any()]
+    looks += [look for look in rooms_beyond(screens) if screens.nearest(look.squares) is not None]
     least = _towards(side, best, model) - ROOM
     what = f"a room is not seen that may go further to the {side}"
-    return tuple(
-        look._replace(what=what)
-        for look in [*looks, *rooms_beyond(screens)]
-        if _towards(side, look.squares, model) >= least
-    )
+    return tuple(look._replace(what=what) for look in looks if _towards(side, look.squares, model) >= least)
 
 
 def _towards(side: str, squares: Squares, model: WorldModel) -> float:
