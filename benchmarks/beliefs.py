@@ -16,7 +16,7 @@ from shapely.affinity import affine_transform
 
 from benchmarks.furniture import SHAPES
 
-FREE, FULL = 0, 1  # the states of kb.evidence that are certain
+FULL = 1  # the state of kb.evidence of a square that is certainly occupied
 FOVEA = 4  # squares from Utak to the edge of his fovea
 NEAR = 0.1  # the least common part of union for a believed object to be the true one
 
@@ -83,8 +83,7 @@ def beliefs(robot: Any, woke: tuple[float, float], now: tuple[float, float], hea
     frame = Frame(quarters, math.floor(now[0]) - x, math.floor(now[1]) - y)
     drift = max(abs(frame.east - math.floor(woke[0])), abs(frame.north - math.floor(woke[1])))
     objects = [(_class(node.shape), frame.polygon(_outline(node))) for node in model.objects]
-    held = (model.view.state == FREE) | (model.view.state == FULL)
-    rows, columns = np.nonzero(held & model.certain)
+    rows, columns = np.nonzero(model.certain)
     full = model.view.state[rows, columns] == FULL
     west, south = model.view.west, model.view.south
     certain = [

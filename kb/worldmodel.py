@@ -22,7 +22,7 @@ from kb.interpretation import Kinds
 from kb.lattice import Lattice
 from kb.regions import Percept
 
-NEARLY = 5.0  # degrees by which two lattices differ little enough to explain the same impressions
+NEARLY = math.radians(5)  # by which two lattices differ little enough to explain the same impressions
 SHIFTED = 0.3  # squares by which a square may lie elsewhere and still be the same
 SPACE = 0.06  # a square that is occupied with at most this probability counts as floor
 CLEAR = 0.12  # a square that is occupied, or free, but for this probability is not in doubt
@@ -127,7 +127,7 @@ class WorldModel:
         show it.
         """
         mask: Mask = (self.view.state != OPEN) & self.view.sure
-        if 0 < self.spread <= math.radians(NEARLY):
+        if 0 < self.spread <= NEARLY:
             x, y = self.lattice.woke[0] - self.view.west, self.lattice.woke[1] - self.view.south
             rows, columns = np.ogrid[: mask.shape[0], : mask.shape[1]]
             mask &= np.hypot(columns + 0.5 - x, rows + 0.5 - y) * self.spread <= SHIFTED

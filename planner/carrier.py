@@ -311,37 +311,35 @@ def _clear_part(haul: Haul, node: Node, situation: Situation) -> Haul | None:
     From there he sees what he could only have seen after a walk there and back.
     """
     first, *others = haul.plan.legs
-    if others or haul.turned.any():  # where it must be turned, and taken anew, depends on what is not seen
+    pushes = [motion for motion in first.motions if isinstance(motion, Translate)]
+    if others or len(pushes) < len(first.motions):  # turns and new holds depend on what is not seen
         return None
     yard = Yard(situation.screens.safe | situation.model.mask(node.patch))
     start = in_view(node.polygon, situation)
     shape, place = start, first.place
     clear: list[Motion] = []
-    for motion in first.motions:
-        part = motion if yard.lets(shape, place, motion) else _longest_push(yard, shape, place, motion)
+    for push in pushes:
+        part = push if yard.lets(shape, place, push) else _longest_push(yard, shape, place, push)
         if part is None:
             break
         clear.append(part)
         shape = part.carry(shape)
-        if isinstance(part, Translate):
-            place = place[0] + part.dx, place[1] + part.dy
-        if part is not motion:
+        place = place[0] + part.dx, place[1] + part.dy
+        if part is not push:
             break
     if math.dist(first.place, place) < FARTHER:
         return None
     plan = replace(haul.plan, legs=(replace(first, motions=tuple(clear)),))
-    swept, turned = swept_squares(plan, start, situation.model.labels.shape)
-    return replace(haul, plan=plan, swept=swept, turned=turned)
+    swept, _ = swept_squares(plan, start, situation.model.labels.shape)
+    return replace(haul, plan=plan, swept=swept)
 
 
-def _longest_push(yard: Yard, shape: Any, place: Place, motion: Motion) -> Translate | None:
+def _longest_push(yard: Yard, shape: Any, place: Place, push: Translate) -> Translate | None:
     """The longest part of a push by whole squares, or nearly the same way, that is free."""
-    if not isinstance(motion, Translate):
-        return None
-    steps = math.floor(math.hypot(motion.dx, motion.dy))
-    parts = ((round(motion.dx * n / steps), round(motion.dy * n / steps)) for n in range(steps - 1, 0, -1))
+    steps = math.floor(math.hypot(push.dx, push.dy))
+    parts = ((round(push.dx * n / steps), round(push.dy * n / steps)) for n in range(steps - 1, 0, -1))
     pushes = (Translate(float(dx), float(dy)) for dx, dy in parts)
-    return next((push for push in pushes if yard.lets(shape, place, push)), None)
+    return next((part for part in pushes if yard.lets(shape, place, part)), None)
 
 
 def _course(haul: Haul, node: Node, model: WorldModel) -> Course:

@@ -96,12 +96,11 @@ class Decider:
         self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[Place]
     ) -> Decision | None:
         """The next command towards a stage, the verdict when it cannot be attained, or None when it is."""
-        for goal in stage.goals:
-            if str(goal.args[0]) != "utak":
-                decision = self._carry(goal, stage, situation, reconciled)
-                if decision is not None:
-                    return decision
-        goals = [goal for goal in stage.goals if str(goal.args[0]) == "utak"]
+        for goal in stage.carried:
+            decision = self._carry(goal, stage, situation, reconciled)
+            if decision is not None:
+                return decision
+        goals = stage.own
         if not goals:
             return None
         if situation.model.held is not None:

@@ -119,19 +119,23 @@ def _rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
     model, labels = screens.model, rooms.labels.ravel()
     column, row = situation.corners[side].square
     best = np.array([row * model.labels.shape[1] + column])
-    looks = [look for look in promised(screens, frontiers(screens, APART)) if look.chance >= ROOMY]
-    looks = [look for look in looks if (labels[look.squares] != labels[best]).any()]
-    looks += [look for look in rooms_beyond(screens) if screens.nearest(look.squares) is not None]
     least = _towards(side, best, model) - ROOM
+
+    def far_enough(looks: list[Lookout]) -> list[Lookout]:
+        return [look for look in looks if _towards(side, look.squares, model) >= least]
+
+    borders = [look for look in far_enough(frontiers(screens, APART)) if (labels[look.squares] != labels[best]).any()]
+    looks = [look for look in promised(screens, borders) if look.chance >= ROOMY] if borders else []
+    looks += [look for look in far_enough(rooms_beyond(screens)) if screens.nearest(look.squares) is not None]
     what = f"a room is not seen that may go further to the {side}"
-    return tuple(look._replace(what=what) for look in looks if _towards(side, look.squares, model) >= least)
+    return tuple(look._replace(what=what) for look in looks)
 
 
 def _towards(side: str, squares: Squares, model: WorldModel) -> float:
     """How far the furthest of some squares lies towards a corner of Utak's frame: east and north added."""
     rows, columns = np.divmod(squares, model.labels.shape[1])
-    places = zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True)
-    east, north = np.array([model.lattice.place_to_utak(x + 0.5, y + 0.5) for x, y in places]).T
+    points = np.stack([columns + model.view.west + 0.5, rows + model.view.south + 0.5])
+    east, north = np.column_stack(model.lattice.place_to_utak(*points)).T
     return float(((east if "east" in side else -east) + (north if "north" in side else -north)).max())
 
 

@@ -94,11 +94,12 @@ def _telling(screens: Screens, near: Squares, mask: Mask, chance: float) -> Squa
 
     chance : that it is what is looked for, and that who is not beside it must set out once more to be.
     """
-    open_ = grown(mask, 1) & (screens.model.view.state == OPEN)
+    beside = grown(mask, 1)
+    open_ = beside & (screens.model.view.state == OPEN)
     if len(near) < 2 or not open_.any():
         return near
     seen = _sums(np.pad(open_, CLOSE).astype(np.float64), CLOSE).ravel()[near]
-    apart = ~grown(mask, 1).ravel()[near]
+    apart = ~beside.ravel()[near]
     value = (seen + 1) / (screens.distances[0].ravel()[near] / 5 + SETTING_OUT * (1 + chance * apart))
     best: Squares = near[value >= ALIKE * value.max()]
     return best

@@ -19,6 +19,16 @@ class Stage:
 
     goals: tuple[Fact, ...]
 
+    @property
+    def own(self) -> tuple[Fact, ...]:
+        """What shall hold for Utak himself."""
+        return tuple(goal for goal in self.goals if str(goal.args[0]) == "utak")
+
+    @property
+    def carried(self) -> tuple[Fact, ...]:
+        """What shall hold for things, which he must carry."""
+        return tuple(goal for goal in self.goals if str(goal.args[0]) != "utak")
+
     def __str__(self) -> str:
         return " and ".join(str(goal) for goal in self.goals)
 

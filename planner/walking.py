@@ -7,6 +7,7 @@ import numpy as np
 
 from geometry.winding import crossings
 from kb.body import Command, Move
+from kb.lattice import turned
 from kb.worldmodel import WorldModel
 from planner.screen import Screens
 from planner.steps import Square, clear, clear_line
@@ -70,8 +71,8 @@ def _aside(screens: Screens, square: Square, kind: str) -> tuple[float, float]:
 def _may_halt_between(model: WorldModel, square: Square) -> bool:
     """Might the way to a centre end between two squares, did the lattice lie otherwise by whole degrees?"""
     x, y = model.view.west + square[0] + 0.5 - model.place[0], model.view.south + square[1] + 0.5 - model.place[1]
-    ends = np.exp(1j * np.radians(np.arange(90.0))) * complex(x, y) + complex(*model.place)
-    return bool((np.abs(np.stack([ends.real, ends.imag]) % 1.0 - 0.5) > 0.5 - BETWEEN).any())
+    ends = np.array([turned(x, y, degrees) for degrees in range(90)]) + model.place
+    return bool((np.abs(ends % 1.0 - 0.5) > 0.5 - BETWEEN).any())
 
 
 def halting(command: Command | None, place: tuple[float, float], model: WorldModel) -> Command | None:

@@ -13,7 +13,7 @@ def make_robot(body: Body, task: Task, settings: Settings) -> Robot:
     from planner.cycle import Options
     from planner.cycle import Robot as Mind
 
-    warm(carrying=any(str(goal.args[0]) != "utak" for stage in stages(task) for goal in stage.goals))
+    warm(carrying=any(stage.carried for stage in stages(task)))
     options = Options(
         paths=settings.paths, kb_files=settings.kb_files, max_steps=settings.max_steps, pull=settings.pull
     )

@@ -25,7 +25,7 @@ def test_the_other_process_does_what_it_is_told(monkeypatch) -> None:
         assert sorted(done, key=repr) == sorted(halves[1], key=repr)
 
 
-def test_the_first_run_says_what_it_does(capsys, monkeypatch) -> None:
+def test_the_first_run_says_what_it_does(monkeypatch) -> None:
     told, done = [], []
     monkeypatch.setattr(warming, "cold", lambda: True)
     monkeypatch.setattr(warming, "tell", lambda: told.append(True))
