@@ -1,35 +1,36 @@
 """Pictures that agree with counts: of a raster of which only the counts under fields are known, the simple ones.
 
-A picture costs 1 for each edge between an occupied and a free square, and more for each square by which a field's count
-is wrong. Pictures are drawn with a probability that falls with their cost.
+A picture costs EDGE for each edge between an occupied and a free square, CORNER for each corner of their outline, and
+more for each square by which a field's count is wrong. Pictures are drawn with a probability that falls with their
+cost: each is changed a little, many times over, and a change is kept with the probability that its cost allows.
 
 Source: Geman and Geman (1984), simulated annealing and the Gibbs sampler on an Ising prior. Beside single squares two
-squares of one field are exchanged, which leaves its count as it is.
+squares of one field are exchanged, which leaves its count as it is; and a stretch of a straight outline is moved by one
+square, alone or with what lies opposite, so that a wall moves without being taken down.
 """
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.compiled import compiled
+from geometry.compiled import bare
 
 FREE, FULL, DRAWN, UNSEEN = 0, 1, 2, 3
 EDGE, CORNER = 0.4, 0.8
 WRONG = 4.0  # edges that a square too many or too few under a field is worth
-COLD = 2.0
-SWEEPS = 3  # between two pictures
-NEVER = 9.0  # a change that is e to this power times less likely than its contrary is not tried
-
-
-def _price(pattern: int) -> float:
-    """What four squares about a point cost: half of each edge between two of them, and each corner."""
-    a, b, c, d = (pattern >> k & 1 for k in range(4))
-    edges = (a != b) + (c != d) + (a != c) + (b != d)
-    return EDGE * edges / 2 + CORNER * (2 if edges == 4 else (a + b + c + d) % 2)
-
-
-PRICES = np.array([_price(pattern) for pattern in range(16)])
+COLD = 2.5  # the inverse temperature at which a picture is taken
+THICKEST = 4  # squares of what is moved as a whole
+LONGEST = 60  # squares of an edge that is moved at once
+SELDOM = 4  # of so many squares at an outline one is asked whether it moves
+AROUND = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))  # (rows, columns); opposites add to 7
+SIDES = (1, 6, 3, 4)  # of them, those beyond an edge: the square across
+ALONG = (4, 4, 6, 6)  # and the next one on the same edge
+GENERATOR, MODULUS = 48271, 2147483647  # of random numbers; Park and Miller (1988)
+LUCKS = 1024
+SETTLED, HIDDEN = -1, -2
+Bits = NDArray[np.int64]
 
 
 class Counts(NamedTuple):
@@ -49,190 +50,257 @@ class Counts(NamedTuple):
         return Counts(self.where[fields], self.weight[fields], self.low[fields], self.high[fields])
 
 
+class _Board(NamedTuple):
+    """What pictures are drawn on: a raster with a frame of one unseen square, and n squares of it to be drawn.
+
+    squares : (n,) int64, flat indices. rank : (size,) int32, which of them a square is; SETTLED or HIDDEN if none.
+    shown : (n,) int32, the four points about a square that lie amid squares seen, as bits. around : (8,) int64, flat
+    steps to the neighbours. ends, field, share : the fields of square k are field[ends[k]:ends[k + 1]], and how often
+    each counts it. where : (fields, m) int32, flat indices. used : (fields, m) bool, those to be drawn. limits :
+    (fields, 2) int32, the least and the greatest count.
+    """
+
+    squares: NDArray[np.int64]
+    rank: NDArray[np.int32]
+    shown: NDArray[np.int32]
+    around: NDArray[np.int64]
+    ends: NDArray[np.int32]
+    field: NDArray[np.int32]
+    share: NDArray[np.int32]
+    where: NDArray[np.int32]
+    used: NDArray[np.bool_]
+    limits: NDArray[np.int32]
+
+
 def pictures(
-    ground: NDArray[np.int8],
-    counts: Counts,
-    first: NDArray[np.int8],
-    number: int,
-    warming: int,
-    hot: float = 0.5,
-    seed: int = 20031,
+    ground: NDArray[np.int8], counts: Counts, first: NDArray[np.int8], sweeps: int, hot: float, seed: int = 20031
 ) -> NDArray[np.int8]:
-    """(number, rows, columns) int8, 1 where a square is occupied: so many pictures that agree with the counts.
+    """(m, rows, columns) int8, 1 where a square is occupied: as many pictures, each begun with another.
 
     Parameters
     ----------
     ground : (rows, columns) int8. FREE, FULL, DRAWN (to be found) or UNSEEN (not part of the picture, drawn as 0).
-    counts : of squares of the ground. first : the picture to begin with. warming : sweeps until the first one is taken,
-    from the inverse temperature `hot` to COLD. seed : from 1 to 2^31 - 2. The same arguments give the same pictures.
+    counts : of squares of the ground. first : (m, rows, columns) int8, the pictures to begin with. sweeps : over all
+    squares, from the inverse temperature `hot` to COLD. seed : from 1 to 2^31 - 2. The same arguments give the same
+    pictures.
     """
-    image = np.where(ground == DRAWN, first, ground == FULL).astype(np.int8)
-    used = (counts.weight > 0) & (ground.ravel()[counts.where] == DRAWN)
+    framed = np.pad(ground, 1, constant_values=UNSEEN)
+    board = _board(framed, counts)
+    begun = np.where(framed == DRAWN, np.pad(first, ((0, 0), (1, 1), (1, 1))), framed == FULL).astype(np.int8)
+    images = begun.reshape(len(first), -1)
+    count = (images[:, board.where] * counts.weight).sum(2, dtype=np.int32)
+    near = np.zeros((len(first), len(board.squares)), np.int32)
+    moved = np.zeros(2 * LONGEST + 2, np.int32)
+    slopes = np.linspace(hot, COLD, sweeps, dtype=np.float32)
+    draw_all(board, _prices(), _lucks(), images, near, count, moved, slopes, seed)
+    return begun[:, 1:-1, 1:-1]
+
+
+def _board(framed: NDArray[np.int8], counts: Counts) -> _Board:
+    columns = framed.shape[1]
+    row, column = np.divmod(counts.where, columns - 2)
+    where = (row + 1) * columns + column + 1
+    flat = framed.ravel()
+    used = (counts.weight > 0) & (flat[where] == DRAWN)
     field, entry = np.nonzero(used)
-    order = np.argsort(counts.where[field, entry], kind="stable")
-    field, entry = field[order].astype(np.int64), entry[order]
-    squares, begins = np.unique(counts.where[field, entry], return_index=True)
-    ends = np.append(begins, len(field))
-    taken = np.empty((number, *ground.shape), np.int8)
-    count = (counts.weight * image.ravel()[counts.where]).sum(1)
-    slopes = np.append(np.linspace(hot, COLD, max(warming, 1)), np.full(SWEEPS * (number - 1), COLD))
-    _draw(
-        PRICES,
-        np.array(ground, order="C").ravel(),  # a copy, for a kernel is compiled once more for arrays that are read only
-        image.ravel(),
-        squares.astype(np.int64),
-        _ranks(squares, ground.size),
-        ends.astype(np.int64),
-        field,
-        counts.weight[field, entry].astype(np.int64),
-        counts.where.astype(np.int64),
+    order = np.argsort(where[field, entry], kind="stable")
+    field, entry = field[order], entry[order]
+    squares, begins = np.unique(where[field, entry].astype(np.int64), return_index=True)
+    rank = np.where(flat == UNSEEN, np.int32(HIDDEN), np.int32(SETTLED))
+    rank[squares] = np.arange(len(squares))
+    seen = flat != UNSEEN
+    shown = np.zeros(len(squares), np.int32)
+    for point in range(4):
+        corner = squares - point % 2 - point // 2 * columns  # the lower left of the four squares about it
+        amid = seen[corner] & seen[corner + 1] & seen[corner + columns] & seen[corner + columns + 1]
+        shown |= amid.astype(np.int32) << point
+    return _Board(
+        squares,
+        rank,
+        shown,
+        np.array([rows * columns + across for rows, across in AROUND]),
+        np.append(begins, len(field)).astype(np.int32),
+        field.astype(np.int32),
+        counts.weight[field, entry].astype(np.int32),
+        where.astype(np.int32),
         used,
-        np.stack([counts.low, counts.high, count], axis=1).astype(np.int64),
-        slopes,
-        taken.reshape(number, -1),
-        ground.shape[1],
-        seed,
-    )
-    return taken
-
-
-def _ranks(squares: NDArray[np.int32], size: int) -> NDArray[np.int64]:
-    """For each flat index where among the squares it is."""
-    ranks = np.zeros(size, np.int64)
-    ranks[squares] = np.arange(len(squares))
-    return ranks
-
-
-@compiled
-def _draw(price, ground, image, squares, ranks, ends, field, share, where, used, fields, slopes, taken, columns, seed):  # type: ignore[no-untyped-def]
-    chance = seed
-    first = len(slopes) - SWEEPS * (len(taken) - 1) - 1
-    for sweep in range(len(slopes)):
-        slope = slopes[sweep]
-        for k in range(len(squares)):
-            chance = (chance * 48271) % 2147483647
-            change = _change(price, ground, image, squares, ends, field, share, fields, columns, k)
-            if change <= 0 or (slope * change <= NEVER and chance <= 2147483647 * np.exp(-slope * change)):
-                _flip(image, squares, ends, field, share, fields, k)
-            chance = (chance * 48271) % 2147483647
-            one = field[ends[k] + chance % (ends[k + 1] - ends[k])]
-            chance = (chance * 48271) % 2147483647
-            entry = chance % where.shape[1]
-            if not used[one, entry] or image[where[one, entry]] == image[squares[k]]:
-                continue
-            other = ranks[where[one, entry]]
-            change = _change(price, ground, image, squares, ends, field, share, fields, columns, k)
-            _flip(image, squares, ends, field, share, fields, k)
-            change += _change(price, ground, image, squares, ends, field, share, fields, columns, other)
-            chance = (chance * 48271) % 2147483647
-            if change <= 0 or (slope * change <= NEVER and chance <= 2147483647 * np.exp(-slope * change)):
-                _flip(image, squares, ends, field, share, fields, other)
-            else:
-                _flip(image, squares, ends, field, share, fields, k)
-        if sweep >= first and (sweep - first) % SWEEPS == 0:
-            for k in range(len(image)):  # an assignment in one would compile three seconds longer
-                taken[(sweep - first) // SWEEPS, k] = image[k]
-
-
-@compiled
-def _change(price, ground, image, squares, ends, field, share, fields, columns, k):  # type: ignore[no-untyped-def]
-    """By how much the picture becomes dearer when square k changes."""
-    square = squares[k]
-    more = 1 - 2 * image[square]
-    change = 0.0
-    for one in range(4):
-        corner = square - (one % 2) - (one // 2) * columns  # the lower left of four squares about one of its corners
-        if corner < 0 or corner % columns == columns - 1 or corner + columns + 1 >= len(image):
-            continue
-        if square % columns == 0 and one % 2 == 1:
-            continue
-        pattern, hidden = 0, False
-        for other in range(4):
-            beside = corner + other % 2 + (other // 2) * columns
-            hidden |= ground[beside] == UNSEEN
-            pattern += image[beside] << other
-        if not hidden:
-            change += price[pattern ^ (1 << one)] - price[pattern]
-    for i in range(ends[k], ends[k + 1]):
-        low, high, count = fields[field[i]]
-        after = count + share[i] * more
-        change += WRONG * (max(low - after, after - high, 0) - max(low - count, count - high, 0))
-    return change
-
-
-@compiled
-def _flip(image, squares, ends, field, share, fields, k):  # type: ignore[no-untyped-def]
-    """Change square k."""
-    square = squares[k]
-    for i in range(ends[k], ends[k + 1]):
-        fields[field[i], 2] += share[i] * (1 - 2 * image[square])
-    image[square] = 1 - image[square]
-
-
-class Blobs(NamedTuple):
-    """The edge-connected occupied parts of a picture.
-
-    labels : (rows, columns) int32, 0 for none, n for the part at [n - 1] of the others. area : squares. outward : sides
-    of its squares beyond which nothing was seen. spread : sum of its principal moments, by the square of the area (a
-    square has 1/6, a disc 1/2 pi). lengthy : the difference of the principal moments, by their sum (0: as wide
-    as long).
-    """
-
-    labels: NDArray[np.int32]
-    area: NDArray[np.int64]
-    outward: NDArray[np.int64]
-    spread: NDArray[np.float64]
-    lengthy: NDArray[np.float64]
-
-
-def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
-    """The parts of one picture.
-
-    >>> found = blobs(np.pad(np.ones((3, 3), np.int8), 2), np.full((7, 7), DRAWN, np.int8))
-    >>> found.area.tolist(), found.outward.tolist(), (6 * found.spread).round(6).tolist(), found.lengthy.tolist()
-    ([9], [0], [1.0], [0.0])
-    """
-    labels = np.zeros(image.shape, np.int32)
-    sums = np.zeros((image.size // 2 + 2, 7))
-    number = _parts(np.ascontiguousarray(image), np.ascontiguousarray(ground), labels, sums)
-    n, x, y, xx, yy, xy, outward = sums[1 : number + 1].T
-    east, north, cross = xx / n - (x / n) ** 2 + 1 / 12, yy / n - (y / n) ** 2 + 1 / 12, xy / n - x * y / n**2
-    return Blobs(
-        labels,
-        n.astype(np.int64),
-        outward.astype(np.int64),
-        (east + north) / n,
-        np.hypot(east - north, 2 * cross) / (east + north),
+        np.stack([counts.low, counts.high], axis=1).astype(np.int32),
     )
 
 
-@compiled
-def _parts(image, ground, labels, sums):  # type: ignore[no-untyped-def]
-    rows, columns = image.shape
-    waiting = np.empty((rows * columns, 2), np.int64)
-    number = 0
-    for row in range(rows):
-        for column in range(columns):
-            if image[row, column] != 1 or labels[row, column] != 0:
-                continue
-            number += 1
-            labels[row, column] = number
-            waiting[0, 0], waiting[0, 1] = row, column
-            left = 1
-            while left > 0:
-                left -= 1
-                r, c = waiting[left, 0], waiting[left, 1]
-                sums[number, 0] += 1
-                sums[number, 1] += c
-                sums[number, 2] += r
-                sums[number, 3] += c * c
-                sums[number, 4] += r * r
-                sums[number, 5] += c * r
-                for p, q in ((r + 1, c), (r - 1, c), (r, c + 1), (r, c - 1)):
-                    if p < 0 or q < 0 or p >= rows or q >= columns or ground[p, q] == UNSEEN:
-                        sums[number, 6] += 1
-                    elif image[p, q] == 1 and labels[p, q] == 0:
-                        labels[p, q] = number
-                        waiting[left, 0], waiting[left, 1] = p, q
-                        left += 1
+@cache
+def _prices() -> NDArray[np.float32]:
+    """(16, 256, 2), flat: by how much a picture becomes dearer when a square changes.
+
+    By the points about it that are shown, by its neighbours, and by what it was.
+    """
+    shown, around, was = np.ogrid[:16, :256, :2]
+    change = np.zeros((16, 256, 2))
+    for point in range(4):
+        across, rows = 1 - 2 * (point % 2), 1 - 2 * (point // 2)
+        beside, over, beyond = (around >> AROUND.index(at) & 1 for at in ((0, across), (rows, 0), (rows, across)))
+        change += (shown >> point & 1) * (_price(1 - was, beside, over, beyond) - _price(was, beside, over, beyond))
+    return change.astype(np.float32).ravel()
+
+
+def _price(square: Bits, beside: Bits, over: Bits, beyond: Bits) -> NDArray[np.float64]:
+    """What four squares about a point cost: half of each edge between two of them, and each corner."""
+    edges = (square ^ beside) + (over ^ beyond) + (square ^ over) + (beside ^ beyond)
+    corners = np.where(edges == 4, 2, (square + beside + over + beyond) % 2)
+    answer: NDArray[np.float64] = EDGE * edges / 2 + CORNER * corners
+    return answer
+
+
+@cache
+def _lucks() -> NDArray[np.float32]:
+    """(LUCKS,), equally likely: how much dearer a picture may become at the inverse temperature 1."""
+    return (-np.log((np.arange(LUCKS) + 0.5) / LUCKS)).astype(np.float32)
+
+
+@bare
+def draw_all(board, prices, lucks, images, near, counts, moved, slopes, seed):  # type: ignore[no-untyped-def]
+    """Change pictures, (m, size) int8, until they are simple and agree with the counts.
+
+    near : (m, n) int32, gets the neighbours of each square to be drawn, as bits. counts : (m, fields) int32, those of
+    the pictures. moved : (2 LONGEST + 2,) int32, for use.
+    """
+    for number in range(images.shape[0]):
+        chance = seed * (number + 1) % MODULUS
+        draw(board, prices, lucks, images[number], near[number], counts[number], moved, slopes, chance)
+
+
+@bare
+def draw(board, prices, lucks, image, near, counts, moved, slopes, chance):  # type: ignore[no-untyped-def]
+    """Change one picture, square by square, so many times over as there are slopes."""
+    squares, rank, shown, around, ends, field, share, where, used, limits = board
+    wrong = 0
+    for f in range(limits.shape[0]):
+        wrong += max(limits[f, 0] - counts[f], counts[f] - limits[f, 1], 0)
+    for k in range(squares.shape[0]):
+        for n in range(8):
+            near[k] |= image[squares[k] + around[n]] << n
+    for sweep in range(slopes.shape[0]):
+        warmth = 1 / slopes[sweep]
+        for k in range(squares.shape[0]):
+            # the square alone
+            chance = chance * GENERATOR % MODULUS
+            square, luck = squares[k], lucks[chance & LUCKS - 1] * warmth
+            if prices[(shown[k] << 9) + (near[k] << 1) + image[square]] <= luck + WRONG * wrong:
+                more = 1 - 2 * image[square]
+                worse = worsening(k, more, ends, field, share, limits, counts)
+                if prices[(shown[k] << 9) + (near[k] << 1) + image[square]] + WRONG * worse <= luck:
+                    recount(k, more, ends, field, share, counts)
+                    tip(square, rank, around, image, near)
+                    wrong += worse
+            # and another one of the same field
+            f = field[ends[k] + ((chance >> 15) * (ends[k + 1] - ends[k]) >> 16)]
+            chance = chance * GENERATOR % MODULUS
+            entry = (chance & 65535) * where.shape[1] >> 16
+            if used[f, entry] and image[where[f, entry]] != image[square]:
+                other = rank[where[f, entry]]
+                luck = lucks[chance >> 17 & LUCKS - 1] * warmth
+                if price_of_both(squares, shown, around, prices, image, near, k, other) <= luck + WRONG * wrong:
+                    moved[0], moved[1] = k, other
+                    wrong += change(board, prices, image, near, counts, wrong, luck, moved, 2)
+            # and the edge at which it lies
+            if near[k] != 0 and near[k] != 255 and (chance >> 27) % SELDOM == 0:
+                chance = chance * GENERATOR % MODULUS
+                number = edge(squares, rank, around, image, k, chance, moved)
+                luck = lucks[chance >> 12 & LUCKS - 1] * warmth
+                wrong += change(board, prices, image, near, counts, wrong, luck, moved, number)
+
+
+@bare
+def price_of_both(squares, shown, around, prices, image, near, k, other):  # type: ignore[no-untyped-def]
+    """By how much the picture, but for its counts, becomes dearer when two squares change."""
+    beside = near[other]  # once k is changed
+    for n in range(8):
+        beside ^= (squares[k] + around[n] == squares[other]) << (7 - n)
+    price = prices[(shown[k] << 9) + (near[k] << 1) + image[squares[k]]]
+    return price + prices[(shown[other] << 9) + (beside << 1) + image[squares[other]]]
+
+
+@bare
+def change(board, prices, image, near, counts, wrong, luck, moved, number):  # type: ignore[no-untyped-def]
+    """Change the first so many squares of ``moved`` together, if that is not dearer than luck allows.
+
+    wrong : by how many squares the counts are wrong. Returns by how many more they are then.
+    """
+    squares, rank, shown, around, ends, field, share, _, _, limits = board
+    price, worse = 0.0, 0
+    for m in range(number):
+        k = moved[m]
+        price += prices[(shown[k] << 9) + (near[k] << 1) + image[squares[k]]]
+        tip(squares[k], rank, around, image, near)
+    if price <= luck + WRONG * wrong:
+        for m in range(number):
+            k, more = moved[m], 2 * image[squares[moved[m]]] - 1
+            worse += worsening(k, more, ends, field, share, limits, counts)
+            recount(k, more, ends, field, share, counts)
+        if price + WRONG * worse <= luck:
+            return worse
+        for m in range(number):
+            recount(moved[m], 1 - 2 * image[squares[moved[m]]], ends, field, share, counts)
+    for m in range(number):
+        tip(squares[moved[m]], rank, around, image, near)
+    return 0
+
+
+@bare
+def edge(squares, rank, around, image, k, chance, moved):  # type: ignore[no-untyped-def]
+    """List the squares that change when the edge on one side of square k is moved beyond it; returns how many.
+
+    All of the edge or a piece, and with what lies opposite or without: as chance has it. Squares lie at one edge while
+    they are to be drawn, look as k does, and those across look otherwise.
+    """
+    side, here = chance & 3, squares[k]
+    across, along, look = around[SIDES[side]], around[ALONG[side]], image[here]
+    if image[here + across] == look:
+        return 0
+    moved[0], number = k, 1
+    for way in range(2):
+        step, bits = along * (1 - 2 * way), chance >> (2 + 4 * way)
+        most = LONGEST if bits & 1 else bits >> 1 & 7
+        square = here + step
+        while most > 0 and number <= LONGEST and rank[square] >= 0 and image[square] == look != image[square + across]:
+            moved[number] = rank[square]
+            number, most, square = number + 1, most - 1, square + step
+    if chance >> 10 & 1:
+        for m in range(number):
+            square, thick = squares[moved[m]] - across, 1
+            while thick < THICKEST and image[square] == look and rank[square] != HIDDEN:
+                square, thick = square - across, thick + 1
+            if image[square] != look and rank[square] >= 0:
+                moved[number] = rank[square]
+                number += 1
     return number
+
+
+@bare
+def tip(square, rank, around, image, near):  # type: ignore[no-untyped-def]
+    """Change a square, but for the counts."""
+    image[square] = 1 - image[square]
+    for n in range(8):
+        other = rank[square + around[n]]
+        if other >= 0:
+            near[other] ^= 1 << (7 - n)
+
+
+@bare
+def worsening(k, more, ends, field, share, limits, counts):  # type: ignore[no-untyped-def]
+    """By how many squares more the counts are wrong when square k is counted once more, or less."""
+    worse = 0
+    for i in range(ends[k], ends[k + 1]):
+        f = field[i]
+        before = counts[f]
+        after = before + share[i] * more
+        low, high = limits[f, 0], limits[f, 1]
+        worse += max(low - after, after - high, 0) - max(low - before, before - high, 0)
+    return worse
+
+
+@bare
+def recount(k, more, ends, field, share, counts):  # type: ignore[no-untyped-def]
+    """Count square k once more or less."""
+    for i in range(ends[k], ends[k + 1]):
+        counts[field[i]] += share[i] * more

@@ -28,6 +28,7 @@ LARGEST_LOGIT = 6.0
 Squares = NDArray[np.int32]
 Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
+Told = tuple[int | bytes, ...]
 
 
 NO_COUNTS = Counts(
@@ -101,6 +102,7 @@ class Evidence:
         self._low = np.zeros(0, np.int16)
         self._high = np.zeros(0, np.int16)
         self.overruled = 0
+        self._looks: set[Told] = set()  # after which nothing was withdrawn
 
     def view(self, margin: int = 2) -> MapView:
         """The part of the map that was seen, and `margin` squares around it."""
@@ -164,8 +166,11 @@ class Evidence:
         """Take in one impression, received on square (x, y), as impression `number`.
 
         Where it contradicts what was settled, what is seen now counts: older settlements under the contradicting
-        fields, and the fields that led to them, are withdrawn.
+        fields, and the fields that led to them, are withdrawn. What was seen before, from there, tells nothing new.
         """
+        seen_here: Told = (x, y, *(told.tobytes() for told in (samples.columns, samples.rows, samples.weight, ranges)))
+        if seen_here in self._looks:
+            return
         wrong = self.misfits(samples, ranges, x, y)
         where = self._under(samples, x, y)
         if wrong.any():
@@ -178,9 +183,11 @@ class Evidence:
         self._high = np.concatenate([self._high, ranges[:, 1]])
         self._settle(number)
         self._fit()
+        self._looks.add(seen_here)
 
     def withdraw(self, squares: Squares) -> None:
         """Forget what was settled of these squares (flat indices), and every field that covers one of them."""
+        self._looks.clear()
         doubtful = np.zeros(self.state.size, np.bool_)
         doubtful[squares] = True
         self.state.ravel()[squares] = OPEN

@@ -11,9 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.sketch import DRAWN, Blobs, blobs
+from geometry.blobs import Blobs, blobs
+from geometry.sketch import DRAWN
 from kb.evidence import MapView
-from kb.picturing import ground_of, pictured
+from kb.picturing import NO_PICTURES, Pictures, ground_of, pictured
 
 SMALLEST = 4  # squares of a thing that is worth a look
 ENDED = 0.7  # that a thing ends at the side of a square beyond which nothing was seen
@@ -27,38 +28,34 @@ Floats = NDArray[np.float64]
 
 
 class Imagined(NamedTuple):
-    """Pictures of the map as it may be.
+    """Pictures of the map as it may be."""
 
-    ground : (rows, columns) int8, what is given (geometry.sketch). drawn : (pictures, rows, columns) int8, 1 where
-    occupied.
-    """
-
-    ground: NDArray[np.int8]
-    drawn: NDArray[np.int8]
+    pictures: Pictures
 
     def probability(self, by_counts: NDArray[np.float32]) -> NDArray[np.float32]:
         """(rows, columns): that a square is occupied, with what counts alone say for one more picture."""
-        shares = (self.drawn.sum(0, dtype=np.float32) + by_counts) / np.float32(len(self.drawn) + 1)
-        answer: NDArray[np.float32] = np.where(self.ground == DRAWN, shares, by_counts)
+        ground, images = self.pictures.ground, self.pictures.images
+        shares = (images.sum(0, dtype=np.float32) + by_counts) / np.float32(len(images) + 1)
+        answer: NDArray[np.float32] = np.where(ground == DRAWN, shares, by_counts)
         return answer
 
     def likely(self, shape: str) -> Floats:
         """(rows, columns): how likely each square belongs to an isolated thing of a shape."""
-        heat = np.zeros(self.ground.shape)
-        for image in self.drawn:
-            found = blobs(image, self.ground)
+        ground, images = self.pictures.ground, self.pictures.images
+        heat = np.zeros(ground.shape)
+        for image in images:
+            found = blobs(image, ground)
             like = likeness(found, shape) * ENDED**found.outward * (found.area >= SMALLEST)
             heat += np.append(0.0, like)[found.labels]
-        return heat / len(self.drawn)
+        return heat / len(images)
 
 
-NOTHING_IMAGINED = Imagined(np.zeros((0, 0), np.int8), np.zeros((0, 0, 0), np.int8))
+NOTHING_IMAGINED = Imagined(NO_PICTURES)
 
 
-def imagine(view: MapView) -> Imagined:
-    """Pictures of a map."""
-    ground = ground_of(view)
-    return Imagined(ground, pictured(view, ground))
+def imagine(view: MapView, before: Imagined = NOTHING_IMAGINED) -> Imagined:
+    """Pictures of a map. before : those of the last look, on the same lattice."""
+    return Imagined(pictured(view, ground_of(view), before.pictures))
 
 
 def likeness(found: Blobs, shape: str) -> Floats:

@@ -16,7 +16,7 @@ from geometry.components import boxes
 from kb.accommodation import Accommodated, Memory
 from kb.body import DIRECTIONS, Command, Grasp, Impression
 from kb.evidence import FREE, FULL, OPEN, MapView
-from kb.imagining import imagine
+from kb.imagining import NOTHING_IMAGINED, imagine
 from kb.interpretation import Kinds, interpret, shapes
 from kb.loads import Load, slack_of
 from kb.measuring import Measured, Measurer
@@ -39,6 +39,7 @@ class Knowledge:
         self.felt: dict[tuple[int, int], str] = {}
         self.objects: tuple[Node, ...] = ()
         self._names = Names()
+        self._imagined = NOTHING_IMAGINED
         self._measurer = Measurer()
 
     def wake(self, impression: Impression) -> tuple[WorldModel, Accommodated]:
@@ -73,9 +74,10 @@ class Knowledge:
     def _model(self, impression: Impression, accommodated: Accommodated) -> tuple[WorldModel, Accommodated]:
         if accommodated.explanation.how == "turned":
             self.felt.clear()  # its squares were those of another lattice
+            self._imagined = NOTHING_IMAGINED
         self._feel(impression)
         counted = self.memory.evidence.view()
-        imagined = imagine(counted)
+        self._imagined = imagined = imagine(counted, self._imagined)
         view = counted._replace(
             probability=imagined.probability(counted.probability), by_counts=counted.probability, sure=self.memory.sure
         )

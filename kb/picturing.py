@@ -1,11 +1,11 @@
-"""Pictures of what no count settles: drawn for one scene at a time, and each scene only once.
+"""Pictures of what no count settles: drawn for one scene at a time, and gone on with from look to look.
 
 The squares that are not settled fall into scenes that tell nothing of each other: no field looks at two of them, and
-settled squares lie in between. So what is drawn of a scene stays as it is until a look tells something new of it.
+settled squares lie in between. What is drawn of a scene stays as it is until a look tells something new of it; then
+each picture is drawn on as it was, for most of it holds still.
 """
 
-from collections.abc import Iterator
-from functools import lru_cache
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -14,19 +14,17 @@ from numpy.typing import NDArray
 from geometry.components import Components, boxes, components
 from geometry.sketch import DRAWN, FREE, FULL, UNSEEN, Counts, pictures
 from kb.evidence import OPEN, STRAY, MapView
-from kb.lattice import MOST
 
-SEEDS = (20031, 70507, 40423)  # of as many series of pictures, each begun anew: one alone may be caught in a wrong one
-SERIES = 4  # pictures in each
-PICTURES = len(SEEDS) * SERIES
-WARMING = 30  # sweeps before the first picture
-HOT = 0.5  # the inverse temperature of the first sweep
+PICTURES = 12
+SEED = 20031
+BEGINNING = (60, 0.5)  # sweeps over a scene that was not drawn yet, and the inverse temperature of the first one
+GOING_ON = (20, 1.0)  # likewise, over one that was
 DEEP = 2  # squares: within what is full or empty so far from its edge nothing is pictured
 SURELY = 0.93  # under a field that shows the last gray level and yet may miss a square
 HALF = 0.5
-REMEMBERED = 1024  # scenes
 Mask = NDArray[np.bool_]
 Image = NDArray[np.int8]
+Told = tuple[int | bytes, ...]
 
 
 class Scene(NamedTuple):
@@ -41,6 +39,41 @@ class Scene(NamedTuple):
     first: Image
     counts: Counts
 
+    def told(self, view: MapView) -> Told:
+        """All that is told of it, its place included: two scenes are the same where this is."""
+        arrays = (self.ground, *self.counts)
+        return view.west + self.columns.start, view.south + self.rows.start, *(array.tobytes() for array in arrays)
+
+
+class Pictures(NamedTuple):
+    """Pictures of a map.
+
+    west, south : the lattice square at [0, 0]. ground : (rows, columns) int8, what is given. images : (PICTURES, rows,
+    columns) int8, 1 where a square is occupied. scenes : the pictures of each, (PICTURES, n) int8.
+    """
+
+    west: int
+    south: int
+    ground: Image
+    images: Image
+    scenes: Mapping[Told, Image]
+
+    def over(self, scene: Scene, view: MapView) -> "Pictures":
+        """The part that lies where a scene of another map is; unseen where there is none."""
+        south, west = view.south + scene.rows.start - self.south, view.west + scene.columns.start - self.west
+        ground: Image = np.full(scene.ground.shape, UNSEEN, np.int8)
+        images = np.zeros((len(self.images), *ground.shape), np.int8)
+        (high, wide), (rows, columns) = ground.shape, self.ground.shape
+        top, right = max(min(high, rows - south), 0), max(min(wide, columns - west), 0)
+        low, left = min(max(-south, 0), top), min(max(-west, 0), right)
+        own = slice(low + south, top + south), slice(left + west, right + west)
+        ground[low:top, left:right] = self.ground[own]
+        images[:, low:top, left:right] = self.images[:, own[0], own[1]]
+        return Pictures(self.west + west, self.south + south, ground, images, {})
+
+
+NO_PICTURES = Pictures(0, 0, np.zeros((0, 0), np.int8), np.zeros((PICTURES, 0, 0), np.int8), {})
+
 
 def ground_of(view: MapView) -> Image:
     """(rows, columns): what is given of the pictures, namely what is settled, and what lies amid its like."""
@@ -51,13 +84,25 @@ def ground_of(view: MapView) -> Image:
     return ground
 
 
-def pictured(view: MapView, ground: Image) -> Image:
-    """(PICTURES, rows, columns), 1 where a square is occupied: pictures that agree with all counts."""
+def pictured(view: MapView, ground: Image, before: Pictures) -> Pictures:
+    """Pictures that agree with all counts. before : those of the last look, on the same lattice."""
     images = np.repeat((ground == FULL).astype(np.int8)[None], PICTURES, axis=0)
+    drawn = {}
     for scene in scenes(view, ground):
-        drawn = _drawn(*(a.tobytes() for a in (scene.ground, scene.first, *scene.counts)), scene.ground.shape)
-        images[:, scene.rows, scene.columns][:, scene.ground == DRAWN] = drawn
-    return images
+        told = scene.told(view)
+        now = before.scenes.get(told)
+        drawn[told] = _drawn(scene, before.over(scene, view)) if now is None else now
+        images[:, scene.rows, scene.columns][:, scene.ground == DRAWN] = drawn[told]
+    return Pictures(view.west, view.south, ground, images, drawn)
+
+
+def _drawn(scene: Scene, before: Pictures) -> Image:
+    """(PICTURES, n): the pictures of a scene, at the squares that are to be drawn."""
+    open_ = scene.ground == DRAWN
+    known = open_ & (before.ground != UNSEEN)
+    sweeps, hot = GOING_ON if known.sum() > open_.sum() / 2 else BEGINNING
+    first = np.where(known, before.images, scene.first)
+    return pictures(scene.ground, scene.counts, first, sweeps, hot, SEED)[:, open_]
 
 
 def scenes(view: MapView, ground: Image) -> Iterator[Scene]:
@@ -120,19 +165,3 @@ def amid(mask: Mask, deep: int) -> Mask:
         parts = [np.take(framed, np.arange(k, k + mask.shape[axis]), axis) for k in range(2 * deep + 1)]
         mask = np.logical_and.reduce(parts)
     return mask
-
-
-@lru_cache(maxsize=REMEMBERED)
-def _drawn(
-    ground: bytes, first: bytes, where: bytes, weight: bytes, low: bytes, high: bytes, shape: tuple[int, int]
-) -> Image:
-    """(PICTURES, n): the pictures of a scene, at the squares that are to be drawn."""
-    given, begin = (np.frombuffer(a, np.int8).reshape(shape) for a in (ground, first))
-    counts = Counts(
-        np.frombuffer(where, np.int32).reshape(-1, MOST),
-        np.frombuffer(weight, np.int16).reshape(-1, MOST),
-        np.frombuffer(low, np.int16),
-        np.frombuffer(high, np.int16),
-    )
-    series = [pictures(given, counts, begin, SERIES, WARMING, HOT, seed) for seed in SEEDS]
-    return np.concatenate(series)[:, given == DRAWN]

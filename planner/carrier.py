@@ -25,6 +25,7 @@ from planner.destinations import Situation
 from planner.exploring import Lookout, inspection, sight_of
 from planner.haulage import Haul, Hauler, Refusal, Request, swept_squares
 from planner.landing import in_view, lands, region_of
+from planner.screen import Squares
 
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
@@ -48,9 +49,9 @@ class Act:
 
 @dataclass(frozen=True)
 class Go:
-    """A square to walk to (flat index on the view's arrays). place : its middle, on the lattice, where to halt."""
+    """A square to walk to (a flat index on the view's arrays). place : its middle, on the lattice, where to halt."""
 
-    square: int
+    square: Squares
     place: Place
     why: str
 
@@ -160,6 +161,8 @@ class Carrier:
         if node.polygon is None or (course.place is not None and not _stands(model, course.place)):
             return None
         if course.grasped and model.held != course.name:
+            return None
+        if not course.grasped and situation.screens.nearest(_square(course.legs[0].place, model)) is None:
             return None
         free = situation.screens.free(max(course.level, STILL)) | model.mask(node.patch)
         if not free[model.mask_within(course.needed)].all():
@@ -298,11 +301,10 @@ class Carrier:
             return Act(
                 Grasp(_direction(leg, course, model)), f"{course.name} is taken to be carried to {course.target}"
             )
-        row, column = model.view.locate(*leg.place)
-        if model.view.locate(*model.place) == (row, column):
+        if model.view.locate(*model.place) == model.view.locate(*leg.place):
             dx, dy = leg.place[0] - model.place[0], leg.place[1] - model.place[1]
             return Act(Move(*model.lattice.to_utak(dx, dy)), "to the middle of the square")
-        return Go(row * model.labels.shape[1] + column, leg.place, f"{course.name} can be taken from there")
+        return Go(_square(leg.place, model), leg.place, f"{course.name} can be taken from there")
 
 
 def _clear_part(haul: Haul, node: Node, situation: Situation) -> Haul | None:
@@ -365,6 +367,12 @@ def _led(course: Course, node: Node, free: Mask, situation: Situation) -> Any:
     legs = [first if course.place is None else replace(first, place=course.place), *others]
     placed = [replace(leg, place=(leg.place[0] - west, leg.place[1] - south)) for leg in legs]
     return verified(Yard(free), in_view(node.polygon, situation), placed)
+
+
+def _square(place: Place, model: WorldModel) -> Squares:
+    """The square in which a point of the lattice lies, as the one flat index."""
+    row, column = model.view.locate(*place)
+    return np.array([row * model.labels.shape[1] + column])
 
 
 def _stands(model: WorldModel, place: Place) -> bool:

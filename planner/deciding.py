@@ -184,7 +184,7 @@ class Decider:
                 return look
             return Decision(advice.command, f"{advice.why}; {stage}")
         if isinstance(advice, Go):
-            aim = Aim("attain", np.array([advice.square]), advice.why)
+            aim = Aim("attain", advice.square, advice.why)
             walk = self._pursue([aim], stage, situation, lambda: f"no way leads to where {node.name} can be taken")
             if walk.command is not None:
                 return replace(walk, command=halting(walk.command, advice.place, situation.model))

@@ -65,14 +65,15 @@ def see() -> None:
     """Find regions and their shapes, and draw pictures."""
     import numpy as np
 
+    from geometry.blobs import blobs
     from geometry.components import boxes, components
-    from geometry.sketch import DRAWN, Counts, blobs, pictures
+    from geometry.sketch import DRAWN, Counts, pictures
 
     boxes(components(np.ones((2, 2), np.bool_)).labels, 1)
     drawn, full = np.full((1, 1), DRAWN, np.int8), np.ones((1, 1), np.int8)
     one = np.ones(1, np.int16)
     counts = Counts(np.zeros((1, 1), np.int32), np.ones((1, 1), np.int16), one, one)
-    blobs(pictures(drawn, counts, full, 1, 1)[0], drawn)
+    blobs(pictures(drawn, counts, full[None], 1, 1)[0], drawn)
 
 
 def tell_shapes() -> None:

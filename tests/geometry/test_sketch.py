@@ -2,8 +2,12 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
-from geometry.sketch import DRAWN, FREE, FULL, UNSEEN, Counts, blobs, pictures
+from geometry.blobs import blobs
+from geometry.sketch import AROUND, COLD, CORNER, DRAWN, EDGE, FREE, FULL, UNSEEN, Counts, _prices, pictures
 
 
 def counted(truth: np.ndarray, side: int, shift: int = 0) -> Counts:
@@ -35,7 +39,7 @@ def test_pictures_show_what_the_counts_of_two_looks_leave_no_doubt_about() -> No
     truth = square_world()
     ground = np.full(truth.shape, DRAWN, np.int8)
     counts = together(counted(truth, 4), counted(truth, 4, 2))
-    drawn = pictures(ground, counts, np.zeros_like(truth), 8, 60)
+    drawn = pictures(ground, counts, np.zeros((8, *truth.shape), np.int8), 60, 0.5)
     assert np.abs(drawn.mean(0) - truth).mean() < 0.02
 
 
@@ -43,24 +47,72 @@ def test_pictures_agree_with_what_is_settled_and_show_nothing_unseen() -> None:
     truth = square_world()
     ground = np.full(truth.shape, DRAWN, np.int8)
     ground[9:14, 10:15], ground[20:], ground[5, 5] = FULL, UNSEEN, FREE
-    drawn = pictures(ground, counted(truth, 4), np.ones_like(truth), 3, 10)
+    drawn = pictures(ground, counted(truth, 4), np.ones((3, *truth.shape), np.int8), 10, 0.5)
     assert drawn.shape == (3, 24, 24)
     assert (drawn[:, 9:14, 10:15] == 1).all()
     assert not drawn[:, 20:].any()
     assert not drawn[:, 5, 5].any()
 
 
+def test_a_wall_that_lies_a_square_off_is_moved_as_a_whole() -> None:
+    truth = np.zeros((20, 20), np.int8)
+    truth[:, 7:9] = 1
+    ground = np.full(truth.shape, DRAWN, np.int8)
+    ground[:, [0, -1]] = ground[[0, -1]] = UNSEEN
+    beside = np.roll(truth, 1, axis=1)
+    counts = together(counted(truth, 4, 1), counted(truth, 4, 3))
+    drawn = pictures(ground, counts, np.repeat(beside[None], 6, 0), 4, COLD)
+    shown = ground == DRAWN
+    assert (drawn[:, shown] == truth[shown]).mean() > 0.97
+
+
+def cost(image: np.ndarray, ground: np.ndarray) -> float:
+    """What the outline of a picture costs, edge by edge and corner by corner."""
+    total = 0.0
+    for row, column in np.ndindex(image.shape[0] - 1, image.shape[1] - 1):
+        part = slice(row, row + 2), slice(column, column + 2)
+        if (ground[part] == UNSEEN).any():
+            continue
+        (a, b), (c, d) = image[part].tolist()
+        edges = (a != b) + (c != d) + (a != c) + (b != d)
+        corners = {0: 0, 2: 0 if a != d else 1, 4: 2}[edges] if edges != 2 or (a, b, c, d).count(1) == 2 else 1
+        total += EDGE * edges / 2 + CORNER * corners
+    return total
+
+
+@given(
+    arrays(np.int8, (5, 5), elements=st.integers(0, 1)),
+    arrays(np.int8, (5, 5), elements=st.sampled_from([DRAWN, DRAWN, DRAWN, UNSEEN])),
+)
+def test_the_price_of_a_change_is_the_difference_of_two_pictures(image: np.ndarray, ground: np.ndarray) -> None:
+    ground[2, 2] = DRAWN
+    image[ground == UNSEEN] = 0
+    changed = image.copy()
+    changed[2, 2] = 1 - image[2, 2]
+    shown = 0
+    for point in range(4):
+        row, column = 2 - point // 2, 2 - point % 2
+        shown |= int((ground[row : row + 2, column : column + 2] != UNSEEN).all()) << point
+    near = sum(int(image[2 + rows, 2 + across]) << n for n, (rows, across) in enumerate(AROUND))
+    price = _prices()[(shown << 9) + (near << 1) + int(image[2, 2])]
+    assert price == pytest.approx(cost(changed, ground) - cost(image, ground), abs=1e-5)
+
+
 def test_the_same_arguments_give_the_same_pictures() -> None:
     truth = square_world()
     ground = np.full(truth.shape, DRAWN, np.int8)
-    first, again = (pictures(ground, counted(truth, 4), np.zeros_like(truth), 4, 20) for _ in range(2))
+    first, again = (
+        pictures(ground, counted(truth, 4), np.zeros((4, *truth.shape), np.int8), 20, 0.5) for _ in range(2)
+    )
     assert np.array_equal(first, again)
 
 
 def test_straight_sides_are_preferred() -> None:
     truth = np.zeros((16, 16), np.int8)
     truth[:, :6] = 1  # a field of side 4 is half full wherever the wall's edge lies in it
-    drawn = pictures(np.full(truth.shape, DRAWN, np.int8), counted(truth, 4), np.zeros_like(truth), 8, 80)
+    drawn = pictures(
+        np.full(truth.shape, DRAWN, np.int8), counted(truth, 4), np.zeros((8, *truth.shape), np.int8), 80, 0.5
+    )
     assert np.abs(drawn.mean(0) - truth).mean() < 0.08
 
 
@@ -69,7 +121,8 @@ def test_without_fields_there_is_nothing_to_draw() -> None:
         np.zeros((0, 16), np.int32), np.zeros((0, 16), np.int16), np.zeros(0, np.int16), np.zeros(0, np.int16)
     )
     assert (
-        pictures(np.full((3, 4), FULL, np.int8), empty, np.zeros((3, 4), np.int8), 2, 5).tolist() == [[[1] * 4] * 3] * 2
+        pictures(np.full((3, 4), FULL, np.int8), empty, np.zeros((2, 3, 4), np.int8), 5, 0.5).tolist()
+        == [[[1] * 4] * 3] * 2
     )
 
 

@@ -202,6 +202,29 @@ def test_what_is_seen_now_counts() -> None:
         assert world_of(changed)(x, y) == (state == FULL)
 
 
+def test_a_second_look_from_the_same_place_tells_nothing_new() -> None:
+    rows = ["b" * 24, *["b" + "." * 22 + "b"] * 10, "b.......ggg............b", *["b" + "." * 22 + "b"] * 8, "b" * 24]
+    occupied, evidence = world_of(rows), Evidence()
+    for number, place in enumerate([(12, 8), (5, 5)]):
+        look(evidence, occupied, place, number)
+    before = evidence.view()
+    look(evidence, occupied, (12, 8), 2)
+    after = evidence.view()
+    assert all(np.array_equal(a, b) for a, b in zip(before.counts, after.counts, strict=True))
+    assert np.array_equal(before.probability, after.probability)
+    assert np.array_equal(before.settled_by, after.settled_by)
+
+
+def test_after_a_withdrawal_the_same_look_counts_again() -> None:
+    evidence = Evidence()
+    counts = tiny([[0], [1, 2]], [[1], [1, 1]], [0] * 2), np.array([(1, 1), (0, 0)])
+    evidence.look(*counts, 0, 0, 0)
+    evidence.withdraw(np.array([evidence.index(1, 0)[0] * evidence.state.shape[1] + evidence.index(1, 0)[1]], np.int32))
+    assert (1, 0) not in settled(evidence)
+    evidence.look(*counts, 0, 0, 1)
+    assert settled(evidence) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FREE}
+
+
 def test_withdrawn_squares_are_open_and_their_fields_forgotten() -> None:
     evidence = Evidence()
     fields = tiny([[0], [0, 1, 2], [2, 3]], [[1], [1] * 3, [1] * 2], [0] * 3)

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from shapely import Point, box
 
-from geometry.sketch import DRAWN, blobs
+from geometry.blobs import blobs
+from geometry.sketch import DRAWN
 from kb.evidence import OPEN
 from kb.imagining import imagine, likeness
 from tests.kb.drawings import LARGE_ROOM, drawing, looked

@@ -1,6 +1,7 @@
 """Carrying in real worlds, end to end: what Utak believes of what he carries is what the table says."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -188,6 +189,22 @@ def test_what_is_clear_of_a_plan_is_done_before_the_rest_is_seen(
         trial = run_trial(5, seed, Conditions(plain=True), tmp_path / str(seed))
         assert trial.right, (trial.verdict, trial.reason, trial.crash)
     assert begun
+
+
+def test_a_plan_to_take_it_from_where_he_cannot_stand_is_dropped(tmp_path: Path) -> None:
+    folder = scene(tmp_path, room(SQUARE), "object(x). shape(x, square).", "at(x, corner(northeast)).")
+    session = Session(read_scenario(folder), Settings(), make_robot, EpisodeLog(None))
+    session.wake()
+    carrier = session.robot.decider.carrier
+    while carrier._course is None or carrier._course.grasped:
+        session.step()
+    within = carrier._course.polygon.centroid
+    leg = replace(carrier._course.legs[0], place=(math.floor(within.x) + 0.5, math.floor(within.y) + 0.5))
+    carrier._course = replace(carrier._course, legs=(leg,))
+    while not session.finished:
+        session.step()
+    assert session.end().verdict == "done"
+    lies_as_believed(session)
 
 
 @pytest.mark.parametrize("task", [5, 6, 7, 8, 9])
