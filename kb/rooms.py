@@ -18,7 +18,6 @@ from geometry import Screen
 from geometry.components import components
 from geometry.passages import Passage
 from kb.encodings import KB, solve
-from kb.evidence import OPEN
 from kb.regions import extents
 from kb.worldmodel import SPACE, WorldModel
 
@@ -160,8 +159,7 @@ def _known(passage: Passage, model: WorldModel, verge: Mask, walls: _Walls) -> i
     walled = min(int(walls.extents[walls.labels[jamb]].max()) for jamb in jambs)
     if walled < SMALLEST_WALL:
         return min(50, round(50 * walled / SMALLEST_WALL))
-    state = model.view.state
-    return round(50 + 50 * min(float((state[where] != OPEN).mean()) for where in (across, *jambs)))
+    return round(50 + 50 * min(float(model.told[where].mean()) for where in (across, *jambs)))
 
 
 def _jamb(wall: Mask, end: tuple[float, float]) -> Indices:

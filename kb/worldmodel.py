@@ -134,6 +134,13 @@ class WorldModel:
         return mask
 
     @cached_property
+    def told(self) -> Mask:
+        """(rows, columns): squares that the counts settle, and those that all pictures show alike."""
+        view = self.view
+        mask: Mask = (view.state != OPEN) | (view.probability <= SPACE) | (view.probability >= 1 - SPACE)
+        return mask
+
+    @cached_property
     def floor(self) -> Mask:
         """(rows, columns): the zero region in which Utak stands."""
         row, column = self.view.locate(*self.place)

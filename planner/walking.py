@@ -13,7 +13,7 @@ from planner.screen import Screens
 from planner.steps import Square, clear, clear_line
 
 LONGEST = {"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}  # squares of one move, by its aim
-SHORT = 6  # squares of one move while it is open how the lattice lies, and so where he goes
+SHORT = 9  # squares of one move while it is open how the lattice lies, and so where he goes
 ASKEW = math.radians(5)  # by which the lattice may lie otherwise before he takes care where he halts
 TESTING = ("explore", "inspect", "settle")  # aims that do not mind where in a square he halts
 EDGE = 0.4618  # squares from a centre, not far from the line between two squares
