@@ -95,7 +95,7 @@ def _telling(screens: Screens, near: Squares, mask: Mask, chance: float) -> Squa
     chance : that it is what is looked for, and that who is not beside it must set out once more to be.
     """
     beside = grown(mask, 1)
-    open_ = beside & (screens.model.view.state == OPEN)
+    open_ = beside & ~screens.model.told
     if len(near) < 2 or not open_.any():
         return near
     seen = _sums(np.pad(open_, CLOSE).astype(np.float64), CLOSE).ravel()[near]

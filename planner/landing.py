@@ -120,7 +120,7 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     model = situation.model
     view = model.view
     around = grown(model.squares([(column + view.west, row + view.south)]), 1)
-    unclear = around & (view.state == OPEN)
+    unclear = around & ~model.told
     shape = in_view(node.polygon, situation)
     if not unclear.any():
         return Landing({side: replace(end, slack=ABOUT)}, holds=lands(end, shape))
