@@ -39,7 +39,7 @@ class Bones(NamedTuple):
 def contract(square: Squares, state: States, words: Words) -> Bones:
     """The chains of the skeleton that ``state`` links."""
     heights, states, width = square.reshape(-1), state.reshape(-1), state.shape[1]
-    eights, size, notes = words.view(np.int64), len(words), new_notes()
+    eights, size, notes = words.view(np.int64), len(words), new_notes(len(states))
     base, since = np.empty((size + 15) // 16, np.int32), np.empty(size, np.uint8)
     while True:
         nodes, ends, links = count(eights, base, since)

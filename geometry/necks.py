@@ -16,12 +16,12 @@ from geometry.distance import Squares
 Ints = NDArray[np.int32]
 Notes = Ints
 
-ROOM = 1024  # of notes
+LEAST, MOST = 32, 1024  # notes
 
 
-def new_notes() -> Notes:
-    """Room for notes and for the clearances of as many."""
-    return np.empty((2, ROOM), np.int32)
+def new_notes(cells: int) -> Notes:
+    """(2, many) room for notes and for the clearances of as many: little on a small screen."""
+    return np.empty((2, min(max(LEAST, cells >> 6), MOST)), np.int32)
 
 
 @bare

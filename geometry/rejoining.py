@@ -41,7 +41,7 @@ def rejoin(heights: Heights, width: int, bones: Bones, journal: Journal) -> Bone
     seeds.sort()
     room = len(bones.length) + len(seeds)
     port, neck, length = np.empty((room, 2), np.int32), np.empty(room, np.int32), np.empty(room)
-    notes = new_notes()[0]
+    notes = new_notes(len(heights))[0]
     found = merge_chains(heights, states, width, *bones, open_ends, number, seeds, node, port, neck, length, notes)
     return Bones(node, port[:found], neck[:found], length[:found])
 
