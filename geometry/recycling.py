@@ -17,7 +17,7 @@ from geometry.distance import Squares
 from geometry.skeleton import Words
 
 PAGE = 4096  # bytes; the system's own may be larger
-FEW = 1 << 16  # bytes that are not worth a call
+LEAST, MOST = 1 << 16, 1 << 22  # bytes worth a call; for more numpy asks for large pages, and few of them are needed
 POPULATE_WRITE = 23  # of Linux's madvise, since 5.14
 
 
@@ -55,7 +55,7 @@ def populate(array: NDArray[Any]) -> None:
     This is advice: where it is not understood nothing happens.
     """
     advise = adviser()
-    if advise is not None and array.nbytes >= FEW:
+    if advise is not None and LEAST <= array.nbytes < MOST:
         begin = array.ctypes.data
         first = begin - begin % PAGE
         advise(first, begin + array.nbytes - first, POPULATE_WRITE)
