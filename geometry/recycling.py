@@ -17,7 +17,7 @@ from geometry.distance import Squares
 from geometry.skeleton import Words
 
 PAGE = 4096  # bytes; the system's own may be larger
-LEAST, MOST = 1 << 16, 1 << 22  # bytes worth a call; for more numpy asks for large pages, and few of them are needed
+LEAST, MOST = 1 << 16, 1 << 21  # bytes: less is not worth a call, and for much more numpy asks for large pages anyway
 POPULATE_WRITE = 23  # of Linux's madvise, since 5.14
 
 
