@@ -13,11 +13,14 @@ from numpy.typing import NDArray
 
 from geometry.compiled import bare
 from geometry.distance import Squares
+from geometry.eights import Eights, collect, count, number
+from geometry.necks import Notes, lowest_of, new_notes, settle
 from geometry.skeleton import HALT, LINKS, SADDLE, Flags, Heights, States, Words, above, stride
 
 Ints = NDArray[np.int32]
 Floats = NDArray[np.float64]
 CHORD = 4  # a chain's length is measured by chords of so many steps, since a staircase is no longer than its slope
+AHEAD = 1 << 14  # words of states: twice as many fit into a processor's own cache beside what a walk needs
 
 
 class Bones(NamedTuple):
@@ -36,16 +39,16 @@ class Bones(NamedTuple):
 def contract(square: Squares, state: States, words: Words) -> Bones:
     """The chains of the skeleton that ``state`` links."""
     heights, states, width = square.reshape(-1), state.reshape(-1), state.shape[1]
-    index = np.empty((len(words) + 3) // 4, np.int32)
+    eights, size, notes = words.view(np.int64), len(words), new_notes(len(states))
+    base, since = np.empty((size + 15) // 16, np.int32), np.empty(size, np.uint8)
     while True:
-        nodes, ends, links = count(states, words, index)
+        nodes, ends, links = count(eights, base, since)
         node, port = np.empty(nodes + 1, np.int32), np.empty((ends // 2, 2), np.int32)
         neck, length = np.empty(ends // 2, np.int32), np.empty(ends // 2, np.float64)
-        collect(states, words, node)
-        bones = Bones(node[:nodes], port, neck, length)
-        if pace_all(heights, states, width, index, *bones, np.zeros(nodes, np.uint8)) == links:
-            return bones
-        del node, port, neck, length, bones  # their memory is wanted again
+        seen = np.zeros(nodes, np.uint8)
+        if pace_all(heights, states, eights, width, base, since, node, port, neck, length, seen, notes) == links:
+            return Bones(node[:nodes], port, neck, length)
+        del node, port, neck, length, seen  # their memory is wanted again
         halt_rings(heights, states, width, words)
 
 
@@ -85,96 +88,81 @@ def is_node(here: int) -> bool:
 
 
 @bare
-def count(states: Flags, words: Words, index: Ints) -> tuple[int, int, int]:
-    """Nodes, chain ends at nodes, and links of the whole skeleton.
-
-    ``index`` gets the number of nodes before each 32 cells.
-    """
-    nodes, ends, links = 0, 0, 0
-    for word in range(words.shape[0]):
-        if word & 3 == 0:
-            index[word >> 2] = nodes
-        if words[word] == 0:
-            continue
-        for cell in range(8 * word, 8 * word + 8 if 8 * word + 8 < states.shape[0] else states.shape[0]):
-            here = int(states[cell])
-            found, degree = int(is_node(here)), (here & 1) + (here >> 1 & 1) + (here >> 2 & 1) + (here >> 3 & 1)
-            nodes += found
-            ends += found * degree
-            links += degree
-    return nodes, ends, links // 2
-
-
-@bare
-def collect(states: Flags, words: Words, node: Ints) -> None:
-    """List the nodes; ``node`` has room for one more."""
-    found = 0
-    for word in range(words.shape[0]):
-        if words[word] == 0:
-            continue
-        for cell in range(8 * word, 8 * word + 8 if 8 * word + 8 < states.shape[0] else states.shape[0]):
-            node[found] = cell  # stands if it is a node
-            found += int(is_node(int(states[cell])))
-
-
-@bare
 def pace_all(
     heights: Heights,
     states: Flags,
+    words: Eights,
     width: int,
-    index: Ints,
+    base: Ints,
+    since: Flags,
     node: Ints,
     port: Ints,
     neck: Ints,
     length: Floats,
     seen: States,
+    notes: Notes,
 ) -> int:
-    """Walk every chain once from its first end; returns the links walked. ``seen`` has the ends met, as bits."""
-    chain, walked = 0, 0
-    for n in range(node.shape[0]):
-        ends = int(states[node[n]]) & LINKS
-        for direction in range(4):
-            if not ends >> direction & 1 or seen[n] >> direction & 1:
-                continue
-            last, back, neck[chain], length[chain], steps = pace(0 + node[n], direction, heights, states, width)
-            other = 0 + index[last >> 5]
-            while node[other] < last:
-                other += 1
-            seen[n] |= 1 << direction
-            seen[other] |= 1 << back
-            port[chain, 0], port[chain, 1] = 4 * n + direction, 4 * other + back
-            walked += steps
-            chain += 1
+    """List the nodes and walk every chain once from its first end; returns the links walked.
+
+    ``seen`` has the ends met, as bits. Nodes are listed some way ahead of the walk, which then finds the states there
+    in the processor's cache.
+    """
+    chain, settled, noted, walked, n, found = 0, 0, 0, 0, 0, 0
+    for first in range(-AHEAD, words.shape[0], AHEAD):
+        listed, found = found, collect(words, first + AHEAD, first + 2 * AHEAD, node, found)
+        while n < listed:
+            cell = int(node[n])
+            ends = int(states[cell]) & LINKS & ~int(seen[n])
+            while ends != 0:
+                direction = first_way(ends)
+                last, back, length[chain], steps, noted = pace(cell, direction, heights, states, width, notes[0], noted)
+                other = number(last, words, base, since)
+                seen[n] |= 1 << direction
+                seen[other] |= 1 << back
+                port[chain, 0], port[chain, 1] = 4 * n + direction, 4 * other + back
+                walked += steps
+                chain += 1
+                if noted > notes.shape[1] >> 1 or chain == neck.shape[0]:
+                    settle(notes[0], notes[1], noted, heights, settled, neck)
+                    settled, noted = chain, 0
+                ends &= ~int(seen[n])
+            n += 1
     return walked
 
 
 @bare
-def pace(cell: int, direction: int, heights: Heights, states: Flags, width: int) -> tuple[int, int, int, float, int]:
+def pace(
+    cell: int, direction: int, heights: Heights, states: Flags, width: int, notes: Ints, noted: int
+) -> tuple[int, int, float, int, int]:
     """Walk one chain.
 
-    Returns its last cell, the direction back from there, the lowest cell (an end or a saddle), its length, and the
-    number of steps.
+    Returns its last cell, the direction back from there, its length, the number of steps, and that of notes: its ends
+    and saddles, one of which is its lowest cell, are added to the ``noted`` ones.
     """
-    low, lowest, length = heights[cell], cell, 0.0
-    run, rise, steps = 0, 0, 0
+    run, rise, steps, length, first = 0, 0, 0, 0.0, noted
+    notes[noted] = ~cell
+    noted += 1
+    way = 1 << direction
     while True:
-        step, upright = 1 - (direction & 2), direction & 1
-        rise += step * upright
-        run += step * (1 - upright)
-        cell += step * (width if upright else 1)
+        east, north = (way & 1) - (way >> 2 & 1), (way >> 1 & 1) - (way >> 3)
+        run += east
+        rise += north
+        cell += east + north * width
         steps += 1
-        here = states[cell]
+        here = int(states[cell])
         end = is_node(here)
-        if end or here & SADDLE:
-            height = heights[cell]
-            if height < low or (height == low and cell < lowest):
-                low, lowest = height, cell
+        notes[noted] = cell  # stands if it may be the lowest
+        noted += int(end | (here & SADDLE != 0))
+        back = way >> 2 | (way & 3) << 2
         if end or steps % CHORD == 0:
             length += np.sqrt(float(run * run + rise * rise))
             run, rise = 0, 0
+            if noted + CHORD >= notes.shape[0]:
+                notes[first] = ~lowest_of(notes, first, noted, heights)
+                noted = first + 1
         if end:
-            return cell, direction ^ 2, lowest, length, steps
-        direction = onward(here, direction ^ 2)
+            return cell, (back >> 1) - (back >> 3), length, steps, noted
+        way = here & LINKS ^ back
 
 
 @bare

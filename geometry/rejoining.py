@@ -9,6 +9,7 @@ import numpy as np
 
 from geometry.bones import Bones, Floats, Ints, find, first_way, is_node, onward, pace
 from geometry.compiled import bare
+from geometry.necks import lowest_of, new_notes
 from geometry.regrowth import JOINED, MOVED, Journal
 from geometry.skeleton import HALT, LINKS, Flags, Heights, stride
 
@@ -40,7 +41,8 @@ def rejoin(heights: Heights, width: int, bones: Bones, journal: Journal) -> Bone
     seeds.sort()
     room = len(bones.length) + len(seeds)
     port, neck, length = np.empty((room, 2), np.int32), np.empty(room, np.int32), np.empty(room)
-    found = merge_chains(heights, states, width, *bones, open_ends, number, seeds, node, port, neck, length)
+    notes = new_notes(len(heights))[0]
+    found = merge_chains(heights, states, width, *bones, open_ends, number, seeds, node, port, neck, length, notes)
     return Bones(node, port[:found], neck[:found], length[:found])
 
 
@@ -151,6 +153,7 @@ def merge_chains(
     port: Ints,
     neck: Ints,
     length: Floats,
+    notes: Ints,
 ) -> int:
     """The chains kept and the new ones, in order; returns how many."""
     size, k = 0, 0
@@ -162,10 +165,15 @@ def merge_chains(
                 continue
             first, last = 4 * number[a >> 2] + (a & 3), 4 * number[b >> 2] + (b & 3)
         while k < seeds.shape[0] and seeds[k] < first:
-            end, back, lowest, long, _ = pace(node[seeds[k] >> 2], seeds[k] & 3, heights, states, width)
+            end, back, long, _, noted = pace(node[seeds[k] >> 2], seeds[k] & 3, heights, states, width, notes, 0)
             other = 4 * find(node, end) + back
             if seeds[k] < other:
-                port[size, 0], port[size, 1], neck[size], length[size] = seeds[k], other, lowest, long
+                port[size, 0], port[size, 1], neck[size], length[size] = (
+                    seeds[k],
+                    other,
+                    lowest_of(notes, 0, noted, heights),
+                    long,
+                )
                 size += 1
             k += 1
         if chain < old_port.shape[0]:

@@ -1,0 +1,52 @@
+"""Memory of screens: new where none is spare, and used again when a screen has died."""
+
+import numpy as np
+import pytest
+
+from geometry import Screen, recycling
+
+
+@pytest.fixture(autouse=True)
+def nothing_spare():
+    recycling.SPARE.clear()
+
+
+class Owner:
+    """Whoever holds buffers."""
+
+
+@pytest.mark.parametrize("shape", [(3, 3), (130, 126), (700, 333)])
+def test_new_memory_has_the_shape_and_empty_words(shape):
+    owner = Owner()
+    square, words = recycling.take_buffers(owner, shape)
+    assert square.shape == shape and len(words) == -(-shape[0] * shape[1] // 8)
+    assert not words.any()
+
+
+def test_the_memory_of_a_dead_screen_is_used_again_and_leaves_no_trace():
+    rng = np.random.default_rng(3)
+    first, second = rng.random((2, 300, 200)) < 0.8
+    fresh = Screen(second)
+    dead = Screen(first)
+    square = dead._square
+    del dead
+    again = Screen(second)
+    assert again._square is square and fresh._square is not square
+    assert (again.clearance == fresh.clearance).all()
+    for mine, other in zip(again._skeleton_at(1), fresh._skeleton_at(1), strict=True):
+        assert all(np.array_equal(a, b) for a, b in zip(mine, other, strict=True))
+
+
+def test_advice_changes_nothing_that_is_written():
+    for length in (10, 70_000, 1_000_000):
+        array = np.arange(length)
+        recycling.populate(array[1:-1])
+        assert (array == np.arange(length)).all()
+
+
+def test_where_there_is_no_such_advice_nothing_happens(monkeypatch):
+    monkeypatch.setattr(recycling, "adviser", lambda: None)
+    recycling.populate(np.zeros(100_000))
+    monkeypatch.undo()
+    monkeypatch.setattr(recycling.sys, "platform", "darwin")
+    assert recycling.adviser.__wrapped__() is None
