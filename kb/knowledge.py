@@ -55,8 +55,10 @@ class Knowledge:
     def _grasp(self, direction: str) -> None:
         """Believe that the thing on an adjacent square is in hand, if one with a known outline is believed there."""
         x, y = self.memory.square
-        column, row = self.memory.lattice.beside(direction)
-        there = [n for n in self.objects if (x + column, y + row) in n.patch.squares()]
+        beside = self.memory.lattice.beside(direction)
+        if beside is None:
+            return
+        there = [n for n in self.objects if (x + beside[0], y + beside[1]) in n.patch.squares()]
         node = min(there, key=lambda n: n.name not in self.memory.loads, default=None)
         if node is None or node.polygon is None or self.memory.held is not None:
             return
@@ -111,11 +113,14 @@ class Knowledge:
         x, y = self.memory.square
         loaded = {square for load in self.memory.loads.values() for square in load.possible.squares()}
         for direction, colour in zip(DIRECTIONS, impression.touch, strict=True):
-            column, row = self.memory.lattice.beside(direction)
-            if colour is None or (x + column, y + row) in loaded:
-                self.felt.pop((x + column, y + row), None)
+            beside = self.memory.lattice.beside(direction)
+            if beside is None:
+                continue
+            square = x + beside[0], y + beside[1]
+            if colour is None or square in loaded:
+                self.felt.pop(square, None)
             else:
-                self.felt[x + column, y + row] = colour
+                self.felt[square] = colour
 
     def _objects(self, model: WorldModel) -> tuple[Node, ...]:
         regions = [r for r in model.percept.regions if _may_be_object(r.name, r.extent, model.kinds)]

@@ -68,10 +68,19 @@ class Lattice:
         x, y = self.to_lattice(east, north)
         return x + self.woke[0], y + self.woke[1]
 
-    def beside(self, direction: str) -> tuple[int, int]:
-        """The adjacent square, as (columns, rows), in one of the eight directions of Utak's frame."""
+    def beside(self, direction: str) -> tuple[int, int] | None:
+        """The adjacent square, as (columns, rows), in one of the eight directions of Utak's frame.
+
+        None where the direction points between two squares, and either may be the one.
+        """
         column, row = self.to_lattice(*AROUND[DIRECTIONS.index(direction)])
-        return round(column), round(row)
+        tied = any(abs(abs(v - math.trunc(v)) - 0.5) < TIE for v in (column, row))
+        return None if tied else (round(column), round(row))
+
+    def directions(self) -> dict[tuple[int, int], str]:
+        """For each adjacent square, as (columns, rows), that some direction of Utak's frame surely names: that one."""
+        named = ((self.beside(direction), direction) for direction in reversed(DIRECTIONS))
+        return {square: direction for square, direction in named if square is not None}
 
     def samples(self) -> Samples:
         """The squares that each field samples."""

@@ -238,7 +238,9 @@ def unsettled(mask: Mask, view: MapView) -> tuple[int, int]:
     """How many squares of a region, and of the squares that touch it, the counts leave open; how many look doubtful."""
     framed = np.pad(mask, 1)
     about = framed[1:-1, 1:-1] | framed[:-2, 1:-1] | framed[2:, 1:-1] | framed[1:-1, :-2] | framed[1:-1, 2:]
-    return int((about & ~((view.state != OPEN) | (view.probability <= SPACE) | (view.probability >= 1 - SPACE))).sum()), int((about & in_doubt(view)).sum())
+    return int(
+        (about & ~((view.state != OPEN) | (view.probability <= SPACE) | (view.probability >= 1 - SPACE))).sum()
+    ), int((about & in_doubt(view)).sum())
 
 
 def in_doubt(view: MapView) -> Mask:

@@ -384,11 +384,9 @@ def _direction(leg: Leg, course: Course, model: WorldModel) -> str:
     node = model.object(course.name)
     assert node is not None
     x, y = math.floor(leg.place[0]), math.floor(leg.place[1])
-    ways = {direction: model.lattice.beside(direction) for direction in DIRECTIONS}
-    wanted = [direction for direction, square in ways.items() if square == leg.direction_square]
-    covered = node.patch.squares()
-    other = [direction for direction, (dx, dy) in ways.items() if (x + dx, y + dy) in covered]
-    return next(iter([*wanted, *other]), DIRECTIONS[0])
+    ways, covered = model.lattice.directions(), node.patch.squares()
+    other = [direction for (dx, dy), direction in ways.items() if (x + dx, y + dy) in covered]
+    return ways.get(leg.direction_square) or next(iter(other), DIRECTIONS[0])
 
 
 def _command(motion: Motion, model: WorldModel) -> Command:

@@ -5,7 +5,7 @@ harder still. What it finds may lead over squares that are not surely free: then
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,8 +18,9 @@ from geometry.digital import squares
 from geometry.ends import End
 from geometry.rigid import Translate
 from kb.encodings import solve
+from kb.lattice import AROUND
 from kb.loads import is_whole
-from kb.worldmodel import Node
+from kb.worldmodel import Node, WorldModel
 from planner.aims import ASP
 from planner.destinations import Situation
 from planner.landing import in_view
@@ -116,6 +117,9 @@ class Hauler:
         x, y = situation.model.place
         view = situation.model.view
         utak = (x - view.west, y - view.south)
+        avoid = (
+            request.avoid if request.held else (*request.avoid, *sorted(_untouchable(request.node, situation.model)))
+        )
         key = (
             shape.wkb,
             free.tobytes(),
@@ -123,7 +127,7 @@ class Hauler:
             name,
             repr(request.ends[name]),
             utak,
-            request.avoid,
+            avoid,
             request.tight,
             request.held,
         )
@@ -132,9 +136,18 @@ class Hauler:
                 self._known.clear()
             margin = MARGIN * (request.tight + (not is_whole(shape)))
             self._known[key] = plan_carrying(
-                shape, free, utak, request.ends[name], margin, self._pull, request.avoid, walk, held=request.held
+                shape, free, utak, request.ends[name], margin, self._pull, avoid, walk, held=request.held
             )
         return self._known[key]
+
+
+def _untouchable(node: Node, model: WorldModel) -> Iterator[tuple[float, float]]:
+    """Holds by which no direction of his frame surely names a square of an object: at a corner, as the lattice lies."""
+    covered, ways, middle = node.patch.squares(), model.lattice.directions(), node.polygon.centroid
+    about = {(x + dx, y + dy) for x, y in covered for dx, dy in AROUND} - covered
+    for x, y in about:
+        if not any((x + dx, y + dy) in covered for dx, dy in ways):
+            yield x + 0.5 - middle.x, y + 0.5 - middle.y
 
 
 def _kinds(situation: Situation) -> list[tuple[int, str]]:

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from geometry.carrying import At, InCorner, Inside
 from geometry.ends import End, met
 from geometry.rigid import Pose
-from kb.evidence import OPEN
 from kb.facts import Fact, Number, Symbol, Text
 from kb.rooms import Rooms
 from kb.wkt import parse_wkt

@@ -8,8 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kb.body import DIRECTIONS
 from kb.lattice import MOST, TIE, Lattice, turned
 from kb.retina import FIELDS, OWN
+from simulator.senses import Senses
 from tests.kb.eyes import sampled
 
 length = st.floats(-100, 100).map(lambda v: round(v, 6))
@@ -82,3 +84,20 @@ def test_along_the_axes_every_square_is_sampled_once() -> None:
     samples = Lattice(0).samples()
     assert samples.weight.max() == 1
     assert samples.weight.sum() == 32 * 32 - 1
+
+
+@pytest.mark.parametrize("angle", range(-44, 46))
+def test_a_direction_names_the_square_that_the_senses_mean_however_the_table_lies(angle: int) -> None:
+    lattice = Lattice(angle)
+    for direction in DIRECTIONS:
+        meant = set()
+        for quarters in range(4):
+            senses = Senses((angle + 90 * quarters) % 360)
+            i, j = senses.adjacent((0.5, 0.5), direction)
+            for _ in range(quarters):
+                i, j = j, -i
+            meant.add((i, j))
+        named = lattice.beside(direction)
+        assert meant == {named} if named is not None else len(meant) > 1 or abs(angle) == 30
+    assert all(lattice.beside(direction) == square for square, direction in lattice.directions().items())
+    assert {(1, 0), (0, 1), (-1, 0), (0, -1)} <= lattice.directions().keys()
