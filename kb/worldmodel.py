@@ -62,7 +62,7 @@ class Node:
     ----------
     kind : verge or object. confidence : that it is, in percent.
     region : its region of the map. patch : the squares that it covers, or may cover.
-    open : how many of them (and of their neighbours) are not settled. vague : how many of those look doubtful.
+    open : how many of them (and of their neighbours) are not told. vague : how many of those look doubtful.
     shape : class -> confidence. polygon : its believed outline (shapely, lattice frame), None while nothing fits.
     colour : as felt, or None. support : the impressions that settled its squares.
     movable : that it can be moved, in percent. moved : he has moved it. turned : degrees by which, since he first held
@@ -136,9 +136,7 @@ class WorldModel:
     @cached_property
     def told(self) -> Mask:
         """(rows, columns): squares that the counts settle, and those that all pictures show alike."""
-        view = self.view
-        mask: Mask = (view.state != OPEN) | (view.probability <= SPACE) | (view.probability >= 1 - SPACE)
-        return mask
+        return told(self.view)
 
     @cached_property
     def floor(self) -> Mask:
@@ -235,12 +233,16 @@ def patch_of(mask: Mask, view: MapView) -> Patch:
 
 
 def unsettled(mask: Mask, view: MapView) -> tuple[int, int]:
-    """How many squares of a region, and of the squares that touch it, the counts leave open; how many look doubtful."""
+    """How many squares of a region, and of the squares that touch it, are not told; how many look doubtful."""
     framed = np.pad(mask, 1)
     about = framed[1:-1, 1:-1] | framed[:-2, 1:-1] | framed[2:, 1:-1] | framed[1:-1, :-2] | framed[1:-1, 2:]
-    return int(
-        (about & ~((view.state != OPEN) | (view.probability <= SPACE) | (view.probability >= 1 - SPACE))).sum()
-    ), int((about & in_doubt(view)).sum())
+    return int((about & ~told(view)).sum()), int((about & in_doubt(view)).sum())
+
+
+def told(view: MapView) -> Mask:
+    """(rows, columns): squares that the counts settle, and those that all pictures show alike."""
+    mask: Mask = (view.state != OPEN) | (view.probability <= SPACE) | (view.probability >= 1 - SPACE)
+    return mask
 
 
 def in_doubt(view: MapView) -> Mask:

@@ -75,10 +75,12 @@ def test_a_patch_is_the_squares_of_its_mask(rows: int, columns: int, seed: int, 
 def test_open_squares_are_counted_about_a_thing_too() -> None:
     state = np.array([[0, -1, 0, 0], [-1, 1, 1, 0], [0, -1, 0, -1]], np.int8)
     thing = state == FULL
-    likely = thing.astype(np.float32)
+    likely = np.where(state == OPEN, 0.1, thing).astype(np.float32)
     likely[1, 0] = 0.5
     view = MapView(0, 0, likely, state, thing, np.zeros(state.shape, np.int16))
     assert unsettled(thing, view) == (3, 1)  # the corner to the southeast touches it at a corner only
+    likely[0, 1], likely[2, 1] = 0.01, 0.99  # all pictures show the same
+    assert unsettled(thing, view) == (1, 1)
 
 
 SHAPES = {
