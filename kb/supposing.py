@@ -118,12 +118,8 @@ class Surprise:
         return given if len(given) > 1 else points(self.lattice, self.looks)
 
     def _left(self) -> tuple[Hypothesis, ...]:
-        """The hypotheses that still stand; those that stood before if a motion of what he holds was cut short.
-
-        For then nothing is known of where he looks from.
-        """
-        left = search(self._recent, self.hypotheses, self._unsettled)
-        return self.hypotheses if not left and self._moving is not None else left
+        """The hypotheses that still stand."""
+        return search(self._recent, self.hypotheses, self._unsettled)
 
     def _searched(self) -> tuple[Hypothesis, ...]:
         """All that may be, of angles near to those that were left."""
