@@ -35,6 +35,7 @@ MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one 
 NOWHERE = 0.2  # squares: what was stopped sooner than this did not move
 NONE_FITS = 10**6  # misfits of no lattice at all
 MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are blamed for what contradicts
+HOPELESS = 18  # times that no other lattice explained it better, with things moved, before none is tried any more
 SETTLED = math.radians(5)  # by which angles may differ while that hardly is why looks contradict
 CONTRADICTED = 2  # misfits that a contradiction of looks weighs as much as: more than any other lattice costs
 NEAR = 2  # squares about the predicted place in which Utak is looked for first
@@ -217,7 +218,7 @@ class Memory:
 
     def _elsewhere(self, command: Command | None, ranges: NDArray[np.int16], misfits: int) -> list[Explanation]:
         """The lattice that explains better what contradicts, now that things have been moved, if there is one."""
-        if command is None:
+        if command is None or self.searches >= HOPELESS:
             return []
         surprise = Surprise(
             command, ranges, self.lattice, self.place, self.evidence, self.looks, self.loads, self.held, self.hypotheses

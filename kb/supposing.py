@@ -30,7 +30,9 @@ Ranges = NDArray[np.int16]
 RECENT = 24  # looks by which lattices are judged
 ABOUT = 2  # degrees by which the lattice may lie otherwise than any that was left
 WIDEST = 8  # degrees between those that were left, for more to be thought of
-FEW = 12  # lattices on which all is laid anew
+FEW = 12  # lattices on which all is laid anew, at most
+LEAST = 4  # at least
+MOST_REPLAYS = 200  # looks that are taken in anew for that
 BEST = 3  # of those, on which the motion may have been stopped by what was not known
 BESIDE = 1.5  # squares about a thing that was moved in which looks need not agree
 ROOM = 3  # squares about a motion in which something may stop it
@@ -78,9 +80,10 @@ class Surprise:
             if fitting:
                 return _middle(fitting)
         found: list[Supposed] = []
+        few = max(LEAST, min(FEW, MOST_REPLAYS // (len(self.looks) + 1)))
         for searched in (False, True)[: 1 + anew]:
             hypotheses = self._searched() if searched else self._left()
-            for lattice in candidates(hypotheses, self.lattice)[:FEW]:
+            for lattice in candidates(hypotheses, self.lattice)[:few]:
                 found.append(self._tried(lattice, hypotheses, searched))
                 if not found[-1].misfits:
                     return found[-1]
