@@ -1,7 +1,8 @@
 """Memory of dead screens, kept for the next one of the same shape.
 
 A screen writes every byte of its arrays; on memory fresh from the system that can cost as much as the measuring itself.
-One set is kept, the latest. No array of a set is ever handed to a user, so nothing can still look at it.
+One set is kept, the latest, and likewise the scratch of the latest change.
+No array of a set is ever handed to a user, so nothing can still look at it.
 """
 
 import sys
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.distance import Squares
-from geometry.skeleton import Words
+from geometry.skeleton import States, Waiting, Words
 
 PAGE = 4096  # bytes; the system's own may be larger
 LEAST, MOST = 1 << 16, 1 << 21  # bytes: less is not worth a call, and for much more numpy asks for large pages anyway
@@ -28,7 +29,17 @@ class Buffers(NamedTuple):
     words: Words
 
 
+class Scratch(NamedTuple):
+    """What a change of a screen notes, by cells. Little of it is ever written."""
+
+    mark: States
+    """All 0 before and after."""
+    touched: Waiting
+    before: States
+
+
 SPARE: dict[tuple[int, int], Buffers] = {}
+SCRATCH: dict[int, Scratch] = {}
 
 
 def take_buffers(owner: object, shape: tuple[int, int]) -> Buffers:
@@ -47,6 +58,20 @@ def give_back(shape: tuple[int, int], buffers: Buffers) -> None:
     """Keep a set, and only this one."""
     SPARE.clear()
     SPARE[shape] = buffers
+
+
+def take_scratch(cells: int) -> Scratch:
+    """Scratch for a screen of so many cells, that of the last change if it was of that size."""
+    scratch = SCRATCH.pop(cells, None)
+    if scratch is None:
+        scratch = Scratch(np.zeros(cells, np.uint8), np.empty(cells, np.int32), np.empty(cells, np.uint8))
+    return scratch
+
+
+def keep_scratch(scratch: Scratch) -> None:
+    """Keep scratch for the next change, and only this."""
+    SCRATCH.clear()
+    SCRATCH[len(scratch.mark)] = scratch
 
 
 def populate(array: NDArray[Any]) -> None:
