@@ -18,7 +18,7 @@ from geometry.distance import Squares
 from geometry.skeleton import States, Waiting, Words
 
 PAGE = 4096  # bytes; the system's own may be larger
-LEAST, MOST = 1 << 16, 1 << 21  # bytes: less is not worth a call, and for much more numpy asks for large pages anyway
+LEAST, MOST = 1 << 16, 1 << 22  # bytes: less is not worth a call, and for more numpy asks for large pages
 POPULATE_WRITE = 23  # of Linux's madvise, since 5.14
 
 
@@ -46,10 +46,12 @@ def take_buffers(owner: object, shape: tuple[int, int]) -> Buffers:
     """A set for an owner, spare again when the owner dies. All but the padding of ``words`` is arbitrary."""
     buffers = SPARE.pop(shape, None)
     if buffers is None:
-        words = np.zeros((shape[0] * shape[1] + 7) // 8, np.uint64)
-        buffers = Buffers(np.empty(shape, np.int32), words)
-        populate(buffers.square)
-        populate(words)
+        cells = shape[0] * shape[1]
+        half, eighth = (cells + 1) // 2, (cells + 7) // 8
+        whole = np.empty(half + eighth, np.uint64)  # one array: what numpy zeroes it touches page by page
+        populate(whole)
+        whole[-1] = 0
+        buffers = Buffers(whole[:half].view(np.int32)[:cells].reshape(shape), whole[half:])
     weakref.finalize(owner, give_back, shape, buffers).atexit = False
     return buffers
 
