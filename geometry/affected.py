@@ -93,9 +93,9 @@ def widen(square: Squares, boxes: Ints, k: int, row: int, bounds: Ints) -> bool:
             column += skip * step
     if last < 0:
         return False
+    first = first - 1 if first > 1 else 1
+    last = last + 1 if last < square.shape[1] - 2 else last
     for near in range(row - 1 if row > 1 else 1, row + 2 if row < square.shape[0] - 2 else square.shape[0] - 1):
-        bounds[near, 0] = first - 1 if first - 1 < bounds[near, 0] else bounds[near, 0]
-        bounds[near, 1] = last + 1 if last + 1 > bounds[near, 1] else bounds[near, 1]
-        bounds[near, 0] = bounds[near, 0] if bounds[near, 0] > 1 else 1
-        bounds[near, 1] = bounds[near, 1] if bounds[near, 1] < square.shape[1] - 2 else square.shape[1] - 2
+        bounds[near, 0] = first if first < bounds[near, 0] else bounds[near, 0]
+        bounds[near, 1] = last if last > bounds[near, 1] else bounds[near, 1]
     return True

@@ -12,7 +12,7 @@ from geometry.bones import Bones, Ints, contract
 from geometry.compiled import bare
 from geometry.distance import Bools, Squares
 from geometry.recycling import keep_scratch, take_scratch
-from geometry.regrowth import regrow, wipe
+from geometry.regrowth import regrow
 from geometry.rejoining import rejoin
 from geometry.skeleton import States, Words
 from geometry.sweep import survey
@@ -50,15 +50,16 @@ def change_squares(
         grid[cells // width - 1, cells % width - 1] = free
         survey(grid, square, state, words)
         return contract(square, state, words)
-    block = np.empty((high - low + 1, east - west + 1), np.bool_)
-    cut_out(square, low, west, cells, free, block)
+    block = square[low : high + 1, west : east + 1] > 0
+    block[cells // width - low, cells % width - west] = free
     fresh = np.empty((block.shape[0] + 2, block.shape[1] + 2), np.int32)
     measure(block, fresh)
     narrow(square, fresh, low - 1, west - 1, bounds)
     scratch = take_scratch(len(heights))
     journal = regrow(square, state, bounds, fresh.reshape(-1), scratch)
     joined = rejoin(heights, width, bones, journal)
-    wipe(journal, bounds, width)
+    scratch.mark[low * width : (high + 1) * width] = 0
+    scratch.mark[journal.touched[: journal.size[0]]] = 0
     keep_scratch(scratch)
     return joined
 
@@ -81,20 +82,6 @@ def block_about(square: Squares, bounds: Ints) -> tuple[int, int, int, int]:
     rows, columns = square.shape
     low, high = low if low > 0 else 0, high if high < rows - 1 else rows - 1
     return low, high, west if west > 0 else 0, east if east < columns - 1 else columns - 1
-
-
-@bare
-def cut_out(square: Squares, low: int, west: int, cells: Ints, free: Bools, block: Bools) -> None:
-    """Fill ``block``, which begins in row ``low`` and column ``west``, with what is free after the change."""
-    rows, columns = block.shape
-    for row in range(rows):
-        here, out = square[low + row, west : west + columns], block[row]
-        for column in range(columns):
-            out[column] = here[column] > 0
-    for k in range(cells.shape[0]):
-        row, column = cells[k] // square.shape[1] - low, cells[k] % square.shape[1] - west
-        if 0 <= row < rows and 0 <= column < columns:
-            block[row, column] = free[k]
 
 
 @bare

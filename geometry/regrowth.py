@@ -65,16 +65,6 @@ def regrow(square: Squares, state: States, bounds: Ints, fresh: Squares, scratch
 
 
 @bare
-def wipe(journal: Journal, bounds: Ints, width: int) -> None:
-    """Take all marks off again."""
-    for row in range(bounds.shape[0]):
-        for cell in range(row * width + bounds[row, 0], row * width + bounds[row, 1] + 1):
-            journal.mark[cell] = 0
-    for k in range(journal.size[0]):
-        journal.mark[journal.touched[k]] = 0
-
-
-@bare
 def spread(bounds: Ints, width: int, about: Ints) -> None:
     """The columns on or beside a changed cell, per row."""
     rows = bounds.shape[0]

@@ -5,16 +5,18 @@ that are nodes now, and the ends left open, are where new chains start. They are
 in the order that bones.py would give them.
 """
 
+from bisect import bisect_left
+
 import numpy as np
-from numpy.typing import NDArray
 
 from geometry.bones import Bones, Ints, find, first_way, is_node, onward
 from geometry.compiled import bare
 from geometry.regrowth import JOINED, MOVED, PASSED, Journal
 from geometry.skeleton import HALT, LINKS, Flags, Heights, stride
-from geometry.splicing import splice_chains, splice_nodes
+from geometry.splicing import Longs, splice_chains, splice_nodes
 
-Keys = NDArray[np.int64]
+NODES = np.array([bool(state) and is_node.function(state) for state in range(256)])
+"""Whether a cell of a state is a node."""
 
 GONE = 31  # a node that is none any more, or has changed: all its ends are open
 
@@ -30,15 +32,13 @@ def rejoin(heights: Heights, width: int, bones: Bones, journal: Journal) -> Bone
     cells, before = (keys >> 8).astype(np.int32), keys.astype(np.uint8)
     open_ends = np.zeros(len(bones.node), np.uint8)
     low, high = find_open(states, mark, width, cells, before, bones.node, open_ends)
-    grown = np.empty(len(cells), np.int32)
-    rings = find_rings(states, mark, width, cells, grown)
+    bases = np.empty(len(cells), np.int32)
+    rings = find_rings(states, mark, width, cells, bases)
     if rings:
-        cells = np.unique(np.concatenate([cells, grown[:rings]]))
-        grown = np.empty(len(cells), np.int32)
-    grown = grown[: find_nodes(states, cells, grown)]
+        cells = np.unique(np.concatenate([cells, bases[:rings]]))
+    grown = cells[NODES[states[cells]]]
     if len(grown):
-        first, last = grown[[0, -1]].tolist()
-        low, high = min(low, find(bones.node, first)), max(high, find(bones.node, last))
+        low, high = min(low, bisect_left(bones.node, grown[0])), max(high, bisect_left(bones.node, grown[-1]))
     if low > high:
         return bones
     splice = splice_nodes(bones.node, low, high, open_ends, grown)
@@ -49,12 +49,13 @@ def rejoin(heights: Heights, width: int, bones: Bones, journal: Journal) -> Bone
 
 
 @bare
-def find_changed(journal: Journal, keys: Keys) -> int:
-    """List the touched cells that differ, as 256 cell + state before; returns how many."""
+def find_changed(journal: Journal, keys: Longs) -> int:
+    """Mark and list the touched cells that differ, as 256 cell + state before; returns how many."""
     found = 0
     for k in range(journal.size[0]):
         cell = journal.touched[k]
         if journal.states[cell] != journal.before[k] or journal.mark[cell] & MOVED:
+            journal.mark[cell] |= JOINED
             keys[found] = np.int64(cell) << 8 | journal.before[k]
             found += 1
     return found
@@ -64,13 +65,11 @@ def find_changed(journal: Journal, keys: Keys) -> int:
 def find_open(
     states: Flags, mark: Flags, width: int, cells: Ints, before: Flags, node: Ints, open_ends: Flags
 ) -> tuple[int, int]:
-    """Mark the changed cells, and set the ends, as bits per node, of all chains on which one lay.
+    """Set the ends, as bits per node, of all chains on which one lay.
 
     Returns the first node that has such an end and the one behind the last.
     """
     low, high = node.shape[0], 0
-    for k in range(cells.shape[0]):
-        mark[cells[k]] |= JOINED
     for k in range(cells.shape[0]):
         if is_node(before[k]):
             here = find(node, cells[k])
@@ -125,18 +124,7 @@ def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints)
 
 
 @bare
-def find_nodes(states: Flags, cells: Ints, grown: Ints) -> int:
-    """List those of some cells that are nodes now; returns how many."""
-    found = 0
-    for k in range(cells.shape[0]):
-        if is_node(states[cells[k]]):
-            grown[found] = cells[k]
-            found += 1
-    return found
-
-
-@bare
-def find_seeds(states: Flags, node: Ints, grown: Ints, low: int, number: Ints, open_ends: Flags, seeds: Ints) -> int:
+def find_seeds(states: Flags, node: Ints, grown: Ints, low: int, number: Longs, open_ends: Flags, seeds: Ints) -> int:
     """The ends (4 node + direction) where new chains may start; returns how many."""
     found = 0
     for k in range(grown.shape[0]):

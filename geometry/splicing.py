@@ -5,6 +5,7 @@ Before it everything stays where it is, but for ends further on; behind it every
 places and its ends change by the same number. Only the stretch itself is merged piece by piece.
 """
 
+from bisect import bisect_left
 from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
@@ -17,8 +18,9 @@ from geometry.skeleton import Flags, Heights
 
 Array = TypeVar("Array", bound=NDArray[Any])
 
+Longs = NDArray[np.int64]
+
 ROOM = 64  # nodes or chains, and a sixteenth of what there are: so many more fit into new arrays
-BLOCK = 128  # ends looked at together
 
 
 class Splice(NamedTuple):
@@ -29,7 +31,7 @@ class Splice(NamedTuple):
     low: int
     """The first old node of the stretch that is merged, and the one behind the last."""
     high: int
-    number: Ints
+    number: Longs
     """(high - low,) what each of these old nodes is called now, or -1."""
     shift: int
     """By how much the numbers of the nodes behind grow."""
@@ -37,12 +39,16 @@ class Splice(NamedTuple):
 
 def splice_nodes(old: Ints, low: int, high: int, open_ends: Flags, grown: Ints) -> Splice:
     """Merge the nodes that stay in a stretch with those that have grown there; ``open_ends`` tells which are gone."""
-    stretch, number = old[low:high].copy(), np.empty(high - low, np.int32)
-    shift = len(grown) - int(np.count_nonzero(open_ends[low:high] >= 16))
-    whole, size = with_room(old, len(old) + shift), len(old) + shift
+    stretch, stays = old[low:high], open_ends[low:high] < 16
+    merged = np.concatenate([stretch[stays], grown])
+    merged.sort()
+    number = np.where(stays, merged.searchsorted(stretch) + low, -1)
+    shift = len(merged) - len(stretch)
+    size = len(old) + shift
+    whole = with_room(old, size)
     if shift:
         whole[high + shift : size] = whole[high : len(old)]
-    merge_nodes(stretch, low, open_ends, grown, whole, number)
+    whole[low : high + shift] = merged
     return Splice(whole[:size], low, high, number, shift)
 
 
@@ -51,13 +57,26 @@ def splice_chains(
 ) -> Bones:
     """Walk new chains from the seeds, and merge them with those that stay."""
     old, (node, low, high, number, shift) = len(bones.port), splice
-    first, last = first_chain(bones.port, 4 * low), first_chain(bones.port, 4 * high)
+    first, last = (bisect_left(bones.port[:, 0], 4 * n) for n in (low, high))
     stretch = bones.port[first:last], bones.neck[first:last], bones.length[first:last]
     room = last - first + len(seeds)
     fresh = np.empty((room, 2), np.int32), np.empty(room, np.int32), np.empty(room)
     notes = new_notes(len(heights))[0]
     found = merge_chains(
-        heights, states, width, *stretch, open_ends, low, high, number, shift, seeds, node, *fresh, notes
+        heights,
+        states,
+        width,
+        bones.port[:first],
+        *stretch,
+        open_ends,
+        low,
+        high,
+        number,
+        shift,
+        seeds,
+        node,
+        *fresh,
+        notes,
     )
     moved = found - (last - first)
     size = old + moved
@@ -68,7 +87,6 @@ def splice_chains(
         neck[last + moved : size], length[last + moved : size] = neck[last:old], length[last:old]
     if shift:
         port[last + moved : size] += 4 * shift
-    renumber(port[:first].reshape(-1), low, high, number, shift)
     here = slice(first, first + found)
     port[here], neck[here], length[here] = (part[:found] for part in fresh)
     return Bones(node, port[:size], neck[:size], length[:size])
@@ -85,37 +103,7 @@ def with_room(array: Array, size: int) -> Array:
 
 
 @bare
-def merge_nodes(old: Ints, low: int, open_ends: Flags, grown: Ints, node: Ints, number: Ints) -> None:
-    """The nodes kept and the new ones, in order, from ``low`` on."""
-    k, size = 0, low
-    for n in range(old.shape[0]):
-        while k < grown.shape[0] and grown[k] <= old[n]:
-            node[size] = grown[k]
-            size, k = size + 1, k + 1
-        number[n] = -1
-        if open_ends[low + n] < 16:
-            node[size], number[n] = old[n], size
-            size += 1
-    while k < grown.shape[0]:
-        node[size] = grown[k]
-        size, k = size + 1, k + 1
-
-
-@bare
-def first_chain(port: Ints, end: int) -> int:
-    """The first chain whose first end is not before the given one."""
-    low, high = 0, port.shape[0]
-    while low < high:
-        middle = (low + high) >> 1
-        if port[middle, 0] < end:
-            low = middle + 1
-        else:
-            high = middle
-    return low
-
-
-@bare
-def renamed(end: int, low: int, high: int, number: Ints, shift: int) -> int:
+def renamed(end: int, low: int, high: int, number: Longs, shift: int) -> int:
     """What an end is called now."""
     node = end >> 2
     if node < low:
@@ -124,36 +112,18 @@ def renamed(end: int, low: int, high: int, number: Ints, shift: int) -> int:
 
 
 @bare
-def renumber(ends: Ints, low: int, high: int, number: Ints, shift: int) -> None:
-    """Rename ends, few of which are of the stretch or behind."""
-    for first in range(0, ends.shape[0], BLOCK):
-        block = ends[first : first + BLOCK]
-        if latest(block) >= 4 * low:
-            for k in range(block.shape[0]):
-                block[k] = renamed(block[k], low, high, number, shift)
-
-
-@bare
-def latest(ends: Ints) -> int:
-    """The greatest of some ends."""
-    most = np.int32(0)
-    for k in range(ends.shape[0]):
-        most = ends[k] if ends[k] > most else most
-    return int(most)
-
-
-@bare
 def merge_chains(
     heights: Heights,
     states: Flags,
     width: int,
+    ahead: Ints,
     old_port: Ints,
     old_neck: Ints,
     old_length: Floats,
     open_ends: Flags,
     low: int,
     high: int,
-    number: Ints,
+    number: Longs,
     shift: int,
     seeds: Ints,
     node: Ints,
@@ -162,8 +132,12 @@ def merge_chains(
     length: Floats,
     notes: Ints,
 ) -> int:
-    """The chains kept of a stretch and the new ones, in order; returns how many."""
+    """The chains kept of a stretch and the new ones, in order; returns how many. Those ``ahead`` only learn what their
+    last ends are called now."""
     size, k = 0, 0
+    for chain in range(ahead.shape[0]):
+        if ahead[chain, 1] >= 4 * low:
+            ahead[chain, 1] = renamed(ahead[chain, 1], low, high, number, shift)
     for chain in range(old_port.shape[0] + 1):
         first, last = 4 * node.shape[0], 0
         if chain < old_port.shape[0]:
