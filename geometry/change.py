@@ -11,6 +11,7 @@ from geometry.affected import boxes_of, find_affected
 from geometry.bones import Bones, Ints, contract
 from geometry.compiled import bare
 from geometry.distance import Bools, Squares
+from geometry.recycling import keep_scratch, take_scratch
 from geometry.regrowth import regrow
 from geometry.rejoining import rejoin
 from geometry.skeleton import States, Words
@@ -50,13 +51,17 @@ def change_squares(
         survey(grid, square, state, words)
         return contract(square, state, words)
     block = square[low : high + 1, west : east + 1] > 0
-    rows, columns = cells // width - low, cells % width - west
-    inside = (rows >= 0) & (rows < block.shape[0]) & (columns >= 0) & (columns < block.shape[1])
-    block[rows[inside], columns[inside]] = free[inside]
+    block[cells // width - low, cells % width - west] = free
     fresh = np.empty((block.shape[0] + 2, block.shape[1] + 2), np.int32)
     measure(block, fresh)
     narrow(square, fresh, low - 1, west - 1, bounds)
-    return rejoin(heights, width, bones, regrow(square, state, bounds, fresh.reshape(-1)))
+    scratch = take_scratch(len(heights))
+    journal = regrow(square, state, bounds, fresh.reshape(-1), scratch)
+    joined = rejoin(heights, width, bones, journal)
+    scratch.mark[low * width : (high + 1) * width] = 0
+    scratch.mark[journal.touched[: journal.size[0]]] = 0
+    keep_scratch(scratch)
+    return joined
 
 
 @bare

@@ -1,7 +1,8 @@
 """Memory of dead screens, kept for the next one of the same shape.
 
 A screen writes every byte of its arrays; on memory fresh from the system that can cost as much as the measuring itself.
-One set is kept, the latest. No array of a set is ever handed to a user, so nothing can still look at it.
+One set is kept, the latest, and likewise the scratch of the latest change.
+No array of a set is ever handed to a user, so nothing can still look at it.
 """
 
 import sys
@@ -14,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.distance import Squares
-from geometry.skeleton import Words
+from geometry.skeleton import States, Waiting, Words
 
 PAGE = 4096  # bytes; the system's own may be larger
-LEAST, MOST = 1 << 16, 1 << 21  # bytes: less is not worth a call, and for much more numpy asks for large pages anyway
+LEAST, MOST = 1 << 16, 1 << 22  # bytes: less is not worth a call, and for more numpy asks for large pages
 POPULATE_WRITE = 23  # of Linux's madvise, since 5.14
 
 
@@ -28,17 +29,29 @@ class Buffers(NamedTuple):
     words: Words
 
 
+class Scratch(NamedTuple):
+    """What a change of a screen notes, by cells. Little of it is ever written."""
+
+    mark: States
+    """All 0 before and after."""
+    touched: Waiting
+    before: States
+
+
 SPARE: dict[tuple[int, int], Buffers] = {}
+SCRATCH: dict[int, Scratch] = {}
 
 
 def take_buffers(owner: object, shape: tuple[int, int]) -> Buffers:
     """A set for an owner, spare again when the owner dies. All but the padding of ``words`` is arbitrary."""
     buffers = SPARE.pop(shape, None)
     if buffers is None:
-        words = np.zeros((shape[0] * shape[1] + 7) // 8, np.uint64)
-        buffers = Buffers(np.empty(shape, np.int32), words)
-        populate(buffers.square)
-        populate(words)
+        cells = shape[0] * shape[1]
+        half, eighth = (cells + 1) // 2, (cells + 7) // 8
+        whole = np.empty(half + eighth, np.uint64)  # one array: what numpy zeroes it touches page by page
+        populate(whole)
+        whole[-1] = 0
+        buffers = Buffers(whole[:half].view(np.int32)[:cells].reshape(shape), whole[half:])
     weakref.finalize(owner, give_back, shape, buffers).atexit = False
     return buffers
 
@@ -47,6 +60,20 @@ def give_back(shape: tuple[int, int], buffers: Buffers) -> None:
     """Keep a set, and only this one."""
     SPARE.clear()
     SPARE[shape] = buffers
+
+
+def take_scratch(cells: int) -> Scratch:
+    """Scratch for a screen of so many cells, that of the last change if it was of that size."""
+    scratch = SCRATCH.pop(cells, None)
+    if scratch is None:
+        scratch = Scratch(np.zeros(cells, np.uint8), np.empty(cells, np.int32), np.empty(cells, np.uint8))
+    return scratch
+
+
+def keep_scratch(scratch: Scratch) -> None:
+    """Keep scratch for the next change, and only this."""
+    SCRATCH.clear()
+    SCRATCH[len(scratch.mark)] = scratch
 
 
 def populate(array: NDArray[Any]) -> None:

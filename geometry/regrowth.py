@@ -12,6 +12,7 @@ import numpy as np
 from geometry.bones import Ints
 from geometry.compiled import bare
 from geometry.distance import Squares
+from geometry.recycling import Scratch
 from geometry.skeleton import (
     CLIMBED,
     GROUPS,
@@ -30,7 +31,8 @@ from geometry.skeleton import (
     stride,
 )
 
-TOUCHED, MOVED, JOINED = 1, 2, 4  # marks of cells: state may differ, clearance differs, to be joined again
+TOUCHED, MOVED = 1, 2  # marks of cells: state may differ, clearance differs
+JOINED, PASSED = 4, 8  # to be joined again; passed on the way along a chain
 
 
 class Journal(NamedTuple):
@@ -47,15 +49,13 @@ class Journal(NamedTuple):
     """(1,) how many."""
 
 
-def regrow(square: Squares, state: States, bounds: Ints, fresh: Squares) -> Journal:
+def regrow(square: Squares, state: States, bounds: Ints, fresh: Squares, scratch: Scratch) -> Journal:
     """Set new clearances and grow the skeleton again.
 
     bounds : (rows, 3 or more) first and last column that change, and where in ``fresh`` their values start.
     """
     heights, states, width = square.reshape(-1), state.reshape(-1), square.shape[1]
-    size = len(states)
-    lists = np.empty(size, np.int32), np.empty(size, np.uint8), np.zeros(1, np.int32)
-    journal = Journal(states, np.zeros(size, np.uint8), *lists)
+    journal = Journal(states, *scratch, np.zeros(1, np.int32))
     about = np.empty((len(bounds), 2), np.int32)
     spread(bounds, width, about)
     prune(heights, width, about, journal)

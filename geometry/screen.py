@@ -288,8 +288,9 @@ def checked_squares(
         raise ValueError("rows and columns must be whole numbers")
     if len(i) and not (i.min() >= 0 and i.max() < shape[0] and j.min() >= 0 and j.max() < shape[1]):
         raise ValueError(f"a changed square lies outside the screen of {shape[0]} rows and {shape[1]} columns")
-    values = np.broadcast_to(value.ravel(), i.shape)
-    if len(np.unique(i.astype(np.int64) * shape[1] + j)) < len(i):
+    values = np.full(len(i), value.item()) if value.size == 1 else value.ravel()
+    order = np.sort(i.astype(np.int64) * shape[1] + j)
+    if (order[1:] == order[:-1]).any():
         last = {(a, b): v for a, b, v in zip(i.tolist(), j.tolist(), values.tolist(), strict=True)}
         i, j = np.array(list(last)).T
         values = np.array(list(last.values()))

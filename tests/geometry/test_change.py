@@ -5,7 +5,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from geometry import Screen, change
+from geometry import Screen, affected, change, windows
 from tests.geometry import oracles
 
 
@@ -41,6 +41,24 @@ def test_changes_give_what_a_fresh_build_gives(free, seed, times):
                 screen.changed(rows, columns, values)
             continue
         same(screen.changed(rows, columns, values), Screen(changed))
+
+
+@pytest.mark.parametrize("most", [12, 40, 90])
+def test_all_that_changes_is_thought_of(most):
+    rng = np.random.default_rng(most)
+    for _ in range(400):
+        free = rng.random(rng.integers(1, most, 2)) < rng.choice([0.5, 0.8, 0.97, 0.997, 1.0])
+        changed, (rows, columns) = free.copy(), rng.integers(0, free.shape, (int(rng.integers(1, 7)), 2)).T
+        changed[rows, columns] = rng.random(len(rows)) < 0.5
+        square, other = np.empty((2, free.shape[0] + 2, free.shape[1] + 2), np.int32)
+        windows.measure(free, square)
+        windows.measure(changed, other)
+        square[[0, -1]] = other[[0, -1]] = 0
+        bounds = np.empty((len(square), 3), np.int32)
+        cells = np.flatnonzero(np.pad(free != changed, 1)).astype(np.int32)
+        affected.find_affected(square, affected.boxes_of(cells, square.shape), bounds)
+        row, column = np.nonzero(square != other)
+        assert (bounds[row, 0] <= column).all() and (column <= bounds[row, 1]).all()
 
 
 @pytest.mark.parametrize("texture", ["rooms", "noise", "open", "wide"])

@@ -16,11 +16,12 @@ class Owner:
 
 
 @pytest.mark.parametrize("shape", [(3, 3), (130, 126), (700, 333)])
-def test_new_memory_has_the_shape_and_empty_words(shape):
+def test_new_memory_has_the_shape_and_empty_padding(shape):
     owner = Owner()
     square, words = recycling.take_buffers(owner, shape)
     assert square.shape == shape and len(words) == -(-shape[0] * shape[1] // 8)
-    assert not words.any()
+    assert not words.view(np.uint8)[shape[0] * shape[1] :].any()
+    assert not np.shares_memory(square, words)
 
 
 def test_the_memory_of_a_dead_screen_is_used_again_and_leaves_no_trace():
