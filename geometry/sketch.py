@@ -88,7 +88,7 @@ def pictures(
     board = _board(framed, counts)
     begun = np.where(framed == DRAWN, np.pad(first, ((0, 0), (1, 1), (1, 1))), framed == FULL).astype(np.int8)
     images = begun.reshape(len(first), -1)
-    count = (images[:, board.where] * counts.weight).sum(2, dtype=np.int32)
+    count = np.ascontiguousarray((images[:, board.where] * counts.weight).sum(2, dtype=np.int32))
     near = np.zeros((len(first), len(board.squares)), np.int32)
     moved = np.zeros(2 * LONGEST + 2, np.int32)
     slopes = np.linspace(hot, COLD, sweeps, dtype=np.float32)

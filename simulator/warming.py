@@ -121,7 +121,7 @@ def carry() -> None:
 
 
 HALVES: dict[bool, tuple[tuple[Callable[[], None], ...], ...]] = {
-    False: ((search,), (see, survey, walk, tell_shapes)),
+    False: ((search, walk), (see, survey, tell_shapes)),
     True: ((search, see), (survey, tell_shapes, walk, carry)),
 }
 
