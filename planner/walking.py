@@ -9,11 +9,12 @@ from geometry.winding import crossings
 from kb.body import Command, Move
 from kb.lattice import turned
 from kb.worldmodel import WorldModel
-from planner.screen import Screens
+from planner.screen import Screens, grown
 from planner.steps import Square, clear, clear_line
 
 LONGEST = {"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}  # squares of one move, by its aim
 SHORT = 9  # squares of one move while it is open how the lattice lies, and so where he goes
+NARROW = 6  # of them, those for which no more room is wanted than the way itself takes
 ASKEW = math.radians(5)  # by which the lattice may lie otherwise before he takes care where he halts
 TESTING = ("explore", "inspect", "settle")  # aims that do not mind where in a square he halts
 EDGE = 0.4618  # squares from a centre, not far from the line between two squares
@@ -26,19 +27,33 @@ ASIDE = (0.0618, 0.0341)  # squares from a centre, where no turn by whole degree
 def next_move(screens: Screens, path: Sequence[Square], kind: str, about: tuple[float, float] | None = None) -> Move:
     """The longest straight move along a way that leads over squares on which nothing has to be looked at first.
 
+    While it is open how the lattice lies, the second half of a longer move keeps a square clear of all others.
+
     path : edge-connected squares, the first is Utak's. kind : of the aim.
     about : a point (of the view's frame) about which the move must wind as the way does, when that matters.
     """
     safe, here = screens.safe, path[0]
-    longest = LONGEST[kind] if screens.model.spread <= ASKEW else min(LONGEST[kind], SHORT)
+    open_ = screens.model.spread > ASKEW
+    longest = min(LONGEST[kind], SHORT) if open_ else LONGEST[kind]
+    roomy = ~grown(~safe, 1) if open_ else safe
     there = path[1]
     for number in range(len(path) - 1, 1, -1):
         square = path[number]
         far = max(abs(square[0] - here[0]), abs(square[1] - here[1]))
-        if far <= longest and clear(safe, here, square) and _same_side(path[: number + 1], about):
+        free = (
+            far <= longest
+            and clear(safe, here, square)
+            and (far <= NARROW or clear(roomy, _halfway(here, square), square))
+        )
+        if free and _same_side(path[: number + 1], about):
             there = square
             break
     return move_to(screens.model, there, _aside(screens, there, kind if about is None else "attain"))
+
+
+def _halfway(here: Square, there: Square) -> Square:
+    """The square halfway to another one."""
+    return (here[0] + there[0]) // 2, (here[1] + there[1]) // 2
 
 
 def move_to(model: WorldModel, square: Square, aside: tuple[float, float]) -> Move:

@@ -16,7 +16,7 @@ from planner.aims import Aim, choose
 from planner.circling import pivot, ways_round, winding
 from planner.screen import UNSEEN, Screens, grown
 from planner.steps import clear_line, swept
-from planner.walking import LONGEST, LOOSE, next_move
+from planner.walking import LONGEST, LOOSE, NARROW, SHORT, next_move
 from planner.ways import choose_way, ways
 from tests.kb.drawings import seen_whole, walked
 from tests.kb.eyes import random_room
@@ -311,6 +311,24 @@ def test_while_it_is_open_how_the_lattice_lies_no_turn_leads_to_the_line_between
                 assert 1e-4 < x % 1 < 1 - 1e-4
                 assert 1e-4 < y % 1 < 1 - 1e-4
     assert plain > 0
+
+
+def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear() -> None:
+    model = replace(seen_whole(HALL), spread=math.pi)
+    screens = Screens(model)
+    clear_of = ~grown(~screens.safe, 1)
+    longest = 0.0
+    for goal in np.flatnonzero(screens.floor).tolist():
+        for way in ways(screens, 0, np.array([goal]), "skeleton")[:1]:
+            if len(way.squares) < 2:
+                continue
+            move = next_move(screens, way.squares, "explore")
+            far = max(abs(move.east), abs(move.north))
+            longest = max(longest, far)
+            assert far < SHORT + 0.5
+            column, row = screens.here[0] + round(move.east), screens.here[1] + round(move.north)
+            assert far < NARROW + 0.5 or clear_of[row, column]
+    assert longest > NARROW + 0.5
 
 
 def test_he_does_not_halt_near_an_edge_where_what_lies_beyond_it_may_stop_him() -> None:
