@@ -31,6 +31,7 @@ class Blobs(NamedTuple):
 def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
     """The parts of one picture.
 
+    >>> from geometry.sketch import DRAWN
     >>> found = blobs(np.pad(np.ones((3, 3), np.int8), 2), np.full((7, 7), DRAWN, np.int8))
     >>> found.area.tolist(), found.outward.tolist(), (6 * found.spread).round(6).tolist(), found.lengthy.tolist()
     ([9], [0], [1.0], [0.0])
