@@ -183,7 +183,8 @@ class Memory:
         chosen = self._outcome(ranges, load, predicted(self.place, load.polygon, motion))
         if chosen.misfits:
             outcomes = [self._outcome(ranges, load, outcome) for outcome in otherwise(self.place, load.polygon, motion)]
-            chosen = self._choose([chosen, *outcomes, *self._elsewhere(command, ranges, chosen.misfits)])
+            explanations = [chosen, *outcomes, *self._elsewhere(command, ranges, chosen.misfits)]
+            chosen = self._choose(explanations, np.array_equal(ranges, self.looks[-1].ranges))
         self._lie(chosen)
         load, motion = self.loads[load.name], as_motion(command, self.lattice, self.place)
         others = [other for other in self.loads.values() if other.name != load.name]
@@ -335,13 +336,15 @@ class Memory:
         """How many fields cannot be right if the impression was received at a place, with the loads where they lie."""
         return clashes(self.lattice, self.evidence, loads, place, ranges)
 
-    def _choose(self, explanations: list[Explanation]) -> Explanation:
+    def _choose(self, explanations: list[Explanation], unchanged: bool = False) -> Explanation:
+        """The explanation to believe. unchanged : nothing looks otherwise than at the last look."""
         facts = [
             f"explanation({number},{e.how},{e.misfits},{math.ceil(e.distance)})"
             for number, e in enumerate(explanations)
         ]
         facts += [f"trust({0 if self._off_middle else self.trust})", *["slips"] * self.slipped]
         facts += ["proven"] * (self.held is not None and self.loads[self.held].proven)
+        facts += ["unchanged"] * unchanged
         answer = solve([KB / "accommodation.lp"], facts)
         if not answer:
             raise AssertionError("accommodation.lp always has an answer")

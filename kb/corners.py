@@ -12,6 +12,7 @@ import shapely
 from numpy.typing import NDArray
 
 from kb.encodings import KB, solve
+from kb.evidence import FULL
 from kb.worldmodel import WorldModel
 
 SMALLEST = 6  # squares of floor that are worth a corner
@@ -28,14 +29,14 @@ class Corner(NamedTuple):
 
 def known_floor(model: WorldModel) -> NDArray[np.bool_]:
     """(rows, columns): the floor on which Utak stands, all other floor that is seen and large enough to be some, and
-    the floor under what he has moved.
+    the floor under what he has moved: the squares that it surely covers, for those that it may cover may be wall.
     """
     sizes = np.bincount(model.labels.ravel())
     large = (sizes >= SMALLEST)[model.labels]
     mask: NDArray[np.bool_] = model.floor | (model.space & large)
     for node in model.objects:
         if node.moved:
-            mask |= model.mask(node.patch)
+            mask |= (model.labels == int(node.region.removeprefix("part"))) & (model.view.state == FULL)
     return mask
 
 

@@ -119,6 +119,9 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     model = situation.model
     view = model.view
     around = grown(model.squares([(column + view.west, row + view.south)]), 1)
+    under = model.mask(node.patch)  # no look tells what lies under the thing itself: what lies about that must do
+    if (around & under).any():
+        around = grown(around, 1) & ~under
     unclear = around & ~model.told
     shape = in_view(node.polygon, situation)
     if not unclear.any():

@@ -9,7 +9,7 @@ from shapely.affinity import rotate, translate
 from kb.accommodation import CellStatus, Memory
 from kb.body import Move, Push, Turn
 from kb.evidence import FREE, OPEN
-from kb.heading import CENTRED
+from kb.heading import CENTRED, Hypothesis
 from kb.lattice import CENTRE
 from kb.loads import Load
 from tests.kb.drawings import LARGE_ROOM, walked
@@ -127,6 +127,17 @@ def test_where_a_turn_leaves_a_thing_tells_where_in_his_square_he_stands(place: 
     assert back.explanation.misfits == 0
     assert memory.loads["o1"].polygon.hausdorff_distance(translate(thing, -20, -20)) < 1e-6
     assert memory.loads["o1"].play == 0
+
+
+def test_what_looks_as_before_after_a_push_did_not_move() -> None:
+    thing = translate(ELL, 38, 18)  # it stands against the wall already
+    memory = holding(thing, (37.5, 20.5))
+    memory.hypotheses, memory.trust = (Hypothesis(0.0, CENTRE + CENTRE),), 20  # how the lattice lies is known
+    found = memory.accommodate(Push(1.0, 0.0), impression(around(thing, PLAIN), (37, 20)))
+    assert found.explanation.how == "stuck"
+    assert memory.place == CENTRE
+    assert memory.loads["o1"].polygon.equals(translate(thing, -37, -20))
+    assert memory.loads["o1"].stuck == 1
 
 
 def test_a_turn_by_one_who_stands_amid_his_square_teaches_nothing() -> None:

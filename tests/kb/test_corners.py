@@ -1,11 +1,15 @@
 """The corners of drawn floors against the definition, square by square."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.corners import SIDES, corners, known_floor
+from kb.evidence import OPEN
+from kb.worldmodel import Node, patch_of
 from tests.kb.drawings import seen_whole
 from tests.kb.eyes import random_room
 
@@ -50,3 +54,14 @@ def test_a_glimpse_of_floor_is_no_corner_yet(pocket: int, counts: bool) -> None:
     rows += ["b......bbbbbbbbbbbbbbbbb"] * 3 + ["b..U...bbbbbbbbbbbbbbbbb", "b" * 24]
     found = corners(seen_whole(rows))
     assert (found["northeast"].square[1] > 6) == counts
+
+
+def test_what_was_moved_lies_on_floor_but_the_wall_that_it_may_reach_into_is_none() -> None:
+    rows = ["bbbbbbbb", "b.....gb", "b.....gb", "b..U...b", "bbbbbbbb"]
+    model = seen_whole(rows)
+    under, label = np.array([list(row) for row in reversed(rows)]) == "g", int(model.labels.max()) + 1
+    thing = Node("o1", "object", 100, f"part{label}", patch_of(under, model.view), 0, moved=True)
+    moved = replace(model, labels=np.where(under, label, model.labels).astype(np.int32), objects=(thing,))
+    assert corners(moved)["northeast"].square == (6, 3)
+    state = np.where(under, OPEN, model.view.state).astype(np.int8)  # it may cover these, and may not
+    assert corners(replace(moved, view=model.view._replace(state=state)))["northeast"].square == (5, 3)
