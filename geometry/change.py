@@ -2,31 +2,29 @@
 
 # Strategy: the clearances that a change can alter (affected.py) are measured anew in a block about them, so large that
 no wall beyond it counts. Where they really differ, and one cell about, the skeleton is grown again (regrowth.py) and
-the pathgraph joined again (rejoining.py). When the block is much of the screen, all is made anew.
+the pathgraph joined again (rejoining.py). When the block is much of the screen, all had better be made anew.
 """
 
 import numpy as np
 
 from geometry.affected import boxes_of, find_affected
-from geometry.bones import Bones, Ints, contract
+from geometry.bones import Bones, Ints
 from geometry.compiled import bare
 from geometry.distance import Bools, Squares
 from geometry.recycling import keep_scratch, take_scratch
 from geometry.regrowth import regrow
 from geometry.rejoining import rejoin
-from geometry.skeleton import States, Words
-from geometry.sweep import survey
+from geometry.skeleton import States
 from geometry.windows import measure
 
 ALL = 0.5  # share of the screen
 
 
 def change_squares(
-    square: Squares, state: States, words: Words, bones: Bones, rows: Ints, columns: Ints, free: Bools
-) -> Bones:
-    """Change squares (unpadded rows and columns) in ``square`` and ``state``; returns the changed pathgraph.
-
-    ``words`` is ``state`` by eights.
+    square: Squares, state: States, bones: Bones, rows: Ints, columns: Ints, free: Bools
+) -> Bones | None:
+    """Change squares (unpadded rows and columns) in ``square`` and ``state``; returns the changed pathgraph, or None,
+    and changes nothing, when all had better be made anew.
 
     Raises
     ------
@@ -46,14 +44,12 @@ def change_squares(
     find_affected(square, boxes_of(cells, square.shape), bounds)
     low, high, west, east = block_about(square, bounds)
     if (high - low + 1) * (east - west + 1) > ALL * len(heights):
-        grid = square[1:-1, 1:-1] > 0
-        grid[cells // width - 1, cells % width - 1] = free
-        survey(grid, square, state, words)
-        return contract(square, state, words)
+        return None
     block = square[low : high + 1, west : east + 1] > 0
     block[cells // width - low, cells % width - west] = free
-    fresh = np.empty((block.shape[0] + 2, block.shape[1] + 2), np.int32)
-    measure(block, fresh)
+    fresh = np.empty((block.shape[0] + 2, block.shape[1] + 2), square.dtype)
+    if not measure(block, fresh):
+        return None
     narrow(square, fresh, low - 1, west - 1, bounds)
     scratch = take_scratch(len(heights))
     journal = regrow(square, state, bounds, fresh.reshape(-1), scratch)
