@@ -14,8 +14,8 @@ from geometry.distance import Bools, Squares
 from geometry.recycling import keep_scratch, take_scratch
 from geometry.regrowth import regrow
 from geometry.rejoining import rejoin
+from geometry.remeasuring import measure_within
 from geometry.skeleton import States
-from geometry.windows import measure
 
 ALL = 0.5  # share of the screen
 
@@ -42,14 +42,21 @@ def change_squares(
     cells, old, free = cells[turned], old[turned], free[turned]
     bounds = np.empty((square.shape[0], 3), np.int32)
     find_affected(square, boxes_of(cells, square.shape), bounds)
+    if np.maximum(bounds[:, 1] - bounds[:, 0] + 1, 0).sum() > ALL * len(heights):
+        return None
     low, high, west, east = block_about(square, bounds)
-    if (high - low + 1) * (east - west + 1) > ALL * len(heights):
-        return None
-    block = square[low : high + 1, west : east + 1] > 0
-    block[cells // width - low, cells % width - west] = free
-    fresh = np.empty((block.shape[0] + 2, block.shape[1] + 2), square.dtype)
-    if not measure(block, fresh):
-        return None
+    fresh = np.empty((high - low + 3, east - west + 3), square.dtype)
+    if free.any():
+        block = square[low : high + 1, west : east + 1] > 0
+        block[cells // width - low, cells % width - west] = free
+        if not measure_within(block, bounds, low - 1, west - 1, fresh):
+            return None
+    else:  # only the new walls can count
+        block = np.ones((high - low + 1, east - west + 1), np.bool_)
+        block[cells // width - low, cells % width - west] = False
+        where = cells % width - west + 1
+        measure_within(block, bounds, low - 1, west - 1, fresh, (int(where.min()), int(where.max())))
+        keep_lower(square, fresh, low - 1, west - 1, bounds)
     narrow(square, fresh, low - 1, west - 1, bounds)
     scratch = take_scratch(len(heights))
     journal = regrow(square, state, bounds, fresh.reshape(-1), scratch)
@@ -84,6 +91,17 @@ def block_about(square: Squares, bounds: Ints) -> tuple[int, int, int, int]:
 def reach_of(square: Squares, row: int, column: int) -> int:
     """A whole number of squares above a cell's clearance."""
     return int(0.5 * np.sqrt(float(square[row, column])) + 2.0)
+
+
+@bare
+def keep_lower(square: Squares, fresh: Squares, low: int, west: int, bounds: Ints) -> None:
+    """Put old clearances that are lower into ``fresh``, which begins in row ``low`` and column ``west``."""
+    for row in range(bounds.shape[0]):
+        first, size = bounds[row, 0], bounds[row, 1] - bounds[row, 0] + 1
+        if size > 0:
+            old, new = square[row, first : first + size], fresh[row - low, first - west : first - west + size]
+            for k in range(size):
+                new[k] = old[k] if old[k] < new[k] else new[k]
 
 
 @bare

@@ -68,11 +68,16 @@ def count_columns(free: Bools, steps: Gaps) -> None:
 
 
 @bare
-def measure_run(gap: Gaps, square: Squares, first: int, last: int, roof: int, sites: Sites, heights: Sites) -> None:
-    """Fill the run ``first <= column < last`` of free squares, blocked on both sides, with values up to a ``roof``."""
+def measure_run(
+    gap: Gaps, square: Squares, first: int, last: int, begin: int, end: int, roof: int, sites: Sites, heights: Sites
+) -> None:
+    """Fill ``begin <= column < end`` with values up to a ``roof``, in the free squares ``first <= column < last``.
+
+    What is further out, on either side, must not count for any of them.
+    """
     top = envelope(gap, first, last, sites, heights)
     best = 0
-    for column in range(first, last):
+    for column in range(begin, end):
         x = 2 * (column - first)
         value = heights[best] - 2 * x * sites[best]
         while best < top:
@@ -88,11 +93,9 @@ def measure_run(gap: Gaps, square: Squares, first: int, last: int, roof: int, si
 @bare
 def envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> int:
     """The sites whose parabolas are lowest somewhere; relative to ``first``. Returns the index of the last."""
-    sites[0] = -1
-    heights[0] = 1
-    top = 0
-    before = np.int64(gap[first])
-    for column in range(first + 1, last + 1):
+    top = -1
+    before = np.int64(gap[first - 1])
+    for column in range(first, last + 1):
         here = np.int64(gap[column])
         lower = before if before < here else here
         edge = 2 * lower - 1 if lower > 0 else 0

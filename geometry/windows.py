@@ -160,5 +160,5 @@ def measure_far(
             begin -= 1
         while gap[column] != 0:
             column += 1
-        measure_run(gap, out, begin, column, roof, sites, heights)
+        measure_run(gap, out, begin, column, begin, column, roof, sites, heights)
     return column if column > done else done

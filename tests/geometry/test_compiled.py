@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import geometry
-from geometry import Screen, questions, ways
 from geometry.compiled import compiled
 
 
