@@ -1,8 +1,9 @@
 """A few squares change: what hangs on them is made anew, and the rest stands.
 
-# Strategy: the clearances that a change can alter (affected.py) are measured anew in a block about them, so large that
-no wall beyond it counts. Where they really differ, and one cell about, the skeleton is grown again (regrowth.py) and
-the pathgraph joined again (rejoining.py). When the block is much of the screen, all had better be made anew.
+# Strategy: the clearances that a change can alter (affected.py) are measured anew (remeasuring.py), with the walls of a
+block about them so large that none beyond it counts. Where they really differ, and one cell about, the skeleton is
+grown again (regrowth.py) and the pathgraph joined again (rejoining.py). When they are much of the screen, all had
+better be made anew.
 """
 
 import numpy as np
@@ -16,6 +17,9 @@ from geometry.regrowth import regrow
 from geometry.rejoining import rejoin
 from geometry.remeasuring import measure_within
 from geometry.skeleton import States
+
+Block = tuple[int, int, int, int]
+"""First and last row, first and last column."""
 
 ALL = 0.5  # share of the screen
 
@@ -44,19 +48,10 @@ def change_squares(
     find_affected(square, boxes_of(cells, square.shape), bounds)
     if np.maximum(bounds[:, 1] - bounds[:, 0] + 1, 0).sum() > ALL * len(heights):
         return None
-    low, high, west, east = block_about(square, bounds)
-    fresh = np.empty((high - low + 3, east - west + 3), square.dtype)
-    if free.any():
-        block = square[low : high + 1, west : east + 1] > 0
-        block[cells // width - low, cells % width - west] = free
-        if not measure_within(block, bounds, low - 1, west - 1, fresh):
-            return None
-    else:  # only the new walls can count
-        block = np.ones((high - low + 1, east - west + 1), np.bool_)
-        block[cells // width - low, cells % width - west] = False
-        where = cells % width - west + 1
-        measure_within(block, bounds, low - 1, west - 1, fresh, (int(where.min()), int(where.max())))
-        keep_lower(square, fresh, low - 1, west - 1, bounds)
+    low, high, west, _ = block = block_about(square, bounds)
+    fresh = clearances_in(square, block, bounds, cells, free)
+    if fresh is None:
+        return None
     narrow(square, fresh, low - 1, west - 1, bounds)
     scratch = take_scratch(len(heights))
     journal = regrow(square, state, bounds, fresh.reshape(-1), scratch)
@@ -67,8 +62,27 @@ def change_squares(
     return joined
 
 
+def clearances_in(square: Squares, block: Block, bounds: Ints, cells: Ints, free: Bools) -> Squares | None:
+    """Clearances in a block with one cell about, when cells change; right within the bounds, arbitrary elsewhere.
+
+    None when ``square`` is of a type that does not hold them.
+    """
+    (low, high, west, east), width = block, square.shape[1]
+    rows, columns = cells // width - low, cells % width - west
+    fresh = np.empty((high - low + 3, east - west + 3), square.dtype)
+    if free.any():
+        floor = square[low : high + 1, west : east + 1] > 0
+        floor[rows, columns] = free
+        return fresh if measure_within(floor, bounds, low - 1, west - 1, fresh) else None
+    floor = np.ones((high - low + 1, east - west + 1), np.bool_)  # of walls only the new ones can count
+    floor[rows, columns] = False
+    measure_within(floor, bounds, low - 1, west - 1, fresh, (int(columns.min()) + 1, int(columns.max()) + 1))
+    keep_lower(square, fresh, low - 1, west - 1, bounds)
+    return fresh
+
+
 @bare
-def block_about(square: Squares, bounds: Ints) -> tuple[int, int, int, int]:
+def block_about(square: Squares, bounds: Ints) -> Block:
     """First and last row, first and last column of a block in which the cells within the bounds can be measured.
 
     Beside the bounds clearances stay, and none between exceeds theirs by more than its distance from them.
