@@ -1,32 +1,34 @@
 """A few squares change: what hangs on them is made anew, and the rest stands.
 
-# Strategy: the clearances that a change can alter (affected.py) are measured anew in a block about them, so large that
-no wall beyond it counts. Where they really differ, and one cell about, the skeleton is grown again (regrowth.py) and
-the pathgraph joined again (rejoining.py). When the block is much of the screen, all is made anew.
+# Strategy: the clearances that a change can alter (affected.py) are measured anew (remeasuring.py), with the walls of a
+block about them so large that none beyond it counts. Where they really differ, and one cell about, the skeleton is
+grown again (regrowth.py) and the pathgraph joined again (rejoining.py). When they are much of the screen, all had
+better be made anew.
 """
 
 import numpy as np
 
 from geometry.affected import boxes_of, find_affected
-from geometry.bones import Bones, Ints, contract
+from geometry.bones import Bones, Ints
 from geometry.compiled import bare
 from geometry.distance import Bools, Squares
 from geometry.recycling import keep_scratch, take_scratch
 from geometry.regrowth import regrow
 from geometry.rejoining import rejoin
-from geometry.skeleton import States, Words
-from geometry.sweep import survey
-from geometry.windows import measure
+from geometry.remeasuring import measure_within
+from geometry.skeleton import States
+
+Block = tuple[int, int, int, int]
+"""First and last row, first and last column."""
 
 ALL = 0.5  # share of the screen
 
 
 def change_squares(
-    square: Squares, state: States, words: Words, bones: Bones, rows: Ints, columns: Ints, free: Bools
-) -> Bones:
-    """Change squares (unpadded rows and columns) in ``square`` and ``state``; returns the changed pathgraph.
-
-    ``words`` is ``state`` by eights.
+    square: Squares, state: States, bones: Bones, rows: Ints, columns: Ints, free: Bools
+) -> Bones | None:
+    """Change squares (unpadded rows and columns) in ``square`` and ``state``; returns the changed pathgraph, or None,
+    and changes nothing, when all had better be made anew.
 
     Raises
     ------
@@ -44,16 +46,12 @@ def change_squares(
     cells, old, free = cells[turned], old[turned], free[turned]
     bounds = np.empty((square.shape[0], 3), np.int32)
     find_affected(square, boxes_of(cells, square.shape), bounds)
-    low, high, west, east = block_about(square, bounds)
-    if (high - low + 1) * (east - west + 1) > ALL * len(heights):
-        grid = square[1:-1, 1:-1] > 0
-        grid[cells // width - 1, cells % width - 1] = free
-        survey(grid, square, state, words)
-        return contract(square, state, words)
-    block = square[low : high + 1, west : east + 1] > 0
-    block[cells // width - low, cells % width - west] = free
-    fresh = np.empty((block.shape[0] + 2, block.shape[1] + 2), np.int32)
-    measure(block, fresh)
+    if np.maximum(bounds[:, 1] - bounds[:, 0] + 1, 0).sum() > ALL * len(heights):
+        return None
+    low, high, west, _ = block = block_about(square, bounds)
+    fresh = clearances_in(square, block, bounds, cells, free)
+    if fresh is None:
+        return None
     narrow(square, fresh, low - 1, west - 1, bounds)
     scratch = take_scratch(len(heights))
     journal = regrow(square, state, bounds, fresh.reshape(-1), scratch)
@@ -64,8 +62,27 @@ def change_squares(
     return joined
 
 
+def clearances_in(square: Squares, block: Block, bounds: Ints, cells: Ints, free: Bools) -> Squares | None:
+    """Clearances in a block with one cell about, when cells change; right within the bounds, arbitrary elsewhere.
+
+    None when ``square`` is of a type that does not hold them.
+    """
+    (low, high, west, east), width = block, square.shape[1]
+    rows, columns = cells // width - low, cells % width - west
+    fresh = np.empty((high - low + 3, east - west + 3), square.dtype)
+    if free.any():
+        floor = square[low : high + 1, west : east + 1] > 0
+        floor[rows, columns] = free
+        return fresh if measure_within(floor, bounds, low - 1, west - 1, fresh) else None
+    floor = np.ones((high - low + 1, east - west + 1), np.bool_)  # of walls only the new ones can count
+    floor[rows, columns] = False
+    measure_within(floor, bounds, low - 1, west - 1, fresh, (int(columns.min()) + 1, int(columns.max()) + 1))
+    keep_lower(square, fresh, low - 1, west - 1, bounds)
+    return fresh
+
+
 @bare
-def block_about(square: Squares, bounds: Ints) -> tuple[int, int, int, int]:
+def block_about(square: Squares, bounds: Ints) -> Block:
     """First and last row, first and last column of a block in which the cells within the bounds can be measured.
 
     Beside the bounds clearances stay, and none between exceeds theirs by more than its distance from them.
@@ -88,6 +105,17 @@ def block_about(square: Squares, bounds: Ints) -> tuple[int, int, int, int]:
 def reach_of(square: Squares, row: int, column: int) -> int:
     """A whole number of squares above a cell's clearance."""
     return int(0.5 * np.sqrt(float(square[row, column])) + 2.0)
+
+
+@bare
+def keep_lower(square: Squares, fresh: Squares, low: int, west: int, bounds: Ints) -> None:
+    """Put old clearances that are lower into ``fresh``, which begins in row ``low`` and column ``west``."""
+    for row in range(bounds.shape[0]):
+        first, size = bounds[row, 0], bounds[row, 1] - bounds[row, 0] + 1
+        if size > 0:
+            old, new = square[row, first : first + size], fresh[row - low, first - west : first - west + size]
+            for k in range(size):
+                new[k] = old[k] if old[k] < new[k] else new[k]
 
 
 @bare

@@ -19,8 +19,37 @@ from geometry.compiled import bare
 
 Bools = NDArray[np.bool_]
 Gaps = NDArray[np.int16]
-Squares = NDArray[np.int32]
+Squares = NDArray[np.int16] | NDArray[np.int32]
 Sites = NDArray[np.int64]
+
+TILE = 16  # squares
+
+
+def type_of_squares(free: Bools) -> type[np.int16] | type[np.int32]:
+    """The smaller type that holds ``square`` of these free squares; now and then, on wide floor, the larger.
+
+    16 bits hold clearances up to 90.5 squares. Any larger one has 129 x 129 free squares about it, and these 7 x 7
+    whole tiles of 16 x 16: where no such are found, 16 bits surely do. Of a tile one diagonal is looked at, which
+    crosses every wall, and a quarter of that first.
+    """
+    if min(free.shape) < 129:
+        return np.int16
+    rows, columns = (n // TILE * TILE for n in free.shape)
+    open_tiles = np.ones((rows // TILE, columns // TILE), np.bool_)
+    for first in range(4):
+        for k in range(first, TILE, 4):
+            open_tiles &= free[k:rows:TILE, k:columns:TILE]
+        if not has_block(open_tiles):
+            return np.int16
+    return np.int32
+
+
+def has_block(tiles: Bools) -> bool:
+    """Whether 7 x 7 of them are open."""
+    for n in (1, 2, 3):  # whether 2, 4, 7 to the north and east are
+        tiles = tiles[n:] & tiles[:-n]
+        tiles = tiles[:, n:] & tiles[:, :-n]
+    return bool(tiles.any())
 
 
 @bare
@@ -39,11 +68,16 @@ def count_columns(free: Bools, steps: Gaps) -> None:
 
 
 @bare
-def measure_run(gap: Gaps, square: Squares, first: int, last: int, sites: Sites, heights: Sites) -> None:
-    """Fill the run ``first <= column < last`` of free squares, blocked on both sides."""
+def measure_run(
+    gap: Gaps, square: Squares, first: int, last: int, begin: int, end: int, roof: int, sites: Sites, heights: Sites
+) -> None:
+    """Fill ``begin <= column < end`` with values up to a ``roof``, in the free squares ``first <= column < last``.
+
+    What is further out, on either side, must not count for any of them.
+    """
     top = envelope(gap, first, last, sites, heights)
     best = 0
-    for column in range(first, last):
+    for column in range(begin, end):
         x = 2 * (column - first)
         value = heights[best] - 2 * x * sites[best]
         while best < top:
@@ -53,17 +87,15 @@ def measure_run(gap: Gaps, square: Squares, first: int, last: int, sites: Sites,
             value = other
             best += 1
         own = 2 * np.int64(gap[column]) - 1
-        square[column] = min(own * own, value + x * x)
+        square[column] = min(own * own, value + x * x, roof)
 
 
 @bare
 def envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> int:
     """The sites whose parabolas are lowest somewhere; relative to ``first``. Returns the index of the last."""
-    sites[0] = -1
-    heights[0] = 1
-    top = 0
-    before = np.int64(gap[first])
-    for column in range(first + 1, last + 1):
+    top = -1
+    before = np.int64(gap[first - 1])
+    for column in range(first, last + 1):
         here = np.int64(gap[column])
         lower = before if before < here else here
         edge = 2 * lower - 1 if lower > 0 else 0

@@ -64,7 +64,7 @@ def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars:
         bars,
         np.zeros(nodes, np.bool_),
     )
-    answered = wanted if wanted > 1 else 2
+    answered = wanted if wanted > 1 else len(BOWS)
     answers = Answers(
         np.zeros((answered + 1, 3), np.int32),
         np.empty((8 * room, 2)),
@@ -89,7 +89,8 @@ def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars:
 
 
 OVERFLOW = -1
-SLIGHT, STRONG = 0.1, 4.0  # bows; by trial the best two on the benchmark maps and others like them (docs/geometry.md)
+BOWS = 0.2, 6.0, 1.0  # by trial among the best three on the benchmark maps and others like them (docs/geometry.md)
+ENOUGH = 1.02  # times the straight line: no other way is looked for when a rope is no longer
 
 
 class Ground(NamedTuple):
@@ -114,8 +115,8 @@ def ground_of(layer: Layer) -> Ground:
 def itineraries(ground: Ground, ends: Ends, wanted: int, desk: Desk) -> int:
     """Fill the desk's answers with up to ``wanted`` tight routes, by the length of their ways over the pathgraph.
 
-    When one is wanted, with two, the best ways for two bows, of which the shorter is meant. Returns their number, or
-    OVERFLOW when some scratch is too small.
+    When one is wanted, with up to three, the best ways for several bows, of which the shortest is meant. Returns their
+    number, or OVERFLOW when some scratch is too small.
     """
     heights, states, width, chains, runs, ways, body = ground
     query, album = desk.query, desk.album
@@ -132,7 +133,8 @@ def itineraries(ground: Ground, ends: Ends, wanted: int, desk: Desk) -> int:
     sight_ends(query.joint, query.cost, ways.sight, query.sight)
     floor = heights[first] if heights[first] < heights[last] else heights[last]
     stretch, written = desk.stretch, 0
-    for share in (SLIGHT, STRONG):
+    enough = ENOUGH * np.sqrt((ends[2] - ends[0]) ** 2 + (ends[3] - ends[1]) ** 2)
+    for share in BOWS:
         bow(query.line, ends, share if wanted == 1 else 0.0)
         split(query.shut, start, goal, 2)
         found = shortest_ways(chains.ends, ways, query, desk.search, album, wanted)
@@ -140,15 +142,15 @@ def itineraries(ground: Ground, ends: Ends, wanted: int, desk: Desk) -> int:
         for k in range(found):
             row = 0 + album.place[k]
             steps = stretches(chains.ends, chains.start, album.arcs, row, 0 + album.size[row], start, goal, stretch)
-            if wanted == 1 and written == 1 and repeats(desk.answers.bounds, desk.answers.chains, stretch, steps):
-                return 1
+            if wanted == 1 and repeats(desk.answers.bounds, desk.answers.chains, written, stretch, steps):
+                return written
             low = lowest_on(chains.start, chains.cells, chains.neck, heights, stretch, steps, floor)
             desk.answers.lowest[written] = low
             size = spell(chains.start, ways, desk.start, rise, stretch, steps, desk.goal, fall, desk.whole)
             if not publish(runs, body, desk.whole, size, ends, desk.rope, stretch, steps, desk.answers, written):
                 return OVERFLOW
             written += 1
-        if wanted > 1 or found == 0:
+        if wanted > 1 or found == 0 or desk.answers.length[written - 1] <= enough:
             break
     return written
 
@@ -248,12 +250,16 @@ def stretches(ends: Ints, starts: Ints, arcs: Ints, row: int, size: int, start: 
 
 
 @bare
-def repeats(bounds: Ints, chains: Ints, stretch: Ints, steps: int) -> bool:
-    """Whether a way walks the same chains as the first one published."""
-    same = steps == bounds[1, 2] - bounds[0, 2]
-    for k in range(steps):
-        same = same and chains[bounds[0, 2] + k] == stretch[k, 0]
-    return bool(same)
+def repeats(bounds: Ints, chains: Ints, written: int, stretch: Ints, steps: int) -> bool:
+    """Whether a way walks the same chains as one of those published."""
+    for way in range(written):
+        first = bounds[way, 2]
+        same = steps == bounds[way + 1, 2] - first
+        for k in range(steps if same else 0):
+            same = same and chains[first + k] == stretch[k, 0]
+        if same:
+            return True
+    return False
 
 
 @bare

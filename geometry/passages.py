@@ -89,8 +89,8 @@ def find_passages(square: Squares, state: States, chains: Chains, pinch: float =
 
 def may_be_pinched(heights: Squares, saddles: Ints, count: Ints, peaks: Ints, pinch: float) -> Bools:
     """(n,): saddles that may be pinched, by what their squares' centres tell of necks and floor."""
-    neck = np.sqrt(heights[saddles].astype(np.float64)) - 2 * OFF_CENTRE
-    sides = np.sqrt(np.where(np.arange(4) < count[:, None], heights[peaks], 0)) + 2 * OFF_CENTRE
+    neck = np.sqrt(heights[saddles], dtype=np.float64) - 2 * OFF_CENTRE
+    sides = np.sqrt(np.where(np.arange(4) < count[:, None], heights[peaks], 0), dtype=np.float64) + 2 * OFF_CENTRE
     answer: Bools = pinch * neck <= np.sort(sides, axis=1)[:, -2]
     return answer
 

@@ -23,11 +23,11 @@ def networkx_graph(square: Squares, chains: Chains) -> "networkx.MultiGraph[int]
     heights, width = square.reshape(-1), square.shape[1]
     graph: networkx.MultiGraph[Any] = networkx.MultiGraph()
     places = centres(chains.node, width).tolist()
-    clearances = (0.5 * np.sqrt(heights[chains.node])).tolist()
+    clearances = (0.5 * np.sqrt(heights[chains.node], dtype=np.float64)).tolist()
     for node, ((x, y), clearance) in enumerate(zip(places, clearances, strict=True)):
         graph.add_node(node, x=x, y=y, clearance=clearance)
     points = centres(chains.cells, width)
-    least = (0.5 * np.sqrt(heights[chains.cells[chains.neck]])).tolist()
+    least = (0.5 * np.sqrt(heights[chains.cells[chains.neck]], dtype=np.float64)).tolist()
     necks, start = points[chains.neck].tolist(), chains.start.tolist()
     for chain, (a, b) in enumerate(chains.ends.tolist()):
         graph.add_edge(

@@ -29,6 +29,10 @@ class Buffers(NamedTuple):
     words: Words
 
 
+class Tenant:
+    """Whoever holds a set, as long as it lives."""
+
+
 class Scratch(NamedTuple):
     """What a change of a screen notes, by cells. Little of it is ever written."""
 
@@ -42,17 +46,20 @@ SPARE: dict[tuple[int, int], Buffers] = {}
 SCRATCH: dict[int, Scratch] = {}
 
 
-def take_buffers(owner: object, shape: tuple[int, int]) -> Buffers:
-    """A set for an owner, spare again when the owner dies. All but the padding of ``words`` is arbitrary."""
+def take_buffers(tenant: Tenant, shape: tuple[int, int], kind: type[np.int16] | type[np.int32]) -> Buffers:
+    """A set for a tenant, spare again when it dies; ``square`` is of that kind or a larger one. All but the padding of
+    ``words`` is arbitrary."""
     buffers = SPARE.pop(shape, None)
-    if buffers is None:
+    if buffers is None or buffers.square.dtype < kind:
         cells = shape[0] * shape[1]
-        half, eighth = (cells + 1) // 2, (cells + 7) // 8
-        whole = np.empty(half + eighth, np.uint64)  # one array: what numpy zeroes it touches page by page
+        share, eighth = -(-cells * np.dtype(kind).itemsize // 8), -(-cells // 8)
+        del buffers
+        whole = np.empty(share + eighth, np.uint64)  # one array: what numpy zeroes it touches page by page
         populate(whole)
         whole[-1] = 0
-        buffers = Buffers(whole[:half].view(np.int32)[:cells].reshape(shape), whole[half:])
-    weakref.finalize(owner, give_back, shape, buffers).atexit = False
+        square: Any = whole[:share].view(kind)[:cells].reshape(shape)
+        buffers = Buffers(square, whole[share:])
+    weakref.finalize(tenant, give_back, shape, buffers).atexit = False
     return buffers
 
 

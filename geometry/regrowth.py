@@ -16,7 +16,6 @@ from geometry.recycling import Scratch
 from geometry.skeleton import (
     CLIMBED,
     GROUPS,
-    KINDS,
     LINKS,
     SADDLE,
     SUMMIT,
@@ -24,6 +23,7 @@ from geometry.skeleton import (
     Heights,
     States,
     above,
+    flag,
     higher_about,
     highest,
     highest_of,
@@ -59,7 +59,7 @@ def regrow(square: Squares, state: States, bounds: Ints, fresh: Squares, scratch
     about = np.empty((len(bounds), 2), np.int32)
     spread(bounds, width, about)
     prune(heights, width, about, journal)
-    settle(heights, width, bounds, fresh, about, journal)
+    settle(heights, width, bounds, fresh, about, np.empty(width, np.uint8), journal)
     grow(heights, width, about, journal)
     return journal
 
@@ -138,20 +138,47 @@ def wither(heights: Heights, width: int, about: Ints, journal: Journal, cell: in
 
 
 @bare
-def settle(heights: Heights, width: int, bounds: Ints, fresh: Squares, about: Ints, journal: Journal) -> None:
-    """Set the new clearances, and the flags of the cells about."""
+def settle(
+    heights: Heights, width: int, bounds: Ints, fresh: Squares, about: Ints, flags: Flags, journal: Journal
+) -> None:
+    """Set the new clearances, and the flags of the cells about. ``flags`` (width,) is scratch."""
+    states = journal.states
     for row in range(bounds.shape[0]):
-        for k in range(bounds[row, 1] - bounds[row, 0] + 1):
-            cell, value = row * width + bounds[row, 0] + k, fresh[bounds[row, 2] + k]
-            if heights[cell] != value:
-                heights[cell] = value
-                journal.mark[cell] |= MOVED
+        size = bounds[row, 1] - bounds[row, 0] + 1
+        if size > 0:
+            first, source = row * width + bounds[row, 0], bounds[row, 2]
+            replace(heights[first : first + size], fresh[source : source + size], journal.mark[first : first + size])
     for row in range(about.shape[0]):
-        for cell in range(row * width + about[row, 0], row * width + about[row, 1] + 1):
-            flag = int(KINDS[higher_about(cell, heights, width)]) if heights[cell] > 0 else 0
-            if journal.states[cell] & (SADDLE | SUMMIT) != flag:
-                touch(journal, cell)
-                journal.states[cell] = journal.states[cell] & LINKS | flag
+        size = about[row, 1] - about[row, 0] + 1
+        if size > 0:
+            first = row * width + about[row, 0]
+            if classify(heights, states[first : first + size], width, first, flags):
+                for k in range(size):
+                    if states[first + k] & (SADDLE | SUMMIT) != flags[k]:
+                        touch(journal, first + k)
+                        states[first + k] = states[first + k] & LINKS | flags[k]
+
+
+@bare
+def replace(heights: Heights, fresh: Heights, mark: Flags) -> None:
+    """Set new clearances, and mark those that differ."""
+    for k in range(heights.shape[0]):
+        mark[k] |= np.uint8(MOVED) if heights[k] != fresh[k] else np.uint8(0)
+        heights[k] = fresh[k]
+
+
+@bare
+def classify(heights: Heights, states: Flags, width: int, first: int, flags: Flags) -> bool:
+    """Find the flags of a row of cells from ``first`` on; returns whether any state has others."""
+    below, above = heights[first - width - 1 :], heights[first + width - 1 :]
+    here, differs = heights[first - 1 :], np.uint8(0)
+    for k in range(states.shape[0]):
+        own = here[k + 1]
+        e, ne, n, nw = here[k + 2] >= own, above[k + 2] >= own, above[k + 1] >= own, above[k] >= own
+        w, sw, s, se = here[k] > own, below[k] > own, below[k + 1] > own, below[k + 2] > own
+        flags[k] = flag(e, ne, n, nw, w, sw, s, se) if own > 0 else np.uint8(0)
+        differs |= flags[k] ^ states[k] & np.uint8(SADDLE | SUMMIT)
+    return bool(differs != 0)
 
 
 @bare

@@ -12,14 +12,14 @@ from numpy.typing import ArrayLike, NDArray
 from geometry.bones import Bones, Ints, contract
 from geometry.chains import Chains, find_chains
 from geometry.change import change_squares
-from geometry.distance import Bools
+from geometry.distance import Bools, type_of_squares
 from geometry.goals import checked_goal
 from geometry.layer import find_bones, find_layer, level_of, new_state
 from geometry.parts import Labels, find_parts
 from geometry.passages import Passage, find_passages
 from geometry.polyline import word_of_line
 from geometry.questions import Questions
-from geometry.recycling import take_buffers
+from geometry.recycling import Tenant, take_buffers
 from geometry.route import Route
 from geometry.skeleton import States, Words
 from geometry.sweep import survey
@@ -59,11 +59,8 @@ class Screen:
         grid = checked_grid(free)
         rows, columns = grid.shape
         self.shape = (rows, columns)
-        self._square, self._words = take_buffers(self, (rows + 2, columns + 2))
-        state, _ = new_state(self._square.shape, self._words)
-        survey(grid, self._square, state, self._words)
-        bones = contract(self._square, state, self._words)
-        self._skeletons: dict[int, tuple[States, Words, Bones]] = {1: (state, self._words, bones)}
+        self._rent(type_of_squares(grid))
+        self._skeletons: dict[int, tuple[States, Words, Bones]] = {1: self._survey(grid)}
         self._chains: dict[int, Chains] = {}
         self._questions: dict[tuple[int, bool], Questions] = {}
 
@@ -79,8 +76,9 @@ class Screen:
             When a square lies outside, the three do not match, or no square would be left free (nothing changes then).
         """
         where = checked_squares(rows, columns, values, self.shape)
-        state, words, bones = self._skeletons[1]
-        self._skeletons = {1: (state, words, change_squares(self._square, state, words, bones, *where))}
+        state, words, old = self._skeletons[1]
+        bones = change_squares(self._square, state, old, *where)
+        self._skeletons = {1: self._survey_changed(*where) if bones is None else (state, words, bones)}
         self._chains, self._questions = {}, {}
         for name in ("clearance", "skeleton", "pathgraph"):
             self.__dict__.pop(name, None)
@@ -94,7 +92,7 @@ class Screen:
     @cached_property
     def clearance(self) -> NDArray[np.float64]:
         """(rows, columns): distance from each square's centre to the nearest square that is not free, 0 on those."""
-        return 0.5 * np.sqrt(self._square[1:-1, 1:-1])
+        return 0.5 * np.sqrt(self._square[1:-1, 1:-1], dtype=np.float64)
 
     @cached_property
     def skeleton(self) -> Bools:
@@ -225,6 +223,26 @@ class Screen:
         if self._square.item(int(y) + 1, int(x) + 1) == 0:
             raise ValueError(f"{name} ({x}, {y}) lies in a blocked square")
         return x, y
+
+    def _rent(self, kind: type[np.int16] | type[np.int32]) -> None:
+        """Have memory for squared clearances of that kind."""
+        self._tenant = Tenant()
+        self._square, self._words = take_buffers(self._tenant, (self.shape[0] + 2, self.shape[1] + 2), kind)
+
+    def _survey(self, grid: Bools) -> tuple[States, Words, Bones]:
+        """Measure all clearances and find the skeleton and pathgraph of free squares."""
+        state, words = new_state(self._square.shape, self._words)
+        survey(grid, self._square, state, words)
+        return state, words, contract(self._square, state, words)
+
+    def _survey_changed(self, rows: Ints, columns: Ints, values: Bools) -> tuple[States, Words, Bones]:
+        """The same with some squares changed."""
+        grid = self.free
+        grid[rows, columns] = values
+        kind = type_of_squares(grid)
+        if self._square.dtype < kind:
+            self._rent(kind)
+        return self._survey(grid)
 
     def _skeleton_at(self, level: int) -> tuple[States, Words, Bones]:
         """The skeleton and pathgraph of the squares of at least that level."""

@@ -30,7 +30,7 @@ def survey(free: Bools, square: Squares, state: States, words: Words) -> None:
 
 def grow_all(square: Squares, level: int, state: States, words: Words) -> None:
     """Fill ``state`` for the cells whose ``square`` is at least ``level``."""
-    width = square.shape[1]
+    width, level = square.shape[1], min(level, int(np.iinfo(square.dtype).max))
     state[0], state[-1] = 0, 0
     flags, waiting = np.empty(width, np.uint8), np.empty(width, np.int32)
     grow(square.reshape(-1), state.reshape(-1), words, width, level, 1, len(square) - 2, flags, waiting, 0)

@@ -46,21 +46,21 @@ def new_window(width: int) -> Window:
     return Window(np.zeros(width, np.int16), own, np.empty(width, np.int16), reach, sites, heights)
 
 
-def measure(free: Bools, square: Squares) -> None:
-    """Fill ``square`` (rows + 2, columns + 2) for free squares (rows, columns)."""
+def measure(free: Bools, square: Squares) -> bool:
+    """Fill ``square`` (rows + 2, columns + 2) for free squares (rows, columns); returns whether its type holds it."""
     steps = square.view(np.int16)
     count_columns(free, steps)
-    measure_rows(square, steps, 1, len(free), new_window(square.shape[1]))
+    return measure_rows(square, steps, 1, len(free), new_window(square.shape[1]))
 
 
 @bare
-def measure_rows(square: Squares, steps: Gaps, south: int, north: int, window: Window) -> None:
+def measure_rows(square: Squares, steps: Gaps, south: int, north: int, window: Window) -> bool:
     """Fill rows of ``square`` (rows + 2, columns + 2) from ``north`` down to ``south``, after those further north.
 
     ``steps`` (rows + 2, columns + 2 or more) has the steps to the nearest blocked square below; it may lie in the same
-    memory, row by row.
+    memory, row by row. Returns False when clearances are found that the type of ``square`` does not hold.
     """
-    width = square.shape[1]
+    width, roof, fits = square.shape[1], (1 << 8 * square.itemsize - 1) - 1, True
     gap, own, value, reach, sites, heights = window
     for row in range(north, south - 1, -1):
         out = square[row]
@@ -74,8 +74,11 @@ def measure_rows(square: Squares, steps: Gaps, south: int, north: int, window: W
         for k in range(reach.shape[0]):
             if reach[k] >= FARTHEST:
                 first, last = k * STRETCH, (k + 1) * STRETCH if (k + 1) * STRETCH < width else width
-                far = measure_far(gap, out, first, last, far, sites, heights)
-                reach[k] = steps_for(greatest(out[first:last]))
+                far = measure_far(gap, out, first, last, far, roof, sites, heights)
+                most = greatest(out[first:last])
+                reach[k] = steps_for(most)
+                fits &= most < roof  # which no square is: they are 1 or 2 beyond a multiple of 8
+    return fits
 
 
 @bare
@@ -129,7 +132,7 @@ def publish(value: Gaps, out: Squares) -> int:
 @bare
 def greatest(out: Squares) -> int:
     """The greatest of some values."""
-    most = np.int32(0)
+    most = 0 * out[0]
     for j in range(out.shape[0]):
         most = out[j] if out[j] > most else most
     return int(most)
@@ -142,7 +145,9 @@ def steps_for(most: int) -> int:
 
 
 @bare
-def measure_far(gap: Gaps, out: Squares, first: int, last: int, done: int, sites: Sites, heights: Sites) -> int:
+def measure_far(
+    gap: Gaps, out: Squares, first: int, last: int, done: int, roof: int, sites: Sites, heights: Sites
+) -> int:
     """Measure the runs that meet a stretch, but for columns up to ``done``; returns how far these runs go."""
     column = first if first > done else done
     while column < last:
@@ -155,5 +160,5 @@ def measure_far(gap: Gaps, out: Squares, first: int, last: int, done: int, sites
             begin -= 1
         while gap[column] != 0:
             column += 1
-        measure_run(gap, out, begin, column, sites, heights)
+        measure_run(gap, out, begin, column, begin, column, roof, sites, heights)
     return column if column > done else done

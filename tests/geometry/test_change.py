@@ -77,6 +77,24 @@ def test_many_changes_in_a_row_leave_no_trace(texture):
         same(screen.changed(rows, columns, free[rows, columns]), Screen(free))
 
 
+@pytest.mark.parametrize("size", [210, 520])
+def test_clearances_may_outgrow_their_type(size):
+    free = np.ones((size, size), bool)
+    free[::26] = free[:, ::26] = False
+    free[1, 1::26] = free[2::26, 5] = True
+    free[5:205, 5:205] = True
+    free[96:112, 90:98] = False
+    screen = Screen(free.copy())
+    assert screen._square.dtype == np.int16 and screen.clearance.max() < 90
+    free[96:112, 90:98] = True
+    rows, columns = np.mgrid[96:112, 90:98]
+    same(screen.changed(rows, columns, free[rows, columns]), Screen(free))
+    assert screen._square.dtype == np.int32 and screen.clearance.max() > 98
+    assert screen.routes((100.5, 100.5), (7.5, 8.5))[0].length == pytest.approx(np.hypot(93, 92))
+    free[96:112, 90:98] = False
+    same(screen.changed(rows, columns, free[rows, columns]), Screen(free))
+
+
 def test_routes_follow_a_change():
     free = np.ones((5, 9), bool)
     screen = Screen(free)

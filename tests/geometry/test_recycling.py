@@ -11,15 +11,12 @@ def nothing_spare():
     recycling.SPARE.clear()
 
 
-class Owner:
-    """Whoever holds buffers."""
-
-
+@pytest.mark.parametrize("kind", [np.int16, np.int32])
 @pytest.mark.parametrize("shape", [(3, 3), (130, 126), (700, 333)])
-def test_new_memory_has_the_shape_and_empty_padding(shape):
-    owner = Owner()
-    square, words = recycling.take_buffers(owner, shape)
-    assert square.shape == shape and len(words) == -(-shape[0] * shape[1] // 8)
+def test_new_memory_has_the_shape_and_empty_padding(shape, kind):
+    tenant = recycling.Tenant()
+    square, words = recycling.take_buffers(tenant, shape, kind)
+    assert square.shape == shape and square.dtype == kind and len(words) == -(-shape[0] * shape[1] // 8)
     assert not words.view(np.uint8)[shape[0] * shape[1] :].any()
     assert not np.shares_memory(square, words)
 
@@ -36,6 +33,20 @@ def test_the_memory_of_a_dead_screen_is_used_again_and_leaves_no_trace():
     assert (again.clearance == fresh.clearance).all()
     for mine, other in zip(again._skeleton_at(1), fresh._skeleton_at(1), strict=True):
         assert all(np.array_equal(a, b) for a, b in zip(mine, other, strict=True))
+
+
+def test_memory_for_small_clearances_is_not_used_for_large_ones():
+    open_floor = np.ones((200, 210), bool)
+    walled = open_floor.copy()
+    walled[::20] = walled[:, ::20] = False
+    walled[1, 1] = False
+    Screen(walled)
+    wide = Screen(open_floor)
+    assert wide.clearance.max() == 99.5
+    del wide
+    again, fresh = Screen(walled), Screen(walled)
+    assert again._square.dtype == np.int32 and fresh._square.dtype == np.int16
+    assert (again.clearance == fresh.clearance).all()
 
 
 def test_advice_changes_nothing_that_is_written():

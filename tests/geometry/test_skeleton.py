@@ -5,8 +5,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.ndimage import distance_transform_edt
 
-from geometry import Screen, sweep
+from geometry import Screen, distance, sweep, windows
+from geometry.layer import find_bones, level_of, new_state
 from geometry.skeleton import GROUPS, KINDS, SADDLE, SUMMIT
 from tests.geometry import lookalikes, oracles
 
@@ -29,6 +31,39 @@ def test_clearance_is_exact_near_walls_and_far_from_them():
     free[40:43, 200:203] = free[90, 30:120:7] = free[:, 150] = False
     free[60:75, 150] = True
     assert np.allclose(Screen(free).clearance, oracles.clearance(free), rtol=0, atol=1e-12)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(178, 186), st.tuples(*[st.integers(0, 40)] * 4), st.booleans(), st.integers(0, 2**32 - 1))
+def test_16_bits_are_used_only_where_they_hold_all_clearances(across, margins, round_floor, seed):
+    west, east, south, north = margins
+    y, x = np.mgrid[: across + south + north, : across + west + east] + 0.5
+    u, v = x - west - across / 2, y - south - across / 2
+    free = (np.hypot(u, v) if round_floor else np.maximum(abs(u), abs(v))) < across / 2
+    free |= np.random.default_rng(seed).random(free.shape) < 0.02
+    most = int(distance_transform_edt(np.pad(np.kron(free, np.ones((2, 2), bool)), 2))[3:-3:2, 3:-3:2].max())
+    if distance.type_of_squares(free) == np.int16:
+        screen = Screen(free)
+        assert screen._square.dtype == np.int16 and 0 <= screen._square.max() < 2**15 - 1
+        assert abs(2 * screen.clearance.max() - most) < 2
+    else:
+        assert most > 112  # wide floor
+
+
+@settings(max_examples=200, deadline=None)
+@given(oracles.screens(most=16))
+def test_both_types_of_squares_give_the_same(free):
+    screen = Screen(free)
+    square = np.empty(screen._square.shape, np.int32)
+    assert windows.measure(free, square) and (square[1:-1] == screen._square[1:-1]).all()
+    square[[0, -1]] = 0
+    for radius in RADII:
+        state, words = new_state(square.shape)
+        bones = find_bones(square, level_of(radius), state, words)
+        mine = screen._skeleton_at(level_of(radius))
+        assert np.array_equal(state, mine[0])
+        assert all(np.array_equal(a, b) for a, b in zip(bones, mine[2], strict=True))
+    assert Screen(free).pathgraph_for(200.0).number_of_nodes() == 0
 
 
 @settings(max_examples=200, deadline=None)
