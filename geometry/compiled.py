@@ -4,6 +4,7 @@ numba is imported when the first kernel is called, never at import. A kernel is 
 ``NUMBA_DISABLE_JIT=1`` it runs uncompiled, for debugging and coverage.
 """
 
+import importlib
 import sys
 from collections.abc import Callable
 from functools import cache
@@ -81,6 +82,7 @@ def bare(function: Callable[P, R]) -> Kernel[P, R]:
 def _dispatcher(function: Callable[P, R], counting: bool) -> Callable[P, R]:
     import numba
 
+    _look_for_no_blas()
     options: Any = {"error_model": "numpy", "_nrt": counting, "no_cfunc_wrapper": True}
     try:
         machine = numba.njit(cache=True, **options)(function)
@@ -90,6 +92,23 @@ def _dispatcher(function: Callable[P, R], counting: bool) -> Callable[P, R]:
         _compile_wide(machine)
         _tell_when_long(machine)
     return cast(Callable[P, R], machine)
+
+
+def _look_for_no_blas() -> None:
+    """Kernels multiply no matrices; numba, to know whether it might, would import scipy where that is installed.
+
+    That takes as long as all else of a cold start. Who multiplies matrices with numba finds scipy when he does.
+    """
+    if "numba.np.arraymath" in sys.modules:
+        return
+    from numba.np import linalg
+
+    look = linalg.ensure_blas
+    linalg.ensure_blas = lambda: None
+    try:
+        importlib.import_module("numba.np.arraymath")
+    finally:
+        linalg.ensure_blas = look
 
 
 def _compile_wide(machine: Any) -> None:

@@ -14,7 +14,7 @@ import shapely
 from numpy.typing import NDArray
 
 from geometry.carrying import At, Carrying, InCorner, Inside, plan_carrying
-from geometry.digital import squares
+from geometry.digital import squares, squares_after
 from geometry.ends import End
 from geometry.rigid import Translate
 from kb.encodings import solve
@@ -203,15 +203,14 @@ def swept_squares(plan: Carrying, shape: Any, size: tuple[int, ...]) -> tuple[Ma
         for motion in leg.motions:
             far = math.hypot(motion.dx, motion.dy) if isinstance(motion, Translate) else 0.4 * abs(motion.degrees)
             steps = max(1, math.ceil(far / STRIDE))
-            swept: Mask = np.zeros_like(mask)
-            for step in range(1, steps + 1):
-                swept |= squares(motion.part(step / steps).carry(shape), columns, rows)
-                if isinstance(motion, Translate):
-                    here = (x + motion.dx * step / steps, y + motion.dy * step / steps)
-                    swept[min(max(int(here[1]), 0), rows - 1), min(max(int(here[0]), 0), columns - 1)] = True
+            shares = [step / steps for step in range(1, steps + 1)]
+            swept = squares_after(shape, [motion.part(share) for share in shares], columns, rows)
             shape = motion.carry(shape)
             mask |= swept
             if isinstance(motion, Translate):
+                for share in shares:
+                    here = x + motion.dx * share, y + motion.dy * share
+                    mask[min(max(int(here[1]), 0), rows - 1), min(max(int(here[0]), 0), columns - 1)] = True
                 x, y = x + motion.dx, y + motion.dy
             else:
                 turned |= swept
