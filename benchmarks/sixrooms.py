@@ -2,15 +2,15 @@
 
     python -m benchmarks.sixrooms [--count N] [--seed N] [--only KIND:SEED]
 
-Six rooms in two rows, each joined to the next by a door and some to others too. Something must be carried: to a corner or
-a pose at least three doors away (corner, pose), or, at least two doors from Utak, into the next room or through a door
-(square, brick, l_shape). He knows all six rooms from the start (benchmarks.knowing). Kernels were compiled earlier; the
-process is new, and nothing has been planned in it.
+Six rooms in two rows, each joined to the next by a door and some to others too. Something must be carried: to a corner
+or a pose at least three doors away (corner, pose), or, at least two doors from Utak, into the next room or through a
+door (square, brick, l_shape). He knows all six rooms from the start (benchmarks.knowing). Kernels were compiled
+earlier; the process is new, and nothing has been planned in it.
 
-Timed, by the clock on the wall: `start` from the parent's call until Python runs this module's child, `import` of the robot
-and of numba, `read` of start.lp and goal.lp, `model` from the first impression to the world model, `decide` from there to
-the first command. `thinking` are the last three; `all` is everything. Not timed: writing the truth into his map, and
-what his body does. `rounds` are the answers of planner/asp/transport.lp that geometry was asked to verify.
+Timed, by the clock on the wall: `start` from the parent's call until Python runs benchmarks.sixrooms_child, `import` of
+the robot and of numba, `read` of start.lp and goal.lp, `model` from the first impression to the world model, `decide`
+from there to the first command. `thinking` are the last three; `all` is everything. Not timed: writing the truth into
+his map, and what his body does. `rounds` are the choices of planner/asp/transport.lp that geometry was asked about.
 """
 
 import argparse
