@@ -22,7 +22,7 @@ def main(folder: Path, began: float) -> None:
     from simulator.scenario import read_any_world
     from simulator.tabletop import Tabletop
 
-    imported = time.perf_counter()
+    imported, spent = time.perf_counter(), time.process_time()
     truth = pickle.loads((folder / "truth.pickle").read_bytes())
     body = Embodiment(Tabletop(read_any_world(folder), 0.0, 0))
     knowledge = Informed(truth)
@@ -30,6 +30,7 @@ def main(folder: Path, began: float) -> None:
     impression = body.wake()
     choices = _counted(haulage)
 
+    spent -= time.process_time()
     begun = time.perf_counter()
     task = read_task(folder / "start.lp", folder / "goal.lp")
     read = time.perf_counter()
@@ -44,6 +45,7 @@ def main(folder: Path, began: float) -> None:
         "read": read - begun,
         "model": modelled - read,
         "decide": decided - modelled,
+        "cpu": spent + time.process_time(),
         "rounds": len(choices),
         "command": f"{decision.command}; {decision.why}",
     }

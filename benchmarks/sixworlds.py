@@ -20,7 +20,7 @@ OFF = 2  # doors between Utak and a thing for the next room
 TASKS = {"corner": 5, "square": 6, "brick": 7, "l_shape": 9, "pose": 6}
 
 
-def six_room_world(kind: str, seed: int) -> Scenario:
+def six_room_world(kind: str, seed: int, loops: bool = False) -> Scenario:
     """A random world of six rooms.
 
     Parameters
@@ -28,10 +28,11 @@ def six_room_world(kind: str, seed: int) -> Scenario:
     kind : corner: a square to the northeast corner of the whole floor, FAR doors away or more. pose: an L to a pose so
         far away. square, l_shape: into the next room, OFF doors from Utak or more. brick: so through a door.
     seed : any integer from 0.
+    loops : some rooms are joined to others than the next too. Then pieces of wall stand alone between doors.
     """
     rng = np.random.default_rng([sorted(TASKS).index(kind), seed, 6])
     while True:
-        made = _drawn(rng, kind, seed)
+        made = _drawn(rng, kind, seed, 0.3 * loops)
         if made is not None:
             return made
 
@@ -48,11 +49,11 @@ def doors_between(plan: Plan, one: str) -> dict[str, int]:
     return away
 
 
-def _drawn(rng: np.random.Generator, kind: str, seed: int) -> Scenario | None:
+def _drawn(rng: np.random.Generator, kind: str, seed: int, loops: float) -> Scenario | None:
     """A world, or None when what was drawn is too near, or leaves no room."""
     shape = SHAPES.get(kind, kind)
     outline, least = load(rng, shape)
-    plan = random_plan(rng, 6, door_widths(least, False), loops=0.3)
+    plan = random_plan(rng, 6, door_widths(least, False), loops=loops)
     away = doors_between(plan, home := f"r{int(rng.integers(6)) + 1}")
     far = [room.polygon for room in plan.rooms if away[room.name] >= FAR]
     heading, goal, target = face(rng), "in(x, room(next)).\n", union_all([plan.room(n) for n in plan.neighbours(home)])
