@@ -4,8 +4,8 @@
 
 Six rooms in two rows, each joined to the next by a door (with --loops some to others too). Something must be carried:
 to a corner or a pose at least three doors away (corner, pose), or, at least two doors from Utak, into the next room or
-through a door (square, brick, l_shape). He knows all six rooms from the start (benchmarks.knowing). Kernels were compiled
-earlier; the process is new, and nothing has been planned in it.
+through a door (square, brick, l_shape). He knows all six rooms from the start (benchmarks.knowing). Kernels were
+compiled earlier; the process is new, and nothing has been planned in it.
 
 Timed, by the clock on the wall: `start` from the parent's call until Python runs benchmarks.sixrooms_child, `import` of
 the robot and of numba, `read` of start.lp and goal.lp, `model` from the first impression to the world model, `decide`

@@ -45,7 +45,8 @@ class Kernel(Generic[P, R]):
         """The numba dispatcher (or the bare function when numba is told not to compile)."""
         if self._machine is None:
             self._machine = _dispatcher(self.function, self._counting)
-            _link(cast(FunctionType, self.function).__globals__)
+            if not hasattr(self._machine, "overloads"):
+                _link(cast(FunctionType, self.function).__globals__)
         return self._machine
 
     def _first(self, *args: P.args, **kwargs: P.kwargs) -> R:
@@ -90,7 +91,7 @@ def _dispatcher(function: Callable[P, R], counting: bool) -> Callable[P, R]:
         machine = numba.njit(**options)(function)
     if hasattr(machine, "overloads"):
         _compile_wide(machine)
-        _tell_when_long(machine)
+        _compile_linked(machine, cast(FunctionType, function).__globals__)
     return cast(Callable[P, R], machine)
 
 
@@ -123,19 +124,13 @@ def _compile_wide(machine: Any) -> None:
     machine.compile = compile_wide
 
 
-def _link(names: dict[str, Any]) -> None:
-    """Let kernels call each other directly: numba resolves only dispatchers among a module's globals."""
-    for name, value in list(names.items()):
-        if isinstance(value, Kernel):
-            names[name] = value.machine()
-
-
-def _tell_when_long(machine: Any) -> None:
-    """Say so when compiling takes long. What numba finds in its cache it does not compile."""
+def _compile_linked(machine: Any, names: dict[str, Any]) -> None:
+    """Link to other kernels and say so when compiling takes long: only what numba does not find in its cache."""
     compiler = machine._compiler
     compile_it = compiler.compile
 
     def compile_telling(*args: Any) -> Any:
+        _link(names)
         notice = Timer(PATIENCE, tell)
         notice.daemon = True
         notice.start()
@@ -145,6 +140,13 @@ def _tell_when_long(machine: Any) -> None:
             notice.cancel()
 
     compiler.compile = compile_telling
+
+
+def _link(names: dict[str, Any]) -> None:
+    """Let kernels call each other directly: numba resolves only dispatchers among a module's globals."""
+    for name, value in list(names.items()):
+        if isinstance(value, Kernel):
+            names[name] = value.machine()
 
 
 def _compile(machine: Any, args: tuple[Any, ...]) -> None:

@@ -111,7 +111,7 @@ class Hauler:
             fact = "refuted" if plan.status == "impossible" else "undecided"
             verdicts.append(f"{fact}({name},{level},{aside})")
         self._hopeless = True
-        return _refusal(request.node, plans)
+        return _refusal(request.node, plans, situation.model)
 
     def _plan(self, request: Request, shape: Any, free: Mask, walk: Mask, name: str, situation: Situation) -> Carrying:
         x, y = situation.model.place
@@ -217,7 +217,7 @@ def swept_squares(plan: Carrying, shape: Any, size: tuple[int, ...]) -> tuple[Ma
     return mask, turned
 
 
-def _refusal(node: Node, plans: Sequence[Carrying]) -> Refusal:
+def _refusal(node: Node, plans: Sequence[Carrying], model: WorldModel) -> Refusal:
     """Why nothing was found. It is proved when every target was refuted, whatever lies in the unseen."""
     if not plans:
         return Refusal(False, lambda: f"nothing is known of where {node.name} could be carried")
@@ -226,8 +226,13 @@ def _refusal(node: Node, plans: Sequence[Carrying]) -> Refusal:
         return Refusal(False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none")
 
     def reason() -> str:
-        if last.passage is None:
+        neck = last.passage
+        if neck is None:
             return f"{node.name} cannot be carried there"
-        return f"the passage for {node.name} is too narrow by {last.missing:.2f} squares"
+        east, north = model.lattice.place_to_utak(neck.place[0] + model.view.west, neck.place[1] + model.view.south)
+        where = f"{neck.width:.2f} squares wide at POINT ({east:.1f} {north:.1f})"
+        if math.isinf(last.missing):
+            return f"{node.name} cannot be carried there: even were the passage, {where}, as wide as it, it could not"
+        return f"the passage for {node.name}, {where}, is too narrow by {last.missing:.2f} squares"
 
     return Refusal(True, reason)
