@@ -1,5 +1,7 @@
 """What is compiled before the first run."""
 
+import sys
+
 from simulator import warming
 
 
@@ -37,3 +39,22 @@ def test_the_first_run_says_what_it_does(monkeypatch) -> None:
     monkeypatch.setattr(warming, "cold", lambda: False)
     warming.warm(carrying=True)
     assert len(told) == 1
+
+
+def test_bytecode_is_kept_where_python_keeps_none(monkeypatch, tmp_path) -> None:
+    (tmp_path / "part").mkdir()
+    (tmp_path / "part" / "module.py").write_text("ANSWER = 42\n")
+    (tmp_path / "broken.py").write_text("ANSWER =\n")
+    monkeypatch.setattr(warming, "PACKAGES", [tmp_path, tmp_path / "absent"])
+    monkeypatch.setattr(warming, "cold", lambda: True)
+    monkeypatch.setattr(warming, "tell", lambda: None)
+    monkeypatch.setattr(warming, "compile_for", lambda _: None)
+    monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
+    for told, kept in ((False, 0), (True, 1)):
+        monkeypatch.setattr(sys, "dont_write_bytecode", told)
+        warming.warm(carrying=False)
+        assert len(list(tmp_path.rglob("module.*.pyc"))) == kept
+
+
+def test_every_package_of_the_robot_is_among_those_whose_bytecode_is_kept() -> None:
+    assert all((package / "__init__.py").is_file() for package in warming.PACKAGES)
