@@ -83,13 +83,13 @@ def bare(function: Callable[P, R]) -> Kernel[P, R]:
 def _dispatcher(function: Callable[P, R], counting: bool) -> Callable[P, R]:
     import numba
 
-    _look_for_no_blas()
     options: Any = {"error_model": "numpy", "_nrt": counting, "no_cfunc_wrapper": True}
     try:
         machine = numba.njit(cache=True, **options)(function)
     except RuntimeError:  # no directory to keep the cache in: compile anew in each process
         machine = numba.njit(**options)(function)
     if hasattr(machine, "overloads"):
+        _load_lightly(machine)
         _compile_wide(machine)
         _compile_linked(machine, cast(FunctionType, function).__globals__)
     return cast(Callable[P, R], machine)
@@ -112,6 +112,21 @@ def _look_for_no_blas() -> None:
         linalg.ensure_blas = look
 
 
+def _load_lightly(machine: Any) -> None:
+    """Load from numba's cache without first getting ready to compile: machine code needs the run time only."""
+    store = machine._cache
+    if not (hasattr(store, "_load_overload") and hasattr(store, "_guard_against_spurious_io_errors")):
+        return
+    from numba.core.runtime import rtsys
+
+    def load(signature: Any, target: Any) -> Any:
+        rtsys.initialize(target)
+        with store._guard_against_spurious_io_errors():
+            return store._load_overload(signature, target)
+
+    store.load_overload = load
+
+
 def _compile_wide(machine: Any) -> None:
     """One copy for all whole numbers: else every constant and every width of integer would get a copy of its own."""
     from numba.core import types
@@ -130,6 +145,7 @@ def _compile_linked(machine: Any, names: dict[str, Any]) -> None:
     compile_it = compiler.compile
 
     def compile_telling(*args: Any) -> Any:
+        _look_for_no_blas()
         _link(names)
         notice = Timer(PATIENCE, tell)
         notice.daemon = True

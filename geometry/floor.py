@@ -59,6 +59,13 @@ class Floor:
         self._grounds: dict[float, Ground] = {}
         self._around: dict[bytes, Floor] = {}
 
+    def finer(self, times: int) -> tuple[Floats, Floats]:
+        """The frame and the raster with pixels of which so many make the side of one."""
+        frame = self.frame * np.array([1.0, 1.0, 1.0 / times])
+        raster = np.empty((times * self.raster.shape[0], times * self.raster.shape[1]))
+        _measure(self.surface.hull, frame, raster)
+        return frame, raster
+
     def ground(self, mover: Mover) -> Ground:
         """What the kernels need to know of the floor for a body of this radius."""
         if mover.radius not in self._grounds:
