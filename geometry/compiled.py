@@ -117,7 +117,7 @@ def _load_lightly(machine: Any) -> None:
     store = machine._cache
     if not (hasattr(store, "_load_overload") and hasattr(store, "_guard_against_spurious_io_errors")):
         return
-    from numba.core.runtime import rtsys
+    from numba.core.runtime.nrt import rtsys
 
     def load(signature: Any, target: Any) -> Any:
         rtsys.initialize(target)
