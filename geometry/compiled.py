@@ -83,6 +83,7 @@ def bare(function: Callable[P, R]) -> Kernel[P, R]:
 def _dispatcher(function: Callable[P, R], counting: bool) -> Callable[P, R]:
     import numba
 
+    _look_for_no_blas()
     options: Any = {"error_model": "numpy", "_nrt": counting, "no_cfunc_wrapper": True}
     try:
         machine = numba.njit(cache=True, **options)(function)
@@ -145,7 +146,6 @@ def _compile_linked(machine: Any, names: dict[str, Any]) -> None:
     compile_it = compiler.compile
 
     def compile_telling(*args: Any) -> Any:
-        _look_for_no_blas()
         _link(names)
         notice = Timer(PATIENCE, tell)
         notice.daemon = True
