@@ -9,9 +9,9 @@ compiled earlier; the process is new, and nothing has been planned in it.
 
 Timed, by the clock on the wall: `start` from the parent's call until Python runs benchmarks.sixrooms_child, `import` of
 the robot and of numba, `read` of start.lp and goal.lp, `model` from the first impression to the world model, `decide`
-from there to the first command. `thinking` are the last three; `all` is everything, and `cpu` the same by the
-processor's clock. Not timed: writing the truth into his map, and what his body does. `rounds` are the choices of
-planner/asp/transport.lp that geometry was asked about.
+from there to the first command. `thinking` are the last three; `all` is everything. By the processor's clock, which
+other work on the machine leaves alone, `thought` is the thinking and `cpu` everything. Not timed: writing the truth
+into his map, and what his body does. `rounds` are the choices of planner/asp/transport.lp that geometry was asked for.
 """
 
 import argparse
@@ -27,7 +27,7 @@ from pathlib import Path
 from typing import Any
 
 KINDS = ("corner", "square", "brick", "l_shape", "pose")
-STAGES = ("start", "import", "read", "model", "decide", "thinking", "all", "cpu")
+STAGES = ("start", "import", "read", "model", "decide", "thinking", "all", "cpu", "thought")
 BAR, MOST_ROUNDS = 0.8, 5  # seconds; rounds
 
 

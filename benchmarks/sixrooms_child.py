@@ -30,7 +30,7 @@ def main(folder: Path, began: float) -> None:
     impression = body.wake()
     choices = _counted(haulage)
 
-    spent -= time.process_time()
+    spent -= (thought := time.process_time())
     begun = time.perf_counter()
     task = read_task(folder / "start.lp", folder / "goal.lp")
     read = time.perf_counter()
@@ -46,6 +46,7 @@ def main(folder: Path, began: float) -> None:
         "model": modelled - read,
         "decide": decided - modelled,
         "cpu": spent + time.process_time(),
+        "thought": time.process_time() - thought,
         "rounds": len(choices),
         "command": f"{decision.command}; {decision.why}",
     }
