@@ -3,6 +3,7 @@
     python -m benchmarks.campaign --task 1,2,3,4 --count 50 --seed 0 --jobs 2 [--noise S] [-o results.jsonl]
     python -m benchmarks.campaign --only 3:17 --keep FOLDER      (one world, drawn at each step)
     python -m benchmarks.campaign --again results.jsonl          (the worlds that went wrong)
+    python -m benchmarks.campaign --unable --task 5,6,7,8,9 --count 4    (only such as cannot be done)
 
 The table goes to stdout, progress to stderr. docs/benchmarks-worlds.md explains the columns.
 """
@@ -16,6 +17,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import ExitStack
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import TextIO
 
@@ -24,9 +26,9 @@ from shapely import Polygon
 from benchmarks.beliefs import beliefs
 from benchmarks.drawing import drawing
 from benchmarks.judging import judge_path
-from benchmarks.tally import faults, table, verdicts
+from benchmarks.tally import faults, narrowness, table, verdicts
 from benchmarks.trial import Conditions, Trial, run_trial
-from benchmarks.worlds import scenario
+from benchmarks.worlds import scenario, seeds
 from simulator.session import Session
 
 
@@ -51,10 +53,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
             task, seed = (int(part) for part in given.only.split(":"))
             trials = [_watched(task, seed, conditions, folder)]
         else:
-            worlds = _unclean(given.again) if given.again else _worlds(given.task, given.seed, given.count)
+            numbers = seeds(given.seed, given.count, given.unable)
+            worlds = _unclean(given.again) if given.again else list(product(given.task, numbers))
             output = stack.enter_context(given.output.open("w")) if given.output else None
             trials = list(_reported(_run_all(worlds, conditions, folder, given.jobs), len(worlds), output))
-    print(table(trials), verdicts(trials), faults(trials), sep="\n", end="")
+    print(table(trials), verdicts(trials), narrowness(trials), faults(trials), sep="\n", end="")
     return 0 if all(trial.clean for trial in trials) else 1
 
 
@@ -73,6 +76,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--only", metavar="TASK:SEED", help="one world, drawn at each step on stderr")
     parser.add_argument("--plain", action="store_true", help="plain worlds: one or two rooms, on whole squares")
     parser.add_argument("--knowing", action="store_true", help="also run the same planner knowing everything")
+    parser.add_argument("--unable", action="store_true", help="only worlds in which the task cannot be done")
     parser.add_argument("--again", type=Path, metavar="RESULTS", help="the worlds that went wrong in earlier results")
     parser.add_argument("--keep", type=Path, help="folder in which scenarios and episodes stay")
     return parser
@@ -80,10 +84,6 @@ def _parser() -> argparse.ArgumentParser:
 
 def _numbers(text: str) -> list[int]:
     return [int(part) for part in text.split(",")]
-
-
-def _worlds(tasks: list[int], first: int, count: int) -> list[tuple[int, int]]:
-    return [(task, seed) for task in tasks for seed in range(first, first + count)]
 
 
 def _unclean(results: Path) -> list[tuple[int, int]]:

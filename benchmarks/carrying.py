@@ -51,7 +51,7 @@ def to_corner_world(rng: np.random.Generator, seed: int, narrow: bool) -> Scenar
     target = corner_box(corner, outline.bounds[2] + 1.5)
     home = _one_of(rng, [r.name for r in plan.rooms if not (narrow and r.polygon.intersects(target))])
     goal = "at(x, corner(northeast)).\n"
-    return _carried(rng, 5, seed, plan, "square", outline, home, target, goal, heading, least if narrow else 0.0)
+    return carried(rng, 5, seed, plan, "square", outline, home, target, goal, heading, least if narrow else 0.0)
 
 
 def next_room_world(
@@ -63,7 +63,7 @@ def next_room_world(
     home = _one_of(rng, [room.name for room in plan.rooms])
     target = union_all([plan.room(name) for name in plan.neighbours(home)])
     goal = "in(x, room(next)).\n"
-    return _carried(rng, task, seed, plan, shape, outline, home, target, goal, face(rng), least if narrow else 0.0)
+    return carried(rng, task, seed, plan, shape, outline, home, target, goal, face(rng), least if narrow else 0.0)
 
 
 def through_door_world(rng: np.random.Generator, seed: int, narrow: bool) -> Scenario | None:
@@ -73,7 +73,7 @@ def through_door_world(rng: np.random.Generator, seed: int, narrow: bool) -> Sce
     home = _one_of(rng, [room.name for room in plan.rooms])
     target = union_all([room.polygon for room in plan.rooms if room.name != home])
     goal = "through(x, d).\n"
-    return _carried(rng, 7, seed, plan, "brick", outline, home, target, goal, face(rng), least if narrow else 0.0)
+    return carried(rng, 7, seed, plan, "brick", outline, home, target, goal, face(rng), least if narrow else 0.0)
 
 
 def around_corner_world(rng: np.random.Generator, seed: int, narrow: bool) -> Scenario | None:
@@ -106,7 +106,7 @@ def _one_of(rng: np.random.Generator, names: Sequence[str]) -> str:
     return names[int(rng.integers(len(names)))]
 
 
-def _carried(
+def carried(
     rng: np.random.Generator,
     task: int,
     seed: int,

@@ -1,6 +1,6 @@
 """Carrying planned from the truth, in random worlds of tasks 5 to 9; every plan done again with shapely.
 
-    python -m benchmarks.errands [--task 5,6,7,8,9] [--seed N] [--count N] [--no-pull] [--margin M]
+    python -m benchmarks.errands [--task 5,6,7,8,9] [--seed N] [--count N] [--no-pull] [--margin M] [--unable]
 
 Every twelfth world is impossible: there the missing width is compared with the true one.
 """
@@ -17,7 +17,7 @@ import shapely
 from benchmarks.placing import digital
 from benchmarks.scenes import Scenario
 from benchmarks.walking import furthest_corner
-from benchmarks.worlds import scenario
+from benchmarks.worlds import scenario, seeds
 from geometry.carrying import Carrying, InCorner, Inside, plan_carrying
 
 
@@ -69,10 +69,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--count", type=int, default=40)
     parser.add_argument("--no-pull", action="store_true")
     parser.add_argument("--margin", type=float, default=0.0)
+    parser.add_argument("--unable", action="store_true", help="only worlds in which the task cannot be done")
     args = parser.parse_args(arguments)
     for task in [int(part) for part in args.task.split(",")]:
         statuses, times, commands, off = Counter[str](), [], [], []
-        for seed in range(args.seed, args.seed + args.count):
+        for seed in seeds(args.seed, args.count, args.unable):
             world = scenario(task, seed)
             shape, free, goal = world.things[0].polygon, free_squares(world), goal_of(world)
             utak = (world.utak.x, world.utak.y)
@@ -90,8 +91,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 off.append(plan.missing - world.missing)
             if plan.status != wanted or (plan.status == "found" and wrong):
                 print(f"  task {task} seed {seed}: {plan.status} {plan.reason}, wanted {wanted}; {1e3 * taken:.0f} ms")
-        told = "ms median {:.0f}, 95 % {:.0f}, most {:.0f}".format(*(1e3 * np.percentile(times, [50, 95, 100])))
-        most = f"commands median {np.median(commands):.0f}, most {max(commands)}"
+        told = "ms median {:.0f}, 95 % {:.0f}, most {:.0f}".format(*(1e3 * np.percentile(times or [0], [50, 95, 100])))
+        most = f"commands median {np.median(commands or [0]):.0f}, most {max(commands or [0])}"
         print(f"task {task}: {dict(statuses)}, {told}; {most}; missing off by {[round(v, 2) for v in off]}", flush=True)
 
 

@@ -1,4 +1,4 @@
-"""Random floor plans: one to three rooms in a row, stacked or in an L, with doors in the walls between them.
+"""Random floor plans: one to three rooms in a row, stacked or in an L, or six in two rows, with doors between them.
 
 All lengths are squares, all corners of rooms and doors are whole squares of the table.
 """
@@ -72,8 +72,19 @@ LAYOUTS: dict[int, list[list[Cell]]] = {
         [(0, 0), (0, 1), (1, 1)],
         [(1, 0), (1, 1), (0, 1)],
     ],
+    6: [
+        [(0, 0), (1, 0), (2, 0), (2, 1), (1, 1), (0, 1)],
+        [(0, 0), (0, 1), (0, 2), (1, 2), (1, 1), (1, 0)],
+        [(0, 1), (0, 0), (1, 0), (1, 1), (2, 1), (2, 0)],
+        [(1, 0), (0, 0), (0, 1), (1, 1), (1, 2), (0, 2)],
+    ],
 }
-SIDES = {1: (20, 58), 2: (16, 29), 3: (14, 19)}  # least and greatest inner side along an axis with so many rooms
+SIDES = {
+    1: (20, 58),
+    2: (16, 29),
+    3: (14, 19),
+    6: (14, 19),
+}  # least and greatest inner side along an axis with so many rooms
 
 
 def random_plan(
@@ -83,24 +94,28 @@ def random_plan(
     wall: int = 2,
     closed: bool = False,
     ells: float = 0.15,
+    loops: float = 0.0,
 ) -> Plan:
     """A plan with so many rooms, each joined to the next by a door.
 
     Parameters
     ----------
-    rooms : 1 to 3.
+    rooms : 1 to 3, or 6.
     doors : least and greatest width of a door in squares; every room is at least twice as wide as its doors.
     wall : thickness of the walls in squares.
     closed : leave the doors out: rooms that nothing joins.
     ells : chance that a corner is cut from a room, which makes it L-shaped.
+    loops : chance that two neighbours which do not follow each other share a door too, where their walls let them.
     """
     while True:
         cells = LAYOUTS[rooms][rng.integers(len(LAYOUTS[rooms]))]
         widths = [int(rng.integers(doors[0], doors[1] + 1)) for _ in range(rooms - 1)]
         least = max([2 * w + 1 for w in widths] + [0])
         rects, size = _rectangles(rng, cells, wall, least)
-        joints = [_door(rng, rects, i, w, wall) for i, w in enumerate(widths)]
+        joints = [_door(rng, rects, (i, i + 1), w, wall) for i, w in enumerate(widths)]
         if all(joint is not None for joint in joints):
+            pairs = [(i, j) for j in range(rooms) for i in range(j - 1) if loops and rng.random() < loops]
+            joints += [_door(rng, rects, pair, widths[pair[0]], wall) for pair in pairs]
             made = [joint for joint in joints if joint is not None]
             shapes = [_cut(rng, rect, made, max(ARM, least)) if rng.random() < ells else box(*rect) for rect in rects]
             named = tuple(Room(f"r{i + 1}", shape) for i, shape in enumerate(shapes))
@@ -163,10 +178,10 @@ def _rectangles(rng: np.random.Generator, cells: list[Cell], wall: int, least: i
     return rects, (columns[-1][1] + wall, rows[-1][1] + wall)
 
 
-def _door(rng: np.random.Generator, rects: list[Rect], index: int, width: int, wall: int) -> Door | None:
-    """A door between a rectangle and the next one, or None where they do not face each other widely enough."""
-    a, b = rects[index], rects[index + 1]
-    names = (f"r{index + 1}", f"r{index + 2}")
+def _door(rng: np.random.Generator, rects: list[Rect], pair: tuple[int, int], width: int, wall: int) -> Door | None:
+    """A door between two of the rectangles, or None where they do not face each other widely enough."""
+    a, b = (rects[index] for index in pair)
+    names = (f"r{pair[0] + 1}", f"r{pair[1] + 1}")
     for vertical in (True, False):
         axis, across = (0, 1) if vertical else (1, 0)
         for one, other in ((a, b), (b, a)):

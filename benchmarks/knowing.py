@@ -35,10 +35,11 @@ class Informed(Knowledge):
 
     def wake(self, impression: Impression) -> tuple[WorldModel, Accommodated]:
         """As of Knowledge, after the whole table was settled."""
-        self._learn()
+        self.learn()
         return super().wake(impression)
 
-    def _learn(self) -> None:
+    def learn(self) -> None:
+        """Settle every square of the table, as it is."""
         world, memory = self._world, self.memory
         quarters = round(world.heading / 90 - 1e-9)
         angle = world.heading - 90 * quarters

@@ -7,6 +7,8 @@ from statistics import median
 
 from benchmarks.trial import Trial
 
+ALLOWED = 0.25  # squares by which a missing width may be off
+NEAR = 1.5  # squares from the true passage to the one told
 ROMAN = {1: "i", 2: "ii", 3: "iii", 4: "iv", 5: "v", 6: "vi", 7: "vii", 8: "viii", 9: "ix"}
 
 
@@ -78,6 +80,20 @@ def verdicts(trials: Sequence[Trial]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def narrowness(trials: Sequence[Trial]) -> str:
+    """How well passages that are too narrow were told; "" when there were none."""
+    told = [trial.narrow for trial in trials if trial.narrow is not None]
+    if not told:
+        return ""
+    right = [abs(narrow.off) <= ALLOWED and narrow.away <= NEAR for narrow in told]
+    off, away = (
+        max((abs(v) for v in values if not math.isnan(v)), default=math.nan) for values in zip(*told, strict=True)
+    )
+    return (
+        f"too narrow passages: {_part(sum(right), len(told))} told right; width off by {off:.2f}, place by {away:.2f}\n"
+    )
+
+
 def faults(trials: Sequence[Trial]) -> str:
     """A line for whatever was not as it should be, with the worlds in which it was so."""
     said: dict[str, list[str]] = {}
@@ -96,6 +112,8 @@ def _faults(trial: Trial) -> list[str]:
     if not trial.right and not trial.crash:
         what = "not achieved" if trial.possible else "should have been refused"
         found.append(f"{what}: {trial.verdict}: {trial.reason}")
+    if trial.narrow is not None and not (abs(trial.narrow.off) <= ALLOWED and trial.narrow.away <= NEAR):
+        found.append(f"the passage is told wrongly: {trial.reason}")
     if trial.judged:
         found.append(f"judge: {trial.judged[0]}" + (f" (+{len(trial.judged) - 1})" if len(trial.judged) > 1 else ""))
     if trial.score is not None:

@@ -15,6 +15,7 @@ from shapely import Polygon
 from benchmarks.beliefs import Score, beliefs, compare, under_fovea
 from benchmarks.judging import findings
 from benchmarks.knowing import knowing
+from benchmarks.narrowness import Narrowness, narrowness
 from benchmarks.placing import digital
 from benchmarks.scenes import Scenario, write
 from benchmarks.shortest import free_space, shortest_loop, shortest_way
@@ -51,6 +52,7 @@ class Conditions:
 class Trial:
     """What came of one world.
 
+    `narrow` compares what he said of too narrow a passage with the truth (None where none is).
     `needed` tells how many commands the same planner gave knowing everything (0: not tried, or not achieved),
     `judged` holds the judge's findings (None without a judge), `cycles` the times of each cycle, `walked` and
     `shortest` squares (nan where there is no such way), `crash` the last line of an error, if there was one.
@@ -71,6 +73,7 @@ class Trial:
     score: Score | None = None
     crash: str = ""
     needed: int = 0
+    narrow: Narrowness | None = None
 
     @property
     def false_done(self) -> bool:
@@ -89,7 +92,7 @@ class Trial:
 
     def row(self) -> dict[str, Any]:
         """The trial as a JSON object."""
-        row = asdict(self) | {"score": self.score._asdict() if self.score else None, "clean": self.clean}
+        row = asdict(self) | {"score": self.score and self.score._asdict(), "clean": self.clean}
         return {name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in row.items()}
 
 
@@ -171,6 +174,7 @@ def _trial(
         shortest=_shortest(world),
         judged=findings(place, place / "episode.jsonl"),
         cycles=robot.cycles,
+        narrow=narrowness(world, result.reason),
         score=_scored(world, robot.robot, dict(session.table.polygons), track),
     )
 

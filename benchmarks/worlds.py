@@ -46,6 +46,14 @@ def scenario(task: int, seed: int, plain: bool = False) -> Scenario:
     raise RuntimeError(f"no world found for task {task}, seed {seed}")
 
 
+def seeds(first: int, count: int, unable: bool = False) -> list[int]:
+    """So many seeds from the first on. unable : only those of worlds in which the task cannot be done."""
+    if not unable:
+        return list(range(first, first + count))
+    begin = first + (UNABLE_EVERY - 1 - first) % UNABLE_EVERY
+    return list(range(begin, begin + UNABLE_EVERY * count, UNABLE_EVERY))
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     """Write scenario folders and print their names."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.worlds", description="Write random scenario folders.")

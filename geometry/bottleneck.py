@@ -9,7 +9,7 @@ import heapq
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -22,9 +22,11 @@ from geometry.floor import Floor, cheapest
 Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 CLOSE = 0.02  # squares: to which the missing width is found
-SHIFTS = 9  # copies of the free space that stand for moving a wall
+SHIFTS = 9  # copies of the free space that stand for moving a wall, at least
+MOST_SHIFTS = 129  # in a slit they lie as close as it is wide, that no bars are left between them
 DETOUR = 1000.0  # going through pixels narrower than need be looks so much dearer
 LOOK = 2.5  # radii of the body: how far from where it is stuck the neck is looked for
+FINER = (1, 2, 4)  # times as fine as the floor's raster: a slit between its pixels is looked for more finely
 
 
 @dataclass(frozen=True)
@@ -45,34 +47,58 @@ def neck_near(floor: Floor, goals: Mask, reached: Floats, radius: float) -> Neck
     goals : the goal's pixels in the floor's raster. reached : (n, 2) places that the body came to, the start first.
     Of these the one counts from which there is least to go. None without walls.
     """
-    ways = widest_ways(floor, goals, _pixels(floor, reached[:1])[0])
-    pixels = _pixels(floor, reached)
+    field, wide = _field_with_a_way(floor, goals, reached[0])
+    ways = _ways(field, max(wide, field.frame[2] / 10))
+    pixels = field.pixels(reached)
     stuck = reached[int(np.argmin(ways[pixels[:, 0], pixels[:, 1]]))]
     track = _descent(ways, pixels[0])
-    centres = floor.frame[:2] + (track[:, ::-1] + 0.5) * floor.frame[2]
+    centres = field.frame[:2] + (track[:, ::-1] + 0.5) * field.frame[2]
     near = np.hypot(*(centres - stuck).T) <= LOOK * radius
     if not near.any():
         near[:] = True
-    room = np.where(near, floor.raster[track[:, 0], track[:, 1]], np.inf)
+    room = np.where(near, field.raster[track[:, 0], track[:, 1]], np.inf)
     x, y = centres[int(np.argmin(room))]
     return _neck_at(floor, (float(x), float(y)))
 
 
-def _pixels(floor: Floor, places: Floats) -> npt.NDArray[np.intp]:
-    """The pixels (n, 2) row, column of places (n, 2) x, y."""
-    found = np.floor((places - floor.frame[:2]) / floor.frame[2]).astype(np.intp)[:, ::-1]
-    pixels: npt.NDArray[np.intp] = np.clip(found, 0, np.array(floor.raster.shape) - 1)
-    return pixels
+class Field(NamedTuple):
+    """Distances to obstacles: frame and raster as of a Floor or finer; goals: (rows, columns) the goal's pixels."""
+
+    frame: Floats
+    raster: Floats
+    goals: Mask
+
+    def pixels(self, places: Floats) -> npt.NDArray[np.intp]:
+        """The pixels (n, 2) row, column of places (n, 2) x, y."""
+        found = np.floor((places - self.frame[:2]) / self.frame[2]).astype(np.intp)[:, ::-1]
+        pixels: npt.NDArray[np.intp] = np.clip(found, 0, np.array(self.raster.shape) - 1)
+        return pixels
 
 
-def widest_ways(floor: Floor, goals: Mask, start: npt.NDArray[np.intp]) -> Floats:
+def _field_with_a_way(floor: Floor, goals: Mask, start: Floats) -> tuple[Field, float]:
+    """The coarsest field with a way from the start to a goal, and the least room on the widest way.
+
+    The floor's own field and 0.0 when there is a way in none.
+    """
+    field = Field(floor.frame, floor.raster, goals)
+    for times in FINER:
+        if times > 1:
+            frame, raster = floor.finer(times)
+            field = Field(frame, raster, goals.repeat(times, 0).repeat(times, 1) & (raster > 0.0))
+        row, column = field.pixels(start[None])[0].tolist()
+        wide = _widest(field.raster, field.goals, row, column, field.frame[2])
+        if wide > 0.0:
+            return field, wide
+    return Field(floor.frame, floor.raster, goals), 0.0
+
+
+def _ways(field: Field, wide: float) -> Floats:
     """What it costs to the goal from every pixel, by ways nowhere narrower than the widest way from the start is.
 
     Room is cheap, so that ways keep off walls and are narrow only where they must be.
     """
-    wide = max(_widest(floor.raster, goals, int(start[0]), int(start[1]), floor.frame[2]), floor.frame[2] / 10)
-    room = np.maximum(floor.raster, wide)
-    return cheapest(np.where(floor.raster < wide - 1e-9, DETOUR, (wide / room) ** 3), goals)
+    room = np.maximum(field.raster, wide)
+    return cheapest(np.where(field.raster < wide - 1e-9, DETOUR, (wide / room) ** 3), field.goals)
 
 
 @compiled
@@ -169,7 +195,8 @@ def widened(solid: Any, neck: Neck, extra: float, reach: float) -> Any:
     (ax, ay), (bx, by) = neck.sides
     length = max(neck.width, 1e-9)
     dx, dy = (bx - ax) / length * extra / 2, (by - ay) / length * extra / 2
-    copies = [affinity.translate(free, dx * t, dy * t) for t in np.linspace(-1, 1, SHIFTS)]
+    shifts = min(max(SHIFTS, 2 + math.ceil(1.1 * extra / length)), MOST_SHIFTS)
+    copies = [affinity.translate(free, dx * t, dy * t) for t in np.linspace(-1, 1, shifts)]
     return solid.difference(shapely.union_all(copies).intersection(window))
 
 

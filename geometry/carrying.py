@@ -20,12 +20,14 @@ import numpy as np
 from geometry.aligning import carry_straightened
 from geometry.alone import move_alone
 from geometry.bottleneck import Neck
-from geometry.ends import At, End, InCorner, Inside, met
+from geometry.contact import boundary_edges
+from geometry.ends import At, End, InCorner, Inside, Roomy, met
 from geometry.errand import Errand
 from geometry.held import carry_freed, carry_held
 from geometry.legs import Leg, Point, commands, verified
 from geometry.motion import Plan
 from geometry.rigid import Pose, Rotate, Translate
+from geometry.sound import check, sound
 from geometry.squarewise import carry_squarewise
 from geometry.stencil import Mask
 from geometry.yard import Yard
@@ -126,7 +128,13 @@ def plan_carrying(
     ValueError : when the body has no area, or shapes of arrays or numbers do not make sense.
     """
     free = np.ascontiguousarray(free, dtype=bool)
-    _check(shape, free, utak, margin, walk)
+    _check(free, utak, margin, avoid, walk)
+    shape, walls = _body(shape), sound(walls, "walls")
+    _check_goal(goal)
+    x0, y0, x1, y1 = shape.bounds
+    if x0 <= -1.0 or y0 <= -1.0 or x1 >= free.shape[1] + 1.0 or y1 >= free.shape[0] + 1.0:
+        return Carrying("impossible", reason="start", held=held)
+    margin = min(margin, float(max(free.shape)))
     walk = free if walk is None else np.ascontiguousarray(walk, dtype=bool)
     errand = Errand(shape, Yard(free, walls), utak, goal, margin, pull, tuple(avoid), walk)
     errand = replace(errand, held=held and not errand.avoids(*errand.hold_from(utak)))
@@ -150,14 +158,33 @@ def _planned(errand: Errand) -> Carrying:
     return plan or Carrying("limit", reason="hold" if body.status == "found" else "body", body=body)
 
 
-def _check(shape: Any, free: Mask, utak: Point, margin: float, walk: Mask | None) -> None:
+def _check(free: Mask, utak: Point, margin: float, avoid: Sequence[Point], walk: Mask | None) -> None:
     """Raise for what makes no sense."""
-    if shape.geom_type != "Polygon" or shape.area <= 0.0:
+    if free.ndim != 2 or free.size == 0 or (walk is not None and walk.shape != free.shape):
+        raise ValueError("free and walk must be arrays of the same rows and columns, of which there must be some")
+    check([*utak, *(v for hold in avoid for v in hold)], "utak and avoid")
+    if not math.isfinite(margin) or margin < 0.0:
+        raise ValueError("the margin must be finite and not negative")
+
+
+def _body(shape: Any) -> Any:
+    """The body, when it makes sense."""
+    body = sound(shape, "the body")
+    if body is None or body.geom_type != "Polygon" or not len(boundary_edges(body)):
         raise ValueError("the body must be a polygon with an area")
-    if free.ndim != 2 or (walk is not None and walk.shape != free.shape):
-        raise ValueError("free and walk must be arrays of the same rows and columns")
-    if not all(math.isfinite(v) for v in (*utak, margin)) or margin < 0.0:
-        raise ValueError("utak and margin must be finite, the margin not negative")
+    return body
+
+
+def _check_goal(goal: End) -> None:
+    """Raise for a goal that makes no sense."""
+    if isinstance(goal, At):
+        check(goal.pose, "the goal")
+    elif isinstance(goal, InCorner):
+        check([goal.x, goal.y, goal.slack], "the goal")
+        if abs(goal.sx) != 1 or abs(goal.sy) != 1 or goal.slack < 0.0:
+            raise ValueError("a corner's sx and sy must be 1 or -1, its slack not negative")
+    elif not isinstance(goal, Inside | Roomy):
+        raise ValueError(f"the goal must be At, Inside or InCorner, not {goal!r}")
 
 
 def _told(errand: Errand, legs: Sequence[Leg] | None) -> Carrying | None:

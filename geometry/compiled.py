@@ -4,6 +4,7 @@ numba is imported when the first kernel is called, never at import. A kernel is 
 ``NUMBA_DISABLE_JIT=1`` it runs uncompiled, for debugging and coverage.
 """
 
+import importlib
 import sys
 from collections.abc import Callable
 from functools import cache
@@ -44,7 +45,8 @@ class Kernel(Generic[P, R]):
         """The numba dispatcher (or the bare function when numba is told not to compile)."""
         if self._machine is None:
             self._machine = _dispatcher(self.function, self._counting)
-            _link(cast(FunctionType, self.function).__globals__)
+            if not hasattr(self._machine, "overloads"):
+                _link(cast(FunctionType, self.function).__globals__)
         return self._machine
 
     def _first(self, *args: P.args, **kwargs: P.kwargs) -> R:
@@ -81,15 +83,49 @@ def bare(function: Callable[P, R]) -> Kernel[P, R]:
 def _dispatcher(function: Callable[P, R], counting: bool) -> Callable[P, R]:
     import numba
 
+    _look_for_no_blas()
     options: Any = {"error_model": "numpy", "_nrt": counting, "no_cfunc_wrapper": True}
     try:
         machine = numba.njit(cache=True, **options)(function)
     except RuntimeError:  # no directory to keep the cache in: compile anew in each process
         machine = numba.njit(**options)(function)
     if hasattr(machine, "overloads"):
+        _load_lightly(machine)
         _compile_wide(machine)
-        _tell_when_long(machine)
+        _compile_linked(machine, cast(FunctionType, function).__globals__)
     return cast(Callable[P, R], machine)
+
+
+def _look_for_no_blas() -> None:
+    """Kernels multiply no matrices; numba, to know whether it might, would import scipy where that is installed.
+
+    That takes as long as all else of a cold start. Who multiplies matrices with numba finds scipy when he does.
+    """
+    if "numba.np.arraymath" in sys.modules:
+        return
+    from numba.np import linalg
+
+    look = linalg.ensure_blas
+    linalg.ensure_blas = lambda: None
+    try:
+        importlib.import_module("numba.np.arraymath")
+    finally:
+        linalg.ensure_blas = look
+
+
+def _load_lightly(machine: Any) -> None:
+    """Load from numba's cache without first getting ready to compile: machine code needs the run time only."""
+    store = machine._cache
+    if not (hasattr(store, "_load_overload") and hasattr(store, "_guard_against_spurious_io_errors")):
+        return
+    from numba.core.runtime.nrt import rtsys
+
+    def load(signature: Any, target: Any) -> Any:
+        rtsys.initialize(target)
+        with store._guard_against_spurious_io_errors():
+            return store._load_overload(signature, target)
+
+    store.load_overload = load
 
 
 def _compile_wide(machine: Any) -> None:
@@ -104,19 +140,13 @@ def _compile_wide(machine: Any) -> None:
     machine.compile = compile_wide
 
 
-def _link(names: dict[str, Any]) -> None:
-    """Let kernels call each other directly: numba resolves only dispatchers among a module's globals."""
-    for name, value in list(names.items()):
-        if isinstance(value, Kernel):
-            names[name] = value.machine()
-
-
-def _tell_when_long(machine: Any) -> None:
-    """Say so when compiling takes long. What numba finds in its cache it does not compile."""
+def _compile_linked(machine: Any, names: dict[str, Any]) -> None:
+    """Link to other kernels and say so when compiling takes long: only what numba does not find in its cache."""
     compiler = machine._compiler
     compile_it = compiler.compile
 
     def compile_telling(*args: Any) -> Any:
+        _link(names)
         notice = Timer(PATIENCE, tell)
         notice.daemon = True
         notice.start()
@@ -126,6 +156,13 @@ def _tell_when_long(machine: Any) -> None:
             notice.cancel()
 
     compiler.compile = compile_telling
+
+
+def _link(names: dict[str, Any]) -> None:
+    """Let kernels call each other directly: numba resolves only dispatchers among a module's globals."""
+    for name, value in list(names.items()):
+        if isinstance(value, Kernel):
+            names[name] = value.machine()
 
 
 def _compile(machine: Any, args: tuple[Any, ...]) -> None:

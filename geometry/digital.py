@@ -7,11 +7,14 @@
 # grid line add nothing beyond it, as the definition wants.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import shapely
+
+from geometry.rigid import Motion
 
 Floats = npt.NDArray[np.float64]
 TOUCH = 1e-9  # squares^2: a smaller common area is mere touching
@@ -40,10 +43,36 @@ def squares(shape: Any, width: int, height: int) -> npt.NDArray[np.bool_]:
     return areas(shape, width, height) > TOUCH
 
 
+def squares_after(shape: Any, motions: Sequence[Motion], width: int, height: int) -> npt.NDArray[np.bool_]:
+    """The squares of a table that a shape occupies after one or another of some motions of it.
+
+    As `squares` of the shape after each, all together: (height, width) bool, row 0 in the south.
+    """
+    edges, found = _edges(shape), np.zeros((height, width), np.bool_)
+    if not len(edges) or not len(motions):
+        return found
+    moved = np.array([motion.points(edges.reshape(-1, 2)) for motion in motions])
+    corner = np.floor(moved.min(1)).astype(np.intp)
+    moved -= corner[:, None]
+    wide, high = (np.ceil(moved.max((0, 1))).astype(np.intp) + 1).tolist()
+    moved[:, :, 1] += high * np.arange(len(motions))[:, None]  # one above the other, each in a window of its own
+    occupied = _areas(moved.reshape(-1, 4), wide, high * len(motions)) > TOUCH
+    number, row, column = np.nonzero(occupied.reshape(len(motions), high, wide))
+    column, row = column + corner[number, 0], row + corner[number, 1]
+    seen = (column >= 0) & (column < width) & (row >= 0) & (row < height)
+    found[row[seen], column[seen]] = True
+    return found
+
+
 def areas(shape: Any, width: int, height: int) -> Floats:
     """The area that a shape covers in every square: (height, width) floats, exact but for rounding (about 1e-12)."""
+    return _areas(_edges(shape), width, height)
+
+
+def _areas(edges: Floats, width: int, height: int) -> Floats:
+    """The area to the left of closed rings of edges, (n, 4), in every square."""
     sums = np.zeros((height, width + 1))
-    pieces = _cut(_edges(shape), height)
+    pieces = _cut(edges, height)
     x0, y0, x1, y1 = pieces[:, 0], pieces[:, 1], pieces[:, 2], pieces[:, 3]
     row = np.floor((y0 + y1) / 2).astype(np.intp)
     middle = (x0 + x1) / 2

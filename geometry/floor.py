@@ -19,6 +19,7 @@ from geometry.contact import Obstacles
 from geometry.mover import centre_pose
 from geometry.rigid import Pose
 from geometry.separation import Ground, Mover, distance_at, inside, point_to_edge
+from geometry.sound import FURTHEST, sound
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -42,11 +43,13 @@ class Floor:
 
     def __init__(self, obstacles: Any, bounds: Sequence[float] | None = None) -> None:
         several = list(obstacles) if isinstance(obstacles, list | tuple) else [obstacles]
-        self.polygons = [part for each in several for part in shapely.get_parts(each) if part.geom_type == "Polygon"]
+        self.polygons = [part for each in several for part in shapely.get_parts(sound(each, "obstacles"))]
         if bounds is None:
             bounds = shapely.total_bounds(self.polygons).tolist() if self.polygons else None
-        if bounds is None or not np.all(np.isfinite(bounds)) or bounds[2] <= bounds[0] or bounds[3] <= bounds[1]:
-            raise ValueError(f"bounds must be finite x0 < x1, y0 < y1, not {bounds}")
+        if bounds is None or len(bounds) != 4 or not (np.abs(bounds) <= FURTHEST).all():
+            raise ValueError(f"bounds must be four finite numbers of at most {FURTHEST:g}, not {bounds}")
+        if bounds[2] <= bounds[0] or bounds[3] <= bounds[1]:
+            raise ValueError(f"bounds must be x0 < x1, y0 < y1, not {bounds}")
         self.bounds = np.array(bounds, dtype=float)
         self.surface = Obstacles(self.polygons).point_surface
         self.side = float(max(self.bounds[2:] - self.bounds[:2]))
@@ -58,6 +61,13 @@ class Floor:
         _measure(self.surface.hull, self.frame, self.raster)
         self._grounds: dict[float, Ground] = {}
         self._around: dict[bytes, Floor] = {}
+
+    def finer(self, times: int) -> tuple[Floats, Floats]:
+        """The frame and the raster with pixels of which so many make the side of one."""
+        frame = self.frame * np.array([1.0, 1.0, 1.0 / times])
+        raster = np.empty((times * self.raster.shape[0], times * self.raster.shape[1]))
+        _measure(self.surface.hull, frame, raster)
+        return frame, raster
 
     def ground(self, mover: Mover) -> Ground:
         """What the kernels need to know of the floor for a body of this radius."""

@@ -23,6 +23,7 @@ from geometry.floor import Floor
 from geometry.mover import new_mover
 from geometry.problem import Inside, Problem
 from geometry.rigid import Motion, Pose, Translate
+from geometry.sound import check
 
 __all__ = ["Inside", "Plan", "plan_motion"]
 
@@ -149,8 +150,13 @@ def plan_motion(
 
     Raises
     ------
-    ValueError : when the body has no area, or a number is not finite.
+    ValueError : when the body has no area, a number is not finite, or a coordinate is beyond ten million squares.
     """
+    for name, pose in (("start", start), ("goal", goal)):
+        if isinstance(pose, Pose):
+            check(pose[:2], name)
+            if not math.isfinite(pose.degrees):
+                raise ValueError(f"{name} must be finite")
     mover = new_mover(shape, points, pivot)
     floor = obstacles if isinstance(obstacles, Floor) else Floor(obstacles, _bounds(obstacles, start, goal, bounds))
     problem = Problem(mover, floor, start, goal, resolution, cells)

@@ -12,6 +12,7 @@ import shapely
 from geometry.contact import boundary_edges, with_normals
 from geometry.rigid import Pose
 from geometry.separation import Mover
+from geometry.sound import check, sound
 
 Point = tuple[float, float]
 Floats = npt.NDArray[np.float64]
@@ -29,10 +30,12 @@ def new_mover(
 
     Raises
     ------
-    ValueError : when the shape has no area.
+    ValueError : when the shape has no area, or a number is not finite.
     """
     at = None if pivot is None else (float(pivot[0]), float(pivot[1]))
-    return _mover(shapely.to_wkb(shape), tuple((float(x), float(y)) for x, y in points), at)
+    specks = tuple((float(x), float(y)) for x, y in points)
+    check([*specks, *([] if at is None else [at])], "points and pivot")
+    return _mover(shapely.to_wkb(sound(shape, "the body")), specks, at)
 
 
 @lru_cache(maxsize=32)
@@ -41,10 +44,10 @@ def _mover(wkb: bytes, points: tuple[Point, ...], pivot: Point | None) -> Mover:
     shape = shapely.from_wkb(wkb)
     specks = [shapely.Point(p).buffer(SPECK, quad_segs=1) for p in points]
     whole = shapely.union_all([shape, *specks]) if specks else shape
-    if whole is None or whole.area <= 0.0:
+    if whole is None or not len(edges := boundary_edges(whole)):
         raise ValueError("the body has no area")
     middle = np.array(shapely.minimum_bounding_circle(whole).centroid.coords[0] if pivot is None else pivot)
-    edges = boundary_edges(whole) - np.tile(middle, 2)
+    edges -= np.tile(middle, 2)
     radius = float(np.hypot(edges[:, 0], edges[:, 1]).max())
     corners = np.column_stack([edges[:, :2], np.zeros(len(edges))])
     probes = np.vstack([_discs(shape, middle), corners])

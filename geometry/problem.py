@@ -19,6 +19,7 @@ from geometry.pursuit import FOUND, MORE, next_chain, pursue
 from geometry.rigid import Motion, Pose
 from geometry.separation import Ground, Mover
 from geometry.shorten import loosened, motions_along, shorten
+from geometry.sound import sound
 
 Floats = npt.NDArray[np.float64]
 ROUNDS = 64  # at a stretch: between two, the user may interrupt
@@ -33,11 +34,11 @@ class Inside:
 
     polygons: Any
 
-    @property
+    @cached_property
     def polygon(self) -> Any:
-        """All of them as one shapely geometry; those that touch stay apart."""
+        """All of them as one shapely geometry; those that touch stay apart. ValueError when a number is not finite."""
         several = self.polygons if isinstance(self.polygons, list | tuple) else [self.polygons]
-        parts = [part for each in several for part in shapely.get_parts(each)]
+        parts = [part for each in several for part in shapely.get_parts(sound(each, "the goal"))]
         return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
 
 
@@ -53,8 +54,8 @@ class Problem:
         self.least = resolution * floor.side
         self.rounds = 0
         self.track = np.empty((0, 3))
-        if not np.all(np.isfinite(self.start)) or not self.least > 0.0:
-            raise ValueError("start and resolution must be finite, the resolution positive")
+        if not 0.0 < self.least < math.inf or cells < 1:
+            raise ValueError("the resolution must be positive and finite, and there must be a cell at least")
         self.end, self.region, self.goals = self._goal(goal)
         reach = float(np.hypot(*mover.reference))
         corner, side = floor.bounds[:2] - reach, floor.side + 2 * reach
@@ -70,8 +71,6 @@ class Problem:
         """The pose to end at (empty for a region), the region's complement as ground, and the goal's pixels."""
         if isinstance(goal, Pose):
             end = centre_pose(self.mover, goal)
-            if not np.all(np.isfinite(end)):
-                raise ValueError("goal must be finite")
             c, s = math.cos(end[2]), math.sin(end[2])
             px, py = self.mover.probes[0, :2]
             return end, self.ground, self.floor.pixel_of(end[0] + c * px - s * py, end[1] + s * px + c * py)

@@ -14,7 +14,7 @@ import shapely
 from numpy.typing import NDArray
 
 from geometry.carrying import At, Carrying, InCorner, Inside, plan_carrying
-from geometry.digital import squares
+from geometry.digital import squares, squares_after
 from geometry.ends import End
 from geometry.rigid import Translate
 from kb.encodings import solve
@@ -111,7 +111,7 @@ class Hauler:
             fact = "refuted" if plan.status == "impossible" else "undecided"
             verdicts.append(f"{fact}({name},{level},{aside})")
         self._hopeless = True
-        return _refusal(request.node, plans)
+        return _refusal(request.node, plans, situation.model)
 
     def _plan(self, request: Request, shape: Any, free: Mask, walk: Mask, name: str, situation: Situation) -> Carrying:
         x, y = situation.model.place
@@ -203,22 +203,21 @@ def swept_squares(plan: Carrying, shape: Any, size: tuple[int, ...]) -> tuple[Ma
         for motion in leg.motions:
             far = math.hypot(motion.dx, motion.dy) if isinstance(motion, Translate) else 0.4 * abs(motion.degrees)
             steps = max(1, math.ceil(far / STRIDE))
-            swept: Mask = np.zeros_like(mask)
-            for step in range(1, steps + 1):
-                swept |= squares(motion.part(step / steps).carry(shape), columns, rows)
-                if isinstance(motion, Translate):
-                    here = (x + motion.dx * step / steps, y + motion.dy * step / steps)
-                    swept[min(max(int(here[1]), 0), rows - 1), min(max(int(here[0]), 0), columns - 1)] = True
+            shares = [step / steps for step in range(1, steps + 1)]
+            swept = squares_after(shape, [motion.part(share) for share in shares], columns, rows)
             shape = motion.carry(shape)
             mask |= swept
             if isinstance(motion, Translate):
+                for share in shares:
+                    here = x + motion.dx * share, y + motion.dy * share
+                    mask[min(max(int(here[1]), 0), rows - 1), min(max(int(here[0]), 0), columns - 1)] = True
                 x, y = x + motion.dx, y + motion.dy
             else:
                 turned |= swept
     return mask, turned
 
 
-def _refusal(node: Node, plans: Sequence[Carrying]) -> Refusal:
+def _refusal(node: Node, plans: Sequence[Carrying], model: WorldModel) -> Refusal:
     """Why nothing was found. It is proved when every target was refuted, whatever lies in the unseen."""
     if not plans:
         return Refusal(False, lambda: f"nothing is known of where {node.name} could be carried")
@@ -227,8 +226,13 @@ def _refusal(node: Node, plans: Sequence[Carrying]) -> Refusal:
         return Refusal(False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none")
 
     def reason() -> str:
-        if last.passage is None:
+        neck = last.passage
+        if neck is None:
             return f"{node.name} cannot be carried there"
-        return f"the passage for {node.name} is too narrow by {last.missing:.2f} squares"
+        east, north = model.lattice.place_to_utak(neck.place[0] + model.view.west, neck.place[1] + model.view.south)
+        where = f"{neck.width:.2f} squares wide at POINT ({east:.1f} {north:.1f})"
+        if math.isinf(last.missing):
+            return f"{node.name} cannot be carried there: even were the passage, {where}, as wide as it, it could not"
+        return f"the passage for {node.name}, {where}, is too narrow by {last.missing:.2f} squares"
 
     return Refusal(True, reason)

@@ -12,11 +12,15 @@ import pytest
 from benchmarks import campaign
 from benchmarks.beliefs import Score
 from benchmarks.judging import judge_path
+from benchmarks.narrowness import Narrowness, narrowness
+from benchmarks.scenes import Scenario
 from benchmarks.stopwatch import Seconds
 from benchmarks.tally import faults, table, verdicts
+from benchmarks.tally import narrowness as told_right
 from benchmarks.trial import Conditions, Trial, run_trial
-from benchmarks.worlds import scenario
+from benchmarks.worlds import scenario, seeds
 from kb.body import Body, Command, Impression, Move
+from kb.lattice import turned
 from kb.task import Task
 from simulator.settings import Settings
 
@@ -219,3 +223,47 @@ def test_one_world_is_drawn_at_each_step(
     told = capsys.readouterr().err
     assert told.count("bbbbb\n") > 30 and "step 2: {'do': 'move'" in told
     assert (tmp_path / "task3-002" / "episode.jsonl").exists()
+
+
+def narrow_world() -> Scenario:
+    """A world of task (vii) whose door is too narrow."""
+    return scenario(7, seeds(0, 1, unable=True)[0])
+
+
+def said(world: Scenario, away: float, off: float) -> str:
+    """The reason of a verdict that tells a place so far from the middle of the door, and a width so far off."""
+    door = world.plan.doors[0]
+    x, y = door.polygon.centroid.x - world.utak.x, door.polygon.centroid.y - world.utak.y
+    x, y = (x, y + away) if door.vertical else (x + away, y)
+    east, north = turned(x, y, -world.heading)
+    where = f"{door.width:.2f} squares wide at POINT ({east:.1f} {north:.1f})"
+    return f"o cannot: the passage for o, {where}, is too narrow by {world.missing + off:.2f} squares, and that is all"
+
+
+def test_worlds_that_cannot_be_done_are_found_by_their_seeds() -> None:
+    assert seeds(5, 3) == [5, 6, 7]
+    for first in (0, 11, 12):
+        assert not any(scenario(7, seed).possible for seed in seeds(first, 2, unable=True))
+
+
+@pytest.mark.parametrize(
+    ("away", "off", "right"), [(0.0, 0.0, True), (0.0, 0.2, True), (0.0, -0.4, False), (9, 0, False)]
+)
+def test_what_is_said_of_a_passage_is_held_against_the_truth(away: float, off: float, right: bool) -> None:
+    world = narrow_world()
+    found = narrowness(world, said(world, away, off))
+    assert found is not None
+    assert found.off == pytest.approx(off, abs=0.02)
+    assert found.away == pytest.approx(max(away - world.plan.doors[0].width / 2, 0.0), abs=0.2)
+    trial = Trial(7, world.seed, False, verdict="impossible", reason="too narrow", narrow=found)
+    assert told_right([trial]).startswith(f"too narrow passages: {int(right)}/1 told right")
+    assert ("told wrongly" in faults([trial])) != right
+
+
+def test_a_verdict_that_tells_no_passage_is_not_right() -> None:
+    found = narrowness(narrow_world(), "o cannot be carried there")
+    assert found is not None and math.isnan(found.off) and math.isnan(found.away)
+    assert told_right([Trial(7, 11, False, narrow=found)]).startswith("too narrow passages: 0/1")
+    assert narrowness(scenario(7, 0), "whatever") is None
+    assert told_right([Trial(7, 0, True, narrow=None)]) == ""
+    assert json.loads(json.dumps(Trial(7, 11, False, narrow=Narrowness(0.1, 0.0)).row()))["narrow"] == [0.1, 0.0]

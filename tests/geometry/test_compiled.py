@@ -31,6 +31,21 @@ def test_a_kernel_calls_another() -> None:
     assert total(np.array([1, 2, 3], dtype=np.int32)) == 12
 
 
+def test_kernels_do_not_import_scipy_but_leave_it_to_others() -> None:
+    pytest.importorskip("scipy")
+    code = """
+import sys, numba, numpy
+from simulator.warming import carry, survey
+survey()
+carry()
+print("scipy.linalg" in sys.modules)
+square = numpy.eye(2)
+print(numba.njit(lambda a: numpy.cov(a @ a))(square).tolist() == numpy.cov(square).tolist())
+"""
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.split() == ["False", "True"]
+
+
 def test_importing_geometry_loads_neither_numba_nor_networkx() -> None:
     code = "import sys, geometry; print([m for m in ('numba', 'networkx') if m in sys.modules])"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -8,7 +8,8 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geometry.digital import areas, squares
+from geometry.digital import areas, squares, squares_after
+from geometry.rigid import Rotate, Translate
 
 WIDTH, HEIGHT = 14, 11
 whole = st.integers(-3, 16).map(float)
@@ -37,6 +38,20 @@ def test_squares_are_those_that_share_area(points: list, outside: bool, hole: tu
     np.testing.assert_allclose(areas(shape, WIDTH, HEIGHT), want, atol=1e-9)
     sure = np.abs(want - 1e-9) > 1e-11
     assert (squares(shape, WIDTH, HEIGHT) == (want > 1e-9))[sure].all()
+
+
+pushes = st.builds(Translate, whole | real, whole | real)
+turns = st.builds(Rotate, st.sampled_from([90.0, -180.0]) | st.floats(-400, 400), st.tuples(real, real))
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.lists(corner, min_size=3, max_size=6), st.lists(pushes | turns, max_size=5))
+def test_squares_after_motions_are_those_of_one_or_another(points: list, motions: list) -> None:
+    shape = polygons_of(shapely.make_valid(shapely.Polygon(points)))
+    covered = [areas(motion.carry(shape), WIDTH, HEIGHT) for motion in motions]
+    want = np.max(covered, axis=0, initial=0.0)
+    sure = np.all([np.abs(area - 1e-9) > 1e-11 for area in covered], axis=0) if covered else slice(None)
+    assert (squares_after(shape, motions, WIDTH, HEIGHT) == (want > 1e-9))[sure].all()
 
 
 def test_an_edge_on_a_grid_line_does_not_occupy_the_square_beyond() -> None:

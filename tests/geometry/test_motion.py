@@ -189,6 +189,17 @@ def test_the_passage_and_what_it_lacks_are_told(door: float, missing: float) -> 
     assert plan.missing == pytest.approx(missing, abs=0.05)
 
 
+@pytest.mark.parametrize("bottom", [28.0, 28.3, 28.57, 29.0])
+def test_a_slit_that_falls_between_the_pixels_of_a_large_floor_is_the_passage(bottom: float) -> None:
+    rooms = [box(2, 2, 37, 90), box(39, 2, 76, 90), box(37, bottom, 39, bottom + 0.6)]
+    walls = box(-2, -2, 78, 94).difference(shapely.union_all(rooms))
+    plan = plan_motion(BRICK, walls, Pose(49.5, 64), Pose(20, 40), (0, 0, 78, 92))
+    assert plan.passage is not None
+    assert plan.passage.width == pytest.approx(0.6, abs=0.01)
+    assert math.dist(plan.passage.place, (38, bottom + 0.3)) < 1.1
+    assert plan.missing == pytest.approx(1.4, abs=0.05)
+
+
 def test_moving_the_sides_of_a_door_opens_no_wall_behind_which_there_is_room() -> None:
     """The body's reference point is beside it: were the outer walls opened, it could pass outside, within bounds."""
     chest = box(-3.4, -1.4, -0.6, 1.4)
