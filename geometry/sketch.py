@@ -105,7 +105,8 @@ def _board(framed: NDArray[np.int8], counts: Counts) -> _Board:
     field, entry = np.nonzero(used)
     order = np.argsort(where[field, entry], kind="stable")
     field, entry = field[order], entry[order]
-    squares, begins = np.unique(where[field, entry].astype(np.int64), return_index=True)
+    squares = np.flatnonzero(flat == DRAWN)
+    ends = np.searchsorted(where[field, entry], np.append(squares, len(flat)))
     rank = np.where(flat == UNSEEN, np.int32(HIDDEN), np.int32(SETTLED))
     rank[squares] = np.arange(len(squares))
     seen = flat != UNSEEN
@@ -119,7 +120,7 @@ def _board(framed: NDArray[np.int8], counts: Counts) -> _Board:
         rank,
         shown,
         np.array([rows * columns + across for rows, across in AROUND]),
-        np.append(begins, len(field)).astype(np.int32),
+        ends.astype(np.int32),
         field.astype(np.int32),
         counts.weight[field, entry].astype(np.int32),
         where.astype(np.int32),
@@ -193,15 +194,16 @@ def draw(board, prices, lucks, image, near, counts, moved, slopes, chance):  # t
                     tip(square, rank, around, image, near)
                     wrong += worse
             # and another one of the same field
-            f = field[ends[k] + ((chance >> 15) * (ends[k + 1] - ends[k]) >> 16)]
-            chance = chance * GENERATOR % MODULUS
-            entry = (chance & 65535) * where.shape[1] >> 16
-            if used[f, entry] and image[where[f, entry]] != image[square]:
-                other = rank[where[f, entry]]
-                luck = lucks[chance >> 17 & LUCKS - 1] * warmth
-                if price_of_both(squares, shown, around, prices, image, near, k, other) <= luck + WRONG * wrong:
-                    moved[0], moved[1] = k, other
-                    wrong += change(board, prices, image, near, counts, wrong, luck, moved, 2)
+            if ends[k] < ends[k + 1]:
+                f = field[ends[k] + ((chance >> 15) * (ends[k + 1] - ends[k]) >> 16)]
+                chance = chance * GENERATOR % MODULUS
+                entry = (chance & 65535) * where.shape[1] >> 16
+                if used[f, entry] and image[where[f, entry]] != image[square]:
+                    other = rank[where[f, entry]]
+                    luck = lucks[chance >> 17 & LUCKS - 1] * warmth
+                    if price_of_both(squares, shown, around, prices, image, near, k, other) <= luck + WRONG * wrong:
+                        moved[0], moved[1] = k, other
+                        wrong += change(board, prices, image, near, counts, wrong, luck, moved, 2)
             # and the edge at which it lies
             if near[k] != 0 and near[k] != 255 and (chance >> 27) % SELDOM == 0:
                 chance = chance * GENERATOR % MODULUS

@@ -18,7 +18,7 @@ from kb.evidence import OPEN, STRAY, MapView
 PICTURES = 12
 SEED = 20031
 BEGINNING = (60, 0.5)  # sweeps over a scene that was not drawn yet, and the inverse temperature of the first one
-GOING_ON = (20, 1.0)  # likewise, over one that was
+GOING_ON = (30, 1.0)  # likewise, over one that was
 DEEP = 2  # squares: within what is full or empty so far from its edge nothing is pictured
 SURELY = 0.93  # under a field that shows the last gray level and yet may miss a square
 HALF = 0.5

@@ -28,6 +28,11 @@ def together(one: Counts, two: Counts) -> Counts:
     return Counts(*(np.concatenate(pair) for pair in zip(one, two, strict=True)))
 
 
+NOTHING_COUNTED = Counts(
+    np.zeros((0, 16), np.int32), np.zeros((0, 16), np.int16), np.zeros(0, np.int16), np.zeros(0, np.int16)
+)
+
+
 def square_world() -> np.ndarray:
     truth = np.zeros((24, 24), np.int8)
     truth[:4] = 1
@@ -116,14 +121,22 @@ def test_straight_sides_are_preferred() -> None:
     assert np.abs(drawn.mean(0) - truth).mean() < 0.08
 
 
+@pytest.mark.parametrize("begun", [0, 1])
+def test_a_square_under_no_field_is_drawn_as_makes_the_picture_simple(begun: int) -> None:
+    truth = square_world()
+    ground = truth.copy()
+    corner, middle, floor, wall = (9, 10), (11, 12), (16, 5), (3, 20)
+    for square in (corner, middle, floor, wall):
+        ground[square] = DRAWN
+    drawn = pictures(ground, NOTHING_COUNTED, np.full((12, *truth.shape), begun, np.int8), 40, 1.0)
+    share = np.abs(drawn - truth).mean(0)
+    assert share[corner] < 0.3  # without it the square has two corners more
+    assert max(share[middle], share[floor], share[wall]) < 0.05
+
+
 def test_without_fields_there_is_nothing_to_draw() -> None:
-    empty = Counts(
-        np.zeros((0, 16), np.int32), np.zeros((0, 16), np.int16), np.zeros(0, np.int16), np.zeros(0, np.int16)
-    )
-    assert (
-        pictures(np.full((3, 4), FULL, np.int8), empty, np.zeros((2, 3, 4), np.int8), 5, 0.5).tolist()
-        == [[[1] * 4] * 3] * 2
-    )
+    ground, first = np.full((3, 4), FULL, np.int8), np.zeros((2, 3, 4), np.int8)
+    assert pictures(ground, NOTHING_COUNTED, first, 5, 0.5).tolist() == [[[1] * 4] * 3] * 2
 
 
 @pytest.mark.parametrize(("side", "seen"), [(1, True), (5, True), (5, False)])
