@@ -185,7 +185,7 @@ def test_what_is_clear_of_a_plan_is_done_before_the_rest_is_seen(
         return part
 
     monkeypatch.setattr(planner.carrier, "_clear_part", watched)
-    for seed in (27006, 27010, 27014):
+    for seed in (27000, 27004, 27013):
         trial = run_trial(5, seed, Conditions(plain=True), tmp_path / str(seed))
         assert trial.right, (trial.verdict, trial.reason, trial.crash)
     assert begun
