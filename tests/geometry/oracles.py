@@ -27,6 +27,19 @@ def clearance(free):
     return out[1:-1, 1:-1]
 
 
+def to_blocked(free):
+    """(rows, columns): how far each square's centre lies from that of the nearest blocked one, or beyond the border."""
+    framed = np.pad(free, 1)
+    rows, columns = framed.shape
+    across = np.where(framed, np.inf, 0.0)
+    for j in range(1, columns):
+        across[:, j] = np.minimum(across[:, j], across[:, j - 1] + 1)
+        across[:, -1 - j] = np.minimum(across[:, -1 - j], across[:, -j] + 1)
+    away = np.subtract.outer(np.arange(rows), np.arange(rows)) ** 2
+    least = np.min([across[k] ** 2 + away[:, k, None] for k in range(rows)], axis=0)
+    return np.sqrt(least)[1:-1, 1:-1]
+
+
 def label(mask, corners):
     """Number of parts connected by edges, or also by corners."""
     steps = [s for s in product((-1, 0, 1), repeat=2) if s != (0, 0) and (corners or 0 in s)]
