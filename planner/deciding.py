@@ -29,12 +29,13 @@ from planner.landing import Landing, landing
 from planner.repeating import Circles
 from planner.screen import Screens, Squares, grown, vicinity
 from planner.steps import Square
-from planner.walking import halting, next_move
+from planner.walking import ASKEW, halting, next_move
 from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
 ODD = -10.0  # squares: how much rather what no straight wall explains is looked at
 ODDLY, HARDLY, PERHAPS = 4, 2, 20  # percent that odd squares, likely walls, floor beyond hold what is missing
+FEW = 2  # squares looked from by one who has hardly looked
 MISSED = 2  # plans that miss before where they should lead to is looked at
 DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
 
@@ -179,7 +180,7 @@ class Decider:
             return Decision(None, f"{stage} cannot be attained: {node.name} cannot be moved", "impossible")
         advice = self._advice(node, land, situation)
         if isinstance(advice, Act):
-            look = self._inspect(node, stage, situation) if isinstance(advice.command, Grasp) else None
+            look = self._before_grasp(node, stage, situation) if isinstance(advice.command, Grasp) else None
             if look is not None:
                 return look
             return Decision(advice.command, f"{advice.why}; {stage}")
@@ -227,6 +228,18 @@ class Decider:
             return None
         self._doubted.add(node.name)
         return self._pursue([Aim("inspect", *look)], stage, situation, lambda: look.what)
+
+    def _before_grasp(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
+        """A look before an object is taken: at what it is, or, by who has hardly looked, at how the squares lie.
+
+        A thing that was moved askew, and the map with it, are hard to set right again.
+        """
+        model = situation.model
+        look = self._inspect(node, stage, situation)
+        if look is not None or model.spread <= ASKEW or len(model.looked_from) > FEW:
+            return look
+        aside = exploring.sight_of(situation.screens, model.mask(node.patch), "how the squares lie is not clear")
+        return self._pursue([Aim("inspect", *aside)], stage, situation, lambda: "") if len(aside.squares) else None
 
     def _round(self, stage: Stage, name: str, situation: Situation, track: Sequence[Place]) -> Decision | None:
         """The next command on the way round an object."""

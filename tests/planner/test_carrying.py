@@ -12,7 +12,7 @@ from shapely.affinity import rotate, translate
 import planner.carrier
 from benchmarks.trial import Conditions, run_trial
 from geometry.rigid import Translate
-from kb.body import Move, Push, Release, Turn
+from kb.body import Grasp, Move, Push, Release, Turn
 from kb.worldmodel import Node
 from planner.carrier import _clear_part
 from planner.destinations import Situation
@@ -214,3 +214,15 @@ def test_random_worlds(task: int, seed: int, tmp_path: Path) -> None:
     assert trial.right, (trial.verdict, trial.reason, trial.crash)
     assert not trial.judged
     assert not trial.score or trial.score.wrong == 0
+
+
+@pytest.mark.parametrize("heading", [81, 99, 261])
+def test_who_has_hardly_looked_looks_once_more_before_he_takes_what_stands_beside_him(
+    heading: int, tmp_path: Path
+) -> None:
+    world = room(f'object(t, g, "{box(14, 8, 17, 14)}").', heading=heading)
+    folder = scene(tmp_path, world, "object(x). shape(x, brick).", "at(x, corner(northeast)).")
+    done = run(folder)
+    assert done.result.verdict == "done", done.result.reason
+    assert not isinstance(done.commands[0], Grasp)
+    lies_as_believed(done.session)
