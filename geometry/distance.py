@@ -68,6 +68,20 @@ def count_columns(free: Bools, steps: Gaps) -> None:
 
 
 @bare
+def count_steps(steps: Gaps, gap: Gaps) -> None:
+    """From the steps down, and those of the row above in ``gap``, the steps to the nearest blocked square."""
+    for j in range(gap.shape[0]):
+        down, up = steps[j], np.int16(gap[j] + 1)
+        gap[j] = down if down < up else up
+
+
+@bare
+def roof_of(square: Squares) -> int:
+    """The greatest value of its type."""
+    return int((1 << 8 * square.itemsize - 1) - 1)
+
+
+@bare
 def measure_run(
     gap: Gaps, square: Squares, first: int, last: int, begin: int, end: int, roof: int, sites: Sites, heights: Sites
 ) -> None:

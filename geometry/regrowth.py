@@ -23,7 +23,7 @@ from geometry.skeleton import (
     Heights,
     States,
     above,
-    flag,
+    find_flags,
     higher_about,
     highest,
     highest_of,
@@ -152,7 +152,8 @@ def settle(
         size = about[row, 1] - about[row, 0] + 1
         if size > 0:
             first = row * width + about[row, 0]
-            if classify(heights, states[first : first + size], width, first, flags):
+            find_flags(heights, width, first, 1, flags[:size])
+            if differ(states[first : first + size], flags):
                 for k in range(size):
                     if states[first + k] & (SADDLE | SUMMIT) != flags[k]:
                         touch(journal, first + k)
@@ -168,17 +169,12 @@ def replace(heights: Heights, fresh: Heights, mark: Flags) -> None:
 
 
 @bare
-def classify(heights: Heights, states: Flags, width: int, first: int, flags: Flags) -> bool:
-    """Find the flags of a row of cells from ``first`` on; returns whether any state has others."""
-    below, above = heights[first - width - 1 :], heights[first + width - 1 :]
-    here, differs = heights[first - 1 :], np.uint8(0)
+def differ(states: Flags, flags: Flags) -> bool:
+    """Whether any state has other flags."""
+    other = np.uint8(0)
     for k in range(states.shape[0]):
-        own = here[k + 1]
-        e, ne, n, nw = here[k + 2] >= own, above[k + 2] >= own, above[k + 1] >= own, above[k] >= own
-        w, sw, s, se = here[k] > own, below[k] > own, below[k + 1] > own, below[k + 2] > own
-        flags[k] = flag(e, ne, n, nw, w, sw, s, se) if own > 0 else np.uint8(0)
-        differs |= flags[k] ^ states[k] & np.uint8(SADDLE | SUMMIT)
-    return bool(differs != 0)
+        other |= flags[k] ^ states[k] & np.uint8(SADDLE | SUMMIT)
+    return bool(other != 0)
 
 
 @bare

@@ -8,8 +8,8 @@ sites on the same side of a cell the one that is nearer to it stays so for all c
 import numpy as np
 
 from geometry.compiled import bare
-from geometry.distance import Bools, Gaps, Sites, Squares, count_columns, measure_run
-from geometry.windows import Ints
+from geometry.distance import Bools, Gaps, Sites, Squares, count_columns, count_steps, measure_run, roof_of
+from geometry.windows import Ints, greatest
 
 Span = tuple[int, int]
 EVERYWHERE: Span = (1, 0)
@@ -43,7 +43,7 @@ def measure_parts(
     heights: Sites,
 ) -> bool:
     """As ``measure_within``, from the steps to the nearest blocked square below; ``gap`` is 0 as it is north of all."""
-    roof, fits, told = (1 << 8 * square.itemsize - 1) - 1, True, first <= last
+    roof, fits, told = roof_of(square), True, first <= last
     for row in range(square.shape[0] - 2, 0, -1):
         count_steps(steps[row], gap)
         out, column, end = square[row], bounds[row + low, 0] - west, bounds[row + low, 1] - west + 1
@@ -58,17 +58,8 @@ def measure_parts(
             if not told:
                 first, last = outermost(gap, begin, -1), outermost(gap, column - 1, 1)
             measure_run(gap, out, first, last + 1, begin, column, roof, sites, heights)
-            for j in range(begin, column):
-                fits &= out[j] < roof
+            fits &= greatest(out[begin:column]) < roof
     return fits
-
-
-@bare
-def count_steps(steps: Gaps, gap: Gaps) -> None:
-    """From the steps down, and those of the row above in ``gap``, the steps to the nearest blocked square."""
-    for j in range(gap.shape[0]):
-        down, up = steps[j], np.int16(gap[j] + 1)
-        gap[j] = down if down < up else up
 
 
 @bare

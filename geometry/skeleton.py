@@ -117,18 +117,26 @@ def grow(
 @bare
 def classify(heights: Heights, states: Flags, width: int, level: int, row: int, flags: States) -> None:
     """Clear the states of a row and flag its summits and saddles."""
-    first, least = row * width, heights.dtype.type(level)
-    below, here = heights[first - width : first], heights[first : first + width]
-    above, out = heights[first + width : first + 2 * width], states[first : first + width]
-    for j in range(width - 2):  # from 0, lest the loop have to allow for indices from the end
-        own = here[j + 1]
-        e, ne, n, nw = here[j + 2] >= own, above[j + 2] >= own, above[j + 1] >= own, above[j] >= own
-        w, sw, s, se = here[j] > own, below[j] > own, below[j + 1] > own, below[j + 2] > own
-        flags[j] = flag(e, ne, n, nw, w, sw, s, se) if own >= least else np.uint8(0)
+    first = row * width
+    out = states[first : first + width]
+    find_flags(heights, width, first + 1, level, flags[: width - 2])
     out[0] = 0
     out[width - 1] = 0
     for j in range(width - 2):
         out[j + 1] = flags[j]
+
+
+@bare
+def find_flags(heights: Heights, width: int, first: int, level: int, flags: Flags) -> None:
+    """Find the flags of so many cells of a row from ``first`` on, of those at least as high as a level."""
+    size, least = flags.shape[0] + 2, heights.dtype.type(level)
+    below, here = heights[first - width - 1 : first - width - 1 + size], heights[first - 1 : first - 1 + size]
+    above = heights[first + width - 1 : first + width - 1 + size]
+    for j in range(size - 2):  # from 0, lest the loop have to allow for indices from the end
+        own = here[j + 1]
+        e, ne, n, nw = here[j + 2] >= own, above[j + 2] >= own, above[j + 1] >= own, above[j] >= own
+        w, sw, s, se = here[j] > own, below[j] > own, below[j + 1] > own, below[j + 2] > own
+        flags[j] = flag(e, ne, n, nw, w, sw, s, se) if own >= least else np.uint8(0)
 
 
 @bare

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.compiled import bare
-from geometry.distance import Bools, Gaps, Sites, Squares, count_columns, measure_run
+from geometry.distance import Gaps, Sites, Squares, count_steps, measure_run, roof_of
 
 Ints = NDArray[np.int32]
 
@@ -46,13 +46,6 @@ def new_window(width: int) -> Window:
     return Window(np.zeros(width, np.int16), own, np.empty(width, np.int16), reach, sites, heights)
 
 
-def measure(free: Bools, square: Squares) -> bool:
-    """Fill ``square`` (rows + 2, columns + 2) for free squares (rows, columns); returns whether its type holds it."""
-    steps = square.view(np.int16)
-    count_columns(free, steps)
-    return measure_rows(square, steps, 1, len(free), new_window(square.shape[1]))
-
-
 @bare
 def measure_rows(square: Squares, steps: Gaps, south: int, north: int, window: Window) -> bool:
     """Fill rows of ``square`` (rows + 2, columns + 2) from ``north`` down to ``south``, after those further north.
@@ -60,7 +53,7 @@ def measure_rows(square: Squares, steps: Gaps, south: int, north: int, window: W
     ``steps`` (rows + 2, columns + 2 or more) has the steps to the nearest blocked square below; it may lie in the same
     memory, row by row. Returns False when clearances are found that the type of ``square`` does not hold.
     """
-    width, roof, fits = square.shape[1], (1 << 8 * square.itemsize - 1) - 1, True
+    width, roof, fits = square.shape[1], roof_of(square), True
     gap, own, value, reach, sites, heights = window
     for row in range(north, south - 1, -1):
         out = square[row]
@@ -85,10 +78,9 @@ def measure_rows(square: Squares, steps: Gaps, south: int, north: int, window: W
 def complete(steps: Gaps, gap: Gaps, own: Gaps) -> None:
     """From the steps down, and those of the row above in ``gap``, the steps to the nearest blocked square in the
     column, and the squared distance to it in half squares."""
+    count_steps(steps, gap)
     for j in range(gap.shape[0]):
-        down, up = steps[j], np.int16(gap[j] + 1)
-        nearest = down if down < up else up
-        gap[j] = nearest
+        nearest = gap[j]
         edge = np.int16(2 * (nearest if nearest < TALLEST else TALLEST) - 1)
         own[j] = np.int16(edge * edge) if nearest > 0 else np.int16(0)
 

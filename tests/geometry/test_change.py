@@ -5,8 +5,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from geometry import Screen, affected, change, windows
+from geometry import Screen, affected, change
 from tests.geometry import oracles
+from tests.geometry.measuring import measure
 
 
 @pytest.fixture(autouse=True, params=["always", "if little"])
@@ -51,8 +52,8 @@ def test_all_that_changes_is_thought_of(most):
         changed, (rows, columns) = free.copy(), rng.integers(0, free.shape, (int(rng.integers(1, 7)), 2)).T
         changed[rows, columns] = rng.random(len(rows)) < 0.5
         square, other = np.empty((2, free.shape[0] + 2, free.shape[1] + 2), np.int32)
-        windows.measure(free, square)
-        windows.measure(changed, other)
+        measure(free, square)
+        measure(changed, other)
         square[[0, -1]] = other[[0, -1]] = 0
         bounds = np.empty((len(square), 3), np.int32)
         cells = np.flatnonzero(np.pad(free != changed, 1)).astype(np.int32)

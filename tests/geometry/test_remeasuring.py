@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from geometry import Screen
 from geometry.remeasuring import measure_within
-from geometry.windows import measure
 from tests.geometry import oracles
+from tests.geometry.measuring import measure
 
 
 @settings(max_examples=200, deadline=None)

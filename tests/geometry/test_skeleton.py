@@ -6,10 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geometry import Screen, distance, sweep, windows
+from geometry import Screen, distance, sweep
 from geometry.layer import find_bones, level_of, new_state
 from geometry.skeleton import GROUPS, KINDS, SADDLE, SUMMIT
 from tests.geometry import lookalikes, oracles
+from tests.geometry.measuring import measure
 
 RADII = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0)
 
@@ -54,7 +55,7 @@ def test_16_bits_are_used_only_where_they_hold_all_clearances(across, margins, r
 def test_both_types_of_squares_give_the_same(free):
     screen = Screen(free)
     square = np.empty(screen._square.shape, np.int32)
-    assert windows.measure(free, square) and (square[1:-1] == screen._square[1:-1]).all()
+    assert measure(free, square) and (square[1:-1] == screen._square[1:-1]).all()
     square[[0, -1]] = 0
     for radius in RADII:
         state, words = new_state(square.shape)

@@ -1,0 +1,11 @@
+"""All clearances of a screen at once, without the bands and the skeleton of a build."""
+
+from geometry.distance import count_columns
+from geometry.windows import measure_rows, new_window
+
+
+def measure(free, square):
+    """Fill ``square`` (rows + 2, columns + 2) for free squares (rows, columns); returns whether its type holds it."""
+    steps = square.view("int16")
+    count_columns(free, steps)
+    return measure_rows(square, steps, 1, len(free), new_window(square.shape[1]))
