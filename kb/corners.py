@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from kb.encodings import KB, solve
 from kb.evidence import FULL
+from kb.regions import label_of
 from kb.worldmodel import WorldModel
 
 SMALLEST = 6  # squares of floor that are worth a corner
@@ -36,7 +37,7 @@ def known_floor(model: WorldModel) -> NDArray[np.bool_]:
     mask: NDArray[np.bool_] = model.floor | (model.space & large)
     for node in model.objects:
         if node.moved:
-            mask |= (model.labels == int(node.region.removeprefix("part"))) & (model.view.state == FULL)
+            mask |= (model.labels == label_of(node.region)) & (model.view.state == FULL)
     return mask
 
 

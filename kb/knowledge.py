@@ -20,7 +20,7 @@ from kb.imagining import NOTHING_IMAGINED, imagine
 from kb.interpretation import Kinds, interpret, shapes
 from kb.loads import Load, slack_of
 from kb.measuring import Measured, Measurer
-from kb.regions import map_regions
+from kb.regions import label_of, map_regions
 from kb.worldmodel import SPACE, Names, Node, Patch, WorldModel, patch_of, unsettled
 
 Mask = NDArray[np.bool_]
@@ -124,7 +124,7 @@ class Knowledge:
 
     def _objects(self, model: WorldModel) -> tuple[Node, ...]:
         regions = [r for r in model.percept.regions if _may_be_object(r.name, r.extent, model.kinds)]
-        parts = _parts(model, [int(r.name[4:]) for r in regions])
+        parts = _parts(model, [label_of(r.name) for r in regions])
         patches = [patch_of(part.mask, part.view) for part in parts]
         names = self._names.assign(patches)
         measured = {n: self._measurer.measure(p, model.view) for n, p in zip(names, patches, strict=True)}

@@ -85,6 +85,11 @@ def map_regions(
     return _percept(regions, touching), labels
 
 
+def label_of(name: str) -> int:
+    """The label of a region of the map."""
+    return int(name.removeprefix("part"))
+
+
 def _grow(first: int, among: set[int], levels: tuple[int, ...]) -> set[int]:
     region, edge = {first}, [first]
     while edge:
