@@ -66,6 +66,15 @@ class Passage(NamedTuple):
         """The centres of two neighbouring free squares on either side of the cut, in the order of ``sides``."""
         return self.towards, self.place
 
+    def shifted(self, columns: float, rows: float) -> "Passage":
+        """The same passage where the origin lies so many squares further west and south."""
+
+        def there(point: XY) -> XY:
+            return point[0] + columns, point[1] + rows
+
+        place, a, b, towards = map(there, (self.place, self.a, self.b, self.towards))
+        return self._replace(place=place, a=a, b=b, cut=tuple(map(there, self.cut)), towards=towards)
+
 
 def find_passages(square: Squares, state: States, chains: Chains, pinch: float = 0.0) -> list[Passage]:
     """All passages, in the order of their saddles' squares; or those alone that are pinched.

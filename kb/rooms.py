@@ -28,6 +28,7 @@ SMALLEST_WALL = 18  # squares: what is one thing and as long as this is no objec
 LIKELY = 0.75  # that squares are occupied which are taken for parts of one thing
 SURE = 60  # percent: a door is one from here on
 LIKELY_DOOR = 25  # percent: what may be a door is tried from here on
+BEHIND = 10  # squares that the floor is supposed to go on where it is not seen
 DEEPEST = 12.0  # squares: how far a doorway is followed into the wall
 STEP = 0.5
 PINCHED = 1.9  # times as wide as a neck must the floor be on both sides, for kb/asp to be asked whether it is a door
@@ -101,9 +102,8 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), supposed: bool = F
     verge = model.walls if supposed else model.verge
     if not verge.any():
         return Rooms((), np.ones(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
-    screen = Screen(~verge)
     walls, seen_verge = _walls(model), verge & model.view.seen
-    necks = [(passage, _known(passage, model, seen_verge, walls)) for passage in screen.passages(PINCHED)]
+    necks = [(passage, _known(passage, model, seen_verge, walls)) for passage in _passages(verge)]
     possible = _doors(necks, rules)
     floor = ~verge & model.view.seen
     if not floor.any():
@@ -119,6 +119,18 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), supposed: bool = F
     for door in doors:
         _mark_doorway(doorways, door, verge)
     return Rooms(doors, labels, doorways)
+
+
+def _passages(verge: Mask) -> list[Passage]:
+    """The necks of the floor, those at the edge of what is seen too: it may go on behind them."""
+    screen = Screen(np.pad(~verge, BEHIND, constant_values=True))
+    found = (passage.shifted(-BEHIND, -BEHIND) for passage in screen.passages(PINCHED))
+    height, width = verge.shape
+
+    def within(passage: Passage) -> bool:
+        return all(0 <= x < width and 0 <= y < height for x, y in (*passage.cut, *passage.gates))
+
+    return [passage for passage in found if within(passage)]
 
 
 def _doors(necks: Iterable[tuple[Passage, int]], rules: tuple[Path, ...]) -> list[tuple[Passage, int]]:

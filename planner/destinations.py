@@ -14,12 +14,18 @@ from kb.facts import Fact, Symbol, Term
 from kb.rooms import LIKELY_DOOR, Rooms, rooms_of
 from kb.task import Task
 from kb.worldmodel import WorldModel
-from planner.exploring import APART, Lookout, frontiers, jambs, promised, rooms_beyond
+from planner.exploring import APART, Lookout, frontiers, jambs, promised, rooms_beyond, sight_of
 from planner.screen import Screens, Squares, grown
 
 Mask = NDArray[np.bool_]
-ROOMY = 10  # percent that floor unseen promises, from which on it may hold a corner
-ROOM = 30.0  # squares that the next room may go further, east and north added
+# How much further towards a corner what is not seen may go, in squares east and north added:
+BARE, A_PERCENT, FURTHEST = (
+    12,
+    2,
+    40,
+)  # behind floor that goes on: so many for each percent that it promises more than BARE
+ROOM = 25  # behind a doorway: at least so many
+CUT_OFF = 45  # floor that no way leads to yet
 RAYS = 192  # places along a line of sight at which it may meet the verge
 
 
@@ -39,6 +45,18 @@ class Situation:
     def supposed(self) -> Rooms:
         """The rooms as they are if what may be an object is one."""
         return rooms_of(self.model, self.rules, supposed=True)
+
+    def beyond(self, place: tuple[float, float]) -> tuple[Mask, tuple[Lookout, ...]]:
+        """(rows, columns) what shares a door with the room of a point, and what to look at before that is believed.
+
+        The rooms are others if what goes on unseen, and is taken for verge, is an object.
+        """
+        row, column = self.model.view.locate(*place)
+        mask = self.rooms.beyond(int(self.rooms.labels[row, column]))
+        both = mask & self.supposed.beyond(int(self.supposed.labels[row, column]), LIKELY_DOOR)
+        if both.any() or not mask.any():
+            return both, ()
+        return mask, loose_ends(self)
 
     def likely_beyond(self, place: tuple[float, float]) -> tuple[Rooms, Mask]:
         """The rooms, and (rows, columns) what shares a likely door with the room of a point of the lattice."""
@@ -111,22 +129,31 @@ def corner(side: str, situation: Situation) -> Destination:
 def _rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
     """Rooms that are not seen and may go further towards a side than all that is.
 
-    The floor goes on unseen behind what may be a door, or is seen where no way leads yet, but one may.
+    The floor goes on unseen behind what may be a door, or would be one if what may yet be an object is no wall; or it
+    is seen where no way leads yet, but one may.
     """
-    screens, rooms = situation.screens, situation.rooms
-    if not rooms.doors:
+    screens, model = situation.screens, situation.model
+    divided = [rooms.labels.ravel() for rooms in (situation.rooms, situation.supposed) if rooms.doors]
+    doorways = (situation.rooms.doorways | situation.supposed.doorways).ravel()
+    if not divided:
         return ()
-    model, labels = screens.model, rooms.labels.ravel()
     column, row = situation.corners[side].square
     best = np.array([row * model.labels.shape[1] + column])
-    least = _towards(side, best, model) - ROOM
+    furthest = _towards(side, best, model)
 
-    def far_enough(looks: list[Lookout]) -> list[Lookout]:
-        return [look for look in looks if _towards(side, look.squares, model) >= least]
+    def apart(look: Lookout) -> bool:
+        return any((labels[look.squares] != labels[best]).any() for labels in divided)
 
-    borders = [look for look in far_enough(frontiers(screens, APART)) if (labels[look.squares] != labels[best]).any()]
-    looks = [look for look in promised(screens, borders) if look.chance >= ROOMY] if borders else []
-    looks += [look for look in far_enough(rooms_beyond(screens)) if screens.nearest(look.squares) is not None]
+    def reach(look: Lookout) -> int:
+        return min(A_PERCENT * (look.chance - BARE), FURTHEST)
+
+    reaching = [(look, CUT_OFF) for look in rooms_beyond(screens) if screens.nearest(look.squares) is not None]
+    for look in promised(screens, frontiers(screens, APART)):
+        if doorways[look.squares].any():
+            reaching.append((look, max(reach(look), ROOM)))
+        elif apart(look):
+            reaching.append((look, reach(look)))
+    looks = [look for look, squares in reaching if _towards(side, look.squares, model) + squares >= furthest]
     what = f"a room is not seen that may go further to the {side}"
     return tuple(look._replace(what=what) for look in looks)
 
@@ -162,13 +189,15 @@ def beside(parameter: str, situation: Situation) -> Destination:
 
 
 def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
-    rooms = situation.rooms
-    squares = np.flatnonzero(rooms.beyond(1) & situation.screens.floor)
+    beyond, looks = situation.beyond(situation.model.lattice.woke)
+    if looks:
+        return nowhere(looks[0].what, looks)
+    squares = np.flatnonzero(beyond & situation.screens.floor)
     if len(squares):
         return Destination(squares)
     what = (
         "no door is seen yet"
-        if not any(door.sure for door in rooms.doors)
+        if not any(door.sure for door in situation.rooms.doors)
         else "no next room is seen yet that can be reached"
     )
     likely = _likely_rooms(situation)
@@ -189,6 +218,15 @@ def _likely_rooms(situation: Situation) -> list[Lookout]:
 def numbers(rooms: Rooms, mask: Mask) -> list[int]:
     """The rooms that have squares of a mask."""
     return [int(number) for number in np.unique(rooms.labels[mask])]
+
+
+def loose_ends(situation: Situation) -> tuple[Lookout, ...]:
+    """Where to look at what goes on unseen and is hardly long enough to be a wall: rooms may end elsewhere."""
+    model = situation.model
+    pieces = model.verge & ~model.walls & grown(~model.view.seen, 1)
+    labels = np.where(pieces, model.labels, 0)
+    looks = (sight_of(situation.screens, labels == n, "it may be no wall") for n in np.unique(labels[pieces]))
+    return tuple(look for look in looks if len(look.squares))
 
 
 def doorsteps(situation: Situation, tried: bool = False) -> tuple[Lookout, ...]:

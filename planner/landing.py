@@ -145,10 +145,9 @@ def _near(side: str, node: Node, situation: Situation) -> Mapping[str, End]:
 def _next_room(began: Place, node: Node, situation: Situation) -> Landing:
     """Beyond a door; one that is only likely will do to begin with, for the way there shows whether it is one."""
     rooms = situation.rooms
-    row, column = situation.model.view.locate(*began)
-    sure = _insides(rooms, rooms.beyond(int(rooms.labels[row, column])))
-    if sure:
-        return Landing(sure)
+    beyond, looks = situation.beyond(began)
+    if beyond.any():
+        return Landing({}, looks[0].what, looks) if looks else Landing(_insides(rooms, beyond))
     missing, lookouts = "no next room is seen yet", doorsteps(situation)
     likely = _insides(*situation.likely_beyond(began))
     shape = in_view(node.polygon, situation)
