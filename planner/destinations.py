@@ -135,8 +135,6 @@ def _rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
     screens, model = situation.screens, situation.model
     divided = [rooms.labels.ravel() for rooms in (situation.rooms, situation.supposed) if rooms.doors]
     doorways = (situation.rooms.doorways | situation.supposed.doorways).ravel()
-    if not divided:
-        return ()
     column, row = situation.corners[side].square
     best = np.array([row * model.labels.shape[1] + column])
     furthest = _towards(side, best, model)
