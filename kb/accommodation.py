@@ -27,6 +27,7 @@ from kb.lattice import CENTRE, Lattice, Samples
 from kb.loads import Load, discounted, slack_of
 from kb.relaying import laid, relaid
 from kb.retina import FIELDS, count_ranges
+from kb.stops import along, misled, next_square
 from kb.supposing import Surprise, agreeing, as_motion, clashes, laid_on
 from kb.suspecting import suspects
 
@@ -164,7 +165,7 @@ class Memory:
         if isinstance(command, Move) and self.held is None:
             shift = self.lattice.to_lattice(command.east, command.north)
         x, y = self.place
-        return self._accommodate(impression, (x + shift[0], y + shift[1]), _along((x, y), shift), command)
+        return self._accommodate(impression, (x + shift[0], y + shift[1]), along((x, y), shift), command)
 
     def grasp(self, load: Load) -> None:
         """Believe that a thing is in hand: what is new as a load is taken out of the standing map.
@@ -254,7 +255,7 @@ class Memory:
         self.trust = self.trust + 1 if explanation.how == "predicted" else 0
         self.slipped |= explanation.how == "slipped"
         if explanation.how == "blocked" or explanation.place == self.place != predicted:
-            self.barred.add(_next_square(explanation.place, predicted))
+            self.barred.add(next_square(explanation.place, predicted))
         return self._take_in(explanation, ranges)
 
     def _take_in(self, explanation: Explanation, ranges: NDArray[np.int16]) -> Accommodated:
@@ -287,7 +288,10 @@ class Memory:
         explanations = [first]
         explanations += [self._explanation("blocked", stop, ranges, predicted) for stop in stops]
         explanations += [self._explanation("slipped", place, ranges, predicted) for place in _around(predicted)]
-        return self._choose([*explanations, *turned])
+        explanations += turned
+        if stops and not self.loads and all(explanation.misfits for explanation in explanations):
+            explanations += self._misled(ranges, predicted)
+        return self._choose(explanations)
 
     def _turned(self, ranges: NDArray[np.int16], predicted: Place, misfits: int) -> list[Explanation]:
         """The lattice to believe instead, unless the one held explains all."""
@@ -314,6 +318,18 @@ class Memory:
                 left, lattice, misfits = found, another, fewer
         place = lattice.place_from_utak(*look.place)
         return [Explanation("turned", place, lattice, misfits, 0.0, None, left)] * bool(left)
+
+    def _misled(self, ranges: NDArray[np.int16], predicted: Place) -> list[Explanation]:
+        """The lattices to believe instead on which the motion was stopped, too."""
+        end = self.lattice.place_to_utak(*predicted)
+        stops = list(misled(self.hypotheses, self.lattice, self.looks, ranges, self.looks[-1].place, end))
+        left = tuple(dict.fromkeys(stop.hypothesis for stop in stops))
+        found = []
+        for hypothesis, own, misfits in stops:
+            lattice = hypothesis.lattice
+            place, away = lattice.place_from_utak(*own), math.dist(own, end)
+            found.append(Explanation("misled", place, lattice, misfits, away, None, left))
+        return found
 
     def _borne_out(self, left: tuple[Hypothesis, ...], look: Look) -> tuple[Lattice, int]:
         """Of the lattices left, the one that all looks bear out best, and how many fields it leaves as noise."""
@@ -352,7 +368,7 @@ class Memory:
 
     def _lie(self, chosen: Explanation) -> None:
         """Believe what an explanation says of the lattice; where it lies otherwise all is laid on it anew."""
-        if chosen.how == "turned":
+        if chosen.how in ("turned", "misled"):
             self.hypotheses, self.trust = chosen.hypotheses, 0
         if chosen.lattice != self.lattice:
             under = laid_on(chosen.lattice, self.lattice, self.evidence, self.looks, self.loads)
@@ -369,21 +385,6 @@ class Memory:
             CellStatus.NOISE if noise[i] else CellStatus.EXPLAINED if new[i] else CellStatus.PREDICTED
             for i in range(len(FIELDS))
         )
-
-
-def _along(start: Place, shift: tuple[float, float]) -> tuple[Place, ...]:
-    """Places at which a motion may have been stopped, the last first, a square's side apart."""
-    length = math.hypot(*shift)
-    steps = math.ceil(length)
-    parts = [i / steps for i in range(steps - 1, -1, -1)] if steps else []
-    return tuple((start[0] + shift[0] * t, start[1] + shift[1] * t) for t in parts)
-
-
-def _next_square(place: Place, towards: Place) -> tuple[int, int]:
-    """The square that a motion towards a point was about to enter when it was stopped."""
-    away = math.dist(place, towards) or 1.0
-    ahead = [a + (b - a) / away for a, b in zip(place, towards, strict=True)]
-    return math.floor(ahead[0]), math.floor(ahead[1])
 
 
 def _around(place: Place) -> tuple[Place, ...]:
