@@ -9,6 +9,7 @@ before), or as noise.
 """
 
 import math
+import statistics
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
@@ -324,6 +325,8 @@ class Memory:
         end = self.lattice.place_to_utak(*predicted)
         stops = list(misled(self.hypotheses, self.lattice, self.looks, ranges, self.looks[-1].place, end))
         left = tuple(dict.fromkeys(stop.hypothesis for stop in stops))
+        middle = statistics.median([hypothesis.angle for hypothesis in left] or [0])
+        stops.sort(key=lambda stop: abs(stop.hypothesis.angle - middle))
         found = []
         for hypothesis, own, misfits in stops:
             lattice = hypothesis.lattice

@@ -12,20 +12,25 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kb.evidence import FREE, FULL, Evidence
+from kb.evidence import FREE, FULL, OPEN, Evidence
 from kb.heading import Hypothesis, Look, contradictions
 from kb.lattice import Lattice
 from kb.relaying import relaid
 
 Place = tuple[float, float]
 RECENT = 12  # looks by which lattices are judged first
-HAIR = 1e-6  # squares beyond a line between two squares, to be told from before it: who stands on it looks from there
+HAIR = 1e-6  # squares from a line between two squares to what counts as beside it
 
 
 class Crossing(NamedTuple):
-    """Where a motion crosses a line between two squares, and the square that it enters there."""
+    """Where a motion crosses a line between two squares, and the square that it enters there.
 
-    place: Place
+    before, after : a hair this side of the line and beyond it. Who is stopped there looks from either square: from the
+    one further north and east on the table, and how the table is turned he does not know.
+    """
+
+    before: Place
+    after: Place
     entered: tuple[int, int]
 
 
@@ -53,17 +58,15 @@ def crossings(start: Place, shift: Place) -> tuple[Crossing, ...]:
     found = []
     for axis in (0, 1):
         low, high = sorted((start[axis], start[axis] + shift[axis]))
+        sign = math.copysign(1.0, shift[axis])
         for line in range(math.floor(low) + 1, math.ceil(high)):
             part = (line - start[axis]) / shift[axis]
             across = start[1 - axis] + shift[1 - axis] * part
-            entered = line if shift[axis] > 0 else line - 1
-            found.append((part, axis, across, line, entered))
-    return tuple(
-        Crossing((line + HAIR, across), (entered, math.floor(across)))
-        if axis == 0
-        else Crossing((across, line + HAIR), (math.floor(across), entered))
-        for _, axis, across, line, entered in sorted(found)
-    )
+            before, after = (
+                (line + side, across) if axis == 0 else (across, line + side) for side in (-sign * HAIR, sign * HAIR)
+            )
+            found.append((part, Crossing(before, after, (math.floor(after[0]), math.floor(after[1])))))
+    return tuple(crossing for _, crossing in sorted(found))
 
 
 def next_square(place: Place, towards: Place) -> tuple[int, int]:
@@ -84,7 +87,8 @@ def misled(
     """How the lattice may lie, and where a motion was stopped on it, so that no look contradicts another.
 
     looks : those before. ranges : what was seen then. start, end : of the motion as commanded, in Utak's own frame.
-    Until then he came over no square that is occupied, and into none that is free.
+    Until then he came over no square that is occupied, and into none that is free; rather before one that is occupied
+    than before one of which it is open.
     """
     for hypothesis in hypotheses:
         lattice = hypothesis.lattice
@@ -92,14 +96,20 @@ def misled(
             continue
         shift = lattice.to_lattice(end[0] - start[0], end[1] - start[1])
         passed: list[tuple[int, int]] = []
+        found: list[tuple[int, Stop]] = []
         for crossing in crossings(lattice.place_from_utak(*start), shift):
-            look = Look(ranges, lattice.place_to_utak(*crossing.place))
-            if not contradictions(lattice, [*looks[-RECENT:], look]):
+            for place in (crossing.before, crossing.after):
+                look = Look(ranges, lattice.place_to_utak(*place))
+                if contradictions(lattice, [*looks[-RECENT:], look]):
+                    continue
                 under = relaid(lattice, held, [*looks, look], ())
                 free = all(_state(under.evidence, square) != FULL for square in passed)
-                if free and _state(under.evidence, crossing.entered) != FREE:
-                    yield Stop(hypothesis, look.place, under.misfits)
+                ahead = _state(under.evidence, crossing.entered)
+                if free and ahead != FREE:
+                    found.append((ahead, Stop(hypothesis, look.place, under.misfits)))
             passed.append(crossing.entered)
+        surest = max((ahead for ahead, _ in found), default=OPEN)
+        yield from (stop for ahead, stop in found if ahead == surest)
 
 
 def _state(evidence: Evidence, square: tuple[int, int]) -> int:

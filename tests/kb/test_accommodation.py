@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 import shapely
 from shapely.affinity import rotate, translate
@@ -13,7 +14,7 @@ from kb.heading import CENTRED, Hypothesis
 from kb.lattice import CENTRE
 from kb.loads import Load
 from tests.kb.drawings import LARGE_ROOM, walked
-from tests.kb.eyes import Occupied, impression, utak_in, world_of
+from tests.kb.eyes import Occupied, impression, random_room, utak_in, world_of
 from tests.kb.test_relaying import around
 
 ROOM = [
@@ -75,6 +76,40 @@ def test_a_turned_table_is_noticed() -> None:
     assert "turned" in hows
     assert abs(memory.lattice.angle - 30) <= 8
     assert memory.evidence.overruled == 0
+
+
+def test_one_who_runs_against_something_on_a_turned_table_finds_out_both() -> None:
+    found = []
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        occupied, heading = world_of(random_room(rng, 36, 36, 16)), int(rng.integers(-44, 46))
+        free = [(i, j) for i in range(8, 28) for j in range(8, 28) if not occupied(i, j)]
+        x, y = free[int(rng.integers(len(free)))]
+        angle = rng.uniform(0, 2 * math.pi)
+        way, middle = (9 * math.cos(angle), 9 * math.sin(angle)), (x + 0.5, y + 0.5)
+        memory = Memory()
+        memory.wake(impression(occupied, (x, y), heading))
+        stop = ran(occupied, middle, way, heading)
+        seen = impression(occupied, (math.floor(stop[0]), math.floor(stop[1])), heading)
+        how = memory.accommodate(Move(*way), seen).explanation.how
+        walked = math.dist(memory.lattice.place_to_utak(*memory.place), (0, 0))
+        if how == "misled":
+            found.append((abs(memory.lattice.angle - heading), abs(walked - math.dist(stop, middle))))
+    assert len(found) >= 8
+    assert sum(off <= 2 and far <= 0.3 for off, far in found) >= 0.6 * len(found)
+
+
+def ran(
+    occupied: Occupied, start: tuple[float, float], way: tuple[float, float], heading: float
+) -> tuple[float, float]:
+    """Where one is stopped who goes some way of his own frame, from a point of the table."""
+    c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
+    ahead = way[0] * c - way[1] * s, way[0] * s + way[1] * c
+    for part in np.linspace(0, 1, 40001):
+        x, y = start[0] + part * ahead[0], start[1] + part * ahead[1]
+        if occupied(math.floor(x), math.floor(y)) or occupied(math.ceil(x) - 1, math.ceil(y) - 1):
+            return x, y
+    return start[0] + ahead[0], start[1] + ahead[1]
 
 
 def test_where_a_motion_ends_need_not_be_floor() -> None:

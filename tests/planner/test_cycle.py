@@ -116,7 +116,9 @@ def test_the_furthest_corner_may_lie_in_a_room_that_is_not_seen_yet(seed: int, t
     assert trial.right, (trial.verdict, trial.reason, trial.crash)
 
 
-def test_what_goes_on_unseen_beside_a_door_is_looked_at_before_the_next_room_is_held_for_reached(tmp_path: Path) -> None:
+def test_what_goes_on_unseen_beside_a_door_is_looked_at_before_the_next_room_is_held_for_reached(
+    tmp_path: Path,
+) -> None:
     trial = run_trial(2, 63026, Conditions(), tmp_path)
     assert trial.right, (trial.verdict, trial.reason, trial.crash)
 
