@@ -25,7 +25,8 @@ BARE, A_PERCENT, FURTHEST = (
     40,
 )  # behind floor that goes on: so many for each percent that it promises more than BARE
 ROOM = 25  # behind a doorway: at least so many
-CUT_OFF = 45  # floor that no way leads to yet
+GAP, WIDEST_DOOR = 15, 6  # behind a stretch of floor no wider than a door: at least so many
+CUT_OFF = 40  # floor that no way leads to yet
 RAYS = 192  # places along a line of sight at which it may meet the verge
 
 
@@ -142,6 +143,9 @@ def _rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
     def apart(look: Lookout) -> bool:
         return any((labels[look.squares] != labels[best]).any() for labels in divided)
 
+    def narrow(look: Lookout) -> bool:
+        return bool(max(np.ptp(v) for v in np.divmod(look.squares, model.labels.shape[1])) < WIDEST_DOOR)
+
     def reach(look: Lookout) -> int:
         return min(A_PERCENT * (look.chance - BARE), FURTHEST)
 
@@ -149,6 +153,8 @@ def _rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
     for look in promised(screens, frontiers(screens, APART)):
         if doorways[look.squares].any():
             reaching.append((look, max(reach(look), ROOM)))
+        elif narrow(look):
+            reaching.append((look, max(reach(look), GAP)))
         elif apart(look):
             reaching.append((look, reach(look)))
     looks = [look for look, squares in reaching if _towards(side, look.squares, model) + squares >= furthest]
