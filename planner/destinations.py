@@ -76,7 +76,7 @@ class Destination:
     Attributes
     ----------
     squares : flat indices, empty while it is not known where.
-    missing : what must be known first, in words; "" when nothing is.
+    missing : what must be known first, in words; "" when nothing is. Where there are squares, it may hold elsewhere.
     lookouts : places where just that may be seen; when there are none, any place worth a look is.
     """
 
@@ -109,7 +109,8 @@ def destination(goal: Fact, situation: Situation) -> Destination:
 def corner(side: str, situation: Situation) -> Destination:
     """The convex corner of the known floor that lies furthest towards a side of Utak's frame.
 
-    Where the floor goes on unseen at its furthest, or is seen beyond walls, it is not known yet.
+    Where the floor goes on unseen at its furthest, or is seen beyond walls, it is not known yet; where a room is not
+    seen that may go further, it may be another one.
     """
     model, screens = situation.model, situation.screens
     column, row = situation.corners[side].square
@@ -122,9 +123,7 @@ def corner(side: str, situation: Situation) -> Destination:
         lookout = Lookout(np.array([best]), f"the floor goes on to the {side}, unseen")
         return nowhere(lookout.what, (lookout,))
     rooms = _rooms_to_see(side, situation)
-    if rooms:
-        return nowhere(rooms[0].what, rooms)
-    return Destination(np.array([best]))
+    return Destination(np.array([best]), rooms[0].what if rooms else "", rooms)
 
 
 def _rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:

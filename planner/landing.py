@@ -106,15 +106,30 @@ def region_of(mask: Mask) -> Any:
 
 
 def _cornered(side: str, node: Node, situation: Situation) -> Landing:
-    """The corner that Utak would go to; it need not be looked for once the object lies in it.
+    """The corner that Utak would go to; how the floor goes on about it is not asked once the object lies in it.
 
-    He aims at the very corner. To be within a square of its walls is enough when they are settled; else they may be
-    further away than he believes. Who is not sure of where he and the object are looks at the corner first.
+    Whether there is another one in a room that is not seen he looks only then: mostly there is none.
+    """
+    column, row = situation.corners[side].square
+    found = corner(side, situation)
+    if found.missing and not len(found.squares) and not situation.model.mask(node.patch)[row, column]:
+        return Landing({}, found.missing, found.lookouts, _near(side, node, situation))
+    land = _in_corner(side, node, situation)
+    if not len(found.squares) or not found.lookouts:
+        return land
+    shape = in_view(node.polygon, situation)
+    if land.holds or any(lands(end, shape) for end in land.ends.values()):
+        return Landing({}, found.missing, found.lookouts)
+    return land
+
+
+def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
+    """In a corner of the known floor, at the very corner.
+
+    To be within a square of its walls is enough when they are settled; else they may be further away than he believes.
+    Who is not sure of where he and the object are looks at the corner first.
     """
     (x, y), (column, row) = situation.corners[side].point, situation.corners[side].square
-    found = corner(side, situation)
-    if found.missing and not situation.model.mask(node.patch)[row, column]:
-        return Landing({}, found.missing, found.lookouts, _near(side, node, situation))
     end = InCorner(x, y, 1 if x > column else -1, 1 if y > row else -1)
     model = situation.model
     view = model.view
