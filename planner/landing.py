@@ -158,11 +158,17 @@ def _near(side: str, node: Node, situation: Situation) -> Mapping[str, End]:
 
 
 def _next_room(began: Place, node: Node, situation: Situation) -> Landing:
-    """Beyond a door; one that is only likely will do to begin with, for the way there shows whether it is one."""
+    """Beyond a door; one that is only likely will do to begin with, for the way there shows whether it is one.
+
+    What goes on unseen, and might make other rooms of these, is only looked at when it is there.
+    """
     rooms = situation.rooms
     beyond, looks = situation.beyond(began)
     if beyond.any():
-        return Landing({}, looks[0].what, looks) if looks else Landing(_insides(rooms, beyond))
+        ends = _insides(rooms, beyond)
+        shape = in_view(node.polygon, situation)
+        there = looks and any(lands(end, shape) for end in ends.values())
+        return Landing({}, looks[0].what, looks) if there else Landing(ends)
     missing, lookouts = "no next room is seen yet", doorsteps(situation)
     likely = _insides(*situation.likely_beyond(began))
     shape = in_view(node.polygon, situation)
