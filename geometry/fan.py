@@ -25,6 +25,7 @@ from geometry.overlay import (
 STEPS = 150  # of settling
 ANGLES = 24  # in the fan, a whole turn
 STARTS = 4  # that settle
+FINE, ROUNDS = 0.03, 5  # squares by which a disc is moved, and how often, for fewer squares to be wrong
 SLACK = 2  # unknown squares by which a whole shape may reach beyond what is known of it
 
 
@@ -129,6 +130,30 @@ def settled_best(kind: int, image: Image) -> tuple[Floats, float]:
             best, at, least = wrong, shape, loss
         if least == 0.0:
             break
+    if kind == DISC and best > 0.0:
+        return _round_best(at, best, image)
+    return at, best
+
+
+@compiled
+def _round_best(disc: Floats, wrong: float, image: Image) -> tuple[Floats, float]:
+    """The disc near one, at places and of radii in fine steps, that gets the fewest squares wrong.
+
+    What disagrees least in sum may get several squares wrong by a hair: of a wide disc the rim passes many corners.
+    """
+    best, at, least = wrong, disc, disagreement(DISC, disc, image)
+    for i in range(-ROUNDS, ROUNDS + 1):
+        for j in range(-ROUNDS, ROUNDS + 1):
+            for k in range(-ROUNDS, ROUNDS + 1):
+                other = disc.copy()
+                other[0] += i * FINE
+                other[1] += j * FINE
+                other[2] += k * FINE
+                fewer = float(misfit(DISC, other, image))
+                if fewer <= best and impropriety(DISC, other) == 0.0:
+                    loss = disagreement(DISC, other, image)
+                    if fewer < best or loss < least:
+                        best, at, least = fewer, other, loss
     return at, best
 
 

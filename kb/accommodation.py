@@ -28,7 +28,7 @@ from kb.lattice import CENTRE, Lattice, Samples
 from kb.loads import Load, discounted, slack_of
 from kb.relaying import laid, relaid
 from kb.retina import FIELDS, count_ranges
-from kb.stops import along, misled, next_square
+from kb.stops import ends, misled, next_square
 from kb.supposing import Surprise, agreeing, as_motion, clashes, laid_on
 from kb.suspecting import suspects
 
@@ -166,7 +166,7 @@ class Memory:
         if isinstance(command, Move) and self.held is None:
             shift = self.lattice.to_lattice(command.east, command.north)
         x, y = self.place
-        return self._accommodate(impression, (x + shift[0], y + shift[1]), along((x, y), shift), command)
+        return self._accommodate(impression, (x + shift[0], y + shift[1]), ends((x, y), shift), command)
 
     def grasp(self, load: Load) -> None:
         """Believe that a thing is in hand: what is new as a load is taken out of the standing map.

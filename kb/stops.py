@@ -45,12 +45,11 @@ class Stop(NamedTuple):
     misfits: int
 
 
-def along(start: Place, shift: Place) -> tuple[Place, ...]:
-    """Places at which a motion may have been stopped, the last first, a square's side apart."""
-    length = math.hypot(*shift)
-    steps = math.ceil(length)
-    parts = [i / steps for i in range(steps - 1, -1, -1)] if steps else []
-    return tuple((start[0] + shift[0] * t, start[1] + shift[1] * t) for t in parts)
+def ends(start: Place, shift: Place) -> tuple[Place, ...]:
+    """Places at which a motion may have been stopped, the last first: beside lines between squares; where it began."""
+    lines = reversed(crossings(start, shift))
+    found = [place for crossing in lines for place in (crossing.after, crossing.before)]
+    return (*found, start) if any(shift) else ()
 
 
 def crossings(start: Place, shift: Place) -> tuple[Crossing, ...]:
