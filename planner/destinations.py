@@ -26,7 +26,7 @@ BARE, A_PERCENT, FURTHEST = (
 )  # behind floor that goes on: so many for each percent that it promises more than BARE
 ROOM = 25  # behind a doorway: at least so many
 GAP, WIDEST_DOOR = 15, 6  # behind a stretch of floor no wider than a door: at least so many
-CUT_OFF = 40  # floor that no way leads to yet
+CUT_OFF = 30  # floor that no way leads to yet
 RAYS = 192  # places along a line of sight at which it may meet the verge
 
 
