@@ -122,11 +122,11 @@ def corner(side: str, situation: Situation) -> Destination:
     if not model.view.seen[around].all():
         lookout = Lookout(np.array([best]), f"the floor goes on to the {side}, unseen")
         return nowhere(lookout.what, (lookout,))
-    rooms = _rooms_to_see(side, situation)
+    rooms = rooms_to_see(side, situation)
     return Destination(np.array([best]), rooms[0].what if rooms else "", rooms)
 
 
-def _rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
+def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
     """Rooms that are not seen and may go further towards a side than all that is.
 
     The floor goes on unseen behind what may be a door, or would be one if what may yet be an object is no wall; or it

@@ -19,7 +19,7 @@ from kb.facts import Fact, Number, Symbol, Text
 from kb.rooms import Rooms
 from kb.wkt import parse_wkt
 from kb.worldmodel import Node, in_doubt
-from planner.destinations import Situation, corner, doorsteps, numbers, out_of_sight
+from planner.destinations import Situation, corner, doorsteps, numbers, out_of_sight, rooms_to_see
 from planner.exploring import Lookout, sight_of
 from planner.screen import grown
 
@@ -111,15 +111,16 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     Whether there is another one in a room that is not seen he looks only then: mostly there is none.
     """
     column, row = situation.corners[side].square
-    found = corner(side, situation)
-    if found.missing and not len(found.squares) and not situation.model.mask(node.patch)[row, column]:
-        return Landing({}, found.missing, found.lookouts, _near(side, node, situation))
-    land = _in_corner(side, node, situation)
-    if not len(found.squares) or not found.lookouts:
-        return land
-    shape = in_view(node.polygon, situation)
-    if land.holds or any(lands(end, shape) for end in land.ends.values()):
-        return Landing({}, found.missing, found.lookouts)
+    if situation.model.mask(node.patch)[row, column]:
+        rooms = rooms_to_see(side, situation)
+    else:
+        found = corner(side, situation)
+        if found.missing and not len(found.squares):
+            return Landing({}, found.missing, found.lookouts, _near(side, node, situation))
+        rooms = found.lookouts
+    land, shape = _in_corner(side, node, situation), in_view(node.polygon, situation)
+    if rooms and (land.holds or any(lands(end, shape) for end in land.ends.values())):
+        return Landing({}, rooms[0].what, rooms)
     return land
 
 
