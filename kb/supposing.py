@@ -21,7 +21,7 @@ from kb.body import Command, Move, Push, Turn
 from kb.evidence import FULL, Evidence
 from kb.hauling import STRIDE, Outcome, arrested, otherwise, predicted
 from kb.heading import Disc, Hypothesis, Look, anywhere, candidates, fallen, points, search
-from kb.lattice import Lattice
+from kb.lattice import CENTRE, Lattice
 from kb.loads import Load, discounted
 from kb.relaying import Relaid, relaid, shifted
 
@@ -76,6 +76,9 @@ class Surprise:
         anew : may hypotheses that were given up before be taken up again?
         """
         if self._turned:
+            standing = self._otherwise_turned()
+            if standing is not None:
+                return standing
             fitting = [one for one in map(self._point, self._points()) if not one.misfits]
             if fitting:
                 return _middle(fitting)
@@ -91,6 +94,17 @@ class Surprise:
         others = [one for one in found if one.lattice != self.lattice][:BEST]
         found += [self._tried(one.lattice, one.hypotheses, one.searched, cut_short=True) for one in others]
         return min(found, key=lambda one: one.misfits, default=None)
+
+    def _otherwise_turned(self) -> Supposed | None:
+        """A lattice turned otherwise than believed that was never given up, and on which nothing contradicts.
+
+        That he woke amid his square is assumed as long as that explains all.
+        """
+        amid = CENTRE + CENTRE
+        others = [other for other in self.hypotheses if other.box == amid and other.angle != self.lattice.angle]
+        left = search(self._recent, others, self._unsettled)
+        tried = (self._tried(lattice, left, False) for lattice in candidates(left, self.lattice)[:FEW])
+        return next((one for one in tried if not one.misfits), None)
 
     # -- what there is to try --------------------------------------------------------------------
 

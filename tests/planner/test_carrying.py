@@ -216,6 +216,21 @@ def test_random_worlds(task: int, seed: int, tmp_path: Path) -> None:
     assert not trial.score or trial.score.wrong == 0
 
 
+@pytest.mark.parametrize(
+    ("task", "seed"),
+    [
+        (5, 73014),  # he runs against a wall before he knows how the table is turned
+        (5, 75012),  # the furthest corner lies in a room that he has not seen when he puts it down
+        (6, 75010),  # two degrees off, which a turn could be mistaken for a place beside the middle of his square
+        (7, 75012),
+    ],
+)
+def test_worlds_that_were_misread(task: int, seed: int, tmp_path: Path) -> None:
+    trial = run_trial(task, seed, Conditions(), tmp_path)
+    assert trial.right, (trial.verdict, trial.reason, trial.crash)
+    assert not trial.judged
+
+
 @pytest.mark.parametrize("heading", [81, 99, 261])
 def test_who_has_hardly_looked_looks_once_more_before_he_takes_what_stands_beside_him(
     heading: int, tmp_path: Path
