@@ -90,6 +90,11 @@ class Surprise:
                 found.append(self._tried(lattice, hypotheses, searched))
                 if not found[-1].misfits:
                     return found[-1]
+        if not found and self._moving is not None:  # on none of them the motion went on to its end
+            before = search(self.looks[-RECENT:], self.hypotheses, self._unsettled)
+            for lattice in candidates(before, self.lattice)[:few]:
+                found += [self._tried(lattice, before, False, cut_short) for cut_short in (False, True)]
+            return min(found, key=lambda one: one.misfits, default=None)
         found.sort(key=lambda one: one.misfits)
         others = [one for one in found if one.lattice != self.lattice][:BEST]
         found += [self._tried(one.lattice, one.hypotheses, one.searched, cut_short=True) for one in others]
