@@ -19,11 +19,8 @@ from planner.screen import Screens, Squares, grown
 
 Mask = NDArray[np.bool_]
 # How much further towards a corner what is not seen may go, in squares east and north added:
-BARE, A_PERCENT, FURTHEST = (
-    12,
-    2,
-    40,
-)  # behind floor that goes on: so many for each percent that it promises more than BARE
+BARE, A_PERCENT = 12, 2  # behind floor that goes on: so many for each percent that it promises more than BARE
+FURTHEST = 34  # but no more than so many
 ROOM = 25  # behind a doorway: at least so many
 GAP, WIDEST_DOOR = 15, 6  # behind a stretch of floor no wider than a door: at least so many
 CUT_OFF = 30  # floor that no way leads to yet
