@@ -117,3 +117,11 @@ def test_sizes_and_direction_are_told() -> None:
 def test_no_image_is_an_error(occupied: np.ndarray, possible: np.ndarray | None) -> None:
     with pytest.raises(ValueError, match="occupied"):
         fit_shapes(occupied, possible)
+
+
+def test_a_wide_disc_off_the_middle_is_no_turned_square() -> None:
+    rows = ["..######..", "#########.", *["##########"] * 6, ".#########", "..#######."]
+    fits = fit_shapes(np.array([[mark == "#" for mark in row] for row in reversed(rows)]))
+    assert fits[0].shape == "disc"
+    assert fits[0].misfit <= 1
+    assert fits[0].width == pytest.approx(10, abs=0.3)
