@@ -23,7 +23,7 @@ from kb.body import Command, Impression, Move, Push, Release, Turn
 from kb.encodings import KB, solve
 from kb.evidence import FREE, OPEN, Evidence
 from kb.hauling import Outcome, otherwise, predicted
-from kb.heading import CENTRED, Box, Hypothesis, Look, anywhere, candidates, search, standing, within
+from kb.heading import CENTRED, MEMORY, Box, Hypothesis, Look, anywhere, candidates, search, standing, within
 from kb.lattice import CENTRE, Lattice, Samples
 from kb.loads import Load, discounted, slack_of
 from kb.relaying import laid, relaid
@@ -32,7 +32,6 @@ from kb.stops import ends, misled, next_square
 from kb.supposing import Surprise, agreeing, as_motion, clashes, laid_on
 from kb.suspecting import suspects
 
-MEMORY = 12  # looks by which angles are judged: those that contradict older looks are gone already
 MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one is believed
 NOWHERE = 0.2  # squares: what was stopped sooner than this did not move
 NONE_FITS = 10**6  # misfits of no lattice at all
@@ -324,8 +323,10 @@ class Memory:
         """The lattices to believe instead on which the motion was stopped, too."""
         end = self.lattice.place_to_utak(*predicted)
         stops = list(misled(self.hypotheses, self.lattice, self.looks, ranges, self.looks[-1].place, end))
+        if not stops:
+            return []
         left = tuple(dict.fromkeys(stop.hypothesis for stop in stops))
-        middle = statistics.median([hypothesis.angle for hypothesis in left] or [0])
+        middle = statistics.median(hypothesis.angle for hypothesis in left)
         stops.sort(key=lambda stop: abs(stop.hypothesis.angle - middle))
         found = []
         for hypothesis, own, misfits in stops:

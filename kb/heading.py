@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from kb.lattice import CENTRE, Lattice
 
 Box = tuple[float, float, float, float]  # west, south, east, north
+MEMORY = 12  # looks by which angles are judged: those that contradict older looks are gone already
 ANGLES = tuple(sorted(range(-44, 46), key=lambda angle: (abs(angle), angle)))
 
 

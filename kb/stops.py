@@ -13,12 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kb.evidence import FREE, FULL, OPEN, Evidence
-from kb.heading import Hypothesis, Look, contradictions
+from kb.heading import MEMORY, Hypothesis, Look, contradictions
 from kb.lattice import Lattice
 from kb.relaying import relaid
 
 Place = tuple[float, float]
-RECENT = 12  # looks by which lattices are judged first
 HAIR = 1e-6  # squares from a line between two squares to what counts as beside it
 
 
@@ -99,7 +98,7 @@ def misled(
         for crossing in crossings(lattice.place_from_utak(*start), shift):
             for place in (crossing.before, crossing.after):
                 look = Look(ranges, lattice.place_to_utak(*place))
-                if contradictions(lattice, [*looks[-RECENT:], look]):
+                if contradictions(lattice, [*looks[-MEMORY:], look]):
                     continue
                 under = relaid(lattice, held, [*looks, look], ())
                 free = all(_state(under.evidence, square) != FULL for square in passed)

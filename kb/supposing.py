@@ -20,8 +20,8 @@ from geometry.rigid import Motion, Rotate, Translate
 from kb.body import Command, Move, Push, Turn
 from kb.evidence import FULL, Evidence
 from kb.hauling import STRIDE, Outcome, arrested, otherwise, predicted
-from kb.heading import Disc, Hypothesis, Look, anywhere, candidates, fallen, points, search
-from kb.lattice import CENTRE, Lattice
+from kb.heading import CENTRED, Disc, Hypothesis, Look, anywhere, candidates, fallen, points, search
+from kb.lattice import Lattice
 from kb.loads import Load, discounted
 from kb.relaying import Relaid, relaid, shifted
 
@@ -105,8 +105,7 @@ class Surprise:
 
         That he woke amid his square is assumed as long as that explains all.
         """
-        amid = CENTRE + CENTRE
-        others = [other for other in self.hypotheses if other.box == amid and other.angle != self.lattice.angle]
+        others = [other for other in self.hypotheses if other in CENTRED and other.angle != self.lattice.angle]
         left = search(self._recent, others, self._unsettled)
         tried = (self._tried(lattice, left, False) for lattice in candidates(left, self.lattice)[:FEW])
         return next((one for one in tried if not one.misfits), None)

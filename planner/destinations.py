@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from kb.corners import Corner
 from kb.facts import Fact, Symbol, Term
-from kb.rooms import LIKELY_DOOR, Rooms, rooms_of
+from kb.rooms import LIKELY_DOOR, SURE, Rooms, rooms_of
 from kb.task import Task
 from kb.worldmodel import WorldModel
 from planner.exploring import APART, Lookout, frontiers, jambs, promised, rooms_beyond, sight_of
@@ -23,6 +23,7 @@ BARE, A_PERCENT = 12, 2  # behind floor that goes on: so many for each percent t
 FURTHEST = 34  # but no more than so many
 ROOM = 25  # behind a doorway: at least so many
 GAP, WIDEST_DOOR = 15, 6  # behind a stretch of floor no wider than a door: at least so many
+MOST = max(FURTHEST, ROOM, GAP)  # behind any floor that goes on
 CUT_OFF = 30  # floor that no way leads to yet
 RAYS = 192  # places along a line of sight at which it may meet the verge
 
@@ -42,6 +43,8 @@ class Situation:
     @cached_property
     def supposed(self) -> Rooms:
         """The rooms as they are if what may be an object is one."""
+        if (self.model.walls == self.model.verge).all():
+            return self.rooms
         return rooms_of(self.model, self.rules, supposed=True)
 
     def beyond(self, place: tuple[float, float]) -> tuple[Mask, tuple[Lookout, ...]]:
@@ -49,21 +52,24 @@ class Situation:
 
         The rooms are others if what goes on unseen, and is taken for verge, is an object.
         """
-        row, column = self.model.view.locate(*place)
-        mask = self.rooms.beyond(int(self.rooms.labels[row, column]))
-        both = mask & self.supposed.beyond(int(self.supposed.labels[row, column]), LIKELY_DOOR)
+        mask = self._next_to(place, self.rooms, SURE)
+        both = mask & self._next_to(place, self.supposed, LIKELY_DOOR)
         if both.any() or not mask.any():
             return both, ()
         return mask, loose_ends(self)
 
     def likely_beyond(self, place: tuple[float, float]) -> tuple[Rooms, Mask]:
         """The rooms, and (rows, columns) what shares a likely door with the room of a point of the lattice."""
-        row, column = self.model.view.locate(*place)
         for rooms in (self.rooms, self.supposed):
-            mask = rooms.beyond(int(rooms.labels[row, column]), LIKELY_DOOR)
+            mask = self._next_to(place, rooms, LIKELY_DOOR)
             if mask.any():
                 break
         return rooms, mask
+
+    def _next_to(self, place: tuple[float, float], rooms: Rooms, least: int) -> Mask:
+        """(rows, columns) what shares a door with the room of a point, if that is one with so many percent."""
+        row, column = self.model.view.locate(*place)
+        return rooms.beyond(int(rooms.labels[row, column]), least)
 
 
 @dataclass(frozen=True)
@@ -136,6 +142,9 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
     best = np.array([row * model.labels.shape[1] + column])
     furthest = _towards(side, best, model)
 
+    def short(look: Lookout) -> float:
+        return furthest - _towards(side, look.squares, model)
+
     def apart(look: Lookout) -> bool:
         return any((labels[look.squares] != labels[best]).any() for labels in divided)
 
@@ -146,14 +155,14 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
         return min(A_PERCENT * (look.chance - BARE), FURTHEST)
 
     reaching = [(look, CUT_OFF) for look in rooms_beyond(screens) if screens.nearest(look.squares) is not None]
-    for look in promised(screens, frontiers(screens, APART)):
+    for look in promised(screens, [look for look in frontiers(screens, APART) if short(look) <= MOST]):
         if doorways[look.squares].any():
             reaching.append((look, max(reach(look), ROOM)))
         elif narrow(look):
             reaching.append((look, max(reach(look), GAP)))
         elif apart(look):
             reaching.append((look, reach(look)))
-    looks = [look for look, squares in reaching if _towards(side, look.squares, model) + squares >= furthest]
+    looks = [look for look, squares in reaching if short(look) <= squares]
     what = f"a room is not seen that may go further to the {side}"
     return tuple(look._replace(what=what) for look in looks)
 

@@ -165,6 +165,8 @@ def rooms_beyond(screens: Screens) -> list[Lookout]:
 
 def promised(screens: Screens, lookouts: list[Lookout]) -> list[Lookout]:
     """Frontiers, each with how likely it is that what is looked for comes into sight at its nearest square."""
+    if not lookouts:
+        return []
     new = _gain(screens).ravel()
     return [look._replace(chance=_chance(float(new[_nearest(screens, look.squares)]))) for look in lookouts]
 

@@ -55,10 +55,9 @@ class Landing:
 def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
     """Where an object must end. began : the point of the lattice where its middle lay at first."""
     found = _landing(goal, node, began, situation)
-    shape = in_view(node.polygon, situation)
     if not situation.model.view.sure:
         found = replace(found, ends={name: _well_in(end) for name, end in found.ends.items()})
-    return replace(found, holds=found.holds or any(lands(end, shape) for end in found.ends.values()))
+    return replace(found, holds=found.holds or _lies_in(found.ends, node, situation))
 
 
 def _well_in(end: End) -> End:
@@ -84,6 +83,12 @@ def _landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Land
     if goal.name == "pose":
         return _posed(goal, node, situation)
     raise ValueError(f"not a goal for something carried: {goal}")
+
+
+def _lies_in(ends: Mapping[str, End], node: Node, situation: Situation) -> bool:
+    """Does an object lie where a goal holds?"""
+    shape = in_view(node.polygon, situation)
+    return any(lands(end, shape) for end in ends.values())
 
 
 def lands(end: End, shape: Any) -> bool:
@@ -118,8 +123,8 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
         if found.missing and not len(found.squares):
             return Landing({}, found.missing, found.lookouts, _near(side, node, situation))
         rooms = found.lookouts
-    land, shape = _in_corner(side, node, situation), in_view(node.polygon, situation)
-    if rooms and (land.holds or any(lands(end, shape) for end in land.ends.values())):
+    land = _in_corner(side, node, situation)
+    if rooms and (land.holds or _lies_in(land.ends, node, situation)):
         return Landing({}, rooms[0].what, rooms)
     return land
 
@@ -167,13 +172,12 @@ def _next_room(began: Place, node: Node, situation: Situation) -> Landing:
     beyond, looks = situation.beyond(began)
     if beyond.any():
         ends = _insides(rooms, beyond)
-        shape = in_view(node.polygon, situation)
-        there = looks and any(lands(end, shape) for end in ends.values())
-        return Landing({}, looks[0].what, looks) if there else Landing(ends)
+        if looks and _lies_in(ends, node, situation):
+            return Landing({}, looks[0].what, looks)
+        return Landing(ends)
     missing, lookouts = "no next room is seen yet", doorsteps(situation)
     likely = _insides(*situation.likely_beyond(began))
-    shape = in_view(node.polygon, situation)
-    if any(lands(end, shape) for end in likely.values()):
+    if _lies_in(likely, node, situation):
         return Landing({}, missing, lookouts)
     return Landing(likely, missing, lookouts)
 

@@ -9,7 +9,7 @@ from kb.evidence import FREE, FULL, Evidence, MapView
 from kb.interpretation import interpret
 from kb.knowledge import Knowledge
 from kb.lattice import Lattice
-from kb.regions import map_regions
+from kb.regions import label_of, map_regions
 from kb.retina import count_ranges
 from kb.worldmodel import Node, WorldModel, patch_of
 from tests.kb.eyes import impression, utak_in, world_of
@@ -52,7 +52,7 @@ def seen_whole(rows: list[str], objects: bool = True) -> WorldModel:
     percept, labels = map_regions(occupied & seen, seen, seen)
     model = WorldModel(Lattice(), (0.5, 0.5), view, labels, percept, interpret(percept), ())
     nodes = [
-        Node(f"o{n}", "object", 95, region.name, patch_of(labels == int(region.name[4:]), view), 0)
+        Node(f"o{n}", "object", 95, region.name, patch_of(labels == label_of(region.name), view), 0)
         for n, region in enumerate((r for r in percept.regions if model.kinds.of(r.name, "object") == 95), 1)
     ]
     return WorldModel(Lattice(), (0.5, 0.5), view, labels, percept, model.kinds, tuple(nodes) if objects else ())

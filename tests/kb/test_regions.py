@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kb.regions import Percept, impression_regions, map_regions
+from kb.regions import Percept, impression_regions, label_of, map_regions
 from kb.retina import FIELDS, OWN, neighbours, rim
 from tests.kb.eyes import retina, world_of
 
@@ -55,7 +55,7 @@ def test_map_regions_are_the_edge_connected_parts(shape: tuple[int, int, int]) -
         squares = {(r, c) for r, c in np.argwhere(seen & (occupied == kind)).tolist()}
         want |= set(flooded(squares, lambda s: [(s[0] + a, s[1] + b) for a, b in STEPS]))
     found = {
-        frozenset(map(tuple, np.argwhere(labels == int(region.name[4:])).tolist())): region
+        frozenset(map(tuple, np.argwhere(labels == label_of(region.name)).tolist())): region
         for region in percept.regions
     }
     assert set(found) == want
@@ -77,7 +77,7 @@ def test_surrounded_is_what_cannot_leave(shape: tuple[int, int, int]) -> None:
     percept, labels = map_regions(occupied, seen, seen)
     framed = np.pad(labels, 1)
     for barrier in percept.regions:
-        passable = {(r, c) for r, c in np.argwhere(framed != int(barrier.name[4:])).tolist()}
+        passable = {(r, c) for r, c in np.argwhere(framed != label_of(barrier.name)).tolist()}
         # every unseen square leads out
         parts = flooded(passable, lambda s: [(s[0] + a, s[1] + b) for a, b in STEPS])
         shut_in = {framed[s] for part in parts if not any(framed[s] == 0 for s in part) for s in part}
