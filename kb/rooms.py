@@ -24,6 +24,7 @@ from kb.worldmodel import SPACE, WorldModel
 Mask = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Indices = tuple[NDArray[np.int64], NDArray[np.int64]]
+Window = tuple[slice, slice]
 SMALLEST_WALL = 18  # squares: what is one thing and as long as this is no object
 LIKELY = 0.75  # that squares are occupied which are taken for parts of one thing
 SURE = 60  # percent: a door is one from here on
@@ -109,16 +110,20 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), supposed: bool = F
     if not floor.any():
         return Rooms((), np.zeros(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
     labels = Screen(floor).parts([passage for passage, _ in possible])
-    row, column = model.view.locate(*model.lattice.woke)
-    labels = _first(labels, int(labels[row, column]))
-    doors = tuple(
-        Door(f"d{number}", passage.a, passage.b, _sides(passage, labels), confidence)
-        for number, (passage, confidence) in enumerate(possible, 1)
-    )
+    sides = [_sides(passage, labels) for passage, _ in possible]
     doorways = np.zeros(verge.shape, np.bool_)
-    for door in doors:
-        _mark_doorway(doorways, door, verge)
-    return Rooms(doors, labels, doorways)
+    for (passage, _), (one, other) in zip(possible, sides, strict=True):
+        window, doorway = _doorway(passage, verge)
+        doorways[window] |= doorway
+        ahead, there = _ahead(passage, window), labels[window]
+        within = doorway & np.isin(there, (one, other)) & (ahead != 0)
+        there[within] = np.where(ahead > 0, one, other)[within]
+    order = _first(int(labels.max()), int(labels[model.view.locate(*model.lattice.woke)]))
+    doors = tuple(
+        Door(f"d{number}", passage.a, passage.b, (int(order[one]), int(order[other])), confidence)
+        for number, ((passage, confidence), (one, other)) in enumerate(zip(possible, sides, strict=True), 1)
+    )
+    return Rooms(doors, order[labels], doorways)
 
 
 def _passages(verge: Mask) -> list[Passage]:
@@ -192,13 +197,12 @@ def _squares(x: Floats, y: Floats, shape: tuple[int, ...]) -> Indices:
     return rows, np.clip(np.floor(x).astype(int), 0, shape[1] - 1)
 
 
-def _first(labels: NDArray[np.int32], start: int) -> NDArray[np.int32]:
-    """Number the parts anew, so that one of them is number 1."""
-    if start in (0, 1):
-        return labels
-    order = np.arange(int(labels.max()) + 1, dtype=np.int32)
-    order[[1, start]] = order[[start, 1]]
-    return order[labels]
+def _first(number: int, start: int) -> NDArray[np.int32]:
+    """New numbers for so many parts and for 0, so that one of the parts is number 1."""
+    order = np.arange(number + 1, dtype=np.int32)
+    if start > 0:
+        order[[1, start]] = order[[start, 1]]
+    return order
 
 
 def _sides(passage: Passage, labels: NDArray[np.int32]) -> tuple[int, int]:
@@ -206,25 +210,42 @@ def _sides(passage: Passage, labels: NDArray[np.int32]) -> tuple[int, int]:
     return one, two
 
 
-def _mark_doorway(doorways: Mask, door: Door, verge: Mask) -> None:
-    """Mark the squares between a door's jambs, and BEYOND squares further on both sides.
+def _ahead(passage: Passage, window: Window) -> Floats:
+    """(rows, columns) of a window: how far each square lies from the line along a neck, positive on its first side.
+
+    The parts of the floor are cut from each other somewhere between the jambs; a room ends at the neck itself.
+    """
+    neck = np.subtract(passage.b, passage.a)
+    normal = np.array([-neck[1], neck[0]]) / max(float(np.hypot(*neck)), 1e-9)
+    if np.subtract(passage.towards, passage.place) @ normal < 0:
+        normal = -normal
+    rows, columns = np.ogrid[window]
+    ahead: Floats = (columns + 0.5 - passage.a[0]) * normal[0] + (rows + 0.5 - passage.a[1]) * normal[1]
+    return ahead.round(6)
+
+
+def _doorway(passage: Passage, verge: Mask) -> tuple[Window, Mask]:
+    """The squares between the jambs of a neck, and BEYOND squares further on both sides: a window, and which there.
 
     A neck may lie askew between two thick walls; the doorway is taken along the lattice.
     """
-    along = np.abs(np.subtract(door.b, door.a))
-    along = np.array([1.0, 0.0]) if along[0] > along[1] else np.array([0.0, 1.0])
+    middle, neck = np.add(passage.a, passage.b) / 2, np.abs(np.subtract(passage.b, passage.a))
+    along = np.array([1.0, 0.0]) if neck[0] > neck[1] else np.array([0.0, 1.0])
     across = np.array([-along[1], along[0]])
-    half = float(np.abs(np.subtract(door.b, door.a)) @ along) / 2
-    jambs = [np.array(door.place) + side * (half + JAMB) * along for side in (-1, 1)]
+    half = float(neck @ along) / 2
+    jambs = [middle + side * (half + JAMB) * along for side in (-1, 1)]
     depth = [_depth(jambs, sign * across, verge) + BEYOND for sign in (-1, 1)]
     reach = math.ceil(max(half, *depth)) + 2
-    row, column = math.floor(door.place[1]), math.floor(door.place[0])
-    south, west = max(row - reach, 0), max(column - reach, 0)
-    about = doorways[south : row + reach, west : column + reach]
-    rows, columns = np.ogrid[south : south + about.shape[0], west : west + about.shape[1]]
-    x, y = columns + 0.5 - door.place[0], rows + 0.5 - door.place[1]
+    row, column = math.floor(middle[1]), math.floor(middle[0])
+    height, width = verge.shape
+    window = (
+        slice(max(row - reach, 0), min(row + reach, height)),
+        slice(max(column - reach, 0), min(column + reach, width)),
+    )
+    rows, columns = np.ogrid[window]
+    x, y = columns + 0.5 - middle[0], rows + 0.5 - middle[1]
     sideways, forward = x * along[0] + y * along[1], x * across[0] + y * across[1]
-    about |= (np.abs(sideways) <= half + 1) & (-depth[0] < forward) & (forward < depth[1])
+    return window, (np.abs(sideways) <= half + 1) & (-depth[0] < forward) & (forward < depth[1])
 
 
 def _depth(jambs: list[Floats], ahead: Floats, verge: Mask) -> float:

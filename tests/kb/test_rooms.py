@@ -36,6 +36,18 @@ def test_a_door_between_two_rooms(door: int, wall: int) -> None:
     assert y == pytest.approx(2 + (14 - door) // 2 + door / 2, abs=0.51)
 
 
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize("wall", [1, 2, 3])
+@pytest.mark.parametrize("door", [3, 4, 5, 6])
+def test_a_room_ends_between_the_jambs(door: int, wall: int, turned: bool) -> None:
+    rows = two_rooms(door, wall)
+    model = seen_whole(turned_drawing(rows) if turned else rows)
+    labels = np.where(model.floor, rooms_of(model).labels, 0)
+    labels = np.rot90(labels, -1) if turned else labels
+    assert set(np.unique(labels[:, :14]).tolist()) == {0, 1}
+    assert set(np.unique(labels[:, 14 + wall :]).tolist()) == {0, 2}
+
+
 @pytest.mark.parametrize("wall", [1, 2, 3])
 def test_the_next_room_begins_behind_the_wall(wall: int) -> None:
     model = seen_whole(two_rooms(4, wall))
