@@ -15,7 +15,7 @@ from kb.rooms import LIKELY_DOOR, SURE, Rooms, rooms_of
 from kb.task import Task
 from kb.worldmodel import WorldModel
 from planner.exploring import APART, Lookout, frontiers, jambs, promised, rooms_beyond, sight_of
-from planner.screen import Screens, Squares, grown
+from planner.screen import Screens, Squares, edged, grown
 
 Mask = NDArray[np.bool_]
 # How much further towards a corner what is not seen may go, in squares east and north added:
@@ -178,13 +178,17 @@ def _towards(side: str, squares: Squares, model: WorldModel) -> float:
 def beside(parameter: str, situation: Situation) -> Destination:
     """The squares from which an object is at most one square away.
 
-    Of those, the ones nearest to its believed outline.
+    Of those, the ones that share an edge with it, for its outline may end short of the corner of a square; and the
+    ones nearest to its believed outline.
     """
     node = situation.model.object(situation.binding.get(parameter, ""))
     if node is None:
         return nowhere(f"nothing seen so far is {parameter}")
-    about = grown(situation.model.mask(node.patch), 1)
+    mask = situation.model.mask(node.patch)
+    about = grown(mask, 1)
     near = about & situation.screens.floor
+    if (near & edged(mask)).any():
+        near &= edged(mask)
     squares = np.flatnonzero(near)
     if not len(squares):
         what = f"no way is seen yet that leads to {parameter}"

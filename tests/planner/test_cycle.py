@@ -123,6 +123,11 @@ def test_what_goes_on_unseen_beside_a_door_is_looked_at_before_the_next_room_is_
     assert trial.right, (trial.verdict, trial.reason, trial.crash)
 
 
+def test_who_wakes_right_beside_a_doorway_is_in_the_room_on_his_side_of_it(tmp_path: Path) -> None:
+    trial = run_trial(2, 83026, Conditions(), tmp_path)
+    assert trial.right, (trial.verdict, trial.reason, trial.crash)
+
+
 def test_a_room_too_far_back_to_reach_further_is_not_gone_to() -> None:
     robot, body = run(with_utak(two_rooms(14, 40, range(3, 7)), 22, 34), Task({}, (), (NORTHEAST,)))
     assert robot.verdict.verdict == "done"
@@ -274,7 +279,7 @@ def test_the_destination_of_a_thing_is_beside_it() -> None:
     mask = model.mask(node.patch)
     for square in found.squares:
         r, c = divmod(int(square), model.labels.shape[1])
-        assert np.abs(np.argwhere(mask) - (r, c)).max(1).min() == 1
+        assert np.abs(np.argwhere(mask) - (r, c)).sum(1).min() == 1
         assert Screens(model).floor[r, c]
     missing = destination(SQUARE.goals[0], _situation(Situation, model, {}))
     assert missing.missing
