@@ -18,6 +18,10 @@ from kb.picturing import NO_PICTURES, Pictures, ground_of, pictured
 
 SMALLEST = 4  # squares of a thing that is worth a look
 ENDED = 0.7  # that a thing ends at the side of a square beyond which nothing was seen
+SHY = 2  # pictures show a thing more rarely than it is there: none is, by this power of how often they show none
+WIDEST = 9  # sides of squares along which a thing goes on unseen; along more a wall does
+NO_DEEPER = 1.15  # times that: how far a thing as wide as long may reach from there
+NO_WALL = 0.7  # that what is within both is no wall
 PARTLY = ((18, 0.5), (12, 0.3), (6, 0.18), (0, 0.02))  # squares seen of what may be a thing; that it is the one meant
 LOOSE = (0.012, 0.03)  # how much wider than a rectangle a part may be spread: at least, and if it is one square wide
 TIGHT = (0.003, 0.15)  # how much less: corners seen rounded, but less than a disc's; likewise, by its squares
@@ -46,8 +50,9 @@ class Imagined(NamedTuple):
         for image in images:
             found = blobs(image, ground)
             like = likeness(found, shape) * ENDED**found.outward * (found.area >= SMALLEST)
-            heat += np.append(0.0, like)[found.labels]
-        return heat / len(images)
+            heat += np.append(0.0, np.maximum(like, going_on(found)))[found.labels]
+        likely: Floats = 1 - (1 - heat / len(images)) ** SHY
+        return likely
 
 
 NOTHING_IMAGINED = Imagined(NO_PICTURES)
@@ -78,9 +83,18 @@ def likeness(found: Blobs, shape: str) -> Floats:
     return other
 
 
-def seen_in_part(squares: int) -> float:
-    """0 to 1: how likely what may be a thing is the one looked for, while it is open how it goes on unseen."""
-    return next(chance for least, chance in PARTLY if squares >= least)
+def going_on(found: Blobs) -> Floats:
+    """(n,) 0 to 1: how likely each part is what is seen of a thing that goes on unseen and is the one looked for."""
+    no_deeper = found.area <= NO_DEEPER * found.outward**2
+    may_be = (found.outward > 1) & (found.outward <= WIDEST) & no_deeper
+    answer: Floats = np.where(may_be, NO_WALL * seen_in_part(found.area), 0.0)
+    return answer
+
+
+def seen_in_part(squares: NDArray[np.int64]) -> Floats:
+    """0 to 1: how likely what goes on unseen, and may be a thing, is the one looked for, by how much of it is seen."""
+    answer: Floats = np.select([squares >= least for least, _ in PARTLY], [chance for _, chance in PARTLY])
+    return answer
 
 
 def _near(off: Floats, loose: Floats) -> Floats:

@@ -8,12 +8,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kb.body import Command, Grasp, Release
 from kb.corners import Corner, corners
 from kb.facts import Fact
-from kb.imagining import seen_in_part
 from kb.reconciliation import Reconciled, reconcile
 from kb.rooms import NOTHING, Rooms, rooms_of
 from kb.task import Task
@@ -22,19 +20,18 @@ from planner import exploring
 from planner.aims import Aim, choose
 from planner.carrier import Act, Advice, Carrier, Go, See
 from planner.circling import pivot, ways_round, winding
-from planner.destinations import Destination, Situation, contains, destination, nowhere
+from planner.destinations import Situation, contains, destination, nowhere
 from planner.goals import BY_THE_WAY, Stage, constraints, stages
 from planner.haulage import Refusal
 from planner.landing import Landing, landing
 from planner.repeating import Circles
-from planner.screen import Screens, Squares, grown, vicinity
+from planner.screen import Screens, Squares, vicinity
+from planner.searching import aims_towards
 from planner.steps import Square
 from planner.walking import ASKEW, halting, next_move
 from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
-ODD = -10.0  # squares: how much rather what no straight wall explains is looked at
-ODDLY, HARDLY, PERHAPS = 4, 2, 20  # percent that odd squares, likely walls, floor beyond hold what is missing
 FEW = 2  # squares looked from by one who has hardly looked
 MISSED = 2  # plans that miss before where they should lead to is looked at
 DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
@@ -118,7 +115,7 @@ class Decider:
             if there or look is not None:
                 return look
         missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
-        return self._pursue(_aims(where, situation, reconciled, arrive=True), stage, situation, lambda: missing)
+        return self._pursue(aims_towards(where, situation, reconciled, arrive=True), stage, situation, lambda: missing)
 
     def _made_sure(self, goals: Sequence[Fact], there: bool, stage: Stage, situation: Situation) -> Decision | None:
         """A look at what goals are about, before they are held for attained; None when all of that is settled.
@@ -165,7 +162,7 @@ class Decider:
         node = situation.model.object(self.bound.get(x, ""))
         if node is None:
             unseen = nowhere(f"nothing seen so far is {x}")
-            aims = _aims([unseen], situation, reconciled)
+            aims = aims_towards([unseen], situation, reconciled)
             return self._pursue(aims, stage, situation, lambda: unseen.missing)
         if node.polygon is None or node.vague or node.name in self._doubted:
             look = self._inspect(node, stage, situation)
@@ -194,7 +191,7 @@ class Decider:
             return self._pursue([Aim("inspect", *advice.lookout)], stage, situation, lambda: "")
         unknown = nowhere(land.missing or "no way is known to carry it there", land.lookouts)
         verdict = "impossible" if advice.proved else "limit"
-        aims = _aims([unknown], situation, reconciled)
+        aims = aims_towards([unknown], situation, reconciled)
         return self._pursue(aims, stage, situation, advice.reason, verdict)
 
     def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
@@ -316,71 +313,6 @@ class Decider:
         reconciled = reconcile(self.task, model, distances, self.bound, self.rules)
         self.bound = reconciled.binding
         return reconciled
-
-
-def _aims(
-    where: Sequence[Destination], situation: Situation, reconciled: Reconciled, arrive: bool = False
-) -> list[Aim]:
-    """What is worth doing: go there, when it is known where; else look, first where just the missing thing may be.
-
-    arrive : Utak himself is to be where the missing thing is.
-    """
-    screens, model = situation.screens, situation.model
-    missing = [d for d in where if d.missing]
-    if not missing:
-        squares: Squares = where[0].squares
-        for other in where[1:]:
-            squares = np.intersect1d(squares, other.squares)
-        return [Aim("attain", squares, "the way to the goal is known")]
-    aims = [Aim("explore", *look) for d in missing for look in d.lookouts]
-    likely = _likely(situation, reconciled)
-    for x, name in reconciled.doubtful:
-        node = model.object(name)
-        if node is not None and x in reconciled.hypothesised:
-            chance = 0.4 if likely is None else _chance(node, likely, model)
-            look = exploring.inspection(screens, node, node.open == 0, chance, arrive)
-            aims.append(Aim("inspect", look.squares, f"{look.what}: it may be {x}", max(3, round(100 * chance))))
-    if any(_surely_reached(aim, screens) for aim in aims if aim.kind == "explore"):
-        return aims
-    if likely is not None:
-        aims += [
-            Aim("inspect", *look)
-            for look in exploring.sightings(screens, likely, "something may be meant there", arrive)
-        ]
-    for apart in (exploring.APART, 0):
-        explored = [Aim("explore", *look) for look in exploring.promised(screens, exploring.frontiers(screens, apart))]
-        odd, plain = (exploring.vague_places(screens, apart, odd=odd) for odd in (True, False))
-        settled = [Aim("settle", *look, price=ODD)._replace(chance=ODDLY) for look in odd]
-        settled += [Aim("settle", *look)._replace(chance=HARDLY) for look in plain]
-        if explored or settled:
-            break
-    beyond = [Aim("pass", *look)._replace(chance=PERHAPS) for look in exploring.rooms_beyond(screens)]
-    return [*aims, *explored, *settled, *beyond]
-
-
-def _chance(node: Node, likely: NDArray[np.float64], model: WorldModel) -> float:
-    """How likely an object is what is looked for: as pictures show it, or as one of which a part is seen."""
-    mask = model.mask(node.patch)
-    shown = float(likely[mask].max())
-    cut = (grown(mask, 1) & ~model.view.seen).any()
-    return max(shown, seen_in_part(int(mask.sum()))) if cut else shown
-
-
-def _likely(situation: Situation, reconciled: Reconciled) -> NDArray[np.float64] | None:
-    """(rows, columns): how likely each square belongs to a thing that is looked for; None when nothing is."""
-    wanted = sorted(
-        str(claim.fact.args[1])
-        for claim in situation.task.claims
-        if claim.fact.name == "shape" and str(claim.fact.args[0]) in reconciled.hypothesised
-    )
-    if not wanted:
-        return None
-    return situation.model.imagined.likely(wanted[0])
-
-
-def _surely_reached(aim: Aim, screens: Screens) -> bool:
-    reached = screens.nearest(aim.squares)
-    return reached is not None and reached.level == 0
 
 
 def _lattice_squares(squares: Squares, model: WorldModel) -> frozenset[Square]:

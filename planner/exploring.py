@@ -13,7 +13,7 @@ from geometry.components import components
 from kb.evidence import OPEN
 from kb.rooms import Door
 from kb.worldmodel import SPACE, Node
-from planner.screen import Screens, Squares, grown
+from planner.screen import Screens, Squares, edged, grown
 
 FURTHER = 7  # squares from which a thing lies within the middle zone of the eye
 JAMB = 8  # squares beside what may be a door within which its walls are looked at
@@ -51,8 +51,8 @@ def frontiers(screens: Screens, apart: int) -> list[Lookout]:
     return [Lookout(squares, "the floor goes on unseen") for squares in _groups(np.where(border, labels, 0))]
 
 
-def sightings(screens: Screens, likely: NDArray[np.float64], what: str, arrive: bool) -> list[Lookout]:
-    """Floor close to where something is likely that is looked for, one Lookout a place.
+def sightings(screens: Screens, likely: NDArray[np.float64], what: str, arrive: bool) -> list[tuple[Squares, Lookout]]:
+    """Floor close to where something is likely that is looked for: the squares of each such place, and its Lookout.
 
     likely : (rows, columns), how likely each square belongs to such a thing. arrive : as for `close`.
     """
@@ -67,20 +67,26 @@ def sightings(screens: Screens, likely: NDArray[np.float64], what: str, arrive: 
         chance = float(likely.ravel()[spot].max())
         near = close(screens, mask, chance, arrive)
         if len(near):
-            found.append(Lookout(near, what, round(100 * chance)))
+            found.append((spot, Lookout(near, what, round(100 * chance))))
     return found
 
 
 def close(screens: Screens, mask: Mask, chance: float, arrive: bool) -> Squares:
-    """Floor from which something is seen exactly and nothing was looked at yet.
+    """Floor from which something is seen better than it was.
 
-    When it is rather likely what is looked for, the floor right beside it, until he has been there. arrive : to be
-    beside it is all that is wanted, so there any place will do; else he goes where most of it can be told.
+    When it is rather likely what is looked for, the floor right beside it, until he has been there. What is not is
+    looked at from further away first, where most of it is told already. arrive : to be beside it is all that is
+    wanted, so there any place will do; else he goes where most of it can be told.
     """
+    looked = screens.model.squares(screens.model.looked_from)
     beside = grown(mask, 1)
-    near = np.flatnonzero(screens.floor & beside)
-    if chance >= LIKELY and len(near) and not (beside & screens.model.squares(screens.model.looked_from)).any():
+    near = np.flatnonzero(screens.floor & (edged(mask) if arrive else beside))
+    if chance >= LIKELY and len(near) and not (beside & looked).any():
         return near if arrive else _telling(screens, near, mask, chance)
+    far = grown(mask, FURTHER)
+    near = np.flatnonzero(screens.floor & far)
+    if len(near) and not (far & looked).any():
+        return near
     about = grown(mask, CLOSE)
     for apart in (APART, 0):
         near = np.flatnonzero(_new(screens, apart) & about)

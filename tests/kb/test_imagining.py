@@ -20,6 +20,21 @@ def test_a_square_is_told_from_afar(wide: int, high: int, square: bool) -> None:
     assert (view.state[row - 1 : row + 2, column - 2 : column + 3] == OPEN).any()
 
 
+@pytest.mark.parametrize("shown", [3, 4, 5])
+def test_what_the_edge_of_all_seen_cuts_off_may_be_a_square(shown: int) -> None:
+    view = looked(drawing(36 - shown, 18, 5, 5), [(20, 20)]).view()
+    row, column = view.locate(15, 0)
+    assert not view.seen[row, column + 1 :].any()
+    assert 0.3 < imagine(view).likely("square")[row, column] < 0.9
+
+
+def test_a_wall_that_the_edge_of_all_seen_cuts_off_is_no_square() -> None:
+    view = looked(drawing(24, 18, 12, 3), [(20, 20)]).view()
+    row, column = view.locate(15, -1)
+    assert view.seen[row, column]
+    assert imagine(view).likely("square")[row, column] < 0.1
+
+
 def test_an_empty_room_holds_no_square() -> None:
     view = looked(LARGE_ROOM, [(12, 12), (14, 13), (16, 15)]).view()
     assert imagine(view).likely("square").max() < 0.3
