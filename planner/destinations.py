@@ -14,7 +14,7 @@ from kb.facts import Fact, Symbol, Term
 from kb.rooms import LIKELY_DOOR, SURE, Rooms, rooms_of
 from kb.task import Task
 from kb.worldmodel import WorldModel
-from planner.exploring import APART, Lookout, frontiers, jambs, promised, rooms_beyond, sight_of
+from planner.exploring import APART, Lookout, frontiers, jambs, promised, rooms_beyond, short_of, sight_of
 from planner.screen import Screens, Squares, edged, grown
 
 Mask = NDArray[np.bool_]
@@ -123,7 +123,7 @@ def corner(side: str, situation: Situation) -> Destination:
         return nowhere(f"the floor towards the {side} lies beyond a passage that is not seen yet", rooms)
     around = (slice(max(row - 1, 0), row + 2), slice(max(column - 1, 0), column + 2))
     if not model.view.seen[around].all():
-        lookout = Lookout(np.array([best]), f"the floor goes on to the {side}, unseen")
+        lookout = short_of(screens, best, f"the floor goes on to the {side}, unseen")
         return nowhere(lookout.what, (lookout,))
     rooms = rooms_to_see(side, situation)
     return Destination(np.array([best]), rooms[0].what if rooms else "", rooms)

@@ -20,6 +20,7 @@ JAMB = 8  # squares beside what may be a door within which its walls are looked 
 CLOSE = 3  # squares from which a thing lies within the fovea, whichever way it is seen
 APART = 2  # squares: a new look is first sought further than this from earlier ones
 WALL_LIKE = 0.85  # that a square is occupied which is taken for wall
+SHORT_OF = 5  # squares before a place from which what lies behind it comes into sight
 SMALLEST_ROOM = 6  # squares of floor that are worth a passage
 REACH = 14  # squares from the edge of what is seen at which most of it is seen anew
 PROMISING = 0.1  # a place at which a thing is this likely is worth a look
@@ -144,6 +145,14 @@ def sight_of(screens: Screens, mask: NDArray[np.bool_], what: str) -> Lookout:
         if len(near):
             return Lookout(near, what)
     return Lookout(np.zeros(0, np.int64), what)
+
+
+def short_of(screens: Screens, square: int, what: str) -> Lookout:
+    """Floor from which it is seen what lies behind a square (a flat index): there, or short of it."""
+    mask = np.zeros(screens.floor.shape, np.bool_)
+    mask.flat[square] = True
+    near = _new(screens, APART) & grown(mask, SHORT_OF)
+    return Lookout(np.flatnonzero(near | mask), what)
 
 
 def jambs(screens: Screens, doors: Iterable[Door]) -> list[Lookout]:

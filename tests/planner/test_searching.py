@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planner.aims import Aim
-from planner.exploring import CLOSE, FURTHER, close
+from planner.exploring import CLOSE, FURTHER, SHORT_OF, close, short_of
 from planner.screen import Screens, edged, grown
 from planner.searching import Candidate, none_of
 from tests.kb.drawings import drawing, seen_whole
@@ -70,3 +70,16 @@ def test_what_is_missing_was_not_seen_yet_if_it_isnone_of_all_that_was_seen(chan
 
 def test_a_thing_and_a_picture_of_it_count_once() -> None:
     assert none_of([candidate([1, 2], 40), candidate([2, 3], 90)]) == pytest.approx(0.6)
+
+
+def test_what_lies_behind_a_place_is_seen_short_of_it() -> None:
+    screens, _ = room()
+    model = screens.model
+    row, column = model.view.locate(*model.place)
+    ahead = int(row) * model.labels.shape[1] + int(column) + 20
+    look = short_of(screens, ahead, "")
+    mask = np.zeros(model.labels.shape, np.bool_)
+    mask.flat[ahead] = True
+    assert ahead in look.squares
+    assert distance_from(look.squares, mask).max() == SHORT_OF
+    assert screens.floor.ravel()[look.squares].all()
