@@ -14,7 +14,7 @@ from kb.facts import Fact, Symbol, Term
 from kb.rooms import LIKELY_DOOR, SURE, Rooms, rooms_of
 from kb.task import Task
 from kb.worldmodel import WorldModel
-from planner.exploring import APART, Lookout, frontiers, jambs, promised, rooms_beyond, short_of, sight_of
+from planner.exploring import APART, Lookout, frontiers, gaps, jambs, promised, rooms_beyond, short_of, sight_of
 from planner.screen import Screens, Squares, edged, grown
 
 Mask = NDArray[np.bool_]
@@ -123,7 +123,7 @@ def corner(side: str, situation: Situation) -> Destination:
         return nowhere(f"the floor towards the {side} lies beyond a passage that is not seen yet", rooms)
     around = (slice(max(row - 1, 0), row + 2), slice(max(column - 1, 0), column + 2))
     if not model.view.seen[around].all():
-        lookout = short_of(screens, best, f"the floor goes on to the {side}, unseen")
+        lookout = Lookout(short_of(screens, np.array([best])), f"the floor goes on to the {side}, unseen")
         return nowhere(lookout.what, (lookout,))
     rooms = rooms_to_see(side, situation)
     return Destination(np.array([best]), rooms[0].what if rooms else "", rooms)
@@ -132,8 +132,8 @@ def corner(side: str, situation: Situation) -> Destination:
 def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
     """Rooms that are not seen and may go further towards a side than all that is.
 
-    The floor goes on unseen behind what may be a door, or would be one if what may yet be an object is no wall; or it
-    is seen where no way leads yet, but one may.
+    The floor goes on unseen behind what may be a door, or would be one if what may yet be an object is no wall; or
+    behind what is likely a gap; or it is seen where no way leads yet, but one may.
     """
     screens, model = situation.screens, situation.model
     divided = [rooms.labels.ravel() for rooms in (situation.rooms, situation.supposed) if rooms.doors]
@@ -163,6 +163,10 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
         elif apart(look):
             reaching.append((look, reach(look)))
     looks = [look for look, squares in reaching if short(look) <= squares]
+    for look in promised(screens, [look for look in gaps(screens) if short(look) <= MOST and narrow(look)]):
+        near = short_of(screens, look.squares)
+        if len(near) and short(look) <= max(reach(look), ROOM):
+            looks.append(look._replace(squares=near))
     what = f"a room is not seen that may go further to the {side}"
     return tuple(look._replace(what=what) for look in looks)
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.components import components
+from geometry.reach import UNREACHED
 from kb.evidence import OPEN
 from kb.rooms import Door
 from kb.worldmodel import SPACE, Node
@@ -20,6 +21,7 @@ JAMB = 8  # squares beside what may be a door within which its walls are looked 
 CLOSE = 3  # squares from which a thing lies within the fovea, whichever way it is seen
 APART = 2  # squares: a new look is first sought further than this from earlier ones
 WALL_LIKE = 0.85  # that a square is occupied which is taken for wall
+GAPPING = 2  # level of certainty (planner/screen.py) at which a way leads through a likely gap
 SHORT_OF = 5  # squares before a place from which what lies behind it comes into sight
 SMALLEST_ROOM = 6  # squares of floor that are worth a passage
 REACH = 14  # squares from the edge of what is seen at which most of it is seen anew
@@ -50,6 +52,23 @@ def frontiers(screens: Screens, apart: int) -> list[Lookout]:
     border = _new(screens, apart) & grown(~screens.model.view.seen, 1)
     labels = components(grown(border, 1)).labels
     return [Lookout(squares, "the floor goes on unseen") for squares in _groups(np.where(border, labels, 0))]
+
+
+def gaps(screens: Screens) -> list[Lookout]:
+    """Likely gaps in what bounds the floor, through which it would go on unseen: the squares where it would.
+
+    No stretch of them borders on floor that surely goes on; that is one of the frontiers.
+    """
+    view = screens.model.view
+    edge = view.seen & grown(~view.seen, 1)
+    border = edge & (screens.distances[GAPPING] != UNREACHED)
+    found = []
+    for squares in _groups(np.where(border, components(grown(border, 1)).labels, 0)):
+        stretch = np.zeros(border.shape, np.bool_)
+        stretch.ravel()[squares] = True
+        if not (grown(stretch, 1) & edge & screens.floor).any():
+            found.append(Lookout(squares, "there may be a gap"))
+    return found
 
 
 def sightings(screens: Screens, likely: NDArray[np.float64], what: str, arrive: bool) -> list[tuple[Squares, Lookout]]:
@@ -147,12 +166,12 @@ def sight_of(screens: Screens, mask: NDArray[np.bool_], what: str) -> Lookout:
     return Lookout(np.zeros(0, np.int64), what)
 
 
-def short_of(screens: Screens, square: int, what: str) -> Lookout:
-    """Floor from which it is seen what lies behind a square (a flat index): there, or short of it."""
+def short_of(screens: Screens, squares: Squares) -> Squares:
+    """Floor from which it is seen what lies behind some squares: those that can be reached, or short of them."""
     mask = np.zeros(screens.floor.shape, np.bool_)
-    mask.flat[square] = True
+    mask.flat[squares] = True
     near = _new(screens, APART) & grown(mask, SHORT_OF)
-    return Lookout(np.flatnonzero(near | mask), what)
+    return np.flatnonzero(near | (mask & screens.floor))
 
 
 def jambs(screens: Screens, doors: Iterable[Door]) -> list[Lookout]:

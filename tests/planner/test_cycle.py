@@ -110,7 +110,7 @@ def with_utak(rows: list[str], column: int, north: int) -> list[str]:
     return [r[:column] + "U" + r[column + 1 :] if k == row else r for k, r in enumerate(rows)]
 
 
-@pytest.mark.parametrize("seed", [24027, 27006, 65024, 66007, 71009, 76045])
+@pytest.mark.parametrize("seed", [24027, 27006, 65024, 66007, 71009, 76045, 85039])
 def test_the_furthest_corner_may_lie_in_a_room_that_is_not_seen_yet(seed: int, tmp_path: Path) -> None:
     trial = run_trial(1, seed, Conditions(), tmp_path)
     assert trial.right, (trial.verdict, trial.reason, trial.crash)

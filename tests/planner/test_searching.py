@@ -77,9 +77,9 @@ def test_what_lies_behind_a_place_is_seen_short_of_it() -> None:
     model = screens.model
     row, column = model.view.locate(*model.place)
     ahead = int(row) * model.labels.shape[1] + int(column) + 20
-    look = short_of(screens, ahead, "")
+    squares = short_of(screens, np.array([ahead]))
     mask = np.zeros(model.labels.shape, np.bool_)
     mask.flat[ahead] = True
-    assert ahead in look.squares
-    assert distance_from(look.squares, mask).max() == SHORT_OF
-    assert screens.floor.ravel()[look.squares].all()
+    assert ahead in squares
+    assert distance_from(squares, mask).max() == SHORT_OF
+    assert screens.floor.ravel()[squares].all()
