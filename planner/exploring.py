@@ -94,9 +94,9 @@ def sightings(screens: Screens, likely: NDArray[np.float64], what: str, arrive: 
 def close(screens: Screens, mask: Mask, chance: float, arrive: bool) -> Squares:
     """Floor from which something is seen better than it was.
 
-    When it is rather likely what is looked for, the floor right beside it, until he has been there. What is not is
-    looked at from further away first, where most of it is told already. arrive : to be beside it is all that is
-    wanted, so there any place will do; else he goes where most of it can be told.
+    When it is rather likely what is looked for, the floor right beside it, until he has been there. arrive : to be
+    beside it is all that is wanted, so there any place will do; and what hardly is it is looked at from further away
+    first, where most of it is told already. Else he goes where most of it can be told.
     """
     looked = screens.model.squares(screens.model.looked_from)
     beside = grown(mask, 1)
@@ -105,7 +105,7 @@ def close(screens: Screens, mask: Mask, chance: float, arrive: bool) -> Squares:
         return near if arrive else _telling(screens, near, mask, chance)
     far = grown(mask, FURTHER)
     near = np.flatnonzero(screens.floor & far)
-    if len(near) and not (far & looked).any():
+    if arrive and len(near) and not (far & looked).any():
         return near
     about = grown(mask, CLOSE)
     for apart in (APART, 0):

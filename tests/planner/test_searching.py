@@ -33,6 +33,7 @@ def test_what_is_hardly_what_is_looked_for_is_seen_from_afar_first() -> None:
     screens, mask = room()
     away = distance_from(close(screens, mask, 0.2, arrive=True), mask)
     assert away.max() == FURTHER > CLOSE
+    assert distance_from(close(screens, mask, 0.2, arrive=False), mask).max() <= CLOSE
     row, column = np.argwhere(mask).min(0)
     view = screens.model.view
     screens, mask = room(frozenset({(int(column) + view.west - FURTHER, int(row) + view.south)}))
