@@ -155,7 +155,10 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
         return min(A_PERCENT * (look.chance - BARE), FURTHEST)
 
     reaching = [(look, CUT_OFF) for look in rooms_beyond(screens) if screens.nearest(look.squares) is not None]
-    for look in promised(screens, [look for look in frontiers(screens, APART) if short(look) <= MOST]):
+    open_ends = [look for look in frontiers(screens, APART) if short(look) <= MOST]
+    likely_ends = [look for look in gaps(screens) if short(look) <= MOST and narrow(look)]
+    ends = promised(screens, [*open_ends, *likely_ends])
+    for look in ends[: len(open_ends)]:
         if doorways[look.squares].any():
             reaching.append((look, max(reach(look), ROOM)))
         elif narrow(look):
@@ -163,7 +166,7 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
         elif apart(look):
             reaching.append((look, reach(look)))
     looks = [look for look, squares in reaching if short(look) <= squares]
-    for look in promised(screens, [look for look in gaps(screens) if short(look) <= MOST and narrow(look)]):
+    for look in ends[len(open_ends) :]:
         near = short_of(screens, look.squares)
         if len(near) and short(look) <= max(reach(look), ROOM):
             looks.append(look._replace(squares=near))
@@ -191,8 +194,9 @@ def beside(parameter: str, situation: Situation) -> Destination:
     mask = situation.model.mask(node.patch)
     about = grown(mask, 1)
     near = about & situation.screens.floor
-    if (near & edged(mask)).any():
-        near &= edged(mask)
+    touching = near & edged(mask)
+    if touching.any():
+        near = touching
     squares = np.flatnonzero(near)
     if not len(squares):
         what = f"no way is seen yet that leads to {parameter}"
@@ -226,7 +230,7 @@ def _likely_rooms(situation: Situation) -> list[Lookout]:
     model = situation.model
     rooms, beyond = situation.likely_beyond(model.lattice.woke)
     beyond &= situation.screens.floor
-    if (beyond & model.squares(model.looked_from)).any():
+    if (beyond & situation.screens.looked_from).any():
         return []
     found = [np.flatnonzero(beyond & (rooms.labels == n)) for n in numbers(rooms, beyond)]
     return [Lookout(squares, "a door seems to lead there") for squares in found]

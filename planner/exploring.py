@@ -14,7 +14,7 @@ from geometry.reach import UNREACHED
 from kb.evidence import OPEN
 from kb.rooms import Door
 from kb.worldmodel import SPACE, Node
-from planner.screen import Screens, Squares, edged, grown
+from planner.screen import Screens, Squares, edged, grown, marked
 
 FURTHER = 7  # squares from which a thing lies within the middle zone of the eye
 JAMB = 8  # squares beside what may be a door within which its walls are looked at
@@ -50,8 +50,7 @@ class Lookout(NamedTuple):
 def frontiers(screens: Screens, apart: int) -> list[Lookout]:
     """Floor that can be reached and borders on squares never seen, one Lookout for each connected stretch."""
     border = _new(screens, apart) & grown(~screens.model.view.seen, 1)
-    labels = components(grown(border, 1)).labels
-    return [Lookout(squares, "the floor goes on unseen") for squares in _groups(np.where(border, labels, 0))]
+    return [Lookout(squares, "the floor goes on unseen") for squares in _groups(_stretches(border))]
 
 
 def gaps(screens: Screens) -> list[Lookout]:
@@ -62,13 +61,9 @@ def gaps(screens: Screens) -> list[Lookout]:
     view = screens.model.view
     edge = view.seen & grown(~view.seen, 1)
     border = edge & (screens.distances[GAPPING] != UNREACHED)
-    found = []
-    for squares in _groups(np.where(border, components(grown(border, 1)).labels, 0)):
-        stretch = np.zeros(border.shape, np.bool_)
-        stretch.ravel()[squares] = True
-        if not (grown(stretch, 1) & edge & screens.floor).any():
-            found.append(Lookout(squares, "there may be a gap"))
-    return found
+    surely = grown(edge & screens.floor, 1).ravel()
+    stretches = [squares for squares in _groups(_stretches(border)) if not surely[squares].any()]
+    return [Lookout(squares, "there may be a gap") for squares in stretches]
 
 
 def sightings(screens: Screens, likely: NDArray[np.float64], what: str, arrive: bool) -> list[tuple[Squares, Lookout]]:
@@ -80,8 +75,7 @@ def sightings(screens: Screens, likely: NDArray[np.float64], what: str, arrive: 
     spots = _groups(components(likely >= PROMISING).labels)
     found = []
     for spot in spots:
-        mask = np.zeros(likely.shape, np.bool_)
-        mask.ravel()[spot] = True
+        mask = marked(spot, likely.shape)
         if not (view.state.ravel()[spot] == OPEN).any():
             continue
         chance = float(likely.ravel()[spot].max())
@@ -98,15 +92,15 @@ def close(screens: Screens, mask: Mask, chance: float, arrive: bool) -> Squares:
     beside it is all that is wanted, so there any place will do; and what hardly is it is looked at from further away
     first, where most of it is told already. Else he goes where most of it can be told.
     """
-    looked = screens.model.squares(screens.model.looked_from)
     beside = grown(mask, 1)
     near = np.flatnonzero(screens.floor & (edged(mask) if arrive else beside))
-    if chance >= LIKELY and len(near) and not (beside & looked).any():
+    if chance >= LIKELY and len(near) and not (beside & screens.looked_from).any():
         return near if arrive else _telling(screens, near, mask, chance)
-    far = grown(mask, FURTHER)
-    near = np.flatnonzero(screens.floor & far)
-    if arrive and len(near) and not (far & looked).any():
-        return near
+    if arrive:
+        far = grown(mask, FURTHER)
+        near = np.flatnonzero(screens.floor & far)
+        if len(near) and not (far & screens.looked_from).any():
+            return near
     about = grown(mask, CLOSE)
     for apart in (APART, 0):
         near = np.flatnonzero(_new(screens, apart) & about)
@@ -140,8 +134,7 @@ def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:
     open_ = view.seen & (view.state == OPEN) & (view.probability > SPACE) & grown(screens.floor, 1)
     if odd:
         open_ &= view.probability < WALL_LIKE
-    labels = np.where(open_, components(grown(open_, 1)).labels, 0)
-    near = np.where(_new(screens, apart), _spread(labels, CLOSE), 0)
+    near = np.where(_new(screens, apart), _spread(_stretches(open_), CLOSE), 0)
     return [Lookout(squares, "what bounds the floor is not clear") for squares in _groups(near)]
 
 
@@ -168,8 +161,7 @@ def sight_of(screens: Screens, mask: NDArray[np.bool_], what: str) -> Lookout:
 
 def short_of(screens: Screens, squares: Squares) -> Squares:
     """Floor from which it is seen what lies behind some squares: those that can be reached, or short of them."""
-    mask = np.zeros(screens.floor.shape, np.bool_)
-    mask.flat[squares] = True
+    mask = marked(squares, screens.floor.shape)
     near = _new(screens, APART) & grown(mask, SHORT_OF)
     return np.flatnonzero(near | (mask & screens.floor))
 
@@ -256,9 +248,14 @@ def _new(screens: Screens, apart: int) -> NDArray[np.bool_]:
 
     A second look from the same square tells nothing new.
     """
-    model = screens.model
-    mask: NDArray[np.bool_] = screens.floor & ~grown(model.squares(model.looked_from), apart)
+    mask: NDArray[np.bool_] = screens.floor & ~grown(screens.looked_from, apart)
     return mask
+
+
+def _stretches(mask: Mask) -> NDArray[np.int32]:
+    """(rows, columns): the stretches of a mask by number, 0 outside it; squares that meet at a corner are of one."""
+    labels: NDArray[np.int32] = np.where(mask, components(grown(mask, 1)).labels, 0)
+    return labels
 
 
 def _groups(labels: NDArray[np.int32]) -> list[Squares]:

@@ -75,6 +75,11 @@ class Screens:
         return mask
 
     @cached_property
+    def looked_from(self) -> Mask:
+        """The squares from which he looked."""
+        return self.model.squares(self.model.looked_from)
+
+    @cached_property
     def safe(self) -> Mask:
         """Squares over which a move is made without looking first."""
         view = self.model.view
@@ -106,6 +111,13 @@ def vicinity(model: WorldModel, patch: Patch, squares: int) -> Squares:
     inside = (rows >= 0) & (rows < high) & (columns >= 0) & (columns < wide)
     flat: Squares = rows[inside] * wide + columns[inside]
     return flat
+
+
+def marked(squares: Squares, shape: tuple[int, ...]) -> Mask:
+    """(rows, columns): squares given as flat indices."""
+    mask: Mask = np.zeros(shape, np.bool_)
+    mask.flat[squares] = True
+    return mask
 
 
 def grown(mask: Mask, squares: int) -> Mask:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from planner.aims import Aim
 from planner.exploring import CLOSE, FURTHER, SHORT_OF, close, short_of
-from planner.screen import Screens, edged, grown
+from planner.screen import Screens, edged, grown, marked
 from planner.searching import Candidate, none_of
 from tests.kb.drawings import drawing, seen_whole
 
@@ -64,7 +64,7 @@ def candidate(squares: list[int], chance: int) -> Candidate:
 
 
 @given(st.lists(st.integers(1, 100), max_size=6))
-def test_what_is_missing_was_not_seen_yet_if_it_isnone_of_all_that_was_seen(chances: list[int]) -> None:
+def test_what_is_missing_was_not_seen_yet_if_it_is_none_of_all_that_was_seen(chances: list[int]) -> None:
     none = none_of([candidate([k], chance) for k, chance in enumerate(chances)])
     assert none == pytest.approx(float(np.prod([1 - chance / 100 for chance in chances])))
 
@@ -79,8 +79,7 @@ def test_what_lies_behind_a_place_is_seen_short_of_it() -> None:
     row, column = model.view.locate(*model.place)
     ahead = int(row) * model.labels.shape[1] + int(column) + 20
     squares = short_of(screens, np.array([ahead]))
-    mask = np.zeros(model.labels.shape, np.bool_)
-    mask.flat[ahead] = True
+    mask = marked(np.array([ahead]), model.labels.shape)
     assert ahead in squares
     assert distance_from(squares, mask).max() == SHORT_OF
     assert screens.floor.ravel()[squares].all()
