@@ -21,6 +21,7 @@ from planner.aims import Aim, choose
 from planner.carrier import Act, Advice, Carrier, Go, See
 from planner.circling import pivot, ways_round, winding
 from planner.destinations import Situation, contains, destination, nowhere
+from planner.fewest import FewestMoves
 from planner.goals import BY_THE_WAY, Stage, constraints, stages
 from planner.haulage import Refusal
 from planner.landing import Landing, landing
@@ -28,7 +29,7 @@ from planner.repeating import Circles
 from planner.screen import Screens, Squares, vicinity
 from planner.searching import aims_towards
 from planner.steps import Square
-from planner.walking import ASKEW, halting, next_move
+from planner.walking import ASKEW, HURRY, STROLL, halting, next_move
 from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
@@ -140,8 +141,11 @@ class Decider:
         missing : says in words what is missing; asked only for a verdict.
         """
         model = situation.model
+        fewest = FewestMoves(situation.screens) if stage.carried else None
         while True:
             offered = self._circles.priced(aims, model)
+            if fewest is not None:
+                offered = fewest.priced(offered)
             aim = choose(offered, situation.screens, self._old_aim(model))
             if aim is None and len(offered) < len(aims):
                 why = f"{stage} cannot be attained: {missing()}, and he goes round in circles"
@@ -151,7 +155,7 @@ class Decider:
                 return Decision(None, why, verdict)
             if model.held is not None:
                 return Decision(Release(), f"{model.held} is let go, to walk; {stage}")
-            decision = self._walk(aim, stage, situation)
+            decision = self._walk(aim, stage, situation, fewest)
             if decision.command is None or not self._circles.noticed(model, decision.command):
                 return decision
             self._circles.tire(_lattice_squares(aim.squares, model))
@@ -258,18 +262,22 @@ class Decider:
         kind = "attain" if way.level == 0 else "explore"
         return Decision(next_move(screens, way.squares, kind, about), f"the way round {name}; {stage}")
 
-    def _walk(self, aim: Aim, stage: Stage, situation: Situation) -> Decision:
+    def _walk(self, aim: Aim, stage: Stage, situation: Situation, fewest: FewestMoves | None) -> Decision:
+        """The next command towards an aim. fewest : by the fewest moves where that is wanted."""
         model, screens = situation.model, situation.screens
         reached = screens.nearest(aim.squares)
         assert reached is not None
-        way = self._continued(aim, reached.level, situation)
+        way = fewest.way(aim) if fewest is not None and reached.level == 0 else None
+        if way is None:
+            way = self._continued(aim, reached.level, situation)
         if way is None:
             way = self._choose(ways(screens, reached.level, aim.squares, self.paths), situation)
         if way is None:
             return Decision(None, f"{stage} cannot be attained: every way there is forbidden", "impossible")
         self._keep(way, _lattice_squares(aim.squares, model), model)
         kind = aim.kind if reached.level == 0 else "pass"
-        return Decision(next_move(screens, way.squares, kind), f"{aim.what}; {stage}")
+        move = next_move(screens, way.squares, kind, pace=STROLL if fewest is None else HURRY)
+        return Decision(move, f"{aim.what}; {stage}")
 
     def _choose(self, offered: Sequence[Way], situation: Situation) -> Way | None:
         if not offered:

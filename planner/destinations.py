@@ -23,7 +23,7 @@ BARE, A_PERCENT = 12, 2  # behind floor that goes on: so many for each percent t
 FURTHEST = 34  # but no more than so many
 ROOM = 25  # behind a doorway: at least so many
 GAP, WIDEST_DOOR = 15, 6  # behind a stretch of floor no wider than a door: at least so many
-MOST = max(FURTHEST, ROOM, GAP)  # behind any floor that goes on
+CARRIED = 45  # so many instead of those two for what is carried: another room is looked for once it lies in the corner
 CUT_OFF = 30  # floor that no way leads to yet
 RAYS = 192  # places along a line of sight at which it may meet the verge
 
@@ -109,11 +109,11 @@ def destination(goal: Fact, situation: Situation) -> Destination:
     raise ValueError(f"not a goal of place: {goal}")
 
 
-def corner(side: str, situation: Situation) -> Destination:
+def corner(side: str, situation: Situation, carried: bool = False) -> Destination:
     """The convex corner of the known floor that lies furthest towards a side of Utak's frame.
 
     Where the floor goes on unseen at its furthest, or is seen beyond walls, it is not known yet; where a room is not
-    seen that may go further, it may be another one.
+    seen that may go further, it may be another one. carried : something is to be carried there.
     """
     model, screens = situation.model, situation.screens
     column, row = situation.corners[side].square
@@ -125,25 +125,27 @@ def corner(side: str, situation: Situation) -> Destination:
     if not model.view.seen[around].all():
         lookout = Lookout(short_of(screens, np.array([best])), f"the floor goes on to the {side}, unseen")
         return nowhere(lookout.what, (lookout,))
-    rooms = rooms_to_see(side, situation)
+    rooms = rooms_to_see(side, situation, carried)
     return Destination(np.array([best]), rooms[0].what if rooms else "", rooms)
 
 
-def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
+def rooms_to_see(side: str, situation: Situation, carried: bool) -> tuple[Lookout, ...]:
     """Rooms that are not seen and may go further towards a side than all that is.
 
     The floor goes on unseen behind what may be a door, or would be one if what may yet be an object is no wall; or
-    behind what is likely a gap; or it is seen where no way leads yet, but one may.
+    behind what is likely a gap; or it is seen where no way leads yet, but one may. carried : as for `corner`.
     """
     screens, model = situation.screens, situation.model
+    furthest, room = (CARRIED, CARRIED) if carried else (FURTHEST, ROOM)
+    most = max(furthest, room, GAP)
     divided = [rooms.labels.ravel() for rooms in (situation.rooms, situation.supposed) if rooms.doors]
     doorways = (situation.rooms.doorways | situation.supposed.doorways).ravel()
     column, row = situation.corners[side].square
     best = np.array([row * model.labels.shape[1] + column])
-    furthest = _towards(side, best, model)
+    known = _towards(side, best, model)
 
     def short(look: Lookout) -> float:
-        return furthest - _towards(side, look.squares, model)
+        return known - _towards(side, look.squares, model)
 
     def apart(look: Lookout) -> bool:
         return any((labels[look.squares] != labels[best]).any() for labels in divided)
@@ -152,15 +154,15 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
         return bool(max(np.ptp(v) for v in np.divmod(look.squares, model.labels.shape[1])) < WIDEST_DOOR)
 
     def reach(look: Lookout) -> int:
-        return min(A_PERCENT * (look.chance - BARE), FURTHEST)
+        return min(A_PERCENT * (look.chance - BARE), furthest)
 
     reaching = [(look, CUT_OFF) for look in rooms_beyond(screens) if screens.nearest(look.squares) is not None]
-    open_ends = [look for look in frontiers(screens, APART) if short(look) <= MOST]
-    likely_ends = [look for look in gaps(screens) if short(look) <= MOST and narrow(look)]
+    open_ends = [look for look in frontiers(screens, APART) if short(look) <= most]
+    likely_ends = [look for look in gaps(screens) if short(look) <= most and narrow(look)]
     ends = promised(screens, [*open_ends, *likely_ends])
     for look in ends[: len(open_ends)]:
         if doorways[look.squares].any():
-            reaching.append((look, max(reach(look), ROOM)))
+            reaching.append((look, max(reach(look), room)))
         elif narrow(look):
             reaching.append((look, max(reach(look), GAP)))
         elif apart(look):
@@ -168,7 +170,7 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
     looks = [look for look, squares in reaching if short(look) <= squares]
     for look in ends[len(open_ends) :]:
         near = short_of(screens, look.squares)
-        if len(near) and short(look) <= max(reach(look), ROOM):
+        if len(near) and short(look) <= max(reach(look), room):
             looks.append(look._replace(squares=near))
     what = f"a room is not seen that may go further to the {side}"
     return tuple(look._replace(what=what) for look in looks)

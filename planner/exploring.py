@@ -88,13 +88,13 @@ def sightings(screens: Screens, likely: NDArray[np.float64], what: str, arrive: 
 def close(screens: Screens, mask: Mask, chance: float, arrive: bool) -> Squares:
     """Floor from which something is seen better than it was.
 
-    When it is rather likely what is looked for, the floor right beside it, until he has been there. arrive : to be
-    beside it is all that is wanted, so there any place will do; and what hardly is it is looked at from further away
-    first, where most of it is told already. Else he goes where most of it can be told.
+    At first the floor right beside it: for it may well be there that he is wanted. arrive : to be beside it is all that
+    is wanted, so there any place will do; and what hardly is it is looked at from further away first, where most of it
+    is told already. Else he goes where most of it can be told.
     """
     beside = grown(mask, 1)
     near = np.flatnonzero(screens.floor & (edged(mask) if arrive else beside))
-    if chance >= LIKELY and len(near) and not (beside & screens.looked_from).any():
+    if (chance >= LIKELY or not arrive) and len(near) and not (beside & screens.looked_from).any():
         return near if arrive else _telling(screens, near, mask, chance)
     if arrive:
         far = grown(mask, FURTHER)

@@ -117,9 +117,9 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     """
     column, row = situation.corners[side].square
     if situation.model.mask(node.patch)[row, column]:
-        rooms = rooms_to_see(side, situation)
+        rooms = rooms_to_see(side, situation, carried=True)
     else:
-        found = corner(side, situation)
+        found = corner(side, situation, carried=True)
         if found.missing and not len(found.squares):
             return Landing({}, found.missing, found.lookouts, _near(side, node, situation))
         rooms = found.lookouts

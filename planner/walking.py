@@ -1,10 +1,16 @@
-"""From a way to the next command: a straight move, as far as is safe."""
+"""From a way to the next command: a straight move, as far as is safe.
+
+Who just walks wants short ways, and looks about himself often. Who carries things wants few commands.
+"""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from geometry.straight import straight
 from geometry.winding import crossings
 from kb.body import Command, Move
 from kb.lattice import turned
@@ -12,9 +18,7 @@ from kb.worldmodel import WorldModel
 from planner.screen import Screens, grown
 from planner.steps import Square, clear, clear_line
 
-LONGEST = {"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}  # squares of one move, by its aim
-SHORT = 9  # squares of one move while it is open how the lattice lies, and so where he goes
-NARROW = 6  # of them, those for which no more room is wanted than the way itself takes
+NARROW = 6  # squares of a move for which no more room is wanted than the way itself takes, however the lattice lies
 ASKEW = math.radians(5)  # by which the lattice may lie otherwise before he takes care where he halts
 TESTING = ("explore", "inspect", "settle")  # aims that do not mind where in a square he halts
 EDGE = 0.4618  # squares from a centre, not far from the line between two squares
@@ -24,7 +28,31 @@ BETWEEN = 1e-3  # squares from the line between two squares that are on it
 ASIDE = (0.0618, 0.0341)  # squares from a centre, where no turn by whole degrees leads to the line between two squares
 
 
-def next_move(screens: Screens, path: Sequence[Square], kind: str, about: tuple[float, float] | None = None) -> Move:
+class Pace(NamedTuple):
+    """How far one move leads at most, in rows and columns.
+
+    longest : by the kind of its aim. unsure : while it is open how the lattice lies, and so where he goes.
+    """
+
+    longest: Mapping[str, int]
+    unsure: int
+
+    def most(self, kind: str, model: WorldModel) -> int:
+        """Rows and columns of a move now."""
+        return min(self.longest[kind], self.unsure) if model.spread > ASKEW else self.longest[kind]
+
+
+STROLL = Pace({"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}, 9)
+HURRY = Pace({"attain": 48, "inspect": 48, "explore": 48, "pass": 8, "settle": 12}, 16)
+
+
+def next_move(
+    screens: Screens,
+    path: Sequence[Square],
+    kind: str,
+    about: tuple[float, float] | None = None,
+    pace: Pace = STROLL,
+) -> Move:
     """The longest straight move along a way that leads over squares on which nothing has to be looked at first.
 
     While it is open how the lattice lies, the second half of a longer move keeps a square clear of all others.
@@ -32,28 +60,38 @@ def next_move(screens: Screens, path: Sequence[Square], kind: str, about: tuple[
     path : edge-connected squares, the first is Utak's. kind : of the aim.
     about : a point (of the view's frame) about which the move must wind as the way does, when that matters.
     """
-    safe, here = screens.safe, path[0]
-    open_ = screens.model.spread > ASKEW
-    longest = min(LONGEST[kind], SHORT) if open_ else LONGEST[kind]
-    roomy = ~grown(~safe, 1) if open_ else safe
+    here, most = path[0], pace.most(kind, screens.model)
+    roomy = _roomy(screens)
     there = path[1]
     for number in range(len(path) - 1, 1, -1):
         square = path[number]
         far = max(abs(square[0] - here[0]), abs(square[1] - here[1]))
-        free = (
-            far <= longest
-            and clear(safe, here, square)
-            and (far <= NARROW or clear(roomy, _halfway(here, square), square))
-        )
+        free = far <= most and clear(screens.safe, here, square) and _is_roomy(roomy, here, square)
         if free and _same_side(path[: number + 1], about):
             there = square
             break
     return move_to(screens.model, there, _aside(screens, there, kind if about is None else "attain"))
 
 
-def _halfway(here: Square, there: Square) -> Square:
-    """The square halfway to another one."""
-    return (here[0] + there[0]) // 2, (here[1] + there[1]) // 2
+def one_move(screens: Screens, kind: str, pace: Pace) -> NDArray[np.bool_]:
+    """(rows, columns): the squares to which one straight move leads from where Utak stands, made as by `next_move`."""
+    reached = straight(screens.safe, *screens.here, pace.most(kind, screens.model))
+    roomy = _roomy(screens)
+    if roomy is not None:
+        for row, column in np.argwhere(reached).tolist():
+            reached[row, column] = _is_roomy(roomy, screens.here, (column, row))
+    return reached
+
+
+def _roomy(screens: Screens) -> NDArray[np.bool_] | None:
+    """(rows, columns): the squares that longer moves end over; None when it is settled how the lattice lies."""
+    return ~grown(~screens.safe, 1) if screens.model.spread > ASKEW else None
+
+
+def _is_roomy(roomy: NDArray[np.bool_] | None, here: Square, there: Square) -> bool:
+    """Does a move, if it is a longer one, keep a square clear of all others in its second half?"""
+    far = max(abs(there[0] - here[0]), abs(there[1] - here[1]))
+    return roomy is None or far <= NARROW or clear(roomy, _halfway(here, there), there)
 
 
 def move_to(model: WorldModel, square: Square, aside: tuple[float, float]) -> Move:
@@ -61,6 +99,11 @@ def move_to(model: WorldModel, square: Square, aside: tuple[float, float]) -> Mo
     x, y = model.view.west + square[0] + 0.5 + aside[0], model.view.south + square[1] + 0.5 + aside[1]
     east, north = model.lattice.to_utak(x - model.place[0], y - model.place[1])
     return Move(round(east, DIGITS) + 0.0, round(north, DIGITS) + 0.0)
+
+
+def _halfway(here: Square, there: Square) -> Square:
+    """The square halfway to another one."""
+    return (here[0] + there[0]) // 2, (here[1] + there[1]) // 2
 
 
 def _aside(screens: Screens, square: Square, kind: str) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from benchmarks.trial import Conditions, run_trial
 from geometry.rigid import Translate
 from kb.body import Grasp, Move, Push, Release, Turn
 from kb.worldmodel import Node
-from planner.carrier import _clear_part
+from planner.course import clear_part
 from planner.destinations import Situation
 from planner.haulage import Haul
 from simulator.episode import EpisodeLog
@@ -169,7 +169,7 @@ def test_what_is_clear_of_a_plan_is_done_before_the_rest_is_seen(
     begun = []
 
     def watched(haul: Haul, node: Node, situation: Situation) -> Haul | None:
-        part = _clear_part(haul, node, situation)
+        part = clear_part(haul, node, situation)
         if part is not None:
             own = situation.model.mask(node.patch)
             (leg,), (whole, *_) = part.plan.legs, haul.plan.legs
@@ -184,7 +184,7 @@ def test_what_is_clear_of_a_plan_is_done_before_the_rest_is_seen(
             begun.append(part)
         return part
 
-    monkeypatch.setattr(planner.carrier, "_clear_part", watched)
+    monkeypatch.setattr(planner.carrier, "clear_part", watched)
     for seed in (27000, 27004, 27013):
         trial = run_trial(5, seed, Conditions(plain=True), tmp_path / str(seed))
         assert trial.right, (trial.verdict, trial.reason, trial.crash)

@@ -16,7 +16,7 @@ from planner.aims import Aim, choose
 from planner.circling import pivot, ways_round, winding
 from planner.screen import UNSEEN, Screens, grown
 from planner.steps import clear_line, swept
-from planner.walking import LONGEST, LOOSE, NARROW, SHORT, next_move
+from planner.walking import HURRY, LOOSE, NARROW, STROLL, Pace, next_move, one_move
 from planner.ways import choose_way, ways
 from tests.kb.drawings import seen_whole, walked
 from tests.kb.eyes import random_room
@@ -92,16 +92,17 @@ def flat(model: WorldModel, x: int, y: int) -> np.ndarray:
     return np.array([row * model.labels.shape[1] + column])
 
 
-@pytest.mark.parametrize("kind", sorted(LONGEST))
-def test_a_move_sweeps_safe_squares_alone(kind: str) -> None:
+@pytest.mark.parametrize("pace", [STROLL, HURRY])
+@pytest.mark.parametrize("kind", sorted(STROLL.longest))
+def test_a_move_sweeps_safe_squares_alone(kind: str, pace: Pace) -> None:
     model = seen_whole(HALL)
     screens = Screens(model)
     for goal in ((11, 0), (11, -2), (6, 5), (-4, 5), (0, 1)):
         for way in ways(screens, 0, flat(model, *goal), "skeleton"):
-            move = next_move(screens, way.squares, kind)
+            move = next_move(screens, way.squares, kind, pace=pace)
             east, north = round(move.east), round(move.north)
             assert (east, north) == (move.east, move.north)
-            assert max(abs(east), abs(north)) <= LONGEST[kind]
+            assert max(abs(east), abs(north)) <= pace.longest[kind]
             c, r = swept(east, north)
             assert screens.safe[r + screens.here[1], c + screens.here[0]].all()
 
@@ -313,7 +314,8 @@ def test_while_it_is_open_how_the_lattice_lies_no_turn_leads_to_the_line_between
     assert plain > 0
 
 
-def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear() -> None:
+@pytest.mark.parametrize("pace", [STROLL, HURRY])
+def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear(pace: Pace) -> None:
     model = replace(seen_whole(HALL), spread=math.pi)
     screens = Screens(model)
     clear_of = ~grown(~screens.safe, 1)
@@ -322,13 +324,28 @@ def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear() -> None
         for way in ways(screens, 0, np.array([goal]), "skeleton")[:1]:
             if len(way.squares) < 2:
                 continue
-            move = next_move(screens, way.squares, "explore")
+            move = next_move(screens, way.squares, "explore", pace=pace)
             far = max(abs(move.east), abs(move.north))
             longest = max(longest, far)
-            assert far < SHORT + 0.5
+            assert far < pace.unsure + 0.5
             column, row = screens.here[0] + round(move.east), screens.here[1] + round(move.north)
             assert far < NARROW + 0.5 or clear_of[row, column]
     assert longest > NARROW + 0.5
+
+
+@pytest.mark.parametrize("spread", [0.0, math.pi])
+@pytest.mark.parametrize("kind", sorted(STROLL.longest))
+def test_one_move_leads_just_where_the_next_move_may_end(kind: str, spread: float) -> None:
+    screens = Screens(replace(seen_whole(HALL), spread=spread))
+    reached = one_move(screens, kind, HURRY)
+    ended = np.zeros_like(reached)
+    ended[screens.here[1], screens.here[0]] = True
+    for row, column in np.argwhere(screens.floor).tolist():
+        if (column, row) != screens.here:
+            step = (column, row) if max(abs(column - screens.here[0]), abs(row - screens.here[1])) <= 1 else screens.here
+            move = next_move(screens, [screens.here, step, (column, row)], kind, pace=HURRY)
+            ended[screens.here[1] + round(move.north), screens.here[0] + round(move.east)] = True
+    assert (reached & screens.safe == ended & screens.safe).all()
 
 
 def test_he_does_not_halt_near_an_edge_where_what_lies_beyond_it_may_stop_him() -> None:

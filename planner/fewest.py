@@ -1,0 +1,95 @@
+"""Where to look next by the fewest straight moves, for who counts commands and not squares: who carries things.
+
+A way along walls bends at every corner of theirs. Often an aim can be met at a square that a single move leads to, or
+by way of one that a second move leads on from, and nothing is lost by going a little further.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.straight import straight
+from planner.aims import Aim
+from planner.screen import Screens, Squares
+from planner.steps import Square
+from planner.walking import HURRY, one_move
+from planner.ways import Way
+
+DETOUR = 12.0  # squares of way for which a move is saved
+FURTHER_MOVE = 5.0  # squares of way that each move after the first is taken for
+TRIED = 8  # squares of an aim to which two moves are sought
+Mask = NDArray[np.bool_]
+
+
+class FewestMoves:
+    """What straight moves lead to from where Utak stands, worked out when it is asked for."""
+
+    def __init__(self, screens: Screens) -> None:
+        self._screens = screens
+        self._reached: dict[str, Mask] = {}
+        self._by_way: dict[tuple[str, bytes], Square | None] = {}
+
+    def priced(self, aims: Sequence[Aim]) -> list[Aim]:
+        """The aims: met at a square that one move leads to, where there is such a one near; others dearer."""
+        return [self._priced(aim) for aim in aims]
+
+    def way(self, aim: Aim) -> Way | None:
+        """The way to an aim that one or two moves lead to, as its first move; None for others."""
+        here, near = self._screens.here, self._met(aim)
+        if len(near):
+            far = self._far[near]
+            there: Square | None = self._square(int(near[far.argmin()]))
+        else:
+            there = self._turning(aim)
+        return None if there is None or there == here else Way((here, there), 0.0, 0.0, 0)
+
+    @property
+    def _far(self) -> NDArray[np.int32]:
+        """(squares,): the way to each square of the screen, in fifths of squares; -1 where none surely leads."""
+        return self._screens.distances[0].ravel()
+
+    def _priced(self, aim: Aim) -> Aim:
+        reached = self._screens.nearest(aim.squares) if len(aim.squares) else None
+        if reached is None:
+            return aim
+        near = self._met(aim)
+        if len(near) and self._far[near].min() / 5 <= reached.cost + DETOUR:
+            return aim._replace(squares=near)
+        moves = 1 if reached.level == 0 and self._turning(aim) is not None else 2
+        return aim._replace(price=aim.price + FURTHER_MOVE * moves)
+
+    def _met(self, aim: Aim) -> Squares:
+        """The squares of an aim to which one move leads."""
+        if aim.kind not in self._reached:
+            self._reached[aim.kind] = one_move(self._screens, aim.kind, HURRY)
+        near: Squares = aim.squares[self._reached[aim.kind].ravel()[aim.squares]]
+        return near
+
+    def _turning(self, aim: Aim) -> Square | None:
+        """Where the first of two moves to an aim ends, if two will do: on the shortest such way."""
+        key = (aim.kind, aim.squares.tobytes())
+        if key not in self._by_way:
+            self._by_way[key] = self._found(aim)
+        return self._by_way[key]
+
+    def _found(self, aim: Aim) -> Square | None:
+        screens = self._screens
+        sure = aim.squares[(self._far[aim.squares] >= 0) & screens.safe.ravel()[aim.squares]]
+        nearest = sure[np.argsort(self._far[sure], kind="stable")]
+        some = nearest[np.unique(np.linspace(0, len(nearest) - 1, TRIED).astype(int))] if len(nearest) else nearest
+        (x, y), best, found = screens.here, np.inf, None
+        first = self._reached[aim.kind]
+        for end in some.tolist():
+            column, row = self._square(end)
+            rows, columns = np.nonzero(straight(screens.safe, column, row, HURRY.longest[aim.kind], first))
+            if len(rows):
+                lengths = np.hypot(rows - y, columns - x) + np.hypot(rows - row, columns - column)
+                if lengths.min() < best:
+                    best, k = lengths.min(), lengths.argmin()
+                    found = (int(columns[k]), int(rows[k]))
+        return found
+
+    def _square(self, flat: int) -> Square:
+        row, column = divmod(flat, self._screens.safe.shape[1])
+        return column, row
