@@ -342,7 +342,9 @@ def test_one_move_leads_just_where_the_next_move_may_end(kind: str, spread: floa
     ended[screens.here[1], screens.here[0]] = True
     for row, column in np.argwhere(screens.floor).tolist():
         if (column, row) != screens.here:
-            step = (column, row) if max(abs(column - screens.here[0]), abs(row - screens.here[1])) <= 1 else screens.here
+            step = (
+                (column, row) if max(abs(column - screens.here[0]), abs(row - screens.here[1])) <= 1 else screens.here
+            )
             move = next_move(screens, [screens.here, step, (column, row)], kind, pace=HURRY)
             ended[screens.here[1] + round(move.north), screens.here[0] + round(move.east)] = True
     assert (reached & screens.safe == ended & screens.safe).all()

@@ -1,0 +1,97 @@
+"""Who carries things goes by the fewest straight moves."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from planner.aims import Aim
+from planner.fewest import DETOUR, FURTHER_MOVE, FewestMoves
+from planner.screen import Screens
+from planner.steps import clear
+from planner.walking import HURRY, one_move
+from tests.kb.drawings import seen_whole
+
+WALLS = [
+    "b" * 40,
+    *["b" + "." * 38 + "b"] * 5,
+    "b.........bbbbbbbbbbbbbbbbbbbbbbbbbbbbbb",
+    "b.........bbbbbbbbbbbbbbbbbbbbbbbbbbbbbb",
+    *["b" + "." * 38 + "b"] * 4,
+    "bbbbbbbbbbbbbbbbbbbbbbbbbbbbbb.........b",
+    "bbbbbbbbbbbbbbbbbbbbbbbbbbbbbb.........b",
+    *["b" + "." * 38 + "b"] * 2,
+    "b..U" + "." * 35 + "b",
+    *["b" + "." * 38 + "b"] * 2,
+    "b" * 40,
+]
+
+
+def flat(column: int, line: int) -> int:
+    """The flat index of a square of the drawing, its lines counted from the north."""
+    return (len(WALLS) - 1 - line) * len(WALLS[0]) + column
+
+
+def aim(*squares: tuple[int, int]) -> Aim:
+    """An aim at squares (column, line) of the drawing."""
+    return Aim("explore", np.array([flat(*square) for square in squares]), "there", 50)
+
+
+@pytest.fixture
+def screens() -> Screens:
+    return Screens(seen_whole(WALLS))
+
+
+def test_of_an_aim_what_one_move_leads_to_counts(screens: Screens) -> None:
+    behind, open_ = (31, 12), (29, 15)
+    assert one_move(screens, "explore", HURRY).ravel()[[flat(*behind), flat(*open_)]].tolist() == [False, True]
+    fewest = FewestMoves(screens)
+    (priced,) = fewest.priced([aim(behind, open_)])
+    assert priced.squares.tolist() == [flat(*open_)]
+    assert priced.price == 0.0
+    way = fewest.way(priced)
+    assert way is not None
+    assert way.squares == (screens.here, (29, len(WALLS) - 1 - 15))
+
+
+def test_a_move_is_not_saved_by_a_long_detour() -> None:
+    rows = ["b" * 40, *["b" + "." * 38 + "b"] * 11, "b..U........b" + "." * 26 + "b", "b" * 40]
+    screens = Screens(seen_whole(rows))
+    width = len(rows[0])
+    behind, far = width + 14, 12 * width + 37
+    assert one_move(screens, "explore", HURRY).ravel()[[behind, far]].tolist() == [False, True]
+    ways = screens.distances[0].ravel()[[behind, far]] / 5
+    assert ways[0] + DETOUR < ways[1]
+    (priced,) = FewestMoves(screens).priced([Aim("explore", np.array([behind, far]), "there")])
+    assert priced.squares.tolist() == [behind, far]
+    assert priced.price == FURTHER_MOVE
+
+
+def test_a_second_move_has_its_price_and_a_third_twice_that(screens: Screens) -> None:
+    once, twice = aim((33, 9)), aim((3, 2))
+    one, two = FewestMoves(screens).priced([once, twice])
+    assert one.price == FURTHER_MOVE
+    assert two.price == 2 * FURTHER_MOVE
+
+
+def test_the_first_of_two_moves_ends_where_the_second_can_begin(screens: Screens) -> None:
+    met = aim((33, 9))
+    way = FewestMoves(screens).way(met)
+    assert way is not None
+    (_, via) = way.squares
+    end = (33, len(WALLS) - 1 - 9)
+    assert clear(screens.safe, screens.here, via)
+    assert clear(screens.safe, via, end)
+    assert FewestMoves(screens).way(aim((3, 2))) is None
+
+
+def test_every_first_move_is_one_that_may_be_made() -> None:
+    for spread in (0.0, math.pi):
+        screens = Screens(replace(seen_whole(WALLS), spread=spread))
+        reached = one_move(screens, "explore", HURRY)
+        for square in np.flatnonzero(screens.floor)[::7].tolist():
+            way = FewestMoves(screens).way(Aim("explore", np.array([square]), "there"))
+            if way is not None:
+                column, row = way.squares[-1]
+                assert reached[row, column]
