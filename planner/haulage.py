@@ -224,6 +224,8 @@ def _refusal(node: Node, plans: Sequence[Carrying], model: WorldModel) -> Refusa
     last = plans[-1]
     if any(plan.status != "impossible" for plan in plans):
         return Refusal(False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none")
+    if last.reason == "start":  # nothing lies in a wall: it is not where he believes
+        return Refusal(False, lambda: f"where {node.name} lies is not known well: it would overlap a wall")
 
     def reason() -> str:
         neck = last.passage

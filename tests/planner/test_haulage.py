@@ -1,0 +1,52 @@
+"""What is said of a thing for which no way is found."""
+
+from dataclasses import replace
+
+import pytest
+import shapely
+
+from geometry.carrying import Inside
+from kb.corners import corners
+from kb.rooms import rooms_of
+from kb.task import Task
+from planner.destinations import Situation
+from planner.haulage import Haul, Hauler, Refusal, Request
+from planner.screen import Screens
+from tests.kb.drawings import seen_whole
+
+PARTED = [
+    "b" * 24,
+    *["b" + "." * 10 + "bb" + "." * 10 + "b"] * 4,
+    "b...gggg...............b",
+    "b...gggg..........U....b",
+    "b...gggg...bb..........b",
+    "b...gggg...bb..........b",
+    *["b" + "." * 10 + "bb" + "." * 10 + "b"] * 4,
+    "b" * 24,
+]
+
+
+def asked(west: float) -> Haul | Refusal:
+    """The way through a door two squares wide for a thing four wide with its west side there; it was drawn at 4."""
+    model = seen_whole(PARTED)
+    (node,) = model.objects
+    view = model.view
+    left, bottom = view.west + west, view.south + 5
+    node = replace(node, polygon=shapely.box(left, bottom, left + 4, bottom + 4))
+    situation = Situation(model, Screens(model), {}, rooms_of(model), corners(model), Task({}, (), ()))
+    return Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}), situation)
+
+
+def test_a_passage_that_is_too_narrow_is_a_proof() -> None:
+    answer = asked(4)
+    assert isinstance(answer, Refusal)
+    assert answer.proved
+    assert "too narrow by 2.00" in answer.reason()
+
+
+@pytest.mark.parametrize("west", [-0.5, 0.5, 9.0])
+def test_what_seems_to_lie_in_a_wall_proves_nothing(west: float) -> None:
+    answer = asked(west)
+    assert isinstance(answer, Refusal)
+    assert not answer.proved
+    assert "overlap a wall" in answer.reason()
