@@ -115,9 +115,12 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), supposed: bool = F
     for (passage, _), (one, other) in zip(possible, sides, strict=True):
         window, doorway = _doorway(passage, verge)
         doorways[window] |= doorway
-        ahead, there = _ahead(passage, window), labels[window]
+        ahead, parted = _ahead(passage, window), labels.copy()
+        there = parted[window]
         within = doorway & np.isin(there, (one, other)) & (ahead != 0)
         there[within] = np.where(ahead > 0, one, other)[within]
+        if np.isin((one, other), parted).all():  # nothing but the doorway is seen of some rooms
+            labels = parted
     order = _first(int(labels.max()), int(labels[model.view.locate(*model.lattice.woke)]))
     doors = tuple(
         Door(f"d{number}", passage.a, passage.b, (int(order[one]), int(order[other])), confidence)

@@ -156,3 +156,24 @@ def test_what_may_be_an_object_makes_no_door_of_supposed_rooms() -> None:
     assert set(np.argwhere(may_be_object)[:, 1].tolist()) == {20, 21}
     assert [door.a for door in rooms_of(model).doors] == [(16.0, 6.0)]
     assert not rooms_of(model, supposed=True).doors
+
+
+def test_what_is_seen_of_a_doorway_alone_stays_a_part_of_its_own() -> None:
+    rows = [
+        "............bbbb???",
+        "............bbbb???",
+        "............bbbb???",
+        "............bbbb???",
+        "..........Ubbbb????",
+        "..bb..bb...bbbb????",
+        "..bbbbbbbb.bbbb????",
+        "..bbbbbbbb..bbb????",
+        "..bbbbbbb...bbb????",
+        "..bbbbbbb...bbb????",
+        "?????????..bbbb????",
+    ]
+    rooms = rooms_of(seen_whole(rows))
+    assert rooms.doors
+    for door in rooms.doors:
+        assert np.isin(door.sides, rooms.labels).all()
+    assert np.unique(rooms.labels).tolist() == list(range(rooms.labels.max() + 1))
