@@ -267,7 +267,8 @@ class Decider:
         model, screens = situation.model, situation.screens
         reached = screens.nearest(aim.squares)
         assert reached is not None
-        way = fewest.way(aim) if fewest is not None and reached.level == 0 else None
+        straight = fewest.way(aim) if fewest is not None and reached.level == 0 else None
+        way = None if straight is None else self._choose([straight], situation)
         if way is None:
             way = self._continued(aim, reached.level, situation)
         if way is None:

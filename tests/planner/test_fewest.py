@@ -6,7 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from kb.corners import corners
+from kb.facts import Symbol
+from kb.problems import Span
+from kb.rooms import rooms_of
+from kb.task import Task
 from planner.aims import Aim
+from planner.deciding import Decider
+from planner.destinations import Situation
 from planner.fewest import DETOUR, FURTHER_MOVE, FewestMoves
 from planner.screen import Screens
 from planner.steps import clear
@@ -36,6 +43,10 @@ def flat(column: int, line: int) -> int:
 def aim(*squares: tuple[int, int]) -> Aim:
     """An aim at squares (column, line) of the drawing."""
     return Aim("explore", np.array([flat(*square) for square in squares]), "there", 50)
+
+
+def symbol(name: str, *args: Symbol) -> Symbol:
+    return Symbol(name, args, Span(0, 0, 0))
 
 
 @pytest.fixture
@@ -95,3 +106,21 @@ def test_every_first_move_is_one_that_may_be_made() -> None:
             if way is not None:
                 column, row = way.squares[-1]
                 assert reached[row, column]
+
+
+def test_no_straight_move_leads_through_a_forbidden_door() -> None:
+    rows = ["b" * 30, *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 5, "b...U" + "." * 24 + "b"]
+    rows += ["b" + "." * 28 + "b"] * 2 + rows[1:6] + ["b" * 30]
+    model = seen_whole(rows)
+    rooms = rooms_of(model)
+    assert len(rooms.doors) == 1
+    carried = symbol("at", symbol("x"), symbol("corner", symbol("northeast")))
+    never = symbol("not_through", symbol("utak"), symbol("d"))
+    screens, beyond = Screens(model), Aim("explore", np.array([7 * 30 + 25]), "there")
+    assert FewestMoves(screens).way(beyond) is not None
+    for goals, moves in (((carried,), True), ((carried, never), False)):
+        task = Task({}, (), goals)
+        decider = Decider(task)
+        situation = Situation(model, screens, {}, rooms, corners(model), task)
+        decision = decider._walk(beyond, decider.stages[0], situation, FewestMoves(screens))
+        assert (decision.command is not None) == moves
