@@ -237,7 +237,9 @@ class Carrier:
             return Act(Release(), f"{model.held} is let go, to be taken elsewhere")
         if model.view.locate(*model.place) != model.view.locate(*leg.place):
             return Go(square_of(leg.place, model), leg.place, f"{course.name} can be taken from there")
-        near = course if stands(model, leg.place) else from_here(course, ends, situation)
+        near = course if stands(model, leg.place) else None
+        if near is None and self.pull:  # who may only push stands where that was made sure of
+            near = from_here(course, ends, situation)
         if near is None:
             dx, dy = leg.place[0] - model.place[0], leg.place[1] - model.place[1]
             return Act(Move(*model.lattice.to_utak(dx, dy)), "to the middle of the square")

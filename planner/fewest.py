@@ -4,6 +4,7 @@ A way along walls bends at every corner of theirs. Often an aim can be met at a 
 by way of one that a second move leads on from, and nothing is lost by going a little further.
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -35,14 +36,17 @@ class FewestMoves:
         return [self._priced(aim) for aim in aims]
 
     def way(self, aim: Aim) -> Way | None:
-        """The way to an aim that one or two moves lead to, as its first move; None for others."""
+        """The way to an aim that one or two moves lead to, as its first move; None for others.
+
+        What clearance it has is not measured: 0.
+        """
         here, near = self._screens.here, self._met(aim)
         if len(near):
             far = self._far[near]
             there: Square | None = self._square(int(near[far.argmin()]))
         else:
             there = self._turning(aim)
-        return None if there is None or there == here else Way((here, there), 0.0, 0.0, 0)
+        return None if there is None or there == here else Way((here, there), math.dist(here, there), 0.0, 0)
 
     @property
     def _far(self) -> NDArray[np.int32]:
@@ -61,10 +65,14 @@ class FewestMoves:
 
     def _met(self, aim: Aim) -> Squares:
         """The squares of an aim to which one move leads."""
-        if aim.kind not in self._reached:
-            self._reached[aim.kind] = one_move(self._screens, aim.kind, HURRY)
-        near: Squares = aim.squares[self._reached[aim.kind].ravel()[aim.squares]]
+        near: Squares = aim.squares[self._first(aim.kind).ravel()[aim.squares]]
         return near
+
+    def _first(self, kind: str) -> Mask:
+        """(rows, columns): the squares to which one move leads, by the kind of its aim."""
+        if kind not in self._reached:
+            self._reached[kind] = one_move(self._screens, kind, HURRY)
+        return self._reached[kind]
 
     def _turning(self, aim: Aim) -> Square | None:
         """Where the first of two moves to an aim ends, if two will do: on the shortest such way."""
@@ -79,7 +87,7 @@ class FewestMoves:
         nearest = sure[np.argsort(self._far[sure], kind="stable")]
         some = nearest[np.unique(np.linspace(0, len(nearest) - 1, TRIED).astype(int))] if len(nearest) else nearest
         (x, y), best, found = screens.here, np.inf, None
-        first = self._reached[aim.kind]
+        first = self._first(aim.kind)
         for end in some.tolist():
             column, row = self._square(end)
             rows, columns = np.nonzero(straight(screens.safe, column, row, HURRY.longest[aim.kind], first))
