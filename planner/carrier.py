@@ -104,6 +104,15 @@ class Carrier:
         self._course = course
         return self._next(course, ends if course.name == node.name else {}, situation)
 
+    def given_up(self, model: WorldModel) -> Act | None:
+        """What to do when that which he holds went round in circles: let go of it, and do not take it so again."""
+        held = model.object(model.held) if model.held else None
+        if held is None:
+            return None
+        self._course = None
+        self._blame(held, model)
+        return Act(Release(), f"{held.name} goes round in circles")
+
     def gone_on(self, node: Node, situation: Situation) -> Act | None:
         """The next command of the plan under way for what he holds, if the world is still as it says."""
         if self._course is None or self._course.name != node.name or situation.model.held != node.name:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kb.body import Command, Grasp, Release
+from kb.body import Command, Grasp, Push, Release, Turn
 from kb.corners import Corner, corners
 from kb.facts import Fact
 from kb.reconciliation import Reconciled, reconcile
@@ -181,6 +181,8 @@ class Decider:
             return Decision(None, f"{stage} cannot be attained: {node.name} cannot be moved", "impossible")
         advice = self._advice(node, land, situation)
         if isinstance(advice, Act):
+            if isinstance(advice.command, Push | Turn) and self._circles.noticed(situation.model, advice.command):
+                advice = self.carrier.given_up(situation.model) or advice
             look = self._before_grasp(node, stage, situation) if isinstance(advice.command, Grasp) else None
             if look is not None:
                 return look

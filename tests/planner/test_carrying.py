@@ -13,7 +13,7 @@ import planner.carrier
 from benchmarks.trial import Conditions, run_trial
 from geometry.rigid import Translate
 from kb.body import Grasp, Move, Push, Release, Turn
-from kb.worldmodel import Node
+from kb.worldmodel import Node, WorldModel
 from planner.course import clear_part
 from planner.destinations import Situation
 from planner.haulage import Haul
@@ -241,3 +241,32 @@ def test_who_has_hardly_looked_looks_once_more_before_he_takes_what_stands_besid
     assert done.result.verdict == "done", done.result.reason
     assert not isinstance(done.commands[0], Grasp)
     lies_as_believed(done.session)
+
+
+def test_what_goes_round_in_circles_is_let_go_and_taken_elsewhere(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = scene(tmp_path, room(SQUARE), "object(x). shape(x, square).", "at(x, corner(northeast)).")
+    session = Session(read_scenario(folder), Settings(), make_robot, EpisodeLog(None))
+    session.wake()
+    circles, circling = session.robot.decider._circles, []
+
+    def noticed(model: WorldModel, command: object) -> bool:
+        again = isinstance(command, Push) and not circling
+        circling.extend([model.place] * again)
+        return again
+
+    monkeypatch.setattr(circles, "noticed", noticed)
+    taken, after = [], []
+    while not session.finished:
+        command = session.robot.decision.command
+        if isinstance(command, Grasp):
+            taken.append(session.robot.model.place)
+        session.step()
+        if circling and not after:
+            after.append(session.robot.decision.command)
+    assert session.end().verdict == "done"
+    assert isinstance(after[0], Release)
+    assert taken[0] == circling[0]
+    assert math.dist(taken[0], taken[1]) >= 1
+    lies_as_believed(session)
