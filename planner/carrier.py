@@ -104,14 +104,12 @@ class Carrier:
         self._course = course
         return self._next(course, ends if course.name == node.name else {}, situation)
 
-    def given_up(self, model: WorldModel) -> Act | None:
+    def given_up(self, model: WorldModel) -> Act:
         """What to do when that which he holds went round in circles: let go of it, and do not take it so again."""
-        held = model.object(model.held) if model.held else None
-        if held is None:
-            return None
+        assert model.held is not None
         self._course = None
-        self._blame(held, model)
-        return Act(Release(), f"{held.name} goes round in circles")
+        self._blame(model.object(model.held), model)
+        return Act(Release(), f"{model.held} goes round in circles")
 
     def gone_on(self, node: Node, situation: Situation) -> Act | None:
         """The next command of the plan under way for what he holds, if the world is still as it says."""

@@ -17,7 +17,7 @@ from geometry.yard import Yard
 from kb.worldmodel import Node, Patch, WorldModel
 from planner.destinations import Situation
 from planner.haulage import Haul, swept_squares
-from planner.landing import in_view, lands
+from planner.landing import in_view, lands_in_one
 from planner.screen import Squares
 
 Mask = NDArray[np.bool_]
@@ -92,7 +92,7 @@ def followed(course: Course, ends: Mapping[str, End] | None, situation: Situatio
         end = in_view(course.end, situation)
     else:
         end = None if node.stuck else _led(course, node, free, situation)
-    if end is None or (ends is not None and not any(lands(goal, end) for goal in ends.values())):
+    if end is None or (ends is not None and not lands_in_one(ends, end)):
         return None
     return replace(course, polygon=node.polygon)
 
@@ -106,7 +106,7 @@ def from_here(course: Course, ends: Mapping[str, End], situation: Situation) -> 
     here = _shifted(first, model.place[0] - first.place[0], model.place[1] - first.place[1])
     near = replace(course, legs=(here, *others))
     end = _led(near, node, _room(course, node, situation), situation)
-    return near if end is not None and any(lands(goal, end) for goal in ends.values()) else None
+    return near if end is not None and lands_in_one(ends, end) else None
 
 
 def clear_part(haul: Haul, node: Node, situation: Situation) -> Haul | None:

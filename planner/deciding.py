@@ -182,7 +182,7 @@ class Decider:
         advice = self._advice(node, land, situation)
         if isinstance(advice, Act):
             if isinstance(advice.command, Push | Turn) and self._circles.noticed(situation.model, advice.command):
-                advice = self.carrier.given_up(situation.model) or advice
+                advice = self.carrier.given_up(situation.model)
             look = self._before_grasp(node, stage, situation) if isinstance(advice.command, Grasp) else None
             if look is not None:
                 return look

@@ -109,11 +109,24 @@ def destination(goal: Fact, situation: Situation) -> Destination:
     raise ValueError(f"not a goal of place: {goal}")
 
 
-def corner(side: str, situation: Situation, carried: bool = False) -> Destination:
+def corner(side: str, situation: Situation) -> Destination:
     """The convex corner of the known floor that lies furthest towards a side of Utak's frame.
 
-    Where the floor goes on unseen at its furthest, or is seen beyond walls, it is not known yet; where a room is not
-    seen that may go further, it may be another one. carried : something is to be carried there.
+    Where a room is not seen that may go further, it may be another one.
+    """
+    unknown = unknown_corner(side, situation)
+    if unknown is not None:
+        return unknown
+    column, row = situation.corners[side].square
+    rooms = rooms_to_see(side, situation, carried=False)
+    best = np.array([row * situation.model.labels.shape[1] + column])
+    return Destination(best, rooms[0].what if rooms else "", rooms)
+
+
+def unknown_corner(side: str, situation: Situation) -> Destination | None:
+    """What is missing to tell where the corner towards a side is; None when that is known.
+
+    It is not where the floor goes on unseen at its furthest, or is seen beyond walls.
     """
     model, screens = situation.model, situation.screens
     column, row = situation.corners[side].square
@@ -125,15 +138,16 @@ def corner(side: str, situation: Situation, carried: bool = False) -> Destinatio
     if not model.view.seen[around].all():
         lookout = Lookout(short_of(screens, np.array([best])), f"the floor goes on to the {side}, unseen")
         return nowhere(lookout.what, (lookout,))
-    rooms = rooms_to_see(side, situation, carried)
-    return Destination(np.array([best]), rooms[0].what if rooms else "", rooms)
+    return None
 
 
 def rooms_to_see(side: str, situation: Situation, carried: bool) -> tuple[Lookout, ...]:
     """Rooms that are not seen and may go further towards a side than all that is.
 
     The floor goes on unseen behind what may be a door, or would be one if what may yet be an object is no wall; or
-    behind what is likely a gap; or it is seen where no way leads yet, but one may. carried : as for `corner`.
+    behind what is likely a gap; or it is seen where no way leads yet, but one may.
+
+    carried : is something to be carried there?
     """
     screens, model = situation.screens, situation.model
     furthest, room = (CARRIED, CARRIED) if carried else (FURTHEST, ROOM)

@@ -28,7 +28,7 @@ class FewestMoves:
 
     def __init__(self, screens: Screens) -> None:
         self._screens = screens
-        self._reached: dict[str, Mask] = {}
+        self._reached: dict[int, Mask] = {}  # by how far a move leads at most
         self._by_way: dict[tuple[str, bytes], Square | None] = {}
 
     def priced(self, aims: Sequence[Aim]) -> list[Aim]:
@@ -70,9 +70,10 @@ class FewestMoves:
 
     def _first(self, kind: str) -> Mask:
         """(rows, columns): the squares to which one move leads, by the kind of its aim."""
-        if kind not in self._reached:
-            self._reached[kind] = one_move(self._screens, kind, HURRY)
-        return self._reached[kind]
+        most = HURRY.most(kind, self._screens.model)
+        if most not in self._reached:
+            self._reached[most] = one_move(self._screens, kind, HURRY)
+        return self._reached[most]
 
     def _turning(self, aim: Aim) -> Square | None:
         """Where the first of two moves to an aim ends, if two will do: on the shortest such way."""

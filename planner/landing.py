@@ -19,7 +19,7 @@ from kb.facts import Fact, Number, Symbol, Text
 from kb.rooms import Rooms
 from kb.wkt import parse_wkt
 from kb.worldmodel import Node, in_doubt
-from planner.destinations import Situation, corner, doorsteps, numbers, out_of_sight, rooms_to_see
+from planner.destinations import Situation, doorsteps, numbers, out_of_sight, rooms_to_see, unknown_corner
 from planner.exploring import Lookout, sight_of
 from planner.screen import grown
 
@@ -87,13 +87,17 @@ def _landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Land
 
 def _lies_in(ends: Mapping[str, End], node: Node, situation: Situation) -> bool:
     """Does an object lie where a goal holds?"""
-    shape = in_view(node.polygon, situation)
-    return any(lands(end, shape) for end in ends.values())
+    return lands_in_one(ends, in_view(node.polygon, situation))
 
 
 def lands(end: End, shape: Any) -> bool:
     """Does a shape, in the frame of the view's arrays, lie where a goal holds?"""
     return met(end, shape, shape)
+
+
+def lands_in_one(ends: Mapping[str, End], shape: Any) -> bool:
+    """Does a shape, in the frame of the view's arrays, lie where one of some goals holds?"""
+    return any(lands(end, shape) for end in ends.values())
 
 
 def in_view(shape: Any, situation: Situation) -> Any:
@@ -116,16 +120,15 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     Whether there is another one in a room that is not seen he looks only then: mostly there is none.
     """
     column, row = situation.corners[side].square
-    if situation.model.mask(node.patch)[row, column]:
-        rooms = rooms_to_see(side, situation, carried=True)
-    else:
-        found = corner(side, situation, carried=True)
-        if found.missing and not len(found.squares):
-            return Landing({}, found.missing, found.lookouts, _near(side, node, situation))
-        rooms = found.lookouts
+    if not situation.model.mask(node.patch)[row, column]:
+        unknown = unknown_corner(side, situation)
+        if unknown is not None:
+            return Landing({}, unknown.missing, unknown.lookouts, _near(side, node, situation))
     land = _in_corner(side, node, situation)
-    if rooms and (land.holds or _lies_in(land.ends, node, situation)):
-        return Landing({}, rooms[0].what, rooms)
+    if land.holds or _lies_in(land.ends, node, situation):
+        rooms = rooms_to_see(side, situation, carried=True)
+        if rooms:
+            return Landing({}, rooms[0].what, rooms)
     return land
 
 

@@ -43,7 +43,7 @@ class Pace(NamedTuple):
 
 
 STROLL = Pace({"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}, 9)
-HURRY = Pace({"attain": 48, "inspect": 48, "explore": 48, "pass": 8, "settle": 12}, 16)
+HURRY = Pace({**STROLL.longest, "inspect": 48, "explore": 48}, 16)
 
 
 def next_move(
@@ -94,16 +94,16 @@ def _is_roomy(roomy: NDArray[np.bool_] | None, here: Square, there: Square) -> b
     return roomy is None or far <= NARROW or clear(roomy, _halfway(here, there), there)
 
 
+def _halfway(here: Square, there: Square) -> Square:
+    """The square halfway to another one."""
+    return (here[0] + there[0]) // 2, (here[1] + there[1]) // 2
+
+
 def move_to(model: WorldModel, square: Square, aside: tuple[float, float]) -> Move:
     """The move from where Utak believes himself to a square (column, row) of the view, aside from its centre."""
     x, y = model.view.west + square[0] + 0.5 + aside[0], model.view.south + square[1] + 0.5 + aside[1]
     east, north = model.lattice.to_utak(x - model.place[0], y - model.place[1])
     return Move(round(east, DIGITS) + 0.0, round(north, DIGITS) + 0.0)
-
-
-def _halfway(here: Square, there: Square) -> Square:
-    """The square halfway to another one."""
-    return (here[0] + there[0]) // 2, (here[1] + there[1]) // 2
 
 
 def _aside(screens: Screens, square: Square, kind: str) -> tuple[float, float]:

@@ -17,7 +17,7 @@ def looks(wide: int, high: int, carried: bool) -> int:
     unseen."""
     wall = "b" * (1 + DOOR) + "..." + "b" * (wide - DOOR - 2)
     rows = ["b" * (wide + 2), *["b" + "." * wide + "b"] * (high - 1), "b....U" + "." * (wide - 5) + "b"]
-    model = seen_whole([*rows, wall, wall, *[wall.replace(".", "?").replace("b", "?")] * 3])
+    model = seen_whole([*rows, wall, wall, *["?" * len(wall)] * 3])
     rooms = rooms_of(model)
     assert len(rooms.doors) == 1
     situation = Situation(model, Screens(model), {}, rooms, corners(model), Task({}, (), ()))
