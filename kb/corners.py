@@ -30,14 +30,16 @@ class Corner(NamedTuple):
 
 def known_floor(model: WorldModel) -> NDArray[np.bool_]:
     """(rows, columns): the floor on which Utak stands, all other floor that is seen and large enough to be some, and
-    the floor under what he has moved: the squares that it surely covers, for those that it may cover may be wall.
+    the floor under what he has moved: squares that were floor before it came there, or that it surely covers. Others
+    that it may cover may be wall.
     """
     sizes = np.bincount(model.labels.ravel())
     large = (sizes >= SMALLEST)[model.labels]
     mask: NDArray[np.bool_] = model.floor | (model.space & large)
     for node in model.objects:
         if node.moved:
-            mask |= (model.labels == label_of(node.region)) & (model.view.state == FULL)
+            floor = model.view.state == FULL if model.beneath is None else (model.view.state == FULL) | model.beneath
+            mask |= (model.labels == label_of(node.region)) & floor
     return mask
 
 

@@ -203,6 +203,7 @@ def _laid(model: WorldModel, load: Load) -> WorldModel:
     here = view.locate(*model.place)
     shared = view.state[here] == FREE and possible[here]
     sure[here] = possible[here] = False
+    beneath = model.space if model.beneath is None else model.beneath
     label = int(labels.max()) + 1
     labels[possible & (view.state != FULL)] = label
     state = np.where(sure, np.int8(FULL), np.where(possible & (view.state == FREE), np.int8(OPEN), view.state))
@@ -217,7 +218,7 @@ def _laid(model: WorldModel, load: Load) -> WorldModel:
     seen = view.seen | possible
     kinds = Kinds({**model.kinds.kind, f"part{label}": {"object": 100}}, model.kinds.hidden_passages)
     laid = view._replace(state=state.astype(np.int8), probability=probability, by_counts=by_counts, seen=seen)
-    return replace(model, view=laid, labels=labels, kinds=kinds)
+    return replace(model, view=laid, labels=labels, kinds=kinds, beneath=beneath)
 
 
 def _may_be_object(region: str, extent: int, kinds: Kinds) -> bool:

@@ -102,6 +102,8 @@ class WorldModel:
     spread : by how many radians the lattice may still lie otherwise than believed. leeway : (west, south, east, north)
     how far from where he believes it he may have woken in his square, the first two not above 0.
     imagined : pictures that agree with all counts.
+    beneath : (rows, columns), floor of the standing map, upon which things that he has moved may lie now; None while he
+    has moved none.
     """
 
     lattice: Lattice
@@ -117,6 +119,7 @@ class WorldModel:
     spread: float = 0.0
     leeway: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     imagined: Imagined = NOTHING_IMAGINED
+    beneath: Mask | None = None
 
     @cached_property
     def certain(self) -> Mask:

@@ -64,4 +64,6 @@ def test_what_was_moved_lies_on_floor_but_the_wall_that_it_may_reach_into_is_non
     moved = replace(model, labels=np.where(under, label, model.labels).astype(np.int32), objects=(thing,))
     assert corners(moved)["northeast"].square == (6, 3)
     state = np.where(under, OPEN, model.view.state).astype(np.int8)  # it may cover these, and may not
-    assert corners(replace(moved, view=model.view._replace(state=state)))["northeast"].square == (5, 3)
+    loose = replace(moved, view=model.view._replace(state=state))
+    assert corners(loose)["northeast"].square == (5, 3)
+    assert corners(replace(loose, beneath=under))["northeast"].square == (6, 3)  # they were floor before it came there
