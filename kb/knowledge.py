@@ -101,6 +101,7 @@ class Knowledge:
             leeway=self.memory.leeway,
             held=self.memory.held,
             imagined=imagined,
+            touch=impression.touch,
         )
         self.objects = self._objects(model)
         for load in self.memory.loads.values():

@@ -104,6 +104,7 @@ class WorldModel:
     imagined : pictures that agree with all counts.
     beneath : (rows, columns), floor of the standing map, upon which things that he has moved may lie now; None while he
     has moved none.
+    touch : as of the impression, the colours felt in DIRECTIONS; () when it is not known.
     """
 
     lattice: Lattice
@@ -120,6 +121,7 @@ class WorldModel:
     leeway: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     imagined: Imagined = NOTHING_IMAGINED
     beneath: Mask | None = None
+    touch: tuple[str | None, ...] = ()
 
     @cached_property
     def certain(self) -> Mask:

@@ -88,21 +88,25 @@ class Carrier:
 
     def advise(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Advice:
         """What to do to carry an object to one of several ends."""
-        before = self._course
+        before, self._course = self._course, None
         course = None
         if before is not None:
             course = followed(before, ends if before.name == node.name else None, situation)
         if course is None:
             self.missed += before is not None and before.grasped and not before.ended
-            failure = self._failure(situation.model)
+            failure = self._failure(before, situation.model)
             if failure is not None:
                 return failure
-            found = self._planned(node, ends, before.target if before is not None else "", situation)
+        last = before.target if before is not None else ""
+        while True:
+            found = course or self._planned(node, ends, last, situation)
             if isinstance(found, See | Refusal):
                 return found
-            course = found
-        self._course = course
-        return self._next(course, ends if course.name == node.name else {}, situation)
+            advice = self._next(found, ends if found.name == node.name else {}, situation)
+            if advice is not None:
+                return advice
+            self._blame(situation.model.object(found.name), situation.model)
+            course, self._course = None, None
 
     def given_up(self, model: WorldModel) -> Act:
         """What to do when that which he holds went round in circles: let go of it, and do not take it so again."""
@@ -123,10 +127,9 @@ class Carrier:
 
     # -- when it fails ---------------------------------------------------------------------------
 
-    def _failure(self, model: WorldModel) -> Advice | None:
+    def _failure(self, course: Course | None, model: WorldModel) -> Advice | None:
         """What to do when a motion with something in hand did not move it: try once more, then from elsewhere."""
         held = model.object(model.held) if model.held else None
-        course, self._course = self._course, None
         if held is None and course is not None and course.grasped:
             self._blame(model.object(course.name), model)
         if held is None or not held.stuck:
@@ -138,13 +141,13 @@ class Carrier:
         return Act(Release(), f"{held.name} did not move")
 
     def _blame(self, node: Node | None, model: WorldModel) -> None:
-        """Do not take a thing again from where Utak stands now."""
+        """Do not take a thing again from the square on which Utak stands now: plans have him in its middle."""
         if node is None or node.polygon is None:
             return
         middle = node.polygon.centroid
-        away = np.array([[model.place[0] - middle.x, model.place[1] - middle.y]])
-        x, y = Rotate(-node.turned, (0.0, 0.0)).points(away)[0]
-        self.failed[node.name] = (*self.failed.get(node.name, ()), (float(x), float(y)))
+        square = np.floor(model.place) + np.array(CENTRE)
+        holds = Rotate(-node.turned, (0.0, 0.0)).points(np.array([model.place, square]) - (middle.x, middle.y))
+        self.failed[node.name] = (*self.failed.get(node.name, ()), *((float(x), float(y)) for x, y in holds))
 
     # -- making one ------------------------------------------------------------------------------
 
@@ -204,13 +207,11 @@ class Carrier:
         return tuple((float(x), float(y)) for x, y in holds)
 
     def _seen(self, haul: Haul, node: Node, situation: Situation) -> See | None:
-        """What must be looked at before a plan is begun, if a look may tell more.
+        """What of the way of a plan must be looked at before it is begun, if a look may tell more of it.
 
-        What a turn meets leaves the thing at an angle that is hard to tell; a push is just shorter.
+        All that is believed floor is trusted: to be stopped now and then costs less than to look each time.
         """
-        model = situation.model
-        risky = haul.turned if haul.level == 0 else haul.swept
-        unsure = risky & ~situation.screens.safe & ~model.mask(node.patch)
+        unsure = haul.swept & ~situation.screens.free(0) & ~situation.model.mask(node.patch)
         if not unsure.any():
             return None
         lookout = sight_of(situation.screens, unsure, f"the way for {node.name} is not clear")
@@ -218,8 +219,9 @@ class Carrier:
 
     # -- following it ----------------------------------------------------------------------------
 
-    def _next(self, course: Course, ends: Mapping[str, End], situation: Situation) -> Act | Go:
-        """The next command of a plan. ends : where it may lead, where that is known."""
+    def _next(self, course: Course, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
+        """The next command of a plan, None when the thing is not felt there. ends : where it may lead, if known."""
+        self._course = course
         leg, model = course.legs[0], situation.model
         if not course.grasped:
             return self._taking(course, leg, ends, situation)
@@ -234,8 +236,11 @@ class Carrier:
         self._course = replace(course, legs=(rest, *course.legs[1:]), polygon=polygon, place=place)
         return Act(_command(motion, model), f"{course.name} is brought to {course.target}")
 
-    def _taking(self, course: Course, leg: Leg, ends: Mapping[str, End], situation: Situation) -> Act | Go:
-        """Walk to where the object is taken, and take it: from where he stands, if that does as well."""
+    def _taking(self, course: Course, leg: Leg, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
+        """Walk to where the object is taken, and take it: from where he stands, if that does as well.
+
+        None where nothing is felt that could be it: it lies otherwise than he believes, and he would grasp at air.
+        """
         model = situation.model
         if stands(model, leg.place) and model.held == course.name:
             self._course = replace(course, grasped=True, place=leg.place)
@@ -250,18 +255,31 @@ class Carrier:
         if near is None:
             dx, dy = leg.place[0] - model.place[0], leg.place[1] - model.place[1]
             return Act(Move(*model.lattice.to_utak(dx, dy)), "to the middle of the square")
+        direction = _direction(leg, course, model)
+        if direction is None:
+            return None
         self._course = replace(near, grasped=True, place=near.legs[0].place)
-        return Act(Grasp(_direction(leg, course, model)), f"{course.name} is taken to be carried to {course.target}")
+        return Act(Grasp(direction), f"{course.name} is taken to be carried to {course.target}")
 
 
-def _direction(leg: Leg, course: Course, model: WorldModel) -> str:
-    """The compass point of the square by which the object is taken, or of another one that it covers."""
+def _direction(leg: Leg, course: Course, model: WorldModel) -> str | None:
+    """The compass point by which the object is taken: that of the plan, or another by which it is felt; else None."""
     node = model.object(course.name)
     assert node is not None
     x, y = math.floor(leg.place[0]), math.floor(leg.place[1])
     ways, covered = model.lattice.directions(), node.patch.squares()
-    other = [direction for (dx, dy), direction in ways.items() if (x + dx, y + dy) in covered]
-    return ways.get(leg.direction_square) or next(iter(other), DIRECTIONS[0])
+    planned = ways.get(leg.direction_square)
+    others = [direction for (dx, dy), direction in ways.items() if (x + dx, y + dy) in covered]
+    directions = [planned, *others] if planned is not None else others
+    if not model.touch:
+        return next(iter(directions), None)
+    felt = [
+        direction
+        for direction, colour in zip(DIRECTIONS, model.touch, strict=True)
+        if colour is not None and node.colour in (None, colour)
+    ]
+    there = [direction for direction in directions if direction in felt]
+    return next(iter(there if node.colour is None else [*there, *felt]), None)
 
 
 def _command(motion: Motion, model: WorldModel) -> Command:

@@ -134,8 +134,7 @@ def clear_part(haul: Haul, node: Node, situation: Situation) -> Haul | None:
     if math.dist(first.place, place) < FARTHER:
         return None
     plan = replace(haul.plan, legs=(replace(first, motions=tuple(clear)),))
-    swept, _ = swept_squares(plan, start, situation.model.labels.shape)
-    return replace(haul, plan=plan, swept=swept)
+    return replace(haul, plan=plan, swept=swept_squares(plan, start, situation.model.labels.shape))
 
 
 def square_of(place: Place, model: WorldModel) -> Squares:

@@ -33,7 +33,8 @@ from planner.walking import ASKEW, HURRY, STROLL, halting, next_move
 from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
-FEW = 2  # squares looked from by one who has hardly looked
+FEW = 1  # squares looked from by one who has hardly looked
+SETTLED = 3  # squares of a thing, and about it, that may be open when it is taken
 MISSED = 2  # plans that miss before where they should lead to is looked at
 DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
 
@@ -238,7 +239,7 @@ class Decider:
         A thing that was moved askew, and the map with it, are hard to set right again.
         """
         model = situation.model
-        look = self._inspect(node, stage, situation)
+        look = self._inspect(node, stage, situation) if node.open > SETTLED else None
         if look is not None or model.spread <= ASKEW or len(model.looked_from) > FEW:
             return look
         aside = exploring.sight_of(situation.screens, model.mask(node.patch), "how the squares lie is not clear")

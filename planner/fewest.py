@@ -14,13 +14,18 @@ from geometry.straight import straight
 from planner.aims import Aim
 from planner.screen import Screens, Squares
 from planner.steps import Square
-from planner.walking import HURRY, one_move
+from planner.walking import HURRY
 from planner.ways import Way
 
 DETOUR = 12.0  # squares of way for which a move is saved
 FURTHER_MOVE = 5.0  # squares of way that each move after the first is taken for
 TRIED = 8  # squares of an aim to which two moves are sought
 Mask = NDArray[np.bool_]
+
+
+def one_move(screens: Screens, kind: str) -> Mask:
+    """(rows, columns): the squares to which one straight move leads, made as by `next_move` in a hurry."""
+    return straight(HURRY.ground(screens), *screens.here, HURRY.most(kind, screens.model))
 
 
 class FewestMoves:
@@ -72,7 +77,7 @@ class FewestMoves:
         """(rows, columns): the squares to which one move leads, by the kind of its aim."""
         most = HURRY.most(kind, self._screens.model)
         if most not in self._reached:
-            self._reached[most] = one_move(self._screens, kind, HURRY)
+            self._reached[most] = one_move(self._screens, kind)
         return self._reached[most]
 
     def _turning(self, aim: Aim) -> Square | None:
@@ -83,15 +88,15 @@ class FewestMoves:
         return self._by_way[key]
 
     def _found(self, aim: Aim) -> Square | None:
-        screens = self._screens
-        sure = aim.squares[(self._far[aim.squares] >= 0) & screens.safe.ravel()[aim.squares]]
+        screens, ground = self._screens, HURRY.ground(self._screens)
+        sure = aim.squares[(self._far[aim.squares] >= 0) & ground.ravel()[aim.squares]]
         nearest = sure[np.argsort(self._far[sure], kind="stable")]
         some = nearest[np.unique(np.linspace(0, len(nearest) - 1, TRIED).astype(int))] if len(nearest) else nearest
         (x, y), best, found = screens.here, np.inf, None
         first = self._first(aim.kind)
         for end in some.tolist():
             column, row = self._square(end)
-            rows, columns = np.nonzero(straight(screens.safe, column, row, HURRY.longest[aim.kind], first))
+            rows, columns = np.nonzero(straight(ground, column, row, HURRY.longest[aim.kind], first))
             if len(rows):
                 lengths = np.hypot(rows - y, columns - x) + np.hypot(rows - row, columns - column)
                 if lengths.min() < best:

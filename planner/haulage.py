@@ -40,7 +40,7 @@ class Haul:
     Attributes
     ----------
     plan : frame of the view's arrays. target : where to. level : of certainty of the squares it needs.
-    swept : (rows, columns) the squares that the object or Utak holding it cross. turned : those crossed in turns.
+    swept : (rows, columns) the squares that the object or Utak holding it cross.
     aside : nodes that must be moved out of the way first.
     """
 
@@ -48,7 +48,6 @@ class Haul:
     target: str
     level: int
     swept: Mask
-    turned: Mask
     aside: tuple[str, ...] = ()
 
 
@@ -185,36 +184,32 @@ def _choice(facts: Sequence[str]) -> tuple[str, int, str] | None:
 
 
 def _haul(plan: Carrying, shape: Any, name: str, level: int, situation: Situation, node: Node) -> Haul:
-    swept, turned = swept_squares(plan, shape, situation.model.labels.shape)
     model = situation.model
+    swept = swept_squares(plan, shape, model.labels.shape)
     needed = swept & ~model.mask(node.patch)  # what seems to stand where the object itself is, is not in its way
     others = (other for other in model.objects if other.name != node.name)
     aside = tuple(other.name for other in others if (model.mask(other.patch) & needed).any())
-    return Haul(plan, name, level, swept, turned, aside)
+    return Haul(plan, name, level, swept, aside)
 
 
-def swept_squares(plan: Carrying, shape: Any, size: tuple[int, ...]) -> tuple[Mask, Mask]:
-    """(rows, columns): the squares that an object, and Utak with it in his hand, cross on a plan; those of turns."""
+def swept_squares(plan: Carrying, shape: Any, size: tuple[int, ...]) -> Mask:
+    """(rows, columns): the squares that an object, and Utak with it in his hand, cross on a plan."""
     rows, columns = size
     mask: Mask = squares(shape, columns, rows)
-    turned: Mask = np.zeros_like(mask)
     for leg in plan.legs:
         x, y = leg.place
         for motion in leg.motions:
             far = math.hypot(motion.dx, motion.dy) if isinstance(motion, Translate) else 0.4 * abs(motion.degrees)
             steps = max(1, math.ceil(far / STRIDE))
             shares = [step / steps for step in range(1, steps + 1)]
-            swept = squares_after(shape, [motion.part(share) for share in shares], columns, rows)
+            mask |= squares_after(shape, [motion.part(share) for share in shares], columns, rows)
             shape = motion.carry(shape)
-            mask |= swept
             if isinstance(motion, Translate):
                 for share in shares:
                     here = x + motion.dx * share, y + motion.dy * share
                     mask[min(max(int(here[1]), 0), rows - 1), min(max(int(here[0]), 0), columns - 1)] = True
                 x, y = x + motion.dx, y + motion.dy
-            else:
-                turned |= swept
-    return mask, turned
+    return mask
 
 
 def _refusal(node: Node, plans: Sequence[Carrying], model: WorldModel) -> Refusal:

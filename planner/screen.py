@@ -89,6 +89,13 @@ class Screens:
         mask[self.here[1], self.here[0]] = True
         return mask
 
+    @cached_property
+    def believed(self) -> Mask:
+        """Squares over which a move is made by who had rather be stopped than look first: all that are believed floor,
+        right up to what is not settled, but for those beside what was never seen.
+        """
+        return self.safe | (self.free(0) & ~grown(~self.model.view.seen, 1))
+
 
 class Distances:
     """The ways to every square of a screen, by level; each is measured when it is first asked for."""

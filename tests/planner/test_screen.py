@@ -14,9 +14,10 @@ from kb.worldmodel import WorldModel
 from planner import exploring
 from planner.aims import Aim, choose
 from planner.circling import pivot, ways_round, winding
-from planner.screen import UNSEEN, Screens, grown
+from planner.fewest import one_move
+from planner.screen import UNSEEN, WARY, Screens, grown
 from planner.steps import clear_line, swept
-from planner.walking import HURRY, LOOSE, NARROW, STROLL, Pace, next_move, one_move
+from planner.walking import HURRY, LOOSE, NARROW, STROLL, Pace, next_move
 from planner.ways import choose_way, ways
 from tests.kb.drawings import seen_whole, walked
 from tests.kb.eyes import random_room
@@ -329,15 +330,27 @@ def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear(pace: Pac
             longest = max(longest, far)
             assert far < pace.unsure + 0.5
             column, row = screens.here[0] + round(move.east), screens.here[1] + round(move.north)
-            assert far < NARROW + 0.5 or clear_of[row, column]
+            assert pace.bold or far < NARROW + 0.5 or clear_of[row, column]
     assert longest > NARROW + 0.5
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_the_bold_go_right_up_to_what_is_not_settled_but_not_to_what_was_never_seen(seed: int) -> None:
+    screens = Screens(random_walk(seed))
+    view = screens.model.view
+    more = screens.believed & ~screens.safe
+    assert (screens.believed & screens.safe == screens.safe).all()
+    assert (more == screens.free(0) & ~screens.safe & ~grown(~view.seen, 1)).all()
+    beside_doubt = grown(view.seen & (view.state == OPEN) & (view.probability >= WARY), 1)
+    assert not (more & ~beside_doubt).any()
 
 
 @pytest.mark.parametrize("spread", [0.0, math.pi])
 @pytest.mark.parametrize("kind", sorted(STROLL.longest))
 def test_one_move_leads_just_where_the_next_move_may_end(kind: str, spread: float) -> None:
     screens = Screens(replace(seen_whole(HALL), spread=spread))
-    reached = one_move(screens, kind, HURRY)
+    reached = one_move(screens, kind)
     ended = np.zeros_like(reached)
     ended[screens.here[1], screens.here[0]] = True
     for row, column in np.argwhere(screens.floor).tolist():
@@ -347,7 +360,7 @@ def test_one_move_leads_just_where_the_next_move_may_end(kind: str, spread: floa
             )
             move = next_move(screens, [screens.here, step, (column, row)], kind, pace=HURRY)
             ended[screens.here[1] + round(move.north), screens.here[0] + round(move.east)] = True
-    assert (reached & screens.safe == ended & screens.safe).all()
+    assert (reached & screens.believed == ended & screens.believed).all()
 
 
 def test_he_does_not_halt_near_an_edge_where_what_lies_beyond_it_may_stop_him() -> None:

@@ -1,0 +1,110 @@
+"""What Utak does where he takes a thing: he goes by what he feels, and not again where it failed."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+
+import planner.carrier
+from geometry.carrying import Inside, Leg
+from kb.body import Grasp
+from kb.corners import corners
+from kb.rooms import rooms_of
+from kb.task import Task
+from kb.worldmodel import WorldModel
+from planner.carrier import Act, Carrier, Go
+from planner.course import Course
+from planner.destinations import Situation
+from planner.screen import Screens
+from tests.kb.drawings import seen_whole
+
+ROOM = [
+    "b" * 20,
+    *["b" + "." * 18 + "b"] * 6,
+    "b....ggg" + "." * 11 + "b",
+    "b...Uggg" + "." * 11 + "b",
+    "b....ggg" + "." * 11 + "b",
+    *["b" + "." * 18 + "b"] * 6,
+    "b" * 20,
+]
+NOTHING: tuple[str | None, ...] = (None,) * 8
+EAST, NORTHWEST = 2, 7
+
+
+def touching(directions: dict[int, str]) -> tuple[str | None, ...]:
+    return tuple(directions.get(n) for n in range(8))
+
+
+def beside(touch: tuple[str | None, ...], place: tuple[float, float] = (0.5, 0.5)) -> Situation:
+    """One who stands right beside a square thing, and feels this."""
+    model = seen_whole(ROOM)
+    (node,) = model.objects
+    west, south = node.patch.west, node.patch.south
+    node = replace(node, polygon=shapely.box(west, south, west + 3, south + 3), colour="g", shape={"square": 99})
+    model = replace(model, objects=(node,), touch=touch, place=place)
+    return Situation(model, Screens(model), {"x": node.name}, rooms_of(model), corners(model), Task({}, (), ()))
+
+
+def advice(carrier: Carrier, situation: Situation) -> planner.carrier.Advice:
+    """What to do to bring the thing to the eastern end of the room."""
+    (node,) = situation.model.objects
+    return carrier.advise(node, {"r": Inside(shapely.box(14, 2, 19, 14))}, situation)
+
+
+def way_of(situation: Situation) -> str | None:
+    """The direction of a grasp that was planned towards the east."""
+    (node,) = situation.model.objects
+    leg = Leg(situation.model.place, (1, 0), ())
+    course = Course(node.name, "r", node.polygon, (leg,), node.patch, 0)
+    return planner.carrier._direction(leg, course, situation.model)
+
+
+@pytest.mark.parametrize(
+    ("touch", "direction"),
+    [
+        ((), "east"),  # of what is felt nothing is known
+        (touching({EAST: "g"}), "east"),
+        (touching({EAST - 1: "g"}), "northeast"),  # it covers that square too
+        (touching({NORTHWEST: "g"}), "northwest"),  # it must lie there
+        (touching({NORTHWEST: "b"}), None),  # that is something else
+        (touching({EAST: "b"}), None),
+        (NOTHING, None),
+    ],
+)
+def test_he_takes_it_where_he_feels_it(touch: tuple[str | None, ...], direction: str | None) -> None:
+    assert way_of(beside(touch)) == direction
+
+
+def test_while_its_colour_is_not_known_it_is_only_taken_where_it_is_believed() -> None:
+    def uncoloured(touch: tuple[str | None, ...]) -> Situation:
+        situation = beside(touch)
+        (node,) = situation.model.objects
+        return replace(situation, model=replace(situation.model, objects=(replace(node, colour=None),)))
+
+    assert way_of(uncoloured(touching({EAST: "g"}))) == "east"
+    assert way_of(uncoloured(touching({NORTHWEST: "g"}))) is None
+
+
+def test_who_feels_it_takes_it_and_who_does_not_goes_elsewhere() -> None:
+    felt = advice(Carrier(), beside(touching({EAST - 1: "g", EAST: "g", EAST + 1: "g"})))
+    assert isinstance(felt, Act)
+    assert felt.command == Grasp("east")
+    carrier = Carrier()
+    unfelt = advice(carrier, beside(NOTHING))
+    assert isinstance(unfelt, Go)
+    assert math.dist(unfelt.place, (0.5, 0.5)) >= 1
+    assert carrier.failed
+
+
+@pytest.mark.parametrize("place", [(0.5, 0.5), (0.8, 0.3), (0.1, 0.9)])
+def test_where_it_failed_he_does_not_take_it_again_wherever_in_the_square_he_stands(place: tuple[float, float]) -> None:
+    carrier, situation = Carrier(), beside(touching({EAST: "g"}), place)
+    first = advice(carrier, situation)
+    assert isinstance(first, Act)
+    model: WorldModel = situation.model
+    carrier.given_up(replace(model, held=model.objects[0].name))
+    second = advice(carrier, situation)
+    assert isinstance(second, Go)
+    assert (np.floor(second.place) != np.floor(place)).any()
