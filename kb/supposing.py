@@ -35,6 +35,7 @@ LEAST = 4  # at least
 MOST_REPLAYS = 200  # looks that are taken in anew for that
 BEST = 3  # of those, on which the motion may have been stopped by what was not known
 BESIDE = 1.5  # squares about a thing that was moved in which looks need not agree
+SLIVER = 0.02  # squares^2: where there is no more room for where he woke, he was rather stopped
 ROOM = 3  # squares about a motion in which something may stop it
 
 
@@ -86,6 +87,10 @@ class Surprise:
         few = max(LEAST, min(FEW, MOST_REPLAYS // (len(self.looks) + 1)))
         for searched in (False, True)[: 1 + anew]:
             hypotheses = self._searched() if searched else self._left()
+            if searched and sum(hypothesis.area for hypothesis in hypotheses) < SLIVER:
+                short = self._cut_short(few)
+                if short is not None:
+                    return short
             for lattice in candidates(hypotheses, self.lattice)[:few]:
                 found.append(self._tried(lattice, hypotheses, searched))
                 if not found[-1].misfits:
@@ -99,6 +104,23 @@ class Surprise:
         others = [one for one in found if one.lattice != self.lattice][:BEST]
         found += [self._tried(one.lattice, one.hypotheses, one.searched, cut_short=True) for one in others]
         return min(found, key=lambda one: one.misfits, default=None)
+
+    def _cut_short(self, few: int) -> Supposed | None:
+        """A lattice that stood before the thing in hand was moved, on which that was stopped, and nothing contradicts.
+
+        Rather where something is known that stopped it; of angles that do as well, the middle one.
+        """
+        if self._moving is None:
+            return None
+        before = search(self.looks[-RECENT:], self.hypotheses, self._unsettled)
+        for cut_short in (False, True):
+            tried = [
+                self._tried(lattice, before, False, cut_short) for lattice in candidates(before, self.lattice)[:few]
+            ]
+            fitting = sorted((one for one in tried if not one.misfits), key=lambda one: one.lattice.angle)
+            if fitting:
+                return fitting[(len(fitting) - 1) // 2]
+        return None
 
     def _otherwise_turned(self) -> Supposed | None:
         """A lattice turned otherwise than believed that was never given up, and on which nothing contradicts.

@@ -34,7 +34,6 @@ from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
 FEW = 1  # squares looked from by one who has hardly looked
-SETTLED = 3  # squares of a thing, and about it, that may be open when it is taken
 MISSED = 2  # plans that miss before where they should lead to is looked at
 DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
 
@@ -234,14 +233,13 @@ class Decider:
         return self._pursue([Aim("inspect", *look)], stage, situation, lambda: look.what)
 
     def _before_grasp(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
-        """A look before an object is taken: at what it is, or, by who has hardly looked, at how the squares lie.
+        """A look at how the squares lie before an object is taken, by who has hardly looked.
 
         A thing that was moved askew, and the map with it, are hard to set right again.
         """
         model = situation.model
-        look = self._inspect(node, stage, situation) if node.open > SETTLED else None
-        if look is not None or model.spread <= ASKEW or len(model.looked_from) > FEW:
-            return look
+        if model.spread <= ASKEW or len(model.looked_from) > FEW:
+            return None
         aside = exploring.sight_of(situation.screens, model.mask(node.patch), "how the squares lie is not clear")
         return self._pursue([Aim("inspect", *aside)], stage, situation, lambda: "") if len(aside.squares) else None
 

@@ -223,6 +223,8 @@ def test_random_worlds(task: int, seed: int, tmp_path: Path) -> None:
         (5, 75012),  # the furthest corner lies in a room that he has not seen when he puts it down
         (6, 75010),  # two degrees off, which a turn could be mistaken for a place beside the middle of his square
         (7, 75012),
+        (8, 92006),  # two degrees off: the first push is stopped, which is not that he woke at the edge of his square
+        (5, 100001),
     ],
 )
 def test_worlds_that_were_misread(task: int, seed: int, tmp_path: Path) -> None:
