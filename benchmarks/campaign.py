@@ -28,7 +28,7 @@ from benchmarks.drawing import drawing
 from benchmarks.judging import judge_path
 from benchmarks.tally import faults, narrowness, table, verdicts
 from benchmarks.trial import Conditions, Trial, run_trial
-from benchmarks.worlds import scenario, seeds
+from benchmarks.worlds import add_kinds, scenario, seeds
 from simulator.session import Session
 
 
@@ -44,7 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         max_steps=given.max_steps,
         seconds=given.seconds,
         knowing=given.knowing,
-        plain=given.plain,
+        kind=given.kind,
     )
     with ExitStack() as stack:
         folder = given.keep or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="utak-campaign-")))
@@ -74,7 +74,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--seconds", type=int, default=120, help="most seconds a world, 0 for no limit (%(default)s)")
     parser.add_argument("-o", "--output", type=Path, help="a JSON line for each world")
     parser.add_argument("--only", metavar="TASK:SEED", help="one world, drawn at each step on stderr")
-    parser.add_argument("--plain", action="store_true", help="plain worlds: one or two rooms, on whole squares")
+    add_kinds(parser)
     parser.add_argument("--knowing", action="store_true", help="also run the same planner knowing everything")
     parser.add_argument("--unable", action="store_true", help="only worlds in which the task cannot be done")
     parser.add_argument("--again", type=Path, metavar="RESULTS", help="the worlds that went wrong in earlier results")
@@ -124,7 +124,7 @@ def _reported(trials: Iterable[Trial], count: int, output: TextIO | None) -> Ite
 
 def _watched(task: int, seed: int, conditions: Conditions, folder: Path) -> Trial:
     """One world with a drawing of it at each step, on stderr."""
-    world = scenario(task, seed, conditions.plain)
+    world = scenario(task, seed, conditions.kind)
     print(f"{world.name}, heading {world.heading}: {world.texts.goal}{world.texts.expect}", file=sys.stderr)
 
     def draw(at: Session) -> None:

@@ -1,14 +1,14 @@
 """Random worlds for the tasks in which Utak carries something: (v) to (ix)."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import numpy as np
 from shapely import Point, Polygon, union_all
 from shapely.geometry.base import BaseGeometry
 
-from benchmarks.floorplans import Door, Plan, corridor, random_plan
+from benchmarks.floorplans import SIDES, SNUG, Door, Plan, corridor, random_plan
 from benchmarks.furniture import ell, rectangle
 from benchmarks.placing import colour, face, furniture, lay, stand
 from benchmarks.scenes import Scenario, Task, Thing, wkt
@@ -17,6 +17,9 @@ from benchmarks.walking import NOWHERE, corner_box, furthest_corner
 # Least door in a wall 2 thick that an L of arms `a` and width `w` passes: {(a, w): squares}. Found by a flood of the
 # grid of poses, so right to about 0.1; that of (6, 2) agrees with 3.80-3.88, proved by other means.
 ELLS = {(5, 2): 3.84, (6, 2): 3.84, (7, 2): 3.84, (8, 2): 3.84, (6, 3): 5.28, (8, 3): 5.26}
+
+
+Sides = Mapping[int, tuple[int, int]]
 
 
 def load(rng: np.random.Generator, shape: str) -> tuple[Polygon, float]:
@@ -40,10 +43,15 @@ def door_widths(least: float, narrow: bool) -> tuple[int, int]:
     return math.ceil(least + 1), math.floor(least + 3)
 
 
-def to_corner_world(rng: np.random.Generator, seed: int, narrow: bool) -> Scenario | None:
-    """(v) Push the square into the northeast corner of the floor; narrow: the corner is beyond too narrow a door."""
+def to_corner_world(
+    rng: np.random.Generator, seed: int, narrow: bool, sides: Sides = SIDES, fewest: int = 1
+) -> Scenario | None:
+    """(v) Push the square into the northeast corner of the floor; narrow: the corner is beyond too narrow a door.
+
+    fewest : rooms.
+    """
     outline, least = load(rng, "square")
-    plan = random_plan(rng, 2 if narrow else int(rng.integers(1, 4)), door_widths(least, narrow))
+    plan = random_plan(rng, 2 if narrow else int(rng.integers(fewest, 4)), door_widths(least, narrow), sides=sides)
     heading = face(rng)
     corner = furthest_corner(plan.floor, "northeast", heading)
     if corner is None:
@@ -55,21 +63,21 @@ def to_corner_world(rng: np.random.Generator, seed: int, narrow: bool) -> Scenar
 
 
 def next_room_world(
-    rng: np.random.Generator, seed: int, narrow: bool, task: int = 6, shape: str = "square"
+    rng: np.random.Generator, seed: int, narrow: bool, task: int = 6, shape: str = "square", sides: Sides = SIDES
 ) -> Scenario | None:
     """(vi) Push the square, or (ix) the L-shaped object, into the next room."""
     outline, least = load(rng, shape)
-    plan = random_plan(rng, 2 if narrow else int(rng.integers(2, 4)), door_widths(least, narrow))
+    plan = random_plan(rng, 2 if narrow else int(rng.integers(2, 4)), door_widths(least, narrow), sides=sides)
     home = _one_of(rng, [room.name for room in plan.rooms])
     target = union_all([plan.room(name) for name in plan.neighbours(home)])
     goal = "in(x, room(next)).\n"
     return carried(rng, task, seed, plan, shape, outline, home, target, goal, face(rng), least if narrow else 0.0)
 
 
-def through_door_world(rng: np.random.Generator, seed: int, narrow: bool) -> Scenario | None:
+def through_door_world(rng: np.random.Generator, seed: int, narrow: bool, sides: Sides = SIDES) -> Scenario | None:
     """(vii) Push the brick through the door: any door, so it ends in any other room."""
     outline, least = load(rng, "brick")
-    plan = random_plan(rng, 2 if narrow else int(rng.integers(2, 4)), door_widths(least, narrow))
+    plan = random_plan(rng, 2 if narrow else int(rng.integers(2, 4)), door_widths(least, narrow), sides=sides)
     home = _one_of(rng, [room.name for room in plan.rooms])
     target = union_all([room.polygon for room in plan.rooms if room.name != home])
     goal = "through(x, d).\n"
@@ -93,12 +101,20 @@ def around_corner_world(rng: np.random.Generator, seed: int, narrow: bool) -> Sc
     return _finished(8, seed, plan, (thing,), utak, face(rng), "around(x, corner).\n", two, missing)
 
 
-CARRYING: dict[int, Callable[[np.random.Generator, int, bool], Scenario | None]] = {
+Maker = Callable[[np.random.Generator, int, bool], Scenario | None]
+CARRYING: dict[int, Maker] = {
     5: to_corner_world,
     6: next_room_world,
     7: through_door_world,
     8: around_corner_world,
     9: partial(next_room_world, task=9, shape="l_shape"),
+}
+CARRYING_SNUG: dict[int, Maker] = {
+    5: partial(to_corner_world, sides=SNUG, fewest=2),
+    6: partial(next_room_world, sides=SNUG),
+    7: partial(through_door_world, sides=SNUG),
+    8: around_corner_world,
+    9: partial(next_room_world, task=9, shape="l_shape", sides=SNUG),
 }
 
 

@@ -3,6 +3,7 @@
 All lengths are squares, all corners of rooms and doors are whole squares of the table.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -85,6 +86,7 @@ SIDES = {
     3: (14, 19),
     6: (14, 19),
 }  # least and greatest inner side along an axis with so many rooms
+SNUG = dict.fromkeys(SIDES, (18, 24))  # of rooms as they are mostly drawn
 
 
 def random_plan(
@@ -95,6 +97,7 @@ def random_plan(
     closed: bool = False,
     ells: float = 0.15,
     loops: float = 0.0,
+    sides: Mapping[int, tuple[int, int]] = SIDES,
 ) -> Plan:
     """A plan with so many rooms, each joined to the next by a door.
 
@@ -106,12 +109,13 @@ def random_plan(
     closed : leave the doors out: rooms that nothing joins.
     ells : chance that a corner is cut from a room, which makes it L-shaped.
     loops : chance that two neighbours which do not follow each other share a door too, where their walls let them.
+    sides : least and greatest inner side of a room along an axis with so many of them.
     """
     while True:
         cells = LAYOUTS[rooms][rng.integers(len(LAYOUTS[rooms]))]
         widths = [int(rng.integers(doors[0], doors[1] + 1)) for _ in range(rooms - 1)]
         least = max([2 * w + 1 for w in widths] + [0])
-        rects, size = _rectangles(rng, cells, wall, least)
+        rects, size = _rectangles(rng, cells, wall, least, sides)
         joints = [_door(rng, rects, (i, i + 1), w, wall) for i, w in enumerate(widths)]
         if all(joint is not None for joint in joints):
             pairs = [(i, j) for j in range(rooms) for i in range(j - 1) if loops and rng.random() < loops]
@@ -150,8 +154,10 @@ def _mirrored(part: Polygon, width: int, height: int, east: bool, north: bool) -
     return box(west, south, right, top)
 
 
-def _spans(rng: np.random.Generator, count: int, wall: int, least: int) -> list[tuple[int, int]]:
-    low, high = SIDES[count]
+def _spans(
+    rng: np.random.Generator, count: int, wall: int, least: int, sides: Mapping[int, tuple[int, int]]
+) -> list[tuple[int, int]]:
+    low, high = sides[count]
     spans, at = [], wall
     for _ in range(count):
         side = int(rng.integers(max(low, least), max(high, least) + 1))
@@ -160,10 +166,12 @@ def _spans(rng: np.random.Generator, count: int, wall: int, least: int) -> list[
     return spans
 
 
-def _rectangles(rng: np.random.Generator, cells: list[Cell], wall: int, least: int) -> tuple[list[Rect], Cell]:
+def _rectangles(
+    rng: np.random.Generator, cells: list[Cell], wall: int, least: int, sides: Mapping[int, tuple[int, int]]
+) -> tuple[list[Rect], Cell]:
     """One rectangle a cell of the layout, drawn in a little on sides where no room lies, and the table's size."""
-    columns = _spans(rng, 1 + max(c for c, _ in cells), wall, least)
-    rows = _spans(rng, 1 + max(r for _, r in cells), wall, least)
+    columns = _spans(rng, 1 + max(c for c, _ in cells), wall, least, sides)
+    rows = _spans(rng, 1 + max(r for _, r in cells), wall, least, sides)
     rects = []
     for column, row in cells:
         inset = [int(rng.integers(0, 5)) if rng.random() < 0.3 else 0 for _ in range(4)]

@@ -36,7 +36,7 @@ LOOPS = (4,)  # tasks whose shortest way is a loop
 class Conditions:
     """How a trial is run: noise, seed of the noise, path-finder, most commands, most seconds.
 
-    knowing : is it also run by one who knows everything? plain : in a plain world?
+    knowing : is it also run by one who knows everything? kind : of the world, see benchmarks.worlds.
     """
 
     noise: float = 0.0
@@ -45,7 +45,7 @@ class Conditions:
     max_steps: int = 200
     seconds: int = 120
     knowing: bool = False
-    plain: bool = False
+    kind: str = "wide"
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ def run_trial(
     maker: RobotMaker = make_robot,
 ) -> Trial:
     """Make a world, run the robot in it, and judge what he did; errors of the robot end up in the trial."""
-    world = scenario(task, seed, conditions.plain)
+    world = scenario(task, seed, conditions.kind)
     place = write(world, folder / world.name)
     try:
         with _alarm(conditions.seconds):

@@ -11,36 +11,40 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.carrying import CARRYING
+from benchmarks.carrying import CARRYING, CARRYING_SNUG
 from benchmarks.plain import PLAIN
 from benchmarks.scenes import Scenario, write
 from benchmarks.walking import WALKING
 
-MAKERS = WALKING | CARRYING
+MAKERS = {"wide": WALKING | CARRYING, "snug": WALKING | CARRYING_SNUG, "plain": PLAIN}
+STREAMS = {"wide": (), "plain": (1,), "snug": (2,)}
 UNABLE_EVERY = 12  # seeds
 TRIES = 20_000
 
 
-def scenario(task: int, seed: int, plain: bool = False) -> Scenario:
+def scenario(task: int, seed: int, kind: str = "wide") -> Scenario:
     """A random world with a task.
 
     Parameters
     ----------
     task : 1 to 9, as in the paper: (i) to (ix).
     seed : any integer from 0; when it is 11 modulo 12 the task cannot be done.
-    plain : a world of benchmarks.plain, in which every task can be done.
+    kind : "wide"; "snug", in which the rooms of what is carried are no larger than people mostly draw them (two or
+        three, of 18 to 24 squares); or "plain", a world of benchmarks.plain, in which every task can be done.
 
     Raises
     ------
     ValueError
-        When there is no such task or seed.
+        When there is no such task, seed or kind.
     """
-    if task not in MAKERS or seed < 0:
+    if kind not in MAKERS:
+        raise ValueError(f"no worlds are {kind}: they are {', '.join(MAKERS)}")
+    if task not in MAKERS[kind] or seed < 0:
         raise ValueError(f"no task {task} with seed {seed}: tasks are 1 to 9, seeds from 0")
-    rng = np.random.default_rng([task, seed, 1] if plain else [task, seed])
+    rng = np.random.default_rng([task, seed, *STREAMS[kind]])
     unable = seed % UNABLE_EVERY == UNABLE_EVERY - 1
     for _ in range(TRIES):
-        made = (PLAIN if plain else MAKERS)[task](rng, seed, unable)
+        made = MAKERS[kind][task](rng, seed, unable)
         if made is not None:
             return made
     raise RuntimeError(f"no world found for task {task}, seed {seed}")
@@ -54,18 +58,26 @@ def seeds(first: int, count: int, unable: bool = False) -> list[int]:
     return list(range(begin, begin + UNABLE_EVERY * count, UNABLE_EVERY))
 
 
+def add_kinds(parser: argparse.ArgumentParser) -> None:
+    """Options that say of which kind worlds are."""
+    kinds = parser.add_mutually_exclusive_group()
+    said = {"plain": "one or two rooms, everything on whole squares", "snug": "smaller rooms to carry in"}
+    for kind, what in said.items():
+        kinds.add_argument(f"--{kind}", dest="kind", action="store_const", const=kind, default="wide", help=what)
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     """Write scenario folders and print their names."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.worlds", description="Write random scenario folders.")
     parser.add_argument("--task", default="1,2,3,4", help="tasks, with commas between (default %(default)s)")
     parser.add_argument("--seed", type=int, default=0, help="the first seed (default %(default)s)")
     parser.add_argument("--count", type=int, default=1, help="how many of each task (default %(default)s)")
-    parser.add_argument("--plain", action="store_true", help="one or two rooms, everything on whole squares")
+    add_kinds(parser)
     parser.add_argument("-o", "--output", type=Path, default=Path("worlds"), help="folder (default %(default)s)")
     given = parser.parse_args(arguments)
     for task in [int(part) for part in given.task.split(",")]:
         for seed in range(given.seed, given.seed + given.count):
-            made = scenario(task, seed, given.plain)
+            made = scenario(task, seed, given.kind)
             print(write(made, given.output / made.name))
 
 

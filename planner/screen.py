@@ -21,6 +21,7 @@ Squares = NDArray[np.int64]  # flat indices
 LEVELS = (SPACE, 0.15, 0.3, 0.45)  # up to which probability of being occupied a square may be crossed
 UNSEEN = len(LEVELS)  # the level at which unseen squares may be crossed too
 PRICE = 6.0  # squares that each level of uncertainty costs
+TRUSTED = 0.04  # a square that is occupied with at most this probability may be run over
 WARY = 0.3  # beside squares that are occupied with at least this probability a move is made only over settled ones
 
 
@@ -91,10 +92,11 @@ class Screens:
 
     @cached_property
     def believed(self) -> Mask:
-        """Squares over which a move is made by who had rather be stopped than look first: all that are believed floor,
+        """Squares over which a move is made by who had rather be stopped than look first: all that are hardly occupied,
         right up to what is not settled, but for those beside what was never seen.
         """
-        return self.safe | (self.free(0) & ~grown(~self.model.view.seen, 1))
+        view = self.model.view
+        return self.safe | (self.free(0) & (view.probability <= TRUSTED) & ~grown(~view.seen, 1))
 
 
 class Distances:

@@ -21,7 +21,7 @@ from simulator.settings import Settings
 @pytest.mark.parametrize("task", sorted(GOALS))
 def test_plain_worlds_are_valid_and_on_whole_squares(task: int, tmp_path: Path) -> None:
     for seed in range(4):
-        world = scenario(task, seed, plain=True)
+        world = scenario(task, seed, kind="plain")
         assert world.possible
         assert world.heading % 90 == 0
         assert (world.utak.x % 1, world.utak.y % 1) == (0.5, 0.5)
@@ -32,13 +32,13 @@ def test_plain_worlds_are_valid_and_on_whole_squares(task: int, tmp_path: Path) 
         for thing in world.things:
             assert world.plan.floor.covers(thing.polygon)
             assert not thing.polygon.covers(world.utak)
-        assert world == scenario(task, seed, plain=True)
+        assert world == scenario(task, seed, kind="plain")
         read_scenario(write(world, tmp_path / f"{task}-{seed}"))
 
 
 @pytest.mark.parametrize("task", [2, 5, 7])
 def test_who_knows_everything_needs_no_more_than_who_finds_out(task: int, tmp_path: Path) -> None:
-    trial = run_trial(task, 1, Conditions(knowing=True, plain=True), tmp_path)
+    trial = run_trial(task, 1, Conditions(knowing=True, kind="plain"), tmp_path)
     assert trial.achieved
     assert 0 < trial.needed <= trial.steps
 
