@@ -29,6 +29,7 @@ PROMISING = 0.1  # a place at which a thing is this likely is worth a look
 LIKELY = 0.5  # what is looked for as likely as this is gone up to
 BARREN = 0.1  # of a square unseen beside the verge, how much less it promises than one beside the floor
 SETTING_OUT = 4.0  # squares of way that a look costs besides the way there
+SETTING_OUT_ANEW = 12.0  # the same for who does not want to stay, and counts commands rather than squares
 ALIKE = 0.9  # places worth as much as this of the best are as good
 HOMELY = 800  # squares of floor unseen among which one thing that is looked for is expected
 HALF = 0.5
@@ -95,7 +96,7 @@ def close(screens: Screens, mask: Mask, chance: float, arrive: bool) -> Squares:
     beside = grown(mask, 1)
     near = np.flatnonzero(screens.floor & (edged(mask) if arrive else beside))
     if (chance >= LIKELY or not arrive) and len(near) and not (beside & screens.looked_from).any():
-        return near if arrive else _telling(screens, near, mask, chance)
+        return near if arrive else _telling(screens, near, mask, chance, arrive)
     if arrive:
         far = grown(mask, FURTHER)
         near = np.flatnonzero(screens.floor & far)
@@ -106,13 +107,14 @@ def close(screens: Screens, mask: Mask, chance: float, arrive: bool) -> Squares:
         near = np.flatnonzero(_new(screens, apart) & about)
         if len(near):
             break
-    return _telling(screens, near, mask, chance)
+    return _telling(screens, near, mask, chance, arrive)
 
 
-def _telling(screens: Screens, near: Squares, mask: Mask, chance: float) -> Squares:
+def _telling(screens: Screens, near: Squares, mask: Mask, chance: float, arrive: bool) -> Squares:
     """Of some floor the squares from which most of what is open of a thing is seen exactly, for the way there.
 
-    chance : that it is what is looked for, and that who is not beside it must set out once more to be.
+    chance : that it is what is looked for, and that who is not beside it must set out once more to be. arrive : as for
+    `close`.
     """
     beside = grown(mask, 1)
     open_ = beside & ~screens.model.told
@@ -120,7 +122,8 @@ def _telling(screens: Screens, near: Squares, mask: Mask, chance: float) -> Squa
         return near
     seen = _sums(np.pad(open_, CLOSE).astype(np.float64), CLOSE).ravel()[near]
     apart = ~beside.ravel()[near]
-    value = (seen + 1) / (screens.distances[0].ravel()[near] / 5 + SETTING_OUT * (1 + chance * apart))
+    setting_out = SETTING_OUT if arrive else SETTING_OUT_ANEW
+    value = (seen + 1) / (screens.distances[0].ravel()[near] / 5 + setting_out * (1 + chance * apart))
     best: Squares = near[value >= ALIKE * value.max()]
     return best
 
