@@ -14,18 +14,13 @@ from geometry.straight import straight
 from planner.aims import Aim
 from planner.screen import Screens, Squares
 from planner.steps import Square
-from planner.walking import HURRY
+from planner.walking import HURRY, one_move
 from planner.ways import Way
 
 DETOUR = 12.0  # squares of way for which a move is saved
 FURTHER_MOVE = 5.0  # squares of way that each move after the first is taken for
 TRIED = 8  # squares of an aim to which two moves are sought
 Mask = NDArray[np.bool_]
-
-
-def one_move(screens: Screens, kind: str) -> Mask:
-    """(rows, columns): the squares to which one straight move leads, made as by `next_move` in a hurry."""
-    return straight(HURRY.ground(screens), *screens.here, HURRY.most(kind, screens.model))
 
 
 class FewestMoves:
@@ -77,7 +72,7 @@ class FewestMoves:
         """(rows, columns): the squares to which one move leads, by the kind of its aim."""
         most = HURRY.most(kind, self._screens.model)
         if most not in self._reached:
-            self._reached[most] = one_move(self._screens, kind)
+            self._reached[most] = one_move(self._screens, kind, HURRY)
         return self._reached[most]
 
     def _turning(self, aim: Aim) -> Square | None:

@@ -14,10 +14,9 @@ from kb.worldmodel import WorldModel
 from planner import exploring
 from planner.aims import Aim, choose
 from planner.circling import pivot, ways_round, winding
-from planner.fewest import one_move
-from planner.screen import UNSEEN, WARY, Screens, grown
+from planner.screen import TRUSTED, UNSEEN, WARY, Screens, grown
 from planner.steps import clear_line, swept
-from planner.walking import HURRY, LOOSE, NARROW, STROLL, Pace, next_move
+from planner.walking import HURRY, LOOSE, NARROW, STROLL, Pace, next_move, one_move
 from planner.ways import choose_way, ways
 from tests.kb.drawings import seen_whole, walked
 from tests.kb.eyes import random_room
@@ -330,7 +329,7 @@ def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear(pace: Pac
             longest = max(longest, far)
             assert far < pace.unsure + 0.5
             column, row = screens.here[0] + round(move.east), screens.here[1] + round(move.north)
-            assert pace.bold or far < NARROW + 0.5 or clear_of[row, column]
+            assert far < NARROW + 0.5 or clear_of[row, column]
     assert longest > NARROW + 0.5
 
 
@@ -341,16 +340,26 @@ def test_the_bold_go_right_up_to_what_is_not_settled_but_not_to_what_was_never_s
     view = screens.model.view
     more = screens.believed & ~screens.safe
     assert (screens.believed & screens.safe == screens.safe).all()
-    assert (more == screens.free(0) & ~screens.safe & ~grown(~view.seen, 1)).all()
+    hardly = screens.free(0) & (view.probability <= TRUSTED)
+    assert (more == hardly & ~screens.safe & ~grown(~view.seen, 1)).all()
     beside_doubt = grown(view.seen & (view.state == OPEN) & (view.probability >= WARY), 1)
     assert not (more & ~beside_doubt).any()
+
+
+def test_nobody_is_bold_while_it_is_open_how_the_lattice_lies() -> None:
+    model = random_walk(3)
+    settled, open_ = Screens(replace(model, spread=0.0)), Screens(replace(model, spread=math.pi))
+    assert (HURRY.ground(settled) == settled.believed).all()
+    assert (HURRY.ground(open_) == open_.safe).all()
+    assert (STROLL.ground(settled) == settled.safe).all()
+    assert (settled.believed != settled.safe).any()
 
 
 @pytest.mark.parametrize("spread", [0.0, math.pi])
 @pytest.mark.parametrize("kind", sorted(STROLL.longest))
 def test_one_move_leads_just_where_the_next_move_may_end(kind: str, spread: float) -> None:
     screens = Screens(replace(seen_whole(HALL), spread=spread))
-    reached = one_move(screens, kind)
+    reached = one_move(screens, kind, HURRY)
     ended = np.zeros_like(reached)
     ended[screens.here[1], screens.here[0]] = True
     for row, column in np.argwhere(screens.floor).tolist():
