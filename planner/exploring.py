@@ -29,7 +29,7 @@ PROMISING = 0.1  # a place at which a thing is this likely is worth a look
 LIKELY = 0.5  # what is looked for as likely as this is gone up to
 BARREN = 0.1  # of a square unseen beside the verge, how much less it promises than one beside the floor
 SETTING_OUT = 4.0  # squares of way that a look costs besides the way there
-SETTING_OUT_ANEW = 12.0  # the same for who does not want to stay, and counts commands rather than squares
+DEAR_LOOK = 12.0  # the same for who does not want to stay, and counts commands rather than squares
 ALIKE = 0.9  # places worth as much as this of the best are as good
 HOMELY = 800  # squares of floor unseen among which one thing that is looked for is expected
 HALF = 0.5
@@ -122,7 +122,7 @@ def _telling(screens: Screens, near: Squares, mask: Mask, chance: float, arrive:
         return near
     seen = _sums(np.pad(open_, CLOSE).astype(np.float64), CLOSE).ravel()[near]
     apart = ~beside.ravel()[near]
-    setting_out = SETTING_OUT if arrive else SETTING_OUT_ANEW
+    setting_out = SETTING_OUT if arrive else DEAR_LOOK
     value = (seen + 1) / (screens.distances[0].ravel()[near] / 5 + setting_out * (1 + chance * apart))
     best: Squares = near[value >= ALIKE * value.max()]
     return best
