@@ -118,10 +118,10 @@ def _cut_along(edges: Floats, axis: int) -> Floats:
     nth = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
     lines = np.where(stop > start, 0.0, 1.0)[edge]
     k = np.where(lines == 0.0, first[edge] + nth - 1, first[edge] + count[edge] - nth)
-    span = np.where(stop == start, 1.0, stop - start)
-    before = np.where(nth == 0, 0.0, (k - start[edge]) / span[edge])
+    span = (stop - start)[edge]
     step = np.where(lines == 0.0, 1.0, -1.0)
-    after = np.where(nth == count[edge], 1.0, (k + step - start[edge]) / span[edge])
+    before = np.divide(k - start[edge], span, out=np.zeros(len(edge)), where=nth > 0)
+    after = np.divide(k + step - start[edge], span, out=np.ones(len(edge)), where=nth < count[edge])
     return np.hstack([_point(edges, edge, before), _point(edges, edge, after)])
 
 

@@ -54,6 +54,14 @@ def test_squares_after_motions_are_those_of_one_or_another(points: list, motions
     assert (squares_after(shape, motions, WIDTH, HEIGHT) == (want > 1e-9))[sure].all()
 
 
+@pytest.mark.parametrize("least", [5e-324, 2.225073858507203e-309, 1e-300])
+def test_an_edge_that_hardly_rises_is_cut_like_a_level_one(least: float) -> None:
+    shape = shapely.Polygon([(0.5, 0), (3.5, least), (3.5, 2), (0.5, 2)])
+    np.testing.assert_allclose(
+        areas(shape, WIDTH, HEIGHT), areas(shapely.box(0.5, 0, 3.5, 2), WIDTH, HEIGHT), atol=1e-12
+    )
+
+
 def test_an_edge_on_a_grid_line_does_not_occupy_the_square_beyond() -> None:
     assert np.argwhere(squares(shapely.box(2, 3, 4, 4), WIDTH, HEIGHT)).tolist() == [[3, 2], [3, 3]]
 
