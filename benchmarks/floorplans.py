@@ -86,7 +86,8 @@ SIDES = {
     3: (14, 19),
     6: (14, 19),
 }  # least and greatest inner side along an axis with so many rooms
-SNUG = dict.fromkeys(SIDES, (18, 24))  # of rooms as they are mostly drawn
+Sides = Mapping[int, tuple[int, int]]
+SNUG: Sides = dict.fromkeys(SIDES, (18, 24))  # of rooms as they are mostly drawn
 
 
 def random_plan(
@@ -97,7 +98,7 @@ def random_plan(
     closed: bool = False,
     ells: float = 0.15,
     loops: float = 0.0,
-    sides: Mapping[int, tuple[int, int]] = SIDES,
+    sides: Sides = SIDES,
 ) -> Plan:
     """A plan with so many rooms, each joined to the next by a door.
 
@@ -154,9 +155,7 @@ def _mirrored(part: Polygon, width: int, height: int, east: bool, north: bool) -
     return box(west, south, right, top)
 
 
-def _spans(
-    rng: np.random.Generator, count: int, wall: int, least: int, sides: Mapping[int, tuple[int, int]]
-) -> list[tuple[int, int]]:
+def _spans(rng: np.random.Generator, count: int, wall: int, least: int, sides: Sides) -> list[tuple[int, int]]:
     low, high = sides[count]
     spans, at = [], wall
     for _ in range(count):
@@ -167,7 +166,7 @@ def _spans(
 
 
 def _rectangles(
-    rng: np.random.Generator, cells: list[Cell], wall: int, least: int, sides: Mapping[int, tuple[int, int]]
+    rng: np.random.Generator, cells: list[Cell], wall: int, least: int, sides: Sides
 ) -> tuple[list[Rect], Cell]:
     """One rectangle a cell of the layout, drawn in a little on sides where no room lies, and the table's size."""
     columns = _spans(rng, 1 + max(c for c, _ in cells), wall, least, sides)

@@ -4,8 +4,6 @@ Such are the worlds that people draw first; those of benchmarks.walking and benc
 respect.
 """
 
-from collections.abc import Callable
-
 import numpy as np
 from shapely import Point, Polygon, box, union_all
 from shapely.geometry.base import BaseGeometry
@@ -14,7 +12,7 @@ from benchmarks.carrying import ELLS
 from benchmarks.floorplans import Door, Plan, Room, corridor
 from benchmarks.furniture import ell, rectangle
 from benchmarks.placing import colour, lay, stand
-from benchmarks.scenes import Scenario, Task, Thing, wkt
+from benchmarks.scenes import Maker, Scenario, Task, Thing, wkt
 from benchmarks.walking import NOWHERE, corner_box, furthest_corner
 
 WALL = 2
@@ -162,7 +160,7 @@ def _texts(task: int, shape: str, target: BaseGeometry, utak: Point) -> Task:
     return Task(start, GOALS[task], expect)
 
 
-PLAIN: dict[int, Callable[[np.random.Generator, int, bool], Scenario | None]] = {
+PLAIN: dict[int, Maker] = {
     task: lambda rng, seed, unable, task=task: plain_world(rng, task, seed)  # type: ignore[misc]
     for task in GOALS
 }

@@ -1,8 +1,10 @@
 """A scenario as a frozen value, with the truth about it, and its four files."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import shapely
 from shapely import Point, Polygon
 from shapely.geometry.base import BaseGeometry
@@ -72,6 +74,10 @@ class Scenario:
             kind = "fixed" if thing.fixed else "object"
             lines.append(f'{kind}({thing.name}, {thing.colour}, "{wkt(thing.polygon)}").')
         return "\n".join(lines) + "\n"
+
+
+# Makes a world of (random numbers, seed, whether the task cannot be done); None when the things find no place.
+Maker = Callable[[np.random.Generator, int, bool], Scenario | None]
 
 
 def write(scenario: Scenario, folder: Path) -> Path:

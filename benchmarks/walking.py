@@ -4,7 +4,6 @@
 """
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 from shapely import Point, Polygon, box, union_all
@@ -14,7 +13,7 @@ from shapely.geometry.base import BaseGeometry
 from benchmarks.floorplans import Plan, convex_corners, random_plan
 from benchmarks.furniture import rectangle
 from benchmarks.placing import GAP, colour, face, furniture, lay, spot, stand
-from benchmarks.scenes import Scenario, Task, Thing, wkt
+from benchmarks.scenes import Maker, Scenario, Task, Thing, wkt
 
 DOORS = (3, 6)
 EYESHOT = 8.0  # squares: what lies so near is seen at every heading
@@ -138,7 +137,7 @@ def round_square_world(rng: np.random.Generator, seed: int, unable: bool) -> Sce
     return _made(4, seed, plan, things, utak, face(rng), texts, NOWHERE)
 
 
-WALKING: dict[int, Callable[[np.random.Generator, int, bool], Scenario | None]] = {
+WALKING: dict[int, Maker] = {
     1: corner_world,
     2: next_room_world,
     3: to_square_world,

@@ -36,10 +36,12 @@ def known_floor(model: WorldModel) -> NDArray[np.bool_]:
     sizes = np.bincount(model.labels.ravel())
     large = (sizes >= SMALLEST)[model.labels]
     mask: NDArray[np.bool_] = model.floor | (model.space & large)
+    under = model.view.state == FULL
+    if model.beneath is not None:
+        under |= model.beneath
     for node in model.objects:
         if node.moved:
-            floor = model.view.state == FULL if model.beneath is None else (model.view.state == FULL) | model.beneath
-            mask |= (model.labels == label_of(node.region)) & floor
+            mask |= (model.labels == label_of(node.region)) & under
     return mask
 
 

@@ -104,6 +104,8 @@ class Knowledge:
             touch=impression.touch,
         )
         self.objects = self._objects(model)
+        if self.memory.loads:
+            model = replace(model, beneath=model.space)
         for load in self.memory.loads.values():
             model = _laid(model, load)
             self.objects += (_node(load, int(model.labels.max())),)
@@ -204,7 +206,6 @@ def _laid(model: WorldModel, load: Load) -> WorldModel:
     here = view.locate(*model.place)
     shared = view.state[here] == FREE and possible[here]
     sure[here] = possible[here] = False
-    beneath = model.space if model.beneath is None else model.beneath
     label = int(labels.max()) + 1
     labels[possible & (view.state != FULL)] = label
     state = np.where(sure, np.int8(FULL), np.where(possible & (view.state == FREE), np.int8(OPEN), view.state))
@@ -219,7 +220,7 @@ def _laid(model: WorldModel, load: Load) -> WorldModel:
     seen = view.seen | possible
     kinds = Kinds({**model.kinds.kind, f"part{label}": {"object": 100}}, model.kinds.hidden_passages)
     laid = view._replace(state=state.astype(np.int8), probability=probability, by_counts=by_counts, seen=seen)
-    return replace(model, view=laid, labels=labels, kinds=kinds, beneath=beneath)
+    return replace(model, view=laid, labels=labels, kinds=kinds)
 
 
 def _may_be_object(region: str, extent: int, kinds: Kinds) -> bool:

@@ -96,9 +96,8 @@ class Surprise:
                 if not found[-1].misfits:
                     return found[-1]
         if not found and self._moving is not None:  # on none of them the motion went on to its end
-            before = search(self.looks[-RECENT:], self.hypotheses, self._unsettled)
-            for lattice in candidates(before, self.lattice)[:few]:
-                found += [self._tried(lattice, before, False, cut_short) for cut_short in (False, True)]
+            for lattice in candidates(self._before, self.lattice)[:few]:
+                found += [self._tried(lattice, self._before, False, cut_short) for cut_short in (False, True)]
             return min(found, key=lambda one: one.misfits, default=None)
         found.sort(key=lambda one: one.misfits)
         others = [one for one in found if one.lattice != self.lattice][:BEST]
@@ -112,11 +111,9 @@ class Surprise:
         """
         if self._moving is None:
             return None
-        before = search(self.looks[-RECENT:], self.hypotheses, self._unsettled)
+        lattices = candidates(self._before, self.lattice)[:few]
         for cut_short in (False, True):
-            tried = [
-                self._tried(lattice, before, False, cut_short) for lattice in candidates(before, self.lattice)[:few]
-            ]
+            tried = [self._tried(lattice, self._before, False, cut_short) for lattice in lattices]
             fitting = sorted((one for one in tried if not one.misfits), key=lambda one: one.lattice.angle)
             if fitting:
                 return fitting[(len(fitting) - 1) // 2]
@@ -173,6 +170,11 @@ class Surprise:
         return search(self._recent, about, self._unsettled)
 
     @cached_property
+    def _before(self) -> tuple[Hypothesis, ...]:
+        """The hypotheses that stood before the command."""
+        return search(self.looks[-RECENT:], self.hypotheses, self._unsettled)
+
+    @cached_property
     def _recent(self) -> list[Look]:
         return [*self.looks[-RECENT:], Look(self.ranges, self._own)]
 
@@ -200,7 +202,7 @@ class Surprise:
         self, lattice: Lattice, hypotheses: tuple[Hypothesis, ...], searched: bool, cut_short: bool = False
     ) -> Supposed:
         """What contradicts a lattice. cut_short : the motion may have ended early, for whatever reason."""
-        under = laid_on(lattice, self.lattice, self.evidence, self.looks, self.loads)
+        under = self._laid(lattice)
         if self._moving is None:  # it went as said
             place = lattice.place_from_utak(*self._own)
             misfits = under.misfits + clashes(lattice, under.evidence, under.loads.values(), place, self.ranges)
@@ -216,6 +218,16 @@ class Surprise:
             if not misfits:
                 break
         return min(tried, key=lambda one: one.misfits)
+
+    def _laid(self, lattice: Lattice) -> Relaid:
+        """What all looks say on a lattice; worked out once for each."""
+        if lattice not in self._known:
+            self._known[lattice] = laid_on(lattice, self.lattice, self.evidence, self.looks, self.loads)
+        return self._known[lattice]
+
+    @cached_property
+    def _known(self) -> dict[Lattice, Relaid]:
+        return {}
 
     def _outcomes(
         self, lattice: Lattice, under: Relaid, polygon: Any, command: Push | Turn, cut_short: bool

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geometry.carrying import Inside, Leg
 from geometry.ends import End
@@ -146,8 +147,8 @@ class Carrier:
             return
         middle = node.polygon.centroid
         square = np.floor(model.place) + np.array(CENTRE)
-        holds = Rotate(-node.turned, (0.0, 0.0)).points(np.array([model.place, square]) - (middle.x, middle.y))
-        self.failed[node.name] = (*self.failed.get(node.name, ()), *((float(x), float(y)) for x, y in holds))
+        holds = np.array([model.place, square]) - (middle.x, middle.y)
+        self.failed[node.name] = (*self.failed.get(node.name, ()), *_turned(holds, -node.turned))
 
     # -- making one ------------------------------------------------------------------------------
 
@@ -202,9 +203,7 @@ class Carrier:
 
     def _avoided(self, node: Node) -> tuple[Place, ...]:
         """The holds that failed, as the object lies now."""
-        turn = Rotate(node.turned, (0.0, 0.0))
-        holds = turn.points(np.array(self.failed.get(node.name, ())).reshape(-1, 2))
-        return tuple((float(x), float(y)) for x, y in holds)
+        return _turned(np.array(self.failed.get(node.name, ())).reshape(-1, 2), node.turned)
 
     def _seen(self, haul: Haul, node: Node, situation: Situation) -> See | None:
         """What of the way of a plan must be looked at before it is begun, if a look may tell more of it.
@@ -260,6 +259,11 @@ class Carrier:
             return None
         self._course = replace(near, grasped=True, place=near.legs[0].place)
         return Act(Grasp(direction), f"{course.name} is taken to be carried to {course.target}")
+
+
+def _turned(holds: NDArray[np.float64], degrees: float) -> tuple[Place, ...]:
+    """Holds, (n, 2), turned about the middle of their thing."""
+    return tuple((float(x), float(y)) for x, y in Rotate(degrees, (0.0, 0.0)).points(holds))
 
 
 def _direction(leg: Leg, course: Course, model: WorldModel) -> str | None:

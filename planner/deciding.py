@@ -29,7 +29,7 @@ from planner.repeating import Circles
 from planner.screen import Screens, Squares, vicinity
 from planner.searching import aims_towards
 from planner.steps import Square
-from planner.walking import ASKEW, HURRY, STROLL, halting, next_move
+from planner.walking import HURRY, STROLL, halting, is_open, next_move
 from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
@@ -238,7 +238,7 @@ class Decider:
         A thing that was moved askew, and the map with it, are hard to set right again.
         """
         model = situation.model
-        if model.spread <= ASKEW or len(model.looked_from) > FEW:
+        if not is_open(model) or len(model.looked_from) > FEW:
             return None
         aside = exploring.sight_of(situation.screens, model.mask(node.patch), "how the squares lie is not clear")
         return self._pursue([Aim("inspect", *aside)], stage, situation, lambda: "") if len(aside.squares) else None

@@ -28,6 +28,11 @@ BETWEEN = 1e-3  # squares from the line between two squares that are on it
 ASIDE = (0.0618, 0.0341)  # squares from a centre, where no turn by whole degrees leads to the line between two squares
 
 
+def is_open(model: WorldModel) -> bool:
+    """Is it open, by more than a few degrees, how the lattice lies?"""
+    return model.spread > ASKEW
+
+
 class Pace(NamedTuple):
     """How far one move leads at most, in rows and columns.
 
@@ -43,11 +48,11 @@ class Pace(NamedTuple):
 
     def most(self, kind: str, model: WorldModel) -> int:
         """Rows and columns of a move now."""
-        return min(self.longest[kind], self.unsure) if model.spread > ASKEW else self.longest[kind]
+        return min(self.longest[kind], self.unsure) if is_open(model) else self.longest[kind]
 
     def ground(self, screens: Screens) -> NDArray[np.bool_]:
         """(rows, columns): the squares over which a move leads."""
-        return screens.believed if self.bold and screens.model.spread <= ASKEW else screens.safe
+        return screens.believed if self.bold and not is_open(screens.model) else screens.safe
 
 
 STROLL = Pace({"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}, 9, bold=False)
@@ -93,7 +98,7 @@ def one_move(screens: Screens, kind: str, pace: Pace) -> NDArray[np.bool_]:
 
 def _roomy(screens: Screens) -> NDArray[np.bool_] | None:
     """(rows, columns): the squares that longer moves end over; None when it is settled how the lattice lies."""
-    return ~grown(~screens.safe, 1) if screens.model.spread > ASKEW else None
+    return ~grown(~screens.safe, 1) if is_open(screens.model) else None
 
 
 def _is_roomy(roomy: NDArray[np.bool_] | None, here: Square, there: Square) -> bool:
@@ -123,7 +128,7 @@ def _aside(screens: Screens, square: Square, kind: str) -> tuple[float, float]:
     if he woke elsewhere in his square than he thinks, he sees himself in the next one.
     """
     model = screens.model
-    if model.spread > ASKEW:
+    if is_open(model):
         return ASIDE if _may_halt_between(model, square) else (0.0, 0.0)
     west, south, east, north = model.leeway
     test = tuple(EDGE if up > LOOSE else -EDGE if -down > LOOSE else 0.0 for down, up in ((west, east), (south, north)))

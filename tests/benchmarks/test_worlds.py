@@ -186,7 +186,7 @@ def test_snug_worlds_have_two_or_three_rooms_of_18_to_24_squares(task: int) -> N
         west, south, east, north = zip(*(room.polygon.bounds for room in world.plan.rooms), strict=True)
         assert max(map(operator.sub, [*east, *north], [*west, *south])) <= 24
         assert min(map(operator.sub, [*east, *north], [*west, *south])) >= 14
-        assert all(door.width == 0 or door.polygon.area == 2 * door.width for door in world.plan.doors)
+        assert all(door.polygon.area == 2 * door.width for door in world.plan.doors)
     assert len({world.heading for world in worlds}) > 6
     assert worlds[3] == scenario(task, 3, "snug")
     assert worlds[3] != scenario(task, 3)

@@ -2,12 +2,9 @@
 
 import pytest
 
-from kb.corners import corners
-from kb.rooms import rooms_of
-from kb.task import Task
-from planner.destinations import CARRIED, ROOM, Situation, rooms_to_see
-from planner.screen import Screens
+from planner.destinations import CARRIED, ROOM, rooms_to_see
 from tests.kb.drawings import seen_whole
+from tests.planner.situations import situation_of
 
 DOOR = 2  # columns west of it
 
@@ -18,9 +15,8 @@ def looks(wide: int, high: int, carried: bool) -> int:
     wall = "b" * (1 + DOOR) + "..." + "b" * (wide - DOOR - 2)
     rows = ["b" * (wide + 2), *["b" + "." * wide + "b"] * (high - 1), "b....U" + "." * (wide - 5) + "b"]
     model = seen_whole([*rows, wall, wall, *["?" * len(wall)] * 3])
-    rooms = rooms_of(model)
-    assert len(rooms.doors) == 1
-    situation = Situation(model, Screens(model), {}, rooms, corners(model), Task({}, (), ()))
+    situation = situation_of(model)
+    assert len(situation.rooms.doors) == 1
     return len(rooms_to_see("northeast", situation, carried))
 
 

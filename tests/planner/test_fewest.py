@@ -6,19 +6,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kb.corners import corners
 from kb.facts import Symbol
 from kb.problems import Span
 from kb.rooms import rooms_of
 from kb.task import Task
 from planner.aims import Aim
 from planner.deciding import Decider
-from planner.destinations import Situation
 from planner.fewest import DETOUR, FURTHER_MOVE, FewestMoves
 from planner.screen import Screens
 from planner.steps import clear
 from planner.walking import HURRY, one_move
 from tests.kb.drawings import seen_whole
+from tests.planner.situations import situation_of
 
 WALLS = [
     "b" * 40,
@@ -112,8 +111,7 @@ def test_no_straight_move_leads_through_a_forbidden_door() -> None:
     rows = ["b" * 30, *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 5, "b...U" + "." * 24 + "b"]
     rows += ["b" + "." * 28 + "b"] * 2 + rows[1:6] + ["b" * 30]
     model = seen_whole(rows)
-    rooms = rooms_of(model)
-    assert len(rooms.doors) == 1
+    assert len(rooms_of(model).doors) == 1
     carried = symbol("at", symbol("x"), symbol("corner", symbol("northeast")))
     never = symbol("not_through", symbol("utak"), symbol("d"))
     screens, beyond = Screens(model), Aim("explore", np.array([7 * 30 + 25]), "there")
@@ -121,6 +119,6 @@ def test_no_straight_move_leads_through_a_forbidden_door() -> None:
     for goals, moves in (((carried,), True), ((carried, never), False)):
         task = Task({}, (), goals)
         decider = Decider(task)
-        situation = Situation(model, screens, {}, rooms, corners(model), task)
+        situation = situation_of(model, task=task)
         decision = decider._walk(beyond, decider.stages[0], situation, FewestMoves(screens))
         assert (decision.command is not None) == moves

@@ -6,13 +6,9 @@ import pytest
 import shapely
 
 from geometry.carrying import Inside
-from kb.corners import corners
-from kb.rooms import rooms_of
-from kb.task import Task
-from planner.destinations import Situation
 from planner.haulage import Haul, Hauler, Refusal, Request
-from planner.screen import Screens
 from tests.kb.drawings import seen_whole
+from tests.planner.situations import situation_of
 
 PARTED = [
     "b" * 24,
@@ -33,8 +29,7 @@ def asked(west: float) -> Haul | Refusal:
     view = model.view
     left, bottom = view.west + west, view.south + 5
     node = replace(node, polygon=shapely.box(left, bottom, left + 4, bottom + 4))
-    situation = Situation(model, Screens(model), {}, rooms_of(model), corners(model), Task({}, (), ()))
-    return Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}), situation)
+    return Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}), situation_of(model))
 
 
 def test_a_passage_that_is_too_narrow_is_a_proof() -> None:

@@ -10,15 +10,12 @@ import shapely
 import planner.carrier
 from geometry.carrying import Inside, Leg
 from kb.body import Grasp
-from kb.corners import corners
-from kb.rooms import rooms_of
-from kb.task import Task
 from kb.worldmodel import WorldModel
 from planner.carrier import Act, Carrier, Go
 from planner.course import Course
 from planner.destinations import Situation
-from planner.screen import Screens
 from tests.kb.drawings import seen_whole
+from tests.planner.situations import situation_of
 
 ROOM = [
     "b" * 20,
@@ -44,7 +41,7 @@ def beside(touch: tuple[str | None, ...], place: tuple[float, float] = (0.5, 0.5
     west, south = node.patch.west, node.patch.south
     node = replace(node, polygon=shapely.box(west, south, west + 3, south + 3), colour="g", shape={"square": 99})
     model = replace(model, objects=(node,), touch=touch, place=place)
-    return Situation(model, Screens(model), {"x": node.name}, rooms_of(model), corners(model), Task({}, (), ()))
+    return situation_of(model, {"x": node.name})
 
 
 def advice(carrier: Carrier, situation: Situation) -> planner.carrier.Advice:
