@@ -11,9 +11,9 @@ import numpy as np
 
 from benchmarks.placing import digital
 from benchmarks.scenes import Scenario
-from kb.accommodation import Accommodated
 from kb.body import Body, Impression
 from kb.evidence import FREE, FULL
+from kb.explanation import Accommodated
 from kb.heading import Hypothesis
 from kb.knowledge import Knowledge
 from kb.lattice import Lattice, turned

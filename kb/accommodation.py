@@ -12,8 +12,6 @@ import math
 import statistics
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from enum import StrEnum
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,13 +20,14 @@ from geometry.rigid import Rotate
 from kb.body import Command, Impression, Move, Push, Release, Turn
 from kb.encodings import KB, solve
 from kb.evidence import FREE, OPEN, Evidence
+from kb.explanation import Accommodated, CellStatus, Explanation
 from kb.hauling import Outcome, otherwise, predicted
 from kb.heading import CENTRED, MEMORY, Box, Hypothesis, Look, anywhere, candidates, search, standing, within
 from kb.lattice import CENTRE, Lattice, Samples
 from kb.loads import Load, discounted, slack_of
 from kb.relaying import laid, relaid
 from kb.retina import FIELDS, count_ranges
-from kb.stops import ends, misled, next_square
+from kb.stops import Moved, ends, next_square, retold
 from kb.supposing import Surprise, agreeing, as_motion, clashes, laid_on
 from kb.suspecting import suspects
 
@@ -40,38 +39,8 @@ HOPELESS = 18  # times that no other lattice explained it better, with things mo
 SETTLED = math.radians(5)  # by which angles may differ while that hardly is why looks contradict
 CONTRADICTED = 2  # misfits that a contradiction of looks weighs as much as: more than any other lattice costs
 NEAR = 2  # squares about the predicted place in which Utak is looked for first
+REMEMBERED = 3  # motions that may turn out to have been stopped
 Place = tuple[float, float]
-
-
-class CellStatus(StrEnum):
-    """How a cell of the impression is accounted for."""
-
-    PREDICTED = "predicted"
-    EXPLAINED = "explained"
-    NOISE = "noise"
-
-
-class Explanation(NamedTuple):
-    """A pose that may have given rise to the impression. place: a point of that lattice.
-
-    outcome: what it means for the load in hand; None when nothing was to be moved with him. hypotheses: what is left
-    if the lattice lies otherwise than believed.
-    """
-
-    how: str
-    place: Place
-    lattice: Lattice
-    misfits: int
-    distance: float
-    outcome: Outcome | None = None
-    hypotheses: tuple[Hypothesis, ...] = ()
-
-
-class Accommodated(NamedTuple):
-    """What one impression led to. cells: a CellStatus for each of the 160 fields."""
-
-    explanation: Explanation
-    cells: tuple[CellStatus, ...]
 
 
 @dataclass
@@ -93,6 +62,7 @@ class Memory:
     suspected: set[tuple[int, int]] = field(default_factory=set)
     searches: int = 0
     slipped: bool = False
+    moved: tuple[Moved, ...] = ()
     loads: dict[str, Load] = field(default_factory=dict)
     held: str | None = None
 
@@ -250,10 +220,18 @@ class Memory:
         self, impression: Impression, predicted: Place, stops: tuple[Place, ...], command: Command | None = None
     ) -> Accommodated:
         ranges = count_ranges(impression.retina)
+        if stops and not self.loads:
+            (x, y), (east, north) = self.looks[-1].place, self.lattice.place_to_utak(*predicted)
+            motion = Moved(len(self.looks), (east - x, north - y), self.hypotheses)
+            self.moved = (*self.moved[1 - REMEMBERED :], motion)
         explanation = self._explain(ranges, predicted, stops, command)
         self._lie(explanation)
         self.trust = self.trust + 1 if explanation.how == "predicted" else 0
-        self.slipped |= explanation.how == "slipped"
+        if explanation.how == "slipped":
+            self.slipped, self.moved = True, ()
+        elif explanation.how in ("blocked", "misled") and self.moved:
+            since = len(self.looks) if explanation.retold is None else explanation.retold.since
+            self.moved = tuple(m._replace(stopped=True) if m.number == since else m for m in self.moved)
         if explanation.how == "blocked" or explanation.place == self.place != predicted:
             self.barred.add(next_square(explanation.place, predicted))
         return self._take_in(explanation, ranges)
@@ -289,8 +267,9 @@ class Memory:
         explanations += [self._explanation("blocked", stop, ranges, predicted) for stop in stops]
         explanations += [self._explanation("slipped", place, ranges, predicted) for place in _around(predicted)]
         explanations += turned
-        if stops and not self.loads and all(explanation.misfits for explanation in explanations):
-            explanations += self._misled(ranges, predicted)
+        if stops and not self.loads and all(e.misfits for e in turned):
+            whole = any(not e.misfits for e in explanations if e.how != "slipped" or self.slipped)
+            explanations += self._misled(ranges, predicted, self.moved[:-1] if whole else self.moved)
         return self._choose(explanations)
 
     def _turned(self, ranges: NDArray[np.int16], predicted: Place, misfits: int) -> list[Explanation]:
@@ -301,6 +280,10 @@ class Memory:
         if not misfits and any(h.holds(self.lattice) for h in left):
             self.hypotheses = left
             return []
+        stopped = tuple(motion for motion in self.moved[:-1] if motion.stopped)
+        told = self._misled(ranges, predicted, stopped) if misfits and stopped else []
+        if any(not e.misfits for e in told):
+            return told
         lattice, misfits = self.lattice, NONE_FITS
         if self.spread <= SETTLED:  # rather he woke elsewhere in his square than that the angle is another one
             beside = search(recent, anywhere((self.lattice.angle,)))
@@ -319,21 +302,21 @@ class Memory:
         place = lattice.place_from_utak(*look.place)
         return [Explanation("turned", place, lattice, misfits, 0.0, None, left)] * bool(left)
 
-    def _misled(self, ranges: NDArray[np.int16], predicted: Place) -> list[Explanation]:
-        """The lattices to believe instead on which the motion was stopped, too."""
+    def _misled(self, ranges: NDArray[np.int16], predicted: Place, moved: tuple[Moved, ...]) -> list[Explanation]:
+        """The lattices to believe instead on which one of some motions was stopped, or an earlier one was not."""
         end = self.lattice.place_to_utak(*predicted)
-        stops = list(misled(self.hypotheses, self.lattice, self.looks, ranges, self.looks[-1].place, end))
-        if not stops:
+        found = list(retold(moved, self.lattice, [*self.looks, Look(ranges, end)]))
+        if not found:
             return []
-        left = tuple(dict.fromkeys(stop.hypothesis for stop in stops))
+        left = tuple(dict.fromkeys(one.hypothesis for one in found))
         middle = statistics.median(hypothesis.angle for hypothesis in left)
-        stops.sort(key=lambda stop: abs(stop.hypothesis.angle - middle))
-        found = []
-        for hypothesis, own, misfits in stops:
-            lattice = hypothesis.lattice
-            place, away = lattice.place_from_utak(*own), math.dist(own, end)
-            found.append(Explanation("misled", place, lattice, misfits, away, None, left))
-        return found
+        explanations = []
+        for one in sorted(found, key=lambda one: (not one.known, abs(one.hypothesis.angle - middle))):
+            lattice, (east, north) = one.hypothesis.lattice, one.shift
+            place = lattice.place_from_utak(end[0] + east, end[1] + north)
+            far = math.hypot(east, north)
+            explanations.append(Explanation("misled", place, lattice, one.misfits, far, None, left, one))
+        return explanations
 
     def _borne_out(self, left: tuple[Hypothesis, ...], look: Look) -> tuple[Lattice, int]:
         """Of the lattices left, the one that all looks bear out best, and how many fields it leaves as noise."""
@@ -371,11 +354,17 @@ class Memory:
         return explanations[answer[0].arguments[0].number]
 
     def _lie(self, chosen: Explanation) -> None:
-        """Believe what an explanation says of the lattice; where it lies otherwise all is laid on it anew."""
+        """Believe what an explanation says of the lattice and of earlier motions; where they were otherwise all is laid
+        on it anew."""
         if chosen.how in ("turned", "misled"):
             self.hypotheses, self.trust = chosen.hypotheses, 0
-        if chosen.lattice != self.lattice:
+        moved = chosen.retold is not None and chosen.retold.since < len(self.looks)
+        if chosen.retold is not None:
+            self.looks = chosen.retold.looks(self.looks)
+        if chosen.lattice != self.lattice or moved:
             under = laid_on(chosen.lattice, self.lattice, self.evidence, self.looks, self.loads)
+            if moved:
+                under = relaid(chosen.lattice, self.lattice, self.looks, ())
             if under.evidence is not self.evidence:
                 self.barred, self.suspected = set(), set()
             self.lattice, self.evidence, self.loads = chosen.lattice, under.evidence, dict(under.loads)

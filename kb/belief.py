@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.outline import Ring, outline
-from kb.accommodation import Accommodated
 from kb.corners import Corner
 from kb.evidence import OPEN
+from kb.explanation import Accommodated
 from kb.rooms import Rooms
 from kb.worldmodel import FLOOR, ORG, VERGE, Node, WorldModel
 

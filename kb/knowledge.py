@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.components import boxes
-from kb.accommodation import Accommodated, Memory
+from kb.accommodation import Memory
 from kb.body import DIRECTIONS, Command, Grasp, Impression
 from kb.evidence import FREE, FULL, OPEN, MapView
+from kb.explanation import Accommodated
 from kb.imagining import NOTHING_IMAGINED, imagine
 from kb.interpretation import Kinds, interpret, shapes
 from kb.loads import Load, slack_of
@@ -74,7 +75,7 @@ class Knowledge:
         self.memory.grasp(load)
 
     def _model(self, impression: Impression, accommodated: Accommodated) -> tuple[WorldModel, Accommodated]:
-        if accommodated.explanation.how == "turned":
+        if accommodated.explanation.how in ("turned", "misled"):
             self.felt.clear()  # its squares were those of another lattice
             self._imagined = NOTHING_IMAGINED
         self._feel(impression)

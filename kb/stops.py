@@ -9,13 +9,10 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from kb.evidence import FREE, FULL, OPEN, Evidence
-from kb.heading import MEMORY, Hypothesis, Look, contradictions
+from kb.heading import MEMORY, Hypothesis, Look, contradictions, fallen
 from kb.lattice import Lattice
-from kb.relaying import relaid
+from kb.relaying import Relaid, relaid
 
 Place = tuple[float, float]
 HAIR = 1e-6  # squares from a line between two squares to what counts as beside it
@@ -33,15 +30,36 @@ class Crossing(NamedTuple):
     entered: tuple[int, int]
 
 
-class Stop(NamedTuple):
-    """That the lattice lies as a hypothesis says, and a motion ended at a place of Utak's own frame.
+class Moved(NamedTuple):
+    """A motion as it was commanded.
 
-    misfits : fields that contradict it, of all looks.
+    number : of the look that followed. shift : east and north, of Utak's own frame. hypotheses : how the lattice might
+    lie before that look. stopped : is it believed to have been stopped?
+    """
+
+    number: int
+    shift: Place
+    hypotheses: tuple[Hypothesis, ...]
+    stopped: bool = False
+
+
+class Retold(NamedTuple):
+    """That the lattice lies as a hypothesis says, and all looks from one on were received elsewhere than is believed:
+    the motion before it had been stopped, or had not.
+
+    since : the number of that look. shift : east and north of where it is believed to have been received, in Utak's own
+    frame. known : does something stand there that stopped him? misfits : fields that contradict it, of all looks.
     """
 
     hypothesis: Hypothesis
-    own: Place
+    since: int
+    shift: Place
+    known: bool
     misfits: int
+
+    def looks(self, looks: Sequence[Look]) -> list[Look]:
+        """All looks, where they were received."""
+        return _shifted(looks, self.since, self.shift)
 
 
 def ends(start: Place, shift: Place) -> tuple[Place, ...]:
@@ -74,40 +92,55 @@ def next_square(place: Place, towards: Place) -> tuple[int, int]:
     return math.floor(ahead[0]), math.floor(ahead[1])
 
 
-def misled(
-    hypotheses: Iterable[Hypothesis],
-    held: Lattice,
-    looks: Sequence[Look],
-    ranges: NDArray[np.int16],
-    start: Place,
-    end: Place,
-) -> Iterator[Stop]:
-    """How the lattice may lie, and where a motion was stopped on it, so that no look contradicts another.
+def retold(moved: Iterable[Moved], held: Lattice, looks: Sequence[Look]) -> Iterator[Retold]:
+    """What else may have come of motions, and how the lattice lies then, so that no look contradicts another.
 
-    looks : those before. ranges : what was seen then. start, end : of the motion as commanded, in Utak's own frame.
-    Until then he came over no square that is occupied, and into none that is free; rather before one that is occupied
-    than before one of which it is open.
+    held : the lattice that is believed. looks : all, where they are believed to have been received, the newest where it
+    was commanded. That this motion was stopped on the lattice held is not among it, nor that all went as is believed.
+
+    Until he was stopped he came over no square that is occupied, and into none that is free; rather before one that is
+    occupied than before one of which it is open.
     """
-    for hypothesis in hypotheses:
-        lattice = hypothesis.lattice
-        if lattice == held:
+    for motion in moved:
+        last = motion.number == len(looks) - 1
+        for hypothesis in motion.hypotheses:
+            if last and hypothesis.lattice == held:
+                continue
+            found = list(_otherwise(motion, hypothesis, looks))
+            surest = any(one.known for one in found)
+            yield from (one for one in found if one.known == surest)
+
+
+def _otherwise(motion: Moved, hypothesis: Hypothesis, looks: Sequence[Look]) -> Iterator[Retold]:
+    """What else may have come of one motion on one lattice."""
+    lattice, number = hypothesis.lattice, motion.number
+    (x, y), believed = looks[number - 1].place, looks[number].place
+    met = crossings(lattice.place_from_utak(x, y), lattice.to_lattice(*motion.shift))
+    beside = [(at, place) for at, crossing in enumerate(met) for place in (crossing.before, crossing.after)]
+    halts = [(at, lattice.place_to_utak(*place)) for at, place in beside]
+    halts.append((len(met), (x + motion.shift[0], y + motion.shift[1])))
+    judged: dict[bytes, Relaid | None] = {}
+    for at, own in halts:
+        shift = own[0] - believed[0], own[1] - believed[1]
+        if math.hypot(*shift) < 2 * HAIR:
             continue
-        shift = lattice.to_lattice(end[0] - start[0], end[1] - start[1])
-        passed: list[tuple[int, int]] = []
-        found: list[tuple[int, Stop]] = []
-        for crossing in crossings(lattice.place_from_utak(*start), shift):
-            for place in (crossing.before, crossing.after):
-                look = Look(ranges, lattice.place_to_utak(*place))
-                if contradictions(lattice, [*looks[-MEMORY:], look]):
-                    continue
-                under = relaid(lattice, held, [*looks, look], ())
-                free = all(_state(under.evidence, square) != FULL for square in passed)
-                ahead = _state(under.evidence, crossing.entered)
-                if free and ahead != FREE:
-                    found.append((ahead, Stop(hypothesis, look.place, under.misfits)))
-            passed.append(crossing.entered)
-        surest = max((ahead for ahead, _ in found), default=OPEN)
-        yield from (stop for ahead, stop in found if ahead == surest)
+        there = _shifted(looks, number, shift)
+        key = fallen(lattice, there).tobytes()
+        if key not in judged:
+            stands = not contradictions(lattice, there[-MEMORY - 1 :])
+            judged[key] = relaid(lattice, lattice, there, ()) if stands else None
+        under = judged[key]
+        if under is None or any(_state(under.evidence, crossing.entered) == FULL for crossing in met[:at]):
+            continue
+        ahead = _state(under.evidence, met[at].entered) if at < len(met) else OPEN
+        if ahead != FREE:
+            yield Retold(hypothesis, number, shift, ahead == FULL, under.misfits)
+
+
+def _shifted(looks: Sequence[Look], since: int, shift: Place) -> list[Look]:
+    """Looks, those from one on received so much further east and north."""
+    (dx, dy), far = shift, looks[since:]
+    return [*looks[:since], *(look._replace(place=(look.place[0] + dx, look.place[1] + dy)) for look in far)]
 
 
 def _state(evidence: Evidence, square: tuple[int, int]) -> int:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from kb.accommodation import Accommodated
 from kb.belief import Places, belief
 from kb.body import Body, Command, Impression
+from kb.explanation import Accommodated
 from kb.knowledge import Knowledge
 from kb.task import Task
 from planner.deciding import Decider, Decision

@@ -123,15 +123,17 @@ def corner(side: str, situation: Situation) -> Destination:
     return Destination(best, rooms[0].what if rooms else "", rooms)
 
 
-def unknown_corner(side: str, situation: Situation) -> Destination | None:
+def unknown_corner(side: str, situation: Situation, floor: Mask | None = None) -> Destination | None:
     """What is missing to tell where the corner towards a side is; None when that is known.
 
-    It is not where the floor goes on unseen at its furthest, or is seen beyond walls.
+    It is not where the floor goes on unseen at its furthest, or is seen beyond walls. floor : (rows, columns) that can
+    be reached; None for what Utak can walk to.
     """
     model, screens = situation.model, situation.screens
+    floor = screens.floor if floor is None else floor
     column, row = situation.corners[side].square
     best = row * model.labels.shape[1] + column
-    if not screens.floor[row, column]:
+    if not floor[row, column]:
         rooms = tuple(room for room in rooms_beyond(screens) if best in room.squares)
         return nowhere(f"the floor towards the {side} lies beyond a passage that is not seen yet", rooms)
     around = (slice(max(row - 1, 0), row + 2), slice(max(column - 1, 0), column + 2))

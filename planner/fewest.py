@@ -72,7 +72,7 @@ class FewestMoves:
         """(rows, columns): the squares to which one move leads, by the kind of its aim."""
         most = HURRY.most(kind, self._screens.model)
         if most not in self._reached:
-            self._reached[most] = one_move(self._screens, kind, HURRY)
+            self._reached[most] = one_move(self._screens, kind)
         return self._reached[most]
 
     def _turning(self, aim: Aim) -> Square | None:

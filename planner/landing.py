@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from geometry.carrying import At, InCorner, Inside
 from geometry.ends import End, met
+from geometry.reach import UNREACHED, reach
 from geometry.rigid import Pose
 from kb.facts import Fact, Number, Symbol, Text
 from kb.rooms import Rooms
@@ -121,7 +122,7 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     """
     column, row = situation.corners[side].square
     if not situation.model.mask(node.patch)[row, column]:
-        unknown = unknown_corner(side, situation)
+        unknown = unknown_corner(side, situation, _floor(node, situation))
         if unknown is not None:
             return Landing({}, unknown.missing, unknown.lookouts, _near(side, node, situation))
     land = _in_corner(side, node, situation)
@@ -160,10 +161,19 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
 def _near(side: str, node: Node, situation: Situation) -> Mapping[str, End]:
     """Places from which Utak with the object in hand sees a corner well; none when the object is at one."""
     column, row = situation.corners[side].square
-    mask = situation.model.space & situation.screens.floor | situation.model.mask(node.patch)
+    mask = situation.model.space & _floor(node, situation) | situation.model.mask(node.patch)
     rows, columns = np.ogrid[: mask.shape[0], : mask.shape[1]]
     end = Inside(region_of(mask & (abs(rows - row) <= IN_SIGHT) & (abs(columns - column) <= IN_SIGHT)))
     return {} if end.polygon.is_empty or lands(end, in_view(node.polygon, situation)) else {f"near_{side}": end}
+
+
+def _floor(node: Node, situation: Situation) -> Mask:
+    """(rows, columns): the squares that Utak can reach; what he holds does not shut him in, for it goes with him."""
+    screens, model = situation.screens, situation.model
+    if model.held != node.name:
+        return screens.floor
+    mask: Mask = reach(screens.free(0) | model.mask(node.patch), *screens.here) != UNREACHED
+    return mask
 
 
 def _next_room(began: Place, node: Node, situation: Situation) -> Landing:

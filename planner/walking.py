@@ -37,9 +37,8 @@ class Pace(NamedTuple):
     """How far one move leads at most, in rows and columns.
 
     longest : by the kind of its aim. unsure : while it is open how the lattice lies, and so where he goes.
-    bold : whether it leads over squares that are only believed floor, once it is settled how the lattice lies. A move
-    that is stopped ends right beside what stopped it, and that is mostly where he wants to be; but where just it ended
-    must be seen.
+    bold : whether it leads over squares that are only believed floor, right up to what is not settled. A move that is
+    stopped ends right beside what stopped it, and that is mostly where he wants to be.
     """
 
     longest: Mapping[str, int]
@@ -52,7 +51,7 @@ class Pace(NamedTuple):
 
     def ground(self, screens: Screens) -> NDArray[np.bool_]:
         """(rows, columns): the squares over which a move leads."""
-        return screens.believed if self.bold and not is_open(screens.model) else screens.safe
+        return screens.believed if self.bold else screens.safe
 
 
 STROLL = Pace({"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}, 9, bold=False)
@@ -68,13 +67,14 @@ def next_move(
 ) -> Move:
     """The longest straight move along a way that leads over the ground of his pace.
 
-    While it is open how the lattice lies, the second half of a longer move keeps a square clear of all others.
+    While it is open how the lattice lies, the second half of a longer move that is not bold keeps a square clear of all
+    others.
 
     path : edge-connected squares, the first is Utak's. kind : of the aim.
     about : a point (of the view's frame) about which the move must wind as the way does, when that matters.
     """
     here, most = path[0], pace.most(kind, screens.model)
-    ground, roomy = pace.ground(screens), _roomy(screens)
+    ground, roomy = pace.ground(screens), None if pace.bold else _roomy(screens)
     there = path[1]
     for number in range(len(path) - 1, 1, -1):
         square = path[number]
@@ -86,14 +86,9 @@ def next_move(
     return move_to(screens.model, there, _aside(screens, there, kind if about is None else "attain"))
 
 
-def one_move(screens: Screens, kind: str, pace: Pace) -> NDArray[np.bool_]:
-    """(rows, columns): the squares to which one straight move leads from where Utak stands, made as by `next_move`."""
-    reached = straight(pace.ground(screens), *screens.here, pace.most(kind, screens.model))
-    roomy = _roomy(screens)
-    if roomy is not None:
-        for row, column in np.argwhere(reached).tolist():
-            reached[row, column] = _is_roomy(roomy, screens.here, (column, row))
-    return reached
+def one_move(screens: Screens, kind: str) -> NDArray[np.bool_]:
+    """(rows, columns): the squares to which one straight move in a hurry leads from where Utak stands."""
+    return straight(HURRY.ground(screens), *screens.here, HURRY.most(kind, screens.model))
 
 
 def _roomy(screens: Screens) -> NDArray[np.bool_] | None:

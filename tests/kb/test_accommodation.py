@@ -7,9 +7,10 @@ import pytest
 import shapely
 from shapely.affinity import rotate, translate
 
-from kb.accommodation import CellStatus, Memory
+from kb.accommodation import Memory
 from kb.body import Move, Push, Turn
 from kb.evidence import FREE, OPEN
+from kb.explanation import CellStatus
 from kb.heading import CENTRED, Hypothesis
 from kb.lattice import CENTRE
 from kb.loads import Load

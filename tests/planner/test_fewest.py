@@ -55,7 +55,7 @@ def screens() -> Screens:
 
 def test_of_an_aim_what_one_move_leads_to_counts(screens: Screens) -> None:
     behind, open_ = (31, 12), (29, 15)
-    assert one_move(screens, "explore", HURRY).ravel()[[flat(*behind), flat(*open_)]].tolist() == [False, True]
+    assert one_move(screens, "explore").ravel()[[flat(*behind), flat(*open_)]].tolist() == [False, True]
     fewest = FewestMoves(screens)
     (priced,) = fewest.priced([aim(behind, open_)])
     assert priced.squares.tolist() == [flat(*open_)]
@@ -70,7 +70,7 @@ def test_a_move_is_not_saved_by_a_long_detour() -> None:
     screens = Screens(seen_whole(rows))
     width = len(rows[0])
     behind, far = width + 14, 12 * width + 37
-    assert one_move(screens, "explore", HURRY).ravel()[[behind, far]].tolist() == [False, True]
+    assert one_move(screens, "explore").ravel()[[behind, far]].tolist() == [False, True]
     ways = screens.distances[0].ravel()[[behind, far]] / 5
     assert ways[0] + DETOUR < ways[1]
     (priced,) = FewestMoves(screens).priced([Aim("explore", np.array([behind, far]), "there")])
@@ -99,7 +99,7 @@ def test_the_first_of_two_moves_ends_where_the_second_can_begin(screens: Screens
 def test_every_first_move_is_one_that_may_be_made() -> None:
     for spread in (0.0, math.pi):
         screens = Screens(replace(seen_whole(WALLS), spread=spread))
-        reached = one_move(screens, "explore", HURRY)
+        reached = one_move(screens, "explore")
         for square in np.flatnonzero(screens.floor)[::7].tolist():
             way = FewestMoves(screens).way(Aim("explore", np.array([square]), "there"))
             if way is not None:

@@ -359,7 +359,7 @@ def test_nobody_is_bold_while_it_is_open_how_the_lattice_lies() -> None:
 @pytest.mark.parametrize("kind", sorted(STROLL.longest))
 def test_one_move_leads_just_where_the_next_move_may_end(kind: str, spread: float) -> None:
     screens = Screens(replace(seen_whole(HALL), spread=spread))
-    reached = one_move(screens, kind, HURRY)
+    reached = one_move(screens, kind)
     ended = np.zeros_like(reached)
     ended[screens.here[1], screens.here[0]] = True
     for row, column in np.argwhere(screens.floor).tolist():
