@@ -12,7 +12,7 @@ from kb.body import Move, Push, Turn
 from kb.evidence import FREE, OPEN
 from kb.explanation import CellStatus
 from kb.heading import CENTRED, Hypothesis
-from kb.lattice import CENTRE
+from kb.lattice import CENTRE, turned
 from kb.loads import Load
 from tests.kb.drawings import LARGE_ROOM, walked
 from tests.kb.eyes import Occupied, impression, random_room, utak_in, world_of
@@ -100,13 +100,58 @@ def test_one_who_runs_against_something_on_a_turned_table_finds_out_both() -> No
     assert sum(off <= 2 and far <= 0.3 for off, far in found) >= 0.6 * len(found)
 
 
+def test_what_stopped_him_where_is_found_out_by_the_next_looks() -> None:
+    """Who is stopped on an unknown table often takes himself for elsewhere: what he sees fits more than one place."""
+    there, remembered, forgotten = [], [], []
+    for seed in range(24):
+        walks = [stopped_and_walked(seed, remember) for remember in (True, False)]
+        if walks[0] is None or walks[1] is None:
+            continue
+        there.append(walks[0][0])
+        remembered.append(walks[0][-1])
+        forgotten.append(walks[1][-1])
+    wrong = [n for n, off in enumerate(there) if off > 0.1]
+    assert len(wrong) >= 6
+    assert all(remembered[n] < 0.1 for n, off in enumerate(there) if off < 0.1)  # what was right stays so
+    assert sum(remembered[n] < 0.1 for n in wrong) >= 0.7 * len(wrong)
+    assert sum(forgotten[n] < 0.1 for n in wrong) <= 0.3 * len(wrong)
+
+
+def stopped_and_walked(seed: int, remember: bool) -> list[float] | None:
+    """How far he is from where he believes himself, in squares: where he was stopped, and after two free moves.
+
+    remember : may earlier motions be told otherwise? None when nothing stops anybody there.
+    """
+    rng = np.random.default_rng(seed)
+    occupied, heading = world_of(random_room(rng, 30, 30, 14)), int(rng.choice([0, 0, *range(-44, 46)]))
+    free = [(i, j) for i in range(6, 24) for j in range(6, 24) if not occupied(i, j)]
+    here = woke = tuple(v + 0.5 for v in free[int(rng.integers(len(free)))])
+    memory, off = Memory(), []
+    memory.wake(impression(occupied, (math.floor(here[0]), math.floor(here[1])), heading))
+    for far in (12, 6, 6):
+        for angle in rng.uniform(0, 2 * math.pi, 30):
+            way = (far * math.cos(angle), far * math.sin(angle))
+            end = ran(occupied, here, way, heading)
+            if (math.dist(end, here) < far - 1e-2) == (far == 12):
+                break
+        else:
+            return None
+        here = end
+        if not remember:
+            memory.moved = ()
+        memory.accommodate(Move(*way), impression(occupied, (math.floor(here[0]), math.floor(here[1])), heading))
+        own = turned(here[0] - woke[0], here[1] - woke[1], -heading)
+        off.append(math.dist(memory.lattice.place_to_utak(*memory.place), own))
+    return off
+
+
 def ran(
     occupied: Occupied, start: tuple[float, float], way: tuple[float, float], heading: float
 ) -> tuple[float, float]:
     """Where one is stopped who goes some way of his own frame, from a point of the table."""
     c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
     ahead = way[0] * c - way[1] * s, way[0] * s + way[1] * c
-    for part in np.linspace(0, 1, 40001):
+    for part in np.linspace(0, 1, 8001)[1:]:
         x, y = start[0] + part * ahead[0], start[1] + part * ahead[1]
         if occupied(math.floor(x), math.floor(y)) or occupied(math.ceil(x) - 1, math.ceil(y) - 1):
             return x, y

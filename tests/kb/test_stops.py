@@ -3,10 +3,15 @@
 import math
 from itertools import pairwise
 
-from hypothesis import assume, given
+import numpy as np
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from kb.stops import HAIR, crossings, next_square
+from kb.heading import CENTRED, Look, contradictions
+from kb.lattice import Lattice, turned
+from kb.retina import count_ranges
+from kb.stops import HAIR, Moved, crossings, next_square, retold
+from tests.kb.eyes import impression, random_room, world_of
 
 AWAY = st.floats(-9, 9, allow_nan=False).map(lambda v: round(v, 3))
 POINT = st.floats(0.05, 0.95).map(lambda v: round(v, 3) + 0.0003)
@@ -55,3 +60,47 @@ def test_who_stays_in_his_square_crosses_nothing() -> None:
 def test_the_square_ahead_lies_on_the_way() -> None:
     assert next_square((0.5, 0.5), (0.5, 9.5)) == (0, 1)
     assert next_square((0.5, 0.5), (-3.5, 0.5)) == (-1, 0)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
+    """He believes that a motion went as commanded, which a wall had stopped, and then goes on."""
+    rng = np.random.default_rng(seed)
+    occupied, heading = world_of(random_room(rng, 26, 26, 8)), int(rng.integers(-44, 46))
+    squares = [(i, j) for i in range(3, 23) for j in range(3, 23)]
+    free = [(i, j) for i, j in squares if not occupied(i, j)]
+    x, y = free[int(rng.integers(len(free)))]
+    way = (float(rng.uniform(-14, 14)), float(rng.uniform(-14, 14)))
+    met = crossings((x + 0.5, y + 0.5), turned(*way, heading))
+    stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
+    assume(stop is not None and not passes_corner(0.5, 0.5, *turned(*way, heading)))
+    assert stop is not None
+    lattice = Lattice(heading)
+    own = lattice.place_to_utak(stop.before[0] - x, stop.before[1] - y)  # of a lattice whose origin is where he woke
+    back = (-own[0], -own[1])
+    truth = [(0.0, 0.0), own, (own[0] + 0.5 * back[0], own[1] + 0.5 * back[1])]
+    looks = []
+    for place, shift in zip(truth, [(0.0, 0.0), *[(way[0] - own[0], way[1] - own[1])] * 2], strict=True):
+        i, j = (math.floor(v) for v in lattice.place_from_utak(*place))
+        seen = count_ranges(impression(occupied, (i + x, j + y), heading).retina)
+        looks.append(Look(seen, (place[0] + shift[0], place[1] + shift[1])))
+    assume(math.dist(own, way) > 2 * HAIR)
+    found = list(retold([Moved(1, way, CENTRED)], Lattice(), looks))
+    right = [
+        one for one in found if one.hypothesis.angle == heading and math.dist(one.looks(looks)[1].place, own) < 1e-3
+    ]
+    assert right
+    assert all(one.since == 1 and one.misfits == 0 for one in right)
+    for one in found:
+        assert not contradictions(one.hypothesis.lattice, one.looks(looks))
+        assert one.looks(looks)[0] == looks[0]
+        assert math.dist(one.looks(looks)[2].place, looks[2].place) > HAIR
+
+
+def test_who_met_nothing_has_nothing_to_tell_otherwise() -> None:
+    occupied = world_of(["." * 80] * 80)
+    seen = [count_ranges(impression(occupied, (x, 40)).retina) for x in (30, 35)]
+    looks = [Look(seen[0], (0.0, 0.0)), Look(seen[1], (5.0, 0.0))]
+    told = list(retold([Moved(1, (5.0, 0.0), CENTRED[:1])], Lattice(), looks))
+    assert told == []

@@ -15,7 +15,7 @@ from planner.deciding import Decider
 from planner.fewest import DETOUR, FURTHER_MOVE, FewestMoves
 from planner.screen import Screens
 from planner.steps import clear
-from planner.walking import HURRY, one_move
+from planner.walking import one_move
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
 
