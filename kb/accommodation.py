@@ -48,8 +48,9 @@ class Memory:
     """All that is held true of the pose and the map. One of the few places with state.
 
     place is a point of the lattice; looks keep where each impression was received, in Utak's own frame. loads are the
-    things that he has held, by name, and held the one that he holds. barred : squares before which he was stopped
-    himself; suspected : those of which one stopped what he carried, for all that was known.
+    things that he has held, by name, and held the one that he holds. moved : his last motions before he held any, which
+    may have ended otherwise than believed. barred : squares before which he was stopped himself; suspected : those of
+    which one stopped what he carried, for all that was known.
     """
 
     evidence: Evidence = field(default_factory=Evidence)
@@ -91,6 +92,11 @@ class Memory:
         """The squares on which something stands, or likely does, for it stopped a motion."""
         suspected = (square for square in self.suspected if self.evidence.state[self.evidence.index(*square)] == OPEN)
         return frozenset((*self.barred, *suspected))
+
+    @property
+    def _before(self) -> tuple[Moved, ...]:
+        """The motions remembered whose looks have been taken in."""
+        return tuple(motion for motion in self.moved if motion.number < len(self.looks))
 
     @property
     def _off_middle(self) -> bool:
@@ -268,8 +274,8 @@ class Memory:
         explanations += [self._explanation("slipped", place, ranges, predicted) for place in _around(predicted)]
         explanations += turned
         if stops and not self.loads and all(e.misfits for e in turned):
-            whole = any(not e.misfits for e in explanations if e.how != "slipped" or self.slipped)
-            explanations += self._misled(ranges, predicted, self.moved[:-1] if whole else self.moved)
+            simple = any(not e.misfits for e in explanations if e.how != "slipped" or self.slipped)
+            explanations += self._misled(ranges, predicted, self._before if simple else self.moved)
         return self._choose(explanations)
 
     def _turned(self, ranges: NDArray[np.int16], predicted: Place, misfits: int) -> list[Explanation]:
@@ -280,7 +286,7 @@ class Memory:
         if not misfits and any(h.holds(self.lattice) for h in left):
             self.hypotheses = left
             return []
-        stopped = tuple(motion for motion in self.moved[:-1] if motion.stopped)
+        stopped = tuple(motion for motion in self._before if motion.stopped)
         told = self._misled(ranges, predicted, stopped) if misfits and stopped else []
         if any(not e.misfits for e in told):
             return told
@@ -354,20 +360,19 @@ class Memory:
         return explanations[answer[0].arguments[0].number]
 
     def _lie(self, chosen: Explanation) -> None:
-        """Believe what an explanation says of the lattice and of earlier motions; where they were otherwise all is laid
-        on it anew."""
+        """Believe what an explanation says of the lattice and of earlier motions; if that is new, all is laid anew."""
         if chosen.how in ("turned", "misled"):
             self.hypotheses, self.trust = chosen.hypotheses, 0
-        moved = chosen.retold is not None and chosen.retold.since < len(self.looks)
-        if chosen.retold is not None:
+        if chosen.retold is not None and chosen.retold.since < len(self.looks):
             self.looks = chosen.retold.looks(self.looks)
-        if chosen.lattice != self.lattice or moved:
+            under = relaid(chosen.lattice, self.lattice, self.looks, self.loads.values())
+        elif chosen.lattice != self.lattice:
             under = laid_on(chosen.lattice, self.lattice, self.evidence, self.looks, self.loads)
-            if moved:
-                under = relaid(chosen.lattice, self.lattice, self.looks, ())
-            if under.evidence is not self.evidence:
-                self.barred, self.suspected = set(), set()
-            self.lattice, self.evidence, self.loads = chosen.lattice, under.evidence, dict(under.loads)
+        else:
+            return
+        if under.evidence is not self.evidence:
+            self.barred, self.suspected = set(), set()
+        self.lattice, self.evidence, self.loads = chosen.lattice, under.evidence, dict(under.loads)
 
     def _statuses(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> tuple[CellStatus, ...]:
         noise = self.evidence.misfits(samples, ranges, x, y)
