@@ -2,7 +2,8 @@
 
 Utak is a point, so what stands on the lattice stops him on a line between two squares. On the lattice that he believes
 in he rarely runs against anything, for he moves over squares that he believes free; while he believes in a wrong one
-he does, and then neither of the two is explained without the other.
+he does, and then neither of the two is explained without the other. What the first look afterwards leaves open a later
+one may tell: so motions are remembered, and told again when looks contradict each other.
 """
 
 import math
@@ -122,7 +123,7 @@ def _otherwise(motion: Moved, hypothesis: Hypothesis, looks: Sequence[Look]) -> 
     judged: dict[bytes, Relaid | None] = {}
     for at, own in halts:
         shift = own[0] - believed[0], own[1] - believed[1]
-        if math.hypot(*shift) < 2 * HAIR:
+        if math.hypot(*shift) < HAIR:  # as is believed
             continue
         there = _shifted(looks, number, shift)
         key = fallen(lattice, there).tobytes()
