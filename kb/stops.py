@@ -71,19 +71,32 @@ def ends(start: Place, shift: Place) -> tuple[Place, ...]:
 
 
 def crossings(start: Place, shift: Place) -> tuple[Crossing, ...]:
-    """Where a motion crosses the lines between squares, in this order."""
-    found = []
+    """Where a motion crosses the lines between squares, in this order.
+
+    Through a corner of squares it enters those beside it first, one after the other, and then the one beyond.
+    """
+    found: list[tuple[float, int, Crossing]] = []
+    signs = [math.copysign(HAIR, v) for v in shift]
     for axis in (0, 1):
         low, high = sorted((start[axis], start[axis] + shift[axis]))
-        sign = math.copysign(1.0, shift[axis])
         for line in range(math.floor(low) + 1, math.ceil(high)):
             part = (line - start[axis]) / shift[axis]
-            across = start[1 - axis] + shift[1 - axis] * part
-            before, after = (
-                (line + side, across) if axis == 0 else (across, line + side) for side in (-sign * HAIR, sign * HAIR)
-            )
-            found.append((part, Crossing(before, after, (math.floor(after[0]), math.floor(after[1])))))
-    return tuple(crossing for _, crossing in sorted(found))
+            at = [start[0] + shift[0] * part, start[1] + shift[1] * part]
+            at[axis] = float(line)
+            other = round(at[1 - axis])
+            if shift[1 - axis] and abs(at[1 - axis] - other) < HAIR:
+                at[1 - axis] = other - signs[1 - axis]
+                if axis == 1:
+                    x = other + signs[0]
+                    found.append((round(part, 9), 2, _crossing((x, line - signs[1]), (x, line + signs[1]))))
+            before, after = list(at), list(at)
+            before[axis], after[axis] = line - signs[axis], line + signs[axis]
+            found.append((round(part, 9), axis, _crossing((before[0], before[1]), (after[0], after[1]))))
+    return tuple(crossing for *_, crossing in sorted(found))
+
+
+def _crossing(before: Place, after: Place) -> Crossing:
+    return Crossing(before, after, (math.floor(after[0]), math.floor(after[1])))
 
 
 def next_square(place: Place, towards: Place) -> tuple[int, int]:

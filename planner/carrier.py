@@ -82,6 +82,12 @@ class Carrier:
         """Has he begun to carry anything?"""
         return self._plans > 0
 
+    @property
+    def turns(self) -> bool:
+        """Does the plan under way turn what it carries?"""
+        legs = () if self._course is None else self._course.legs
+        return any(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
+
     def began_at(self, node: Node) -> Place:
         """The point of the lattice where the middle of an object lay at first."""
         middle = node.polygon.centroid

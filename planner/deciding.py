@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kb.body import Command, Push, Release, Turn
+from kb.body import Command, Grasp, Push, Release, Turn
 from kb.corners import Corner, corners
 from kb.facts import Fact
 from kb.reconciliation import Reconciled, reconcile
@@ -29,10 +29,11 @@ from planner.repeating import Circles
 from planner.screen import Screens, Squares, vicinity
 from planner.searching import aims_towards
 from planner.steps import Square
-from planner.walking import HURRY, STROLL, halting, next_move
+from planner.walking import HURRY, STROLL, halting, is_open, next_move
 from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
+FEW = 4  # squares looked from by one who has hardly looked
 MISSED = 2  # plans that miss before where they should lead to is looked at
 DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
 
@@ -182,6 +183,9 @@ class Decider:
         if isinstance(advice, Act):
             if isinstance(advice.command, Push | Turn) and self._circles.noticed(situation.model, advice.command):
                 advice = self.carrier.given_up(situation.model)
+            look = self._before_turning(node, stage, situation) if isinstance(advice.command, Grasp) else None
+            if look is not None:
+                return look
             return Decision(advice.command, f"{advice.why}; {stage}")
         if isinstance(advice, Go):
             aim = Aim("attain", advice.square, advice.why)
@@ -227,6 +231,17 @@ class Decider:
             return None
         self._doubted.add(node.name)
         return self._pursue([Aim("inspect", *look)], stage, situation, lambda: look.what)
+
+    def _before_turning(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
+        """A look at how the squares lie before an object is taken to be turned, by who has looked but a few times.
+
+        A thing that was turned askew, and the map with it, are hard to set right again; a push leaves it as it lies.
+        """
+        model = situation.model
+        if not (is_open(model) and self.carrier.turns and len(model.looked_from) <= FEW):
+            return None
+        aside = exploring.sight_of(situation.screens, model.mask(node.patch), "how the squares lie is not clear")
+        return self._pursue([Aim("inspect", *aside)], stage, situation, lambda: "") if len(aside.squares) else None
 
     def _round(self, stage: Stage, name: str, situation: Situation, track: Sequence[Place]) -> Decision | None:
         """The next command on the way round an object."""

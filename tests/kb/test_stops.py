@@ -104,3 +104,20 @@ def test_who_met_nothing_has_nothing_to_tell_otherwise() -> None:
     looks = [Look(seen[0], (0.0, 0.0)), Look(seen[1], (5.0, 0.0))]
     told = list(retold([Moved(1, (5.0, 0.0), CENTRED[:1])], Lattice(), looks))
     assert told == []
+
+
+@given(st.sampled_from([(1, 1), (1, -1), (-1, 1), (-1, -1)]), st.integers(1, 9))
+def test_at_a_corner_he_may_look_from_any_of_its_four_squares(way: tuple[int, int], far: int) -> None:
+    met = crossings((0.5, 0.5), (way[0] * far, way[1] * far))
+    assert len(met) == 3 * far
+    for number in range(far):
+        corner = [0.5 + side * (number + 0.5) for side in way]
+        there = met[3 * number : 3 * number + 3]
+        assert all(
+            math.dist(place, corner) < 2 * HAIR for crossing in there for place in (crossing.before, crossing.after)
+        )
+        squares = {(math.floor(x), math.floor(y)) for crossing in there for x, y in (crossing.before, crossing.after)}
+        beyond = number * way[0] + way[0], number * way[1] + way[1]
+        assert squares == {(x, y) for x in (beyond[0] - way[0], beyond[0]) for y in (beyond[1] - way[1], beyond[1])}
+        assert there[2].entered == beyond
+        assert there[0].before == there[1].before
