@@ -9,13 +9,17 @@ import shapely
 
 import planner.carrier
 from geometry.carrying import Inside, Leg
-from kb.body import Grasp
+from geometry.rigid import Rotate, Translate
+from kb.body import Grasp, Move
+from kb.factfile import facts_of
 from kb.worldmodel import WorldModel
 from planner.carrier import Act, Carrier, Go
 from planner.course import Course
+from planner.deciding import Decider
 from planner.destinations import Situation
+from planner.goals import Stage
 from tests.kb.drawings import seen_whole
-from tests.planner.situations import situation_of
+from tests.planner.situations import NO_TASK, situation_of
 
 ROOM = [
     "b" * 20,
@@ -105,3 +109,30 @@ def test_where_it_failed_he_does_not_take_it_again_wherever_in_the_square_he_sta
     second = advice(carrier, situation)
     assert isinstance(second, Go)
     assert (np.floor(second.place) != np.floor(place)).any()
+
+
+@pytest.mark.parametrize(
+    ("spread", "turn", "looks", "first"),
+    [
+        (math.pi, 90.0, 2, True),
+        (math.pi, 0.0, 2, False),  # what is pushed stays as it lies
+        (0.0, 90.0, 2, False),
+        (math.pi, 90.0, 9, False),  # he has looked often enough
+    ],
+)
+def test_before_a_thing_is_turned_he_looks_how_the_squares_lie(
+    spread: float, turn: float, looks: int, first: bool
+) -> None:
+    situation = beside(())
+    looked = frozenset((x, 0) for x in range(looks))
+    situation = situation_of(replace(situation.model, spread=spread, looked_from=looked), situation.binding)
+    (node,) = situation.model.objects
+    motions = (Rotate(turn, (0.5, 0.5)),) if turn else (Translate(3.0, 0.0),)
+    decider = Decider(NO_TASK)
+    decider.carrier._course = Course(node.name, "r", node.polygon, (Leg((0.5, 0.5), (1, 0), motions),), node.patch, 0)
+    stage = Stage(facts_of("in(x, room(next))."))
+    decision = decider._before_turning(node, stage, situation)
+    assert (decision is not None) == first
+    if decision is not None:
+        assert isinstance(decision.command, Move)
+        assert "how the squares lie" in decision.why
