@@ -12,6 +12,7 @@ import math
 import statistics
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +28,7 @@ from kb.lattice import CENTRE, Lattice, Samples
 from kb.loads import Load, discounted, slack_of
 from kb.relaying import laid, relaid
 from kb.retina import FIELDS, count_ranges
-from kb.stops import Moved, ends, next_square, retold
+from kb.stops import Moved, Retold, ends, next_square, retold
 from kb.supposing import Surprise, agreeing, as_motion, clashes, laid_on
 from kb.suspecting import suspects
 
@@ -235,7 +236,7 @@ class Memory:
         self.trust = self.trust + 1 if explanation.how == "predicted" else 0
         if explanation.how == "slipped":
             self.slipped, self.moved = True, ()
-        elif explanation.how in ("blocked", "misled") and self.moved:
+        elif explanation.how in ("blocked", "misled"):
             since = len(self.looks) if explanation.retold is None else explanation.retold.since
             self.moved = tuple(m._replace(stopped=True) if m.number == since else m for m in self.moved)
         if explanation.how == "blocked" or explanation.place == self.place != predicted:
@@ -261,7 +262,12 @@ class Memory:
         self, ranges: NDArray[np.int16], predicted: Place, stops: tuple[Place, ...], command: Command | None
     ) -> Explanation:
         first = self._explanation("predicted", predicted, ranges, predicted)
-        if not self.loads:
+        looks = [*self.looks, Look(ranges, self.lattice.place_to_utak(*predicted))]
+        told = cache(lambda motion: tuple(retold(motion, self.lattice, looks)))
+        stopped = [motion for motion in self._before if motion.stopped]
+        if first.misfits and not self.loads and any(not one.misfits for motion in stopped for one in told(motion)):
+            turned = self._misled(predicted, map(told, stopped))
+        elif not self.loads:
             turned = self._turned(ranges, predicted, first.misfits)
         else:
             turned = self._elsewhere(command, ranges, first.misfits) if first.misfits else []
@@ -275,7 +281,7 @@ class Memory:
         explanations += turned
         if stops and not self.loads and all(e.misfits for e in turned):
             simple = any(not e.misfits for e in explanations if e.how != "slipped" or self.slipped)
-            explanations += self._misled(ranges, predicted, self._before if simple else self.moved)
+            explanations += self._misled(predicted, map(told, self._before if simple else self.moved))
         return self._choose(explanations)
 
     def _turned(self, ranges: NDArray[np.int16], predicted: Place, misfits: int) -> list[Explanation]:
@@ -286,10 +292,6 @@ class Memory:
         if not misfits and any(h.holds(self.lattice) for h in left):
             self.hypotheses = left
             return []
-        stopped = tuple(motion for motion in self._before if motion.stopped)
-        told = self._misled(ranges, predicted, stopped) if misfits and stopped else []
-        if any(not e.misfits for e in told):
-            return told
         lattice, misfits = self.lattice, NONE_FITS
         if self.spread <= SETTLED:  # rather he woke elsewhere in his square than that the angle is another one
             beside = search(recent, anywhere((self.lattice.angle,)))
@@ -308,10 +310,13 @@ class Memory:
         place = lattice.place_from_utak(*look.place)
         return [Explanation("turned", place, lattice, misfits, 0.0, None, left)] * bool(left)
 
-    def _misled(self, ranges: NDArray[np.int16], predicted: Place, moved: tuple[Moved, ...]) -> list[Explanation]:
-        """The lattices to believe instead on which one of some motions was stopped, or an earlier one was not."""
+    def _misled(self, predicted: Place, told: Iterable[Iterable[Retold]]) -> list[Explanation]:
+        """The lattices to believe instead on which one of some motions was stopped, or an earlier one was not.
+
+        told : of each motion what else may have come of it.
+        """
         end = self.lattice.place_to_utak(*predicted)
-        found = list(retold(moved, self.lattice, [*self.looks, Look(ranges, end)]))
+        found = [one for motion in told for one in motion]
         if not found:
             return []
         left = tuple(dict.fromkeys(one.hypothesis for one in found))
@@ -361,7 +366,7 @@ class Memory:
 
     def _lie(self, chosen: Explanation) -> None:
         """Believe what an explanation says of the lattice and of earlier motions; if that is new, all is laid anew."""
-        if chosen.how in ("turned", "misled"):
+        if chosen.anew:
             self.hypotheses, self.trust = chosen.hypotheses, 0
         if chosen.retold is not None and chosen.retold.since < len(self.looks):
             self.looks = chosen.retold.looks(self.looks)

@@ -35,6 +35,11 @@ class Explanation(NamedTuple):
     hypotheses: tuple[Hypothesis, ...] = ()
     retold: Retold | None = None
 
+    @property
+    def anew(self) -> bool:
+        """Does it say that the lattice lies otherwise, or that looks were received elsewhere, than was believed?"""
+        return self.how in ("turned", "misled")
+
 
 class Accommodated(NamedTuple):
     """What one impression led to. cells: a CellStatus for each of the 160 fields."""

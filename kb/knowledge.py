@@ -75,7 +75,7 @@ class Knowledge:
         self.memory.grasp(load)
 
     def _model(self, impression: Impression, accommodated: Accommodated) -> tuple[WorldModel, Accommodated]:
-        if accommodated.explanation.how in ("turned", "misled"):
+        if accommodated.explanation.anew:
             self.felt.clear()  # its squares were those of another lattice
             self._imagined = NOTHING_IMAGINED
         self._feel(impression)

@@ -7,7 +7,7 @@ one may tell: so motions are remembered, and told again when looks contradict ea
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from kb.evidence import FREE, FULL, OPEN, Evidence
@@ -81,21 +81,19 @@ def crossings(start: Place, shift: Place) -> tuple[Crossing, ...]:
         low, high = sorted((start[axis], start[axis] + shift[axis]))
         for line in range(math.floor(low) + 1, math.ceil(high)):
             part = (line - start[axis]) / shift[axis]
-            at = [start[0] + shift[0] * part, start[1] + shift[1] * part]
-            at[axis] = float(line)
-            other = round(at[1 - axis])
-            if shift[1 - axis] and abs(at[1 - axis] - other) < HAIR:
-                at[1 - axis] = other - signs[1 - axis]
+            across = start[1 - axis] + shift[1 - axis] * part
+            other, when = round(across), round(part, 9)
+            if shift[1 - axis] and abs(across - other) < HAIR:  # at a corner: still this side of the other line
+                across = other - signs[1 - axis]
                 if axis == 1:
-                    x = other + signs[0]
-                    found.append((round(part, 9), 2, _crossing((x, line - signs[1]), (x, line + signs[1]))))
-            before, after = list(at), list(at)
-            before[axis], after[axis] = line - signs[axis], line + signs[axis]
-            found.append((round(part, 9), axis, _crossing((before[0], before[1]), (after[0], after[1]))))
+                    found.append((when, 2, _crossing(line, other + signs[0], axis, signs[1])))
+            found.append((when, axis, _crossing(line, across, axis, signs[axis])))
     return tuple(crossing for *_, crossing in sorted(found))
 
 
-def _crossing(before: Place, after: Place) -> Crossing:
+def _crossing(line: int, across: float, axis: int, hair: float) -> Crossing:
+    """Where a motion crosses a line of one axis, at a place along it. hair : a little further on its way."""
+    before, after = ((at, across) if axis == 0 else (across, at) for at in (line - hair, line + hair))
     return Crossing(before, after, (math.floor(after[0]), math.floor(after[1])))
 
 
@@ -106,23 +104,22 @@ def next_square(place: Place, towards: Place) -> tuple[int, int]:
     return math.floor(ahead[0]), math.floor(ahead[1])
 
 
-def retold(moved: Iterable[Moved], held: Lattice, looks: Sequence[Look]) -> Iterator[Retold]:
-    """What else may have come of motions, and how the lattice lies then, so that no look contradicts another.
+def retold(motion: Moved, held: Lattice, looks: Sequence[Look]) -> Iterator[Retold]:
+    """What else may have come of a motion, and how the lattice lies then, so that no look contradicts another.
 
     held : the lattice that is believed. looks : all, where they are believed to have been received, the newest where it
-    was commanded. That this motion was stopped on the lattice held is not among it, nor that all went as is believed.
+    was commanded. That the newest motion was stopped on the lattice held is not among it, nor what is believed already.
 
     Until he was stopped he came over no square that is occupied, and into none that is free; rather before one that is
     occupied than before one of which it is open.
     """
-    for motion in moved:
-        last = motion.number == len(looks) - 1
-        for hypothesis in motion.hypotheses:
-            if last and hypothesis.lattice == held:
-                continue
-            found = list(_otherwise(motion, hypothesis, looks))
-            surest = any(one.known for one in found)
-            yield from (one for one in found if one.known == surest)
+    newest = motion.number == len(looks) - 1
+    for hypothesis in motion.hypotheses:
+        if newest and hypothesis.lattice == held:
+            continue
+        found = list(_otherwise(motion, hypothesis, looks))
+        surest = any(one.known for one in found)
+        yield from (one for one in found if one.known == surest)
 
 
 def _otherwise(motion: Moved, hypothesis: Hypothesis, looks: Sequence[Look]) -> Iterator[Retold]:

@@ -114,7 +114,7 @@ def corner(side: str, situation: Situation) -> Destination:
 
     Where a room is not seen that may go further, it may be another one.
     """
-    unknown = unknown_corner(side, situation)
+    unknown = unknown_corner(side, situation, situation.screens.floor)
     if unknown is not None:
         return unknown
     column, row = situation.corners[side].square
@@ -123,14 +123,13 @@ def corner(side: str, situation: Situation) -> Destination:
     return Destination(best, rooms[0].what if rooms else "", rooms)
 
 
-def unknown_corner(side: str, situation: Situation, floor: Mask | None = None) -> Destination | None:
+def unknown_corner(side: str, situation: Situation, floor: Mask) -> Destination | None:
     """What is missing to tell where the corner towards a side is; None when that is known.
 
     It is not where the floor goes on unseen at its furthest, or is seen beyond walls. floor : (rows, columns) that can
-    be reached; None for what Utak can walk to.
+    be reached.
     """
     model, screens = situation.model, situation.screens
-    floor = screens.floor if floor is None else floor
     column, row = situation.corners[side].square
     best = row * model.labels.shape[1] + column
     if not floor[row, column]:

@@ -122,9 +122,10 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     """
     column, row = situation.corners[side].square
     if not situation.model.mask(node.patch)[row, column]:
-        unknown = unknown_corner(side, situation, _floor(node, situation))
+        floor = _floor(node, situation)
+        unknown = unknown_corner(side, situation, floor)
         if unknown is not None:
-            return Landing({}, unknown.missing, unknown.lookouts, _near(side, node, situation))
+            return Landing({}, unknown.missing, unknown.lookouts, _near(side, node, situation, floor))
     land = _in_corner(side, node, situation)
     if land.holds or _lies_in(land.ends, node, situation):
         rooms = rooms_to_see(side, situation, carried=True)
@@ -158,10 +159,13 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
     return Landing({side: near}, lookout.what, (lookout,))
 
 
-def _near(side: str, node: Node, situation: Situation) -> Mapping[str, End]:
-    """Places from which Utak with the object in hand sees a corner well; none when the object is at one."""
+def _near(side: str, node: Node, situation: Situation, floor: Mask) -> Mapping[str, End]:
+    """Places from which Utak with the object in hand sees a corner well; none when the object is at one.
+
+    floor : (rows, columns) that he can reach.
+    """
     column, row = situation.corners[side].square
-    mask = situation.model.space & _floor(node, situation) | situation.model.mask(node.patch)
+    mask = situation.model.space & floor | situation.model.mask(node.patch)
     rows, columns = np.ogrid[: mask.shape[0], : mask.shape[1]]
     end = Inside(region_of(mask & (abs(rows - row) <= IN_SIGHT) & (abs(columns - column) <= IN_SIGHT)))
     return {} if end.polygon.is_empty or lands(end, in_view(node.polygon, situation)) else {f"near_{side}": end}

@@ -86,7 +86,7 @@ def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
         seen = count_ranges(impression(occupied, (i + x, j + y), heading).retina)
         looks.append(Look(seen, (place[0] + shift[0], place[1] + shift[1])))
     assume(math.dist(own, way) > 2 * HAIR)
-    found = list(retold([Moved(1, way, CENTRED)], Lattice(), looks))
+    found = list(retold(Moved(1, way, CENTRED), Lattice(), looks))
     right = [
         one for one in found if one.hypothesis.angle == heading and math.dist(one.looks(looks)[1].place, own) < 1e-3
     ]
@@ -102,7 +102,7 @@ def test_who_met_nothing_has_nothing_to_tell_otherwise() -> None:
     occupied = world_of(["." * 80] * 80)
     seen = [count_ranges(impression(occupied, (x, 40)).retina) for x in (30, 35)]
     looks = [Look(seen[0], (0.0, 0.0)), Look(seen[1], (5.0, 0.0))]
-    told = list(retold([Moved(1, (5.0, 0.0), CENTRED[:1])], Lattice(), looks))
+    told = list(retold(Moved(1, (5.0, 0.0), CENTRED[:1]), Lattice(), looks))
     assert told == []
 
 
