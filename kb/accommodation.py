@@ -1,11 +1,9 @@
 """Accommodation: the believed pose, the angle of the lattice and the map, made to agree with every new impression.
 
 From the command the pose is predicted. When the impression cannot have been received there, explanations are gathered
-(the motion was blocked, it
-ended beside the predicted place, the lattice lies at another angle) and kb/asp/accommodation.lp chooses the cheapest.
-Then the impression
-is taken into the evidence. Each of the 160 cells ends as predicted, as explained (it shows squares not settled
-before), or as noise.
+(the motion was blocked, it ended beside the predicted place, the lattice lies at another angle) and
+kb/asp/accommodation.lp chooses the cheapest. Then the impression is taken into the evidence. Each of the 160 cells ends
+as predicted, as explained (it shows squares not settled before), or as noise. Who is lost forgets, and begins anew.
 """
 
 import math
@@ -19,16 +17,15 @@ from numpy.typing import NDArray
 
 from geometry.rigid import Rotate
 from kb.body import Command, Impression, Move, Push, Release, Turn
-from kb.encodings import KB, solve
 from kb.evidence import FREE, OPEN, Evidence
-from kb.explanation import Accommodated, CellStatus, Explanation
+from kb.explanation import Accommodated, CellStatus, Explanation, cheapest
 from kb.hauling import Outcome, otherwise, predicted
-from kb.heading import CENTRED, MEMORY, Box, Hypothesis, Look, anywhere, candidates, search, standing, within
+from kb.heading import ANYWHERE, CENTRED, MEMORY, Box, Hypothesis, Look, anywhere, candidates, search, standing, within
 from kb.lattice import CENTRE, Lattice, Samples
 from kb.loads import Load, discounted, slack_of
 from kb.relaying import laid, relaid
 from kb.retina import FIELDS, count_ranges
-from kb.stops import Moved, Retold, ends, next_square, retold
+from kb.stops import Moved, Retold, around, ends, next_square, retold
 from kb.supposing import Surprise, agreeing, as_motion, clashes, laid_on
 from kb.suspecting import suspects
 
@@ -39,8 +36,9 @@ MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are bla
 HOPELESS = 18  # times that no other lattice explained it better, with things moved, before none is tried any more
 SETTLED = math.radians(5)  # by which angles may differ while that hardly is why looks contradict
 CONTRADICTED = 2  # misfits that a contradiction of looks weighs as much as: more than any other lattice costs
-NEAR = 2  # squares about the predicted place in which Utak is looked for first
 REMEMBERED = 3  # motions that may turn out to have been stopped
+RECENT = 4  # looks by which he tells that he is lost
+LOST = 8  # misfits, of these looks
 Place = tuple[float, float]
 
 
@@ -51,7 +49,8 @@ class Memory:
     place is a point of the lattice; looks keep where each impression was received, in Utak's own frame. loads are the
     things that he has held, by name, and held the one that he holds. moved : his last motions before he held any, which
     may have ended otherwise than believed. barred : squares before which he was stopped himself; suspected : those of
-    which one stopped what he carried, for all that was known.
+    which one stopped what he carried, for all that was known. unfit : misfits of each of the last looks. been : where
+    looks were received, in his own frame, before he was lost and began anew.
     """
 
     evidence: Evidence = field(default_factory=Evidence)
@@ -67,6 +66,13 @@ class Memory:
     moved: tuple[Moved, ...] = ()
     loads: dict[str, Load] = field(default_factory=dict)
     held: str | None = None
+    unfit: tuple[int, ...] = ()
+    been: tuple[Place, ...] = ()
+
+    @property
+    def lost(self) -> bool:
+        """Does what he sees agree with nothing that he believes, look after look?"""
+        return sum(self.unfit) >= LOST and sum(unfit > 0 for unfit in self.unfit) > 1
 
     @property
     def square(self) -> tuple[int, int]:
@@ -76,12 +82,12 @@ class Memory:
     @property
     def track(self) -> list[Place]:
         """Where he has been, as points of the lattice."""
-        return [self.lattice.place_from_utak(*look.place) for look in self.looks]
+        return [self.lattice.place_from_utak(*place) for place in (*self.been, *(look.place for look in self.looks))]
 
     @property
     def looked_from(self) -> frozenset[tuple[int, int]]:
-        """The squares on which an impression was received."""
-        return frozenset((math.floor(x), math.floor(y)) for x, y in self.track)
+        """The squares on which an impression was received that he has not forgotten."""
+        return frozenset((math.floor(x), math.floor(y)) for x, y in self.track[len(self.been) :])
 
     @property
     def spread(self) -> float:
@@ -127,6 +133,15 @@ class Memory:
         """
         along = self.lattice.angle == 0 and all(other.box == CENTRE + CENTRE for other in self.hypotheses)
         return not (self.evidence.overruled or self.slipped) and (along or len(self.hypotheses) == 1)
+
+    def anew(self) -> "Memory":
+        """The memory of one who is lost, and begins anew with what he sees next.
+
+        Whatever led him astray, no explanation of single looks leads back. In his own frame he goes on from where he
+        believes himself, so that he knows about where he came from.
+        """
+        been = (*self.been, *(look.place for look in self.looks[:-1]))
+        return Memory(Evidence(), self.lattice, self.place, hypotheses=ANYWHERE, slipped=self.slipped, been=been)
 
     def wake(self, impression: Impression) -> Accommodated:
         """Take in the first impression."""
@@ -256,6 +271,7 @@ class Memory:
         self.evidence.look(samples, counts, x, y, len(self.looks) - 1)
         if len(self.looks) == 1:
             self.evidence.stand(x, y, 0)
+        self.unfit = (*self.unfit[1 - RECENT :], explanation.misfits)
         return Accommodated(explanation, cells)
 
     def _explain(
@@ -277,7 +293,7 @@ class Memory:
             first = first._replace(misfits=CONTRADICTED)
         explanations = [first]
         explanations += [self._explanation("blocked", stop, ranges, predicted) for stop in stops]
-        explanations += [self._explanation("slipped", place, ranges, predicted) for place in _around(predicted)]
+        explanations += [self._explanation("slipped", place, ranges, predicted) for place in around(predicted)]
         explanations += turned
         if stops and not self.loads and all(e.misfits for e in turned):
             simple = any(not e.misfits for e in explanations if e.how != "slipped" or self.slipped)
@@ -334,7 +350,7 @@ class Memory:
         if not left:
             return self.lattice, NONE_FITS
         tried: list[tuple[int, int]] = []
-        lattices = candidates(left, self.lattice)[: max(6, MOST_REPLAYS // len(self.looks))]
+        lattices = candidates(left, self.lattice)[: max(6, MOST_REPLAYS // (len(self.looks) + 1))]
         for number, lattice in enumerate(lattices):
             tried.append((relaid(lattice, self.lattice, [*self.looks, look], ()).misfits, number))
             if tried[-1][0] == 0:
@@ -352,17 +368,9 @@ class Memory:
 
     def _choose(self, explanations: list[Explanation], unchanged: bool = False) -> Explanation:
         """The explanation to believe. unchanged : nothing looks otherwise than at the last look."""
-        facts = [
-            f"explanation({number},{e.how},{e.misfits},{math.ceil(e.distance)})"
-            for number, e in enumerate(explanations)
-        ]
-        facts += [f"trust({0 if self._off_middle else self.trust})", *["slips"] * self.slipped]
+        facts = [f"trust({0 if self._off_middle else self.trust})", *["slips"] * self.slipped]
         facts += ["proven"] * (self.held is not None and self.loads[self.held].proven)
-        facts += ["unchanged"] * unchanged
-        answer = solve([KB / "accommodation.lp"], facts)
-        if not answer:
-            raise AssertionError("accommodation.lp always has an answer")
-        return explanations[answer[0].arguments[0].number]
+        return cheapest(explanations, [*facts, *["unchanged"] * unchanged])
 
     def _lie(self, chosen: Explanation) -> None:
         """Believe what an explanation says of the lattice and of earlier motions; if that is new, all is laid anew."""
@@ -388,10 +396,3 @@ class Memory:
             CellStatus.NOISE if noise[i] else CellStatus.EXPLAINED if new[i] else CellStatus.PREDICTED
             for i in range(len(FIELDS))
         )
-
-
-def _around(place: Place) -> tuple[Place, ...]:
-    """The places within NEAR squares of a place, by distance; the place itself is not among them."""
-    reach = range(-NEAR, NEAR + 1)
-    offsets = sorted((i * i + j * j, i, j) for i in reach for j in reach if i or j)
-    return tuple((place[0] + i, place[1] + j) for _, i, j in offsets)

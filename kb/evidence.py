@@ -11,6 +11,7 @@ the sets of counts alone.
 """
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,7 @@ from geometry.sketch import Counts
 from kb.lattice import MOST, Samples
 
 OPEN, FREE, FULL = -1, 0, 1
+SIGHT = 24  # squares that can be seen from a place, at any angle
 MARGIN = 40  # squares by which the map grows beyond what is needed
 FITTING_ROUNDS = 6
 STRAY = 0.05  # occupied squares expected under a field that shows level 0 and yet may hide one
@@ -104,11 +106,17 @@ class Evidence:
         self.overruled = 0
         self._looks: set[Told] = set()  # after which nothing was withdrawn
 
-    def view(self, margin: int = 2) -> MapView:
-        """The part of the map that was seen, and `margin` squares around it."""
+    def view(self, places: Iterable[tuple[float, float]] = (), margin: int = 2) -> MapView:
+        """The part of the map that was seen, and what lies in sight of some places, with `margin` squares around it."""
+        squares = [(math.floor(x), math.floor(y)) for x, y in places]
+        for square in squares:
+            self.make_room(*square)
+        there = np.array([self.index(*square) for square in squares], np.int64).reshape(-1, 2)
         rows, columns = np.flatnonzero(self.seen.any(1)), np.flatnonzero(self.seen.any(0))
-        top, left = max(0, rows[0] - margin), max(0, columns[0] - margin)
-        part = (slice(top, rows[-1] + margin + 1), slice(left, columns[-1] + margin + 1))
+        top, left = np.vstack([there - SIGHT, [rows[0], columns[0]]]).min(0).tolist()
+        bottom, right = np.vstack([there + SIGHT, [rows[-1], columns[-1]]]).max(0).tolist()
+        top, left = max(0, top - margin), max(0, left - margin)
+        part = (slice(top, bottom + margin + 1), slice(left, right + margin + 1))
         state = self.state[part].copy()
         soft = 1.0 / (1.0 + np.exp(-self.logit[part]))
         probability = np.where(state == OPEN, soft, state).astype(np.float32)
@@ -302,11 +310,10 @@ class Evidence:
 
     def make_room(self, x: int, y: int) -> None:
         """Grow the arrays until a look from (x, y), at any angle, fits in."""
-        reach = 24
         row, column = self.index(x, y)
         rows, columns = self.state.shape
-        south, west = max(0, reach - row), max(0, reach - column)
-        north, east = max(0, row + reach + 1 - rows), max(0, column + reach + 1 - columns)
+        south, west = max(0, SIGHT - row), max(0, SIGHT - column)
+        north, east = max(0, row + SIGHT + 1 - rows), max(0, column + SIGHT + 1 - columns)
         if south or west or north or east:
             self._grow(*(n + MARGIN if n else 0 for n in (south, north, west, east)))
 

@@ -1,8 +1,11 @@
 """What an impression is explained by: where it was received, on which lattice, and what that means for all else."""
 
+import math
+from collections.abc import Sequence
 from enum import StrEnum
 from typing import NamedTuple
 
+from kb.encodings import KB, solve
 from kb.hauling import Outcome
 from kb.heading import Hypothesis
 from kb.lattice import Lattice
@@ -38,7 +41,7 @@ class Explanation(NamedTuple):
     @property
     def anew(self) -> bool:
         """Does it say that the lattice lies otherwise, or that looks were received elsewhere, than was believed?"""
-        return self.how in ("turned", "misled")
+        return self.how in ("turned", "misled", "lost")
 
 
 class Accommodated(NamedTuple):
@@ -46,3 +49,14 @@ class Accommodated(NamedTuple):
 
     explanation: Explanation
     cells: tuple[CellStatus, ...]
+
+
+def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Explanation:
+    """The explanation to believe (kb/asp/accommodation.lp). facts : of what else bears on the choice."""
+    offered = [
+        f"explanation({number},{e.how},{e.misfits},{math.ceil(e.distance)})" for number, e in enumerate(explanations)
+    ]
+    answer = solve([KB / "accommodation.lp"], [*offered, *facts])
+    if not answer:
+        raise AssertionError("accommodation.lp always has an answer")
+    return explanations[answer[0].arguments[0].number]

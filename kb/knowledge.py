@@ -51,7 +51,17 @@ class Knowledge:
         """The world model after a command and its impression."""
         if isinstance(command, Grasp):
             self._grasp(command.direction)
-        return self._model(impression, self.memory.accommodate(command, impression))
+        accommodated = self.memory.accommodate(command, impression)
+        if self.memory.lost and self.memory.held is None:
+            accommodated = self._begin_anew(impression)
+        return self._model(impression, accommodated)
+
+    def _begin_anew(self, impression: Impression) -> Accommodated:
+        """Forget all but where he has been, and see as if for the first time."""
+        self.memory = self.memory.anew()
+        self._names.forget()
+        woken = self.memory.wake(impression)
+        return woken._replace(explanation=woken.explanation._replace(how="lost"))
 
     def _grasp(self, direction: str) -> None:
         """Believe that the thing on an adjacent square is in hand, if one with a known outline is believed there."""
@@ -79,7 +89,7 @@ class Knowledge:
             self.felt.clear()  # its squares were those of another lattice
             self._imagined = NOTHING_IMAGINED
         self._feel(impression)
-        counted = self.memory.evidence.view()
+        counted = self.memory.evidence.view(self.memory.track[: len(self.memory.been)])
         self._imagined = imagined = imagine(counted, self._imagined)
         view = counted._replace(
             probability=imagined.probability(counted.probability), by_counts=counted.probability, sure=self.memory.sure
@@ -103,6 +113,8 @@ class Knowledge:
             held=self.memory.held,
             imagined=imagined,
             touch=impression.touch,
+            lost=self.memory.lost,
+            anew=bool(self.memory.been),
         )
         self.objects = self._objects(model)
         if self.memory.loads:

@@ -1,4 +1,4 @@
-"""Where a motion that was stopped may have ended.
+"""Where a motion may have ended that did not end where it should.
 
 Utak is a point, so what stands on the lattice stops him on a line between two squares. On the lattice that he believes
 in he rarely runs against anything, for he moves over squares that he believes free; while he believes in a wrong one
@@ -16,6 +16,7 @@ from kb.lattice import Lattice
 from kb.relaying import Relaid, relaid
 
 Place = tuple[float, float]
+NEAR = 2  # squares about the predicted place in which Utak is looked for first
 HAIR = 1e-6  # squares from a line between two squares to what counts as beside it
 
 
@@ -68,6 +69,13 @@ def ends(start: Place, shift: Place) -> tuple[Place, ...]:
     lines = reversed(crossings(start, shift))
     found = [place for crossing in lines for place in (crossing.after, crossing.before)]
     return (*found, start) if any(shift) else ()
+
+
+def around(place: Place) -> tuple[Place, ...]:
+    """The places within NEAR squares of a place, by distance; the place itself is not among them."""
+    reach = range(-NEAR, NEAR + 1)
+    offsets = sorted((i * i + j * j, i, j) for i in reach for j in reach if i or j)
+    return tuple((place[0] + i, place[1] + j) for _, i, j in offsets)
 
 
 def crossings(start: Place, shift: Place) -> tuple[Crossing, ...]:

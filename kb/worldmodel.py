@@ -105,6 +105,7 @@ class WorldModel:
     beneath : (rows, columns), floor of the standing map, upon which things that he has moved may lie now; None while he
     has moved none.
     touch : as of the impression, the colours felt in DIRECTIONS; () when it is not known.
+    lost : does what he sees agree with none of it? anew : was he lost before, and has forgotten what he had seen then?
     """
 
     lattice: Lattice
@@ -122,6 +123,8 @@ class WorldModel:
     imagined: Imagined = NOTHING_IMAGINED
     beneath: Mask | None = None
     touch: tuple[str | None, ...] = ()
+    lost: bool = False
+    anew: bool = False
 
     @cached_property
     def certain(self) -> Mask:
@@ -228,6 +231,10 @@ class Names:
                 names[i] = f"o{self._count}"
         self._known = {names[i]: own for i, own in enumerate(squares)}
         return [names[i] for i in range(len(patches))]
+
+    def forget(self) -> None:
+        """Give new names to all patches from now on."""
+        self._known = {}
 
 
 def patch_of(mask: Mask, view: MapView) -> Patch:

@@ -7,6 +7,7 @@ where it says and while the squares that it needs are still believed free.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,16 +58,27 @@ class See:
 Advice = Act | Go | See | Refusal
 
 
+class Beginning(NamedTuple):
+    """Where the middle of something lay at first, in Utak's own frame.
+
+    name : of its node. moved : has he moved it since?
+    """
+
+    place: Place
+    name: str = ""
+    moved: bool = False
+
+
 @dataclass
 class Carrier:
     """Carries things, one plan after the other.
 
-    began : where each thing's middle lay when it was first spoken of. failed : holds by which a thing did not move, in
-    its own frame. missed : plans that did not lead where they should, with the thing in hand, since this was last set.
+    began : where what is meant by each parameter lay at first. failed : holds by which a thing did not move, in its own
+    frame. missed : plans that did not lead where they should, with the thing in hand, since this was last set.
     """
 
     pull: bool = True
-    began: dict[str, Place] = field(default_factory=dict)
+    began: dict[str, Beginning] = field(default_factory=dict)
     failed: dict[str, tuple[Place, ...]] = field(default_factory=dict)
     missed: int = 0
 
@@ -88,10 +100,17 @@ class Carrier:
         legs = () if self._course is None else self._course.legs
         return any(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
 
-    def began_at(self, node: Node) -> Place:
-        """The point of the lattice where the middle of an object lay at first."""
-        middle = node.polygon.centroid
-        return self.began.setdefault(node.name, (middle.x, middle.y))
+    def began_at(self, parameter: str, node: Node, model: WorldModel) -> Place:
+        """The point of the lattice where the middle of what a parameter means lay at first.
+
+        What he has moved and then lost sight of is the same thing still when he takes up another one for it.
+        """
+        known = self.began.get(parameter)
+        gone = known is not None and known.moved and model.object(known.name) is None
+        if known is None or (known.name != node.name and not gone):
+            known = Beginning(model.lattice.place_to_utak(node.polygon.centroid.x, node.polygon.centroid.y))
+        self.began[parameter] = known = known._replace(name=node.name, moved=known.moved or node.moved)
+        return model.lattice.place_from_utak(*known.place)
 
     def advise(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Advice:
         """What to do to carry an object to one of several ends."""

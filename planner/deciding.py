@@ -82,12 +82,15 @@ class Decider:
         self.rooms = rooms_of(model, self.rules)
         reconciled = self._reconcile(model, screens)
         self.corners = corners(model, self.rules)
+        if model.lost and model.held is not None:
+            return Decision(Release(), f"{model.held} is let go, for nothing looks as it should")
         situation = Situation(model, screens, self.bound, self.rooms, self.corners, self.task, self.rules)
         while self.attained < len(self.stages):
             stage = self.stages[self.attained]
             decision = self._towards(stage, situation, reconciled, track)
             if decision is not None:
-                return decision
+                unproved = model.anew and decision.verdict == "impossible"
+                return replace(decision, verdict="limit") if unproved else decision
             self.attained += 1
         return Decision(None, " and ".join(map(str, self.stages)) + " holds", "done")
 
@@ -174,7 +177,7 @@ class Decider:
                 return look
         if node.polygon is None:
             return Decision(None, f"{stage} is not attempted: the outline of {node.name} is not known", "limit")
-        land = landing(goal, node, self.carrier.began_at(node), situation)
+        land = landing(goal, node, self.carrier.began_at(x, node, situation.model), situation)
         if land.holds:
             return None
         if node.movable == 0:

@@ -17,6 +17,7 @@ from kb.problems import Span
 from kb.rooms import rooms_of
 from kb.task import Claim, Parameter, Task
 from planner.cycle import Options, Robot
+from planner.deciding import Decider
 from planner.goals import constraints, stages
 from planner.screen import Screens
 from tests.kb.drawings import seen_whole
@@ -26,7 +27,12 @@ NOWHERE = Span(0, 0, 0)
 
 
 class DrawnBody:
-    """A body in a drawing, which must never be told to walk into anything. It wakes amid a square."""
+    """A body in a drawing, which must never be told to walk into anything. It wakes amid a square.
+
+    bumps : it may be told to, and is stopped.
+    """
+
+    bumps = False
 
     def __init__(self, rows: list[str], heading: int = 0) -> None:
         self.occupied, self.heading = world_of(rows), heading
@@ -45,8 +51,11 @@ class DrawnBody:
     def act(self, command: Command) -> Impression:
         assert isinstance(command, Move)
         way = np.array(turned(command.east, command.north, self.heading))
-        for part in np.linspace(0, 1, 200):
-            assert not self.occupied(*(int(v) for v in self.place + part * way))
+        for part in np.linspace(0, 1, 2000 if self.bumps else 200):
+            if self.occupied(*(int(v) for v in self.place + part * way)):
+                assert self.bumps
+                way *= part - 1 / 2000
+                break
         self.place = self.place + way
         self.track.append(self.square)
         self.commands.append(command)
@@ -307,3 +316,27 @@ def test_a_window_that_begins_elsewhere_changes_nothing() -> None:
     other = Screens(replace(model, view=padded, labels=np.pad(model.labels, ((0, 0), (3, 0)))))
     assert np.array_equal(one.floor, other.floor[:, 3:])
     assert other.here == (one.here[0] + 3, one.here[1])
+
+
+def test_he_who_is_carried_off_does_his_task_all_the_same() -> None:
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        body = DrawnBody(THINGS, int(rng.integers(-44, 46)))
+        robot = Robot(body, Task({}, (), (NORTHEAST,)), Options(max_steps=60))
+        robot.wake()
+        robot.step()
+        body.place = np.array([rng.integers(2, 9), rng.integers(1, 12)]) + 0.5  # somebody puts him down there
+        body.occupied = world_of(ROOMS)  # in another house
+        body.bumps = True
+        while not robot.finished:
+            robot.step()
+        assert robot.verdict.verdict == "done"
+        assert body.square == (30, 16)
+
+
+def test_who_was_lost_proves_nothing() -> None:
+    model = seen_whole(EMPTY)
+    found = Decider(SQUARE).decide(model, [model.place])
+    assert (found.command, found.verdict) == (None, "impossible")
+    after = Decider(SQUARE).decide(replace(model, anew=True), [model.place])
+    assert (after.command, after.verdict, after.why) == (None, "limit", found.why)

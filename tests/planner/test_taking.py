@@ -111,6 +111,25 @@ def test_where_it_failed_he_does_not_take_it_again_wherever_in_the_square_he_sta
     assert (np.floor(second.place) != np.floor(place)).any()
 
 
+def test_where_a_thing_began_is_remembered_though_its_name_is_not() -> None:
+    carrier, situation = Carrier(), beside(())
+    (node,) = situation.model.objects
+
+    def began(name: str, east: int, moved: bool, others: tuple[str, ...] = ()) -> float:
+        there = replace(node, name=name, polygon=shapely.box(east, 0, east + 2, 2), moved=moved)
+        objects = (there, *(replace(node, name=other) for other in others))
+        x, y = carrier.began_at("x", there, replace(situation.model, objects=objects))
+        assert y == pytest.approx(1.0)
+        return x
+
+    assert began("o1", 0, False) == pytest.approx(1.0)
+    assert began("o1", 1, False) == pytest.approx(1.0)  # it is only seen better
+    assert began("o2", 5, False, ("o1",)) == pytest.approx(6.0)  # another thing is meant
+    assert began("o2", 9, True) == pytest.approx(6.0)
+    assert began("o3", 10, False) == pytest.approx(6.0)  # the same, after all names were lost
+    assert began("o4", 20, False, ("o3",)) == pytest.approx(21.0)
+
+
 @pytest.mark.parametrize(
     ("spread", "turn", "looks", "first"),
     [
