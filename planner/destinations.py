@@ -1,9 +1,11 @@
 """What a goal means on the screen: the squares on which it holds for Utak, or what is missing to tell."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import shapely
@@ -19,12 +21,12 @@ from planner.screen import Screens, Squares, edged, grown
 
 Mask = NDArray[np.bool_]
 # How much further towards a corner what is not seen may go, in squares east and north added:
+FURTHEST = 45  # at most
 BARE, A_PERCENT = 12, 2  # behind floor that goes on: so many for each percent that it promises more than BARE
-FURTHEST = 34  # but no more than so many
-ROOM = 25  # behind a doorway: at least so many
 GAP, WIDEST_DOOR = 15, 6  # behind a stretch of floor no wider than a door: at least so many
-CARRIED = 45  # so many instead of those two for what is carried: another room is looked for once it lies in the corner
 CUT_OFF = 30  # floor that no way leads to yet
+ONWARD = 30  # straight on behind where the floor goes on
+ASIDE, BESIDE_DOOR = 28, 25  # to either side behind that, and behind what is no wider than a door
 RAYS = 192  # places along a line of sight at which it may meet the verge
 
 
@@ -118,7 +120,7 @@ def corner(side: str, situation: Situation) -> Destination:
     if unknown is not None:
         return unknown
     column, row = situation.corners[side].square
-    rooms = rooms_to_see(side, situation, carried=False)
+    rooms = rooms_to_see(side, situation)
     best = np.array([row * situation.model.labels.shape[1] + column])
     return Destination(best, rooms[0].what if rooms else "", rooms)
 
@@ -142,17 +144,13 @@ def unknown_corner(side: str, situation: Situation, floor: Mask) -> Destination 
     return None
 
 
-def rooms_to_see(side: str, situation: Situation, carried: bool) -> tuple[Lookout, ...]:
+def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
     """Rooms that are not seen and may go further towards a side than all that is.
 
     The floor goes on unseen behind what may be a door, or would be one if what may yet be an object is no wall; or
     behind what is likely a gap; or it is seen where no way leads yet, but one may.
-
-    carried : is something to be carried there?
     """
     screens, model = situation.screens, situation.model
-    furthest, room = (CARRIED, CARRIED) if carried else (FURTHEST, ROOM)
-    most = max(furthest, room, GAP)
     divided = [rooms.labels.ravel() for rooms in (situation.rooms, situation.supposed) if rooms.doors]
     doorways = (situation.rooms.doorways | situation.supposed.doorways).ravel()
     column, row = situation.corners[side].square
@@ -168,27 +166,49 @@ def rooms_to_see(side: str, situation: Situation, carried: bool) -> tuple[Lookou
     def narrow(look: Lookout) -> bool:
         return bool(max(np.ptp(v) for v in np.divmod(look.squares, model.labels.shape[1])) < WIDEST_DOOR)
 
-    def reach(look: Lookout) -> int:
-        return min(A_PERCENT * (look.chance - BARE), furthest)
+    def reach(look: Lookout, least: int, aside: int) -> float:
+        promise = max(A_PERCENT * (look.chance - BARE), least)
+        onward = _onward(side, look.squares, model)
+        sideways = math.sqrt(max(2 - onward**2, 0.0))
+        return min(promise, FURTHEST, ONWARD * max(onward, 0.0) + aside * sideways)
 
-    reaching = [(look, CUT_OFF) for look in rooms_beyond(screens) if screens.nearest(look.squares) is not None]
-    open_ends = [look for look in frontiers(screens, APART) if short(look) <= most]
-    likely_ends = [look for look in gaps(screens) if short(look) <= most and narrow(look)]
+    looks = [look for look in rooms_beyond(screens) if short(look) <= CUT_OFF]
+    looks = [look for look in looks if screens.nearest(look.squares) is not None]
+    open_ends = [look for look in frontiers(screens, APART) if short(look) <= FURTHEST]
+    likely_ends = [look for look in gaps(screens) if short(look) <= FURTHEST and narrow(look)]
     ends = promised(screens, [*open_ends, *likely_ends])
     for look in ends[: len(open_ends)]:
         if doorways[look.squares].any():
-            reaching.append((look, max(reach(look), room)))
+            squares = reach(look, FURTHEST, BESIDE_DOOR)
         elif narrow(look):
-            reaching.append((look, max(reach(look), GAP)))
-        elif apart(look):
-            reaching.append((look, reach(look)))
-    looks = [look for look, squares in reaching if short(look) <= squares]
+            squares = reach(look, GAP, BESIDE_DOOR)
+        else:
+            squares = reach(look, 0, ASIDE) if apart(look) else -math.inf
+        looks += [look] * (short(look) <= squares)
     for look in ends[len(open_ends) :]:
         near = short_of(screens, look.squares)
-        if len(near) and short(look) <= max(reach(look), room):
+        if len(near) and short(look) <= reach(look, FURTHEST, BESIDE_DOOR):
             looks.append(look._replace(squares=near))
     what = f"a room is not seen that may go further to the {side}"
     return tuple(look._replace(what=what) for look in looks)
+
+
+def _onward(side: str, squares: Squares, model: WorldModel) -> float:
+    """How much further towards a corner, east and north added, a step of one square on from some squares leads.
+
+    On is the mean of the directions in which nothing is seen; 1 where they cancel out.
+    """
+    rows, columns = np.divmod(squares, model.labels.shape[1])
+    unseen = np.pad(~model.view.seen, 1, constant_values=True)
+    steps = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)])
+    x, y = np.array([unseen[rows + 1 + y, columns + 1 + x].sum() for x, y in steps]) @ steps
+    far = math.hypot(x, y)
+    return float(_measured(side, *model.lattice.to_utak(x / far, y / far))) if far else 1.0
+
+
+def _measured(side: str, east: Any, north: Any) -> Any:
+    """How far something lies towards a corner of Utak's frame: east and north added, for northeast."""
+    return (east if "east" in side else -east) + (north if "north" in side else -north)
 
 
 def _towards(side: str, squares: Squares, model: WorldModel) -> float:
@@ -196,7 +216,7 @@ def _towards(side: str, squares: Squares, model: WorldModel) -> float:
     rows, columns = np.divmod(squares, model.labels.shape[1])
     points = np.stack([columns + model.view.west + 0.5, rows + model.view.south + 0.5])
     east, north = np.column_stack(model.lattice.place_to_utak(*points)).T
-    return float(((east if "east" in side else -east) + (north if "north" in side else -north)).max())
+    return float(_measured(side, east, north).max())
 
 
 def beside(parameter: str, situation: Situation) -> Destination:

@@ -128,7 +128,7 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
             return Landing({}, unknown.missing, unknown.lookouts, _near(side, node, situation, floor))
     land = _in_corner(side, node, situation)
     if land.holds or _lies_in(land.ends, node, situation):
-        rooms = rooms_to_see(side, situation, carried=True)
+        rooms = rooms_to_see(side, situation)
         if rooms:
             return Landing({}, rooms[0].what, rooms)
     return land
