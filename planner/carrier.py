@@ -180,6 +180,9 @@ class Carrier:
     def _planned(self, node: Node, ends: Mapping[str, End], last: str, situation: Situation) -> Course | See | Refusal:
         request = self._request(node, ends, last, situation.model)
         haul = self._hauler.find(request, situation)
+        if isinstance(haul, Refusal) and situation.model.held == node.name and not request.held:
+            request = replace(request, held=True)  # to let go and take it otherwise does not help either
+            haul = self._hauler.find(request, situation)
         if isinstance(haul, Refusal):
             return haul
         if haul.aside:

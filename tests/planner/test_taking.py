@@ -10,7 +10,7 @@ import shapely
 import planner.carrier
 from geometry.carrying import Inside, Leg
 from geometry.rigid import Rotate, Translate
-from kb.body import Grasp, Move
+from kb.body import Grasp, Move, Push
 from kb.factfile import facts_of
 from kb.worldmodel import WorldModel
 from planner.carrier import Act, Carrier, Go
@@ -18,6 +18,7 @@ from planner.course import Course
 from planner.deciding import Decider
 from planner.destinations import Situation
 from planner.goals import Stage
+from planner.haulage import Haul, Hauler, Refusal, Request
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import NO_TASK, situation_of
 
@@ -109,6 +110,27 @@ def test_where_it_failed_he_does_not_take_it_again_wherever_in_the_square_he_sta
     second = advice(carrier, situation)
     assert isinstance(second, Go)
     assert (np.floor(second.place) != np.floor(place)).any()
+
+
+@pytest.mark.parametrize("refused", [True, False])
+def test_he_goes_on_with_a_hold_that_brought_him_nowhere_when_nothing_else_helps(
+    refused: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    situation = beside(touching({EAST: "g"}))
+    (node,) = situation.model.objects
+    held = situation_of(replace(situation.model, held=node.name), situation.binding)
+    carrier, find, asked = Carrier(), Hauler.find, []
+    carrier._went_on = held.model.place
+
+    def grudging(self: Hauler, request: Request, situation: Situation) -> Haul | Refusal:
+        asked.append(request.held)
+        return find(self, request, situation) if request.held or not refused else Refusal(False, lambda: "no way")
+
+    monkeypatch.setattr(Hauler, "find", grudging)
+    found = advice(carrier, held)
+    assert isinstance(found, Act)
+    assert asked == ([False, True] if refused else [False])
+    assert isinstance(found.command, Push) or not refused
 
 
 def test_where_a_thing_began_is_remembered_though_its_name_is_not() -> None:
