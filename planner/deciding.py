@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kb.body import Command, Grasp, Push, Release, Turn
+from kb.body import Command, Grasp, Move, Push, Release, Turn
 from kb.corners import Corner, corners
 from kb.facts import Fact
 from kb.reconciliation import Reconciled, reconcile
@@ -186,7 +186,8 @@ class Decider:
         if isinstance(advice, Act):
             if isinstance(advice.command, Push | Turn) and self._circles.noticed(situation.model, advice.command):
                 advice = self.carrier.given_up(situation.model)
-            look = self._before_turning(node, stage, situation) if isinstance(advice.command, Grasp) else None
+            taking = isinstance(advice.command, Move | Grasp)
+            look = self._before_turning(node, stage, situation) if taking else None
             if look is not None:
                 return look
             return Decision(advice.command, f"{advice.why}; {stage}")

@@ -10,9 +10,10 @@ import shapely
 import planner.carrier
 from geometry.carrying import Inside, Leg
 from geometry.rigid import Rotate, Translate
-from kb.body import Grasp, Move, Push
+from kb.body import Command, Grasp, Move, Push
 from kb.factfile import facts_of
-from kb.worldmodel import WorldModel
+from kb.reconciliation import Reconciled
+from kb.worldmodel import Node, WorldModel
 from planner.carrier import Act, Carrier, Go
 from planner.course import Course
 from planner.deciding import Decider
@@ -152,6 +153,27 @@ def test_where_a_thing_began_is_remembered_though_its_name_is_not() -> None:
     assert began("o4", 20, False, ("o3",)) == pytest.approx(21.0)
 
 
+def about_to_turn(spread: float, turn: float, looks: int) -> tuple[Situation, Decider, Node, Stage]:
+    """One who has looked so often and is about to take a thing and to turn it."""
+    situation = beside(())
+    looked = frozenset((x, 0) for x in range(looks))
+    situation = situation_of(replace(situation.model, spread=spread, looked_from=looked), situation.binding)
+    (node,) = situation.model.objects
+    motions = (Rotate(turn, (0.5, 0.5)),) if turn else (Translate(3.0, 0.0),)
+    decider = Decider(NO_TASK, bound=situation.binding)
+    decider.carrier._course = Course(node.name, "r", node.polygon, (Leg((0.5, 0.5), (1, 0), motions),), node.patch, 0)
+    return situation, decider, node, Stage(facts_of("at(x, corner(northeast))."))
+
+
+@pytest.mark.parametrize("command", [Move(0.2, 0.0), Grasp("east"), Push(1.0, 0.0)])
+def test_he_looks_before_he_makes_ready_to_take_it(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    situation, decider, _, stage = about_to_turn(math.pi, 90.0, 2)
+    monkeypatch.setattr(Carrier, "advise", lambda *_: Act(command, "so"))
+    decision = decider._carry(stage.goals[0], stage, situation, Reconciled({}, (), (), ()))
+    assert decision is not None
+    assert decision.why.startswith("so" if isinstance(command, Push) else "how the squares lie")
+
+
 @pytest.mark.parametrize(
     ("spread", "turn", "looks", "first"),
     [
@@ -164,14 +186,7 @@ def test_where_a_thing_began_is_remembered_though_its_name_is_not() -> None:
 def test_before_a_thing_is_turned_he_looks_how_the_squares_lie(
     spread: float, turn: float, looks: int, first: bool
 ) -> None:
-    situation = beside(())
-    looked = frozenset((x, 0) for x in range(looks))
-    situation = situation_of(replace(situation.model, spread=spread, looked_from=looked), situation.binding)
-    (node,) = situation.model.objects
-    motions = (Rotate(turn, (0.5, 0.5)),) if turn else (Translate(3.0, 0.0),)
-    decider = Decider(NO_TASK)
-    decider.carrier._course = Course(node.name, "r", node.polygon, (Leg((0.5, 0.5), (1, 0), motions),), node.patch, 0)
-    stage = Stage(facts_of("in(x, room(next))."))
+    situation, decider, node, stage = about_to_turn(spread, turn, looks)
     decision = decider._before_turning(node, stage, situation)
     assert (decision is not None) == first
     if decision is not None:
