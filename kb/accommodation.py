@@ -39,6 +39,7 @@ CONTRADICTED = 2  # misfits that a contradiction of looks weighs as much as: mor
 REMEMBERED = 3  # motions that may turn out to have been stopped
 RECENT = 4  # looks by which he tells that he is lost
 LOST = 8  # misfits, of these looks
+ASTRAY = 24  # so many once he has moved a thing, which may just lie otherwise than he believes
 Place = tuple[float, float]
 
 
@@ -72,7 +73,8 @@ class Memory:
     @property
     def lost(self) -> bool:
         """Does what he sees agree with nothing that he believes, look after look?"""
-        return sum(self.unfit) >= LOST and sum(unfit > 0 for unfit in self.unfit) > 1
+        most = ASTRAY if any(load.proven for load in self.loads.values()) else LOST
+        return sum(self.unfit) >= most and sum(unfit > 0 for unfit in self.unfit) > 1
 
     @property
     def square(self) -> tuple[int, int]:

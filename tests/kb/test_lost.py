@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
-from kb.accommodation import LOST, Memory
+from kb.accommodation import ASTRAY, LOST, Memory
 from kb.body import Impression, Move, Release, Turn
 from kb.evidence import FULL, OPEN
 from kb.knowledge import Knowledge
@@ -104,6 +104,14 @@ def test_misfits_of_a_single_look_are_no_reason_to_forget() -> None:
     assert not memory.lost
     assert not Memory(unfit=(1, 1, 1, 1)).lost
     assert Memory(unfit=(0, 1, 0, LOST)).lost
+
+
+def test_who_has_moved_a_thing_forgets_less_readily() -> None:
+    thing = shapely.box(4, 2, 8, 4)
+    held, moved = Load("o1", thing, thing), Load("o1", thing, thing).moved(thing, 0.0)
+    assert Memory(unfit=(1, LOST), loads={"o1": held}).lost
+    assert not Memory(unfit=(1, LOST), loads={"o1": moved}).lost
+    assert Memory(unfit=(1, ASTRAY), loads={"o1": moved}).lost
 
 
 def test_what_he_holds_he_lets_go_before_he_forgets() -> None:
