@@ -22,7 +22,7 @@ from kb.explanation import Accommodated, CellStatus, Explanation, cheapest
 from kb.hauling import Outcome, otherwise, predicted
 from kb.heading import ANYWHERE, CENTRED, MEMORY, Box, Hypothesis, Look, anywhere, candidates, search, standing, within
 from kb.lattice import CENTRE, Lattice, Samples
-from kb.loads import Load, discounted, slack_of
+from kb.loads import Load, borne_out, discounted, slack_of
 from kb.relaying import laid, relaid
 from kb.retina import FIELDS, count_ranges
 from kb.stops import Moved, Retold, around, ends, next_square, retold
@@ -137,10 +137,9 @@ class Memory:
         return not (self.evidence.overruled or self.slipped) and (along or len(self.hypotheses) == 1)
 
     def anew(self) -> "Memory":
-        """The memory of one who is lost, and begins anew with what he sees next.
+        """The memory of one who is lost, and begins anew with what he sees next, for nothing else leads back.
 
-        Whatever led him astray, no explanation of single looks leads back. In his own frame he goes on from where he
-        believes himself, so that he knows about where he came from.
+        In his own frame he goes on from where he believes himself, so that he knows about where he came from.
         """
         been = (*self.been, *(look.place for look in self.looks[:-1]))
         return Memory(Evidence(), self.lattice, self.place, hypotheses=ANYWHERE, slipped=self.slipped, been=been)
@@ -237,8 +236,6 @@ class Memory:
         loads = [*others, load.moved(outcome.polygon, load.slack)]
         misfits = self._clashes(ranges, outcome.place, loads)
         return Explanation(outcome.how, outcome.place, self.lattice, misfits, outcome.distance, outcome)
-
-    # -- explaining ------------------------------------------------------------------------------
 
     def _accommodate(
         self, impression: Impression, predicted: Place, stops: tuple[Place, ...], command: Command | None = None
@@ -376,15 +373,18 @@ class Memory:
 
     def _lie(self, chosen: Explanation) -> None:
         """Believe what an explanation says of the lattice and of earlier motions; if that is new, all is laid anew."""
+        loads = self.loads
         if chosen.anew:
             self.hypotheses, self.trust = chosen.hypotheses, 0
-        if chosen.retold is not None and chosen.retold.since < len(self.looks):
+            loads = borne_out(loads, self.held)
+        if chosen.retold is not None:
             self.looks = chosen.retold.looks(self.looks)
-            under = relaid(chosen.lattice, self.lattice, self.looks, self.loads.values())
-        elif chosen.lattice != self.lattice:
-            under = laid_on(chosen.lattice, self.lattice, self.evidence, self.looks, self.loads)
-        else:
+        elif chosen.lattice == self.lattice:
             return
+        if chosen.retold is not None or len(loads) < len(self.loads):
+            under = relaid(chosen.lattice, self.lattice, self.looks, loads.values())
+        else:
+            under = laid_on(chosen.lattice, self.lattice, self.evidence, self.looks, loads)
         if under.evidence is not self.evidence:
             self.barred, self.suspected = set(), set()
         self.lattice, self.evidence, self.loads = chosen.lattice, under.evidence, dict(under.loads)

@@ -101,6 +101,11 @@ class Load:
         return replace(self, stuck=self.stuck + 1)
 
 
+def borne_out(loads: Mapping[str, Load], held: str | None) -> dict[str, Load]:
+    """The loads that are held or were seen to move: he may have grasped beside any other, and it stands elsewhere."""
+    return {name: load for name, load in loads.items() if load.proven or name == held}
+
+
 def covered(polygon: Any) -> Patch:
     """The squares of the lattice that a polygon covers."""
     x0, y0, x1, y1 = polygon.bounds

@@ -55,7 +55,7 @@ def relaid(new: Lattice, old: Lattice, looks: Sequence[Look], loads: Iterable[Lo
         if number == len(looks):
             break
         look = looks[number]
-        there = [_carried(taken[was.name], known[was.name], was, new, old) for was in look.moved]
+        there = [_carried(taken[was.name], known[was.name], was, new, old) for was in look.moved if was.name in taken]
         x, y = (math.floor(v) for v in new.place_from_utak(*look.place))
         freed = discounted(samples, look.ranges, x, y, there)
         misfits += evidence.clashes(*freed, x, y)

@@ -181,13 +181,14 @@ class Decider:
         if land.holds:
             return None
         if node.movable == 0:
-            return Decision(None, f"{stage} cannot be attained: {node.name} cannot be moved", "impossible")
+            verdict = "limit" if is_open(situation.model) else "impossible"
+            return Decision(None, f"{stage} cannot be attained: {node.name} cannot be moved", verdict)
         advice = self._advice(node, land, situation)
         if isinstance(advice, Act):
             if isinstance(advice.command, Push | Turn) and self._circles.noticed(situation.model, advice.command):
                 advice = self.carrier.given_up(situation.model)
             taking = isinstance(advice.command, Move | Grasp)
-            look = self._before_turning(node, stage, situation) if taking else None
+            look = self._before_taking(node, stage, situation) if taking else None
             if look is not None:
                 return look
             return Decision(advice.command, f"{advice.why}; {stage}")
@@ -236,13 +237,14 @@ class Decider:
         self._doubted.add(node.name)
         return self._pursue([Aim("inspect", *look)], stage, situation, lambda: look.what)
 
-    def _before_turning(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
+    def _before_taking(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
         """A look at how the squares lie before an object is taken to be turned, by who has looked but a few times.
 
         A thing that was turned askew, and the map with it, are hard to set right again; a push leaves it as it lies.
+        But when it did not move by a push he may have misjudged where it is, or what stands about it.
         """
         model = situation.model
-        if not (is_open(model) and self.carrier.turns and len(model.looked_from) <= FEW):
+        if not (is_open(model) and (self.carrier.turns or node.stuck) and len(model.looked_from) <= FEW + node.stuck):
             return None
         aside = exploring.sight_of(situation.screens, model.mask(node.patch), "how the squares lie is not clear")
         return self._pursue([Aim("inspect", *aside)], stage, situation, lambda: "") if len(aside.squares) else None

@@ -9,6 +9,8 @@ import shapely
 from kb.accommodation import ASTRAY, LOST, Memory
 from kb.body import Impression, Move, Release, Turn
 from kb.evidence import FULL, OPEN
+from kb.explanation import Explanation
+from kb.heading import Hypothesis
 from kb.knowledge import Knowledge
 from kb.lattice import Lattice, turned
 from kb.loads import Load
@@ -131,6 +133,22 @@ def test_what_he_holds_he_lets_go_before_he_forgets() -> None:
     assert model.anew
     assert not model.lost
     assert not knowledge.memory.loads
+
+
+def test_on_another_lattice_what_never_moved_stands_where_it_is_seen() -> None:
+    thing = shapely.box(-6, 5, -3, 8)  # there is nothing
+    for moved, held in ((False, False), (True, False), (False, True)):
+        memory = walked(ROOM, [(2, 0), (0, 3)]).knowledge.memory
+        before = memory.evidence.state.copy()
+        memory.grasp(Load("o1", thing, thing, proven=moved))
+        memory.held = "o1" if held else None
+        memory._lie(Explanation("predicted", memory.place, memory.lattice, 0, 0.0))
+        assert list(memory.loads) == ["o1"]
+        other = Lattice(woke=(0.4, 0.6))  # on which he saw the same
+        memory._lie(Explanation("turned", memory.place, other, 0, 0.0, None, (Hypothesis(0, other.woke * 2),)))
+        assert memory.lattice == other
+        assert list(memory.loads) == ["o1"] * (moved or held)
+        assert (memory.evidence.state == before).all() == (not moved and not held)
 
 
 def test_who_forgot_knows_about_where_he_came_from() -> None:

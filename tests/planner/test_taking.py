@@ -174,20 +174,33 @@ def test_he_looks_before_he_makes_ready_to_take_it(command: Command, monkeypatch
     assert decision.why.startswith("so" if isinstance(command, Push) else "how the squares lie")
 
 
+@pytest.mark.parametrize(("spread", "verdict"), [(math.pi, "limit"), (0.0, "impossible")])
+def test_while_it_is_open_how_the_squares_lie_nothing_is_proved_of_what_does_not_move(
+    spread: float, verdict: str
+) -> None:
+    situation, decider, node, stage = about_to_turn(spread, 0.0, 9)
+    fixed = replace(situation.model, objects=(replace(node, movable=0),))
+    decision = decider._carry(stage.goals[0], stage, situation_of(fixed, situation.binding), Reconciled({}, (), (), ()))
+    assert decision is not None
+    assert (decision.command, decision.verdict) == (None, verdict)
+
+
 @pytest.mark.parametrize(
-    ("spread", "turn", "looks", "first"),
+    ("spread", "turn", "looks", "stuck", "first"),
     [
-        (math.pi, 90.0, 2, True),
-        (math.pi, 0.0, 2, False),  # what is pushed stays as it lies
-        (0.0, 90.0, 2, False),
-        (math.pi, 90.0, 9, False),  # he has looked often enough
+        (math.pi, 90.0, 2, 0, True),
+        (math.pi, 0.0, 2, 0, False),  # what is pushed stays as it lies
+        (0.0, 90.0, 2, 0, False),
+        (math.pi, 90.0, 9, 0, False),  # he has looked often enough
+        (math.pi, 0.0, 2, 1, True),  # it was pushed, and did not move
+        (0.0, 0.0, 2, 1, False),
     ],
 )
-def test_before_a_thing_is_turned_he_looks_how_the_squares_lie(
-    spread: float, turn: float, looks: int, first: bool
+def test_before_a_thing_is_turned_or_tried_again_he_looks_how_the_squares_lie(
+    spread: float, turn: float, looks: int, stuck: int, first: bool
 ) -> None:
     situation, decider, node, stage = about_to_turn(spread, turn, looks)
-    decision = decider._before_turning(node, stage, situation)
+    decision = decider._before_taking(replace(node, stuck=stuck), stage, situation)
     assert (decision is not None) == first
     if decision is not None:
         assert isinstance(decision.command, Move)
