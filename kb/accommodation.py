@@ -241,9 +241,8 @@ class Memory:
         self, impression: Impression, predicted: Place, stops: tuple[Place, ...], command: Command | None = None
     ) -> Accommodated:
         ranges = count_ranges(impression.retina)
-        if stops and not self.loads:
-            (x, y), (east, north) = self.looks[-1].place, self.lattice.place_to_utak(*predicted)
-            motion = Moved(len(self.looks), (east - x, north - y), self.hypotheses)
+        if stops and not self.loads and isinstance(command, Move):
+            motion = Moved(len(self.looks), (command.east, command.north), self.hypotheses)
             self.moved = (*self.moved[1 - REMEMBERED :], motion)
         explanation = self._explain(ranges, predicted, stops, command)
         self._lie(explanation)
@@ -277,13 +276,13 @@ class Memory:
         self, ranges: NDArray[np.int16], predicted: Place, stops: tuple[Place, ...], command: Command | None
     ) -> Explanation:
         first = self._explanation("predicted", predicted, ranges, predicted)
-        looks = [*self.looks, Look(ranges, self.lattice.place_to_utak(*predicted))]
-        told = cache(lambda motion: tuple(retold(motion, self.lattice, looks)))
+        look = Look(ranges, self.lattice.place_to_utak(*predicted))
+        told = cache(lambda motion: tuple(retold(motion, self.lattice, [*self.looks, look])))
         stopped = [motion for motion in self._before if motion.stopped]
         if first.misfits and not self.loads and any(not one.misfits for motion in stopped for one in told(motion)):
-            turned = self._misled(predicted, map(told, stopped))
+            turned = self._misled(look, map(told, stopped))
         elif not self.loads:
-            turned = self._turned(ranges, predicted, first.misfits)
+            turned = self._turned(look, first.misfits)
         else:
             turned = self._elsewhere(command, ranges, first.misfits) if first.misfits else []
         if not first.misfits and not turned:
@@ -296,12 +295,11 @@ class Memory:
         explanations += turned
         if stops and not self.loads and all(e.misfits for e in turned):
             simple = any(not e.misfits for e in explanations if e.how != "slipped" or self.slipped)
-            explanations += self._misled(predicted, map(told, self._before if simple else self.moved))
+            explanations += self._misled(look, map(told, self._before if simple else self.moved))
         return self._choose(explanations)
 
-    def _turned(self, ranges: NDArray[np.int16], predicted: Place, misfits: int) -> list[Explanation]:
-        """The lattice to believe instead, unless the one held explains all."""
-        look = Look(ranges, self.lattice.place_to_utak(*predicted))
+    def _turned(self, look: Look, misfits: int) -> list[Explanation]:
+        """The lattice to believe instead, unless the one held explains all. look : the new one, as predicted."""
         recent = [*self.looks[-MEMORY:], look]
         left = standing(self.hypotheses, recent)
         if not misfits and any(h.holds(self.lattice) for h in left):
@@ -325,12 +323,11 @@ class Memory:
         place = lattice.place_from_utak(*look.place)
         return [Explanation("turned", place, lattice, misfits, 0.0, None, left)] * bool(left)
 
-    def _misled(self, predicted: Place, told: Iterable[Iterable[Retold]]) -> list[Explanation]:
+    def _misled(self, look: Look, told: Iterable[Iterable[Retold]]) -> list[Explanation]:
         """The lattices to believe instead on which one of some motions was stopped, or an earlier one was not.
 
-        told : of each motion what else may have come of it.
+        look : the new one, as predicted. told : of each motion what else may have come of it.
         """
-        end = self.lattice.place_to_utak(*predicted)
         found = [one for motion in told for one in motion]
         if not found:
             return []
@@ -339,7 +336,7 @@ class Memory:
         explanations = []
         for one in sorted(found, key=lambda one: (not one.known, abs(one.hypothesis.angle - middle))):
             lattice, (east, north) = one.hypothesis.lattice, one.shift
-            place = lattice.place_from_utak(end[0] + east, end[1] + north)
+            place = lattice.place_from_utak(look.place[0] + east, look.place[1] + north)
             far = math.hypot(east, north)
             explanations.append(Explanation("misled", place, lattice, one.misfits, far, None, left, one))
         return explanations

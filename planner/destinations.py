@@ -172,19 +172,22 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
         sideways = math.sqrt(max(2 - onward**2, 0.0))
         return min(promise, FURTHEST, ONWARD * max(onward, 0.0) + aside * sideways)
 
-    looks = [look for look in rooms_beyond(screens) if short(look) <= CUT_OFF]
-    looks = [look for look in looks if screens.nearest(look.squares) is not None]
+    cut_off = [look for look in rooms_beyond(screens) if short(look) <= CUT_OFF]
+    looks = [look for look in cut_off if screens.nearest(look.squares) is not None]
     open_ends = [look for look in frontiers(screens, APART) if short(look) <= FURTHEST]
     likely_ends = [look for look in gaps(screens) if short(look) <= FURTHEST and narrow(look)]
     ends = promised(screens, [*open_ends, *likely_ends])
     for look in ends[: len(open_ends)]:
         if doorways[look.squares].any():
-            squares = reach(look, FURTHEST, BESIDE_DOOR)
+            least, aside = FURTHEST, BESIDE_DOOR
         elif narrow(look):
-            squares = reach(look, GAP, BESIDE_DOOR)
+            least, aside = GAP, BESIDE_DOOR
+        elif apart(look):
+            least, aside = 0, ASIDE
         else:
-            squares = reach(look, 0, ASIDE) if apart(look) else -math.inf
-        looks += [look] * (short(look) <= squares)
+            continue
+        if short(look) <= reach(look, least, aside):
+            looks.append(look)
     for look in ends[len(open_ends) :]:
         near = short_of(screens, look.squares)
         if len(near) and short(look) <= reach(look, FURTHEST, BESIDE_DOOR):
