@@ -7,7 +7,6 @@ as predicted, as explained (it shows squares not settled before), or as noise. W
 """
 
 import math
-import statistics
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cache
@@ -17,17 +16,31 @@ from numpy.typing import NDArray
 
 from geometry.rigid import Rotate
 from kb.body import Command, Impression, Move, Push, Release, Turn
+from kb.doubting import explained
 from kb.evidence import FREE, OPEN, Evidence
-from kb.explanation import Accommodated, CellStatus, Explanation, cheapest
+from kb.explanation import Accommodated, Explanation, cheapest, misled, statuses
 from kb.hauling import Outcome, otherwise, predicted
-from kb.heading import ANYWHERE, CENTRED, MEMORY, Box, Hypothesis, Look, anywhere, candidates, search, standing, within
-from kb.lattice import CENTRE, Lattice, Samples
-from kb.loads import Load, borne_out, discounted, slack_of
+from kb.heading import (
+    ANYWHERE,
+    CENTRED,
+    MEMORY,
+    Box,
+    Hypothesis,
+    Look,
+    anywhere,
+    candidates,
+    cramped,
+    leeway,
+    search,
+    standing,
+)
+from kb.lattice import CENTRE, Lattice
+from kb.loads import ROUNDING, Load, borne_out, discounted, slack_of
 from kb.relaying import laid, relaid
-from kb.retina import FIELDS, count_ranges
-from kb.stops import Moved, Retold, around, ends, next_square, retold
+from kb.retina import count_ranges
+from kb.stops import HAIR, Moved, around, ends, next_square, retold
 from kb.supposing import Surprise, agreeing, as_motion, clashes, laid_on
-from kb.suspecting import suspects
+from kb.suspecting import Hindrances, suspects
 
 MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one is believed
 NOWHERE = 0.2  # squares: what was stopped sooner than this did not move
@@ -113,18 +126,14 @@ class Memory:
         return self.lattice.woke != CENTRE
 
     @property
-    def leeway(self) -> Box:
-        """How far from where he believes it he may have woken: to the west and south (not above 0), east and north.
+    def _beside_line(self) -> bool:
+        """Was he stopped beside a line, which tells where he stands but for a hair?"""
+        return min(map(abs, self.leeway)) <= 2 * HAIR
 
-        That he woke amid his square he only assumes.
-        """
-        west, south, east, north = within(self.lattice, self.looks)
-        boxes = np.array([h.box for h in self.hypotheses if h.angle == self.lattice.angle and h not in CENTRED])
-        if len(boxes):
-            west, south = max(west, boxes[:, 0].min()), max(south, boxes[:, 1].min())
-            east, north = min(east, boxes[:, 2].max()), min(north, boxes[:, 3].max())
-        x, y = self.lattice.woke
-        return min(west - x, 0.0), min(south - y, 0.0), max(east - x, 0.0), max(north - y, 0.0)
+    @property
+    def leeway(self) -> Box:
+        """How far from where he believes it he may have woken: to the west and south (not above 0), east and north."""
+        return leeway(self.lattice, self.looks, self.hypotheses)
 
     @property
     def sure(self) -> bool:
@@ -174,15 +183,20 @@ class Memory:
     def _carry(self, impression: Impression, load: Load, command: Push | Turn) -> Accommodated:
         """Take in the impression that followed a push or a turn with a load in hand."""
         ranges, motion = count_ranges(impression.retina), as_motion(command, self.lattice, self.place)
+        if isinstance(command, Turn) and self._beside_line:
+            load = self.loads[load.name] = replace(load, astray=max(load.astray, ROUNDING))
         chosen = self._outcome(ranges, load, predicted(self.place, load.polygon, motion))
         if chosen.misfits:
-            outcomes = [self._outcome(ranges, load, outcome) for outcome in otherwise(self.place, load.polygon, motion)]
-            explanations = [chosen, *outcomes, *self._elsewhere(command, ranges, chosen.misfits)]
+            ends = Hindrances(self.evidence, self.place, load.polygon, motion).ends(self.place, load.polygon, motion)
+            outcomes = [one for one in (self._outcome(ranges, load, end) for end in ends) if not one.misfits]
+            outcomes += [self._outcome(ranges, load, other) for other in otherwise(self.place, load.polygon, motion)]
+            simple = any(not one.misfits for one in outcomes if one.how != "slipped" or self.slipped)
+            explanations = [chosen, *outcomes, *self._elsewhere(command, ranges, chosen.misfits, simple)]
             chosen = self._choose(explanations, np.array_equal(ranges, self.looks[-1].ranges))
         self._lie(chosen)
         load, motion = self.loads[load.name], as_motion(command, self.lattice, self.place)
-        others = [other for other in self.loads.values() if other.name != load.name]
-        self.suspected |= suspects(chosen.outcome, motion, load, others, self.evidence)
+        besides = [other for other in self.loads.values() if other.name != load.name]
+        self.suspected |= suspects(chosen.outcome, motion, load, besides, self.evidence)
         self._carried(self.loads[load.name], chosen)
         self.place = chosen.place
         self._stray(ranges)
@@ -197,6 +211,7 @@ class Memory:
         else:
             slack = load.slack if outcome.how == "predicted" else max(load.slack, slack_of(outcome.polygon))
             moved = load.moved(outcome.polygon, slack, outcome.degrees)
+            moved = replace(moved, empty=moved.empty | outcome.against)
             nowhere = outcome.how == "blocked" and load.polygon.hausdorff_distance(outcome.polygon) < NOWHERE
             self.loads[load.name] = replace(moved, stuck=load.stuck + 1) if nowhere else moved
 
@@ -209,22 +224,37 @@ class Memory:
         away = np.array([h.lattice.woke for h in within]).reshape(-1, 2) - np.array(self.lattice.woke)
         for name, load in self.loads.items():
             far = np.hypot(*(away - Rotate(load.turned, (0.0, 0.0)).points(away)).T)
-            self.loads[name] = replace(load, astray=float(far.max(initial=0.0)))
+            least = ROUNDING if self._beside_line and load.turned % 360 else 0.0
+            self.loads[name] = replace(load, astray=float(far.max(initial=least)))
 
-    def _elsewhere(self, command: Command | None, ranges: NDArray[np.int16], misfits: int) -> list[Explanation]:
-        """The lattice that explains better what contradicts, now that things have been moved, if there is one."""
+    def _elsewhere(
+        self, command: Command | None, ranges: NDArray[np.int16], misfits: int, simple: bool = False
+    ) -> list[Explanation]:
+        """The lattice that explains better what contradicts, now that things have been moved, if there is one.
+
+        simple : is it explained by a motion that ended early?
+        """
         if command is None or self.searches >= HOPELESS:
             return []
         surprise = Surprise(
-            command, ranges, self.lattice, self.place, self.evidence, self.looks, self.loads, self.held, self.hypotheses
+            command,
+            ranges,
+            self.lattice,
+            self.place,
+            self.evidence,
+            self.looks,
+            self.loads,
+            self.held,
+            self.hypotheses,
+            simple,
         )
-        found = surprise.explained(self.searches < MOST_SEARCHES)
+        found = explained(surprise, self.searches < MOST_SEARCHES)
         if found is None or found.misfits >= misfits:
             self.searches += 1
             return []
         self.searches += found.searched
         outcome = found.outcome
-        if found.lattice != self.lattice:
+        if found.lattice != self.lattice or set(found.hypotheses) != set(self.hypotheses):
             far = 0.0 if outcome is None else outcome.distance
             return [Explanation("turned", found.place, found.lattice, found.misfits, far, outcome, found.hypotheses)]
         if outcome is None:
@@ -262,7 +292,7 @@ class Memory:
         for name, load in self.loads.items():
             self.loads[name] = load.seen(self.lattice.samples(), ranges, x, y)
         samples, counts = discounted(self.lattice.samples(), ranges, x, y, self.loads.values())
-        cells = self._statuses(samples, counts, x, y)
+        cells = statuses(self.evidence, samples, counts, x, y)
         self.place = explanation.place
         moved = tuple(laid(load, self.lattice) for load in self.loads.values())
         self.looks.append(Look(ranges, self.lattice.place_to_utak(*self.place), moved))
@@ -280,7 +310,7 @@ class Memory:
         told = cache(lambda motion: tuple(retold(motion, self.lattice, [*self.looks, look])))
         stopped = [motion for motion in self._before if motion.stopped]
         if first.misfits and not self.loads and any(not one.misfits for motion in stopped for one in told(motion)):
-            turned = self._misled(look, map(told, stopped))
+            turned = misled(look, map(told, stopped))
         elif not self.loads:
             turned = self._turned(look, first.misfits)
         else:
@@ -295,7 +325,7 @@ class Memory:
         explanations += turned
         if stops and not self.loads and all(e.misfits for e in turned):
             simple = any(not e.misfits for e in explanations if e.how != "slipped" or self.slipped)
-            explanations += self._misled(look, map(told, self._before if simple else self.moved))
+            explanations += misled(look, map(told, self._before if simple else self.moved))
         return self._choose(explanations)
 
     def _turned(self, look: Look, misfits: int) -> list[Explanation]:
@@ -321,25 +351,8 @@ class Memory:
             if fewer < misfits:
                 left, lattice, misfits = found, another, fewer
         place = lattice.place_from_utak(*look.place)
+        misfits += cramped(left, len(self.looks))
         return [Explanation("turned", place, lattice, misfits, 0.0, None, left)] * bool(left)
-
-    def _misled(self, look: Look, told: Iterable[Iterable[Retold]]) -> list[Explanation]:
-        """The lattices to believe instead on which one of some motions was stopped, or an earlier one was not.
-
-        look : the new one, as predicted. told : of each motion what else may have come of it.
-        """
-        found = [one for motion in told for one in motion]
-        if not found:
-            return []
-        left = tuple(dict.fromkeys(one.hypothesis for one in found))
-        middle = statistics.median(hypothesis.angle for hypothesis in left)
-        explanations = []
-        for one in sorted(found, key=lambda one: (not one.known, abs(one.hypothesis.angle - middle))):
-            lattice, (east, north) = one.hypothesis.lattice, one.shift
-            place = lattice.place_from_utak(look.place[0] + east, look.place[1] + north)
-            far = math.hypot(east, north)
-            explanations.append(Explanation("misled", place, lattice, one.misfits, far, None, left, one))
-        return explanations
 
     def _borne_out(self, left: tuple[Hypothesis, ...], look: Look) -> tuple[Lattice, int]:
         """Of the lattices left, the one that all looks bear out best, and how many fields it leaves as noise."""
@@ -385,13 +398,3 @@ class Memory:
         if under.evidence is not self.evidence:
             self.barred, self.suspected = set(), set()
         self.lattice, self.evidence, self.loads = chosen.lattice, under.evidence, dict(under.loads)
-
-    def _statuses(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> tuple[CellStatus, ...]:
-        noise = self.evidence.misfits(samples, ranges, x, y)
-        row, column = self.evidence.index(x, y)
-        state = self.evidence.state[samples.rows + row, samples.columns + column]
-        new = ((state == OPEN) & (samples.weight > 0)).any(1)
-        return tuple(
-            CellStatus.NOISE if noise[i] else CellStatus.EXPLAINED if new[i] else CellStatus.PREDICTED
-            for i in range(len(FIELDS))
-        )

@@ -1,14 +1,20 @@
 """What an impression is explained by: where it was received, on which lattice, and what that means for all else."""
 
 import math
-from collections.abc import Sequence
+import statistics
+from collections.abc import Iterable, Sequence
 from enum import StrEnum
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from kb.encodings import KB, solve
+from kb.evidence import OPEN, Evidence
 from kb.hauling import Outcome
-from kb.heading import Hypothesis
-from kb.lattice import Lattice
+from kb.heading import Hypothesis, Look
+from kb.lattice import Lattice, Samples
+from kb.retina import FIELDS
 from kb.stops import Retold
 
 Place = tuple[float, float]
@@ -49,6 +55,37 @@ class Accommodated(NamedTuple):
 
     explanation: Explanation
     cells: tuple[CellStatus, ...]
+
+
+def statuses(evidence: Evidence, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> tuple[CellStatus, ...]:
+    """How each field of a look from square (x, y) is accounted for, before it is taken in as evidence."""
+    noise = evidence.misfits(samples, ranges, x, y)
+    row, column = evidence.index(x, y)
+    state = evidence.state[samples.rows + row, samples.columns + column]
+    new = ((state == OPEN) & (samples.weight > 0)).any(1)
+    return tuple(
+        CellStatus.NOISE if noise[i] else CellStatus.EXPLAINED if new[i] else CellStatus.PREDICTED
+        for i in range(len(FIELDS))
+    )
+
+
+def misled(look: Look, told: Iterable[Iterable[Retold]]) -> list[Explanation]:
+    """The lattices to believe instead on which one of some motions was stopped, or an earlier one was not.
+
+    look : the new one, as predicted. told : of each motion what else may have come of it.
+    """
+    found = [one for motion in told for one in motion]
+    if not found:
+        return []
+    left = tuple(dict.fromkeys(one.hypothesis for one in found))
+    middle = statistics.median(hypothesis.angle for hypothesis in left)
+    explanations = []
+    for one in sorted(found, key=lambda one: (not one.known, abs(one.hypothesis.angle - middle))):
+        lattice, (east, north) = one.hypothesis.lattice, one.shift
+        place = lattice.place_from_utak(look.place[0] + east, look.place[1] + north)
+        far = math.hypot(east, north)
+        explanations.append(Explanation("misled", place, lattice, one.misfits, far, None, left, one))
+    return explanations
 
 
 def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Explanation:

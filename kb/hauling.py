@@ -26,7 +26,8 @@ class Outcome(NamedTuple):
     """What a motion may have led to.
 
     how : predicted, stuck, blocked or slipped. place : of Utak; polygon : of the load, both on the lattice.
-    degrees : by which the load was turned. distance : from what was predicted, in squares.
+    degrees : by which the load was turned. distance : from what was predicted, in squares. against : the squares one of
+    which stopped it, if it is open what stands there.
     """
 
     how: str
@@ -34,6 +35,7 @@ class Outcome(NamedTuple):
     polygon: Any
     degrees: float
     distance: float
+    against: frozenset[tuple[int, int]] = frozenset()
 
 
 def predicted(place: Place, polygon: Any, motion: Motion) -> Outcome:
@@ -46,20 +48,28 @@ def arrested(place: Place, polygon: Any, motion: Motion, walls: Obstacles) -> Ou
     fraction = walls.first_contact(Body(polygon, [place]), motion).fraction
     if fraction >= 1.0:
         return None
-    length = _length(place, polygon, motion)
+    length = length_of(place, polygon, motion)
     return _after("blocked", place, polygon, motion.part(fraction), length * (1.0 - fraction))
+
+
+def part_way(
+    place: Place, polygon: Any, motion: Motion, part: float, against: frozenset[tuple[int, int]] = frozenset()
+) -> Outcome:
+    """A part of a motion, from 0 to 1, after which it was stopped."""
+    distance = length_of(place, polygon, motion) * (1.0 - part)
+    return _after("blocked", place, polygon, motion.part(part), distance)._replace(against=against)
 
 
 def ahead(place: Place, polygon: Any, motion: Motion) -> tuple[Place, Any]:
     """Where Utak and his load would be a little further on the way: what stopped them stands there."""
-    part = min(1.0, AHEAD / max(_length(place, polygon, motion), AHEAD))
+    part = min(1.0, AHEAD / max(length_of(place, polygon, motion), AHEAD))
     outcome = _after("predicted", place, polygon, motion.part(part), 0.0)
     return outcome.place, outcome.polygon
 
 
 def otherwise(place: Place, polygon: Any, motion: Motion) -> Iterator[Outcome]:
     """All else that may have happened, the likeliest of each kind first."""
-    length = _length(place, polygon, motion)
+    length = length_of(place, polygon, motion)
     yield Outcome("stuck", place, polygon, 0.0, length)
     steps = math.ceil(length / STRIDE)
     for step in range(steps - 1, 0, -1):
@@ -80,8 +90,8 @@ def _after(how: str, place: Place, polygon: Any, motion: Motion, distance: float
     return Outcome(how, place, motion.carry(polygon), degrees, distance)
 
 
-def _length(place: Place, polygon: Any, motion: Motion) -> float:
-    """How far the outermost point of the load goes, in squares."""
+def length_of(place: Place, polygon: Any, motion: Motion) -> float:
+    """How far the outermost point of a load goes on a motion, in squares."""
     if isinstance(motion, Translate):
         return math.hypot(motion.dx, motion.dy)
     corners = np.array(polygon.exterior.coords) - np.array(place)

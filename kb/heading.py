@@ -72,6 +72,7 @@ class Hypothesis(NamedTuple):
 
 CENTRED = tuple(Hypothesis(angle, CENTRE + CENTRE) for angle in ANGLES)
 ANYWHERE = tuple(Hypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in ANGLES)
+ODD = 0.1  # of the side of the square that looks leave of it on average, below which they left suspiciously little
 GRID = 11  # points along either side of what is left of the square in which he woke
 
 
@@ -199,12 +200,45 @@ def within(lattice: Lattice, looks: Sequence[Look]) -> Box:
     return west, south, east, north
 
 
+def leeway(lattice: Lattice, looks: Sequence[Look], hypotheses: Sequence[Hypothesis]) -> Box:
+    """How far from where he believes it Utak may have woken: to the west and south (not above 0), east and north.
+
+    That he woke amid his square he only assumes.
+    """
+    west, south, east, north = within(lattice, looks)
+    boxes = np.array([h.box for h in hypotheses if h.angle == lattice.angle and h not in CENTRED])
+    if len(boxes):
+        west, south = max(west, boxes[:, 0].min()), max(south, boxes[:, 1].min())
+        east, north = min(east, boxes[:, 2].max()), min(north, boxes[:, 3].max())
+    x, y = lattice.woke
+    return min(west - x, 0.0), min(south - y, 0.0), max(east - x, 0.0), max(north - y, 0.0)
+
+
 def points(lattice: Lattice, looks: Sequence[Look]) -> tuple[Hypothesis, ...]:
     """GRID by GRID points at which Utak may have woken if every look fell on the square that it is believed to."""
     west, south, east, north = within(lattice, looks)
     steps = (np.arange(GRID) + 0.5) / GRID
     places = ((float(west + (east - west) * i), float(south + (north - south) * j)) for i in steps for j in steps)
     return tuple(Hypothesis(lattice.angle, place + place) for place in places)
+
+
+def cramped(hypotheses: Sequence[Hypothesis], looks: int) -> bool:
+    """Is less room left for where he woke than so many looks leave by chance?
+
+    Each look cuts either side of his square in two, anywhere. Then a side of what he truly woke in is shorter than
+    ODD / looks about once in two hundred times: more likely a look was received elsewhere than is believed.
+    """
+    if not hypotheses or any(hypothesis in CENTRED for hypothesis in hypotheses):
+        return False
+    west, south, east, north = np.array([hypothesis.box for hypothesis in hypotheses]).T
+    return bool(min((east - west).max(), (north - south).max()) < ODD / max(looks, 1))
+
+
+def cells(where: Sequence[Hypothesis]) -> tuple[float, float]:
+    """How wide and how high a cell of a grid is for which each of some of its points stands."""
+    lines = [np.unique(np.round([point.box[axis] for point in where], 9)) for axis in (0, 1)]
+    width, height = (float(np.diff(line).min()) if len(line) > 1 else 0.0 for line in lines)
+    return width, height
 
 
 def candidates(hypotheses: Sequence[Hypothesis], held: Lattice) -> list[Lattice]:

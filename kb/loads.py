@@ -5,6 +5,7 @@ them, so it is taken out of the standing map when he grasps it: from then on it 
 every look is freed of what the shape itself shows before it is counted as evidence of the rest.
 """
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -95,6 +96,10 @@ class Load:
         full = self.full | {square for square in open_ if counts.get(square, (0, 1))[0] > 0}
         empty = self.empty | {square for square in open_ if counts.get(square, (0, 1))[1] == 0}
         return replace(self, full=full, empty=empty)
+
+    def woken(self, far: float) -> "Load":
+        """The load, if where Utak woke is known up to so many squares, which tells about what point it was turned."""
+        return replace(self, astray=2 * far * abs(math.sin(math.radians(self.turned / 2))))
 
     def resisted(self) -> "Load":
         """The load after a motion that it was expected to make and did not."""

@@ -1,16 +1,83 @@
-"""What stopped a thing that Utak carried, when nothing that is known stood in its way."""
+"""What stopped a thing that Utak carried, and so where: at what is known to stand in its way, or what likely does."""
 
+import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any, NamedTuple
 
-from geometry.rigid import Motion
+import numpy as np
+import shapely
+
+from geometry.contact import Body, Obstacles
+from geometry.rigid import Motion, Rotate
 from kb.evidence import FULL, OPEN, Evidence
-from kb.hauling import Outcome, ahead
+from kb.hauling import Outcome, ahead, length_of, part_way
 from kb.loads import Load, Square, covered
 
+Place = tuple[float, float]
+
 ALIKE = 1.0  # log odds by which the likeliest squares may differ
+NEARLY = 0.25  # squares by which the place at which it was stopped may be told wrongly
+TOGETHER = 1e-6  # parts of a motion by which squares that are met at once may differ
+ROOM = 3  # squares about a motion in which something may stop it
 NOTHING: frozenset[Square] = frozenset()
+
+
+class Stop(NamedTuple):
+    """That a motion ended where it met something.
+
+    part : of the motion, 0 to 1, that was gone. chance : how likely it is that it went so far, and no further.
+    against : the open squares one of which stands there then, the likeliest ones; none where it is known what does.
+    """
+
+    part: float
+    chance: float
+    against: frozenset[Square] = NOTHING
+
+
+class Hindrances:
+    """What stands, or may stand, where a thing and Utak come on a motion.
+
+    evidence : of the squares about. place, polygon : of Utak and of the thing before it.
+    """
+
+    def __init__(self, evidence: Evidence, place: Place, polygon: Any, motion: Motion) -> None:
+        known, open_ = (_there(evidence, place, polygon, motion, state) for state in (FULL, OPEN))
+        self.walls = Obstacles([_box(square) for square in known])
+        self._open = [
+            (square, Obstacles([_box(square)]), 1 / (1 + math.exp(-float(evidence.logit[evidence.index(*square)]))))
+            for square in open_
+        ]
+
+    def stops(self, place: Place, polygon: Any, motion: Motion) -> list[Stop]:
+        """Where the motion may have been stopped, in its order, and what speaks for each.
+
+        place, polygon : where it began, about as this was made for.
+        """
+        body = Body(polygon, [place])
+        end = self.walls.first_contact(body, motion).fraction
+        met = ((obstacle.first_contact(body, motion).fraction, square, p) for square, obstacle, p in self._open)
+        stops, free = [], 1.0
+        for _, group in itertools.groupby(sorted(m for m in met if m[0] < end), lambda m: round(m[0] / TOGETHER)):
+            together = list(group)
+            clear = math.prod(1.0 - p for *_, p in together)
+            likeliest = max(p for *_, p in together)
+            against = frozenset(square for _, square, p in together if _odds(p) >= _odds(likeliest) - ALIKE)
+            stops.append(Stop(together[0][0], free * (1.0 - clear), against))
+            free *= clear
+        return [*stops, Stop(end, free)] if end < 1.0 else stops
+
+    def ends(self, place: Place, polygon: Any, motion: Motion) -> list[Outcome]:
+        """What the stops would have led to, the likeliest first."""
+        stops = sorted(self.stops(place, polygon, motion), key=lambda stop: -stop.chance)
+        return [part_way(place, polygon, motion, stop.part, stop.against) for stop in stops]
+
+    def near(self, place: Place, polygon: Any, motion: Motion, part: float) -> Stop | None:
+        """The likeliest stop about where a motion seems to have ended; None when there is nothing near."""
+        far = NEARLY / length_of(place, polygon, motion)
+        about = [stop for stop in self.stops(place, polygon, motion) if abs(stop.part - part) < far]
+        return max(about, key=lambda stop: stop.chance, default=None)
 
 
 def suspects(
@@ -21,6 +88,8 @@ def suspects(
     None when it was not stopped, never moved before (then the hand may be empty), or what is known explains it.
     motion : as it was commanded. others : the other things that were moved, where they lie.
     """
+    if outcome is not None and outcome.against:
+        return outcome.against
     if outcome is None or outcome.how not in ("stuck", "blocked") or not load.proven:
         return NOTHING
     place, polygon = ahead(outcome.place, outcome.polygon, motion)
@@ -32,3 +101,29 @@ def suspects(
         return NOTHING
     odds = {square: float(evidence.logit[evidence.index(*square)]) for square in there if state[square] == OPEN}
     return frozenset(square for square, odd in odds.items() if odd >= max(odds.values()) - ALIKE)
+
+
+def _there(evidence: Evidence, place: Place, polygon: Any, motion: Motion, state: int) -> list[Square]:
+    """The squares of a state to which a thing and Utak may come on a motion."""
+    corners = np.array([*shapely.get_coordinates(polygon), place])
+    if isinstance(motion, Rotate):
+        reach = float(np.hypot(*(corners - np.array(place)).T).max())
+        low, high = np.array(place) - reach, np.array(place) + reach
+    else:
+        ends = np.concatenate([corners, motion.points(corners)])
+        low, high = ends.min(0), ends.max(0)
+    row, column = evidence.index(*(math.floor(v) - ROOM for v in low))
+    top, right = evidence.index(*(math.ceil(v) + ROOM for v in high))
+    row, column = max(row, 0), max(column, 0)
+    rows, columns = np.nonzero(evidence.state[row:top, column:right] == state)
+    west, south = columns + column + evidence.west, rows + row + evidence.south
+    return list(zip(west.tolist(), south.tolist(), strict=True))
+
+
+def _box(square: Square) -> Any:
+    x, y = square
+    return shapely.box(x, y, x + 1, y + 1)
+
+
+def _odds(p: float) -> float:
+    return math.log(p / (1.0 - p))

@@ -11,12 +11,15 @@ from kb.heading import (
     ANGLES,
     ANYWHERE,
     CENTRED,
+    GRID,
     Disc,
     Hypothesis,
     Look,
     anywhere,
     candidates,
+    cells,
     contradictions,
+    cramped,
     points,
     search,
     standing,
@@ -208,3 +211,33 @@ def test_a_hypothesis_holds_what_lies_in_its_box() -> None:
 def test_of_one_angle_the_widest_box_is_tried_first() -> None:
     boxes = (Hypothesis(0, (0.0, 0.0, 0.1, 0.1)), Hypothesis(0, (0.6, 0.0, 1.0, 1.0)))
     assert candidates(boxes, Lattice())[0].woke == (0.8, 0.5)
+
+
+def test_looks_rarely_leave_less_room_than_that_he_could_have_woken_there() -> None:
+    rng, found, tried = np.random.default_rng(4), 0, 4000
+    for _ in range(tried):
+        looks = int(rng.integers(1, 15))
+        box = []
+        for woke in rng.random(2):
+            cuts = np.sort(np.append(rng.random(looks), (0.0, 1.0)))
+            at = int(np.searchsorted(cuts, woke))
+            box.append((cuts[at - 1], cuts[at]))
+        (west, east), (south, north) = box
+        found += cramped([Hypothesis(3, (west, south, east, north))], looks)
+    assert found / tried < 0.02
+
+
+def test_a_sliver_of_his_square_is_little_room_whatever_its_length() -> None:
+    assert cramped([Hypothesis(1, (0.1, 0.4, 0.9, 0.402))], 3)
+    assert not cramped([Hypothesis(1, (0.1, 0.4, 0.9, 0.402)), Hypothesis(2, (0.1, 0.4, 0.2, 0.6))], 3)
+    assert not cramped(CENTRED[:2], 3)
+    assert not cramped([], 3)
+
+
+def test_points_stand_for_the_cells_of_their_grid() -> None:
+    looks = looks_of(ROOM, 0, [(12.5, 10.5), (14.5, 6.25)])
+    west, south, east, north = within(Lattice(), looks)
+    where = points(Lattice(), looks)
+    assert cells(where) == pytest.approx(((east - west) / GRID, (north - south) / GRID))
+    assert cells(where[3:40]) == pytest.approx(cells(where))
+    assert cells(where[:1]) == (0.0, 0.0)

@@ -1,0 +1,91 @@
+"""Which lattice to believe instead, when a look contradicts what is believed and things have been moved.
+
+What was left is tried first, then what had been given up; that a motion was stopped by what is not known comes last.
+"""
+
+from kb.heading import CENTRED, Hypothesis, anywhere, candidates, search
+from kb.pivoting import pivoted
+from kb.supposing import Supposed, Surprise
+
+ABOUT = 2  # degrees by which the lattice may lie otherwise than any that was left
+WIDEST = 8  # degrees between those that were left, for more to be thought of
+FEW = 12  # lattices on which all is laid anew, at most
+LEAST = 4  # at least
+MOST_REPLAYS = 200  # looks that are taken in anew for that
+BEST = 3  # of those, on which the motion may have been stopped by what was not known
+SLIVER = 0.02  # squares^2: where there is no more room for where he woke, he was rather stopped
+
+
+def explained(surprise: Surprise, anew: bool) -> Supposed | None:
+    """The lattice that explains a look best; None when none is left.
+
+    anew : may hypotheses that were given up before be taken up again?
+    """
+    if surprise.turned:
+        found = _otherwise_turned(surprise) or pivoted(surprise)
+        if found is not None:
+            return found
+    return _laid_otherwise(surprise, anew)
+
+
+def _otherwise_turned(surprise: Surprise) -> Supposed | None:
+    """A lattice turned otherwise than believed that was never given up, and on which nothing contradicts.
+
+    That he woke amid his square is assumed as long as that explains all.
+    """
+    angle = surprise.lattice.angle
+    others = [other for other in surprise.hypotheses if other in CENTRED and other.angle != angle]
+    left = search(surprise.recent, others, surprise.unsettled)
+    tried = (surprise.tried(lattice, left) for lattice in candidates(left, surprise.lattice)[:FEW])
+    return next((one for one in tried if not one.misfits), None)
+
+
+def _laid_otherwise(surprise: Surprise, anew: bool) -> Supposed | None:
+    """The lattice on which, when all is laid on it, the fewest fields contradict."""
+    found: list[Supposed] = []
+    few = max(LEAST, min(FEW, MOST_REPLAYS // (len(surprise.looks) + 1)))
+    for searched in (False, True)[: 1 + anew]:
+        hypotheses = (
+            _searched(surprise) if searched else search(surprise.recent, surprise.hypotheses, surprise.unsettled)
+        )
+        if searched and sum(hypothesis.area for hypothesis in hypotheses) < SLIVER:
+            short = _cut_short(surprise, few)
+            if short is not None:
+                return short
+        for lattice in candidates(hypotheses, surprise.lattice)[:few]:
+            found.append(surprise.tried(lattice, hypotheses, searched))
+            if not found[-1].misfits:
+                return found[-1]
+    if found or surprise.moving is None:
+        found.sort(key=lambda one: one.misfits)
+        others = [one for one in found if one.lattice != surprise.lattice][:BEST]
+        found += [surprise.tried(one.lattice, one.hypotheses, one.searched, cut_short=True) for one in others]
+    else:  # on none of them the motion went on to its end
+        for lattice in candidates(surprise.before, surprise.lattice)[:few]:
+            found += [surprise.tried(lattice, surprise.before, cut_short=cut_short) for cut_short in (False, True)]
+    return min(found, key=lambda one: one.misfits, default=None)
+
+
+def _searched(surprise: Surprise) -> tuple[Hypothesis, ...]:
+    """All that may be, of angles near to those that were left."""
+    angles = [surprise.lattice.angle, *(h.angle for h in surprise.hypotheses)]
+    if max(angles) - min(angles) > WIDEST:
+        angles = [surprise.lattice.angle]
+    about = anywhere(range(min(angles) - ABOUT, max(angles) + ABOUT + 1))
+    return search(surprise.recent, about, surprise.unsettled)
+
+
+def _cut_short(surprise: Surprise, few: int) -> Supposed | None:
+    """A lattice that stood before the thing in hand was moved, on which that was stopped, and nothing contradicts.
+
+    Rather where something is known that stopped it; of angles that do as well, the middle one.
+    """
+    if surprise.moving is None:
+        return None
+    lattices = candidates(surprise.before, surprise.lattice)[:few]
+    for cut_short in (False, True):
+        tried = [surprise.tried(lattice, surprise.before, cut_short=cut_short) for lattice in lattices]
+        fitting = sorted((one for one in tried if not one.misfits), key=lambda one: one.lattice.angle)
+        if fitting:
+            return fitting[(len(fitting) - 1) // 2]
+    return None
