@@ -216,8 +216,8 @@ class Decider:
         going_on = self.carrier.gone_on(node, situation)
         if going_on is not None:
             return going_on
-        if land.approach:
-            advice = self.carrier.advise(node, land.approach, situation)
+        for name, end in land.approach.items():
+            advice = self.carrier.advise(node, {name: end}, situation)
             if isinstance(advice, Act | Go):
                 return advice
         self._looked = looked

@@ -42,7 +42,7 @@ class Landing:
     ----------
     ends : target's name -> where the object must lie; empty while that is not known.
     missing, lookouts : what must be known first, in words, and where just that may be seen (as of a Destination).
-    approach : places near to where it must end, from which it can be told better where that is.
+    approach : places near to where it must end, from which it can be told better where that is; the best first.
     holds : the goal holds as the object lies now.
     """
 
@@ -140,8 +140,7 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
     To be within a square of its walls is enough when they are settled; else they may be further away than he believes.
     Who is not sure of where he and the object are looks at the corner first.
     """
-    (x, y), (column, row) = situation.corners[side].point, situation.corners[side].square
-    end = InCorner(x, y, 1 if x > column else -1, 1 if y > row else -1)
+    (column, row), end = situation.corners[side].square, _into_corner(side, situation)
     model = situation.model
     view = model.view
     around = grown(model.squares([(column + view.west, row + view.south)]), 1)
@@ -159,16 +158,27 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
     return Landing({side: near}, lookout.what, (lookout,))
 
 
+def _into_corner(side: str, situation: Situation) -> InCorner:
+    """In the furthest corner of the known floor."""
+    (x, y), (column, row) = situation.corners[side].point, situation.corners[side].square
+    return InCorner(x, y, 1 if x > column else -1, 1 if y > row else -1)
+
+
 def _near(side: str, node: Node, situation: Situation, floor: Mask) -> Mapping[str, End]:
     """Places from which Utak with the object in hand sees a corner well; none when the object is at one.
 
-    floor : (rows, columns) that he can reach.
+    Best in the corner of what is seen: he takes it then so that he does not stand in its way there, and when that is
+    the true one it is there already. Else about it. floor : (rows, columns) that he can reach.
     """
     column, row = situation.corners[side].square
+    into, shape = _into_corner(side, situation), in_view(node.polygon, situation)
+    if lands(into, shape):
+        return {}
     mask = situation.model.space & floor | situation.model.mask(node.patch)
     rows, columns = np.ogrid[: mask.shape[0], : mask.shape[1]]
-    end = Inside(region_of(mask & (abs(rows - row) <= IN_SIGHT) & (abs(columns - column) <= IN_SIGHT)))
-    return {} if end.polygon.is_empty or lands(end, in_view(node.polygon, situation)) else {f"near_{side}": end}
+    about = Inside(region_of(mask & (abs(rows - row) <= IN_SIGHT) & (abs(columns - column) <= IN_SIGHT)))
+    there = about.polygon.is_empty or lands(about, shape)
+    return {f"near_{side}": into} | ({} if there else {f"about_{side}": about})
 
 
 def _floor(node: Node, situation: Situation) -> Mask:

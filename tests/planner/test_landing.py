@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
+import shapely.affinity
 
 from kb.factfile import facts_of
 from kb.loads import covered
 from kb.worldmodel import Node, WorldModel
-from planner.landing import Landing, landing
+from planner.landing import Landing, landing, lands
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
 
@@ -40,3 +41,32 @@ def test_what_he_holds_does_not_shut_him_in(held: bool) -> None:
     found = landing_of(model, held)
     assert bool(found.ends) == held
     assert ("passage" in found.missing) != held
+
+
+OPEN_ENDED = [
+    "?" * 22,
+    *["b" + "." * 18 + "???"] * 9,
+    "b.U" + "." * 16 + "???",
+    *["b" + "." * 18 + "???"] * 4,
+    "b" * 22,
+]
+
+
+def test_while_the_corner_is_not_seen_a_thing_is_brought_into_that_of_what_is() -> None:
+    model = seen_whole(OPEN_ENDED)
+    square = shapely.box(2, 0, 5, 3)
+    node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square)
+    situation = situation_of(replace(model, objects=(node,)), {"x": "o1"})
+    found = landing(NORTHEAST, node, (3.5, 1.5), situation)
+    assert not found.ends
+    assert "unseen" in found.missing
+    corner, about = found.approach.values()
+    row, column = np.argwhere(model.view.seen)[-1]
+    shape = shapely.box(column - 2, row - 2, column + 1, row + 1)
+    assert lands(corner, shape)
+    assert not lands(corner, shapely.affinity.translate(shape, -2, 0))
+    assert lands(about, shapely.affinity.translate(shape, -2, 0))
+    there = shapely.transform(shape, lambda points: points + np.array([model.view.west, model.view.south]))
+    arrived = replace(node, patch=covered(there), polygon=there)
+    situation = situation_of(replace(model, objects=(arrived,)), {"x": "o1"})
+    assert not landing(NORTHEAST, arrived, (3.5, 1.5), situation).approach
