@@ -4,6 +4,7 @@ The way of one impression: regions (kb.regions), their interpretation (kb/asp), 
 objects and their shapes, and the tree (kb.worldmodel).
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +20,7 @@ from kb.evidence import FREE, FULL, OPEN, MapView
 from kb.explanation import Accommodated
 from kb.imagining import NOTHING_IMAGINED, imagine
 from kb.interpretation import Kinds, interpret, shapes
+from kb.lattice import AROUND, TIE
 from kb.loads import Load, slack_of
 from kb.measuring import Measured, Measurer
 from kb.regions import label_of, map_regions
@@ -40,6 +42,7 @@ class Knowledge:
         self.felt: dict[tuple[int, int], str] = {}
         self.objects: tuple[Node, ...] = ()
         self._names = Names()
+        self._touch: tuple[str | None, ...] = ()
         self._imagined = NOTHING_IMAGINED
         self._measurer = Measurer()
 
@@ -64,12 +67,11 @@ class Knowledge:
         return woken._replace(explanation=woken.explanation._replace(how="lost"))
 
     def _grasp(self, direction: str) -> None:
-        """Believe that the thing on an adjacent square is in hand, if one with a known outline is believed there."""
+        """Believe that the thing on an adjacent square is in hand, if one of known outline lies or is felt there."""
         x, y = self.memory.square
         beside = self.memory.lattice.beside(direction)
-        if beside is None:
-            return
-        there = [n for n in self.objects if (x + beside[0], y + beside[1]) in n.patch.squares()]
+        square = None if beside is None else (x + beside[0], y + beside[1])
+        there = [n for n in self.objects if square in n.patch.squares()] or self._felt_at(direction)
         node = min(there, key=lambda n: n.name not in self.memory.loads, default=None)
         if node is None or node.polygon is None or self.memory.held is not None:
             return
@@ -83,6 +85,18 @@ class Knowledge:
             support=node.support,
         )
         self.memory.grasp(load)
+
+    def _felt_at(self, direction: str) -> list[Node]:
+        """The objects one of which he may feel in a direction: those that lie about there, if that may be no wall."""
+        colour = self._touch[DIRECTIONS.index(direction)] if self._touch else None
+        x, y = self.memory.square
+        east, north = self.memory.lattice.to_lattice(*AROUND[DIRECTIONS.index(direction)])
+        columns, rows = ({x + side for side in _beside(east)}, {y + side for side in _beside(north)})
+        felt = [self.memory.evidence.index(i, j) for i in columns for j in rows]
+        if colour is None or all(self.memory.evidence.state[square] == FULL for square in felt):
+            return []
+        about = {(i + dx, j + dy) for i in columns for j in rows for dx, dy in (*AROUND, (0, 0))}
+        return [node for node in self.objects if node.colour in (None, colour) and about & node.patch.squares()]
 
     def _model(self, impression: Impression, accommodated: Accommodated) -> tuple[WorldModel, Accommodated]:
         if accommodated.explanation.anew:
@@ -126,6 +140,7 @@ class Knowledge:
         return replace(model, objects=self.objects), accommodated
 
     def _feel(self, impression: Impression) -> None:
+        self._touch = impression.touch
         x, y = self.memory.square
         loaded = {square for load in self.memory.loads.values() for square in load.possible.squares()}
         for direction, colour in zip(DIRECTIONS, impression.touch, strict=True):
@@ -251,3 +266,8 @@ def _shape_facts(measured: Mapping[str, Measured]) -> list[str]:
 def _support(mask: Mask, view: MapView) -> tuple[int, ...]:
     numbers = np.unique(view.settled_by[mask & ((view.state == FULL) | (view.state == FREE))])
     return tuple(int(n) for n in numbers if n >= 0)
+
+
+def _beside(offset: float) -> set[int]:
+    """The squares in one of which an offset of about one square falls: two where it falls between them."""
+    return {math.ceil(offset - 0.5 - TIE), math.floor(offset + 0.5 + TIE)}

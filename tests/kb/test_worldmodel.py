@@ -10,9 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kb.belief import Places, model_facts
-from kb.body import Grasp, Release
+from kb.body import Grasp, Move, Release
 from kb.corners import corners
 from kb.evidence import FREE, FULL, OPEN, MapView
+from kb.lattice import Lattice
+from kb.loads import covered
 from kb.measuring import Measurer
 from kb.rooms import rooms_of
 from kb.worldmodel import Names, Patch, patch_of, unsettled
@@ -150,6 +152,35 @@ def test_a_load_that_reaches_into_his_own_square_leaves_it_open() -> None:
     model, _ = walk.knowledge.perceive(Release(), seen)
     assert model.view.state[here] == OPEN
     assert model.floor[here]
+
+
+def test_what_he_feels_is_in_his_hand_when_he_grasps_there() -> None:
+    def grasped(aside: int, felt: str | None, angle: int = 0, wall: bool = False) -> str | None:
+        """What he holds who grasps to the north, where he feels something, while a thing lies some squares beside."""
+        walk = walked(ROOM, [(0, 2), (-2, 2), (3, 0), (-3, -4)], colour="g")
+        (x, y), knowledge = utak_in(ROOM), walk.knowledge
+        seen = replace(impression(world_of(ROOM), (x - 2, y), colour="g"), touch=(felt, *[None] * 7))
+        knowledge.perceive(Move(0.0, 0.0), seen)
+        memory = knowledge.memory
+        memory.lattice = Lattice(angle, memory.lattice.woke)
+        thing, (i, j) = walk.model.objects[0], memory.square
+        polygon = shapely.box(i + aside, j + 1, i + aside + 3, j + 4)
+        knowledge.objects = (replace(thing, polygon=polygon, patch=covered(polygon), colour="g"),)
+        for column in (i - 1, i, i + 1):
+            memory.evidence.state[memory.evidence.index(column, j + 1)] = FULL if wall else OPEN
+        knowledge._grasp("north")
+        return memory.held
+
+    name = walked(ROOM, [(0, 2), (-2, 2), (3, 0), (-3, -4)], colour="g").model.objects[0].name
+    assert grasped(0, None) == name
+    assert grasped(1, "g") == name
+    assert grasped(1, "g", wall=True) is None
+    assert grasped(1, None) is None
+    assert grasped(1, "r") is None
+    assert grasped(3, "g") is None
+    assert Lattice(-30).beside("north") is None
+    assert grasped(0, "g", angle=-30) == name
+    assert grasped(0, None, angle=-30) is None
 
 
 def test_the_facts_of_a_known_room() -> None:
