@@ -162,9 +162,10 @@ class Evidence:
         """How many fields, of this look and of those before, cannot be right if it was received on square (x, y)."""
         new = int(self.misfits(samples, ranges, x, y).sum())
         where = self._under(samples, x, y)
-        single = (samples.weight.sum(1) == 1) & (samples.slack == 0)
+        told = (samples.weight.sum(1) == 1) & (samples.slack == 0) & ((ranges[:, 0] > 0) | (ranges[:, 1] <= 0))
+        left = samples.weight[told].argmax(1)  # of a field of several squares all others may lie under loads
         state = self.state.ravel().copy()
-        state[where[single, 0]] = np.where(ranges[single, 0] > 0, FULL, FREE)
+        state[where[told, left]] = np.where(ranges[told, 0] > 0, FULL, FREE)
         under = state[self._where]
         full = np.where(under == FULL, self._weight, 0).sum(1)
         possible = full + np.where(under == OPEN, self._weight, 0).sum(1)

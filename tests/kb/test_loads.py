@@ -1,18 +1,22 @@
 """A load's image is taken out of a look exactly, whatever it hides; and what a motion may have led to."""
 
+import math
+
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
 from geometry.rigid import Rotate, Translate
+from kb.evidence import Evidence
 from kb.hauling import otherwise, predicted
 from kb.lattice import Lattice
 from kb.loads import Load, covered, discounted, slack_of, whole
 from kb.retina import FIELDS, OWN, count_ranges
-from tests.kb.eyes import impression
+from tests.kb.eyes import impression, random_room, world_of
+from tests.kb.test_relaying import around
 
 BRICK = shapely.box(0, 0, 4, 2)
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
@@ -99,3 +103,38 @@ def test_a_turn_leaves_utak_and_may_have_been_about_another_point_of_his_square(
     outcomes = [predicted(place, BRICK, motion), *otherwise(place, BRICK, motion)]
     assert {outcome.place for outcome in outcomes} == {place}
     assert min(outcome.polygon.symmetric_difference(true).area for outcome in outcomes) < 0.2
+
+
+@example(991676, 10, 55.031408332442226, True)
+@example(322096, 45, 109.93298110907814, True)
+@given(st.integers(0, 10_000), st.sampled_from([0, 10, 30, 45, 326]), st.floats(0, 360), st.booleans())
+@settings(max_examples=80, deadline=None)
+def test_a_look_at_what_is_so_never_clashes(seed: int, heading: int, degrees: float, whole_: bool) -> None:
+    rng = np.random.default_rng(seed)
+    rows = random_room(rng, 24, 24, 4)
+    lattice = Lattice((heading + 45) % 90 - 45)
+    free = [(i, j) for j, row in enumerate(reversed(rows)) for i, mark in enumerate(row) if mark == "."]
+    evidence, occupied = Evidence(), world_of(rows)
+    quarters = round((heading - lattice.angle) / 90)
+    for number, at in enumerate(rng.choice(len(free), 3)):
+        there = free[at]
+        ranges = count_ranges(impression(occupied, there, heading).retina)
+        evidence.look(lattice.samples(), ranges, *on_lattice(there, quarters), number)
+    middle, here = (free[at] for at in rng.choice(len(free), 2))
+    turn = 90.0 * round(degrees / 90) if whole_ else round(degrees, 3)
+    thing = translate(rotate(ELL, turn, origin=(0, 0)), *middle)
+    with_it = around(thing, occupied)
+    assume(not with_it(*here))
+    lying = rotate(thing, -90 * quarters, origin=(0, 0))
+    look = count_ranges(impression(with_it, here, heading).retina)
+    x, y = on_lattice(here, quarters)
+    freed = discounted(lattice.samples(), look, x, y, [load(whole(lying))])
+    assert evidence.clashes(*freed, x, y) == 0
+
+
+def on_lattice(square: tuple[int, int], quarters: int) -> tuple[int, int]:
+    """A square of the table on the lattice of one whose frame is turned against the table by quarter turns."""
+    x, y = square[0] + 0.5, square[1] + 0.5
+    for _ in range(quarters % 4):
+        x, y = y, -x
+    return math.floor(x), math.floor(y)
