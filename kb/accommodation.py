@@ -40,7 +40,7 @@ from kb.relaying import laid, relaid
 from kb.retina import count_ranges
 from kb.stops import HAIR, Moved, around, ends, next_square, retold
 from kb.supposing import Surprise, agreeing, as_motion, clashes, laid_on
-from kb.suspecting import Hindrances, suspects
+from kb.suspecting import suspects
 
 MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one is believed
 NOWHERE = 0.2  # squares: what was stopped sooner than this did not move
@@ -187,16 +187,17 @@ class Memory:
             load = self.loads[load.name] = replace(load, astray=max(load.astray, ROUNDING))
         chosen = self._outcome(ranges, load, predicted(self.place, load.polygon, motion))
         if chosen.misfits:
-            ends = Hindrances(self.evidence, self.place, load.polygon, motion).ends(self.place, load.polygon, motion)
+            surprise = self._surprise(command, ranges)
+            ends = surprise.hindrances.ends(self.place, load.polygon, motion)
             outcomes = [one for one in (self._outcome(ranges, load, end) for end in ends) if not one.misfits]
             outcomes += [self._outcome(ranges, load, other) for other in otherwise(self.place, load.polygon, motion)]
             simple = any(not one.misfits for one in outcomes if one.how != "slipped" or self.slipped)
-            explanations = [chosen, *outcomes, *self._elsewhere(command, ranges, chosen.misfits, simple)]
+            explanations = [chosen, *outcomes, *self._elsewhere(surprise, chosen.misfits, simple)]
             chosen = self._choose(explanations, np.array_equal(ranges, self.looks[-1].ranges))
         self._lie(chosen)
         load, motion = self.loads[load.name], as_motion(command, self.lattice, self.place)
-        besides = [other for other in self.loads.values() if other.name != load.name]
-        self.suspected |= suspects(chosen.outcome, motion, load, besides, self.evidence)
+        others = [other for other in self.loads.values() if other.name != load.name]
+        self.suspected |= suspects(chosen.outcome, motion, load, others, self.evidence)
         self._carried(self.loads[load.name], chosen)
         self.place = chosen.place
         self._stray(ranges)
@@ -227,28 +228,20 @@ class Memory:
             least = ROUNDING if self._beside_line and load.turned % 360 else 0.0
             self.loads[name] = replace(load, astray=float(far.max(initial=least)))
 
-    def _elsewhere(
-        self, command: Command | None, ranges: NDArray[np.int16], misfits: int, simple: bool = False
-    ) -> list[Explanation]:
-        """The lattice that explains better what contradicts, now that things have been moved, if there is one.
+    def _surprise(self, command: Command, ranges: NDArray[np.int16]) -> Surprise:
+        """A look that contradicts what is believed, now that things have been moved."""
+        return Surprise(
+            command, ranges, self.lattice, self.place, self.evidence, self.looks, self.loads, self.held, self.hypotheses
+        )
+
+    def _elsewhere(self, surprise: Surprise, misfits: int, simple: bool = False) -> list[Explanation]:
+        """The lattice that explains a surprise better, if there is one.
 
         simple : is it explained by a motion that ended early?
         """
-        if command is None or self.searches >= HOPELESS:
+        if self.searches >= HOPELESS:
             return []
-        surprise = Surprise(
-            command,
-            ranges,
-            self.lattice,
-            self.place,
-            self.evidence,
-            self.looks,
-            self.loads,
-            self.held,
-            self.hypotheses,
-            simple,
-        )
-        found = explained(surprise, self.searches < MOST_SEARCHES)
+        found = explained(surprise, self.searches < MOST_SEARCHES, simple)
         if found is None or found.misfits >= misfits:
             self.searches += 1
             return []
@@ -313,8 +306,10 @@ class Memory:
             turned = misled(look, map(told, stopped))
         elif not self.loads:
             turned = self._turned(look, first.misfits)
+        elif first.misfits and command is not None:
+            turned = self._elsewhere(self._surprise(command, ranges), first.misfits)
         else:
-            turned = self._elsewhere(command, ranges, first.misfits) if first.misfits else []
+            turned = []
         if not first.misfits and not turned:
             return first
         if not first.misfits:  # no settled square is otherwise, but two looks contradict each other on this lattice

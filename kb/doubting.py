@@ -16,13 +16,14 @@ BEST = 3  # of those, on which the motion may have been stopped by what was not 
 SLIVER = 0.02  # squares^2: where there is no more room for where he woke, he was rather stopped
 
 
-def explained(surprise: Surprise, anew: bool) -> Supposed | None:
+def explained(surprise: Surprise, anew: bool, simple: bool) -> Supposed | None:
     """The lattice that explains a look best; None when none is left.
 
-    anew : may hypotheses that were given up before be taken up again?
+    anew : may hypotheses that were given up before be taken up again? simple : is it explained if the motion ended
+    early, the lattice being as believed?
     """
     if surprise.turned:
-        found = _otherwise_turned(surprise) or pivoted(surprise)
+        found = _otherwise_turned(surprise) or pivoted(surprise, simple)
         if found is not None:
             return found
     return _laid_otherwise(surprise, anew)
@@ -44,10 +45,10 @@ def _laid_otherwise(surprise: Surprise, anew: bool) -> Supposed | None:
     """The lattice on which, when all is laid on it, the fewest fields contradict."""
     found: list[Supposed] = []
     few = max(LEAST, min(FEW, MOST_REPLAYS // (len(surprise.looks) + 1)))
+    hypotheses = search(surprise.recent, surprise.hypotheses, surprise.unsettled)
     for searched in (False, True)[: 1 + anew]:
-        hypotheses = (
-            _searched(surprise) if searched else search(surprise.recent, surprise.hypotheses, surprise.unsettled)
-        )
+        if searched:
+            hypotheses = _searched(surprise)
         if searched and sum(hypothesis.area for hypothesis in hypotheses) < SLIVER:
             short = _cut_short(surprise, few)
             if short is not None:

@@ -46,10 +46,7 @@ def predicted(place: Place, polygon: Any, motion: Motion) -> Outcome:
 def arrested(place: Place, polygon: Any, motion: Motion, walls: Obstacles) -> Outcome | None:
     """The motion as far as what is known to stand in the way lets it go; None when nothing does."""
     fraction = walls.first_contact(Body(polygon, [place]), motion).fraction
-    if fraction >= 1.0:
-        return None
-    length = length_of(place, polygon, motion)
-    return _after("blocked", place, polygon, motion.part(fraction), length * (1.0 - fraction))
+    return part_way(place, polygon, motion, fraction) if fraction < 1.0 else None
 
 
 def part_way(

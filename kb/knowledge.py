@@ -4,7 +4,6 @@ The way of one impression: regions (kb.regions), their interpretation (kb/asp), 
 objects and their shapes, and the tree (kb.worldmodel).
 """
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -20,7 +19,7 @@ from kb.evidence import FREE, FULL, OPEN, MapView
 from kb.explanation import Accommodated
 from kb.imagining import NOTHING_IMAGINED, imagine
 from kb.interpretation import Kinds, interpret, shapes
-from kb.lattice import AROUND, TIE
+from kb.lattice import AROUND
 from kb.loads import Load, slack_of
 from kb.measuring import Measured, Measurer
 from kb.regions import label_of, map_regions
@@ -90,12 +89,11 @@ class Knowledge:
         """The objects one of which he may feel in a direction: those that lie about there, if that may be no wall."""
         colour = self._touch[DIRECTIONS.index(direction)] if self._touch else None
         x, y = self.memory.square
-        east, north = self.memory.lattice.to_lattice(*AROUND[DIRECTIONS.index(direction)])
-        columns, rows = ({x + side for side in _beside(east)}, {y + side for side in _beside(north)})
-        felt = [self.memory.evidence.index(i, j) for i in columns for j in rows]
-        if colour is None or all(self.memory.evidence.state[square] == FULL for square in felt):
+        named = [(x + i, y + j) for i, j in self.memory.lattice.may_name(direction)]
+        known = [self.memory.evidence.state[self.memory.evidence.index(*square)] for square in named]
+        if colour is None or all(state == FULL for state in known):
             return []
-        about = {(i + dx, j + dy) for i in columns for j in rows for dx, dy in (*AROUND, (0, 0))}
+        about = {(i + dx, j + dy) for i, j in named for dx, dy in (*AROUND, (0, 0))}
         return [node for node in self.objects if node.colour in (None, colour) and about & node.patch.squares()]
 
     def _model(self, impression: Impression, accommodated: Accommodated) -> tuple[WorldModel, Accommodated]:
@@ -266,8 +264,3 @@ def _shape_facts(measured: Mapping[str, Measured]) -> list[str]:
 def _support(mask: Mask, view: MapView) -> tuple[int, ...]:
     numbers = np.unique(view.settled_by[mask & ((view.state == FULL) | (view.state == FREE))])
     return tuple(int(n) for n in numbers if n >= 0)
-
-
-def _beside(offset: float) -> set[int]:
-    """The squares in one of which an offset of about one square falls: two where it falls between them."""
-    return {math.ceil(offset - 0.5 - TIE), math.floor(offset + 0.5 + TIE)}

@@ -73,9 +73,13 @@ class Lattice:
 
         None where the direction points between two squares, and either may be the one.
         """
+        named = self.may_name(direction)
+        return named[0] if len(named) == 1 else None
+
+    def may_name(self, direction: str) -> list[tuple[int, int]]:
+        """The adjacent squares, as (columns, rows), that a direction may name: several where it points between them."""
         column, row = self.to_lattice(*AROUND[DIRECTIONS.index(direction)])
-        tied = any(abs(abs(v - math.trunc(v)) - 0.5) < TIE for v in (column, row))
-        return None if tied else (round(column), round(row))
+        return [(x, y) for x in _nearest(column) for y in _nearest(row)]
 
     def directions(self) -> dict[tuple[int, int], str]:
         """For each adjacent square, as (columns, rows), that some direction of Utak's frame surely names: that one."""
@@ -85,6 +89,11 @@ class Lattice:
     def samples(self) -> Samples:
         """The squares that each field samples."""
         return _samples(self.angle)
+
+
+def _nearest(offset: float) -> list[int]:
+    """The square that an offset falls in; both where it falls between two."""
+    return sorted({math.ceil(offset - 0.5 - TIE), math.floor(offset + 0.5 + TIE)})
 
 
 def turned(x: float, y: float, degrees: float) -> tuple[float, float]:

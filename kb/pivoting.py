@@ -48,16 +48,19 @@ class Part(NamedTuple):
         return [Part(*spans) for spans in itertools.product(*map(itertools.pairwise, sides))]
 
 
-def pivoted(surprise: Surprise) -> Supposed | None:
+def pivoted(surprise: Surprise, simple: bool) -> Supposed | None:
     """The point of his square at which he woke, and what came of a turn, so that nothing contradicts; None if none.
 
     The lattice is turned as it is believed to be. A turn went to its end, or as far as what is known to stand in its
-    way let it go; else it ended anywhere. What is left are all points that do.
+    way let it go; else it ended anywhere. What is left are all points that do. simple : is the look explained if the
+    motion ended early, the lattice being as believed?
     """
     where = _points(surprise)
     far = math.hypot(*cells(where)) / 2
     tried = (surprise.tried(point.lattice, (point,), far=far) for point in where)
-    fitting = [one for one in tried if not one.misfits] or _halted(surprise, _room(where))
+    fitting = [one for one in tried if not one.misfits]
+    if not fitting and not (simple and len(surprise.hypotheses) == 1):
+        fitting = _halted(surprise, _room(where))
     return _middle(fitting) if fitting else None
 
 
@@ -68,12 +71,11 @@ def _points(surprise: Surprise) -> tuple[Hypothesis, ...]:
 
 
 def _halted(surprise: Surprise, room: Box) -> list[Supposed]:
-    """What fits, if a turn of what is in his hand ended early; nothing, if that is explained otherwise.
+    """What fits, if a turn of what is in his hand ended early; nothing, if there was none.
 
     Parts of his square, and of the turn, are cut smaller as long as nothing contradicts them.
     """
-    explained = surprise.simple and len(surprise.hypotheses) == 1
-    if explained or surprise.moving is None or surprise.degrees == 0.0:
+    if surprise.degrees == 0.0:
         return []
     place, polygon, motion = surprise.begun(surprise.lattice)
     length, (west, south, east, north) = length_of(place, polygon, motion), room

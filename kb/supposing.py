@@ -50,7 +50,6 @@ class Surprise:
     """A look, after a command, that contradicts what was believed before.
 
     place : of Utak before it, on the lattice. held : the name of the load in his hand. hypotheses : what was left.
-    simple : is it explained if the motion ended early, the lattice being as believed?
     """
 
     command: Command
@@ -62,9 +61,8 @@ class Surprise:
     loads: Mapping[str, Load]
     held: str | None
     hypotheses: tuple[Hypothesis, ...]
-    simple: bool
 
-    # -- what there is to try --------------------------------------------------------------------
+    # -- what is known of it ---------------------------------------------------------------------
 
     @property
     def moving(self) -> tuple[str, Push | Turn] | None:
@@ -98,6 +96,7 @@ class Surprise:
 
     @cached_property
     def recent(self) -> list[Look]:
+        """The looks by which lattices are judged, the new one last."""
         return [*self.looks[-RECENT:], Look(self.ranges, self.own)]
 
     @cached_property
@@ -115,7 +114,7 @@ class Surprise:
             discs |= {Disc(middle, reach) for middle in middles}
         return sorted(discs)
 
-    # -- trying it -------------------------------------------------------------------------------
+    # -- trying a lattice ------------------------------------------------------------------------
 
     def tried(
         self,
@@ -130,9 +129,8 @@ class Surprise:
         cut_short : the motion may have ended early, for whatever reason. far : squares from where he woke, at most.
         """
         if self.moving is None:  # it went as said
-            under, place = self.laid(lattice), lattice.place_from_utak(*self.own)
-            lying = [load.woken(far) if far else load for load in under.loads.values()]
-            misfits = under.misfits + clashes(lattice, under.evidence, lying, place, self.ranges)
+            place = lattice.place_from_utak(*self.own)
+            misfits = self._misfits(lattice, self.laid(lattice).loads.values(), place, far)
             return Supposed(lattice, hypotheses, place, None, misfits, searched)
         tried = []
         for outcome in self._outcomes(lattice, cut_short):
@@ -156,12 +154,16 @@ class Surprise:
         slack : squares by which it may have ended elsewhere. far : squares from where he woke, at most.
         """
         assert self.moving is not None
-        under, (held, _) = self.laid(lattice), self.moving
-        load = under.loads[held]
-        after = {**under.loads, held: load.moved(outcome.polygon, max(load.slack, slack), outcome.degrees)}
-        lying = [load.woken(far) if far else load for load in after.values()]
-        misfits = under.misfits + clashes(lattice, under.evidence, lying, outcome.place, self.ranges)
+        held, loads = self.moving[0], self.laid(lattice).loads
+        moved = loads[held].moved(outcome.polygon, max(loads[held].slack, slack), outcome.degrees)
+        misfits = self._misfits(lattice, {**loads, held: moved}.values(), outcome.place, far)
         return Supposed(lattice, hypotheses, outcome.place, outcome, misfits, searched)
+
+    def _misfits(self, lattice: Lattice, loads: Iterable[Load], place: Place, far: float) -> int:
+        """How many fields contradict a lattice, of this look, with the loads where they lie then, and of all others."""
+        under = self.laid(lattice)
+        lying = [load.woken(far) if far else load for load in loads]
+        return under.misfits + clashes(lattice, under.evidence, lying, place, self.ranges)
 
     def begun(self, lattice: Lattice) -> tuple[Place, Any, Motion]:
         """Where he stood before the motion, and what was in his hand, if the lattice lies so; and the motion."""

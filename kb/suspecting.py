@@ -2,8 +2,9 @@
 
 import itertools
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -45,10 +46,12 @@ class Hindrances:
     def __init__(self, evidence: Evidence, place: Place, polygon: Any, motion: Motion) -> None:
         known, open_ = (_there(evidence, place, polygon, motion, state) for state in (FULL, OPEN))
         self.walls = Obstacles([_box(square) for square in known])
-        self._open = [
-            (square, Obstacles([_box(square)]), 1 / (1 + math.exp(-float(evidence.logit[evidence.index(*square)]))))
-            for square in open_
-        ]
+        self._odds = {square: float(evidence.logit[evidence.index(*square)]) for square in open_}
+
+    @cached_property
+    def _open(self) -> list[tuple[Square, Obstacles]]:
+        """Each open square as an obstacle of its own."""
+        return [(square, Obstacles([_box(square)])) for square in self._odds]
 
     def stops(self, place: Place, polygon: Any, motion: Motion) -> list[Stop]:
         """Where the motion may have been stopped, in its order, and what speaks for each.
@@ -57,14 +60,13 @@ class Hindrances:
         """
         body = Body(polygon, [place])
         end = self.walls.first_contact(body, motion).fraction
-        met = ((obstacle.first_contact(body, motion).fraction, square, p) for square, obstacle, p in self._open)
+        met = ((obstacle.first_contact(body, motion).fraction, square) for square, obstacle in self._open)
         stops, free = [], 1.0
         for _, group in itertools.groupby(sorted(m for m in met if m[0] < end), lambda m: round(m[0] / TOGETHER)):
-            together = list(group)
-            clear = math.prod(1.0 - p for *_, p in together)
-            likeliest = max(p for *_, p in together)
-            against = frozenset(square for _, square, p in together if _odds(p) >= _odds(likeliest) - ALIKE)
-            stops.append(Stop(together[0][0], free * (1.0 - clear), against))
+            parts, squares = zip(*group, strict=True)
+            odds = {square: self._odds[square] for square in squares}
+            clear = math.prod(1.0 / (1.0 + math.exp(odd)) for odd in odds.values())
+            stops.append(Stop(parts[0], free * (1.0 - clear), _likeliest(odds)))
             free *= clear
         return [*stops, Stop(end, free)] if end < 1.0 else stops
 
@@ -100,6 +102,11 @@ def suspects(
     if FULL in state.values() or any(there & other.possible.squares() for other in others):
         return NOTHING
     odds = {square: float(evidence.logit[evidence.index(*square)]) for square in there if state[square] == OPEN}
+    return _likeliest(odds)
+
+
+def _likeliest(odds: Mapping[Square, float]) -> frozenset[Square]:
+    """Of squares with the log odds that they are occupied the likeliest."""
     return frozenset(square for square, odd in odds.items() if odd >= max(odds.values()) - ALIKE)
 
 
@@ -123,7 +130,3 @@ def _there(evidence: Evidence, place: Place, polygon: Any, motion: Motion, state
 def _box(square: Square) -> Any:
     x, y = square
     return shapely.box(x, y, x + 1, y + 1)
-
-
-def _odds(p: float) -> float:
-    return math.log(p / (1.0 - p))
