@@ -20,7 +20,7 @@ from kb.explanation import Accommodated
 from kb.imagining import NOTHING_IMAGINED, imagine
 from kb.interpretation import Kinds, interpret, shapes
 from kb.lattice import AROUND
-from kb.loads import Load, slack_of
+from kb.loads import Load, covered, slack_of
 from kb.measuring import Measured, Measurer
 from kb.regions import label_of, map_regions
 from kb.worldmodel import SPACE, Names, Node, Patch, WorldModel, patch_of, unsettled
@@ -29,6 +29,7 @@ Mask = NDArray[np.bool_]
 LEAST_OBJECT = 5  # percent: a region is kept as a possible object from here on
 LARGEST_OBJECT = 24  # squares: what is longer than this and undecided is verge
 MAYBE = 0.4  # that a square is covered which the slack of a load's outline leaves open
+BESIDE = 0.05  # the same where the outline as it is believed stays out of it: who walks there is hardly stopped
 FIXED = 3  # pushes or turns in a row that did not move a thing: then it cannot be moved
 
 
@@ -233,14 +234,17 @@ def _laid(model: WorldModel, load: Load) -> WorldModel:
     shared = view.state[here] == FREE and possible[here]
     sure[here] = possible[here] = False
     label = int(labels.max()) + 1
-    labels[possible & (view.state != FULL)] = label
+    open_ = possible & (view.state != FULL)
+    labels[open_] = label
     state = np.where(sure, np.int8(FULL), np.where(possible & (view.state == FREE), np.int8(OPEN), view.state))
+    beside = open_ & ~model.squares(covered(load.polygon).squares())
 
-    def covered(chance: NDArray[np.float32]) -> NDArray[np.float32]:
-        return np.where(sure, np.float32(1), np.where(possible, np.float32(MAYBE), chance))
+    def lying(chance: NDArray[np.float32]) -> NDArray[np.float32]:
+        may = np.where(beside, np.maximum(chance, np.float32(BESIDE)), np.float32(MAYBE))
+        return np.where(sure, np.float32(1), np.where(open_, may, chance))
 
-    probability = covered(view.probability)
-    by_counts = None if view.by_counts is None else covered(view.by_counts)
+    probability = lying(view.probability)
+    by_counts = None if view.by_counts is None else lying(view.by_counts)
     if shared:
         state[here] = OPEN
     seen = view.seen | possible

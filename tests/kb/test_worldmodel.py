@@ -13,11 +13,12 @@ from kb.belief import Places, model_facts
 from kb.body import Grasp, Move, Release
 from kb.corners import corners
 from kb.evidence import FREE, FULL, OPEN, MapView
+from kb.knowledge import _laid
 from kb.lattice import Lattice
-from kb.loads import covered
+from kb.loads import Load, covered
 from kb.measuring import Measurer
 from kb.rooms import rooms_of
-from kb.worldmodel import Names, Patch, patch_of, unsettled
+from kb.worldmodel import SPACE, Names, Patch, patch_of, unsettled
 from tests.kb.drawings import seen_whole, walked
 from tests.kb.eyes import impression, utak_in, world_of
 
@@ -152,6 +153,30 @@ def test_a_load_that_reaches_into_his_own_square_leaves_it_open() -> None:
     model, _ = walk.knowledge.perceive(Release(), seen)
     assert model.view.state[here] == OPEN
     assert model.floor[here]
+
+
+def test_who_walks_goes_right_beside_a_load_that_may_lie_otherwise() -> None:
+    empty = [row.replace("g", ".") for row in ROOM]
+    model = _laid(seen_whole(empty), Load("o1", shapely.box(-3, 1.3, 0, 4.3), None, slack=0.2, proven=True))
+
+    def chances(squares: set[tuple[int, int]]) -> list[float]:
+        return [float(model.view.probability[model.view.locate(x + 0.5, y + 0.5)]) for x, y in squares]
+
+    inside = {(x, y) for x in (-3, -2, -1) for y in (1, 2, 3, 4)}
+    may_be = {(x, y) for x in range(-4, 1) for y in range(1, 5)} - inside
+    assert min(chances(inside)) == 1.0
+    assert 0.0 < min(chances(may_be)) <= max(chances(may_be)) <= SPACE
+    assert not any(model.view.state[model.view.locate(x + 0.5, y + 0.5)] == FREE for x, y in may_be)
+
+
+def test_a_load_that_may_lie_otherwise_leaves_walls_what_they_are() -> None:
+    beside_wall = [row.replace("g", ".") for row in ROOM]
+    before = seen_whole(beside_wall)
+    x = before.view.west + 1  # the first square of floor in the west
+    model = _laid(before, Load("o1", shapely.box(x + 0.1, 1.3, x + 3.1, 4.3), None, slack=0.2, proven=True))
+    wall = model.view.locate(x - 0.5, 2.5)
+    assert model.view.state[wall] == FULL
+    assert model.view.probability[wall] == 1.0
 
 
 def test_what_he_feels_is_in_his_hand_when_he_grasps_there() -> None:
