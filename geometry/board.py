@@ -40,7 +40,7 @@ class Board(NamedTuple):
     image : by quarter turn, the squares of the body. turns : by hold * 4 + quarter turn, those that it meets in a turn
     counter-clockwise about the hold. wide : the same of the body with its margin.
     allowed : (4, n, 8) whether one may push in a direction from a hold.
-    steps : (8,) the offset of each direction.
+    steps : (8,) the offset of each direction. turn : the price of a turn where there is room for it.
     """
 
     solid: Mask
@@ -55,6 +55,7 @@ class Board(NamedTuple):
     wide: Lists
     allowed: Mask
     steps: Ints
+    turn: int
 
 
 class Grid(NamedTuple):
@@ -102,7 +103,9 @@ def new_grid(free: Mask, body: Stencil, wide: Stencil) -> Grid:
     return Grid(free.shape[1], free.shape[0], max(reach, 2 * int(np.abs(body.holds).max())) + 2)
 
 
-def new_board(grid: Grid, free: Mask, walk: Mask, body: Stencil, wide: Stencil, grip: Costs, allowed: Mask) -> Board:
+def new_board(
+    grid: Grid, free: Mask, walk: Mask, body: Stencil, wide: Stencil, grip: Costs, allowed: Mask, turn: int = COMMAND
+) -> Board:
     """The board of free squares (rows, columns) for a body, and for the same body with its margin."""
     solid = grid.padded(~free, True)
     places, quarters = grid.places(), [quarter(body.lying, k) for k in range(4)]
@@ -121,6 +124,7 @@ def new_board(grid: Grid, free: Mask, walk: Mask, body: Stencil, wide: Stencil, 
         turns if wide is body else _turned(grid, wide),
         allowed,
         grid.offsets(np.array(DIRECTIONS)),
+        turn,
     )
 
 

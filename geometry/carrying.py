@@ -32,6 +32,7 @@ from geometry.squarewise import carry_squarewise
 from geometry.stencil import Mask
 from geometry.yard import Yard
 
+DEAREST_TURN = 2.5
 __all__ = ["At", "Carrying", "InCorner", "Inside", "Leg", "Pose", "plan_carrying"]
 
 
@@ -97,6 +98,7 @@ def plan_carrying(
     walk: Mask | None = None,
     walls: Any = None,
     held: bool = False,
+    turn: float = 1.0,
 ) -> Carrying:
     """Plan how Utak carries a body to a goal.
 
@@ -118,6 +120,8 @@ def plan_carrying(
     held : whether Utak, where he stands, has hold of the body. The plan then goes on with that hold where that is no
         dearer than to let go, walk and grasp, and says so by `taken` of its first leg, which begins just there. A hold
         named in `avoid` is let go.
+    turn : how many commands a turn counts for, 1 to DEAREST_TURN: more where turns had better be avoided. Only plans by
+        whole squares go by it.
 
     Returns
     -------
@@ -129,6 +133,8 @@ def plan_carrying(
     """
     free = np.ascontiguousarray(free, dtype=bool)
     _check(free, utak, margin, avoid, walk)
+    if not 1.0 <= turn <= DEAREST_TURN:
+        raise ValueError(f"a turn counts for 1 to {DEAREST_TURN} commands, not {turn}")
     shape, walls = _body(shape), sound(walls, "walls")
     _check_goal(goal)
     x0, y0, x1, y1 = shape.bounds
@@ -136,7 +142,7 @@ def plan_carrying(
         return Carrying("impossible", reason="start", held=held)
     margin = min(margin, float(max(free.shape)))
     walk = free if walk is None else np.ascontiguousarray(walk, dtype=bool)
-    errand = Errand(shape, Yard(free, walls), utak, goal, margin, pull, tuple(avoid), walk)
+    errand = Errand(shape, Yard(free, walls), utak, goal, margin, pull, tuple(avoid), walk, turn=turn)
     errand = replace(errand, held=held and not errand.avoids(*errand.hold_from(utak)))
     if met(goal, shape, shape):
         return Carrying("found", pose=Pose(0.0, 0.0), polygon=shape, held=held)

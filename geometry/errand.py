@@ -19,7 +19,7 @@ class Errand:
     shape : as it lies. yard : where it and Utak may be. utak : where he is. goal : where the shape shall end. margin :
     clearance that pushes and turns should keep. pull : whether he may go backwards. avoid : holds not to be used, see
     Leg.hold. walk : (rows, columns) squares where he may walk with empty hands. held : whether he has hold of the shape
-    already, by a hold that is not to be avoided.
+    already, by a hold that is not to be avoided. turn : how many commands a turn counts for.
     """
 
     shape: Any
@@ -31,6 +31,7 @@ class Errand:
     avoid: tuple[Point, ...]
     walk: Mask
     held: bool = False
+    turn: float = 1.0
 
     @property
     def square(self) -> tuple[int, int]:

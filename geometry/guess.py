@@ -55,7 +55,7 @@ def guess(board: Board, ends: Costs, bend: int) -> Costs:
             if now < left[k, d, p]:
                 left[k, d, p] = now
                 _back(board, left, queue, k, d, p, now)
-        _turn_back(board, left, queue, k, p, now + COMMAND)
+        _turn_back(board, left, queue, k, p, now + board.turn)
     return left
 
 

@@ -135,12 +135,12 @@ def _nexts(board: Board, hold: int, k: int, m: int, p: int, bend: int, around: I
         if extra < 0:
             continue
         p1, k1 = turned_place(board, hold, k, p, way), (k + way) % 4
-        around[count], price[count] = ((hold * 4 + k1) * 9 + STILL) * squares + p1, COMMAND + extra
+        around[count], price[count] = ((hold * 4 + k1) * 9 + STILL) * squares + p1, board.turn + extra
         count += 1
         more = turn_cost(board, hold, k1, p1, way)
         if more >= 0:
             p2, k2 = turned_place(board, hold, k1, p1, way), (k + 2) % 4
-            around[count], price[count] = ((hold * 4 + k2) * 9 + STILL) * squares + p2, COMMAND + max(extra, more)
+            around[count], price[count] = ((hold * 4 + k2) * 9 + STILL) * squares + p2, board.turn + max(extra, more)
             count += 1
     return count
 

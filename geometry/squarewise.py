@@ -1,6 +1,7 @@
 """Carrying by whole squares and quarter turns: all stays on the lattice on which it began, so beliefs stay certain."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 from itertools import product
@@ -84,7 +85,7 @@ def _fewest(errand: Errand, begun: Errand | None = None) -> list[Leg] | None:
     best: list[Leg] | None = None
     for bend in BENDS if search.sensible else ():
         legs = search.legs(bend)
-        best = min((found for found in (best, legs) if found), key=commands, default=None)
+        best = min((found for found in (best, legs) if found), key=search.price, default=None)
         if best is None or [len(leg.motions) for leg in best] == [1]:
             break
     return best
@@ -103,11 +104,18 @@ class _Search:
             return
         self.grid, free = new_grid(errand.walk, self.body, wide), errand.yard.free
         grips, allowed = _grips(errand, self.body), _allowed(errand, self.body)
-        self.board = new_board(self.grid, free, errand.walk, self.body, wide, grips, allowed)
+        self.board = new_board(
+            self.grid, free, errand.walk, self.body, wide, grips, allowed, round(COMMAND * errand.turn)
+        )
         self.place = self.grid.number(x, y)
         self.ends = prices(errand.goal, errand.shape, self.body, self.board, self.grid)
         walk = first_walk(self.board, self.place, self.grid.number(*errand.square))
         self.begin = _begin(errand, self.body, walk)
+
+    def price(self, legs: Sequence[Leg]) -> float:
+        """About how many commands legs take, a turn for as many as it counts for."""
+        turns = sum(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
+        return commands(legs) + (self.errand.turn - 1.0) * turns
 
     def legs(self, bend: int) -> list[Leg] | None:
         """The cheapest legs when it costs so much to go on in another direction in the same push."""

@@ -16,19 +16,25 @@ from geometry.carrying import Inside, Leg
 from geometry.ends import End
 from geometry.rigid import Motion, Rotate, Translate
 from kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
+from kb.evidence import OPEN
 from kb.lattice import CENTRE
-from kb.worldmodel import Node, WorldModel
+from kb.worldmodel import SPACE, Node, WorldModel
 from planner.course import Course, Place, clear_part, course_of, followed, from_here, square_of, stands
 from planner.destinations import Situation
 from planner.exploring import Lookout, inspection, sight_of
 from planner.haulage import Haul, Hauler, Refusal, Request
 from planner.landing import region_of
-from planner.screen import Squares
+from planner.leading import lead
+from planner.screen import Squares, grown
+from planner.walking import is_open
 
 TIGHTEST = 2  # times that a thing stood against something unawares before he takes it elsewhere
 MOST_PLANS = 40  # in one task
 LOOSE = 0.02  # squares by which he may stand elsewhere in his square before a turn needs more room
+OPEN_TURN, LOOSE_TURN = 2.5, 1.5  # commands that a turn counts for while it is open how the lattice, or he, lies
 NOWHERE = 0.1  # squares: who comes no further is where he was
+TEDIOUS = 8  # commands of a plan above which what is not clear about its way is looked at first
+ABOUT = 2  # squares beside the way of a plan within which more room would help
 
 
 @dataclass(frozen=True)
@@ -151,6 +157,17 @@ class Carrier:
         advice = self._next(course, {}, situation)
         return advice if isinstance(advice, Act) else None
 
+    def taken_along(self, node: Node, squares: Squares, situation: Situation) -> Act | None:
+        """Take what he holds along to where he wants to look, if one straight push leads there."""
+        model = situation.model
+        if not self.pull or node.stuck or model.held != node.name or self._plans >= MOST_PLANS:
+            return None
+        push = lead(node, squares, situation)
+        if push is None:
+            return None
+        self._course, self._plans = None, self._plans + 1
+        return Act(_command(push, model), f"{node.name} is taken along")
+
     # -- when it fails ---------------------------------------------------------------------------
 
     def _failure(self, course: Course | None, model: WorldModel) -> Advice | None:
@@ -218,7 +235,7 @@ class Carrier:
         nowhere = self._went_on is not None and math.dist(self._went_on, model.place) < NOWHERE
         held = model.held == node.name and not nowhere
         tight = self._tight.get(node.name, 0) + (model.lattice.woke != CENTRE and max(model.leeway) > LOOSE)
-        return Request(node, ends, self._avoided(node), last, tight, held)
+        return Request(node, ends, self._avoided(node), last, tight, held, _price_of_a_turn(model))
 
     def _clearing(self, other: Node, haul: Haul, situation: Situation) -> tuple[Node, Haul] | None:
         """A way to carry a thing off the squares that a plan needs, if it stands there and there is one."""
@@ -236,9 +253,14 @@ class Carrier:
     def _seen(self, haul: Haul, node: Node, situation: Situation) -> See | None:
         """What of the way of a plan must be looked at before it is begun, if a look may tell more of it.
 
-        All that is believed floor is trusted: to be stopped now and then costs less than to look each time.
+        All that is believed floor is trusted: to be stopped now and then costs less than to look each time. But when a
+        plan takes many commands, then what takes away the room for fewer, and may be none, is looked at too.
         """
-        unsure = haul.swept & ~situation.screens.free(0) & ~situation.model.mask(node.patch)
+        model = situation.model
+        unsure = haul.swept & ~situation.screens.free(0)
+        if haul.plan.commands > TEDIOUS:
+            unsure |= grown(haul.swept, ABOUT) & (model.view.state == OPEN) & (model.view.probability > SPACE)
+        unsure &= ~model.mask(node.patch)
         if not unsure.any():
             return None
         lookout = sight_of(situation.screens, unsure, f"the way for {node.name} is not clear")
@@ -287,6 +309,15 @@ class Carrier:
             return None
         self._course = replace(near, grasped=True, place=near.legs[0].place)
         return Act(Grasp(direction), f"{course.name} is taken to be carried to {course.target}")
+
+
+def _price_of_a_turn(model: WorldModel) -> float:
+    """How many commands a turn counts for: it leaves a thing askew when it is open how the lattice lies, and elsewhere
+    when it is open where in his square he stands.
+    """
+    if is_open(model):
+        return OPEN_TURN
+    return LOOSE_TURN if max(model.leeway) > LOOSE else 1.0
 
 
 def _turned(holds: NDArray[np.float64], degrees: float) -> tuple[Place, ...]:

@@ -138,10 +138,11 @@ class Decider:
         situation: Situation,
         missing: Callable[[], str],
         verdict: str = "impossible",
+        along: Node | None = None,
     ) -> Decision:
         """The next command towards the best of some aims, or the verdict when none can be reached.
 
-        missing : says in words what is missing; asked only for a verdict.
+        missing : says in words what is missing; asked only for a verdict. along : what he takes along, if he can.
         """
         model = situation.model
         fewest = FewestMoves(situation.screens) if stage.carried else None
@@ -156,12 +157,22 @@ class Decider:
             if aim is None:
                 why = f"{stage} cannot be attained: {missing()}, and nothing is left to look at"
                 return Decision(None, why, verdict)
+            taken = None if along is None else self._taken_along(along, aim, stage, situation)
+            if taken is not None:
+                return taken
             if model.held is not None:
                 return Decision(Release(), f"{model.held} is let go, to walk; {stage}")
             decision = self._walk(aim, stage, situation, fewest)
             if decision.command is None or not self._circles.noticed(model, decision.command):
                 return decision
             self._circles.tire(_lattice_squares(aim.squares, model))
+
+    def _taken_along(self, node: Node, aim: Aim, stage: Stage, situation: Situation) -> Decision | None:
+        """The next command to take an object along to where he wants to look; None when he had better walk there."""
+        act = self.carrier.taken_along(node, aim.squares, situation)
+        if act is None or self._circles.noticed(situation.model, act.command):
+            return None
+        return Decision(act.command, f"{act.why}: {aim.what}; {stage}")
 
     def _carry(self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciled) -> Decision | None:
         """The next command towards a goal for something that must be carried, or None when it holds."""
@@ -199,11 +210,12 @@ class Decider:
                 return replace(walk, command=halting(walk.command, advice.place, situation.model))
             advice = Refusal(False, lambda: f"{node.name} cannot be reached to be taken")
         if isinstance(advice, See):
-            return self._pursue([Aim("inspect", *advice.lookout)], stage, situation, lambda: "")
+            return self._pursue([Aim("inspect", *advice.lookout)], stage, situation, lambda: "", along=node)
         unknown = nowhere(land.missing or "no way is known to carry it there", land.lookouts)
         verdict = "impossible" if advice.proved else "limit"
         aims = aims_towards([unknown], situation, reconciled)
-        return self._pursue(aims, stage, situation, advice.reason, verdict)
+        along = None if land.there else node
+        return self._pursue(aims, stage, situation, advice.reason, verdict, along)
 
     def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
         """What to do to carry something to where its goal holds; while that is not known, to near it."""

@@ -64,7 +64,7 @@ class Request:
     """What is to be carried, and where to. avoid : holds that failed. last : the target chosen last.
 
     tight : how often it stood against something unawares: the more room is wanted about it. held : whether Utak has
-    hold of it and may go on so.
+    hold of it and may go on so. turn : how many commands a turn counts for.
     """
 
     node: Node
@@ -73,6 +73,7 @@ class Request:
     last: str = ""
     tight: int = 0
     held: bool = False
+    turn: float = 1.0
 
 
 class Hauler:
@@ -129,13 +130,14 @@ class Hauler:
             avoid,
             request.tight,
             request.held,
+            request.turn,
         )
         if key not in self._known:
             if len(self._known) > 64:
                 self._known.clear()
             margin = MARGIN * (request.tight + (not is_whole(shape)))
             self._known[key] = plan_carrying(
-                shape, free, utak, request.ends[name], margin, self._pull, avoid, walk, held=request.held
+                shape, free, utak, request.ends[name], margin, self._pull, avoid, walk, None, request.held, request.turn
             )
         return self._known[key]
 

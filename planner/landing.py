@@ -43,7 +43,7 @@ class Landing:
     ends : target's name -> where the object must lie; empty while that is not known.
     missing, lookouts : what must be known first, in words, and where just that may be seen (as of a Destination).
     approach : places near to where it must end, from which it can be told better where that is; the best first.
-    holds : the goal holds as the object lies now.
+    holds : the goal holds as the object lies now. there : it does, but for what must be known first.
     """
 
     ends: Mapping[str, End]
@@ -51,6 +51,7 @@ class Landing:
     lookouts: tuple[Lookout, ...] = ()
     approach: Mapping[str, End] = field(default_factory=dict)
     holds: bool = False
+    there: bool = False
 
 
 def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
@@ -130,7 +131,7 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     if land.holds or _lies_in(land.ends, node, situation):
         rooms = rooms_to_see(side, situation)
         if rooms:
-            return Landing({}, rooms[0].what, rooms)
+            return Landing({}, rooms[0].what, rooms, there=True)
     return land
 
 
@@ -154,7 +155,7 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
     near = replace(end, slack=FLUSH if view.sure else ABOUT)
     lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
     if len(lookout.squares) and (not view.sure or ((around & in_doubt(view)).any() and lands(near, shape))):
-        return Landing({}, lookout.what, (lookout,))
+        return Landing({}, lookout.what, (lookout,), there=True)
     return Landing({side: near}, lookout.what, (lookout,))
 
 
@@ -200,12 +201,12 @@ def _next_room(began: Place, node: Node, situation: Situation) -> Landing:
     if beyond.any():
         ends = _insides(rooms, beyond)
         if looks and _lies_in(ends, node, situation):
-            return Landing({}, looks[0].what, looks)
+            return Landing({}, looks[0].what, looks, there=True)
         return Landing(ends)
     missing, lookouts = "no next room is seen yet", doorsteps(situation)
     likely = _insides(*situation.likely_beyond(began))
     if _lies_in(likely, node, situation):
-        return Landing({}, missing, lookouts)
+        return Landing({}, missing, lookouts, there=True)
     return Landing(likely, missing, lookouts)
 
 

@@ -11,7 +11,7 @@ from shapely import affinity, box
 
 from benchmarks.errands import faults, free_squares, goal_of
 from benchmarks.worlds import scenario
-from geometry.carrying import At, InCorner, Inside, Pose, plan_carrying
+from geometry.carrying import At, Carrying, InCorner, Inside, Pose, plan_carrying
 from geometry.rigid import Rotate, Translate
 from tests.geometry.replay import replay, walls_of
 
@@ -253,6 +253,34 @@ def test_the_body_is_taken_again_from_the_other_side() -> None:
     replay(plan, brick, free, (4.5, 1.5))
 
 
+def turns_of(plan: Carrying) -> int:
+    return sum(isinstance(motion, Rotate) for leg in plan.legs for motion in leg.motions)
+
+
+def test_who_stands_on_the_wrong_side_walks_round_where_turns_are_dear() -> None:
+    brick, utak, corner = box(8, 9, 12, 11), (12.5, 9.5), InCorner(24, 22, 1, 1, 0.1)
+    turned, walked = (plan_carrying(brick, two_rooms(5), utak, corner, turn=turn) for turn in (1.0, 2.5))
+    assert turns_of(turned) == 1
+    assert turns_of(walked) == 0
+    assert walked.legs[0].walk > 0
+    for plan in (turned, walked):
+        replay(plan, brick, two_rooms(5), utak)
+
+
+@pytest.mark.parametrize("task", [6, 7, 9])
+@pytest.mark.parametrize("seed", range(6))
+def test_dear_turns_are_made_only_where_they_save_more(task: int, seed: int) -> None:
+    world = scenario(task, 40 + seed)
+    if not world.possible:
+        return
+    shape, free, goal = world.things[0].polygon, free_squares(world), goal_of(world)
+    cheap, dear = (plan_carrying(shape, free, (world.utak.x, world.utak.y), goal, turn=turn) for turn in (1.0, 2.5))
+    assert dear.status == cheap.status == "found"
+    assert faults(dear, shape, free, goal) == []
+    assert turns_of(dear) <= turns_of(cheap)
+    assert dear.commands + 1.5 * turns_of(dear) <= cheap.commands + 1.5 * turns_of(cheap) + 1  # walks count by length
+
+
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("task", [5, 6, 7, 8, 9])
 def test_random_worlds(task: int, seed: int) -> None:
@@ -274,6 +302,9 @@ def test_random_worlds(task: int, seed: int) -> None:
         {"walk": np.ones((2, 2), bool)},
         {"margin": -1.0},
         {"utak": (math.nan, 0.0)},
+        {"turn": 0.5},
+        {"turn": 3.0},
+        {"turn": math.nan},
     ],
 )
 def test_nonsense_is_refused(wrong: dict[str, object]) -> None:

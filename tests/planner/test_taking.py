@@ -8,9 +8,10 @@ import pytest
 import shapely
 
 import planner.carrier
-from geometry.carrying import Inside, Leg
+from geometry.carrying import Carrying, Inside, Leg
 from geometry.rigid import Rotate, Translate
 from kb.body import Command, Grasp, Move, Push
+from kb.evidence import OPEN
 from kb.factfile import facts_of
 from kb.reconciliation import Reconciled
 from kb.worldmodel import Node, WorldModel
@@ -18,6 +19,7 @@ from planner.carrier import Act, Carrier, Go
 from planner.course import Course
 from planner.deciding import Decider
 from planner.destinations import Situation
+from planner.exploring import CLOSE
 from planner.goals import Stage
 from planner.haulage import Haul, Hauler, Refusal, Request
 from tests.kb.drawings import seen_whole
@@ -132,6 +134,25 @@ def test_he_goes_on_with_a_hold_that_brought_him_nowhere_when_nothing_else_helps
     assert isinstance(found, Act)
     assert asked == ([False, True] if refused else [False])
     assert isinstance(found.command, Push) or not refused
+
+
+@pytest.mark.parametrize(("pushes", "chance", "looks"), [(7, 0.9, True), (3, 0.9, False), (7, 0.05, False)])
+def test_what_takes_away_the_room_of_a_tedious_way_is_looked_at(pushes: int, chance: float, looks: bool) -> None:
+    situation = beside(())
+    model, (node,) = situation.model, situation.model.objects
+    view, place = model.view, model.view.locate(8.5, 3.5)
+    state, probability = view.state.copy(), view.probability.copy()
+    state[place], probability[place] = OPEN, chance
+    open_ = situation_of(replace(model, view=view._replace(state=state, probability=probability)), situation.binding)
+    swept = np.zeros(state.shape, np.bool_)
+    swept[model.view.locate(8.5, 1.5)] = True
+    legs = (Leg((0.5, 0.5), (1, 0), (Translate(1.0, 0.0),) * pushes),)
+    haul = Haul(Carrying("found", legs), "r", 0, swept)
+    see = Carrier()._seen(haul, node, open_)
+    assert (see is not None) == looks
+    if see is not None:
+        rows, columns = np.divmod(see.lookout.squares, state.shape[1])
+        assert max(abs(rows - place[0]).max(), abs(columns - place[1]).max()) <= CLOSE
 
 
 def test_where_a_thing_began_is_remembered_though_its_name_is_not() -> None:

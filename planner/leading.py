@@ -1,0 +1,34 @@
+"""Taking a thing along to where Utak wants to look: who lets go of it to look must come back and take it again."""
+
+import numpy as np
+
+from geometry.contact import Body
+from geometry.rigid import Translate
+from geometry.yard import Yard
+from kb.worldmodel import Node
+from planner.destinations import Situation
+from planner.landing import in_view
+from planner.screen import Squares
+from planner.walking import HURRY
+
+TRIED = 64  # squares of an aim that are tried
+
+
+def lead(node: Node, squares: Squares, situation: Situation) -> Translate | None:
+    """The shortest straight push with what he holds by which Utak comes to one of some squares (flat indices).
+
+    On the lattice; None when none is free.
+    """
+    model = situation.model
+    x, y = model.place[0] - model.view.west, model.place[1] - model.view.south
+    rows, columns = np.divmod(squares, model.labels.shape[1])
+    vectors = np.column_stack([columns + 0.5 - x, rows + 0.5 - y])
+    far = np.hypot(*vectors.T)
+    able = np.flatnonzero((far > 0.5) & (np.abs(vectors).max(axis=1) <= HURRY.most("explore", model)))
+    able = able[np.argsort(far[able], kind="stable")]
+    if not len(able):
+        return None
+    able = able[np.unique(np.linspace(0, len(able) - 1, TRIED).astype(int))]
+    yard = Yard(situation.screens.free(0) | model.mask(node.patch))
+    free = able[yard.far(Body(in_view(node.polygon, situation), [(x, y)]), vectors[able])]
+    return Translate(*(float(v) for v in vectors[free[0]])) if len(free) else None
