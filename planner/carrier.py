@@ -24,7 +24,7 @@ from planner.destinations import Situation
 from planner.exploring import Lookout, inspection, sight_of
 from planner.haulage import Haul, Hauler, Refusal, Request
 from planner.landing import region_of
-from planner.leading import lead
+from planner.leading import lead, near
 from planner.screen import Squares, grown
 from planner.walking import is_open
 
@@ -34,6 +34,7 @@ LOOSE = 0.02  # squares by which he may stand elsewhere in his square before a t
 OPEN_TURN, LOOSE_TURN = 2.5, 1.5  # commands that a turn counts for while it is open how the lattice, or he, lies
 NOWHERE = 0.1  # squares: who comes no further is where he was
 TEDIOUS = 8  # commands of a plan above which what is not clear about its way is looked at first
+SIGHT = "sight"
 ABOUT = 2  # squares beside the way of a plan within which more room would help
 
 
@@ -89,8 +90,9 @@ class Carrier:
     missed: int = 0
 
     def __post_init__(self) -> None:
-        self._hauler = Hauler(self.pull)
+        self._hauler, self._guesser = Hauler(self.pull), Hauler(self.pull)
         self._course: Course | None = None
+        self._led: Course | None = None  # the plan to bring a thing near to where he wants to look
         self._plans = 0
         self._tight: dict[str, int] = {}  # how often a thing stood against something unawares
         self._went_on: Place | None = None  # where a plan was last made that goes on with the hold he has
@@ -157,16 +159,38 @@ class Carrier:
         advice = self._next(course, {}, situation)
         return advice if isinstance(advice, Act) else None
 
-    def taken_along(self, node: Node, squares: Squares, situation: Situation) -> Act | None:
-        """Take what he holds along to where he wants to look, if one straight push leads there."""
+    def taken_along(self, node: Node, squares: Squares, fetched: bool, situation: Situation) -> Act | Go | None:
+        """Take an object along to where he wants to look; None when he had better walk there.
+
+        What he holds by one straight push, if that leads there. fetched : else, or when he has not got hold of it, near
+        there by one hold and a push or two.
+        """
         model = situation.model
-        if not self.pull or node.stuck or model.held != node.name or self._plans >= MOST_PLANS:
+        if node.stuck or self._plans >= MOST_PLANS or model.held not in (None, node.name):
             return None
-        push = lead(node, squares, situation)
-        if push is None:
+        push = lead(node, squares, situation) if self.pull and model.held is not None else None
+        if push is not None:
+            self._course, self._plans = None, self._plans + 1
+            return Act(_command(push, model), f"{node.name} is taken along")
+        return self._led_near(node, squares, situation) if fetched else None
+
+    def _led_near(self, node: Node, squares: Squares, situation: Situation) -> Act | Go | None:
+        before, self._led = self._led, None
+        end = near(squares, situation)
+        if end is None:
             return None
-        self._course, self._plans = None, self._plans + 1
-        return Act(_command(push, model), f"{node.name} is taken along")
+        ends = {SIGHT: end}
+        going_on = before is not None and before.name == node.name
+        course = followed(before, ends, situation) if before is not None and going_on else None
+        if course is None:
+            haul = self._guesser.find(self._request(node, ends, "", situation.model), situation)
+            if isinstance(haul, Refusal) or haul.level or haul.aside or not haul.short:
+                return None
+            self._plans += 1
+            course = course_of(haul, node, situation.model)
+        advice = self._next(course, ends, situation)
+        self._led = self._course
+        return advice
 
     # -- when it fails ---------------------------------------------------------------------------
 
@@ -291,23 +315,24 @@ class Carrier:
         None where nothing is felt that could be it: it lies otherwise than he believes, and he would grasp at air.
         """
         model = situation.model
-        if stands(model, leg.place) and model.held == course.name:
-            self._course = replace(course, grasped=True, place=leg.place)
+        there = model.view.locate(*model.place) == model.view.locate(*leg.place)
+        begun = course if stands(model, leg.place) else None
+        if begun is None and there and self.pull:  # who may only push stands where that was made sure of
+            begun = from_here(course, ends, situation)
+        if begun is not None and model.held == course.name:
+            self._course = replace(begun, grasped=True, place=begun.legs[0].place)
             return self._next(self._course, ends, situation)
         if model.held is not None:
             return Act(Release(), f"{model.held} is let go, to be taken elsewhere")
-        if model.view.locate(*model.place) != model.view.locate(*leg.place):
+        if not there:
             return Go(square_of(leg.place, model), leg.place, f"{course.name} can be taken from there")
-        near = course if stands(model, leg.place) else None
-        if near is None and self.pull:  # who may only push stands where that was made sure of
-            near = from_here(course, ends, situation)
-        if near is None:
+        if begun is None:
             dx, dy = leg.place[0] - model.place[0], leg.place[1] - model.place[1]
             return Act(Move(*model.lattice.to_utak(dx, dy)), "to the middle of the square")
         direction = _direction(leg, course, model)
         if direction is None:
             return None
-        self._course = replace(near, grasped=True, place=near.legs[0].place)
+        self._course = replace(begun, grasped=True, place=begun.legs[0].place)
         return Act(Grasp(direction), f"{course.name} is taken to be carried to {course.target}")
 
 

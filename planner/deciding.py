@@ -5,6 +5,7 @@ A way is kept while it holds: its aim is still wanted, and the squares ahead are
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -138,11 +139,12 @@ class Decider:
         situation: Situation,
         missing: Callable[[], str],
         verdict: str = "impossible",
-        along: Node | None = None,
+        along: Callable[[Aim], Decision | None] | None = None,
     ) -> Decision:
         """The next command towards the best of some aims, or the verdict when none can be reached.
 
-        missing : says in words what is missing; asked only for a verdict. along : what he takes along, if he can.
+        missing : says in words what is missing; asked only for a verdict. along : how he takes something along there,
+        if he can.
         """
         model = situation.model
         fewest = FewestMoves(situation.screens) if stage.carried else None
@@ -157,7 +159,7 @@ class Decider:
             if aim is None:
                 why = f"{stage} cannot be attained: {missing()}, and nothing is left to look at"
                 return Decision(None, why, verdict)
-            taken = None if along is None else self._taken_along(along, aim, stage, situation)
+            taken = None if along is None else along(aim)
             if taken is not None:
                 return taken
             if model.held is not None:
@@ -167,12 +169,25 @@ class Decider:
                 return decision
             self._circles.tire(_lattice_squares(aim.squares, model))
 
-    def _taken_along(self, node: Node, aim: Aim, stage: Stage, situation: Situation) -> Decision | None:
-        """The next command to take an object along to where he wants to look; None when he had better walk there."""
-        act = self.carrier.taken_along(node, aim.squares, situation)
-        if act is None or self._circles.noticed(situation.model, act.command):
+    def _taken_along(
+        self, node: Node, stage: Stage, situation: Situation, aim: Aim, fetched: bool = False
+    ) -> Decision | None:
+        """The next command to take an object along to where he wants to look; None when he had better walk there.
+
+        fetched : also one that he has not got hold of.
+        """
+        advice = self.carrier.taken_along(node, aim.squares, fetched, situation)
+        if isinstance(advice, Go):
+            walk = self._go(replace(advice, why=f"{node.name} is taken along: {aim.what}"), stage, situation)
+            return None if walk.command is None else walk
+        if advice is None or self._circles.noticed(situation.model, advice.command):
             return None
-        return Decision(act.command, f"{act.why}: {aim.what}; {stage}")
+        return Decision(advice.command, f"{advice.why}: {aim.what}; {stage}")
+
+    def _go(self, go: Go, stage: Stage, situation: Situation) -> Decision:
+        """The next command on the way to where something is taken, to halt right there."""
+        walk = self._pursue([Aim("attain", go.square, go.why)], stage, situation, lambda: "no way leads there")
+        return replace(walk, command=halting(walk.command, go.place, situation.model))
 
     def _carry(self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciled) -> Decision | None:
         """The next command towards a goal for something that must be carried, or None when it holds."""
@@ -204,18 +219,24 @@ class Decider:
                 return look
             return Decision(advice.command, f"{advice.why}; {stage}")
         if isinstance(advice, Go):
-            aim = Aim("attain", advice.square, advice.why)
-            walk = self._pursue([aim], stage, situation, lambda: f"no way leads to where {node.name} can be taken")
+            walk = self._go(advice, stage, situation)
             if walk.command is not None:
-                return replace(walk, command=halting(walk.command, advice.place, situation.model))
+                return walk
             advice = Refusal(False, lambda: f"{node.name} cannot be reached to be taken")
         if isinstance(advice, See):
-            return self._pursue([Aim("inspect", *advice.lookout)], stage, situation, lambda: "", along=node)
+            return self._pursue(
+                [Aim("inspect", *advice.lookout)],
+                stage,
+                situation,
+                lambda: "",
+                along=partial(self._taken_along, node, stage, situation),
+            )
         unknown = nowhere(land.missing or "no way is known to carry it there", land.lookouts)
         verdict = "impossible" if advice.proved else "limit"
         aims = aims_towards([unknown], situation, reconciled)
-        along = None if land.there else node
-        return self._pursue(aims, stage, situation, advice.reason, verdict, along)
+        fetched = not land.lookouts  # where a door may be is looked at from places where a thing would be in the way
+        along = partial(self._taken_along, node, stage, situation, fetched=fetched)
+        return self._pursue(aims, stage, situation, advice.reason, verdict, None if land.there else along)
 
     def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
         """What to do to carry something to where its goal holds; while that is not known, to near it."""

@@ -50,6 +50,12 @@ class Haul:
     swept: Mask
     aside: tuple[str, ...] = ()
 
+    @property
+    def short(self) -> bool:
+        """Is it done by one hold and a push or two?"""
+        legs = self.plan.legs
+        return len(legs) == 1 and len(legs[0].motions) <= 2 and all(isinstance(m, Translate) for m in legs[0].motions)
+
 
 @dataclass(frozen=True)
 class Refusal:

@@ -1,16 +1,18 @@
-"""Taking a thing along to where Utak wants to look: who lets go of it to look must come back and take it again."""
+"""Taking a thing along to where Utak wants to look: who walks there without it must come back for it."""
 
 import numpy as np
 
+from geometry.carrying import Inside
 from geometry.contact import Body
 from geometry.rigid import Translate
 from geometry.yard import Yard
 from kb.worldmodel import Node
 from planner.destinations import Situation
-from planner.landing import in_view
-from planner.screen import Squares
+from planner.landing import in_view, region_of
+from planner.screen import Squares, grown, marked
 from planner.walking import HURRY
 
+NEARBY = 4  # squares from where he wants to look within which a thing is brought
 TRIED = 64  # squares of an aim that are tried
 
 
@@ -32,3 +34,9 @@ def lead(node: Node, squares: Squares, situation: Situation) -> Translate | None
     yard = Yard(situation.screens.free(0) | model.mask(node.patch))
     free = able[yard.far(Body(in_view(node.polygon, situation), [(x, y)]), vectors[able])]
     return Translate(*(float(v) for v in vectors[free[0]])) if len(free) else None
+
+
+def near(squares: Squares, situation: Situation) -> Inside | None:
+    """What is free near to some squares (flat indices), as an end for what is carried; None when nothing is."""
+    free = situation.screens.free(0) & grown(marked(squares, situation.model.labels.shape), NEARBY)
+    return Inside(region_of(free)) if free.any() else None

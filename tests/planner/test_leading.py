@@ -6,20 +6,24 @@ import numpy as np
 import pytest
 import shapely
 
-from kb.body import Push, Release
+import planner.deciding
+from kb.body import Grasp, Move, Push, Release
 from kb.factfile import facts_of
 from kb.reconciliation import Reconciled
 from kb.worldmodel import Node
+from planner.aims import Aim
 from planner.carrier import Carrier, See
-from planner.deciding import Decider
+from planner.deciding import Decider, Decision
 from planner.destinations import Situation
 from planner.exploring import Lookout
 from planner.goals import Stage
-from planner.leading import lead
+from planner.landing import Landing
+from planner.leading import NEARBY, lead, near
 from planner.screen import Squares
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import NO_TASK, situation_of
 
+EAST = 2
 ROOM = [
     "b" * 24,
     *["b" + "." * 22 + "b"] * 5,
@@ -86,3 +90,54 @@ def test_what_did_not_move_or_may_not_be_pulled_is_let_go(
     situation, _ = holding(stuck=stuck)
     decider = Decider(NO_TASK, pull=pull, bound=situation.binding)
     assert to_be_seen(decider, situation, at(situation, (3, 5)), monkeypatch) == Release()
+
+
+def exploring(situation: Situation, squares: Squares, lookouts: bool, monkeypatch: pytest.MonkeyPatch) -> Decision:
+    """What he does who does not know where a thing must end, and may see it from some squares.
+
+    lookouts : it is just there that he must look; else anywhere.
+    """
+    looks = (Lookout(squares, "what may be a door is not clear"),)
+    nowhere = Landing({}, "it is not seen yet", looks if lookouts else ())
+    monkeypatch.setattr(planner.deciding, "landing", lambda *_: nowhere)
+    monkeypatch.setattr(planner.deciding, "aims_towards", lambda *_: [Aim("explore", squares, "it goes on unseen")])
+    (goal,) = facts_of("around(x, corner).")
+    decision = Decider(NO_TASK, bound=situation.binding)._carry(
+        goal, Stage((goal,)), situation, Reconciled({}, (), (), ())
+    )
+    assert decision is not None
+    return decision
+
+
+def beside(stuck: int = 0) -> Situation:
+    """One who stands beside the thing and has not got hold of it."""
+    situation, _ = holding(stuck=stuck)
+    felt = tuple("g" if n == EAST else None for n in range(8))
+    return situation_of(replace(situation.model, held=None, touch=felt), situation.binding)
+
+
+def test_who_explores_fetches_the_thing_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    situation = beside()
+    decision = exploring(situation, at(situation, (9, 6), (10, 6)), lookouts=False, monkeypatch=monkeypatch)
+    assert decision.command == Grasp("east")
+    monkeypatch.undo()
+    looking = exploring(situation, at(situation, (9, 6), (10, 6)), lookouts=True, monkeypatch=monkeypatch)
+    assert isinstance(looking.command, Move)  # about a door it would be in the way
+
+
+def test_what_did_not_move_is_left_where_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    situation = beside(stuck=1)
+    decision = exploring(situation, at(situation, (9, 6), (10, 6)), lookouts=False, monkeypatch=monkeypatch)
+    assert isinstance(decision.command, Move)
+
+
+def test_near_is_what_is_free_about() -> None:
+    situation, _ = holding()
+    end = near(at(situation, (9, 0)), situation)
+    assert end is not None
+    west, _, east, north = end.polygon.bounds
+    view = situation.model.view
+    assert (west + view.west, east + view.west) == (9 - NEARBY, 9 + NEARBY + 1)
+    assert north + view.south == NEARBY + 1
+    wall = shapely.Point(13.5 - view.west, 0.5 - view.south)
+    assert not end.polygon.intersects(wall)

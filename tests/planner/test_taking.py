@@ -10,7 +10,7 @@ import shapely
 import planner.carrier
 from geometry.carrying import Carrying, Inside, Leg
 from geometry.rigid import Rotate, Translate
-from kb.body import Command, Grasp, Move, Push
+from kb.body import Command, Grasp, Move, Push, Release
 from kb.evidence import OPEN
 from kb.factfile import facts_of
 from kb.reconciliation import Reconciled
@@ -134,6 +134,20 @@ def test_he_goes_on_with_a_hold_that_brought_him_nowhere_when_nothing_else_helps
     assert isinstance(found, Act)
     assert asked == ([False, True] if refused else [False])
     assert isinstance(found.command, Push) or not refused
+
+
+@pytest.mark.parametrize(("aside", "goes_on"), [(0.0, True), (0.2, True), (1.0, False)])
+def test_what_he_would_take_again_from_where_he_stands_he_does_not_let_go(aside: float, goes_on: bool) -> None:
+    situation = beside(touching({EAST: "g"}))
+    (node,) = situation.model.objects
+    held = situation_of(replace(situation.model, held=node.name), situation.binding)
+    push = Translate(10.0, 0.0)
+    leg = Leg((0.5, 0.5 - aside), (1, 0), (push,))
+    course = Course(node.name, "r", node.polygon, (leg,), node.patch, 0)
+    ends = {"r": Inside(shapely.box(14, 2, 19, 14))}
+    advice = Carrier()._taking(course, leg, ends, held)
+    assert isinstance(advice, Act)
+    assert advice.command == (Push(10.0, 0.0) if goes_on else Release())
 
 
 @pytest.mark.parametrize(("pushes", "chance", "looks"), [(7, 0.9, True), (3, 0.9, False), (7, 0.05, False)])
