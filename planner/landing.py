@@ -217,8 +217,8 @@ def _insides(rooms: Rooms, beyond: Mask) -> dict[str, End]:
 def _around_corner(began: Place, node: Node, situation: Situation) -> Landing:
     model = situation.model
     hidden = out_of_sight(model, began) & (model.space | model.mask(node.patch))
-    if not hidden.any():
-        return Landing({}, "no corner is seen yet that hides a place")
+    if hidden.sum() < node.polygon.area:
+        return Landing({}, "no corner is seen yet that hides a place for it")
     return Landing({"hidden": Inside(region_of(hidden))})
 
 
