@@ -234,9 +234,10 @@ class Decider:
         unknown = nowhere(land.missing or "no way is known to carry it there", land.lookouts)
         verdict = "impossible" if advice.proved else "limit"
         aims = aims_towards([unknown], situation, reconciled)
-        # Where a door may be is looked at from places where a thing would be in the way; and where it cannot be brought
-        # to where it shall end, another way there is looked for without it.
-        fetched = not land.lookouts and not land.ends
+        # Where a door may be is looked at from places where a thing would be in the way; where it cannot be brought to
+        # where it shall end, another way there is looked for without it; and what is taken while it is open how the
+        # squares lie keeps the outline that it seems to have then.
+        fetched = not land.lookouts and not land.ends and not is_open(situation.model)
         along = partial(self._taken_along, node, stage, situation, fetched=fetched)
         return self._pursue(aims, stage, situation, advice.reason, verdict, None if land.there else along)
 

@@ -125,6 +125,16 @@ def test_who_explores_fetches_the_thing_first(monkeypatch: pytest.MonkeyPatch) -
     assert isinstance(looking.command, Move)  # about a door it would be in the way
 
 
+@pytest.mark.parametrize(("spread", "command"), [(0.0, Grasp), (1.0, Move)])
+def test_nothing_is_fetched_while_it_is_open_how_the_squares_lie(
+    spread: float, command: type, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    situation = beside()
+    unsure = situation_of(replace(situation.model, spread=spread), situation.binding)
+    decision = exploring(unsure, at(unsure, (9, 6), (10, 6)), lookouts=False, monkeypatch=monkeypatch)
+    assert isinstance(decision.command, command)
+
+
 def test_what_did_not_move_is_left_where_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     situation = beside(stuck=1)
     decision = exploring(situation, at(situation, (9, 6), (10, 6)), lookouts=False, monkeypatch=monkeypatch)
