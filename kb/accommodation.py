@@ -111,13 +111,9 @@ class Memory:
 
     @property
     def closed(self) -> frozenset[tuple[int, int]]:
-        """The squares on which something stands, or likely does, for it stopped a motion.
-
-        Where it is settled how the squares lie, and one is seen to be free, something else stopped him, or nothing did.
-        """
-        state = {square: self.evidence.state[self.evidence.index(*square)] for square in self.barred | self.suspected}
-        barred = (square for square in self.barred if self.spread > 0 or state[square] != FREE)
-        return frozenset((*barred, *(square for square in self.suspected if state[square] == OPEN)))
+        """The squares on which something stands, or likely does, for it stopped a motion."""
+        suspected = (square for square in self.suspected if self.evidence.state[self.evidence.index(*square)] == OPEN)
+        return frozenset((*self.barred, *suspected))
 
     @property
     def _before(self) -> tuple[Moved, ...]:

@@ -55,17 +55,6 @@ def test_a_motion_that_was_stopped_is_understood() -> None:
     assert (2, -4) in memory.barred
 
 
-def test_where_the_lattice_is_settled_no_square_that_is_seen_free_is_closed() -> None:
-    memory = walked(ROOM, [(2, 0), (0, 3)]).knowledge.memory
-    free = (3, 0)
-    assert memory.evidence.state[memory.evidence.index(*free)] == FREE
-    wall = next((x, 0) for x in range(30) if memory.evidence.state[memory.evidence.index(x, 0)] != FREE)
-    memory.barred |= {free, wall}
-    for angles, closed in (((0, 7), {free, wall}), ((0,), {wall})):
-        memory.hypotheses = tuple(Hypothesis(angle, (0.5, 0.5, 0.5, 0.5)) for angle in angles)
-        assert memory.closed == closed
-
-
 def test_a_slip_of_one_who_slips_is_understood() -> None:
     walk = walked(ROOM, [(2, 0), (0, 3), (1, 0), (0, 1), (-1, 0), (0, -1)])
     x, y = utak_in(ROOM)
