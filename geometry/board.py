@@ -104,7 +104,7 @@ def new_grid(free: Mask, body: Stencil, wide: Stencil) -> Grid:
 
 
 def new_board(
-    grid: Grid, free: Mask, walk: Mask, body: Stencil, wide: Stencil, grip: Costs, allowed: Mask, turn: int = COMMAND
+    grid: Grid, free: Mask, walk: Mask, body: Stencil, wide: Stencil, grip: Costs, allowed: Mask, turn: int
 ) -> Board:
     """The board of free squares (rows, columns) for a body, and for the same body with its margin."""
     solid = grid.padded(~free, True)

@@ -32,7 +32,7 @@ from geometry.squarewise import carry_squarewise
 from geometry.stencil import Mask
 from geometry.yard import Yard
 
-DEAREST_TURN = 2.5
+DEAREST_TURN = 2.5  # commands: with what a tight one costs besides, still below geometry.buckets.RING
 __all__ = ["At", "Carrying", "InCorner", "Inside", "Leg", "Pose", "plan_carrying"]
 
 
@@ -132,9 +132,7 @@ def plan_carrying(
     ValueError : when the body has no area, or shapes of arrays or numbers do not make sense.
     """
     free = np.ascontiguousarray(free, dtype=bool)
-    _check(free, utak, margin, avoid, walk)
-    if not 1.0 <= turn <= DEAREST_TURN:
-        raise ValueError(f"a turn counts for 1 to {DEAREST_TURN} commands, not {turn}")
+    _check(free, utak, margin, avoid, walk, turn)
     shape, walls = _body(shape), sound(walls, "walls")
     _check_goal(goal)
     x0, y0, x1, y1 = shape.bounds
@@ -164,13 +162,15 @@ def _planned(errand: Errand) -> Carrying:
     return plan or Carrying("limit", reason="hold" if body.status == "found" else "body", body=body)
 
 
-def _check(free: Mask, utak: Point, margin: float, avoid: Sequence[Point], walk: Mask | None) -> None:
+def _check(free: Mask, utak: Point, margin: float, avoid: Sequence[Point], walk: Mask | None, turn: float) -> None:
     """Raise for what makes no sense."""
     if free.ndim != 2 or free.size == 0 or (walk is not None and walk.shape != free.shape):
         raise ValueError("free and walk must be arrays of the same rows and columns, of which there must be some")
     check([*utak, *(v for hold in avoid for v in hold)], "utak and avoid")
     if not math.isfinite(margin) or margin < 0.0:
         raise ValueError("the margin must be finite and not negative")
+    if not 1.0 <= turn <= DEAREST_TURN:
+        raise ValueError(f"a turn counts for 1 to {DEAREST_TURN} commands, not {turn}")
 
 
 def _body(shape: Any) -> Any:

@@ -34,7 +34,7 @@ LOOSE = 0.02  # squares by which he may stand elsewhere in his square before a t
 OPEN_TURN, LOOSE_TURN = 2.5, 1.5  # commands that a turn counts for while it is open how the lattice, or he, lies
 NOWHERE = 0.1  # squares: who comes no further is where he was
 TEDIOUS = 8  # commands of a plan above which what is not clear about its way is looked at first
-SIGHT = "sight"
+SIGHT = "sight"  # the target of a plan that brings a thing near to where he wants to look
 ABOUT = 2  # squares beside the way of a plan within which more room would help
 
 
@@ -90,7 +90,8 @@ class Carrier:
     missed: int = 0
 
     def __post_init__(self) -> None:
-        self._hauler, self._guesser = Hauler(self.pull), Hauler(self.pull)
+        self._hauler = Hauler(self.pull)
+        self._leader = Hauler(self.pull)  # asks for ways to look: that there is none tells nothing of the goal
         self._course: Course | None = None
         self._led: Course | None = None  # the plan to bring a thing near to where he wants to look
         self._plans = 0
@@ -175,15 +176,16 @@ class Carrier:
         return self._led_near(node, squares, situation) if fetched else None
 
     def _led_near(self, node: Node, squares: Squares, situation: Situation) -> Act | Go | None:
-        before, self._led = self._led, None
+        """Bring an object near to where he wants to look, by one hold and a push or two, as was begun if it was."""
+        course, self._led = self._led, None
         end = near(squares, situation)
         if end is None:
             return None
         ends = {SIGHT: end}
-        going_on = before is not None and before.name == node.name
-        course = followed(before, ends, situation) if before is not None and going_on else None
+        if course is not None:
+            course = followed(course, ends, situation) if course.name == node.name else None
         if course is None:
-            haul = self._guesser.find(self._request(node, ends, "", situation.model), situation)
+            haul = self._leader.find(self._request(node, ends, "", situation.model), situation)
             if isinstance(haul, Refusal) or haul.level or haul.aside or not haul.short:
                 return None
             self._plans += 1

@@ -142,8 +142,9 @@ class Hauler:
             if len(self._known) > 64:
                 self._known.clear()
             margin = MARGIN * (request.tight + (not is_whole(shape)))
+            end, held, turn = request.ends[name], request.held, request.turn
             self._known[key] = plan_carrying(
-                shape, free, utak, request.ends[name], margin, self._pull, avoid, walk, None, request.held, request.turn
+                shape, free, utak, end, margin, self._pull, avoid, walk, held=held, turn=turn
             )
         return self._known[key]
 
