@@ -133,8 +133,8 @@ class Knowledge:
         if self.memory.loads:
             model = replace(model, beneath=model.space)
         for load in self.memory.loads.values():
-            model = _laid(model, load)
-            self.objects += (_node(load, int(model.labels.max())),)
+            model, patch = _laid(model, load)
+            self.objects += (_node(load, patch, int(model.labels.max())),)
         self.objects = tuple(sorted(self.objects, key=lambda node: int(node.name[1:])))
         return replace(model, objects=self.objects), accommodated
 
@@ -202,15 +202,15 @@ def _parts(model: WorldModel, labels: list[int]) -> list[_Part]:
     return found
 
 
-def _node(load: Load, label: int) -> Node:
-    """The node of a thing that he has held."""
+def _node(load: Load, patch: Patch, label: int) -> Node:
+    """The node of a thing that he has held. patch : the squares that it covers, or may cover."""
     movable = 99 if load.proven else 0 if load.stuck >= FIXED else 50
     return Node(
         name=load.name,
         kind="object",
         confidence=100,
         region=f"part{label}",
-        patch=load.possible,
+        patch=patch,
         open=0,
         shape=load.shape,
         polygon=load.polygon,
@@ -223,13 +223,16 @@ def _node(load: Load, label: int) -> Node:
     )
 
 
-def _laid(model: WorldModel, load: Load) -> WorldModel:
-    """The model with a load laid upon its map, as a region of its own.
+def _laid(model: WorldModel, load: Load) -> tuple[WorldModel, Patch]:
+    """The model with a load laid upon its map, as a region of its own, and the squares that it covers or may cover.
 
-    Utak's own square stays his, for he is a point; but what a load covers in part is no longer settled.
+    Utak's own square stays his, for he is a point; but what a load covers in part is no longer settled. Walls that it
+    would only reach into by its play stay walls: it does not.
     """
     view, labels = model.view, model.labels.copy()
+    lies = covered(load.polygon).squares()
     sure, possible = (model.squares(patch.squares()) for patch in (load.sure, load.possible))
+    patch = patch_of(possible & ((view.state != FULL) | model.squares(lies)), view)
     here = view.locate(*model.place)
     shared = view.state[here] == FREE and possible[here]
     sure[here] = possible[here] = False
@@ -237,7 +240,7 @@ def _laid(model: WorldModel, load: Load) -> WorldModel:
     open_ = possible & (view.state != FULL)
     labels[open_] = label
     state = np.where(sure, np.int8(FULL), np.where(possible & (view.state == FREE), np.int8(OPEN), view.state))
-    beside = open_ & ~model.squares(covered(load.polygon).squares())
+    beside = open_ & ~model.squares(lies)
 
     def lying(chance: NDArray[np.float32]) -> NDArray[np.float32]:
         may = np.where(beside, np.maximum(chance, np.float32(BESIDE)), np.float32(MAYBE))
@@ -250,7 +253,7 @@ def _laid(model: WorldModel, load: Load) -> WorldModel:
     seen = view.seen | possible
     kinds = Kinds({**model.kinds.kind, f"part{label}": {"object": 100}}, model.kinds.hidden_passages)
     laid = view._replace(state=state.astype(np.int8), probability=probability, by_counts=by_counts, seen=seen)
-    return replace(model, view=laid, labels=labels, kinds=kinds)
+    return replace(model, view=laid, labels=labels, kinds=kinds), patch
 
 
 def _may_be_object(region: str, extent: int, kinds: Kinds) -> bool:

@@ -157,7 +157,7 @@ def test_a_load_that_reaches_into_his_own_square_leaves_it_open() -> None:
 
 def test_who_walks_goes_right_beside_a_load_that_may_lie_otherwise() -> None:
     empty = [row.replace("g", ".") for row in ROOM]
-    model = _laid(seen_whole(empty), Load("o1", shapely.box(-3, 1.3, 0, 4.3), None, slack=0.2, proven=True))
+    model, _ = _laid(seen_whole(empty), Load("o1", shapely.box(-3, 1.3, 0, 4.3), None, slack=0.2, proven=True))
 
     def chances(squares: set[tuple[int, int]]) -> list[float]:
         return [float(model.view.probability[model.view.locate(x + 0.5, y + 0.5)]) for x, y in squares]
@@ -173,10 +173,11 @@ def test_a_load_that_may_lie_otherwise_leaves_walls_what_they_are() -> None:
     beside_wall = [row.replace("g", ".") for row in ROOM]
     before = seen_whole(beside_wall)
     x = before.view.west + 1  # the first square of floor in the west
-    model = _laid(before, Load("o1", shapely.box(x + 0.1, 1.3, x + 3.1, 4.3), None, slack=0.2, proven=True))
+    model, patch = _laid(before, Load("o1", shapely.box(x + 0.1, 1.3, x + 3.1, 4.3), None, slack=0.2, proven=True))
     wall = model.view.locate(x - 0.5, 2.5)
     assert model.view.state[wall] == FULL
     assert model.view.probability[wall] == 1.0
+    assert patch.squares() == {(column, row) for column in range(x, x + 4) for row in range(1, 5)}
 
 
 def test_what_he_feels_is_in_his_hand_when_he_grasps_there() -> None:
