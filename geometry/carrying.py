@@ -189,6 +189,8 @@ def _check_goal(goal: End) -> None:
         check([goal.x, goal.y, goal.slack], "the goal")
         if abs(goal.sx) != 1 or abs(goal.sy) != 1 or goal.slack < 0.0:
             raise ValueError("a corner's sx and sy must be 1 or -1, its slack not negative")
+        if not goal.within[0] <= goal.within[1]:
+            raise ValueError("the lesser and the greater way within a corner must be told in this order")
     elif not isinstance(goal, Inside | Roomy):
         raise ValueError(f"the goal must be At, Inside or InCorner, not {goal!r}")
 

@@ -33,6 +33,7 @@ class InCorner:
     """A goal: the containing rectangle of the shape within `slack` squares of both walls of a corner, at any angle.
 
     x, y : the corner, where the walls meet, in squares. sx, sy : 1 when it is an eastern, a northern corner, else -1.
+    within : how far from the two walls it may reach at most, the lesser and the greater; what lies askew reaches more.
     """
 
     x: float
@@ -40,12 +41,20 @@ class InCorner:
     sx: int
     sy: int
     slack: float = 1.0
+    within: tuple[float, float] = (math.inf, math.inf)
 
     def gaps(self, bounds: tuple[float, float, float, float]) -> tuple[float, float]:
         """How far the rectangle x0, y0, x1, y1 is from the two walls; negative beyond them."""
         x = self.x - bounds[2] if self.sx > 0 else bounds[0] - self.x
         y = self.y - bounds[3] if self.sy > 0 else bounds[1] - self.y
         return x, y
+
+    def admits(self, bounds: tuple[float, float, float, float]) -> bool:
+        """Whether a containing rectangle x0, y0, x1, y1 lies in the corner."""
+        x, y = self.gaps(bounds)
+        near, far = sorted((x + bounds[2] - bounds[0], y + bounds[3] - bounds[1]))
+        close = all(-CLOSE <= gap <= self.slack + CLOSE for gap in (x, y))
+        return close and near <= self.within[0] + CLOSE and far <= self.within[1] + CLOSE
 
 
 @dataclass(frozen=True)
@@ -66,7 +75,7 @@ def met(goal: End, shape: Any, now: Any) -> bool:
     if isinstance(goal, Inside):
         return any(part.buffer(CLOSE).covers(now) for part in shapely.get_parts(goal.polygon))
     if isinstance(goal, InCorner):
-        return all(-CLOSE <= gap <= goal.slack + CLOSE for gap in goal.gaps(now.bounds))
+        return goal.admits(now.bounds)
     if isinstance(goal, Roomy):
         return False
     return bool(shapely.hausdorff_distance(placed(shape, goal.pose), now) <= CLOSE)
@@ -126,7 +135,9 @@ def _cornered(goal: InCorner, shape: Any, body: Stencil, k: int, grid: Grid) -> 
     along = goal.x - x1 - dx if goal.sx > 0 else x0 + dx - goal.x
     up = goal.y - y1 - dy if goal.sy > 0 else y0 + dy - goal.y
     gap = np.maximum(along, up)
+    reach = np.sort([along + x1 - x0, up + y1 - y0], axis=0)
     good = (np.minimum(along, up) >= -CLOSE) & (gap <= goal.slack + CLOSE)
+    good &= (reach[0] <= goal.within[0] + CLOSE) & (reach[1] <= goal.within[1] + CLOSE)
     return np.where(good, np.where(gap <= goal.slack / 2 + CLOSE, 0, UNEASY), -1).astype(np.int32)
 
 

@@ -25,7 +25,7 @@ from planner.destinations import Situation, contains, destination, nowhere
 from planner.fewest import FewestMoves
 from planner.goals import BY_THE_WAY, Stage, constraints, stages
 from planner.haulage import Refusal
-from planner.landing import Landing, landing
+from planner.landing import Landing, in_view, landing, lands_in_one
 from planner.repeating import Circles
 from planner.screen import Screens, Squares, vicinity
 from planner.searching import aims_towards
@@ -210,6 +210,10 @@ class Decider:
             verdict = "limit" if is_open(situation.model) else "impossible"
             return Decision(None, f"{stage} cannot be attained: {node.name} cannot be moved", verdict)
         advice = self._advice(node, land, situation)
+        if isinstance(advice, Refusal) and land.loose:
+            if lands_in_one(land.loose, in_view(node.polygon, situation)):
+                return None
+            advice = self.carrier.advise(node, land.loose, situation)
         if isinstance(advice, Act):
             if isinstance(advice.command, Push | Turn) and self._circles.noticed(situation.model, advice.command):
                 advice = self.carrier.given_up(situation.model)

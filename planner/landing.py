@@ -13,7 +13,7 @@ import shapely
 from numpy.typing import NDArray
 
 from geometry.carrying import At, InCorner, Inside
-from geometry.ends import End, met
+from geometry.ends import End, met, placed
 from geometry.reach import UNREACHED, reach
 from geometry.rigid import Pose
 from kb.facts import Fact, Number, Symbol, Text
@@ -29,6 +29,7 @@ Place = tuple[float, float]
 IN_SIGHT = 6  # squares from a corner within which it is seen well
 FLUSH = 0.1  # squares between an object and walls that it touches
 RIM = 1.0  # squares from the edge of a region within which he is not sure that something is in it
+LEANING = 1.25  # squares that what lies askew in a corner may reach further from its walls than it is long
 ABOUT = 0.5  # squares from its walls at which an object is brought to a corner that is settled
 BESIDE = 1.0  # squares from a thing within which it is reached
 POSED, TURNED = 0.25, 2.0  # squares and degrees within which a pose is attained
@@ -44,6 +45,7 @@ class Landing:
     missing, lookouts : what must be known first, in words, and where just that may be seen (as of a Destination).
     approach : places near to where it must end, from which it can be told better where that is; the best first.
     holds : the goal holds as the object lies now. there : it does, but for what must be known first.
+    loose : where it may lie if it cannot be brought to any of the ends.
     """
 
     ends: Mapping[str, End]
@@ -52,6 +54,7 @@ class Landing:
     approach: Mapping[str, End] = field(default_factory=dict)
     holds: bool = False
     there: bool = False
+    loose: Mapping[str, End] = field(default_factory=dict)
 
 
 def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
@@ -151,12 +154,27 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
     unclear = around & ~model.told
     shape = in_view(node.polygon, situation)
     if not unclear.any():
-        return Landing({side: replace(end, slack=ABOUT)}, holds=lands(end, shape))
+        return _flat(side, end, node, shape)
     near = replace(end, slack=FLUSH if view.sure else ABOUT)
     lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
     if len(lookout.squares) and (not view.sure or ((around & in_doubt(view)).any() and lands(near, shape))):
         return Landing({}, lookout.what, (lookout,), there=True)
     return Landing({side: near}, lookout.what, (lookout,))
+
+
+def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Landing:
+    """In a corner, and what was turned askew so that it reaches hardly further from the walls than it would straight.
+
+    Where that cannot be it may lie there askew.
+    """
+    straight = -node.turned % 90.0
+    if min(straight, 90.0 - straight) <= TURNED:
+        return Landing({side: replace(end, slack=ABOUT)}, holds=lands(end, shape))
+    x0, y0, x1, y1 = placed(shape, Pose(0.0, 0.0, straight)).bounds
+    near, far = sorted((x1 - x0, y1 - y0))
+    flat = replace(end, within=(near + LEANING, far + LEANING))
+    loose = {} if lands(flat, shape) else {side: replace(end, slack=ABOUT)}
+    return Landing({side: replace(flat, slack=ABOUT)}, holds=lands(flat, shape), loose=loose)
 
 
 def _into_corner(side: str, situation: Situation) -> InCorner:

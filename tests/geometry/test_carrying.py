@@ -240,6 +240,17 @@ def test_what_lies_askew_is_laid_straight_where_it_must_be() -> None:
     assert np.abs(shapely.get_coordinates(end) - shapely.get_coordinates(end).round()).max() < 1e-7
 
 
+def test_what_lies_askew_is_laid_straight_where_it_would_reach_too_far_from_a_corner() -> None:
+    free, square = two_rooms(3), affinity.rotate(box(8, 4, 12, 8), 33)
+    askew = plan_carrying(square, free, (3.5, 3.5), InCorner(24, 22, 1, 1))
+    assert askew.status == "found" and len(askew.legs) == 1
+    goal = InCorner(24, 22, 1, 1, within=(4.5, 4.5))
+    plan = plan_carrying(square, free, (3.5, 3.5), goal)
+    assert plan.status == "found"
+    end = replay(plan, square, free, (3.5, 3.5))
+    assert goal.admits(end.bounds) and not goal.admits(askew.polygon.bounds)
+
+
 def test_the_body_is_taken_again_from_the_other_side() -> None:
     free = np.zeros((12, 20), bool)
     free[1:3, 1:19] = free[9:11, 1:19] = free[1:11, 1:3] = free[1:11, 17:19] = True  # a ring two squares wide
@@ -302,6 +313,8 @@ def test_random_worlds(task: int, seed: int) -> None:
         {"walk": np.ones((2, 2), bool)},
         {"margin": -1.0},
         {"utak": (math.nan, 0.0)},
+        {"goal": InCorner(50, 22, 1, 1, within=(6.0, 4.0))},
+        {"goal": InCorner(50, 22, 1, 1, within=(math.nan, 4.0))},
         {"turn": 0.5},
         {"turn": 3.0},
         {"turn": math.nan},

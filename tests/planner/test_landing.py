@@ -70,3 +70,26 @@ def test_while_the_corner_is_not_seen_a_thing_is_brought_into_that_of_what_is() 
     arrived = replace(node, patch=covered(there), polygon=there)
     situation = situation_of(replace(model, objects=(arrived,)), {"x": "o1"})
     assert not landing(NORTHEAST, arrived, (3.5, 1.5), situation).approach
+
+
+WALLED = ["b" * 22, *["b" + "." * 20 + "b"] * 9, "b.U" + "." * 18 + "b", *["b" + "." * 20 + "b"] * 4, "b" * 22]
+
+
+@pytest.mark.parametrize(
+    ("turned", "gap", "holds"),
+    [(0.0, 0.9, True), (90.0, 0.9, True), (20.0, 0.1, True), (20.0, 0.4, False), (45.0, 0.0, False)],
+)
+def test_what_lies_askew_in_a_corner_must_not_reach_far_from_its_walls(turned: float, gap: float, holds: bool) -> None:
+    model = seen_whole(WALLED)
+    row, column = np.argwhere(model.space)[-1]
+    east, north = model.view.west + column + 1, model.view.south + row + 1
+    askew = shapely.affinity.rotate(shapely.box(0, 0, 4, 4), turned)
+    _, _, x, y = askew.bounds
+    there = shapely.affinity.translate(askew, east - x - gap, north - y - gap)
+    node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True, turned=turned)
+    situation = situation_of(replace(model, objects=(node,)), {"x": "o1"})
+    found = landing(NORTHEAST, node, (3.5, 1.5), situation)
+    assert found.holds == holds
+    shape = shapely.affinity.translate(there, -model.view.west, -model.view.south)
+    assert bool(found.loose) == (not holds)
+    assert all(lands(end, shape) for end in found.loose.values())
