@@ -45,7 +45,8 @@ def neck_near(floor: Floor, goals: Mask, reached: Floats, radius: float) -> Neck
     """The narrowest place on the widest way to the goal, not further than LOOK radii from where a body came to.
 
     goals : the goal's pixels in the floor's raster. reached : (n, 2) places that the body came to, the start first.
-    Of these the one counts from which there is least to go. None without walls.
+    Of these the one counts from which there is least to go; but where there is room for the body however it is turned
+    it was not stopped, and then the whole way counts. None without walls.
     """
     field, wide = _field_with_a_way(floor, goals, reached[0])
     ways = _ways(field, max(wide, field.frame[2] / 10))
@@ -54,9 +55,9 @@ def neck_near(floor: Floor, goals: Mask, reached: Floats, radius: float) -> Neck
     track = _descent(ways, pixels[0])
     centres = field.frame[:2] + (track[:, ::-1] + 0.5) * field.frame[2]
     near = np.hypot(*(centres - stuck).T) <= LOOK * radius
-    if not near.any():
-        near[:] = True
-    room = np.where(near, field.raster[track[:, 0], track[:, 1]], np.inf)
+    room = field.raster[track[:, 0], track[:, 1]]
+    if near.any() and room[near].min() < radius:
+        room = np.where(near, room, np.inf)
     x, y = centres[int(np.argmin(room))]
     return _neck_at(floor, (float(x), float(y)))
 
