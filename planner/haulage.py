@@ -101,7 +101,7 @@ class Hauler:
         ]
         options += [f"last({request.last})"] * (request.last in request.ends)
         verdicts: list[str] = []
-        plans: list[Carrying] = []
+        plans: list[tuple[int, Carrying]] = []  # each with the level that it was asked for
         for _ in range(MOST_ROUNDS):
             choice = _choice([*options, *verdicts, *["hopeless"] * self._hopeless])
             if choice is None:
@@ -113,7 +113,7 @@ class Hauler:
                 continue
             if plan.status == "found":
                 return _haul(plan, shape, name, level, situation, request.node)
-            plans.append(plan)
+            plans.append((level, plan))
             fact = "refuted" if plan.status == "impossible" else "undecided"
             verdicts.append(f"{fact}({name},{level},{aside})")
         self._hopeless = True
@@ -221,17 +221,20 @@ def swept_squares(plan: Carrying, shape: Any, size: tuple[int, ...]) -> Mask:
     return mask
 
 
-def _refusal(node: Node, plans: Sequence[Carrying], model: WorldModel) -> Refusal:
+def _refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel) -> Refusal:
     """Why nothing was found. It is proved when every target was refuted, whatever lies in the unseen."""
     if not plans:
         return Refusal(False, lambda: f"nothing is known of where {node.name} could be carried")
-    last = plans[-1]
-    if any(plan.status != "impossible" for plan in plans):
+    _, last = plans[-1]
+    if any(plan.status != "impossible" for _, plan in plans):
         return Refusal(False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none")
     if last.reason == "start":  # nothing lies in a wall: it is not where he believes
         return Refusal(False, lambda: f"where {node.name} lies is not known well: it would overlap a wall")
+    if node.moved and not is_whole(node.polygon):  # and so what is wall beside it is not known well either
+        return Refusal(False, lambda: f"where {node.name} lies is not known well: it was moved off the lattice")
 
     def reason() -> str:
+        last = _nearest_to_done(plans)
         neck = last.passage
         if neck is None:
             return f"{node.name} cannot be carried there"
@@ -242,3 +245,10 @@ def _refusal(node: Node, plans: Sequence[Carrying], model: WorldModel) -> Refusa
         return f"the passage for {node.name}, {where}, is too narrow by {last.missing:.2f} squares"
 
     return Refusal(True, reason)
+
+
+def _nearest_to_done(plans: Sequence[tuple[int, Carrying]]) -> Carrying:
+    """Of plans that are impossible the last that is so by a passage, over as many squares as any of them."""
+    widest = max(level for level, _ in plans)
+    asked = [plan for level, plan in reversed(plans) if level == widest]
+    return next((plan for plan in asked if math.isfinite(plan.missing)), asked[0])
