@@ -156,7 +156,7 @@ class Knowledge:
         regions = [r for r in model.percept.regions if _may_be_object(r.name, r.extent, model.kinds)]
         parts = _parts(model, [label_of(r.name) for r in regions])
         patches = [patch_of(part.mask, part.view) for part in parts]
-        names = self._names.assign(patches)
+        names = self._names.assign(patches, self.memory.loads)
         measured = {n: self._measurer.measure(p, model.view) for n, p in zip(names, patches, strict=True)}
         shape = shapes(_shape_facts(measured), self.rules)
         return tuple(

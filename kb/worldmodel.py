@@ -8,7 +8,7 @@ one impression to the next is only which node a patch of squares belongs to (`Na
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -214,10 +214,13 @@ class Names:
         self._known: dict[str, set[tuple[int, int]]] = {}
         self._count = 0
 
-    def assign(self, patches: list[Patch]) -> list[str]:
-        """Names for patches, the old ones first; names that no patch continues are forgotten."""
+    def assign(self, patches: list[Patch], borne: Container[str] = ()) -> list[str]:
+        """Names for patches, the old ones first; names that no patch continues are forgotten.
+
+        borne : names that others bear now: what is left where such a thing lay is another one.
+        """
         squares = [patch.squares() for patch in patches]
-        owner = {square: name for name, known in self._known.items() for square in known}
+        owner = {square: name for name, known in self._known.items() if name not in borne for square in known}
         shared = Counter((owner[square], i) for i, own in enumerate(squares) for square in own if square in owner)
         names: dict[int, str] = {}
         taken = set()

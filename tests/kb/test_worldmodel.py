@@ -33,6 +33,14 @@ def test_a_thing_that_is_seen_better_keeps_its_name() -> None:
     assert names.assign([box(9, 0, 4, 4), box(0, 0, 3, 2)]) == first[::-1]
 
 
+def test_what_is_left_where_a_thing_lay_that_he_holds_is_another_thing() -> None:
+    names = Names()
+    (held,) = names.assign([box(0, 0, 3, 3)])
+    (left,) = names.assign([box(0, 2, 3, 1)], {held})
+    assert left != held
+    assert names.assign([box(0, 2, 3, 1)], {held}) == [left]
+
+
 def test_when_a_thing_falls_apart_the_larger_part_keeps_the_name() -> None:
     names = Names()
     (old,) = names.assign([box(0, 0, 10, 1)])
