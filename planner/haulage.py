@@ -23,7 +23,7 @@ from kb.loads import is_whole
 from kb.worldmodel import Node, WorldModel
 from planner.aims import ASP
 from planner.destinations import Situation
-from planner.landing import in_view
+from planner.landing import in_view, lies_askew
 from planner.screen import UNSEEN
 
 Mask = NDArray[np.bool_]
@@ -230,8 +230,8 @@ def _refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldMode
         return Refusal(False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none")
     if last.reason == "start":  # nothing lies in a wall: it is not where he believes
         return Refusal(False, lambda: f"where {node.name} lies is not known well: it would overlap a wall")
-    if node.moved and not is_whole(node.polygon):  # and so what is wall beside it is not known well either
-        return Refusal(False, lambda: f"where {node.name} lies is not known well: it was moved off the lattice")
+    if lies_askew(node):  # and so what is wall beside it is not known well either
+        return Refusal(False, lambda: f"where {node.name} lies is not known well: it was turned askew")
 
     def reason() -> str:
         last = _nearest_to_done(plans)

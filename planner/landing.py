@@ -105,6 +105,12 @@ def lands_in_one(ends: Mapping[str, End], shape: Any) -> bool:
     return any(lands(end, shape) for end in ends.values())
 
 
+def lies_askew(node: Node) -> bool:
+    """Was it turned otherwise than by quarter turns?"""
+    over = node.turned % 90.0
+    return min(over, 90.0 - over) > TURNED
+
+
 def in_view(shape: Any, situation: Situation) -> Any:
     """A shape of the lattice in the frame of the view's arrays."""
     west, south = situation.model.view.west, situation.model.view.south
@@ -167,10 +173,9 @@ def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Landing:
 
     Where that cannot be it may lie there askew.
     """
-    straight = -node.turned % 90.0
-    if min(straight, 90.0 - straight) <= TURNED:
+    if not lies_askew(node):
         return Landing({side: replace(end, slack=ABOUT)}, holds=lands(end, shape))
-    x0, y0, x1, y1 = placed(shape, Pose(0.0, 0.0, straight)).bounds
+    x0, y0, x1, y1 = placed(shape, Pose(0.0, 0.0, -node.turned % 90.0)).bounds
     near, far = sorted((x1 - x0, y1 - y0))
     flat = replace(end, within=(near + LEANING, far + LEANING))
     loose = {} if lands(flat, shape) else {side: replace(end, slack=ABOUT)}

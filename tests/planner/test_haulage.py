@@ -22,13 +22,13 @@ PARTED = [
 ]
 
 
-def asked(west: float, moved: bool = False) -> Haul | Refusal:
+def asked(west: float, turned: float = 0.0) -> Haul | Refusal:
     """The way through a door two squares wide for a thing four wide with its west side there; it was drawn at 4."""
     model = seen_whole(PARTED)
     (node,) = model.objects
     view = model.view
     left, bottom = view.west + west, view.south + 5
-    node = replace(node, polygon=shapely.box(left, bottom, left + 4, bottom + 4), moved=moved)
+    node = replace(node, polygon=shapely.box(left, bottom, left + 4, bottom + 4), moved=turned != 0.0, turned=turned)
     return Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}), situation_of(model))
 
 
@@ -47,9 +47,9 @@ def test_what_seems_to_lie_in_a_wall_proves_nothing(west: float) -> None:
     assert "overlap a wall" in answer.reason()
 
 
-@pytest.mark.parametrize(("west", "moved", "proved"), [(3.7, True, False), (3.7, False, True), (4, True, True)])
-def test_what_he_has_moved_off_the_lattice_proves_nothing(west: float, moved: bool, proved: bool) -> None:
-    answer = asked(west, moved)
+@pytest.mark.parametrize(("turned", "proved"), [(0.0, True), (-90.0, True), (181.0, True), (75.0, False)])
+def test_what_he_has_turned_askew_proves_nothing(turned: float, proved: bool) -> None:
+    answer = asked(4, turned)
     assert isinstance(answer, Refusal)
     assert answer.proved == proved
-    assert ("off the lattice" in answer.reason()) != proved
+    assert ("askew" in answer.reason()) != proved
