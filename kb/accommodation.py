@@ -207,6 +207,7 @@ class Memory:
         """Believe what came of a motion with a load in hand."""
         self.slipped |= chosen.how == "slipped"
         outcome = chosen.outcome
+        load = replace(load, unexplained=max(load.unexplained, chosen.misfits))
         if outcome is None or outcome.how == "stuck" or outcome.polygon.equals(load.polygon):
             self.loads[load.name] = load.resisted()
         else:

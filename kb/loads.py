@@ -39,6 +39,7 @@ class Load:
     turned : degrees that it was turned since then. proven : it was seen to move. stuck : motions in a row that did not
     move it. since : how many looks had been received when it was first held. astray : squares by which it may lie
     otherwise besides, for it is not known where in his square Utak stands, and so about what it was turned.
+    unexplained : fields that the worst explained of its motions left as noise.
     """
 
     name: str
@@ -55,6 +56,7 @@ class Load:
     stuck: int = 0
     since: int = 0
     astray: float = 0.0
+    unexplained: int = 0
 
     @property
     def play(self) -> float:

@@ -30,6 +30,7 @@ Mask = NDArray[np.bool_]
 LEVELS = (0, 2, UNSEEN)  # of certainty, that are tried
 MOST_ROUNDS = 12  # choices that geometry is asked to verify
 STRIDE = 0.25  # squares between the places at which the squares of a motion are taken down
+DUBIOUS = 8  # fields that a motion of a thing leaves as noise when it rather lies elsewhere
 MARGIN = 0.3  # squares kept free about a thing whose outline is not whole
 
 
@@ -230,6 +231,8 @@ def _refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldMode
         return Refusal(False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none")
     if last.reason == "start":  # nothing lies in a wall: it is not where he believes
         return Refusal(False, lambda: f"where {node.name} lies is not known well: it would overlap a wall")
+    if node.unexplained >= DUBIOUS:
+        return Refusal(False, lambda: f"where {node.name} lies is not known well: what is seen does not agree with it")
     if lies_askew(node):  # and so what is wall beside it is not known well either
         return Refusal(False, lambda: f"where {node.name} lies is not known well: it was turned askew")
 
