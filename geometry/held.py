@@ -7,6 +7,7 @@
 # margin about the body, then without.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
@@ -73,7 +74,10 @@ def carry_freed(errand: Errand) -> list[Leg] | None:
 
 
 def ends_of(errand: Errand) -> list[Pose | Inside]:
-    """The goal as poses of the body's centroid or regions. In a corner: near the walls, straight to the axes."""
+    """The goal as poses of the body's centroid or regions. In a corner: near the walls, turned by quarters.
+
+    Where it must not reach far from them, straight to the axes, however it lies now.
+    """
     goal, middle = errand.goal, errand.shape.centroid
     if isinstance(goal, Inside):
         return [goal]
@@ -81,7 +85,8 @@ def ends_of(errand: Errand) -> list[Pose | Inside]:
         return [Pose(middle.x + goal.pose.x, middle.y + goal.pose.y, goal.pose.degrees)]
     if isinstance(goal, Roomy):
         return []
-    return [_cornered(goal, errand.shape, degrees) for degrees in (0.0, 90.0, -90.0, 180.0)]
+    askew = math.degrees(slant(errand.shape)) % 90.0 if math.isfinite(goal.within[0]) else 0.0
+    return [_cornered(goal, errand.shape, degrees - askew) for degrees in (0.0, 90.0, -90.0, 180.0)]
 
 
 def _cornered(goal: InCorner, shape: Any, degrees: float) -> Pose:

@@ -251,6 +251,16 @@ def test_what_lies_askew_is_laid_straight_where_it_would_reach_too_far_from_a_co
     assert goal.admits(end.bounds) and not goal.admits(askew.polygon.bounds)
 
 
+def test_what_no_plan_by_squares_lays_straight_is_laid_so_by_one_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("geometry.carrying.carry_straightened", lambda _: None)
+    monkeypatch.setattr("geometry.carrying.carry_freed", lambda _: None)
+    free, square = two_rooms(3), affinity.rotate(box(8, 4, 12, 8), 33)
+    goal = InCorner(24, 22, 1, 1, within=(4.5, 4.5))
+    plan = plan_carrying(square, free, (3.5, 3.5), goal)
+    assert plan.status == "found" and len(plan.legs) == 1
+    assert goal.admits(replay(plan, square, free, (3.5, 3.5)).bounds)
+
+
 def test_the_body_is_taken_again_from_the_other_side() -> None:
     free = np.zeros((12, 20), bool)
     free[1:3, 1:19] = free[9:11, 1:19] = free[1:11, 1:3] = free[1:11, 17:19] = True  # a ring two squares wide
