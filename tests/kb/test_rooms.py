@@ -158,6 +158,23 @@ def test_what_may_be_an_object_makes_no_door_of_supposed_rooms() -> None:
     assert not rooms_of(model, supposed=True).doors
 
 
+@pytest.mark.parametrize(("length", "sure"), [(8, False), (11, False), (12, True), (17, True)])
+def test_what_goes_on_unseen_for_twelve_squares_is_a_wall_beside_a_door(length: int, sure: bool) -> None:
+    wall = "b" * length + "." * 5 + "b" * 20
+    floor = "." * (length + 5 + 18) + "bb"
+    edge = "b" * len(wall)
+    begin = floor[:-9] + "U" + floor[-8:]
+    rows = [edge, *[floor] * 12, wall, wall, *[floor] * 11, begin, edge]
+    # north and south of the room all is seen but its western end
+    unseen = ["?" * 4 + row for row in rows]
+    unseen[0] = unseen[-1] = "?" * 20 + edge[16:]
+    model = seen_whole(unseen)
+    (door,) = rooms_of(model).doors
+    assert door.width == pytest.approx(5)
+    assert door.sure == sure
+    assert bool(rooms_of(model, supposed=True).doors) == sure
+
+
 def test_what_is_seen_of_a_doorway_alone_stays_a_part_of_its_own() -> None:
     rows = [
         "............bbbb???",
