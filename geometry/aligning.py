@@ -11,7 +11,7 @@ from itertools import product
 import shapely
 
 from geometry.errand import Errand
-from geometry.fewest import slant
+from geometry.fewest import askew
 from geometry.holds import holds_about
 from geometry.legs import Leg, Point, commands, grip_square, may_push, rounded
 from geometry.rigid import Motion, Rotate, Translate
@@ -35,13 +35,13 @@ def carry_straightened(errand: Errand, tries: int = TRIES) -> list[Leg] | None:
 
 def _ways(errand: Errand) -> Iterator[Leg]:
     """The ways to lay the body straight, those with short walks first."""
-    askew = math.degrees(slant(errand.shape)) % 90.0
+    over = askew(errand.shape)
     for hold in holds_about(errand):
         relative = errand.hold_from(hold.place)
         square = grip_square(errand.shape, hold.place)
         if square is None and not hold.taken:
             continue
-        for degrees in sorted((-askew, 90.0 - askew), key=abs):
+        for degrees in sorted((-over, 90.0 - over), key=abs):
             motions = _straight(errand, hold.place, degrees)
             if motions:
                 yield Leg(hold.place, square or (0, 0), motions, relative, hold.walk, hold.taken)

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,8 @@ from geometry.rigid import Pose, turned
 from geometry.stencil import DIRECTIONS, Stencil, quarter
 
 __all__ = ["At", "End", "InCorner", "Inside"]
+
+Extent = TypeVar("Extent", float, npt.NDArray[np.float64])
 
 CLOSE = 1e-6  # squares: by which an end may miss a region's border
 VICINITY = 10.0  # squares: how near is near
@@ -43,18 +45,19 @@ class InCorner:
     slack: float = 1.0
     within: tuple[float, float] = (math.inf, math.inf)
 
-    def gaps(self, bounds: tuple[float, float, float, float]) -> tuple[float, float]:
-        """How far the rectangle x0, y0, x1, y1 is from the two walls; negative beyond them."""
+    def gaps(self, bounds: tuple[Extent, Extent, Extent, Extent]) -> tuple[Extent, Extent]:
+        """How far rectangles x0, y0, x1, y1 are from the two walls; negative beyond them."""
         x = self.x - bounds[2] if self.sx > 0 else bounds[0] - self.x
         y = self.y - bounds[3] if self.sy > 0 else bounds[1] - self.y
         return x, y
 
-    def admits(self, bounds: tuple[float, float, float, float]) -> bool:
-        """Whether a containing rectangle x0, y0, x1, y1 lies in the corner."""
+    def admits(self, bounds: tuple[Extent, Extent, Extent, Extent]) -> Any:
+        """Whether containing rectangles x0, y0, x1, y1 lie in the corner: a bool, or an array of them."""
         x, y = self.gaps(bounds)
-        near, far = sorted((x + bounds[2] - bounds[0], y + bounds[3] - bounds[1]))
-        close = all(-CLOSE <= gap <= self.slack + CLOSE for gap in (x, y))
-        return close and near <= self.within[0] + CLOSE and far <= self.within[1] + CLOSE
+        across, up = x + bounds[2] - bounds[0], y + bounds[3] - bounds[1]
+        near, far = np.minimum(across, up), np.maximum(across, up)
+        close = (np.minimum(x, y) >= -CLOSE) & (np.maximum(x, y) <= self.slack + CLOSE)
+        return close & (near <= self.within[0] + CLOSE) & (far <= self.within[1] + CLOSE)
 
 
 @dataclass(frozen=True)
@@ -75,7 +78,7 @@ def met(goal: End, shape: Any, now: Any) -> bool:
     if isinstance(goal, Inside):
         return any(part.buffer(CLOSE).covers(now) for part in shapely.get_parts(goal.polygon))
     if isinstance(goal, InCorner):
-        return goal.admits(now.bounds)
+        return bool(goal.admits(now.bounds))
     if isinstance(goal, Roomy):
         return False
     return bool(shapely.hausdorff_distance(placed(shape, goal.pose), now) <= CLOSE)
@@ -132,13 +135,9 @@ def _cornered(goal: InCorner, shape: Any, body: Stencil, k: int, grid: Grid) -> 
     x0, y0, x1, y1 = lying_at(shape, body, k, body.home).bounds
     row, column = np.divmod(np.arange((grid.rows + 2 * grid.pad) * grid.stride), grid.stride)
     dx, dy = column - grid.pad - body.home[0], row - grid.pad - body.home[1]
-    along = goal.x - x1 - dx if goal.sx > 0 else x0 + dx - goal.x
-    up = goal.y - y1 - dy if goal.sy > 0 else y0 + dy - goal.y
-    gap = np.maximum(along, up)
-    reach = np.sort([along + x1 - x0, up + y1 - y0], axis=0)
-    good = (np.minimum(along, up) >= -CLOSE) & (gap <= goal.slack + CLOSE)
-    good &= (reach[0] <= goal.within[0] + CLOSE) & (reach[1] <= goal.within[1] + CLOSE)
-    return np.where(good, np.where(gap <= goal.slack / 2 + CLOSE, 0, UNEASY), -1).astype(np.int32)
+    bounds = x0 + dx, y0 + dy, x1 + dx, y1 + dy
+    gap = np.maximum(*goal.gaps(bounds))
+    return np.where(goal.admits(bounds), np.where(gap <= goal.slack / 2 + CLOSE, 0, UNEASY), -1).astype(np.int32)
 
 
 def lying_at(shape: Any, body: Stencil, k: int, place: tuple[int, int]) -> Any:

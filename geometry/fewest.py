@@ -46,6 +46,11 @@ def slant(shape: Any) -> float:
     return math.atan2(y, x)
 
 
+def askew(shape: Any) -> float:
+    """How far a shape's longest edge is turned from an axis, counter-clockwise, in degrees from 0 to 90."""
+    return math.degrees(slant(shape)) % 90.0
+
+
 def _candidates(mover: Mover, ground: Ground, track: Floats, edge: float) -> Floats:
     """Poses on and near a way: (n, 3), the first its start, the last its end."""
     along = evenly(track, mover.radius, BESIDE)

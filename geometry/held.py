@@ -20,7 +20,7 @@ from geometry.aligning import carry_straightened
 from geometry.alone import move_alone
 from geometry.ends import At, InCorner, Inside, Roomy, placed
 from geometry.errand import Errand
-from geometry.fewest import fewest_motions, slant
+from geometry.fewest import askew, fewest_motions, slant
 from geometry.holds import Hold, holds_about, promise
 from geometry.hop import new_scene
 from geometry.legs import Leg, Point, at_utak, grip_square, may_push, rounded, verified
@@ -85,8 +85,8 @@ def ends_of(errand: Errand) -> list[Pose | Inside]:
         return [Pose(middle.x + goal.pose.x, middle.y + goal.pose.y, goal.pose.degrees)]
     if isinstance(goal, Roomy):
         return []
-    askew = math.degrees(slant(errand.shape)) % 90.0 if math.isfinite(goal.within[0]) else 0.0
-    return [_cornered(goal, errand.shape, degrees - askew) for degrees in (0.0, 90.0, -90.0, 180.0)]
+    over = askew(errand.shape) if math.isfinite(goal.within[0]) else 0.0
+    return [_cornered(goal, errand.shape, degrees - over) for degrees in (0.0, 90.0, -90.0, 180.0)]
 
 
 def _cornered(goal: InCorner, shape: Any, degrees: float) -> Pose:

@@ -231,9 +231,8 @@ def _laid(model: WorldModel, load: Load) -> tuple[WorldModel, Patch]:
     would only reach into by its play stay walls: it does not.
     """
     view, labels = model.view, model.labels.copy()
-    lies = covered(load.polygon).squares()
-    sure, possible = (model.squares(patch.squares()) for patch in (load.sure, load.possible))
-    patch = patch_of(possible & ((view.state != FULL) | model.squares(lies)), view)
+    lies, sure, possible = (model.squares(p.squares()) for p in (covered(load.polygon), load.sure, load.possible))
+    patch = patch_of(possible & ((view.state != FULL) | lies), view)
     here = view.locate(*model.place)
     shared = view.state[here] == FREE and possible[here]
     sure[here] = possible[here] = False
@@ -241,7 +240,7 @@ def _laid(model: WorldModel, load: Load) -> tuple[WorldModel, Patch]:
     open_ = possible & (view.state != FULL)
     labels[open_] = label
     state = np.where(sure, np.int8(FULL), np.where(possible & (view.state == FREE), np.int8(OPEN), view.state))
-    beside = open_ & ~model.squares(lies)
+    beside = open_ & ~lies
 
     def lying(chance: NDArray[np.float32]) -> NDArray[np.float32]:
         may = np.where(beside, np.maximum(chance, np.float32(BESIDE)), np.float32(MAYBE))

@@ -227,14 +227,9 @@ class Decider:
             if walk.command is not None:
                 return walk
             advice = Refusal(False, lambda: f"{node.name} cannot be reached to be taken")
+        along = partial(self._taken_along, node, stage, situation)
         if isinstance(advice, See):
-            return self._pursue(
-                [Aim("inspect", *advice.lookout)],
-                stage,
-                situation,
-                lambda: "",
-                along=partial(self._taken_along, node, stage, situation),
-            )
+            return self._pursue([Aim("inspect", *advice.lookout)], stage, situation, lambda: "", along=along)
         unknown = nowhere(land.missing or "no way is known to carry it there", land.lookouts)
         verdict = "impossible" if advice.proved else "limit"
         aims = aims_towards([unknown], situation, reconciled)
@@ -242,8 +237,8 @@ class Decider:
         # where it shall end, another way there is looked for without it; and what is taken while it is open how the
         # squares lie keeps the outline that it seems to have then.
         fetched = not land.lookouts and not land.ends and not is_open(situation.model)
-        along = partial(self._taken_along, node, stage, situation, fetched=fetched)
-        return self._pursue(aims, stage, situation, advice.reason, verdict, None if land.there else along)
+        brought = None if land.there else partial(along, fetched=fetched)
+        return self._pursue(aims, stage, situation, advice.reason, verdict, brought)
 
     def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
         """What to do to carry something to where its goal holds; while that is not known, to near it."""

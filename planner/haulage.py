@@ -229,12 +229,9 @@ def _refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldMode
     _, last = plans[-1]
     if any(plan.status != "impossible" for _, plan in plans):
         return Refusal(False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none")
-    if last.reason == "start":  # nothing lies in a wall: it is not where he believes
-        return Refusal(False, lambda: f"where {node.name} lies is not known well: it would overlap a wall")
-    if node.unexplained >= DUBIOUS:
-        return Refusal(False, lambda: f"where {node.name} lies is not known well: what is seen does not agree with it")
-    if lies_askew(node):  # and so what is wall beside it is not known well either
-        return Refusal(False, lambda: f"where {node.name} lies is not known well: it was turned askew")
+    doubt = _doubt(node, last)
+    if doubt:
+        return Refusal(False, lambda: f"where {node.name} lies is not known well: {doubt}")
 
     def reason() -> str:
         last = _nearest_to_done(plans)
@@ -248,6 +245,18 @@ def _refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldMode
         return f"the passage for {node.name}, {where}, is too narrow by {last.missing:.2f} squares"
 
     return Refusal(True, reason)
+
+
+def _doubt(node: Node, plan: Carrying) -> str:
+    """What speaks against that a thing lies where it is believed to, in words; nothing when nothing does.
+
+    plan : one that is impossible.
+    """
+    if plan.reason == "start":  # nothing lies in a wall
+        return "it would overlap a wall"
+    if node.unexplained >= DUBIOUS:
+        return "what is seen does not agree with it"
+    return "it was turned askew" if lies_askew(node) else ""  # and what is wall beside it is not known well either
 
 
 def _nearest_to_done(plans: Sequence[tuple[int, Carrying]]) -> Carrying:

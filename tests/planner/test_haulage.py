@@ -1,12 +1,15 @@
 """What is said of a thing for which no way is found."""
 
+import math
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 import shapely
 
-from geometry.carrying import Inside
-from planner.haulage import Haul, Hauler, Refusal, Request
+from geometry.carrying import Carrying, Inside
+from planner.haulage import Haul, Hauler, Refusal, Request, _nearest_to_done
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
 
@@ -28,8 +31,8 @@ def asked(west: float, turned: float = 0.0, unexplained: int = 0) -> Haul | Refu
     (node,) = model.objects
     view = model.view
     left, bottom = view.west + west, view.south + 5
-    node = replace(node, polygon=shapely.box(left, bottom, left + 4, bottom + 4), moved=turned != 0.0, turned=turned)
-    node = replace(node, unexplained=unexplained)
+    square = shapely.box(left, bottom, left + 4, bottom + 4)
+    node = replace(node, polygon=square, moved=turned != 0.0, turned=turned, unexplained=unexplained)
     return Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}), situation_of(model))
 
 
@@ -62,3 +65,12 @@ def test_what_came_there_in_a_way_that_agrees_with_little_proves_nothing(unexpla
     assert isinstance(answer, Refusal)
     assert answer.proved == proved
     assert ("agree" in answer.reason()) != proved
+
+
+@pytest.mark.parametrize(
+    ("plans", "told"),
+    [([(4, 1.0), (4, math.inf)], 0), ([(0, 1.0), (4, math.inf)], 1), ([(4, 2.0), (4, 1.0)], 1), ([(4, math.nan)], 0)],
+)
+def test_the_passage_told_is_one_that_could_be_widened(plans: list[tuple[int, float]], told: int) -> None:
+    asked_for = [(level, cast(Carrying, SimpleNamespace(missing=missing))) for level, missing in plans]
+    assert _nearest_to_done(asked_for) is asked_for[told][1]
