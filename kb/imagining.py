@@ -27,7 +27,11 @@ LOOSE = (0.012, 0.03)  # how much wider than a rectangle a part may be spread: a
 TIGHT = (0.003, 0.15)  # how much less: corners seen rounded, but less than a disc's; likewise, by its squares
 EVEN = (0.12, 0.4)  # likewise how much longer than wide a square may seem, by the squares that it covers
 DISC = 1 / (2 * math.pi)
-OTHERS = 0.04  # by so much and more is the spread of what is neither wider than a rectangle's
+OTHERS = 0.2  # by this share and more the spread of what is neither is wider than a rectangle's
+SLENDER = (4.0, 2.0)  # how much longer than wide a brick is at most, and how soon beyond that what is so is wall
+STOUT = (3.0, 1.0)  # likewise of what is neither, an L with long arms
+SELDOM = 0.1  # the least likeness of what is too slender, and of what has the spread of a rectangle to what is none
+GONE_ON = 10  # squares along which what goes on unseen is seen, from where on it is taken for wall
 Floats = NDArray[np.float64]
 
 
@@ -49,7 +53,7 @@ class Imagined(NamedTuple):
         heat = np.zeros(ground.shape)
         for image in images:
             found = blobs(image, ground)
-            like = likeness(found, shape) * ENDED**found.outward * (found.area >= SMALLEST)
+            like = likeness(found, shape) * ended(found) * (found.area >= SMALLEST)
             heat += np.append(0.0, np.maximum(like, going_on(found)))[found.labels]
         likely: Floats = 1 - (1 - heat / len(images)) ** SHY
         return likely
@@ -66,7 +70,9 @@ def imagine(view: MapView, before: Imagined = NOTHING_IMAGINED) -> Imagined:
 def likeness(found: Blobs, shape: str) -> Floats:
     """(n,) 0 to 1: how well the moments of each part agree with a shape."""
     ratio = np.sqrt((1 + found.lengthy) / np.maximum(1 - found.lengthy, 1e-6))
-    longer = found.spread - (ratio + 1 / ratio) / 12
+    rectangular = (ratio + 1 / ratio) / 12
+    longer = found.spread - rectangular
+    slender = np.maximum(_at_most(ratio, *SLENDER), SELDOM)
     loose, tight = LOOSE[0] + LOOSE[1] / np.sqrt(found.area), TIGHT[0] + TIGHT[1] / found.area
     straight = _near(longer, np.where(longer > 0, loose, tight))
     even = _near(found.lengthy, EVEN[0] + EVEN[1] / np.sqrt(found.area))
@@ -76,11 +82,17 @@ def likeness(found: Blobs, shape: str) -> Floats:
         case "disc":
             return _near(found.spread - DISC, tight) * even
         case "brick":
-            return straight * (1 - even)
+            return straight * slender * (1 - even)
         case "rectangle":
-            return straight
-    other: Floats = np.clip(longer / OTHERS, 0.1, 1.0)
-    return other
+            return straight * slender
+    wider = np.clip(longer / (OTHERS * rectangular), 0.0, 1.0)
+    return np.maximum(wider * _at_most(ratio, *STOUT), SELDOM)
+
+
+def ended(found: Blobs) -> Floats:
+    """(n,) 0 to 1: how likely each part ends where its squares border on what was never seen."""
+    wall = (found.outward > 0) & (found.area >= GONE_ON * found.outward)
+    return np.where(wall, 0.0, ENDED**found.outward)
 
 
 def going_on(found: Blobs) -> Floats:
@@ -97,6 +109,10 @@ def seen_in_part(squares: NDArray[np.int64]) -> Floats:
     return answer
 
 
-def _near(off: Floats, loose: Floats) -> Floats:
+def _at_most(value: Floats, most: float, loose: float) -> Floats:
+    return _near(np.maximum(value - most, 0.0), loose)
+
+
+def _near(off: Floats, loose: Floats | float) -> Floats:
     answer: Floats = np.exp(-((off / loose) ** 2))
     return answer

@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
-from shapely import Point, box
+from hypothesis import given
+from hypothesis import strategies as st
+from shapely import Point, affinity, box
 
-from geometry.blobs import blobs
+from geometry.blobs import Blobs, blobs
 from geometry.sketch import DRAWN
 from kb.evidence import OPEN
-from kb.imagining import imagine, likeness
+from kb.imagining import ended, imagine, likeness
 from tests.kb.drawings import LARGE_ROOM, drawing, looked
 
 
@@ -61,3 +63,38 @@ def test_a_shape_is_liker_itself_than_any_other(shape: str) -> None:
     assert max(like, key=lambda name: like[name]) == shape
     rectangle = float(likeness(found, "rectangle")[0])
     assert (rectangle > 0.5) == (shape in ("square", "brick"))
+
+
+ANGLES, PARTS = st.floats(0.0, 90.0), st.floats(0.0, 1.0)
+
+
+def turned(polygon, degrees: float, east: float, north: float) -> Blobs:
+    """The greatest part of a picture of a shape that lies anyhow."""
+    away = 12 + east - polygon.centroid.x, 12 + north - polygon.centroid.y
+    image = filled(affinity.translate(affinity.rotate(polygon, degrees), *away))
+    found = blobs(image, np.full((24, 24), DRAWN, np.int8))
+    best = int(found.area.argmax())
+    return Blobs(found.labels, *(values[best : best + 1] for values in found[1:]))
+
+
+@given(ANGLES, PARTS, PARTS, st.integers(16, 22))
+def test_a_piece_of_wall_is_neither_a_brick_nor_an_l(degrees: float, east: float, north: float, length: int) -> None:
+    found = turned(box(0, 0, length, 2), degrees, east, north)
+    for shape in ("brick", "rectangle", "l_shape", "t_shape"):
+        assert likeness(found, shape)[0] < 0.25
+
+
+@given(ANGLES, PARTS, PARTS, st.integers(6, 9), st.integers(6, 9))
+def test_an_l_is_one_however_it_lies(degrees: float, east: float, north: float, wide: int, high: int) -> None:
+    found = turned(box(0, 0, wide, 2).union(box(0, 0, 2, high)), degrees, east, north)
+    assert likeness(found, "l_shape")[0] > 0.5
+
+
+@pytest.mark.parametrize(("length", "likely"), [(6, True), (9, True), (10, False), (20, False)])
+def test_what_is_seen_for_long_and_goes_on_unseen_does_not_end_there(length: int, likely: bool) -> None:
+    picture = np.zeros((9, 30), np.int8)
+    picture[3:6, :length] = 1
+    found = blobs(picture, np.full(picture.shape, DRAWN, np.int8))
+    assert found.outward.tolist() == [3]
+    assert (ended(found)[0] > 0.3) == likely
+    assert ended(found._replace(outward=np.zeros(1, np.int64)))[0] == 1.0
