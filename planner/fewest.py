@@ -1,7 +1,7 @@
 """Where to look next by the fewest straight moves, for who counts commands and not squares: who carries things.
 
 A way along walls bends at every corner of theirs. Often an aim can be met at a square that a single move leads to, or
-by way of one that a second move leads on from, and nothing is lost by going a little further.
+by way of one that a second move leads on from, and little is lost by going further.
 """
 
 import math
@@ -17,8 +17,8 @@ from planner.steps import Square
 from planner.walking import HURRY, one_move
 from planner.ways import Way
 
-DETOUR = 12.0  # squares of way for which a move is saved
-FURTHER_MOVE = 5.0  # squares of way that each move after the first is taken for
+MOVE, WAY = 20.0, 0.3  # what a move, and a square of way, cost
+MOST_MOVES = 3  # of a way that bends more often than twice: so many at least
 TRIED = 8  # squares of an aim to which two moves are sought
 Mask = NDArray[np.bool_]
 
@@ -32,7 +32,7 @@ class FewestMoves:
         self._by_way: dict[tuple[str, bytes], Square | None] = {}
 
     def priced(self, aims: Sequence[Aim]) -> list[Aim]:
-        """The aims: met at a square that one move leads to, where there is such a one near; others dearer."""
+        """The aims: met at a square that one move leads to, where there is such a one; others dearer."""
         return [self._priced(aim) for aim in aims]
 
     def way(self, aim: Aim) -> Way | None:
@@ -54,14 +54,17 @@ class FewestMoves:
         return self._screens.distances[0].ravel()
 
     def _priced(self, aim: Aim) -> Aim:
+        """An aim whose way and price come to what its moves cost."""
         reached = self._screens.nearest(aim.squares) if len(aim.squares) else None
         if reached is None:
             return aim
         near = self._met(aim)
-        if len(near) and self._far[near].min() / 5 <= reached.cost + DETOUR:
-            return aim._replace(squares=near)
-        moves = 1 if reached.level == 0 and self._turning(aim) is not None else 2
-        return aim._replace(price=aim.price + FURTHER_MOVE * moves)
+        if len(near):
+            aim, far, moves = aim._replace(squares=near), float(self._far[near].min()) / 5, 1
+        else:
+            turning = reached.level == 0 and self._turning(aim) is not None
+            far, moves = reached.cost, 2 if turning else MOST_MOVES
+        return aim._replace(price=aim.price + MOVE * moves - (1 - WAY) * far)
 
     def _met(self, aim: Aim) -> Squares:
         """The squares of an aim to which one move leads."""

@@ -55,7 +55,7 @@ class Pace(NamedTuple):
 
 
 STROLL = Pace({"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}, 9, bold=False)
-HURRY = Pace({**STROLL.longest, "inspect": 48, "explore": 48}, 16, bold=True)
+HURRY = Pace({**STROLL.longest, "inspect": 48, "explore": 48}, 48, bold=True)
 
 
 def next_move(

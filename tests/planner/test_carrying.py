@@ -185,8 +185,8 @@ def test_what_is_clear_of_a_plan_is_done_before_the_rest_is_seen(
         return part
 
     monkeypatch.setattr(planner.carrier, "clear_part", watched)
-    for seed in (27000, 27002, 27013):
-        trial = run_trial(5, seed, Conditions(kind="plain"), tmp_path / str(seed))
+    for seed in (27005, 27008, 27009):
+        trial = run_trial(5, seed, Conditions(), tmp_path / str(seed))
         assert trial.right, (trial.verdict, trial.reason, trial.crash)
     assert begun
 

@@ -12,7 +12,7 @@ from kb.rooms import rooms_of
 from kb.task import Task
 from planner.aims import Aim
 from planner.deciding import Decider
-from planner.fewest import DETOUR, FURTHER_MOVE, FewestMoves
+from planner.fewest import MOST_MOVES, MOVE, WAY, FewestMoves
 from planner.screen import Screens
 from planner.steps import clear
 from planner.walking import one_move
@@ -59,30 +59,30 @@ def test_of_an_aim_what_one_move_leads_to_counts(screens: Screens) -> None:
     fewest = FewestMoves(screens)
     (priced,) = fewest.priced([aim(behind, open_)])
     assert priced.squares.tolist() == [flat(*open_)]
-    assert priced.price == 0.0
     way = fewest.way(priced)
     assert way is not None
     assert way.squares == (screens.here, (29, len(WALLS) - 1 - 15))
 
 
-def test_a_move_is_not_saved_by_a_long_detour() -> None:
+def test_a_move_is_saved_by_a_long_detour() -> None:
     rows = ["b" * 40, *["b" + "." * 38 + "b"] * 11, "b..U........b" + "." * 26 + "b", "b" * 40]
     screens = Screens(seen_whole(rows))
     width = len(rows[0])
     behind, far = width + 14, 12 * width + 37
     assert one_move(screens, "explore").ravel()[[behind, far]].tolist() == [False, True]
     ways = screens.distances[0].ravel()[[behind, far]] / 5
-    assert ways[0] + DETOUR < ways[1]
+    assert ways[0] + 2 < ways[1]
     (priced,) = FewestMoves(screens).priced([Aim("explore", np.array([behind, far]), "there")])
-    assert priced.squares.tolist() == [behind, far]
-    assert priced.price == FURTHER_MOVE
+    assert priced.squares.tolist() == [far]
 
 
-def test_a_second_move_has_its_price_and_a_third_twice_that(screens: Screens) -> None:
-    once, twice = aim((33, 9)), aim((3, 2))
-    one, two = FewestMoves(screens).priced([once, twice])
-    assert one.price == FURTHER_MOVE
-    assert two.price == 2 * FURTHER_MOVE
+@pytest.mark.parametrize(("square", "moves"), [((29, 15), 1), ((33, 9), 2), ((3, 2), MOST_MOVES)])
+def test_an_aim_costs_what_its_moves_cost_and_a_share_of_its_way(
+    screens: Screens, square: tuple[int, int], moves: int
+) -> None:
+    far = screens.distances[0].ravel()[flat(*square)] / 5
+    (priced,) = FewestMoves(screens).priced([aim(square)._replace(price=7.0)])
+    assert far + priced.price == pytest.approx(7.0 + moves * MOVE + WAY * far)
 
 
 def test_the_first_of_two_moves_ends_where_the_second_can_begin(screens: Screens) -> None:
