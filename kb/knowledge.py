@@ -220,7 +220,7 @@ def _node(load: Load, patch: Patch, label: int) -> Node:
         moved=load.proven,
         turned=load.turned,
         stuck=load.stuck,
-        unexplained=load.unexplained,
+        dubious=load.dubious,
     )
 
 

@@ -23,6 +23,7 @@ Mask = NDArray[np.bool_]
 Square = tuple[int, int]  # (x, y) of the lattice
 WHOLE = 1e-6  # squares: corners this near to corners of the lattice are taken to be there
 ROUNDING = 1e-4  # squares by which an outline may lie otherwise that is known but for the rounding of commands
+DUBIOUS = 8  # fields that a motion of a thing leaves as noise when it rather lies elsewhere
 SLIGHT = 0.3  # squares by which the outline of a thing that is not whole may lie otherwise
 
 
@@ -39,7 +40,8 @@ class Load:
     turned : degrees that it was turned since then. proven : it was seen to move. stuck : motions in a row that did not
     move it. since : how many looks had been received when it was first held. astray : squares by which it may lie
     otherwise besides, for it is not known where in his square Utak stands, and so about what it was turned.
-    unexplained : fields that the worst explained of its motions left as noise.
+    unexplained : fields that the worst explained of its motions left as noise. skewed : its outline was measured on
+    another lattice, and could not be measured on this one.
     """
 
     name: str
@@ -57,6 +59,12 @@ class Load:
     since: int = 0
     astray: float = 0.0
     unexplained: int = 0
+    skewed: bool = False
+
+    @property
+    def dubious(self) -> bool:
+        """May it well lie elsewhere than it is believed to, or be of another outline?"""
+        return self.skewed or self.unexplained >= DUBIOUS
 
     @property
     def play(self) -> float:

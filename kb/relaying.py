@@ -13,12 +13,18 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
+from geometry.components import components
 from geometry.rigid import Rotate, Translate
-from kb.evidence import FREE, FULL, Evidence
+from geometry.template import fit_shapes
+from kb.evidence import FREE, FULL, OPEN, Evidence
 from kb.heading import Laid, Look
 from kb.lattice import Lattice
 from kb.loads import Load, covered, discounted, is_whole, slack_of, whole
+from kb.worldmodel import Patch
 
+ASKEW = 8.0  # degrees from one lattice to another from where on an outline that was measured on the one is not right
+UNTOLD = 0.25  # of the squares of a thing, so many may be open when it is measured anew
+REACH = 6  # squares that a thing may reach further than it was believed to
 STEPS = sorted(((x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)), key=lambda step: (math.hypot(*step), step))
 
 
@@ -77,18 +83,42 @@ def shifted(load: Load, new: Lattice, old: Lattice) -> Load:
 def _taken(load: Load, new: Lattice, old: Lattice, evidence: Evidence) -> Load:
     """A load as it lay when it was first held, on the new lattice, of which so much was seen then."""
     skew = new.angle - old.angle
+    askew = 90 * round(skew / 90) - skew
     middle = new.place_from_utak(*_middle(load.first, old))
     polygon = _put(load.first, skew, middle)
-    if not is_whole(load.first):
-        return replace(
-            load, first=polygon, polygon=polygon, slack=slack_of(polygon), full=frozenset(), empty=frozenset()
-        )
-    straight = Rotate(90 * round(skew / 90) - skew, middle).carry(polygon)
-    x0, y0 = straight.bounds[:2]
-    nearest = Translate(round(x0) - x0, round(y0) - y0).carry(straight)
-    lying = [whole(shapely.transform(nearest, lambda points, s=step: points + np.array(s))) for step in STEPS]
-    polygon = min(lying, key=lambda other: _unlike(other, evidence))
-    return replace(load, first=polygon, polygon=polygon, slack=0.0, full=frozenset(), empty=frozenset())
+    known = is_whole(load.first) and abs(askew) <= ASKEW
+    seen = None if known else _outline(covered(polygon), evidence)
+    skewed = seen is None and (load.skewed or abs(askew) > ASKEW)
+    if seen is None and is_whole(load.first):
+        straight = Rotate(askew, middle).carry(polygon)
+        x0, y0 = straight.bounds[:2]
+        nearest = Translate(round(x0) - x0, round(y0) - y0).carry(straight)
+        lying = [whole(shapely.transform(nearest, lambda points, s=step: points + np.array(s))) for step in STEPS]
+        seen = min(lying, key=lambda other: _unlike(other, evidence))
+    return _lying(replace(load, skewed=skewed), polygon if seen is None else seen)
+
+
+def _lying(load: Load, first: Any) -> Load:
+    """A load that was first held where an outline says."""
+    return replace(load, first=first, polygon=first, slack=slack_of(first), full=frozenset(), empty=frozenset())
+
+
+def _outline(patch: Patch, evidence: Evidence) -> Any:
+    """The outline of what was seen where a thing is said to lie, if nearly all of it was told by then; None else."""
+    row, column = evidence.index(patch.west - REACH, patch.south - REACH)
+    own = np.pad(patch.mask, REACH)
+    state = evidence.state[row : row + own.shape[0], column : column + own.shape[1]]
+    labels = components(state != FREE).labels
+    met = np.bincount(labels[own & (labels > 0)], minlength=1)
+    part = labels == met.argmax()
+    full, possible = part & (state == FULL), part & (state == OPEN)
+    inside = part[1:-1, 1:-1].sum() == part.sum()
+    if not met.any() or not inside or possible.sum() > UNTOLD * full.sum():
+        return None
+    best = fit_shapes(full, possible)[0]
+    if best.misfit:
+        return None
+    return shapely.transform(best.polygon, lambda points: points + np.array([patch.west - REACH, patch.south - REACH]))
 
 
 def _unlike(polygon: Any, evidence: Evidence) -> int:
@@ -112,7 +142,8 @@ def _carried(taken: Load, load: Load, was: Laid, new: Lattice, old: Lattice) -> 
     middle = new.place_from_utak(was.middle[0] + float(aside[0]), was.middle[1] + float(aside[1]))
     polygon = whole(_put(taken.first, was.degrees, middle))
     slack = slack_of(polygon, was.slack)
-    return replace(load, first=taken.first, polygon=polygon, slack=slack, full=frozenset(), empty=frozenset())
+    lying = replace(load, first=taken.first, polygon=polygon, skewed=taken.skewed, slack=slack)
+    return replace(lying, full=frozenset(), empty=frozenset())
 
 
 def _put(polygon: Any, degrees: float, middle: tuple[float, float]) -> Any:

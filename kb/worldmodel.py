@@ -66,8 +66,8 @@ class Node:
     shape : class -> confidence. polygon : its believed outline (shapely, lattice frame), None while nothing fits.
     colour : as felt, or None. support : the impressions that settled its squares.
     movable : that it can be moved, in percent. moved : he has moved it. turned : degrees by which, since he first held
-    it. stuck : motions in a row that did not move it. unexplained : fields that the worst explained of its motions left
-    as noise.
+    it. stuck : motions in a row that did not move it. dubious : it may well lie elsewhere or be of another outline, for
+    what is seen agrees ill with how it came there.
     """
 
     name: str
@@ -85,7 +85,7 @@ class Node:
     moved: bool = False
     turned: float = 0.0
     stuck: int = 0
-    unexplained: int = 0
+    dubious: bool = False
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,6 @@ Mask = NDArray[np.bool_]
 LEVELS = (0, 2, UNSEEN)  # of certainty, that are tried
 MOST_ROUNDS = 12  # choices that geometry is asked to verify
 STRIDE = 0.25  # squares between the places at which the squares of a motion are taken down
-DUBIOUS = 8  # fields that a motion of a thing leaves as noise when it rather lies elsewhere
 MARGIN = 0.3  # squares kept free about a thing whose outline is not whole
 
 
@@ -254,7 +253,7 @@ def _doubt(node: Node, plan: Carrying) -> str:
     """
     if plan.reason == "start":  # nothing lies in a wall
         return "it would overlap a wall"
-    if node.unexplained >= DUBIOUS:
+    if node.dubious:
         return "what is seen does not agree with it"
     return "it was turned askew" if lies_askew(node) else ""  # and what is wall beside it is not known well either
 

@@ -11,7 +11,7 @@ from shapely.affinity import rotate, translate
 from kb.heading import Laid, Look
 from kb.lattice import CENTRE, Lattice
 from kb.loads import Load
-from kb.relaying import laid, relaid, shifted
+from kb.relaying import Relaid, laid, relaid, shifted
 from kb.retina import count_ranges
 from tests.kb.eyes import Occupied, retina, world_of
 
@@ -60,16 +60,40 @@ def test_what_was_turned_lies_elsewhere_by_where_he_woke(
 @pytest.mark.parametrize(("fx", "fy"), [(0.5, 0.5), (0.3, 0.8)])
 def test_a_thing_that_was_carried_lies_right_on_the_true_lattice(heading: int, fx: float, fy: float) -> None:
     """He holds the lattice for one along his own axes, a degree or two amiss, and carries a thing."""
-    room = world_of(ROOM)
     start, thing = (9 + fx, 9 + fy), translate(ELL, 11, 8)
+    found, new, truth = carried(thing, _felt(thing, start, heading), start, heading)
+    assert found.misfits == 0
+    told = [new.place_to_utak(x, y) for x, y in found.loads["o1"].polygon.exterior.coords]
+    assert shapely.Polygon(told).hausdorff_distance(truth) < MOST_ASIDE
+
+
+@pytest.mark.parametrize("heading", [20, 37, 64, 325])
+@pytest.mark.parametrize(("east", "told"), [(10, True), (25, False)])
+def test_an_outline_from_a_lattice_quite_askew_is_measured_anew_where_the_thing_was_seen(
+    heading: int, east: int, told: bool
+) -> None:
+    """He takes a square of three for one of less than two, and carries it. Seen from afar it stays what he took."""
+    start, thing = (9.5, 9.5), shapely.box(east, 6, east + 3, 9)
+    believed = rotate(_felt(thing.buffer(-0.65, join_style="mitre"), start, heading), 10)
+    found, new, truth = carried(thing, believed, start, heading)
+    load = found.loads["o1"]
+    assert load.skewed == (not told)
+    assert load.dubious == load.skewed
+    if told:
+        lies = shapely.Polygon([new.place_to_utak(x, y) for x, y in load.polygon.exterior.coords])
+        assert lies.hausdorff_distance(truth) < MOST_ASIDE
+
+
+def carried(
+    thing: shapely.Polygon, believed: shapely.Polygon, start: tuple[float, float], heading: int
+) -> tuple[Relaid, Lattice, shapely.Polygon]:
+    """What he tells on the true lattice who wakes, walks, and carries a thing; that lattice, and where the thing lies.
+
+    believed : its outline on a lattice along his own axes. The last is in his own frame.
+    """
+    room = world_of(ROOM)
     angle = (heading + 44) % 90 - 44
-    quarters = heading - angle
-    looks, now, moved, lay = (
-        [],
-        start,
-        False,
-        Load("o1", _felt(thing, start, heading), _felt(thing, start, heading), since=2),
-    )
+    looks, now, moved, lay = [], start, False, Load("o1", believed, believed, since=2)
     for step, (dx, dy) in enumerate([(0, 0), (1.0, -2.0), (3.0, 4.0)]):
         away = _turned((dx, dy), heading)
         if step == 2:  # with the thing in hand
@@ -80,14 +104,10 @@ def test_a_thing_that_was_carried_lies_right_on_the_true_lattice(heading: int, f
         own = _turned((now[0] - start[0], now[1] - start[1]), -heading)
         there = (laid(lay, Lattice()),) if moved else ()
         looks.append(Look(count_ranges(seen), own, there))
-    woke = _turned((fx - 0.5, fy - 0.5), -quarters)
+    woke = _turned((start[0] % 1 - 0.5, start[1] % 1 - 0.5), angle - heading)
     new = Lattice(angle, (woke[0] + 0.5, woke[1] + 0.5))
-    found = relaid(new, Lattice(), looks, [lay])
-    assert found.misfits == 0
-    true = _felt(thing, start, heading)  # in his own frame, the origin where he woke, but for the centre
-    told = [new.place_to_utak(x, y) for x, y in found.loads["o1"].polygon.exterior.coords]
-    aside = shapely.Polygon(told).hausdorff_distance(translate(true, -0.5, -0.5))
-    assert aside < MOST_ASIDE
+    truth = translate(_felt(thing, start, heading), -0.5, -0.5)
+    return relaid(new, Lattice(), looks, [lay]), new, truth
 
 
 def test_where_a_load_lies_is_told_in_his_own_frame() -> None:
