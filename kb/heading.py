@@ -80,13 +80,14 @@ class Laid(NamedTuple):
     """Where a thing lay that Utak has moved, or was to move later, when he looked.
 
     middle : of its outline, in his own frame. degrees : by which it was turned since he first held it. slack : squares
-    by which it may have lain otherwise.
+    by which it may have lain otherwise. taken : the middle of its outline where he first held it, as was believed then.
     """
 
     name: str
     middle: tuple[float, float]
     degrees: float
     slack: float
+    taken: tuple[float, float]
 
 
 class Look(NamedTuple):

@@ -41,7 +41,7 @@ class Relaid(NamedTuple):
 
 def laid(load: Load, lattice: Lattice) -> Laid:
     """Where a load lies, told in Utak's own frame."""
-    return Laid(load.name, _middle(load.polygon, lattice), load.turned, load.slack)
+    return Laid(load.name, _middle(load.polygon, lattice), load.turned, load.slack, _middle(load.first, lattice))
 
 
 def relaid(new: Lattice, old: Lattice, looks: Sequence[Look], loads: Iterable[Load]) -> Relaid:
@@ -61,14 +61,14 @@ def relaid(new: Lattice, old: Lattice, looks: Sequence[Look], loads: Iterable[Lo
         if number == len(looks):
             break
         look = looks[number]
-        there = [_carried(taken[was.name], known[was.name], was, new, old) for was in look.moved if was.name in taken]
+        there = [_carried(taken[was.name], known[was.name], was, new) for was in look.moved if was.name in taken]
         x, y = (math.floor(v) for v in new.place_from_utak(*look.place))
         freed = discounted(samples, look.ranges, x, y, there)
         misfits += evidence.clashes(*freed, x, y)
         evidence.look(*freed, x, y, number)
         if number == 0:
             evidence.stand(x, y, 0)
-    now = {name: _carried(taken[name], load, laid(load, old), new, old) for name, load in known.items()}
+    now = {name: _carried(taken[name], load, laid(load, old), new) for name, load in known.items()}
     return Relaid(evidence, now, misfits)
 
 
@@ -77,7 +77,7 @@ def shifted(load: Load, new: Lattice, old: Lattice) -> Load:
 
     Then it was taken where it was believed to lie, but every turn since was about another point.
     """
-    return _carried(load, load, laid(load, old), new, old)
+    return _carried(load, load, laid(load, old), new)
 
 
 def _taken(load: Load, new: Lattice, old: Lattice, evidence: Evidence) -> Load:
@@ -135,10 +135,10 @@ def _unlike(polygon: Any, evidence: Evidence) -> int:
     return int(((state == FREE) & own).sum() + ((state == FULL) & about & ~own).sum())
 
 
-def _carried(taken: Load, load: Load, was: Laid, new: Lattice, old: Lattice) -> Load:
+def _carried(taken: Load, load: Load, was: Laid, new: Lattice) -> Load:
     """A load where it lay at some time, carried there from where it was taken. taken : on the new lattice."""
-    began, begins = _middle(load.first, old), _middle(taken.first, new)
-    aside = Rotate(was.degrees, (0.0, 0.0)).points(np.array([[begins[0] - began[0], begins[1] - began[1]]]))[0]
+    began = np.array([_middle(taken.first, new)]) - was.taken
+    aside = Rotate(was.degrees, (0.0, 0.0)).points(began)[0]
     middle = new.place_from_utak(was.middle[0] + float(aside[0]), was.middle[1] + float(aside[1]))
     polygon = whole(_put(taken.first, was.degrees, middle))
     slack = slack_of(polygon, was.slack)
