@@ -72,7 +72,6 @@ def likeness(found: Blobs, shape: str) -> Floats:
     ratio = np.sqrt((1 + found.lengthy) / np.maximum(1 - found.lengthy, 1e-6))
     rectangular = (ratio + 1 / ratio) / 12
     longer = found.spread - rectangular
-    slender = np.maximum(_at_most(ratio, *SLENDER), SELDOM)
     loose, tight = LOOSE[0] + LOOSE[1] / np.sqrt(found.area), TIGHT[0] + TIGHT[1] / found.area
     straight = _near(longer, np.where(longer > 0, loose, tight))
     even = _near(found.lengthy, EVEN[0] + EVEN[1] / np.sqrt(found.area))
@@ -82,9 +81,9 @@ def likeness(found: Blobs, shape: str) -> Floats:
         case "disc":
             return _near(found.spread - DISC, tight) * even
         case "brick":
-            return straight * slender * (1 - even)
+            return straight * _not_slender(ratio) * (1 - even)
         case "rectangle":
-            return straight * slender
+            return straight * _not_slender(ratio)
     wider = np.clip(longer / (OTHERS * rectangular), 0.0, 1.0)
     return np.maximum(wider * _at_most(ratio, *STOUT), SELDOM)
 
@@ -107,6 +106,10 @@ def seen_in_part(squares: NDArray[np.int64]) -> Floats:
     """0 to 1: how likely what goes on unseen, and may be a thing, is the one looked for, by how much of it is seen."""
     answer: Floats = np.select([squares >= least for least, _ in PARTLY], [chance for _, chance in PARTLY])
     return answer
+
+
+def _not_slender(ratio: Floats) -> Floats:
+    return np.maximum(_at_most(ratio, *SLENDER), SELDOM)
 
 
 def _at_most(value: Floats, most: float, loose: float) -> Floats:

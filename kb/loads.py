@@ -88,12 +88,13 @@ class Load:
 
     def moved(self, polygon: Any, slack: float, degrees: float = 0.0) -> "Load":
         """The load after a motion that it was seen to make. degrees: by which it was turned."""
-        turned = self.turned + degrees
-        placed, slack = whole(polygon), slack_of(polygon, slack)
+        return replace(self.lying(polygon, slack), turned=self.turned + degrees, proven=True, stuck=0)
+
+    def lying(self, polygon: Any, otherwise: float = SLIGHT) -> "Load":
+        """The load where a polygon says, of which no look has told yet. otherwise : its slack, unless it is whole."""
         nothing: frozenset[Square] = frozenset()
-        return replace(
-            self, polygon=placed, slack=slack, full=nothing, empty=nothing, turned=turned, proven=True, stuck=0
-        )
+        placed = whole(polygon)
+        return replace(self, polygon=placed, slack=slack_of(placed, otherwise), full=nothing, empty=nothing)
 
     def seen(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> "Load":
         """The load after a look from square (x, y): fields of a single square tell which of the open ones it covers."""

@@ -19,7 +19,7 @@ from geometry.template import fit_shapes
 from kb.evidence import FREE, FULL, OPEN, Evidence
 from kb.heading import Laid, Look
 from kb.lattice import Lattice
-from kb.loads import Load, covered, discounted, is_whole, slack_of, whole
+from kb.loads import Load, covered, discounted, is_whole, whole
 from kb.worldmodel import Patch
 
 ASKEW = 8.0  # degrees from one lattice to another from where on an outline that was measured on the one is not right
@@ -85,22 +85,23 @@ def _taken(load: Load, new: Lattice, old: Lattice, evidence: Evidence) -> Load:
     skew = new.angle - old.angle
     askew = 90 * round(skew / 90) - skew
     middle = new.place_from_utak(*_middle(load.first, old))
-    polygon = _put(load.first, skew, middle)
-    known = is_whole(load.first) and abs(askew) <= ASKEW
-    seen = None if known else _outline(covered(polygon), evidence)
-    skewed = seen is None and (load.skewed or abs(askew) > ASKEW)
-    if seen is None and is_whole(load.first):
-        straight = Rotate(askew, middle).carry(polygon)
-        x0, y0 = straight.bounds[:2]
-        nearest = Translate(round(x0) - x0, round(y0) - y0).carry(straight)
-        lying = [whole(shapely.transform(nearest, lambda points, s=step: points + np.array(s))) for step in STEPS]
-        seen = min(lying, key=lambda other: _unlike(other, evidence))
-    return _lying(replace(load, skewed=skewed), polygon if seen is None else seen)
+    first, skewed = _put(load.first, skew, middle), load.skewed or abs(askew) > ASKEW
+    straight = is_whole(load.first)
+    seen = None if straight and abs(askew) <= ASKEW else _outline(covered(first), evidence)
+    if seen is not None:
+        first, skewed = seen, False
+    elif straight:
+        first = _straightened(Rotate(askew, middle).carry(first), evidence)
+    lying = load.lying(first)
+    return replace(lying, first=lying.polygon, skewed=skewed)
 
 
-def _lying(load: Load, first: Any) -> Load:
-    """A load that was first held where an outline says."""
-    return replace(load, first=first, polygon=first, slack=slack_of(first), full=frozenset(), empty=frozenset())
+def _straightened(polygon: Any, evidence: Evidence) -> Any:
+    """A thing with sides along the lattice, on corners of it: where what was seen speaks least against that."""
+    x0, y0 = polygon.bounds[:2]
+    nearest = Translate(round(x0) - x0, round(y0) - y0).carry(polygon)
+    lying = [whole(shapely.transform(nearest, lambda points, s=step: points + np.array(s))) for step in STEPS]
+    return min(lying, key=lambda other: _unlike(other, evidence))
 
 
 def _outline(patch: Patch, evidence: Evidence) -> Any:
@@ -140,10 +141,8 @@ def _carried(taken: Load, load: Load, was: Laid, new: Lattice) -> Load:
     began = np.array([_middle(taken.first, new)]) - was.taken
     aside = Rotate(was.degrees, (0.0, 0.0)).points(began)[0]
     middle = new.place_from_utak(was.middle[0] + float(aside[0]), was.middle[1] + float(aside[1]))
-    polygon = whole(_put(taken.first, was.degrees, middle))
-    slack = slack_of(polygon, was.slack)
-    lying = replace(load, first=taken.first, polygon=polygon, skewed=taken.skewed, slack=slack)
-    return replace(lying, full=frozenset(), empty=frozenset())
+    lying = load.lying(_put(taken.first, was.degrees, middle), was.slack)
+    return replace(lying, first=taken.first, skewed=taken.skewed)
 
 
 def _put(polygon: Any, degrees: float, middle: tuple[float, float]) -> Any:

@@ -19,13 +19,12 @@ from geometry.components import components
 from geometry.passages import Passage
 from kb.encodings import KB, solve
 from kb.regions import extents
-from kb.worldmodel import SPACE, WorldModel
+from kb.worldmodel import SMALLEST_WALL, SPACE, WorldModel
 
 Mask = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Indices = tuple[NDArray[np.int64], NDArray[np.int64]]
 Window = tuple[slice, slice]
-SMALLEST_WALL = 13  # squares: what is one thing and as long as this is no object
 LIKELY = 0.75  # that squares are occupied which are taken for parts of one thing
 SURE = 60  # percent: a door is one from here on
 LIKELY_DOOR = 25  # percent: what may be a door is tried from here on

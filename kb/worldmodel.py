@@ -26,7 +26,8 @@ NEARLY = math.radians(5)  # by which two lattices differ little enough to explai
 SHIFTED = 0.3  # squares by which a square may lie elsewhere and still be the same
 SPACE = 0.06  # a square that is occupied with at most this probability counts as floor
 CLEAR = 0.12  # a square that is occupied, or free, but for this probability is not in doubt
-SURELY_VERGE = 92  # percent: what is verge as surely as this, as what goes on unseen for 13 squares, is no object
+SMALLEST_WALL = 13  # squares: what is one thing and as long as this is no object
+SURELY_VERGE = 40 + 4 * SMALLEST_WALL  # percent: as sure of verge as kb/asp/interpretation.lp is of what goes on so far
 ORG, FLOOR, VERGE = "org", "floor", "verge"
 
 Mask = NDArray[np.bool_]

@@ -18,7 +18,7 @@ from planner.walking import HURRY, one_move
 from planner.ways import Way
 
 MOVE, WAY = 20.0, 0.3  # what a move, and a square of way, cost
-MOST_MOVES = 3  # of a way that bends more often than twice: so many at least
+MANY_MOVES = 3  # that a way with more bends than one is taken for
 TRIED = 8  # squares of an aim to which two moves are sought
 Mask = NDArray[np.bool_]
 
@@ -63,7 +63,7 @@ class FewestMoves:
             aim, far, moves = aim._replace(squares=near), float(self._far[near].min()) / 5, 1
         else:
             turning = reached.level == 0 and self._turning(aim) is not None
-            far, moves = reached.cost, 2 if turning else MOST_MOVES
+            far, moves = reached.cost, 2 if turning else MANY_MOVES
         return aim._replace(price=aim.price + MOVE * moves - (1 - WAY) * far)
 
     def _met(self, aim: Aim) -> Squares:
