@@ -279,12 +279,15 @@ class Carrier:
     def _seen(self, haul: Haul, node: Node, situation: Situation) -> See | None:
         """What of the way of a plan must be looked at before it is begun, if a look may tell more of it.
 
-        All that is believed floor is trusted: to be stopped now and then costs less than to look each time. But when a
-        plan takes many commands, then what takes away the room for fewer, and may be none, is looked at too.
+        All that is believed floor is trusted: to be stopped now and then costs less than to look each time. And to let
+        go, walk, come back and take it again costs more than to be stopped by what is not floor. But when a plan takes
+        many commands, then what takes away the room for fewer, and may be none, is looked at too.
         """
-        model = situation.model
+        model, tedious = situation.model, haul.plan.commands > TEDIOUS
+        if haul.goes_on and not tedious:
+            return None
         unsure = haul.swept & ~situation.screens.free(0)
-        if haul.plan.commands > TEDIOUS:
+        if tedious:
             unsure |= grown(haul.swept, ABOUT) & (model.view.state == OPEN) & (model.view.probability > SPACE)
         unsure &= ~model.mask(node.patch)
         if not unsure.any():

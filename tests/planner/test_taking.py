@@ -169,6 +169,23 @@ def test_what_takes_away_the_room_of_a_tedious_way_is_looked_at(pushes: int, cha
         assert max(abs(rows - place[0]).max(), abs(columns - place[1]).max()) <= CLOSE
 
 
+@pytest.mark.parametrize(("pushes", "taken", "looks"), [(3, False, True), (3, True, False), (8, True, True)])
+def test_he_does_not_let_go_of_a_thing_to_look_at_its_way_unless_that_is_tedious(
+    pushes: int, taken: bool, looks: bool
+) -> None:
+    situation = beside(())
+    model, (node,) = situation.model, situation.model.objects
+    view, place = model.view, model.view.locate(8.5, 1.5)
+    state, probability = view.state.copy(), view.probability.copy()
+    state[place], probability[place] = OPEN, 0.2
+    open_ = situation_of(replace(model, view=view._replace(state=state, probability=probability)), situation.binding)
+    swept = np.zeros(state.shape, np.bool_)
+    swept[place] = True
+    legs = (Leg((0.5, 0.5), (1, 0), (Translate(1.0, 0.0),) * pushes, taken=taken),)
+    haul = Haul(Carrying("found", legs, held=taken), "r", 2, swept)
+    assert (Carrier()._seen(haul, node, open_) is not None) == looks
+
+
 def test_where_a_thing_began_is_remembered_though_its_name_is_not() -> None:
     carrier, situation = Carrier(), beside(())
     (node,) = situation.model.objects
