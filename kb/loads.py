@@ -68,8 +68,9 @@ class Load:
 
     @property
     def play(self) -> float:
-        """By how many squares its outline may lie otherwise, for whatever reason."""
-        return max(self.slack, self.astray)
+        """By how many squares its outline may lie otherwise, for whatever reason; 0 for what only rounding leaves."""
+        play = max(self.slack, self.astray)
+        return play if play >= WHOLE else 0.0
 
     @cached_property
     def sure(self) -> Patch:

@@ -1,6 +1,7 @@
 """A load's image is taken out of a look exactly, whatever it hides; and what a motion may have led to."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -42,6 +43,13 @@ def squares_of(polygon: shapely.Polygon) -> set[tuple[int, int]]:
 def test_a_load_covers_its_squares(x: float, y: float, degrees: float) -> None:
     polygon = translate(rotate(ELL, degrees), round(x, 3), round(y, 3))
     assert covered(polygon).squares() == squares_of(polygon)
+
+
+@given(st.floats(0, 1) | st.sampled_from([5e-324, 1e-17, 1e-12, 1e-6]))
+@settings(max_examples=60, deadline=None)
+def test_what_a_load_may_cover_is_no_less_than_what_it_surely_does(far: float) -> None:
+    some = replace(load(ELL), astray=far)
+    assert some.sure.squares() <= squares_of(ELL) <= some.possible.squares()
 
 
 @given(st.integers(-9, 9), st.integers(-9, 9), st.integers(0, 3), st.integers(-44, 45), st.integers(0, 10**6))
