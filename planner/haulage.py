@@ -233,7 +233,7 @@ def _refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldMode
     _, last = plans[-1]
     if any(plan.status != "impossible" for _, plan in plans):
         return Refusal(False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none")
-    doubt = _doubt(node, last)
+    doubt = _doubt(node, last, model)
     if doubt:
         return Refusal(False, lambda: f"where {node.name} lies is not known well: {doubt}")
 
@@ -251,7 +251,7 @@ def _refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldMode
     return Refusal(True, reason)
 
 
-def _doubt(node: Node, plan: Carrying) -> str:
+def _doubt(node: Node, plan: Carrying, model: WorldModel) -> str:
     """What speaks against that a thing lies where it is believed to, in words; nothing when nothing does.
 
     plan : one that is impossible.
@@ -260,6 +260,8 @@ def _doubt(node: Node, plan: Carrying) -> str:
         return "it would overlap a wall"
     if node.dubious:
         return "what is seen does not agree with it"
+    if node.stuck and not model.view.sure:
+        return "it did not move where there seemed to be room"
     return "it was turned askew" if lies_askew(node) else ""  # and what is wall beside it is not known well either
 
 

@@ -25,14 +25,15 @@ PARTED = [
 ]
 
 
-def asked(west: float, turned: float = 0.0, dubious: bool = False) -> Haul | Refusal:
+def asked(west: float, turned: float = 0.0, dubious: bool = False, stuck: int = 0, sure: bool = True) -> Haul | Refusal:
     """The way through a door two squares wide for a thing four wide with its west side there; it was drawn at 4."""
     model = seen_whole(PARTED)
     (node,) = model.objects
-    view = model.view
+    view = model.view._replace(sure=sure)
+    model = replace(model, view=view)
     left, bottom = view.west + west, view.south + 5
     square = shapely.box(left, bottom, left + 4, bottom + 4)
-    node = replace(node, polygon=square, moved=turned != 0.0, turned=turned, dubious=dubious)
+    node = replace(node, polygon=square, moved=turned != 0.0, turned=turned, dubious=dubious, stuck=stuck)
     return Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}), situation_of(model))
 
 
@@ -65,6 +66,14 @@ def test_what_is_seen_to_agree_ill_with_where_it_lies_proves_nothing(dubious: bo
     assert isinstance(answer, Refusal)
     assert answer.proved != dubious
     assert ("agree" in answer.reason()) == dubious
+
+
+@pytest.mark.parametrize(("stuck", "sure"), [(0, True), (0, False), (1, True), (1, False)])
+def test_what_did_not_move_proves_nothing_for_who_is_not_sure_of_his_map(stuck: int, sure: bool) -> None:
+    answer = asked(4, stuck=stuck, sure=sure)
+    assert isinstance(answer, Refusal)
+    assert answer.proved == (sure or not stuck)
+    assert ("did not move" in answer.reason()) != answer.proved
 
 
 @pytest.mark.parametrize(
