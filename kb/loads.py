@@ -24,6 +24,7 @@ Square = tuple[int, int]  # (x, y) of the lattice
 WHOLE = 1e-6  # squares: corners this near to corners of the lattice are taken to be there
 ROUNDING = 1e-4  # squares by which an outline may lie otherwise that is known but for the rounding of commands
 DUBIOUS = 8  # fields that a motion of a thing leaves as noise when it rather lies elsewhere
+NOTHING = Patch(0, 0, np.zeros((1, 1), np.bool_))
 SLIGHT = 0.3  # squares by which the outline of a thing that is not whole may lie otherwise
 
 
@@ -76,7 +77,7 @@ class Load:
     def sure(self) -> Patch:
         """The squares that it surely covers."""
         inner = self.polygon.buffer(-self.play, join_style="mitre") if self.play else self.polygon
-        patch = covered(inner if not inner.is_empty else self.polygon.centroid.buffer(0.1))
+        patch = NOTHING if inner.is_empty else covered(inner)
         return patch if not self.full else patch_of_squares(patch.squares() | self.full)
 
     @cached_property
