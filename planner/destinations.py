@@ -26,7 +26,8 @@ BARE, A_PERCENT = 12, 2  # behind floor that goes on: so many for each percent t
 GAP, WIDEST_DOOR = 15, 6  # behind a stretch of floor no wider than a door: at least so many
 CUT_OFF = 30  # floor that no way leads to yet
 ONWARD = 30  # straight on behind where the floor goes on
-ASIDE, BESIDE_DOOR = 28, 25  # to either side behind that, and behind what is no wider than a door
+ASIDE = 28  # to either side behind that
+BESIDE_DOOR = 41  # to either side behind what is no wider than a door: over a room, and most of the next
 RAYS = 192  # places along a line of sight at which it may meet the verge
 
 

@@ -217,18 +217,27 @@ def test_random_worlds(task: int, seed: int, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("task", "seed"),
+    ("task", "seed", "kind"),
     [
-        (5, 73014),  # he runs against a wall before he knows how the table is turned
-        (5, 75012),  # the furthest corner lies in a room that he has not seen when he puts it down
-        (6, 75010),  # two degrees off, which a turn could be mistaken for a place beside the middle of his square
-        (7, 75012),
-        (8, 92006),  # two degrees off: the first push is stopped, which is not that he woke at the edge of his square
-        (5, 100001),
+        (5, 73014, "wide"),  # he runs against a wall before he knows how the table is turned
+        (5, 75012, "wide"),  # the furthest corner lies in a room that he has not seen when he puts it down
+        (
+            6,
+            75010,
+            "wide",
+        ),  # two degrees off, which a turn could be mistaken for a place beside the middle of his square
+        (7, 75012, "wide"),
+        (
+            8,
+            92006,
+            "wide",
+        ),  # two degrees off: the first push is stopped, which is not that he woke at the edge of his square
+        (5, 100001, "wide"),
+        (5, 141008, "snug"),  # the furthest corner lies in a room behind the next, that is entered from the side
     ],
 )
-def test_worlds_that_were_misread(task: int, seed: int, tmp_path: Path) -> None:
-    trial = run_trial(task, seed, Conditions(), tmp_path)
+def test_worlds_that_were_misread(task: int, seed: int, kind: str, tmp_path: Path) -> None:
+    trial = run_trial(task, seed, Conditions(kind=kind), tmp_path)
     assert trial.right, (trial.verdict, trial.reason, trial.crash)
     assert not trial.judged
 
