@@ -63,9 +63,14 @@ class Carrying:
     held: bool = False
 
     @property
+    def goes_on(self) -> bool:
+        """Does it begin with the hold that Utak has?"""
+        return len(self.legs) > 0 and self.legs[0].taken
+
+    @property
     def commands(self) -> int:
         """About how many commands this takes: walks, grasps, pushes, turns, releases."""
-        lets_go_first = self.held and len(self.legs) > 0 and not self.legs[0].taken
+        lets_go_first = self.held and len(self.legs) > 0 and not self.goes_on
         return commands(self.legs) + int(lets_go_first)
 
     @property

@@ -24,8 +24,8 @@ Square = tuple[int, int]  # (x, y) of the lattice
 WHOLE = 1e-6  # squares: corners this near to corners of the lattice are taken to be there
 ROUNDING = 1e-4  # squares by which an outline may lie otherwise that is known but for the rounding of commands
 DUBIOUS = 8  # fields that a motion of a thing leaves as noise when it rather lies elsewhere
-NOTHING = Patch(0, 0, np.zeros((1, 1), np.bool_))
 SLIGHT = 0.3  # squares by which the outline of a thing that is not whole may lie otherwise
+NOTHING = Patch(0, 0, np.zeros((1, 1), np.bool_))  # no square
 
 
 @dataclass(frozen=True)

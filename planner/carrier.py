@@ -284,7 +284,7 @@ class Carrier:
         many commands, then what takes away the room for fewer, and may be none, is looked at too.
         """
         model, tedious = situation.model, haul.plan.commands > TEDIOUS
-        if haul.goes_on and not tedious:
+        if haul.plan.goes_on and not tedious:
             return None
         unsure = haul.swept & ~situation.screens.free(0)
         if tedious:

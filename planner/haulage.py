@@ -56,11 +56,6 @@ class Haul:
         legs = self.plan.legs
         return len(legs) == 1 and len(legs[0].motions) <= 2 and all(isinstance(m, Translate) for m in legs[0].motions)
 
-    @property
-    def goes_on(self) -> bool:
-        """Does it begin with the hold that Utak has?"""
-        return bool(self.plan.legs) and self.plan.legs[0].taken
-
 
 @dataclass(frozen=True)
 class Refusal:

@@ -221,17 +221,11 @@ def test_random_worlds(task: int, seed: int, tmp_path: Path) -> None:
     [
         (5, 73014, "wide"),  # he runs against a wall before he knows how the table is turned
         (5, 75012, "wide"),  # the furthest corner lies in a room that he has not seen when he puts it down
-        (
-            6,
-            75010,
-            "wide",
-        ),  # two degrees off, which a turn could be mistaken for a place beside the middle of his square
+        # two degrees off, which a turn could be mistaken for a place beside the middle of his square
+        (6, 75010, "wide"),
         (7, 75012, "wide"),
-        (
-            8,
-            92006,
-            "wide",
-        ),  # two degrees off: the first push is stopped, which is not that he woke at the edge of his square
+        # two degrees off: the first push is stopped, which is not that he woke at the edge of his square
+        (8, 92006, "wide"),
         (5, 100001, "wide"),
         (5, 141008, "snug"),  # the furthest corner lies in a room behind the next, that is entered from the side
     ],

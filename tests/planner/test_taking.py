@@ -58,6 +58,24 @@ def advice(carrier: Carrier, situation: Situation) -> planner.carrier.Advice:
     return carrier.advise(node, {"r": Inside(shapely.box(14, 2, 19, 14))}, situation)
 
 
+def doubtful(situation: Situation, x: float, y: float, chance: float) -> Situation:
+    """The same, but the square of a point is not settled: this likely it is occupied."""
+    model = situation.model
+    view, place = model.view, model.view.locate(x, y)
+    state, probability = view.state.copy(), view.probability.copy()
+    state[place], probability[place] = OPEN, chance
+    return situation_of(replace(model, view=view._replace(state=state, probability=probability)), situation.binding)
+
+
+def haul_over(situation: Situation, x: float, y: float, pushes: int, taken: bool = False) -> Haul:
+    """A plan of so many pushes that needs the square of a point. taken : it goes on with the hold he has."""
+    view = situation.model.view
+    swept = np.zeros(view.state.shape, np.bool_)
+    swept[view.locate(x, y)] = True
+    legs = (Leg((0.5, 0.5), (1, 0), (Translate(1.0, 0.0),) * pushes, taken=taken),)
+    return Haul(Carrying("found", legs, held=taken), "r", 0, swept)
+
+
 def way_of(situation: Situation) -> str | None:
     """The direction of a grasp that was planned towards the east."""
     (node,) = situation.model.objects
@@ -152,20 +170,13 @@ def test_what_he_would_take_again_from_where_he_stands_he_does_not_let_go(aside:
 
 @pytest.mark.parametrize(("pushes", "chance", "looks"), [(7, 0.9, True), (3, 0.9, False), (7, 0.05, False)])
 def test_what_takes_away_the_room_of_a_tedious_way_is_looked_at(pushes: int, chance: float, looks: bool) -> None:
-    situation = beside(())
-    model, (node,) = situation.model, situation.model.objects
-    view, place = model.view, model.view.locate(8.5, 3.5)
-    state, probability = view.state.copy(), view.probability.copy()
-    state[place], probability[place] = OPEN, chance
-    open_ = situation_of(replace(model, view=view._replace(state=state, probability=probability)), situation.binding)
-    swept = np.zeros(state.shape, np.bool_)
-    swept[model.view.locate(8.5, 1.5)] = True
-    legs = (Leg((0.5, 0.5), (1, 0), (Translate(1.0, 0.0),) * pushes),)
-    haul = Haul(Carrying("found", legs), "r", 0, swept)
-    see = Carrier()._seen(haul, node, open_)
+    situation = doubtful(beside(()), 8.5, 3.5, chance)
+    view, (node,) = situation.model.view, situation.model.objects
+    see = Carrier()._seen(haul_over(situation, 8.5, 1.5, pushes), node, situation)
     assert (see is not None) == looks
     if see is not None:
-        rows, columns = np.divmod(see.lookout.squares, state.shape[1])
+        place = view.locate(8.5, 3.5)
+        rows, columns = np.divmod(see.lookout.squares, view.state.shape[1])
         assert max(abs(rows - place[0]).max(), abs(columns - place[1]).max()) <= CLOSE
 
 
@@ -173,17 +184,10 @@ def test_what_takes_away_the_room_of_a_tedious_way_is_looked_at(pushes: int, cha
 def test_he_does_not_let_go_of_a_thing_to_look_at_its_way_unless_that_is_tedious(
     pushes: int, taken: bool, looks: bool
 ) -> None:
-    situation = beside(())
-    model, (node,) = situation.model, situation.model.objects
-    view, place = model.view, model.view.locate(8.5, 1.5)
-    state, probability = view.state.copy(), view.probability.copy()
-    state[place], probability[place] = OPEN, 0.2
-    open_ = situation_of(replace(model, view=view._replace(state=state, probability=probability)), situation.binding)
-    swept = np.zeros(state.shape, np.bool_)
-    swept[place] = True
-    legs = (Leg((0.5, 0.5), (1, 0), (Translate(1.0, 0.0),) * pushes, taken=taken),)
-    haul = Haul(Carrying("found", legs, held=taken), "r", 2, swept)
-    assert (Carrier()._seen(haul, node, open_) is not None) == looks
+    situation = doubtful(beside(()), 8.5, 1.5, 0.2)
+    (node,) = situation.model.objects
+    haul = haul_over(situation, 8.5, 1.5, pushes, taken)
+    assert (Carrier()._seen(haul, node, situation) is not None) == looks
 
 
 def test_where_a_thing_began_is_remembered_though_its_name_is_not() -> None:
