@@ -322,6 +322,8 @@ class Memory:
         if stops and not self.loads and all(e.misfits for e in turned):
             simple = any(not e.misfits for e in explanations if e.how != "slipped" or self.slipped)
             explanations += misled(look, map(told, self._before if simple else self.moved))
+        elif stops and not self.loads and not self._off_middle and all(e.odd for e in turned):
+            explanations += [e for e in misled(look, map(told, self.moved)) if e.retold is not None and e.retold.known]
         return self._choose(explanations)
 
     def _turned(self, look: Look, misfits: int) -> list[Explanation]:
@@ -374,6 +376,7 @@ class Memory:
     def _choose(self, explanations: list[Explanation], unchanged: bool = False) -> Explanation:
         """The explanation to believe. unchanged : nothing looks otherwise than at the last look."""
         facts = [f"trust({0 if self._off_middle else self.trust})", *["slips"] * self.slipped]
+        facts += [f"odd({number})" for number, e in enumerate(explanations) if e.odd and not self._off_middle]
         facts += ["proven"] * (self.held is not None and self.loads[self.held].proven)
         return cheapest(explanations, [*facts, *["unchanged"] * unchanged])
 

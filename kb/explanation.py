@@ -13,7 +13,7 @@ from kb.encodings import KB, solve
 from kb.evidence import OPEN, Evidence
 from kb.hauling import Outcome
 from kb.heading import Hypothesis, Look
-from kb.lattice import Lattice, Samples
+from kb.lattice import CENTRE, Lattice, Samples
 from kb.retina import FIELDS
 from kb.stops import Retold
 
@@ -48,6 +48,11 @@ class Explanation(NamedTuple):
     def anew(self) -> bool:
         """Does it say that the lattice lies otherwise, or that looks were received elsewhere, than was believed?"""
         return self.how in ("turned", "misled", "lost")
+
+    @property
+    def odd(self) -> bool:
+        """Does it say both that the lattice lies askew and that he did not wake amid his square?"""
+        return self.lattice.angle != 0 and self.lattice.woke != CENTRE
 
 
 class Accommodated(NamedTuple):

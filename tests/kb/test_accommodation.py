@@ -117,6 +117,18 @@ def test_what_stopped_him_where_is_found_out_by_the_next_looks() -> None:
     assert sum(forgotten[n] < 0.1 for n in wrong) <= 0.3 * len(wrong)
 
 
+@pytest.mark.parametrize("seed", [1009, 1078, 1112, 1213, 1295])
+def test_one_who_was_stopped_does_not_rather_believe_two_odd_things_at_once(seed: int) -> None:
+    """The next look soon tells of a stop that he has overlooked, before he takes the table for askew and himself for
+    awoken beside the middle of his square.
+    """
+    walk = stopped_and_walked(seed, True)
+    assert walk is not None
+    stopped, *moved = walk
+    assert stopped > 0.1
+    assert max(moved) < 0.1
+
+
 def stopped_and_walked(seed: int, remember: bool) -> list[float] | None:
     """How far he is from where he believes himself, in squares: where he was stopped, and after two free moves.
 
