@@ -112,8 +112,9 @@ class Memory:
     @property
     def closed(self) -> frozenset[tuple[int, int]]:
         """The squares on which something stands, or likely does, for it stopped a motion."""
-        suspected = (square for square in self.suspected if self.evidence.state[self.evidence.index(*square)] == OPEN)
-        return frozenset((*self.barred, *suspected))
+        doubted = self.suspected | (self.barred if self.slipped else set())  # who slips may have stopped by himself
+        settled = {square for square in doubted if self.evidence.state[self.evidence.index(*square)] != OPEN}
+        return frozenset((self.barred | self.suspected) - settled)
 
     @property
     def _before(self) -> tuple[Moved, ...]:

@@ -3,6 +3,7 @@
 A way is kept while it holds: its aim is still wanted, and the squares ahead are still believed free.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -75,6 +76,7 @@ class Decider:
         self._doubted: set[str] = set()  # objects that are being looked at until they are settled
         self._circles = Circles()
         self._looked = 0  # squares he had looked from when he went to see where it must end, until it is one more
+        self._narrow: list[Place] = []  # passages that were looked at again, points of the lattice
         self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
@@ -238,7 +240,8 @@ class Decider:
         # squares lie keeps the outline that it seems to have then.
         fetched = not land.lookouts and not land.ends and not is_open(situation.model)
         brought = None if land.there else partial(along, fetched=fetched)
-        return self._pursue(aims, stage, situation, advice.reason, verdict, brought)
+        decision = self._pursue(aims, stage, situation, advice.reason, verdict, brought)
+        return self._looked_again(decision, advice, stage, situation)
 
     def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
         """What to do to carry something to where its goal holds; while that is not known, to near it."""
@@ -271,6 +274,23 @@ class Decider:
             return None
         self._doubted.add(node.name)
         return self._pursue([Aim("inspect", *look)], stage, situation, lambda: look.what)
+
+    def _looked_again(self, decision: Decision, refusal: Refusal, stage: Stage, situation: Situation) -> Decision:
+        """A look at the passage that is said to be too narrow, from close by, before one says so who is not sure of his
+        map: where looks were received he may misjudge, but how the squares of one look lie beside each other he knows.
+        """
+        model = situation.model
+        neck = refusal.neck() if decision.verdict == "impossible" and not model.view.sure else None
+        if neck is None:
+            return decision
+        near = exploring.close_to(situation.screens, *neck)
+        where = (neck[0] + model.view.west, neck[1] + model.view.south)
+        if contains(near, model):
+            self._narrow.append(where)
+        if any(math.dist(where, looked) <= exploring.CLOSE for looked in self._narrow):
+            return decision
+        again = Aim("inspect", near, "whether the passage is that narrow is not sure")
+        return self._pursue([again], stage, situation, refusal.reason)
 
     def _before_taking(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
         """A look at how the squares lie before an object is taken to be turned, by who has looked but a few times.

@@ -162,6 +162,13 @@ def sight_of(screens: Screens, mask: NDArray[np.bool_], what: str) -> Lookout:
     return Lookout(np.zeros(0, np.int64), what)
 
 
+def close_to(screens: Screens, x: float, y: float) -> Squares:
+    """Floor from which all about a place of the view lies within the fovea, looked from or not."""
+    mask = np.zeros(screens.floor.shape, np.bool_)
+    mask[int(y), int(x)] = True
+    return np.flatnonzero(screens.floor & grown(mask, CLOSE - 1))
+
+
 def short_of(screens: Screens, squares: Squares) -> Squares:
     """Floor from which it is seen what lies behind some squares: those that can be reached, or short of them."""
     mask = marked(squares, screens.floor.shape)

@@ -27,6 +27,7 @@ from planner.landing import in_view, lies_askew
 from planner.screen import UNSEEN
 
 Mask = NDArray[np.bool_]
+Place = tuple[float, float]
 LEVELS = (0, 2, UNSEEN)  # of certainty, that are tried
 MOST_ROUNDS = 12  # choices that geometry is asked to verify
 STRIDE = 0.25  # squares between the places at which the squares of a motion are taken down
@@ -59,10 +60,15 @@ class Haul:
 
 @dataclass(frozen=True)
 class Refusal:
-    """No way was found. proved : there is none, whatever the unseen holds. reason : in words, worked out when asked."""
+    """No way was found.
+
+    proved : there is none, whatever the unseen holds. reason : in words; neck : the middle of the passage that is too
+    narrow, in the view's frame, if it is for want of one. Both are worked out when asked.
+    """
 
     proved: bool
     reason: Callable[[], str]
+    neck: Callable[[], Place | None] = lambda: None
 
 
 @dataclass(frozen=True)
@@ -232,18 +238,23 @@ def _refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldMode
     if doubt:
         return Refusal(False, lambda: f"where {node.name} lies is not known well: {doubt}")
 
-    def reason() -> str:
-        last = _nearest_to_done(plans)
-        neck = last.passage
-        if neck is None:
-            return f"{node.name} cannot be carried there"
-        east, north = model.lattice.place_to_utak(neck.place[0] + model.view.west, neck.place[1] + model.view.south)
-        where = f"{neck.width:.2f} squares wide at POINT ({east:.1f} {north:.1f})"
-        if math.isinf(last.missing):
-            return f"{node.name} cannot be carried there: even were the passage, {where}, as wide as it, it could not"
-        return f"the passage for {node.name}, {where}, is too narrow by {last.missing:.2f} squares"
+    def neck() -> Place | None:
+        passage = _nearest_to_done(plans).passage
+        return None if passage is None else passage.place
 
-    return Refusal(True, reason)
+    def reason() -> str:
+        closest = _nearest_to_done(plans)
+        passage = closest.passage
+        if passage is None:
+            return f"{node.name} cannot be carried there"
+        x, y = passage.place
+        east, north = model.lattice.place_to_utak(x + model.view.west, y + model.view.south)
+        where = f"{passage.width:.2f} squares wide at POINT ({east:.1f} {north:.1f})"
+        if math.isinf(closest.missing):
+            return f"{node.name} cannot be carried there: even were the passage, {where}, as wide as it, it could not"
+        return f"the passage for {node.name}, {where}, is too narrow by {closest.missing:.2f} squares"
+
+    return Refusal(True, reason, neck)
 
 
 def _doubt(node: Node, plan: Carrying, model: WorldModel) -> str:
