@@ -32,6 +32,7 @@ TIGHTEST = 2  # times that a thing stood against something unawares before he ta
 MOST_PLANS = 40  # in one task
 LOOSE = 0.02  # squares by which he may stand elsewhere in his square before a turn needs more room
 OPEN_TURN, LOOSE_TURN = 2.5, 1.5  # commands that a turn counts for while it is open how the lattice, or he, lies
+BACK = 1.0  # squares by which a thing is drawn back from what it stands against
 NOWHERE = 0.1  # squares: who comes no further is where he was
 TEDIOUS = 8  # commands of a plan above which what is not clear about its way is looked at first
 SIGHT = "sight"  # the target of a plan that brings a thing near to where he wants to look
@@ -96,6 +97,7 @@ class Carrier:
         self._led: Course | None = None  # the plan to bring a thing near to where he wants to look
         self._plans = 0
         self._tight: dict[str, int] = {}  # how often a thing stood against something unawares
+        self._pushed: Translate | None = None  # the last motion with what he holds, if it was a push, and not back
         self._went_on: Place | None = None  # where a plan was last made that goes on with the hold he has
 
     @property
@@ -171,7 +173,7 @@ class Carrier:
             return None
         push = lead(node, squares, situation) if self.pull and model.held is not None else None
         if push is not None:
-            self._course, self._plans = None, self._plans + 1
+            self._course, self._plans, self._pushed = None, self._plans + 1, push
             return Act(_command(push, model), f"{node.name} is taken along")
         return self._led_near(node, squares, situation) if fetched else None
 
@@ -197,7 +199,11 @@ class Carrier:
     # -- when it fails ---------------------------------------------------------------------------
 
     def _failure(self, course: Course | None, model: WorldModel) -> Advice | None:
-        """What to do when a motion with something in hand did not move it: try once more, then from elsewhere."""
+        """What to do when a motion with something in hand did not move it: try once more, then from elsewhere.
+
+        A thing can hardly be pushed along what it touches by who slips, or believes the lattice a degree beside, for it
+        is pushed against that as well: what has moved before is first drawn back.
+        """
         held = model.object(model.held) if model.held else None
         if held is None and course is not None and course.grasped:
             self._blame(model.object(course.name), model)
@@ -205,8 +211,13 @@ class Carrier:
             return None
         if held.moved:
             self._tight[held.name] = self._tight.get(held.name, 0) + 1
+        pushed, self._pushed = self._pushed, None
         if held.stuck > 1 or self._tight.get(held.name, 0) > TIGHTEST:
             self._blame(held, model)
+        elif held.moved and pushed is not None and self.pull:
+            back = BACK / max(math.hypot(pushed.dx, pushed.dy), BACK)
+            drawn = Translate(-back * pushed.dx, -back * pushed.dy)
+            return Act(_command(drawn, model), f"{held.name} is drawn back from what it stands against")
         return Act(Release(), f"{held.name} did not move")
 
     def _blame(self, node: Node | None, model: WorldModel) -> None:
@@ -310,6 +321,7 @@ class Carrier:
         polygon = motion.carry(course.polygon)
         x, y = model.place
         place = (x + motion.dx, y + motion.dy) if isinstance(motion, Translate) else (x, y)
+        self._pushed = motion if isinstance(motion, Translate) else None
         rest = replace(leg, motions=leg.motions[1:])
         self._course = replace(course, legs=(rest, *course.legs[1:]), polygon=polygon, place=place)
         return Act(_command(motion, model), f"{course.name} is brought to {course.target}")
@@ -337,7 +349,7 @@ class Carrier:
         direction = _direction(leg, course, model)
         if direction is None:
             return None
-        self._course = replace(begun, grasped=True, place=begun.legs[0].place)
+        self._course, self._pushed = replace(begun, grasped=True, place=begun.legs[0].place), None
         return Act(Grasp(direction), f"{course.name} is taken to be carried to {course.target}")
 
 

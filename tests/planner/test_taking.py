@@ -298,3 +298,34 @@ def test_who_is_not_sure_of_his_map_looks_at_a_narrow_passage_from_close_by_befo
     there = situation_of(replace(model, place=(x, y)))
     assert decider._looked_again(verdict, refusal, stage, there) is verdict
     assert decider._looked_again(verdict, refusal, stage, situation_of(model)) is verdict  # he need not go there again
+
+
+@pytest.mark.parametrize(
+    ("pushed", "moved", "stuck", "pull", "drawn"),
+    [
+        (Translate(6.0, 8.0), True, 1, True, (-0.6, -0.8)),
+        (Translate(0.3, 0.0), True, 1, True, (-0.3, 0.0)),  # no further than it was pushed
+        (Translate(6.0, 8.0), True, 2, True, None),  # that did not help
+        (Translate(6.0, 8.0), False, 1, True, None),  # it may not be in hand at all
+        (Translate(6.0, 8.0), True, 1, False, None),
+        (None, True, 1, True, None),  # it was turned, or drawn back
+    ],
+)
+def test_what_stands_against_something_is_first_drawn_back_from_it(
+    pushed: Translate | None, moved: bool, stuck: int, pull: bool, drawn: tuple[float, float] | None
+) -> None:
+    model = beside(()).model
+    node = replace(model.objects[0], moved=moved, stuck=stuck)
+    model = replace(model, objects=(node,), held=node.name)
+    carrier = Carrier(pull)
+    carrier._pushed = pushed
+    found = carrier._failure(None, model)
+    assert isinstance(found, Act)
+    if drawn is None:
+        assert found.command == Release()
+        return
+    assert isinstance(found.command, Push)
+    assert (found.command.east, found.command.north) == pytest.approx(drawn)
+    again = carrier._failure(None, model)
+    assert isinstance(again, Act)
+    assert again.command == Release()
