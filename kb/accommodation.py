@@ -112,9 +112,9 @@ class Memory:
     @property
     def closed(self) -> frozenset[tuple[int, int]]:
         """The squares on which something stands, or likely does, for it stopped a motion."""
-        doubted = self.suspected | (self.barred if self.slipped else set())  # who slips may have stopped by himself
-        settled = {square for square in doubted if self.evidence.state[self.evidence.index(*square)] != OPEN}
-        return frozenset((self.barred | self.suspected) - settled)
+        sure = set() if self.slipped else self.barred  # who slips may have stopped by himself
+        doubted = (self.barred | self.suspected) - sure
+        return frozenset((*sure, *(s for s in doubted if self.evidence.state[self.evidence.index(*s)] == OPEN)))
 
     @property
     def _before(self) -> tuple[Moved, ...]:
@@ -377,7 +377,7 @@ class Memory:
     def _choose(self, explanations: list[Explanation], unchanged: bool = False) -> Explanation:
         """The explanation to believe. unchanged : nothing looks otherwise than at the last look."""
         facts = [f"trust({0 if self._off_middle else self.trust})", *["slips"] * self.slipped]
-        facts += [f"odd({number})" for number, e in enumerate(explanations) if e.odd and not self._off_middle]
+        facts += ["off_middle"] * self._off_middle
         facts += ["proven"] * (self.held is not None and self.loads[self.held].proven)
         return cheapest(explanations, [*facts, *["unchanged"] * unchanged])
 

@@ -98,6 +98,7 @@ def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Expla
     offered = [
         f"explanation({number},{e.how},{e.misfits},{math.ceil(e.distance)})" for number, e in enumerate(explanations)
     ]
+    offered += [f"odd({number})" for number, e in enumerate(explanations) if e.odd]
     answer = solve([KB / "accommodation.lp"], [*offered, *facts])
     if not answer:
         raise AssertionError("accommodation.lp always has an answer")

@@ -215,8 +215,7 @@ class Carrier:
         if held.stuck > 1 or self._tight.get(held.name, 0) > TIGHTEST:
             self._blame(held, model)
         elif held.moved and pushed is not None and self.pull:
-            back = BACK / max(math.hypot(pushed.dx, pushed.dy), BACK)
-            drawn = Translate(-back * pushed.dx, -back * pushed.dy)
+            drawn = pushed.reversed().part(BACK / max(math.hypot(pushed.dx, pushed.dy), BACK))
             return Act(_command(drawn, model), f"{held.name} is drawn back from what it stands against")
         return Act(Release(), f"{held.name} did not move")
 

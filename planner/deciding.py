@@ -283,8 +283,8 @@ class Decider:
         neck = refusal.neck() if decision.verdict == "impossible" and not model.view.sure else None
         if neck is None:
             return decision
-        near = exploring.close_to(situation.screens, *neck)
         where = (neck[0] + model.view.west, neck[1] + model.view.south)
+        near = exploring.close_to(situation.screens, *where)
         if contains(near, model):
             self._narrow.append(where)
         if any(math.dist(where, looked) <= exploring.CLOSE for looked in self._narrow):

@@ -3,6 +3,7 @@
 These are candidates only; planner/asp/aims.lp chooses among them.
 """
 
+import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -163,9 +164,8 @@ def sight_of(screens: Screens, mask: NDArray[np.bool_], what: str) -> Lookout:
 
 
 def close_to(screens: Screens, x: float, y: float) -> Squares:
-    """Floor from which all about a place of the view lies within the fovea, looked from or not."""
-    mask = np.zeros(screens.floor.shape, np.bool_)
-    mask[int(y), int(x)] = True
+    """Floor from which all about a point of the lattice lies within the fovea, looked from or not."""
+    mask = screens.model.squares([(math.floor(x), math.floor(y))])
     return np.flatnonzero(screens.floor & grown(mask, CLOSE - 1))
 
 
