@@ -14,7 +14,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.rigid import Rotate
+from geometry.rigid import Motion, Rotate
 from kb.body import Command, Impression, Move, Push, Release, Turn
 from kb.doubting import explained
 from kb.evidence import FREE, OPEN, Evidence
@@ -35,15 +35,15 @@ from kb.heading import (
     standing,
 )
 from kb.lattice import CENTRE, Lattice
-from kb.loads import ROUNDING, Load, borne_out, discounted, slack_of
+from kb.leaning import after, leaning
+from kb.loads import ROUNDING, Load, borne_out, discounted
 from kb.relaying import laid, relaid
 from kb.retina import count_ranges
 from kb.stops import HAIR, Moved, around, ends, next_square, retold
 from kb.supposing import Surprise, agreeing, as_motion, clashes, laid_on
-from kb.suspecting import suspects
+from kb.suspecting import Hindrances, suspects
 
 MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one is believed
-NOWHERE = 0.2  # squares: what was stopped sooner than this did not move
 NONE_FITS = 10**6  # misfits of no lattice at all
 MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are blamed for what contradicts
 HOPELESS = 18  # times that no other lattice explained it better, with things moved, before none is tried any more
@@ -196,27 +196,27 @@ class Memory:
             explanations = [chosen, *outcomes, *self._elsewhere(surprise, chosen.misfits, simple)]
             chosen = self._choose(explanations, np.array_equal(ranges, self.looks[-1].ranges))
         self._lie(chosen)
-        load, motion = self.loads[load.name], as_motion(command, self.lattice, self.place)
-        others = [other for other in self.loads.values() if other.name != load.name]
-        self.suspected |= suspects(chosen.outcome, motion, load, others, self.evidence)
-        self._carried(self.loads[load.name], chosen)
+        self._carried(self.loads[load.name], chosen, as_motion(command, self.lattice, self.place), ranges)
         self.place = chosen.place
         self._stray(ranges)
         return self._take_in(chosen, ranges)
 
-    def _carried(self, load: Load, chosen: Explanation) -> None:
+    def _carried(self, load: Load, chosen: Explanation, motion: Motion, ranges: NDArray[np.int16]) -> None:
         """Believe what came of a motion with a load in hand."""
         self.slipped |= chosen.how == "slipped"
-        outcome = chosen.outcome
-        load = replace(load, unexplained=max(load.unexplained, chosen.misfits))
-        if outcome is None or outcome.how == "stuck" or outcome.polygon.equals(load.polygon):
-            self.loads[load.name] = load.resisted()
-        else:
-            slack = load.slack if outcome.how == "predicted" else max(load.slack, slack_of(outcome.polygon))
-            moved = load.moved(outcome.polygon, slack, outcome.degrees)
-            moved = replace(moved, empty=moved.empty | outcome.against)
-            nowhere = outcome.how == "blocked" and load.polygon.hausdorff_distance(outcome.polygon) < NOWHERE
-            self.loads[load.name] = replace(moved, stuck=load.stuck + 1) if nowhere else moved
+        others, place = self._others(load), chosen.place
+        suspected = suspects(chosen.outcome, motion, load, others, self.evidence)
+        self.suspected |= suspected
+        load = replace(load, inexact=load.inexact or self.slipped)
+        carried = after(load, chosen.outcome, chosen.misfits, bool(suspected))
+        if carried.inexact and carried.proven and not suspected and chosen.outcome and chosen.outcome.stopped:
+            walls = Hindrances(self.evidence, place, carried.polygon, motion).walls
+            carried = leaning(carried, motion, walls, lambda lying: self._clashes(ranges, place, [*others, lying]))
+        self.loads[load.name] = carried
+
+    def _others(self, load: Load) -> list[Load]:
+        """All loads but one."""
+        return [other for other in self.loads.values() if other.name != load.name]
 
     def _stray(self, ranges: NDArray[np.int16]) -> None:
         """How far what was turned may lie from where it is believed to, as it is open where in his square he woke."""
@@ -257,8 +257,7 @@ class Memory:
         return [Explanation(outcome.how, outcome.place, self.lattice, found.misfits, outcome.distance, outcome)]
 
     def _outcome(self, ranges: NDArray[np.int16], load: Load, outcome: Outcome) -> Explanation:
-        others = [other for other in self.loads.values() if other.name != load.name]
-        loads = [*others, load.moved(outcome.polygon, load.slack)]
+        loads = [*self._others(load), load.moved(outcome.polygon, load.slack)]
         misfits = self._clashes(ranges, outcome.place, loads)
         return Explanation(outcome.how, outcome.place, self.lattice, misfits, outcome.distance, outcome)
 

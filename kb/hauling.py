@@ -37,6 +37,11 @@ class Outcome(NamedTuple):
     distance: float
     against: frozenset[tuple[int, int]] = frozenset()
 
+    @property
+    def stopped(self) -> bool:
+        """Did the motion end early, or not begin?"""
+        return self.how in ("stuck", "blocked")
+
 
 def predicted(place: Place, polygon: Any, motion: Motion) -> Outcome:
     """The motion as it was commanded."""

@@ -221,6 +221,7 @@ def _node(load: Load, patch: Patch, label: int) -> Node:
         turned=load.turned,
         stuck=load.stuck,
         dubious=load.dubious,
+        inexact=load.inexact,
     )
 
 

@@ -42,7 +42,9 @@ class Load:
     move it. since : how many looks had been received when it was first held. astray : squares by which it may lie
     otherwise besides, for it is not known where in his square Utak stands, and so about what it was turned.
     unexplained : fields that the worst explained of its motions left as noise. skewed : its outline was measured on
-    another lattice, and could not be measured on this one.
+    another lattice, and could not be measured on this one. thwarted : motions in all that did not move it though it had
+    moved before, and nothing is suspected to have stopped it. inexact : it lies only about where it is believed to,
+    also where its corners seem to lie on the lattice.
     """
 
     name: str
@@ -61,6 +63,8 @@ class Load:
     astray: float = 0.0
     unexplained: int = 0
     skewed: bool = False
+    thwarted: int = 0
+    inexact: bool = False
 
     @property
     def dubious(self) -> bool:
@@ -96,7 +100,8 @@ class Load:
         """The load where a polygon says, of which no look has told yet. otherwise : its slack, unless it is whole."""
         nothing: frozenset[Square] = frozenset()
         placed = whole(polygon)
-        return replace(self, polygon=placed, slack=slack_of(placed, otherwise), full=nothing, empty=nothing)
+        slack = max(otherwise, SLIGHT) if self.inexact else slack_of(placed, otherwise)
+        return replace(self, polygon=placed, slack=slack, full=nothing, empty=nothing)
 
     def seen(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> "Load":
         """The load after a look from square (x, y): fields of a single square tell which of the open ones it covers."""

@@ -92,7 +92,7 @@ def suspects(
     """
     if outcome is not None and outcome.against:
         return outcome.against
-    if outcome is None or outcome.how not in ("stuck", "blocked") or not load.proven:
+    if outcome is None or not outcome.stopped or not load.proven:
         return NOTHING
     place, polygon = ahead(outcome.place, outcome.polygon, motion)
     there = covered(polygon).squares() | {(math.floor(place[0]), math.floor(place[1]))}

@@ -68,7 +68,7 @@ class Node:
     colour : as felt, or None. support : the impressions that settled its squares.
     movable : that it can be moved, in percent. moved : he has moved it. turned : degrees by which, since he first held
     it. stuck : motions in a row that did not move it. dubious : it may well lie elsewhere or be of another outline, for
-    what is seen agrees ill with how it came there.
+    what is seen agrees ill with how it came there. inexact : it lies only about there.
     """
 
     name: str
@@ -87,6 +87,7 @@ class Node:
     turned: float = 0.0
     stuck: int = 0
     dubious: bool = False
+    inexact: bool = False
 
 
 @dataclass(frozen=True)
@@ -151,8 +152,12 @@ class WorldModel:
 
     @cached_property
     def floor(self) -> Mask:
-        """(rows, columns): the zero region in which Utak stands."""
+        """(rows, columns): the zero region in which Utak stands; the nearest one when he believes himself in a wall."""
         row, column = self.view.locate(*self.place)
+        if not self.space[row, column] and self.space.any():
+            rows, columns = np.nonzero(self.space)
+            nearest = np.hypot(rows - row, columns - column).argmin()
+            row, column = int(rows[nearest]), int(columns[nearest])
         mask: Mask = self.labels == self.labels[row, column]
         return mask
 

@@ -252,3 +252,16 @@ def test_far_squares_are_not_certain_while_the_lattice_may_lie_a_little_otherwis
     share = int(sure.split(",")[-1].rstrip(")"))
     assert (share == 100) == bool(model.certain[model.floor].all())
     assert not replace(known, view=known.view._replace(sure=False)).certain.any()
+
+
+@pytest.mark.parametrize("place", [(0.5, 0.5), (-1.5, 0.5), (-2.5, -1.5)])
+def test_who_believes_himself_in_a_wall_stands_on_the_floor_beside_it(place: tuple[float, float]) -> None:
+    model = seen_whole(
+        ["b" * 12, *["bbb" + "." * 8 + "b"] * 4, "bbbU" + "." * 7 + "b", *["bbb" + "." * 8 + "b"] * 2, "b" * 12]
+    )
+    shifted = replace(model, place=place)
+    assert shifted.space[shifted.view.locate(*place)] == (place == (0.5, 0.5))
+    assert (shifted.floor == model.floor).all()
+    assert {side: corner.point for side, corner in corners(shifted).items()} == {
+        side: corner.point for side, corner in corners(model).items()
+    }
