@@ -9,9 +9,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from geometry.carrying import Inside, Leg
 from geometry.ends import End
 from geometry.rigid import Motion, Rotate, Translate
@@ -22,17 +19,18 @@ from kb.worldmodel import SPACE, Node, WorldModel
 from planner.course import Course, Place, clear_part, course_of, followed, from_here, square_of, stands
 from planner.destinations import Situation
 from planner.exploring import Lookout, inspection, sight_of
+from planner.failing import FailedHolds
+from planner.freeing import drawn_back
 from planner.haulage import Haul, Hauler, Refusal, Request
 from planner.landing import region_of
 from planner.leading import lead, near
 from planner.screen import Squares, grown
 from planner.walking import is_open
 
-TIGHTEST = 2  # times that a thing stood against something unawares before he takes it elsewhere
+TIGHTEST, SLIPPERY = 2, 4  # times that a thing stood against something unawares before he takes it elsewhere; who slips
 MOST_PLANS = 40  # in one task
 LOOSE = 0.02  # squares by which he may stand elsewhere in his square before a turn needs more room
 OPEN_TURN, LOOSE_TURN = 2.5, 1.5  # commands that a turn counts for while it is open how the lattice, or he, lies
-BACK = 1.0  # squares by which a thing is drawn back from what it stands against
 NOWHERE = 0.1  # squares: who comes no further is where he was
 TEDIOUS = 8  # commands of a plan above which what is not clear about its way is looked at first
 SIGHT = "sight"  # the target of a plan that brings a thing near to where he wants to look
@@ -81,13 +79,13 @@ class Beginning(NamedTuple):
 class Carrier:
     """Carries things, one plan after the other.
 
-    began : where what is meant by each parameter lay at first. failed : holds by which a thing did not move, in its own
-    frame. missed : plans that did not lead where they should, with the thing in hand, since this was last set.
+    began : where what is meant by each parameter lay at first. failed : holds by which a thing did not move.
+    missed : plans that did not lead where they should, with the thing in hand, since this was last set.
     """
 
     pull: bool = True
     began: dict[str, Beginning] = field(default_factory=dict)
-    failed: dict[str, tuple[Place, ...]] = field(default_factory=dict)
+    failed: FailedHolds = field(default_factory=FailedHolds)
     missed: int = 0
 
     def __post_init__(self) -> None:
@@ -142,14 +140,19 @@ class Carrier:
             advice = self._next(found, ends if found.name == node.name else {}, situation)
             if advice is not None:
                 return advice
-            self._blame(situation.model.object(found.name), situation.model)
+            self.failed.blame(situation.model.object(found.name), situation.model)
             course, self._course = None, None
+
+    def refused(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Refusal | None:
+        """Why an object cannot be carried to any of several ends, if it cannot."""
+        found = self._hauler.find(self._request(node, ends, "", situation.model), situation)
+        return found if isinstance(found, Refusal) else None
 
     def given_up(self, model: WorldModel) -> Act:
         """What to do when that which he holds went round in circles: let go of it, and do not take it so again."""
         assert model.held is not None
         self._course = None
-        self._blame(model.object(model.held), model)
+        self.failed.blame(model.object(model.held), model)
         return Act(Release(), f"{model.held} goes round in circles")
 
     def gone_on(self, node: Node, situation: Situation) -> Act | None:
@@ -206,27 +209,18 @@ class Carrier:
         """
         held = model.object(model.held) if model.held else None
         if held is None and course is not None and course.grasped:
-            self._blame(model.object(course.name), model)
+            self.failed.blame(model.object(course.name), model)
         if held is None or not held.stuck:
             return None
         if held.moved:
             self._tight[held.name] = self._tight.get(held.name, 0) + 1
         pushed, self._pushed = self._pushed, None
-        if held.stuck > 1 or self._tight.get(held.name, 0) > TIGHTEST:
-            self._blame(held, model)
+        if held.stuck > 1 or self._tight.get(held.name, 0) > (SLIPPERY if held.inexact else TIGHTEST):
+            self.failed.blame(held, model)
         elif held.moved and pushed is not None and self.pull:
-            drawn = pushed.reversed().part(BACK / max(math.hypot(pushed.dx, pushed.dy), BACK))
+            drawn = drawn_back(held, pushed, model)
             return Act(_command(drawn, model), f"{held.name} is drawn back from what it stands against")
         return Act(Release(), f"{held.name} did not move")
-
-    def _blame(self, node: Node | None, model: WorldModel) -> None:
-        """Do not take a thing again from the square on which Utak stands now: plans have him in its middle."""
-        if node is None or node.polygon is None:
-            return
-        middle = node.polygon.centroid
-        square = np.floor(model.place) + np.array(CENTRE)
-        holds = np.array([model.place, square]) - (middle.x, middle.y)
-        self.failed[node.name] = (*self.failed.get(node.name, ()), *_turned(holds, -node.turned))
 
     # -- making one ------------------------------------------------------------------------------
 
@@ -236,6 +230,8 @@ class Carrier:
         if isinstance(haul, Refusal) and situation.model.held == node.name and not request.held:
             request = replace(request, held=True)  # to let go and take it otherwise does not help either
             haul = self._hauler.find(request, situation)
+        if isinstance(haul, Refusal) and not haul.proved and self.failed.forgiven(node):
+            return self._planned(node, ends, last, situation)
         if isinstance(haul, Refusal):
             return haul
         if haul.aside:
@@ -271,7 +267,7 @@ class Carrier:
         nowhere = self._went_on is not None and math.dist(self._went_on, model.place) < NOWHERE
         held = model.held == node.name and not nowhere
         tight = self._tight.get(node.name, 0) + (model.lattice.woke != CENTRE and max(model.leeway) > LOOSE)
-        return Request(node, ends, self._avoided(node), last, tight, held, _price_of_a_turn(model))
+        return Request(node, ends, self.failed.of(node), last, tight, held, _price_of_a_turn(model))
 
     def _clearing(self, other: Node, haul: Haul, situation: Situation) -> tuple[Node, Haul] | None:
         """A way to carry a thing off the squares that a plan needs, if it stands there and there is one."""
@@ -281,10 +277,6 @@ class Carrier:
         request = self._request(other, {"away": Inside(region_of(room & ~haul.swept))}, "", situation.model)
         found = self._hauler.find(request, situation)
         return (other, found) if isinstance(found, Haul) and found.plan.legs and not found.aside else None
-
-    def _avoided(self, node: Node) -> tuple[Place, ...]:
-        """The holds that failed, as the object lies now."""
-        return _turned(np.array(self.failed.get(node.name, ())).reshape(-1, 2), node.turned)
 
     def _seen(self, haul: Haul, node: Node, situation: Situation) -> See | None:
         """What of the way of a plan must be looked at before it is begun, if a look may tell more of it.
@@ -359,11 +351,6 @@ def _price_of_a_turn(model: WorldModel) -> float:
     if is_open(model):
         return OPEN_TURN
     return LOOSE_TURN if max(model.leeway) > LOOSE else 1.0
-
-
-def _turned(holds: NDArray[np.float64], degrees: float) -> tuple[Place, ...]:
-    """Holds, (n, 2), turned about the middle of their thing."""
-    return tuple((float(x), float(y)) for x, y in Rotate(degrees, (0.0, 0.0)).points(holds))
 
 
 def _direction(leg: Leg, course: Course, model: WorldModel) -> str | None:

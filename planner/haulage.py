@@ -32,6 +32,7 @@ LEVELS = (0, 2, UNSEEN)  # of certainty, that are tried
 MOST_ROUNDS = 12  # choices that geometry is asked to verify
 STRIDE = 0.25  # squares between the places at which the squares of a motion are taken down
 MARGIN = 0.3  # squares kept free about a thing whose outline is not whole
+WIDEST = 0.6  # at most: what is kept free on either side must leave a way through doors
 
 
 @dataclass(frozen=True)
@@ -147,7 +148,7 @@ class Hauler:
         if key not in self._known:
             if len(self._known) > 64:
                 self._known.clear()
-            margin = MARGIN * (request.tight + (not is_whole(shape)))
+            margin = min(MARGIN * (request.tight + (not is_whole(shape))), WIDEST)
             end, held, turn = request.ends[name], request.held, request.turn
             self._known[key] = plan_carrying(
                 shape, free, utak, end, margin, self._pull, avoid, walk, held=held, turn=turn

@@ -13,6 +13,7 @@ import shapely
 from numpy.typing import NDArray
 
 from geometry.carrying import At, InCorner, Inside
+from geometry.components import components
 from geometry.ends import End, met, placed
 from geometry.reach import UNREACHED, reach
 from geometry.rigid import Pose
@@ -46,6 +47,8 @@ class Landing:
     approach : places near to where it must end, from which it can be told better where that is; the best first.
     holds : the goal holds as the object lies now. there : it does, but for what must be known first.
     loose : where it may lie if it cannot be brought to any of the ends.
+    must_reach : what it must come to lie on wherever it must end, while that is not known: squares that were not seen,
+    and those of the one end that may be it.
     """
 
     ends: Mapping[str, End]
@@ -55,6 +58,7 @@ class Landing:
     holds: bool = False
     there: bool = False
     loose: Mapping[str, End] = field(default_factory=dict)
+    must_reach: Mapping[str, End] = field(default_factory=dict)
 
 
 def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
@@ -135,7 +139,9 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
         floor = _floor(node, situation)
         unknown = unknown_corner(side, situation, floor)
         if unknown is not None:
-            return Landing({}, unknown.missing, unknown.lookouts, _near(side, node, situation, floor))
+            must_reach = {side: Inside(region_of(_onward(side, node, situation)))}
+            near = _near(side, node, situation, floor)
+            return Landing({}, unknown.missing, unknown.lookouts, near, must_reach=must_reach)
     land = _in_corner(side, node, situation)
     if land.holds or _lies_in(land.ends, node, situation):
         rooms = rooms_to_see(side, situation)
@@ -171,10 +177,14 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
 def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Landing:
     """In a corner, and what was turned askew so that it reaches hardly further from the walls than it would straight.
 
-    Where that cannot be it may lie there askew.
+    Where that cannot be it may lie there askew. What lies only about where it is believed to must be nearer, if it can.
     """
+    loosely = end
+    if node.inexact:
+        end = replace(end, slack=ABOUT)
     if not lies_askew(node):
-        return Landing({side: replace(end, slack=ABOUT)}, holds=lands(end, shape))
+        loose = {side: loosely} if node.inexact else {}
+        return Landing({side: replace(end, slack=ABOUT)}, holds=lands(end, shape), loose=loose)
     x0, y0, x1, y1 = placed(shape, Pose(0.0, 0.0, -node.turned % 90.0)).bounds
     near, far = sorted((x1 - x0, y1 - y0))
     flat = replace(end, within=(near + LEANING, far + LEANING))
@@ -194,23 +204,38 @@ def _near(side: str, node: Node, situation: Situation, floor: Mask) -> Mapping[s
     Best in the corner of what is seen: he takes it then so that he does not stand in its way there, and when that is
     the true one it is there already. Else about it. floor : (rows, columns) that he can reach.
     """
-    column, row = situation.corners[side].square
     into, shape = _into_corner(side, situation), in_view(node.polygon, situation)
     if lands(into, shape):
         return {}
     mask = situation.model.space & floor | situation.model.mask(node.patch)
-    rows, columns = np.ogrid[: mask.shape[0], : mask.shape[1]]
-    about = Inside(region_of(mask & (abs(rows - row) <= IN_SIGHT) & (abs(columns - column) <= IN_SIGHT)))
+    about = Inside(region_of(mask & _about(side, IN_SIGHT, situation)))
     there = about.polygon.is_empty or lands(about, shape)
     return {f"near_{side}": into} | ({} if there else {f"about_{side}": about})
 
 
+def _onward(side: str, node: Node, situation: Situation) -> Mask:
+    """(rows, columns): the squares that were not seen, and the floor that a thing in a corner would lie on."""
+    column, row = situation.corners[side].square
+    x0, y0, x1, y1 = node.polygon.bounds
+    about = _about(side, math.ceil(math.hypot(x1 - x0, y1 - y0)) + 1, situation)
+    labels = components(situation.model.space & about).labels
+    mask: Mask = ~situation.model.view.seen | ((labels == labels[row, column]) & (labels > 0))
+    return mask
+
+
+def _about(side: str, squares: int, situation: Situation) -> Mask:
+    """(rows, columns): within so many rows and columns of a corner."""
+    column, row = situation.corners[side].square
+    high, wide = situation.model.view.seen.shape
+    rows, columns = np.ogrid[:high, :wide]
+    mask: Mask = (abs(rows - row) <= squares) & (abs(columns - column) <= squares)
+    return mask
+
+
 def _floor(node: Node, situation: Situation) -> Mask:
-    """(rows, columns): the squares that Utak can reach; what he holds does not shut him in, for it goes with him."""
-    screens, model = situation.screens, situation.model
-    if model.held != node.name:
-        return screens.floor
-    mask: Mask = reach(screens.free(0) | model.mask(node.patch), *screens.here) != UNREACHED
+    """(rows, columns): the squares that Utak can reach; what is to be carried does not shut him in: it goes along."""
+    screens = situation.screens
+    mask: Mask = reach(screens.free(0) | situation.model.mask(node.patch), *screens.here) != UNREACHED
     return mask
 
 

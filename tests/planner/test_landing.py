@@ -10,6 +10,7 @@ import shapely.affinity
 from kb.factfile import facts_of
 from kb.loads import covered
 from kb.worldmodel import Node, WorldModel
+from planner.carrier import Carrier
 from planner.landing import Landing, landing, lands
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
@@ -35,12 +36,40 @@ def landing_of(model: WorldModel, held: bool) -> Landing:
 
 
 @pytest.mark.parametrize("held", [True, False])
-def test_what_he_holds_does_not_shut_him_in(held: bool) -> None:
+def test_what_he_carries_does_not_shut_him_in(held: bool) -> None:
     model = seen_whole(SHUT_IN)
     assert np.count_nonzero(situation_of(model).screens.floor) == 1
-    found = landing_of(model, held)
-    assert bool(found.ends) == held
-    assert ("passage" in found.missing) != held
+    assert landing_of(model, held).ends
+
+
+def test_what_cannot_be_carried_away_does() -> None:
+    model = seen_whole([row.replace("g", "b") for row in SHUT_IN])
+    square = shapely.box(8, 0, 11, 3)
+    node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square)
+    found = landing(NORTHEAST, node, (0.0, 0.0), situation_of(replace(model, objects=(node,)), {"x": "o1"}))
+    assert not found.ends
+    assert "passage" in found.missing
+
+
+@pytest.mark.parametrize("wide", [2, 4])
+def test_what_stands_before_a_door_is_too_wide_for_it_or_may_pass_whatever_lies_behind(wide: int) -> None:
+    door = "b" * 8 + "." * wide + "b" * (12 - wide)
+    rows = ["?" * 20] * 4 + ["b" + "." * 18 + "b"] * 2 + [door] * 2
+    rows += ["b" + "." * 18 + "b"] * 6 + ["b..U" + "." * 15 + "b", "b" * 20]
+    model = seen_whole(rows)
+    square = shapely.box(5, 4, 8, 7)
+    node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square, moved=True, movable=99)
+    situation = situation_of(replace(model, objects=(node,)), {"x": node.name})
+    found = landing(NORTHEAST, node, (0.0, 0.0), situation)
+    assert not found.ends
+    refusal = Carrier().refused(node, found.must_reach, situation)
+    if wide > 3:
+        assert refusal is None
+        return
+    assert refusal is not None
+    assert refusal.proved
+    assert "2.00 squares wide" in refusal.reason()
+    assert "too narrow by 1.00" in refusal.reason()
 
 
 OPEN_ENDED = [
@@ -93,3 +122,18 @@ def test_what_lies_askew_in_a_corner_must_not_reach_far_from_its_walls(turned: f
     shape = shapely.affinity.translate(there, -model.view.west, -model.view.south)
     assert bool(found.loose) == (not holds)
     assert all(lands(end, shape) for end in found.loose.values())
+
+
+@pytest.mark.parametrize(("gap", "inexact", "holds"), [(0.9, False, True), (0.9, True, False), (0.4, True, True)])
+def test_what_lies_only_about_there_must_be_nearer_to_its_corner_if_it_can(
+    gap: float, inexact: bool, holds: bool
+) -> None:
+    model = seen_whole(WALLED)
+    row, column = np.argwhere(model.space)[-1]
+    east, north = model.view.west + column + 1 - gap, model.view.south + row + 1 - gap
+    there = shapely.box(east - 4, north - 4, east, north)
+    node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True, inexact=inexact)
+    found = landing(NORTHEAST, node, (3.5, 1.5), situation_of(replace(model, objects=(node,)), {"x": "o1"}))
+    shape = shapely.affinity.translate(there, -model.view.west, -model.view.south)
+    assert found.holds == holds
+    assert [lands(end, shape) for end in found.loose.values()] == [True] * inexact

@@ -1,0 +1,61 @@
+"""Freeing a thing that stands against something: it is drawn back, and aside so far that it can go on."""
+
+import itertools
+import math
+from typing import Any
+
+import numpy as np
+import shapely
+
+from geometry.contact import Body, Obstacles
+from geometry.rigid import Translate
+from kb.evidence import FULL
+from kb.worldmodel import Node, WorldModel
+
+BACK = 1.0  # squares by which it is drawn back
+ONWARD = 3.0  # squares further on for which there must be room
+STEP, MOST = 0.1, 10  # squares between the ways aside that are tried, and how many there are to either side
+ROOM = 0.3  # squares more than what just lets it pass, if there is so much room to either side
+ABOUT = 4  # squares about it in which something may stand in its way
+
+
+def drawn_back(node: Node, pushed: Translate, model: WorldModel) -> Translate:
+    """The push that frees a thing which was stopped in a push: aside as well when it lies only about where he believes.
+
+    Where it is known exactly nothing that he knows can have stopped it.
+    """
+    polygon: Any = node.polygon
+    length = math.hypot(pushed.dx, pushed.dy)
+    if not length:
+        return pushed
+    far = min(BACK, length)
+    x, y = pushed.dx / length, pushed.dy / length
+    walls = _walls(node, model)
+
+    def way(aside: float) -> Translate:
+        return Translate(-far * x - aside * y, -far * y + aside * x)
+
+    def passes(aside: float) -> bool:
+        onward = Translate((far + ONWARD) * x, (far + ONWARD) * y)
+        back = way(aside)
+        free = walls.first_contact(Body(polygon), back).fraction == 1
+        return free and walls.first_contact(Body(back.carry(polygon)), onward).fraction == 1
+
+    sides = sorted((STEP * n for n in range(-MOST, MOST + 1)), key=abs)
+    least = next((aside for aside in sides if passes(aside)), None) if node.inexact else None
+    if not least:  # there is no such way, or nothing known stands in its way
+        return way(0.0)
+    side = math.copysign(1.0, least)
+    further = (least + side * STEP * n for n in range(1, 2 * round(ROOM / STEP) + 1))
+    free = [least, *itertools.takewhile(passes, further)]
+    return way(free[len(free) // 2])
+
+
+def _walls(node: Node, model: WorldModel) -> Obstacles:
+    """All that surely stands about a thing, square by square."""
+    view, reach = model.view, ABOUT + ONWARD
+    x0, y0, x1, y1 = node.polygon.bounds
+    rows, columns = np.nonzero((view.state == FULL) & ~model.mask(node.patch))
+    x, y = columns + view.west, rows + view.south
+    near = (x0 - reach < x) & (x < x1 + reach) & (y0 - reach < y) & (y < y1 + reach)
+    return Obstacles(list(shapely.box(x[near], y[near], x[near] + 1, y[near] + 1)))
