@@ -42,6 +42,15 @@ class Translate(NamedTuple):
         """The motion back."""
         return Translate(-self.dx, -self.dy)
 
+    def steered(self, onward: float, left: float) -> "Translate":
+        """So many squares on in the direction of this motion, and so many to its left; both may be negative.
+
+        ZeroDivisionError for a motion that leads nowhere.
+        """
+        length = math.hypot(self.dx, self.dy)
+        x, y = self.dx / length, self.dy / length
+        return Translate(onward * x - left * y, onward * y + left * x)
+
     def points(self, points: Floats) -> Floats:
         """Points (n, 2) after the motion."""
         moved: Floats = points + np.array([self.dx, self.dy])

@@ -50,7 +50,7 @@ def leaning(load: Load, motion: Motion, walls: Obstacles, clashes: Callable[[Loa
     for far, there in sorted(_touching(load.polygon, motion, walls), key=lambda place: place[0]):
         if far <= TOUCHING:
             return load
-        lying = replace(load.lying(there), slack=max(load.slack, slack_of(there)))
+        lying = load.lying(there, load.slack)
         if clashes(lying) <= most:
             return lying
     return load
@@ -58,14 +58,12 @@ def leaning(load: Load, motion: Motion, walls: Obstacles, clashes: Callable[[Loa
 
 def _touching(polygon: Any, motion: Translate, walls: Obstacles) -> Iterator[tuple[float, Any]]:
     """How far away, and where, a thing touches what stops it on a motion, for ways to either side of it."""
-    length = math.hypot(motion.dx, motion.dy)
-    if not length:
+    if not any(motion):
         return
-    x, y = motion.dx / length, motion.dy / length
+    onward = motion.steered(2 * FURTHEST, 0.0)
     for step in range(-round(FURTHEST / STEP), round(FURTHEST / STEP) + 1):
         aside = step * STEP
-        back = Translate(-FURTHEST * x - aside * y, -FURTHEST * y + aside * x).carry(polygon)
-        onward = Translate(2 * FURTHEST * x, 2 * FURTHEST * y)
+        back = motion.steered(-FURTHEST, aside).carry(polygon)
         part = walls.first_contact(Body(back), onward).fraction
         far = math.hypot(aside, (2 * part - 1) * FURTHEST)
         if 0 < part < 1 and far <= FURTHEST:

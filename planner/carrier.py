@@ -230,10 +230,9 @@ class Carrier:
         if isinstance(haul, Refusal) and situation.model.held == node.name and not request.held:
             request = replace(request, held=True)  # to let go and take it otherwise does not help either
             haul = self._hauler.find(request, situation)
-        if isinstance(haul, Refusal) and not haul.proved and self.failed.forgiven(node):
-            return self._planned(node, ends, last, situation)
         if isinstance(haul, Refusal):
-            return haul
+            again = not haul.proved and self.failed.forgiven(node)
+            return self._planned(node, ends, last, situation) if again else haul
         if haul.aside:
             cleared = (self._clearing(other, haul, situation) for other in situation.model.objects)
             first = next((found for found in cleared if found is not None), None)

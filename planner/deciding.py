@@ -241,8 +241,9 @@ class Decider:
         fetched = not land.lookouts and not land.ends and not is_open(situation.model)
         brought = None if land.there else partial(along, fetched=fetched)
         decision = self._pursue(aims, stage, situation, advice.reason, verdict, brought)
-        if decision.verdict and land.must_reach:
-            shut_in = self.carrier.refused(node, land.must_reach, situation)
+        must_reach = land.must_reach() if decision.verdict else {}
+        if must_reach:
+            shut_in = self.carrier.refused(node, must_reach, situation)
             if shut_in is not None and shut_in.proved:
                 why = f"{stage} cannot be attained: {shut_in.reason()}"
                 advice, decision = shut_in, Decision(None, why, "impossible")

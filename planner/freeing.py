@@ -2,7 +2,6 @@
 
 import itertools
 import math
-from typing import Any
 
 import numpy as np
 import shapely
@@ -24,25 +23,24 @@ def drawn_back(node: Node, pushed: Translate, model: WorldModel) -> Translate:
 
     Where it is known exactly nothing that he knows can have stopped it.
     """
-    polygon: Any = node.polygon
-    length = math.hypot(pushed.dx, pushed.dy)
-    if not length:
+    if not any(pushed):
         return pushed
-    far = min(BACK, length)
-    x, y = pushed.dx / length, pushed.dy / length
-    walls = _walls(node, model)
+    far = min(BACK, math.hypot(*pushed))
 
     def way(aside: float) -> Translate:
-        return Translate(-far * x - aside * y, -far * y + aside * x)
+        return pushed.steered(-far, aside)
+
+    if not node.inexact:
+        return way(0.0)
+    walls, body, onward = _walls(node, model), Body(node.polygon), pushed.steered(far + ONWARD, 0.0)
 
     def passes(aside: float) -> bool:
-        onward = Translate((far + ONWARD) * x, (far + ONWARD) * y)
         back = way(aside)
-        free = walls.first_contact(Body(polygon), back).fraction == 1
-        return free and walls.first_contact(Body(back.carry(polygon)), onward).fraction == 1
+        free = walls.first_contact(body, back).fraction == 1
+        return free and walls.first_contact(body.after(back), onward).fraction == 1
 
     sides = sorted((STEP * n for n in range(-MOST, MOST + 1)), key=abs)
-    least = next((aside for aside in sides if passes(aside)), None) if node.inexact else None
+    least = next((aside for aside in sides if passes(aside)), None)
     if not least:  # there is no such way, or nothing known stands in its way
         return way(0.0)
     side = math.copysign(1.0, least)

@@ -4,8 +4,9 @@ Goals of geometry.carrying are in the frame of the view's arrays, as all of plan
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -48,7 +49,7 @@ class Landing:
     holds : the goal holds as the object lies now. there : it does, but for what must be known first.
     loose : where it may lie if it cannot be brought to any of the ends.
     must_reach : what it must come to lie on wherever it must end, while that is not known: squares that were not seen,
-    and those of the one end that may be it.
+    and those of the one end that may be it. Worked out when asked.
     """
 
     ends: Mapping[str, End]
@@ -58,7 +59,7 @@ class Landing:
     holds: bool = False
     there: bool = False
     loose: Mapping[str, End] = field(default_factory=dict)
-    must_reach: Mapping[str, End] = field(default_factory=dict)
+    must_reach: Callable[[], Mapping[str, End]] = dict
 
 
 def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
@@ -139,8 +140,8 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
         floor = _floor(node, situation)
         unknown = unknown_corner(side, situation, floor)
         if unknown is not None:
-            must_reach = {side: Inside(region_of(_onward(side, node, situation)))}
             near = _near(side, node, situation, floor)
+            must_reach = partial(_must_reach, side, node, situation)
             return Landing({}, unknown.missing, unknown.lookouts, near, must_reach=must_reach)
     land = _in_corner(side, node, situation)
     if land.holds or _lies_in(land.ends, node, situation):
@@ -213,14 +214,14 @@ def _near(side: str, node: Node, situation: Situation, floor: Mask) -> Mapping[s
     return {f"near_{side}": into} | ({} if there else {f"about_{side}": about})
 
 
-def _onward(side: str, node: Node, situation: Situation) -> Mask:
-    """(rows, columns): the squares that were not seen, and the floor that a thing in a corner would lie on."""
+def _must_reach(side: str, node: Node, situation: Situation) -> Mapping[str, End]:
+    """On squares that were not seen, or on the floor that a thing in a corner would lie on."""
     column, row = situation.corners[side].square
     x0, y0, x1, y1 = node.polygon.bounds
     about = _about(side, math.ceil(math.hypot(x1 - x0, y1 - y0)) + 1, situation)
     labels = components(situation.model.space & about).labels
-    mask: Mask = ~situation.model.view.seen | ((labels == labels[row, column]) & (labels > 0))
-    return mask
+    mask = ~situation.model.view.seen | ((labels == labels[row, column]) & (labels > 0))
+    return {side: Inside(region_of(mask))}
 
 
 def _about(side: str, squares: int, situation: Situation) -> Mask:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely.affinity import translate
 
@@ -101,3 +101,13 @@ def test_holds_that_failed_are_tried_again_when_no_other_is_left_but_not_for_eve
     failed.blame(node, model)
     assert not failed.forgiven(node)
     assert failed.of(node)
+
+
+@given(st.floats(-9, 9), st.floats(-9, 9), st.floats(-5, 5), st.floats(-5, 5))
+@settings(max_examples=60, deadline=None)
+def test_so_far_on_and_so_far_to_the_left(dx: float, dy: float, onward: float, left: float) -> None:
+    length = math.hypot(dx, dy)
+    assume(length > 1e-3)
+    steered = Translate(dx, dy).steered(onward, left)
+    assert (steered.dx * dx + steered.dy * dy) / length == pytest.approx(onward, abs=1e-9)
+    assert (steered.dy * dx - steered.dx * dy) / length == pytest.approx(left, abs=1e-9)

@@ -62,7 +62,7 @@ def test_what_stands_before_a_door_is_too_wide_for_it_or_may_pass_whatever_lies_
     situation = situation_of(replace(model, objects=(node,)), {"x": node.name})
     found = landing(NORTHEAST, node, (0.0, 0.0), situation)
     assert not found.ends
-    refusal = Carrier().refused(node, found.must_reach, situation)
+    refusal = Carrier().refused(node, found.must_reach(), situation)
     if wide > 3:
         assert refusal is None
         return
