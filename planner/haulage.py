@@ -24,7 +24,7 @@ from kb.worldmodel import Node, WorldModel
 from planner.aims import ASP
 from planner.destinations import Situation
 from planner.landing import in_view, lies_askew
-from planner.screen import UNSEEN
+from planner.screen import UNSEEN, grown
 
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
@@ -172,9 +172,19 @@ def _kinds(situation: Situation) -> list[tuple[int, str]]:
 
 
 def _free(node: Node, situation: Situation, level: int, aside: str) -> Mask:
-    """The squares that may be used for carrying an object: those of the level, its own, and those of movable things."""
+    """The squares that may be used for carrying an object: those of the level, its own, and those of movable things.
+
+    What lies only about where it is believed to may cover what seems to be another thing right beside it: nothing is
+    proved by that.
+    """
     model = situation.model
-    free = situation.screens.free(level) | model.mask(node.patch)
+    own = model.mask(node.patch)
+    free = situation.screens.free(level) | own
+    if level == UNSEEN and node.inexact:
+        for other in model.objects:
+            beside = model.mask(other.patch)
+            if (grown(own, 1) & beside).any():
+                free |= beside
     if aside == "aside":
         for other in model.objects:
             if other.movable > 0 and other.confidence >= 95:

@@ -9,6 +9,9 @@ import pytest
 import shapely
 
 from geometry.carrying import Carrying, Inside
+from kb.evidence import FULL
+from kb.loads import covered
+from kb.worldmodel import Node
 from planner.haulage import Haul, Hauler, Refusal, Request, _nearest_to_done
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
@@ -23,6 +26,18 @@ PARTED = [
     *["b" + "." * 10 + "bb" + "." * 10 + "b"] * 4,
     "b" * 24,
 ]
+
+STOPPED_UP = [  # a square in the door leaves it too narrow
+    "b" * 24,
+    *["b" + "." * 10 + "bb" + "." * 10 + "b"] * 3,
+    *["b" + "." * 22 + "b"] * 2,
+    "b...................U..b",
+    "b" + "." * 10 + "r" + "." * 11 + "b",
+    "b" + "." * 22 + "b",
+    *["b" + "." * 10 + "bb" + "." * 10 + "b"] * 3,
+    "b" * 24,
+]
+
 
 
 def asked(west: float, turned: float = 0.0, dubious: bool = False, stuck: int = 0, sure: bool = True) -> Haul | Refusal:
@@ -74,6 +89,20 @@ def test_what_did_not_move_proves_nothing_for_who_is_not_sure_of_his_map(stuck: 
     assert isinstance(answer, Refusal)
     assert answer.proved == (sure or not stuck)
     assert ("did not move" in answer.reason()) != answer.proved
+
+
+@pytest.mark.parametrize(("inexact", "apart", "proved"), [(False, 0, True), (True, 0, False), (True, 2, True)])
+def test_what_may_be_part_of_what_is_carried_proves_nothing(inexact: bool, apart: int, proved: bool) -> None:
+    model = seen_whole(STOPPED_UP)
+    x, y = model.view.west + 11, model.view.south + 5
+    small, square = shapely.box(x, y, x + 1, y + 1), shapely.box(x - 4 - apart, y - 1, x - apart, y + 3)
+    assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == FULL
+    beside = Node("o1", "object", 60, "part1", covered(small), 0, polygon=small)
+    node = Node("o2", "object", 99, "part2", covered(square), 0, polygon=square, moved=True, inexact=inexact)
+    model = replace(model, objects=(beside, node))
+    answer = Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 11))}), situation_of(model))
+    assert isinstance(answer, Refusal) == proved
+    assert not isinstance(answer, Refusal) or answer.proved
 
 
 @pytest.mark.parametrize(
