@@ -39,7 +39,6 @@ STOPPED_UP = [  # a square in the door leaves it too narrow
 ]
 
 
-
 def asked(west: float, turned: float = 0.0, dubious: bool = False, stuck: int = 0, sure: bool = True) -> Haul | Refusal:
     """The way through a door two squares wide for a thing four wide with its west side there; it was drawn at 4."""
     model = seen_whole(PARTED)
