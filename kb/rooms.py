@@ -19,7 +19,7 @@ from geometry.components import components
 from geometry.passages import Passage
 from kb.encodings import KB, solve
 from kb.regions import extents
-from kb.worldmodel import SMALLEST_WALL, SPACE, WorldModel
+from kb.worldmodel import SMALLEST_WALL, WorldModel
 
 Mask = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -33,6 +33,8 @@ DEEPEST = 12.0  # squares: how far a doorway is followed into the wall
 STEP = 0.5
 PINCHED = 1.9  # times as wide as a neck must the floor be on both sides, for kb/asp to be asked whether it is a door
 BEYOND = 1.6  # squares: how far behind the wall a room surely begins
+UNCLEAR = 2.0  # squares by which it may be unclear on either side how wide a door is
+HALF = 0.5  # probability of being occupied from which a piece of verge bounds a door
 JAMB = 0.6  # squares beside a doorway at which its wall is looked for
 
 
@@ -102,8 +104,10 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), supposed: bool = F
     verge = model.walls if supposed else model.verge
     if not verge.any():
         return Rooms((), np.ones(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
+    doubtful = verge & (model.view.probability < HALF)  # part of no room, but no bound of a door either
+    verge = verge & ~doubtful
     walls, seen_verge = _walls(model), verge & model.view.seen
-    necks = [(passage, _known(passage, model, seen_verge, walls)) for passage in _passages(verge)]
+    necks = [(passage, _known(passage, model, seen_verge, doubtful, walls)) for passage in _passages(verge)]
     possible = _doors(necks, rules)
     floor = ~verge & model.view.seen
     if not floor.any():
@@ -125,7 +129,7 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), supposed: bool = F
         Door(f"d{number}", passage.a, passage.b, (int(order[one]), int(order[other])), confidence)
         for number, ((passage, confidence), (one, other)) in enumerate(zip(possible, sides, strict=True), 1)
     )
-    return Rooms(doors, order[labels], doorways)
+    return Rooms(doors, np.where(doubtful, 0, order[labels]).astype(np.int32), doorways)
 
 
 def _passages(verge: Mask) -> list[Passage]:
@@ -164,13 +168,19 @@ def _walls(model: WorldModel) -> _Walls:
     return _Walls(found.labels, extents(found.labels, found.number))
 
 
-def _known(passage: Passage, model: WorldModel, verge: Mask, walls: _Walls) -> int:
-    """Percent of belief that a neck is open from wall to wall and that its walls are verge."""
+def _known(passage: Passage, model: WorldModel, verge: Mask, doubtful: Mask, walls: _Walls) -> int:
+    """Percent of belief that a neck is open from wall to wall and that its walls are verge.
+
+    Just how wide it is need not be clear: the squares beside its walls tell that, but not whether it is a door.
+
+    verge : (rows, columns) what bounds the floor; doubtful : what may, but rather does not.
+    """
     (ax, ay), (bx, by) = passage.a, passage.b
     count = max(2, round(2 * math.dist(passage.a, passage.b)))
     parts = (np.arange(count) + 0.5) / count
     across = _squares(ax + (bx - ax) * parts, ay + (by - ay) * parts, verge.shape)
-    if not (model.view.seen[across] & ((model.view.probability[across] <= SPACE) | ~verge[across])).all():
+    inner = np.minimum(parts, 1 - parts) * passage.width >= min(UNCLEAR, passage.width / 4) - 1e-9
+    if not (model.view.seen[across] & ~verge[across] & ~(doubtful[across] & inner)).all():
         return 0
     jambs = [_jamb(verge, end) for end in (passage.a, passage.b)]
     if not all(len(rows) for rows, _ in jambs):
@@ -178,7 +188,24 @@ def _known(passage: Passage, model: WorldModel, verge: Mask, walls: _Walls) -> i
     walled = min(int(walls.extents[walls.labels[jamb]].max()) for jamb in jambs)
     if walled < SMALLEST_WALL:
         return min(50, round(50 * walled / SMALLEST_WALL))
-    return round(50 + 50 * min(float(model.told[where].mean()) for where in (across, *jambs)))
+    spare = (min(passage.sides) - passage.width) / 2  # squares: as much wider on both sides it still were a door
+    told = verge & model.told
+    shares = [
+        _share_told(jamb, np.subtract(end, passage.place), min(UNCLEAR, spare), told)
+        for end, jamb in zip((passage.a, passage.b), jambs, strict=True)
+    ]
+    return round(50 + 50 * min(float(model.told[across][inner].mean()), *shares))
+
+
+def _share_told(jamb: Indices, outward: Floats, furthest: float, told: Mask) -> float:
+    """How much of a jamb is surely wall, or of what lies behind it, at most so many squares further outward."""
+    ahead = outward / max(float(np.hypot(*outward)), 1e-9)
+    shares = []
+    for deeper in range(max(math.floor(furthest), 0) + 1):
+        dx, dy = np.rint(ahead * deeper).astype(int)
+        rows, columns = np.clip(jamb[0] + dy, 0, told.shape[0] - 1), np.clip(jamb[1] + dx, 0, told.shape[1] - 1)
+        shares.append(float(told[rows, columns].mean()))
+    return max(shares)
 
 
 def _jamb(wall: Mask, end: tuple[float, float]) -> Indices:

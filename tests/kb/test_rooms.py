@@ -1,9 +1,15 @@
 """Doors and rooms of drawn floors: doors of every width, thick walls, and no false doors."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from kb.evidence import OPEN
+from kb.interpretation import interpret
+from kb.regions import map_regions
 from kb.rooms import rooms_of
+from kb.worldmodel import SPACE, WorldModel
 from tests.kb.drawings import seen_whole
 
 
@@ -34,6 +40,38 @@ def test_a_door_between_two_rooms(door: int, wall: int) -> None:
     x, y = rooms.doors[0].place
     assert 14 - 0.5 <= x <= 14 + wall + 0.5
     assert y == pytest.approx(2 + (14 - door) // 2 + door / 2, abs=0.51)
+
+
+def unclear_between(first: int, last: int, chance: float) -> WorldModel:
+    """Two rooms with a door 4 wide in rows 7 to 10, columns 14 and 15, where squares between the rooms are not settled.
+
+    first, last : their rows. chance : that one is occupied.
+    """
+    model = seen_whole(two_rooms(4, 2))
+    probability, state = model.view.probability.copy(), model.view.state.copy()
+    between = slice(first, last + 1), slice(14, 16)
+    probability[between], state[between] = chance, OPEN
+    seen = model.view.seen
+    percept, labels = map_regions(seen & (probability > SPACE), seen, seen)
+    view = model.view._replace(probability=probability, state=state)
+    return replace(model, view=view, labels=labels, percept=percept, kinds=interpret(percept))
+
+
+@pytest.mark.parametrize(("chance", "width"), [(0.1, 4), (0.4, 4), (0.6, 3), (0.9, 3)])
+def test_a_door_is_sure_when_only_its_width_is_not_clear(chance: float, width: int) -> None:
+    rooms = rooms_of(unclear_between(7, 7, chance))
+    assert [(door.confidence, door.width) for door in rooms.doors] == [(100, pytest.approx(width))]
+    assert not rooms.labels[7, 14:16].any()  # what may be wall is part of no room
+
+
+@pytest.mark.parametrize(("deep", "confidence"), [(1, 100), (2, 50)])  # 8 wide it were none between such rooms
+def test_a_jamb_that_is_not_clear_is_one_when_there_is_wall_not_far_behind(deep: int, confidence: int) -> None:
+    rooms = rooms_of(unclear_between(7 - deep, 6, 0.9))
+    assert [door.confidence for door in rooms.doors] == [confidence]
+
+
+def test_no_door_is_sure_half_of_which_may_be_wall() -> None:
+    assert not any(door.sure for door in rooms_of(unclear_between(7, 9, 0.3)).doors)
 
 
 @pytest.mark.parametrize("turned", [False, True])
