@@ -24,7 +24,7 @@ from geometry.contact import boundary_edges
 from geometry.ends import At, End, InCorner, Inside, Roomy, met
 from geometry.errand import Errand
 from geometry.held import carry_freed, carry_held
-from geometry.legs import Leg, Point, commands, verified
+from geometry.legs import Leg, Point, commands, shifted, verified
 from geometry.motion import Plan
 from geometry.rigid import Pose, Rotate, Translate
 from geometry.sound import check, sound
@@ -80,6 +80,11 @@ class Carrying:
             return math.nan
         pushes = [m for leg in self.legs for m in leg.motions if isinstance(m, Translate)]
         return math.fsum(math.hypot(push.dx, push.dy) for push in pushes)
+
+    def shifted(self, dx: float, dy: float) -> "Carrying":
+        """The same plan so much further east and north; for one that was found."""
+        polygon = None if self.polygon is None else Translate(dx, dy).carry(self.polygon)
+        return replace(self, legs=tuple(shifted(leg, dx, dy) for leg in self.legs), polygon=polygon)
 
     @cached_property
     def passage(self) -> Neck | None:

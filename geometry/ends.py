@@ -1,7 +1,7 @@
 """Where something that is carried shall end: at a pose, inside a region, in a corner; and what such an end is worth."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -88,6 +88,17 @@ def placed(shape: Any, pose: Pose) -> Any:
     """A shape turned about its centroid by pose.degrees, then moved by (pose.x, pose.y)."""
     middle = np.array([shape.centroid.x, shape.centroid.y])
     return shapely.transform(shape, lambda p: turned(p - middle, pose.degrees) + middle + np.array([pose.x, pose.y]))
+
+
+def moved(goal: End, dx: float, dy: float) -> End:
+    """A goal, so much further east and north, for a shape that is moved as far."""
+    if isinstance(goal, Inside):
+        return Inside(shapely.transform(goal.polygon, lambda p: p + np.array([dx, dy])))
+    if isinstance(goal, InCorner):
+        return replace(goal, x=goal.x + dx, y=goal.y + dy)
+    if isinstance(goal, Roomy) and goal.near is not None:
+        return Roomy((goal.near[0] + dx, goal.near[1] + dy))
+    return goal
 
 
 def prices(goal: End, shape: Any, body: Stencil, board: Board, grid: Grid) -> Costs:

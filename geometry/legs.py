@@ -6,7 +6,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -83,6 +83,12 @@ def at_utak(place: Point, motions: Sequence[Motion]) -> tuple[Motion, ...]:
         else:
             told.append(motion._replace(about=place))
     return tuple(told)
+
+
+def shifted(leg: Leg, dx: float, dy: float) -> Leg:
+    """A leg, with all of it so much further east and north."""
+    place = leg.place[0] + dx, leg.place[1] + dy
+    return replace(leg, place=place, motions=at_utak(place, leg.motions))
 
 
 def may_push(shape: Any, utak: Point, dx: float, dy: float) -> bool:

@@ -12,6 +12,7 @@ from shapely import affinity, box
 from benchmarks.errands import faults, free_squares, goal_of
 from benchmarks.worlds import scenario
 from geometry.carrying import At, Carrying, InCorner, Inside, Pose, plan_carrying
+from geometry.ends import Roomy, met, moved
 from geometry.rigid import Rotate, Translate
 from tests.geometry.replay import replay, walls_of
 
@@ -335,3 +336,27 @@ def test_nonsense_is_refused(wrong: dict[str, object]) -> None:
     asked: dict[str, object] = {"shape": box(2, 2, 4, 4), "free": two_rooms(5), "utak": (9.5, 9.5), "goal": goal}
     with pytest.raises(ValueError):
         plan_carrying(**(asked | wrong))
+
+
+@given(st.integers(0, 40), st.integers(0, 40))
+@settings(max_examples=20, deadline=None)
+def test_what_is_asked_elsewhere_is_answered_there(dx: int, dy: int) -> None:
+    free, shape, goal = two_rooms(4), box(5, 3, 8, 6), Inside(ROOM)
+    plan = plan_carrying(shape, free, (3.5, 18.5), goal)
+    framed = np.pad(free, ((dy, 3), (dx, 3)))
+    there = plan_carrying(affinity.translate(shape, dx, dy), framed, (3.5 + dx, 18.5 + dy), moved(goal, dx, dy))
+    assert there.commands == plan.commands
+    back = there.shifted(-dx, -dy)
+    assert shapely.hausdorff_distance(replay(back, shape, free, (3.5, 18.5)), back.polygon) < 1e-6
+    assert ROOM.buffer(1e-6).covers(back.polygon)
+
+
+@pytest.mark.parametrize("goal", [InCorner(50, 22, 1, 1, 0.5, (3.0, 4.0)), At(Pose(3, -2, 90)), Roomy(), Roomy((3, 4))])
+def test_a_goal_is_moved_and_back(goal: InCorner | At | Roomy) -> None:
+    shape = box(0, 0, 3, 4)
+    away = moved(goal, 7, -3)
+    assert moved(away, -7, 3) == goal
+    ends = [box(47, 18, 50, 22), affinity.translate(affinity.rotate(shape, 90), 3, -2), box(0, 0, 3, 4)]
+    for end in ends:
+        there = affinity.translate(end, 7, -3)
+        assert met(goal, shape, end) == met(away, affinity.translate(shape, 7, -3), there)
