@@ -21,9 +21,10 @@ from planner.destinations import Situation
 from planner.exploring import Lookout, inspection, sight_of
 from planner.failing import FailedHolds
 from planner.freeing import drawn_back
-from planner.haulage import Haul, Hauler, Refusal, Request
+from planner.haulage import Ends, Haul, Hauler, Request
 from planner.landing import region_of
 from planner.leading import lead, near
+from planner.refusing import Refusal
 from planner.screen import Squares, grown
 from planner.walking import is_open
 
@@ -121,8 +122,8 @@ class Carrier:
         self.began[parameter] = known = known._replace(name=node.name, moved=known.moved or node.moved)
         return model.lattice.place_from_utak(*known.place)
 
-    def advise(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Advice:
-        """What to do to carry an object to one of several ends."""
+    def advise(self, node: Node, ends: Mapping[str, End], situation: Situation, hoped: Ends = dict) -> Advice:
+        """What to do to carry an object to one of several ends. hoped : where they are if the floor goes on unseen."""
         before, self._course = self._course, None
         course = None
         if before is not None:
@@ -134,7 +135,7 @@ class Carrier:
                 return failure
         last = before.target if before is not None else ""
         while True:
-            found = course or self._planned(node, ends, last, situation)
+            found = course or self._planned(self._request(node, ends, last, situation.model, hoped), situation)
             if isinstance(found, See | Refusal):
                 return found
             advice = self._next(found, ends if found.name == node.name else {}, situation)
@@ -224,15 +225,15 @@ class Carrier:
 
     # -- making one ------------------------------------------------------------------------------
 
-    def _planned(self, node: Node, ends: Mapping[str, End], last: str, situation: Situation) -> Course | See | Refusal:
-        request = self._request(node, ends, last, situation.model)
+    def _planned(self, request: Request, situation: Situation) -> Course | See | Refusal:
+        node, asked = request.node, request
         haul = self._hauler.find(request, situation)
         if isinstance(haul, Refusal) and situation.model.held == node.name and not request.held:
             request = replace(request, held=True)  # to let go and take it otherwise does not help either
             haul = self._hauler.find(request, situation)
         if isinstance(haul, Refusal):
             again = not haul.proved and self.failed.forgiven(node)
-            return self._planned(node, ends, last, situation) if again else haul
+            return self._planned(replace(asked, avoid=self.failed.of(node)), situation) if again else haul
         if haul.aside:
             cleared = (self._clearing(other, haul, situation) for other in situation.model.objects)
             first = next((found for found in cleared if found is not None), None)
@@ -261,12 +262,14 @@ class Carrier:
             return Refusal(False, lambda: f"gave up after {MOST_PLANS} plans")
         return course_of(haul, node, situation.model)
 
-    def _request(self, node: Node, ends: Mapping[str, End], last: str, model: WorldModel) -> Request:
+    def _request(
+        self, node: Node, ends: Mapping[str, End], last: str, model: WorldModel, hoped: Ends = dict
+    ) -> Request:
         """What to ask for. He goes on with the hold he has, but not where doing so has brought him nowhere."""
         nowhere = self._went_on is not None and math.dist(self._went_on, model.place) < NOWHERE
         held = model.held == node.name and not nowhere
         tight = self._tight.get(node.name, 0) + (model.lattice.woke != CENTRE and max(model.leeway) > LOOSE)
-        return Request(node, ends, self.failed.of(node), last, tight, held, _price_of_a_turn(model))
+        return Request(node, ends, self.failed.of(node), last, tight, held, _price_of_a_turn(model), hoped)
 
     def _clearing(self, other: Node, haul: Haul, situation: Situation) -> tuple[Node, Haul] | None:
         """A way to carry a thing off the squares that a plan needs, if it stands there and there is one."""
@@ -281,11 +284,12 @@ class Carrier:
         """What of the way of a plan must be looked at before it is begun, if a look may tell more of it.
 
         All that is believed floor is trusted: to be stopped now and then costs less than to look each time. And to let
-        go, walk, come back and take it again costs more than to be stopped by what is not floor. But when a plan takes
-        many commands, then what takes away the room for fewer, and may be none, is looked at too.
+        go, walk, come back and take it again costs more than to be stopped by what is not floor. So is what is hoped to
+        be free. But when a plan takes many commands, then what takes away the room for fewer, and may be none, is
+        looked at too.
         """
         model, tedious = situation.model, haul.plan.commands > TEDIOUS
-        if haul.plan.goes_on and not tedious:
+        if haul.hopes or (haul.plan.goes_on and not tedious):
             return None
         unsure = haul.swept & ~situation.screens.free(0)
         if tedious:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geometry.carrying import Leg
 from geometry.ends import End
-from geometry.legs import at_utak, verified
+from geometry.legs import shifted, verified
 from geometry.rigid import Motion, Translate
 from geometry.yard import Yard
 from kb.worldmodel import Node, Patch, WorldModel
@@ -63,7 +63,7 @@ class Course:
 def course_of(haul: Haul, node: Node, model: WorldModel) -> Course:
     """The course of a plan that was just made."""
     west, south = model.view.west, model.view.south
-    legs = tuple(_shifted(leg, west, south) for leg in haul.plan.legs)
+    legs = tuple(shifted(leg, west, south) for leg in haul.plan.legs)
     needed = Patch(west, south, haul.swept)
     return Course(node.name, haul.target, node.polygon, legs, needed, haul.level)
 
@@ -103,7 +103,7 @@ def from_here(course: Course, ends: Mapping[str, End], situation: Situation) -> 
     node = model.object(course.name)
     assert node is not None
     first, *others = course.legs
-    here = _shifted(first, model.place[0] - first.place[0], model.place[1] - first.place[1])
+    here = shifted(first, model.place[0] - first.place[0], model.place[1] - first.place[1])
     near = replace(course, legs=(here, *others))
     end = _led(near, node, _room(course, node, situation), situation)
     return near if end is not None and lands_in_one(ends, end) else None
@@ -156,12 +156,6 @@ def _longest_push(yard: Yard, shape: Any, place: Place, push: Translate) -> Tran
     return next((part for part in pushes if yard.lets(shape, place, part)), None)
 
 
-def _shifted(leg: Leg, dx: float, dy: float) -> Leg:
-    """A leg, with all of it so much further east and north."""
-    place = leg.place[0] + dx, leg.place[1] + dy
-    return replace(leg, place=place, motions=at_utak(place, leg.motions))
-
-
 def _room(course: Course, node: Node, situation: Situation) -> Mask:
     """(rows, columns): the squares over which a course may lead that was made before."""
     return situation.screens.free(max(course.level, STILL)) | situation.model.mask(node.patch)
@@ -173,4 +167,4 @@ def _led(course: Course, node: Node, free: Mask, situation: Situation) -> Any:
     west, south = situation.model.view.west, situation.model.view.south
     first, *others = course.legs
     legs = [first if course.place is None else replace(first, place=course.place), *others]
-    return verified(Yard(free), in_view(node.polygon, situation), [_shifted(leg, -west, -south) for leg in legs])
+    return verified(Yard(free), in_view(node.polygon, situation), [shifted(leg, -west, -south) for leg in legs])

@@ -25,8 +25,8 @@ from planner.circling import pivot, ways_round, winding
 from planner.destinations import Situation, contains, destination, nowhere
 from planner.fewest import FewestMoves
 from planner.goals import BY_THE_WAY, Stage, constraints, stages
-from planner.haulage import Refusal
 from planner.landing import Landing, in_view, landing, lands_in_one
+from planner.refusing import Refusal
 from planner.repeating import Circles
 from planner.screen import Screens, Squares, vicinity
 from planner.searching import aims_towards
@@ -256,7 +256,7 @@ class Decider:
             self.carrier.missed, self._looked = 0, looked
             return Refusal(False, lambda: land.missing)
         if land.ends:
-            return self.carrier.advise(node, land.ends, situation)
+            return self.carrier.advise(node, land.ends, situation, land.hoped)
         going_on = self.carrier.gone_on(node, situation)
         if going_on is not None:
             return going_on

@@ -6,8 +6,8 @@ harder still. What it finds may lead over squares that are not surely free: then
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -15,20 +15,25 @@ from numpy.typing import NDArray
 
 from geometry.carrying import At, Carrying, InCorner, Inside, plan_carrying
 from geometry.digital import squares, squares_after
-from geometry.ends import End
-from geometry.rigid import Translate
+from geometry.ends import End, moved
+from geometry.rigid import Rotate, Translate
 from kb.encodings import solve
 from kb.lattice import AROUND
 from kb.loads import is_whole
 from kb.worldmodel import Node, WorldModel
 from planner.aims import ASP
 from planner.destinations import Situation
-from planner.landing import in_view, lies_askew
+from planner.hoping import BEYOND, BOLD, framed, hoped_floor
+from planner.landing import in_view
+from planner.refusing import Refusal, refusal
 from planner.screen import UNSEEN, grown
+from planner.walking import is_open
 
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
-LEVELS = (0, 2, UNSEEN)  # of certainty, that are tried
+Ends = Callable[[], Mapping[str, End]]
+LEVELS = (0, BOLD, UNSEEN)  # of certainty, that are tried
+FEWEST = 2  # commands of a plan: to push once, and to let go
 MOST_ROUNDS = 12  # choices that geometry is asked to verify
 STRIDE = 0.25  # squares between the places at which the squares of a motion are taken down
 MARGIN = 0.3  # squares kept free about a thing whose outline is not whole
@@ -43,7 +48,8 @@ class Haul:
     ----------
     plan : frame of the view's arrays. target : where to. level : of certainty of the squares it needs.
     swept : (rows, columns) the squares that the object or Utak holding it cross.
-    aside : nodes that must be moved out of the way first.
+    aside : nodes that must be moved out of the way first. hopes : it leads over squares that are hoped to be free, and
+    is begun without a look at them.
     """
 
     plan: Carrying
@@ -51,6 +57,13 @@ class Haul:
     level: int
     swept: Mask
     aside: tuple[str, ...] = ()
+    hopes: bool = False
+
+    @property
+    def askew(self) -> bool:
+        """Is the thing turned otherwise than by quarter turns?"""
+        turns = (m for leg in self.plan.legs for m in leg.motions if isinstance(m, Rotate))
+        return any(turn.degrees % 90.0 != 0.0 for turn in turns)
 
     @property
     def short(self) -> bool:
@@ -60,24 +73,12 @@ class Haul:
 
 
 @dataclass(frozen=True)
-class Refusal:
-    """No way was found.
-
-    proved : there is none, whatever the unseen holds. reason : in words; neck : the middle of the passage that is too
-    narrow, in the view's frame, if it is for want of one. Both are worked out when asked.
-    """
-
-    proved: bool
-    reason: Callable[[], str]
-    neck: Callable[[], Place | None] = lambda: None
-
-
-@dataclass(frozen=True)
 class Request:
     """What is to be carried, and where to. avoid : holds that failed. last : the target chosen last.
 
     tight : how often it stood against something unawares: the more room is wanted about it. held : whether Utak has
-    hold of it and may go on so. turn : how many commands a turn counts for.
+    hold of it and may go on so. turn : how many commands a turn counts for. hoped : the ends, if the floor goes on as
+    it is hoped to; by their names, worked out when asked.
     """
 
     node: Node
@@ -87,6 +88,20 @@ class Request:
     tight: int = 0
     held: bool = False
     turn: float = 1.0
+    hoped: Ends = dict
+
+
+class Ground(NamedTuple):
+    """Where a thing and Utak are, and which squares they may use: all in one frame.
+
+    shape : of the thing. utak : his place. free, walk : (rows, columns) squares for the thing and him with it, and for
+    him alone.
+    """
+
+    shape: Any
+    utak: Place
+    free: Mask
+    walk: Mask
 
 
 class Hauler:
@@ -99,12 +114,12 @@ class Hauler:
 
     def find(self, request: Request, situation: Situation) -> Haul | Refusal:
         """The way that is chosen and verified, or why there is none."""
-        shape = in_view(request.node.polygon, situation)
-        floors = {(level, aside): _free(request.node, situation, level, aside) for level, aside in _kinds(situation)}
+        grounds = {(level, aside): _ground(request.node, situation, level, aside) for level, aside in _kinds(situation)}
+        shape = next(iter(grounds.values())).shape
         options = [
             f"option({name},{level},{aside},{round(10 * _way(end, shape))})"
             for name, end in sorted(request.ends.items())
-            for level, aside in floors
+            for level, aside in grounds
         ]
         options += [f"last({request.last})"] * (request.last in request.ends)
         verdicts: list[str] = []
@@ -114,46 +129,85 @@ class Hauler:
             if choice is None:
                 break
             name, level, aside = choice
-            plan = self._plan(request, shape, floors[level, aside], situation.screens.free(level), name, situation)
+            plan = self._plan(request, request.ends[name], grounds[level, aside], situation.model)
             if plan.status == "found" and self._hopeless:
                 self._hopeless = False  # what was hopeless is no more: now the best way is asked for
                 continue
             if plan.status == "found":
-                return _haul(plan, shape, name, level, situation, request.node)
+                return self._bolder(request, _haul(plan, shape, name, level, situation, request.node), situation)
             plans.append((level, plan))
             fact = "refuted" if plan.status == "impossible" else "undecided"
             verdicts.append(f"{fact}({name},{level},{aside})")
         self._hopeless = True
-        return _refusal(request.node, plans, situation.model)
+        return refusal(request.node, plans, situation.model)
 
-    def _plan(self, request: Request, shape: Any, free: Mask, walk: Mask, name: str, situation: Situation) -> Carrying:
-        x, y = situation.model.place
-        view = situation.model.view
-        utak = (x - view.west, y - view.south)
-        avoid = (
-            request.avoid if request.held else (*request.avoid, *sorted(_untouchable(request.node, situation.model)))
-        )
-        key = (
-            shape.wkb,
-            free.tobytes(),
-            free.shape,
-            name,
-            repr(request.ends[name]),
-            utak,
-            avoid,
-            request.tight,
-            request.held,
-            request.turn,
-        )
+    def _bolder(self, request: Request, haul: Haul, situation: Situation) -> Haul:
+        """What planner/asp/boldness.lp chooses of a way that was found and of those over what is hoped to be floor.
+
+        A way that is surely free is compared with bolder ones, if one may take fewer commands. One that is not is begun
+        without a look too, where the thing lies as straight after it as before.
+        """
+        if haul.level == BOLD:
+            return replace(haul, hopes=not haul.askew)
+        least = FEWEST if request.held else FEWEST + 1
+        if haul.level or haul.aside or haul.plan.commands <= least:
+            return haul
+        hauls = [haul, *self._hoped(request, situation)]
+        facts = []
+        for number, one in enumerate(hauls):
+            facts.append(f"plan({number},{one.plan.commands})")
+            told = {"hopes": one.hopes, "askew": one.askew, "aside": bool(one.aside)}
+            facts += [f"{fact}({number})" for fact, so in told.items() if so]
+        answer = solve([ASP / "boldness.lp"], facts)
+        return hauls[answer[0].arguments[0].number] if answer else haul
+
+    def _hoped(self, request: Request, situation: Situation) -> Iterator[Haul]:
+        """Ways over squares that are hoped to be free, those beyond all that was seen among them: one for each end.
+
+        There are none where nothing is hoped for.
+        While it is open how the lattice lies they end in what was seen: beyond it no look tells well where he was
+        stopped.
+        """
+        model, node = situation.model, request.node
+        own, walk = framed(model.mask(node.patch)), framed(situation.screens.free(0))
+        free = hoped_floor(situation) | own
+        if (free == walk | own).all():
+            return
+        shape, (x, y) = in_view(node.polygon, situation), _utak(model)
+        ground = Ground(Translate(BEYOND, BEYOND).carry(shape), (x + BEYOND, y + BEYOND), free, walk)
+        ends = {**request.ends, **({} if is_open(model) else request.hoped())}
+        for name, end in sorted(ends.items()):
+            plan = self._plan(request, moved(end, BEYOND, BEYOND), ground, model)
+            if plan.legs:
+                found = _haul(plan.shifted(-BEYOND, -BEYOND), shape, name, UNSEEN, situation, node)
+                yield replace(found, hopes=True)
+
+    def _plan(self, request: Request, end: End, ground: Ground, model: WorldModel) -> Carrying:
+        """What geometry says of one end; from memory where it was asked before."""
+        shape, utak, free, walk = ground
+        held, turn, tight = request.held, request.turn, request.tight
+        avoid = request.avoid if held else (*request.avoid, *sorted(_untouchable(request.node, model)))
+        where = end.polygon.wkb if isinstance(end, Inside) else end
+        key = (shape.wkb, free.tobytes(), free.shape, walk.tobytes(), where, utak, avoid, tight, held, turn)
         if key not in self._known:
             if len(self._known) > 64:
                 self._known.clear()
-            margin = min(MARGIN * (request.tight + (not is_whole(shape))), WIDEST)
-            end, held, turn = request.ends[name], request.held, request.turn
+            margin = min(MARGIN * (tight + (not is_whole(shape))), WIDEST)
             self._known[key] = plan_carrying(
                 shape, free, utak, end, margin, self._pull, avoid, walk, held=held, turn=turn
             )
         return self._known[key]
+
+
+def _utak(model: WorldModel) -> Place:
+    """Where Utak stands, in the frame of the view's arrays."""
+    return model.place[0] - model.view.west, model.place[1] - model.view.south
+
+
+def _ground(node: Node, situation: Situation, level: int, aside: str) -> Ground:
+    """What geometry is told at a level of certainty, in the frame of the view's arrays."""
+    free = _free(node, situation, level, aside)
+    return Ground(in_view(node.polygon, situation), _utak(situation.model), free, situation.screens.free(level))
 
 
 def _untouchable(node: Node, model: WorldModel) -> Iterator[tuple[float, float]]:
@@ -212,7 +266,8 @@ def _choice(facts: Sequence[str]) -> tuple[str, int, str] | None:
 def _haul(plan: Carrying, shape: Any, name: str, level: int, situation: Situation, node: Node) -> Haul:
     model = situation.model
     swept = swept_squares(plan, shape, model.labels.shape)
-    needed = swept & ~model.mask(node.patch)  # what seems to stand where the object itself is, is not in its way
+    # What seems to stand where the object itself is, is not in its way, nor is what may not be there at all.
+    needed = swept & ~model.mask(node.patch) & ~situation.screens.free(level)
     others = (other for other in model.objects if other.name != node.name)
     aside = tuple(other.name for other in others if (model.mask(other.patch) & needed).any())
     return Haul(plan, name, level, swept, aside)
@@ -236,54 +291,3 @@ def swept_squares(plan: Carrying, shape: Any, size: tuple[int, ...]) -> Mask:
                     mask[min(max(int(here[1]), 0), rows - 1), min(max(int(here[0]), 0), columns - 1)] = True
                 x, y = x + motion.dx, y + motion.dy
     return mask
-
-
-def _refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel) -> Refusal:
-    """Why nothing was found. It is proved when every target was refuted, whatever lies in the unseen."""
-    if not plans:
-        return Refusal(False, lambda: f"nothing is known of where {node.name} could be carried")
-    _, last = plans[-1]
-    if any(plan.status != "impossible" for _, plan in plans):
-        return Refusal(False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none")
-    doubt = _doubt(node, last, model)
-    if doubt:
-        return Refusal(False, lambda: f"where {node.name} lies is not known well: {doubt}")
-
-    def neck() -> Place | None:
-        passage = _nearest_to_done(plans).passage
-        return None if passage is None else passage.place
-
-    def reason() -> str:
-        closest = _nearest_to_done(plans)
-        passage = closest.passage
-        if passage is None:
-            return f"{node.name} cannot be carried there"
-        x, y = passage.place
-        east, north = model.lattice.place_to_utak(x + model.view.west, y + model.view.south)
-        where = f"{passage.width:.2f} squares wide at POINT ({east:.1f} {north:.1f})"
-        if math.isinf(closest.missing):
-            return f"{node.name} cannot be carried there: even were the passage, {where}, as wide as it, it could not"
-        return f"the passage for {node.name}, {where}, is too narrow by {closest.missing:.2f} squares"
-
-    return Refusal(True, reason, neck)
-
-
-def _doubt(node: Node, plan: Carrying, model: WorldModel) -> str:
-    """What speaks against that a thing lies where it is believed to, in words; nothing when nothing does.
-
-    plan : one that is impossible.
-    """
-    if plan.reason == "start":  # nothing lies in a wall
-        return "it would overlap a wall"
-    if node.dubious:
-        return "what is seen does not agree with it"
-    if node.stuck and not model.view.sure:
-        return "it did not move where there seemed to be room"
-    return "it was turned askew" if lies_askew(node) else ""  # and what is wall beside it is not known well either
-
-
-def _nearest_to_done(plans: Sequence[tuple[int, Carrying]]) -> Carrying:
-    """Of plans that are impossible the last that is so by a passage, over as many squares as any of them."""
-    widest = max(level for level, _ in plans)
-    asked = [plan for level, plan in reversed(plans) if level == widest]
-    return next((plan for plan in asked if math.isfinite(plan.missing)), asked[0])

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from geometry.carrying import At, InCorner, Inside
 from geometry.components import components
-from geometry.ends import End, met, placed
+from geometry.ends import End, met, moved, placed
 from geometry.reach import UNREACHED, reach
 from geometry.rigid import Pose
 from kb.facts import Fact, Number, Symbol, Text
@@ -24,6 +24,7 @@ from kb.wkt import parse_wkt
 from kb.worldmodel import Node, in_doubt
 from planner.destinations import Situation, doorsteps, numbers, out_of_sight, rooms_to_see, unknown_corner
 from planner.exploring import Lookout, sight_of
+from planner.hoping import BEYOND, spread
 from planner.screen import grown
 
 Mask = NDArray[np.bool_]
@@ -50,6 +51,7 @@ class Landing:
     loose : where it may lie if it cannot be brought to any of the ends.
     must_reach : what it must come to lie on wherever it must end, while that is not known: squares that were not seen,
     and those of the one end that may be it. Worked out when asked.
+    hoped : the ends, if the floor goes on as it is hoped to (planner.hoping); worked out when asked.
     """
 
     ends: Mapping[str, End]
@@ -60,6 +62,7 @@ class Landing:
     there: bool = False
     loose: Mapping[str, End] = field(default_factory=dict)
     must_reach: Callable[[], Mapping[str, End]] = dict
+    hoped: Callable[[], Mapping[str, End]] = dict
 
 
 def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
@@ -251,12 +254,23 @@ def _next_room(began: Place, node: Node, situation: Situation) -> Landing:
         ends = _insides(rooms, beyond)
         if looks and _lies_in(ends, node, situation):
             return Landing({}, looks[0].what, looks, there=True)
-        return Landing(ends)
+        return Landing(ends, hoped=partial(_hoped_rooms, rooms, beyond, situation))
     missing, lookouts = "no next room is seen yet", doorsteps(situation)
-    likely = _insides(*situation.likely_beyond(began))
+    likely_rooms = situation.likely_beyond(began)
+    likely = _insides(*likely_rooms)
     if _lies_in(likely, node, situation):
         return Landing({}, missing, lookouts, there=True)
-    return Landing(likely, missing, lookouts)
+    return Landing(likely, missing, lookouts, hoped=partial(_hoped_rooms, *likely_rooms, situation))
+
+
+def _hoped_rooms(rooms: Rooms, beyond: Mask, situation: Situation) -> dict[str, End]:
+    """The ends of `_insides`, with what is hoped to be more floor of these rooms."""
+    return {f"r{n}": _hoped(beyond & (rooms.labels == n), situation) for n in numbers(rooms, beyond)}
+
+
+def _hoped(mask: Mask, situation: Situation) -> End:
+    """Inside squares of the view, or those never seen that they lead to."""
+    return moved(Inside(region_of(spread(mask, situation))), -BEYOND, -BEYOND)
 
 
 def _insides(rooms: Rooms, beyond: Mask) -> dict[str, End]:
@@ -268,7 +282,7 @@ def _around_corner(began: Place, node: Node, situation: Situation) -> Landing:
     hidden = out_of_sight(model, began) & (model.space | model.mask(node.patch))
     if hidden.sum() < node.polygon.area:
         return Landing({}, "no corner is seen yet that hides a place for it")
-    return Landing({"hidden": Inside(region_of(hidden))})
+    return Landing({"hidden": Inside(region_of(hidden))}, hoped=lambda: {"hidden": _hoped(hidden, situation)})
 
 
 def _around_start(node: Node, situation: Situation) -> Landing:

@@ -12,7 +12,8 @@ from geometry.carrying import Carrying, Inside
 from kb.evidence import FULL
 from kb.loads import covered
 from kb.worldmodel import Node
-from planner.haulage import Haul, Hauler, Refusal, Request, _nearest_to_done
+from planner.haulage import Haul, Hauler, Request
+from planner.refusing import Refusal, nearest_to_done
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
 
@@ -110,4 +111,4 @@ def test_what_may_be_part_of_what_is_carried_proves_nothing(inexact: bool, apart
 )
 def test_the_passage_told_is_one_that_could_be_widened(plans: list[tuple[int, float]], told: int) -> None:
     asked_for = [(level, cast(Carrying, SimpleNamespace(missing=missing))) for level, missing in plans]
-    assert _nearest_to_done(asked_for) is asked_for[told][1]
+    assert nearest_to_done(asked_for) is asked_for[told][1]

@@ -21,7 +21,8 @@ from planner.deciding import Decider, Decision
 from planner.destinations import Situation
 from planner.exploring import CLOSE
 from planner.goals import Stage
-from planner.haulage import Haul, Hauler, Refusal, Request
+from planner.haulage import Haul, Hauler, Request
+from planner.refusing import Refusal
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import NO_TASK, situation_of
 

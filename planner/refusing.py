@@ -1,0 +1,75 @@
+"""Why something cannot be carried to where it should be: what geometry proved, and what speaks against the proof."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from geometry.carrying import Carrying
+from kb.worldmodel import Node, WorldModel
+from planner.landing import lies_askew
+
+Place = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """No way was found.
+
+    proved : there is none, whatever the unseen holds. reason : in words; neck : the middle of the passage that is too
+    narrow, in the view's frame, if it is for want of one. Both are worked out when asked.
+    """
+
+    proved: bool
+    reason: Callable[[], str]
+    neck: Callable[[], Place | None] = lambda: None
+
+
+def refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel) -> Refusal:
+    """Why nothing was found. It is proved when every target was refuted, whatever lies in the unseen."""
+    if not plans:
+        return Refusal(False, lambda: f"nothing is known of where {node.name} could be carried")
+    _, last = plans[-1]
+    if any(plan.status != "impossible" for _, plan in plans):
+        return Refusal(False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none")
+    doubt = _doubt(node, last, model)
+    if doubt:
+        return Refusal(False, lambda: f"where {node.name} lies is not known well: {doubt}")
+
+    def neck() -> Place | None:
+        passage = nearest_to_done(plans).passage
+        return None if passage is None else passage.place
+
+    def reason() -> str:
+        closest = nearest_to_done(plans)
+        passage = closest.passage
+        if passage is None:
+            return f"{node.name} cannot be carried there"
+        x, y = passage.place
+        east, north = model.lattice.place_to_utak(x + model.view.west, y + model.view.south)
+        where = f"{passage.width:.2f} squares wide at POINT ({east:.1f} {north:.1f})"
+        if math.isinf(closest.missing):
+            return f"{node.name} cannot be carried there: even were the passage, {where}, as wide as it, it could not"
+        return f"the passage for {node.name}, {where}, is too narrow by {closest.missing:.2f} squares"
+
+    return Refusal(True, reason, neck)
+
+
+def _doubt(node: Node, plan: Carrying, model: WorldModel) -> str:
+    """What speaks against that a thing lies where it is believed to, in words; nothing when nothing does.
+
+    plan : one that is impossible.
+    """
+    if plan.reason == "start":  # nothing lies in a wall
+        return "it would overlap a wall"
+    if node.dubious:
+        return "what is seen does not agree with it"
+    if node.stuck and not model.view.sure:
+        return "it did not move where there seemed to be room"
+    return "it was turned askew" if lies_askew(node) else ""  # and what is wall beside it is not known well either
+
+
+def nearest_to_done(plans: Sequence[tuple[int, Carrying]]) -> Carrying:
+    """Of plans that are impossible the last that is so by a passage, over as many squares as any of them."""
+    widest = max(level for level, _ in plans)
+    asked = [plan for level, plan in reversed(plans) if level == widest]
+    return next((plan for plan in asked if math.isfinite(plan.missing)), asked[0])
