@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.rigid import Motion, Rotate
+from kb.belying import belied, likeliest_stop
 from kb.body import Command, Impression, Move, Push, Release, Turn
 from kb.doubting import explained
 from kb.evidence import FREE, OPEN, Evidence
@@ -117,11 +118,6 @@ class Memory:
         return frozenset((*sure, *(s for s in doubted if self.evidence.state[self.evidence.index(*s)] == OPEN)))
 
     @property
-    def _before(self) -> tuple[Moved, ...]:
-        """The motions remembered whose looks have been taken in."""
-        return tuple(motion for motion in self.moved if motion.number < len(self.looks))
-
-    @property
     def _off_middle(self) -> bool:
         """Has it turned out that he did not wake amid his square?"""
         return self.lattice.woke != CENTRE
@@ -186,9 +182,13 @@ class Memory:
         ranges, motion = count_ranges(impression.retina), as_motion(command, self.lattice, self.place)
         if isinstance(command, Turn) and self._beside_line:
             load = self.loads[load.name] = replace(load, astray=max(load.astray, ROUNDING))
+        surprise = self._surprise(command, ranges)
         chosen = self._outcome(ranges, load, predicted(self.place, load.polygon, motion))
-        if chosen.misfits:
-            surprise = self._surprise(command, ranges)
+        if chosen.outcome and not chosen.misfits and belied(surprise, chosen.outcome):
+            stop = likeliest_stop(surprise, load, motion)
+            if stop is not None:
+                chosen = self._choose([chosen._replace(misfits=CONTRADICTED), self._outcome(ranges, load, stop)])
+        elif chosen.misfits:
             ends = surprise.hindrances.ends(self.place, load.polygon, motion)
             outcomes = [one for one in (self._outcome(ranges, load, end) for end in ends) if not one.misfits]
             outcomes += [self._outcome(ranges, load, other) for other in otherwise(self.place, load.polygon, motion)]
@@ -302,7 +302,8 @@ class Memory:
         first = self._explanation("predicted", predicted, ranges, predicted)
         look = Look(ranges, self.lattice.place_to_utak(*predicted))
         told = cache(lambda motion: tuple(retold(motion, self.lattice, [*self.looks, look])))
-        stopped = [motion for motion in self._before if motion.stopped]
+        before = [motion for motion in self.moved if motion.number < len(self.looks)]  # their looks were taken in
+        stopped = [motion for motion in before if motion.stopped]
         if first.misfits and not self.loads and any(not one.misfits for motion in stopped for one in told(motion)):
             turned = misled(look, map(told, stopped))
         elif not self.loads:
@@ -321,7 +322,7 @@ class Memory:
         explanations += turned
         if stops and not self.loads and all(e.misfits for e in turned):
             simple = any(not e.misfits for e in explanations if e.how != "slipped" or self.slipped)
-            explanations += misled(look, map(told, self._before if simple else self.moved))
+            explanations += misled(look, map(told, before if simple else self.moved))
         elif stops and not self.loads and not self._off_middle and all(e.odd for e in turned):
             explanations += [e for e in misled(look, map(told, self.moved)) if e.retold is not None and e.retold.known]
         return self._choose(explanations)

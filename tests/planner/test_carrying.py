@@ -236,6 +236,23 @@ def test_worlds_that_were_misread(task: int, seed: int, kind: str, tmp_path: Pat
     assert not trial.judged
 
 
+def test_a_push_that_was_stopped_unseen_is_told_by_the_look_that_contradicts_itself(tmp_path: Path) -> None:
+    # The look after it fits where it should have led, but not together with what that look settles.
+    places: list[tuple[float, float]] = []
+    trues: list[tuple[float, float]] = []
+
+    def watch(at: Session) -> None:
+        places.append(at.robot.robot.knowledge.memory.place)
+        trues.append(at.table.utak)
+
+    trial = run_trial(5, 170016, Conditions(kind="wide", max_steps=6), tmp_path, watch)
+    assert not trial.believed and not trial.crash
+    (pushed,) = [n for n in range(1, len(trues)) if math.dist(trues[n - 1], trues[n]) > 19]
+    assert math.dist(places[pushed - 1], places[pushed]) == pytest.approx(
+        math.dist(trues[pushed - 1], trues[pushed]), abs=1
+    )
+
+
 @pytest.mark.parametrize("heading", [81, 99, 261])
 def test_who_has_hardly_looked_looks_once_more_before_he_takes_what_stands_beside_him(
     heading: int, tmp_path: Path
