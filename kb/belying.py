@@ -18,11 +18,7 @@ def belied(surprise: Surprise, outcome: Outcome) -> bool:
 
     outcome : of the command that the look followed, with which nothing settled before it disagrees.
     """
-    loads = [
-        load.moved(outcome.polygon, load.slack) if name == surprise.held else load
-        for name, load in surprise.loads.items()
-    ]
-    x, y = (math.floor(v) for v in outcome.place)
+    loads, (x, y) = _lying(surprise, outcome), (math.floor(v) for v in outcome.place)
     samples, counts = discounted(surprise.lattice.samples(), surprise.ranges, x, y, loads)
     evidence = deepcopy(surprise.evidence)
     evidence.look(samples, counts, x, y, len(surprise.looks))
@@ -31,10 +27,17 @@ def belied(surprise: Surprise, outcome: Outcome) -> bool:
 
 def likeliest_stop(surprise: Surprise, load: Load, motion: Motion) -> Outcome | None:
     """Where the motion of a load in hand was likeliest stopped so that the look contradicts nothing, if anywhere."""
-    others = [other for name, other in surprise.loads.items() if name != surprise.held]
     for end in surprise.hindrances.ends(surprise.place, load.polygon, motion):
-        there = [*others, load.moved(end.polygon, load.slack)]
+        there = _lying(surprise, end)
         fits = not clashes(surprise.lattice, surprise.evidence, there, end.place, surprise.ranges)
         if fits and not belied(surprise, end):
             return end
     return None
+
+
+def _lying(surprise: Surprise, outcome: Outcome) -> list[Load]:
+    """All loads where they lie if the motion of the one in hand came out so."""
+    return [
+        load.moved(outcome.polygon, load.slack) if name == surprise.held else load
+        for name, load in surprise.loads.items()
+    ]

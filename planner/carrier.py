@@ -21,8 +21,8 @@ from planner.destinations import Situation
 from planner.exploring import Lookout, inspection, sight_of
 from planner.failing import FailedHolds
 from planner.freeing import drawn_back
-from planner.haulage import Ends, Haul, Hauler, Request
-from planner.landing import region_of
+from planner.haulage import Haul, Hauler, Request
+from planner.landing import Ends, region_of
 from planner.leading import lead, near
 from planner.refusing import Refusal
 from planner.screen import Squares, grown

@@ -5,7 +5,7 @@ harder still. What it finds may lead over squares that are not surely free: then
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -24,14 +24,13 @@ from kb.worldmodel import Node, WorldModel
 from planner.aims import ASP
 from planner.destinations import Situation
 from planner.hoping import BEYOND, BOLD, framed, hoped_floor
-from planner.landing import in_view
+from planner.landing import Ends, in_view
 from planner.refusing import Refusal, refusal
 from planner.screen import UNSEEN, grown
 from planner.walking import is_open
 
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
-Ends = Callable[[], Mapping[str, End]]
 LEVELS = (0, BOLD, UNSEEN)  # of certainty, that are tried
 FEWEST = 2  # commands of a plan: to push once, and to let go
 MOST_ROUNDS = 12  # choices that geometry is asked to verify
@@ -114,12 +113,12 @@ class Hauler:
 
     def find(self, request: Request, situation: Situation) -> Haul | Refusal:
         """The way that is chosen and verified, or why there is none."""
-        grounds = {(level, aside): _ground(request.node, situation, level, aside) for level, aside in _kinds(situation)}
-        shape = next(iter(grounds.values())).shape
+        shape, utak = in_view(request.node.polygon, situation), _utak(situation.model)
+        floors = {(level, aside): _free(request.node, situation, level, aside) for level, aside in _kinds(situation)}
         options = [
             f"option({name},{level},{aside},{round(10 * _way(end, shape))})"
             for name, end in sorted(request.ends.items())
-            for level, aside in grounds
+            for level, aside in floors
         ]
         options += [f"last({request.last})"] * (request.last in request.ends)
         verdicts: list[str] = []
@@ -129,7 +128,8 @@ class Hauler:
             if choice is None:
                 break
             name, level, aside = choice
-            plan = self._plan(request, request.ends[name], grounds[level, aside], situation.model)
+            ground = Ground(shape, utak, floors[level, aside], situation.screens.free(level))
+            plan = self._plan(request, request.ends[name], ground, situation.model)
             if plan.status == "found" and self._hopeless:
                 self._hopeless = False  # what was hopeless is no more: now the best way is asked for
                 continue
@@ -164,9 +164,8 @@ class Hauler:
     def _hoped(self, request: Request, situation: Situation) -> Iterator[Haul]:
         """Ways over squares that are hoped to be free, those beyond all that was seen among them: one for each end.
 
-        There are none where nothing is hoped for.
-        While it is open how the lattice lies they end in what was seen: beyond it no look tells well where he was
-        stopped.
+        There are none where nothing is hoped for. While it is open how the lattice lies they end in what was seen:
+        beyond it no look tells well where he was stopped.
         """
         model, node = situation.model, request.node
         own, walk = framed(model.mask(node.patch)), framed(situation.screens.free(0))
@@ -202,12 +201,6 @@ class Hauler:
 def _utak(model: WorldModel) -> Place:
     """Where Utak stands, in the frame of the view's arrays."""
     return model.place[0] - model.view.west, model.place[1] - model.view.south
-
-
-def _ground(node: Node, situation: Situation, level: int, aside: str) -> Ground:
-    """What geometry is told at a level of certainty, in the frame of the view's arrays."""
-    free = _free(node, situation, level, aside)
-    return Ground(in_view(node.polygon, situation), _utak(situation.model), free, situation.screens.free(level))
 
 
 def _untouchable(node: Node, model: WorldModel) -> Iterator[tuple[float, float]]:

@@ -29,6 +29,7 @@ from planner.screen import grown
 
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
+Ends = Callable[[], Mapping[str, End]]  # by their names, worked out when asked
 IN_SIGHT = 6  # squares from a corner within which it is seen well
 FLUSH = 0.1  # squares between an object and walls that it touches
 RIM = 1.0  # squares from the edge of a region within which he is not sure that something is in it
@@ -61,8 +62,8 @@ class Landing:
     holds: bool = False
     there: bool = False
     loose: Mapping[str, End] = field(default_factory=dict)
-    must_reach: Callable[[], Mapping[str, End]] = dict
-    hoped: Callable[[], Mapping[str, End]] = dict
+    must_reach: Ends = dict
+    hoped: Ends = dict
 
 
 def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
@@ -254,18 +255,13 @@ def _next_room(began: Place, node: Node, situation: Situation) -> Landing:
         ends = _insides(rooms, beyond)
         if looks and _lies_in(ends, node, situation):
             return Landing({}, looks[0].what, looks, there=True)
-        return Landing(ends, hoped=partial(_hoped_rooms, rooms, beyond, situation))
+        return Landing(ends, hoped=partial(_insides, rooms, beyond, situation))
     missing, lookouts = "no next room is seen yet", doorsteps(situation)
     likely_rooms = situation.likely_beyond(began)
     likely = _insides(*likely_rooms)
     if _lies_in(likely, node, situation):
         return Landing({}, missing, lookouts, there=True)
-    return Landing(likely, missing, lookouts, hoped=partial(_hoped_rooms, *likely_rooms, situation))
-
-
-def _hoped_rooms(rooms: Rooms, beyond: Mask, situation: Situation) -> dict[str, End]:
-    """The ends of `_insides`, with what is hoped to be more floor of these rooms."""
-    return {f"r{n}": _hoped(beyond & (rooms.labels == n), situation) for n in numbers(rooms, beyond)}
+    return Landing(likely, missing, lookouts, hoped=partial(_insides, *likely_rooms, situation))
 
 
 def _hoped(mask: Mask, situation: Situation) -> End:
@@ -273,8 +269,10 @@ def _hoped(mask: Mask, situation: Situation) -> End:
     return moved(Inside(region_of(spread(mask, situation))), -BEYOND, -BEYOND)
 
 
-def _insides(rooms: Rooms, beyond: Mask) -> dict[str, End]:
-    return {f"r{n}": Inside(region_of(beyond & (rooms.labels == n))) for n in numbers(rooms, beyond)}
+def _insides(rooms: Rooms, beyond: Mask, hoping: Situation | None = None) -> dict[str, End]:
+    """Inside each of the rooms that have squares of a mask. hoping : then with what is hoped to be more of them."""
+    parts = {f"r{n}": beyond & (rooms.labels == n) for n in numbers(rooms, beyond)}
+    return {name: _hoped(part, hoping) if hoping else Inside(region_of(part)) for name, part in parts.items()}
 
 
 def _around_corner(began: Place, node: Node, situation: Situation) -> Landing:

@@ -1,11 +1,12 @@
 """World models of drawn worlds: looked at from many places, or seen whole at once."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from kb.body import Move
-from kb.evidence import FREE, FULL, Evidence, MapView
+from kb.evidence import FREE, FULL, OPEN, Evidence, MapView
 from kb.interpretation import interpret
 from kb.knowledge import Knowledge
 from kb.lattice import Lattice
@@ -56,6 +57,13 @@ def seen_whole(rows: list[str], objects: bool = True) -> WorldModel:
         for n, region in enumerate((r for r in percept.regions if model.kinds.of(r.name, "object") == 95), 1)
     ]
     return WorldModel(Lattice(), (0.5, 0.5), view, labels, percept, model.kinds, tuple(nodes) if objects else ())
+
+
+def unclear(model: WorldModel, rows: slice, columns: slice, chance: float) -> WorldModel:
+    """The same, where no count settles some squares of the view. chance : that one is occupied."""
+    probability, state = model.view.probability.copy(), model.view.state.copy()
+    probability[rows, columns], state[rows, columns] = chance, OPEN
+    return replace(model, view=model.view._replace(probability=probability, state=state))
 
 
 class Walk(NamedTuple):

@@ -5,12 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kb.evidence import OPEN
 from kb.interpretation import interpret
 from kb.regions import map_regions
 from kb.rooms import rooms_of
 from kb.worldmodel import SPACE, WorldModel
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import seen_whole, unclear
 
 
 def two_rooms(door: int, wall: int, high: int = 14, wide: int = 12) -> list[str]:
@@ -47,14 +46,10 @@ def unclear_between(first: int, last: int, chance: float) -> WorldModel:
 
     first, last : their rows. chance : that one is occupied.
     """
-    model = seen_whole(two_rooms(4, 2))
-    probability, state = model.view.probability.copy(), model.view.state.copy()
-    between = slice(first, last + 1), slice(14, 16)
-    probability[between], state[between] = chance, OPEN
+    model = unclear(seen_whole(two_rooms(4, 2)), slice(first, last + 1), slice(14, 16), chance)
     seen = model.view.seen
-    percept, labels = map_regions(seen & (probability > SPACE), seen, seen)
-    view = model.view._replace(probability=probability, state=state)
-    return replace(model, view=view, labels=labels, percept=percept, kinds=interpret(percept))
+    percept, labels = map_regions(seen & (model.view.probability > SPACE), seen, seen)
+    return replace(model, labels=labels, percept=percept, kinds=interpret(percept))
 
 
 @pytest.mark.parametrize(("chance", "width"), [(0.1, 4), (0.4, 4), (0.6, 3), (0.9, 3)])

@@ -14,8 +14,8 @@ from kb.worldmodel import Node, WorldModel
 from planner.destinations import Situation
 from planner.haulage import Haul, Hauler, Request
 from planner.hoping import BEYOND, hoped_floor, spread
-from planner.screen import UNSEEN
-from tests.kb.drawings import seen_whole
+from planner.screen import UNSEEN, marked
+from tests.kb.drawings import seen_whole, unclear
 from tests.planner.situations import situation_of
 
 HALF_SEEN = [  # the room goes on behind what is seen of it
@@ -47,19 +47,12 @@ JAGGED = [  # what is seen of the next room leaves no place for the thing right 
 ]
 
 
-def marked(situation: Situation, *squares: tuple[int, int]) -> np.ndarray:
-    """(rows, columns): squares of the view, (row, column)."""
-    mask = np.zeros(situation.model.view.seen.shape, np.bool_)
-    for row, column in squares:
-        mask[row, column] = True
-    return mask
-
-
 @settings(deadline=None)
 @given(st.integers(1, 10), st.integers(1, 23))
 def test_only_what_was_never_seen_is_hoped_for_and_not_too_far(row: int, column: int) -> None:
     situation = situation_of(seen_whole(HALF_SEEN))
-    mask = marked(situation, (row, column))
+    shape = situation.model.view.seen.shape
+    mask = marked(np.array([row * shape[1] + column]), shape)
     wider = spread(mask, situation)
     assert wider.shape == tuple(size + 2 * BEYOND for size in mask.shape)
     inside = wider[BEYOND:-BEYOND, BEYOND:-BEYOND]
@@ -98,24 +91,21 @@ def found(
     return answer, situation
 
 
-def doubtful(model: WorldModel, west: float, south: float, east: float, north: float, chance: float) -> WorldModel:
-    """The same, where squares of a box of the view are occupied with some probability."""
-    probability, state = model.view.probability.copy(), model.view.state.copy()
-    part = slice(int(south), int(north)), slice(int(west), int(east))
-    probability[part], state[part] = chance, -1
-    return replace(model, view=model.view._replace(probability=probability, state=state))
+def beside_the_jamb(chance: float) -> WorldModel:
+    """JAGGED, where two squares beside the door's jamb, over which the straight way leads, are not settled."""
+    return unclear(seen_whole(JAGGED), slice(8, 9), slice(13, 15), chance)
 
 
 THROUGH = {"r2": Inside(shapely.box(15, 1, 33, 15))}
 
 
 def test_a_push_over_what_is_hoped_to_be_free_is_taken_where_it_saves_one() -> None:
-    model = doubtful(seen_whole(JAGGED), 13, 8, 15, 9, 0.2)  # beside the door's jamb: the straight way leads over it
+    model = beside_the_jamb(0.2)
     haul, situation = found(model, THROUGH)
     assert haul.hopes and haul.level == UNSEEN
     assert len(haul.plan.legs[0].motions) == 1
     assert (haul.swept & ~situation.screens.free(0) & ~situation.model.mask(thing(model).patch)).any()
-    sure, _ = found(doubtful(seen_whole(JAGGED), 13, 8, 15, 9, 0.6), THROUGH)
+    sure, _ = found(beside_the_jamb(0.6), THROUGH)
     assert not sure.hopes and sure.plan.commands > haul.plan.commands
 
 
