@@ -128,6 +128,7 @@ class Knowledge:
             touch=impression.touch,
             lost=self.memory.lost,
             anew=bool(self.memory.been),
+            contradicted=accommodated.explanation.misfits > 0,
         )
         self.objects = self._objects(model)
         if self.memory.loads:

@@ -110,6 +110,7 @@ class WorldModel:
     has moved none.
     touch : as of the impression, the colours felt in DIRECTIONS; () when it is not known.
     lost : does what he sees agree with none of it? anew : was he lost before, and has forgotten what he had seen then?
+    contradicted : is there a part of the impression that agrees with nothing that is believed?
     """
 
     lattice: Lattice
@@ -129,6 +130,7 @@ class WorldModel:
     touch: tuple[str | None, ...] = ()
     lost: bool = False
     anew: bool = False
+    contradicted: bool = False
 
     @cached_property
     def certain(self) -> Mask:

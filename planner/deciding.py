@@ -3,7 +3,6 @@
 A way is kept while it holds: its aim is still wanted, and the squares ahead are still believed free.
 """
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -18,7 +17,6 @@ from kb.reconciliation import Reconciled, reconcile
 from kb.rooms import NOTHING, Rooms, rooms_of
 from kb.task import Task
 from kb.worldmodel import Node, WorldModel
-from planner import exploring
 from planner.aims import Aim, choose
 from planner.carrier import Act, Advice, Carrier, Go, See
 from planner.circling import pivot, ways_round, winding
@@ -31,11 +29,11 @@ from planner.repeating import Circles
 from planner.screen import Screens, Squares, vicinity
 from planner.searching import aims_towards
 from planner.steps import Square
+from planner.verifying import Verifier, before_taking, misgiving
 from planner.walking import HURRY, STROLL, halting, is_open, next_move
 from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
-FEW = 4  # squares looked from by one who has hardly looked
 MISSED = 2  # plans that miss before where they should lead to is looked at
 DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
 
@@ -70,13 +68,12 @@ class Decider:
         self.stages = stages(self.task)
         self.constraints = constraints(self.task)
         self.carrier = Carrier(self.pull)
+        self.verifier = Verifier()
         self._aimed: frozenset[Square] = frozenset()  # squares of the lattice
         self._path: tuple[Square, ...] = ()  # squares of the lattice
         self._level = 0
-        self._doubted: set[str] = set()  # objects that are being looked at until they are settled
         self._circles = Circles()
         self._looked = 0  # squares he had looked from when he went to see where it must end, until it is one more
-        self._narrow: list[Place] = []  # passages that were looked at again, points of the lattice
         self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
@@ -91,6 +88,7 @@ class Decider:
         while self.attained < len(self.stages):
             stage = self.stages[self.attained]
             decision = self._towards(stage, situation, reconciled, track)
+            decision = decision or self._look(misgiving(situation), stage, situation)
             if decision is not None:
                 unproved = model.anew and decision.verdict == "impossible"
                 return replace(decision, verdict="limit") if unproved else decision
@@ -130,7 +128,7 @@ class Decider:
         there : they seem to hold.
         """
         nodes = [situation.model.object(self.bound.get(str(goal.args[1]), "")) for goal in goals]
-        doubted = [n for n in nodes if n is not None and (n.name in self._doubted or (there and n.vague))]
+        doubted = [n for n in nodes if n is not None and (self.verifier.doubted(n) or (there and n.vague))]
         looks = (self._inspect(node, stage, situation) for node in doubted)
         return next((look for look in looks if look is not None), None)
 
@@ -199,7 +197,7 @@ class Decider:
             unseen = nowhere(f"nothing seen so far is {x}")
             aims = aims_towards([unseen], situation, reconciled)
             return self._pursue(aims, stage, situation, lambda: unseen.missing)
-        if node.polygon is None or node.vague or node.name in self._doubted:
+        if node.polygon is None or node.vague or self.verifier.doubted(node):
             look = self._inspect(node, stage, situation)
             if look is not None:
                 return look
@@ -220,7 +218,7 @@ class Decider:
             if isinstance(advice.command, Push | Turn) and self._circles.noticed(situation.model, advice.command):
                 advice = self.carrier.given_up(situation.model)
             taking = isinstance(advice.command, Move | Grasp)
-            look = self._before_taking(node, stage, situation) if taking else None
+            look = self._look(before_taking(node, self.carrier.turns, situation), stage, situation) if taking else None
             if look is not None:
                 return look
             return Decision(advice.command, f"{advice.why}; {stage}")
@@ -247,7 +245,8 @@ class Decider:
             if shut_in is not None and shut_in.proved:
                 why = f"{stage} cannot be attained: {shut_in.reason()}"
                 advice, decision = shut_in, Decision(None, why, "impossible")
-        return self._looked_again(decision, advice, stage, situation)
+        again = self.verifier.narrow_again(advice, situation) if decision.verdict == "impossible" else None
+        return decision if again is None else self._pursue([again], stage, situation, advice.reason)
 
     def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
         """What to do to carry something to where its goal holds; while that is not known, to near it."""
@@ -268,47 +267,12 @@ class Decider:
         return Refusal(not self.carrier.begun, lambda: land.missing)
 
     def _inspect(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
-        """A look at an object that is not settled yet; None when no look is left that may tell more.
+        """A look at an object that is not settled yet; None when no look is left that may tell more."""
+        return self._look(self.verifier.inspection(node, situation), stage, situation)
 
-        Once begun it is gone on with.
-        """
-        self._doubted.discard(node.name)
-        if node.polygon is not None and not node.open:
-            return None
-        look = exploring.inspection(situation.screens, node, touch=False, chance=1.0, arrive=False)
-        if not len(look.squares):
-            return None
-        self._doubted.add(node.name)
-        return self._pursue([Aim("inspect", *look)], stage, situation, lambda: look.what)
-
-    def _looked_again(self, decision: Decision, refusal: Refusal, stage: Stage, situation: Situation) -> Decision:
-        """A look at the passage that is said to be too narrow, from close by, before one says so who is not sure of his
-        map: where looks were received he may misjudge, but how the squares of one look lie beside each other he knows.
-        """
-        model = situation.model
-        neck = refusal.neck() if decision.verdict == "impossible" and not model.view.sure else None
-        if neck is None:
-            return decision
-        where = (neck[0] + model.view.west, neck[1] + model.view.south)
-        near = exploring.close_to(situation.screens, *where)
-        if contains(near, model):
-            self._narrow.append(where)
-        if any(math.dist(where, looked) <= exploring.CLOSE for looked in self._narrow):
-            return decision
-        again = Aim("inspect", near, "whether the passage is that narrow is not sure")
-        return self._pursue([again], stage, situation, refusal.reason)
-
-    def _before_taking(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
-        """A look at how the squares lie before an object is taken to be turned, by who has looked but a few times.
-
-        A thing that was turned askew, and the map with it, are hard to set right again; a push leaves it as it lies.
-        But when it did not move by a push he may have misjudged where it is, or what stands about it.
-        """
-        model = situation.model
-        if not (is_open(model) and (self.carrier.turns or node.stuck) and len(model.looked_from) <= FEW + node.stuck):
-            return None
-        aside = exploring.sight_of(situation.screens, model.mask(node.patch), "how the squares lie is not clear")
-        return self._pursue([Aim("inspect", *aside)], stage, situation, lambda: "") if len(aside.squares) else None
+    def _look(self, aim: Aim | None, stage: Stage, situation: Situation) -> Decision | None:
+        """The next command towards what he wants to make sure of, if there is anything."""
+        return None if aim is None else self._pursue([aim], stage, situation, lambda: aim.what, "limit")
 
     def _round(self, stage: Stage, name: str, situation: Situation, track: Sequence[Place]) -> Decision | None:
         """The next command on the way round an object."""

@@ -17,7 +17,7 @@ from kb.reconciliation import Reconciled
 from kb.worldmodel import Node, WorldModel
 from planner.carrier import Act, Carrier, Go
 from planner.course import Course
-from planner.deciding import Decider, Decision
+from planner.deciding import Decider
 from planner.destinations import Situation
 from planner.exploring import CLOSE
 from planner.goals import Stage
@@ -240,65 +240,6 @@ def test_while_it_is_open_how_the_squares_lie_nothing_is_proved_of_what_does_not
     decision = decider._carry(stage.goals[0], stage, situation_of(fixed, situation.binding), Reconciled({}, (), (), ()))
     assert decision is not None
     assert (decision.command, decision.verdict) == (None, verdict)
-
-
-@pytest.mark.parametrize(
-    ("spread", "turn", "looks", "stuck", "first"),
-    [
-        (math.pi, 90.0, 2, 0, True),
-        (math.pi, 0.0, 2, 0, False),  # what is pushed stays as it lies
-        (0.0, 90.0, 2, 0, False),
-        (math.pi, 90.0, 9, 0, False),  # he has looked often enough
-        (math.pi, 0.0, 2, 1, True),  # it was pushed, and did not move
-        (0.0, 0.0, 2, 1, False),
-    ],
-)
-def test_before_a_thing_is_turned_or_tried_again_he_looks_how_the_squares_lie(
-    spread: float, turn: float, looks: int, stuck: int, first: bool
-) -> None:
-    situation, decider, node, stage = about_to_turn(spread, turn, looks)
-    decision = decider._before_taking(replace(node, stuck=stuck), stage, situation)
-    assert (decision is not None) == first
-    if decision is not None:
-        assert isinstance(decision.command, Move)
-        assert "how the squares lie" in decision.why
-
-
-NARROW = [
-    "b" * 30,
-    *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 5,
-    "b...gggg......bb.............b",
-    "b...gggg......bb.............b",
-    "b...gggg.....................b",
-    "b...gggg................U....b",
-    *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 5,
-    "b" * 30,
-]
-
-
-@pytest.mark.parametrize("sure", [True, False])
-def test_who_is_not_sure_of_his_map_looks_at_a_narrow_passage_from_close_by_before_he_says_so(sure: bool) -> None:
-    model = seen_whole(NARROW)
-    (node,) = model.objects
-    node = replace(node, polygon=shapely.box(-20, 0, -16, 4), colour="g", shape={"square": 99})
-    model = replace(model, objects=(node,), view=model.view._replace(sure=sure))
-    refusal = Hauler().find(Request(node, {"r": Inside(shapely.box(16, 1, 29, 15))}), situation_of(model))
-    assert isinstance(refusal, Refusal)
-    neck = refusal.neck()
-    assert refusal.proved
-    assert neck == pytest.approx((15, 7), abs=1.0)
-    decider, stage = Decider(NO_TASK), Stage(facts_of("in(x, room(next))."))
-    verdict = Decision(None, refusal.reason(), "impossible")
-    first = decider._looked_again(verdict, refusal, stage, situation_of(model))
-    assert (first is verdict) == sure
-    if sure:
-        return
-    assert isinstance(first.command, Move)
-    x, y = model.place[0] + first.command.east, model.place[1] + first.command.north
-    assert max(abs(x - model.view.west - neck[0]), abs(y - model.view.south - neck[1])) <= CLOSE
-    there = situation_of(replace(model, place=(x, y)))
-    assert decider._looked_again(verdict, refusal, stage, there) is verdict
-    assert decider._looked_again(verdict, refusal, stage, situation_of(model)) is verdict  # he need not go there again
 
 
 @pytest.mark.parametrize(

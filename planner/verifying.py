@@ -1,0 +1,84 @@
+"""Looks by which he makes sure: of a thing before he carries it, of how the squares lie, of a passage that is said to
+be too narrow, and of what he believes when the last look contradicts it.
+
+Each is an aim to go to first, or None where there is nothing to make sure of.
+"""
+
+import math
+
+from kb.worldmodel import Node
+from planner import exploring
+from planner.aims import Aim
+from planner.destinations import Situation, contains
+from planner.refusing import Refusal
+from planner.walking import is_open
+
+Place = tuple[float, float]
+FEW = 4  # squares looked from by one who has hardly looked
+
+
+class Verifier:
+    """Remembers what he has begun to look at, and which passages he has looked at again."""
+
+    def __init__(self) -> None:
+        self._doubted: set[str] = set()  # objects that are being looked at until they are settled
+        self._narrow: list[Place] = []  # passages that were looked at again, points of the lattice
+
+    def doubted(self, node: Node) -> bool:
+        """Has he begun to look at an object that was not settled?"""
+        return node.name in self._doubted
+
+    def inspection(self, node: Node, situation: Situation) -> Aim | None:
+        """A look at an object that is not settled yet; None when no look is left that may tell more.
+
+        Once begun it is gone on with.
+        """
+        self._doubted.discard(node.name)
+        if node.polygon is not None and not node.open:
+            return None
+        look = exploring.inspection(situation.screens, node, touch=False, chance=1.0, arrive=False)
+        if not len(look.squares):
+            return None
+        self._doubted.add(node.name)
+        return Aim("inspect", *look)
+
+    def narrow_again(self, refusal: Refusal, situation: Situation) -> Aim | None:
+        """A look at the passage that is said to be too narrow, from close by, before one says so who is not sure of his
+        map: where looks were received he may misjudge, but how the squares of one look lie beside each other he knows.
+        """
+        model = situation.model
+        neck = None if model.view.sure else refusal.neck()
+        if neck is None:
+            return None
+        where = (neck[0] + model.view.west, neck[1] + model.view.south)
+        near = exploring.close_to(situation.screens, *where)
+        if contains(near, model):
+            self._narrow.append(where)
+        if any(math.dist(where, looked) <= exploring.CLOSE for looked in self._narrow):
+            return None
+        return Aim("inspect", near, "whether the passage is that narrow is not sure")
+
+
+def before_taking(node: Node, turns: bool, situation: Situation) -> Aim | None:
+    """A look at how the squares lie before an object is taken to be turned, by who has looked but a few times.
+
+    A thing that was turned askew, and the map with it, are hard to set right again; a push leaves it as it lies.
+    But when it did not move by a push he may have misjudged where it is, or what stands about it.
+    """
+    model = situation.model
+    if not (is_open(model) and (turns or node.stuck) and len(model.looked_from) <= FEW + node.stuck):
+        return None
+    aside = exploring.sight_of(situation.screens, model.mask(node.patch), "how the squares lie is not clear")
+    return Aim("inspect", *aside) if len(aside.squares) else None
+
+
+def misgiving(situation: Situation) -> Aim | None:
+    """A look from elsewhere before a goal is held for attained, when the last look contradicts what is believed.
+
+    What contradicts was withdrawn, so the new look agrees with the rest if that is right.
+    """
+    model = situation.model
+    if not model.contradicted:
+        return None
+    here = model.squares([(math.floor(model.place[0]), math.floor(model.place[1]))])
+    return Aim("inspect", *exploring.sight_of(situation.screens, here, "what is seen is not as it is believed to be"))

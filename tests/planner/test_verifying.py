@@ -1,0 +1,136 @@
+"""Looks by which he makes sure before he commits himself, or says that something is so."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+
+from geometry.carrying import Inside
+from kb.body import Move
+from kb.factfile import facts_of
+from kb.worldmodel import WorldModel
+from planner.deciding import Decider
+from planner.exploring import CLOSE
+from planner.haulage import Hauler, Request
+from planner.refusing import Refusal
+from planner.verifying import Verifier, before_taking, misgiving
+from tests.kb.drawings import seen_whole
+from tests.planner.situations import NO_TASK, situation_of
+
+AT_START = replace(NO_TASK, goals=facts_of("at(utak, start)."))
+OPEN_ROOM = [
+    "b" * 20,
+    *["b" + "." * 18 + "b"] * 6,
+    "b....ggg" + "." * 11 + "b",
+    "b...Uggg" + "." * 11 + "b",
+    "b....ggg" + "." * 11 + "b",
+    *["b" + "." * 18 + "b"] * 6,
+    "b" * 20,
+]
+NARROW = [
+    "b" * 30,
+    *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 5,
+    "b...gggg......bb.............b",
+    "b...gggg......bb.............b",
+    "b...gggg.....................b",
+    "b...gggg................U....b",
+    *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 5,
+    "b" * 30,
+]
+
+
+def stood_in(rows: list[str], contradicted: bool) -> WorldModel:
+    """A room seen whole, by one whose last look, from where he stands, agrees with it or does not."""
+    model = seen_whole(rows)
+    here = (math.floor(model.place[0]), math.floor(model.place[1]))
+    return replace(model, looked_from=frozenset({here}), contradicted=contradicted)
+
+
+def squares_from(model: WorldModel, squares: np.ndarray) -> np.ndarray:
+    """(n, 2): how far east and north of Utak each of some squares of the view is."""
+    rows, columns = np.divmod(squares, model.labels.shape[1])
+    row, column = model.view.locate(*model.place)
+    return np.stack([columns - column, rows - row], axis=1)
+
+
+@pytest.mark.parametrize(
+    ("spread", "turns", "looks", "stuck", "first"),
+    [
+        (math.pi, True, 2, 0, True),
+        (math.pi, False, 2, 0, False),  # what is pushed stays as it lies
+        (0.0, True, 2, 0, False),
+        (math.pi, True, 9, 0, False),  # he has looked often enough
+        (math.pi, False, 2, 1, True),  # it was pushed, and did not move
+        (0.0, False, 2, 1, False),
+    ],
+)
+def test_before_a_thing_is_turned_or_tried_again_he_looks_how_the_squares_lie(
+    spread: float, turns: bool, looks: int, stuck: int, first: bool
+) -> None:
+    model = replace(seen_whole(OPEN_ROOM), spread=spread, looked_from=frozenset((x, 0) for x in range(looks)))
+    (node,) = model.objects
+    aim = before_taking(replace(node, stuck=stuck), turns, situation_of(model))
+    assert (aim is not None) == first
+    if aim is not None:
+        assert "how the squares lie" in aim.what
+        assert len(aim.squares)
+
+
+@pytest.mark.parametrize("sure", [True, False])
+def test_who_is_not_sure_of_his_map_looks_at_a_narrow_passage_from_close_by_before_he_says_so(sure: bool) -> None:
+    model = seen_whole(NARROW)
+    (node,) = model.objects
+    node = replace(node, polygon=shapely.box(-20, 0, -16, 4), colour="g", shape={"square": 99})
+    model = replace(model, objects=(node,), view=model.view._replace(sure=sure))
+    refusal = Hauler().find(Request(node, {"r": Inside(shapely.box(16, 1, 29, 15))}), situation_of(model))
+    assert isinstance(refusal, Refusal)
+    neck = refusal.neck()
+    assert refusal.proved
+    assert neck == pytest.approx((15, 7), abs=1.0)
+    verifier = Verifier()
+    first = verifier.narrow_again(refusal, situation_of(model))
+    assert (first is None) == sure
+    if first is None:
+        return
+    rows, columns = np.divmod(first.squares, model.labels.shape[1])
+    assert max(np.abs(columns + 0.5 - neck[0]).max(), np.abs(rows + 0.5 - neck[1]).max()) <= CLOSE
+    x, y = columns[0] + model.view.west + 0.5, rows[0] + model.view.south + 0.5
+    there = situation_of(replace(model, place=(float(x), float(y))))
+    assert verifier.narrow_again(refusal, there) is None
+    assert verifier.narrow_again(refusal, situation_of(model)) is None  # he need not go there again
+
+
+def test_who_sees_what_contradicts_his_beliefs_looks_from_elsewhere_near_by() -> None:
+    assert misgiving(situation_of(stood_in(OPEN_ROOM, False))) is None
+    model = stood_in(OPEN_ROOM, True)
+    aim = misgiving(situation_of(model))
+    assert aim is not None
+    away = np.abs(squares_from(model, aim.squares)).max(1)
+    assert len(away)
+    assert away.min() > 0
+    assert away.max() <= CLOSE
+
+
+@pytest.mark.parametrize("contradicted", [False, True])
+def test_nothing_is_held_for_done_while_the_last_look_contradicts_what_is_believed(contradicted: bool) -> None:
+    model = stood_in(OPEN_ROOM, contradicted)
+    decider = Decider(AT_START)
+    decision = decider.decide(model, [model.place])
+    assert (decision.verdict == "done") == (not contradicted)
+    if contradicted:
+        assert isinstance(decision.command, Move)
+        assert decision.why == "what is seen is not as it is believed to be; at(utak,start)"
+        assert decider.decide(replace(model, contradicted=False), [model.place]).verdict == "done"
+
+
+def test_who_has_looked_from_everywhere_and_still_sees_what_contradicts_says_that_he_does_not_know() -> None:
+    model = seen_whole(OPEN_ROOM)
+    rows, columns = np.nonzero(model.floor)
+    everywhere = frozenset(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))
+    model = replace(model, contradicted=True, looked_from=everywhere)
+    decision = Decider(AT_START).decide(model, [model.place])
+    assert decision.command is None
+    assert decision.verdict == "limit"
+    assert "what is seen is not as it is believed to be" in decision.why
