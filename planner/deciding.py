@@ -196,7 +196,8 @@ class Decider:
         if node is None:
             unseen = nowhere(f"nothing seen so far is {x}")
             aims = aims_towards([unseen], situation, reconciled)
-            return self._pursue(aims, stage, situation, lambda: unseen.missing)
+            may_be = not situation.model.view.sure or any(name == x for name, _ in reconciled.doubtful)
+            return self._pursue(aims, stage, situation, lambda: unseen.missing, "limit" if may_be else "impossible")
         if node.polygon is None or node.vague or self.verifier.doubted(node):
             look = self._inspect(node, stage, situation)
             if look is not None:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from geometry.carrying import Carrying
+from kb.loads import is_whole
 from kb.worldmodel import Node, WorldModel
 from planner.landing import lies_askew
 
@@ -31,7 +32,7 @@ def refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel
     _, last = plans[-1]
     if any(plan.status != "impossible" for _, plan in plans):
         return Refusal(False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none")
-    doubt = _doubt(node, last, model)
+    doubt = _doubt(node, last, model) or _misplaced(node, plans)
     if doubt:
         return Refusal(False, lambda: f"where {node.name} lies is not known well: {doubt}")
 
@@ -66,6 +67,15 @@ def _doubt(node: Node, plan: Carrying, model: WorldModel) -> str:
     if node.stuck and not model.view.sure:
         return "it did not move where there seemed to be room"
     return "it was turned askew" if lies_askew(node) else ""  # and what is wall beside it is not known well either
+
+
+def _misplaced(node: Node, plans: Sequence[tuple[int, Carrying]]) -> str:
+    """What speaks against that a thing that was stopped amid squares lies where it is believed to, in words.
+
+    He has brought it where it lies. When no wider passage would let it go on, it rather is elsewhere.
+    """
+    stopped = node.moved and not is_whole(node.polygon)
+    return "it was stopped on its way there" if stopped and math.isinf(nearest_to_done(plans).missing) else ""
 
 
 def nearest_to_done(plans: Sequence[tuple[int, Carrying]]) -> Carrying:

@@ -88,6 +88,16 @@ def test_who_is_carried_off_notices_and_soon_knows_the_room_again() -> None:
         assert len(stroll.knowledge.memory.track) == len(stroll.hows)
 
 
+def test_a_look_that_agrees_with_nothing_contradicts_what_is_believed() -> None:
+    knowledge = walked(ROOM, [(2, 0), (0, 3)]).knowledge
+    x, y = utak_in(ROOM)
+    model, _ = knowledge.perceive(Release(), impression(world_of(ROOM), (x + 2, y + 3)))
+    assert not model.contradicted
+    shut_in = impression(lambda i, j: (i, j) != (0, 0), (0, 0))
+    model, _ = knowledge.perceive(Release(), shut_in)
+    assert model.contradicted
+
+
 def test_who_cannot_forget_believes_in_a_room_that_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Memory, "lost", False)
     assert all(strolled(seed).wrong > 0.01 for seed in range(3))

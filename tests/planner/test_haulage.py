@@ -13,7 +13,7 @@ from kb.evidence import FULL
 from kb.loads import covered
 from kb.worldmodel import Node
 from planner.haulage import Haul, Hauler, Request
-from planner.refusing import Refusal, nearest_to_done
+from planner.refusing import Refusal, nearest_to_done, refusal
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
 
@@ -73,6 +73,27 @@ def test_what_he_has_turned_askew_proves_nothing(turned: float, proved: bool) ->
     assert isinstance(answer, Refusal)
     assert answer.proved == proved
     assert ("askew" in answer.reason()) != proved
+
+
+@pytest.mark.parametrize(
+    ("moved", "west", "missing", "proved"),
+    [
+        (True, 4.3, math.inf, False),
+        (True, 4.0, math.inf, True),
+        (False, 4.3, math.inf, True),
+        (True, 4.3, 0.5, True),
+    ],
+)
+def test_what_was_stopped_amid_squares_and_no_wider_passage_would_let_on_proves_nothing(
+    moved: bool, west: float, missing: float, proved: bool
+) -> None:
+    shape = shapely.box(west, 5, west + 4, 9)
+    node = Node("o1", "object", 60, "part1", covered(shape), 0, polygon=shape, moved=moved)
+    plan = Carrying("impossible", reason="body")
+    plan.__dict__["missing"] = missing  # as if it had been worked out
+    answer = refusal(node, [(2, plan)], seen_whole(PARTED))
+    assert answer.proved == proved
+    assert ("stopped on its way" in answer.reason()) != proved
 
 
 @pytest.mark.parametrize("dubious", [False, True])

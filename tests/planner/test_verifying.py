@@ -7,12 +7,15 @@ import numpy as np
 import pytest
 import shapely
 
+import planner.deciding
 from geometry.carrying import Inside
 from kb.body import Move
 from kb.factfile import facts_of
+from kb.reconciliation import Reconciled
 from kb.worldmodel import WorldModel
 from planner.deciding import Decider
 from planner.exploring import CLOSE
+from planner.goals import Stage
 from planner.haulage import Hauler, Request
 from planner.refusing import Refusal
 from planner.verifying import Verifier, before_taking, misgiving
@@ -134,3 +137,19 @@ def test_who_has_looked_from_everywhere_and_still_sees_what_contradicts_says_tha
     assert decision.command is None
     assert decision.verdict == "limit"
     assert "what is seen is not as it is believed to be" in decision.why
+
+
+@pytest.mark.parametrize(
+    ("sure", "doubtful", "verdict"), [(True, (), "impossible"), (False, (), "limit"), (True, (("x", "o1"),), "limit")]
+)
+def test_that_a_thing_is_nowhere_is_proved_on_a_sure_map_without_anything_that_may_be_it(
+    sure: bool, doubtful: tuple[tuple[str, str], ...], verdict: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model = seen_whole(OPEN_ROOM)
+    model = replace(model, objects=(), view=model.view._replace(sure=sure))
+    monkeypatch.setattr(planner.deciding, "aims_towards", lambda *_: [])
+    (goal,) = facts_of("in(x, room(next)).")
+    decision = Decider(NO_TASK)._carry(goal, Stage((goal,)), situation_of(model), Reconciled({}, ("x",), doubtful, ()))
+    assert decision is not None
+    assert (decision.command, decision.verdict) == (None, verdict)
+    assert "nothing seen so far is x" in decision.why
