@@ -208,7 +208,8 @@ class Decider:
         if land.holds:
             return None
         if node.movable == 0:
-            verdict = "limit" if is_open(situation.model) else "impossible"
+            sure = situation.model.view.sure and not is_open(situation.model)  # else it may be another thing
+            verdict = "impossible" if sure else "limit"
             return Decision(None, f"{stage} cannot be attained: {node.name} cannot be moved", verdict)
         advice = self._advice(node, land, situation)
         if isinstance(advice, Refusal) and land.loose:

@@ -231,12 +231,15 @@ def test_he_looks_before_he_makes_ready_to_take_it(command: Command, monkeypatch
     assert decision.why.startswith("so" if isinstance(command, Push) else "how the squares lie")
 
 
-@pytest.mark.parametrize(("spread", "verdict"), [(math.pi, "limit"), (0.0, "impossible")])
+@pytest.mark.parametrize(
+    ("spread", "sure", "verdict"), [(math.pi, True, "limit"), (0.0, True, "impossible"), (0.0, False, "limit")]
+)
 def test_while_it_is_open_how_the_squares_lie_nothing_is_proved_of_what_does_not_move(
-    spread: float, verdict: str
+    spread: float, sure: bool, verdict: str
 ) -> None:
     situation, decider, node, stage = about_to_turn(spread, 0.0, 9)
-    fixed = replace(situation.model, objects=(replace(node, movable=0),))
+    view = situation.model.view._replace(sure=sure)
+    fixed = replace(situation.model, objects=(replace(node, movable=0),), view=view)
     decision = decider._carry(stage.goals[0], stage, situation_of(fixed, situation.binding), Reconciled({}, (), (), ()))
     assert decision is not None
     assert (decision.command, decision.verdict) == (None, verdict)
