@@ -29,10 +29,9 @@ def refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel
     """Why nothing was found. It is proved when every target was refuted, whatever lies in the unseen."""
     if not plans:
         return Refusal(False, lambda: f"nothing is known of where {node.name} could be carried")
-    _, last = plans[-1]
     if any(plan.status != "impossible" for _, plan in plans):
         return Refusal(False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none")
-    doubt = _doubt(node, last, model) or _misplaced(node, plans)
+    doubt = _doubt(node, plans, model)
     if doubt:
         return Refusal(False, lambda: f"where {node.name} lies is not known well: {doubt}")
 
@@ -55,27 +54,23 @@ def refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel
     return Refusal(True, reason, neck)
 
 
-def _doubt(node: Node, plan: Carrying, model: WorldModel) -> str:
+def _doubt(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel) -> str:
     """What speaks against that a thing lies where it is believed to, in words; nothing when nothing does.
 
-    plan : one that is impossible.
+    plans : all that are impossible, the last one asked for last.
     """
-    if plan.reason == "start":  # nothing lies in a wall
+    _, last = plans[-1]
+    if last.reason == "start":  # nothing lies in a wall
         return "it would overlap a wall"
     if node.dubious:
         return "what is seen does not agree with it"
     if node.stuck and not model.view.sure:
         return "it did not move where there seemed to be room"
-    return "it was turned askew" if lies_askew(node) else ""  # and what is wall beside it is not known well either
-
-
-def _misplaced(node: Node, plans: Sequence[tuple[int, Carrying]]) -> str:
-    """What speaks against that a thing that was stopped amid squares lies where it is believed to, in words.
-
-    He has brought it where it lies. When no wider passage would let it go on, it rather is elsewhere.
-    """
-    stopped = node.moved and not is_whole(node.polygon)
-    return "it was stopped on its way there" if stopped and math.isinf(nearest_to_done(plans).missing) else ""
+    if lies_askew(node):  # and what is wall beside it is not known well either
+        return "it was turned askew"
+    # He has brought it there. When no wider passage would let it go on, it rather is elsewhere.
+    amid_squares = node.moved and not is_whole(node.polygon)
+    return "it was stopped on its way there" if amid_squares and math.isinf(nearest_to_done(plans).missing) else ""
 
 
 def nearest_to_done(plans: Sequence[tuple[int, Carrying]]) -> Carrying:
