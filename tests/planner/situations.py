@@ -1,4 +1,4 @@
-"""Situations of world models: with their rooms and corners, and no task unless one is given."""
+"""Situations of world models: with their rooms and corners, and no task unless one is given; and a room for them."""
 
 from collections.abc import Mapping
 
@@ -10,6 +10,15 @@ from planner.destinations import Situation
 from planner.screen import Screens
 
 NO_TASK = Task({}, (), ())
+BESIDE_A_THING = [  # a room, and Utak right beside the one thing in it
+    "b" * 20,
+    *["b" + "." * 18 + "b"] * 6,
+    "b....ggg" + "." * 11 + "b",
+    "b...Uggg" + "." * 11 + "b",
+    "b....ggg" + "." * 11 + "b",
+    *["b" + "." * 18 + "b"] * 6,
+    "b" * 20,
+]
 
 
 def situation_of(model: WorldModel, bound: Mapping[str, str] | None = None, task: Task = NO_TASK) -> Situation:

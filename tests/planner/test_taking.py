@@ -24,17 +24,8 @@ from planner.goals import Stage
 from planner.haulage import Haul, Hauler, Request
 from planner.refusing import Refusal
 from tests.kb.drawings import seen_whole
-from tests.planner.situations import NO_TASK, situation_of
+from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of
 
-ROOM = [
-    "b" * 20,
-    *["b" + "." * 18 + "b"] * 6,
-    "b....ggg" + "." * 11 + "b",
-    "b...Uggg" + "." * 11 + "b",
-    "b....ggg" + "." * 11 + "b",
-    *["b" + "." * 18 + "b"] * 6,
-    "b" * 20,
-]
 NOTHING: tuple[str | None, ...] = (None,) * 8
 EAST, NORTHWEST = 2, 7
 
@@ -45,7 +36,7 @@ def touching(directions: dict[int, str]) -> tuple[str | None, ...]:
 
 def beside(touch: tuple[str | None, ...], place: tuple[float, float] = (0.5, 0.5)) -> Situation:
     """One who stands right beside a square thing, and feels this."""
-    model = seen_whole(ROOM)
+    model = seen_whole(BESIDE_A_THING)
     (node,) = model.objects
     west, south = node.patch.west, node.patch.south
     node = replace(node, polygon=shapely.box(west, south, west + 3, south + 3), colour="g", shape={"square": 99})

@@ -20,18 +20,9 @@ from planner.haulage import Hauler, Request
 from planner.refusing import Refusal
 from planner.verifying import Verifier, before_taking, misgiving
 from tests.kb.drawings import seen_whole
-from tests.planner.situations import NO_TASK, situation_of
+from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of
 
 AT_START = replace(NO_TASK, goals=facts_of("at(utak, start)."))
-OPEN_ROOM = [
-    "b" * 20,
-    *["b" + "." * 18 + "b"] * 6,
-    "b....ggg" + "." * 11 + "b",
-    "b...Uggg" + "." * 11 + "b",
-    "b....ggg" + "." * 11 + "b",
-    *["b" + "." * 18 + "b"] * 6,
-    "b" * 20,
-]
 NARROW = [
     "b" * 30,
     *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 5,
@@ -72,7 +63,7 @@ def squares_from(model: WorldModel, squares: np.ndarray) -> np.ndarray:
 def test_before_a_thing_is_turned_or_tried_again_he_looks_how_the_squares_lie(
     spread: float, turns: bool, looks: int, stuck: int, first: bool
 ) -> None:
-    model = replace(seen_whole(OPEN_ROOM), spread=spread, looked_from=frozenset((x, 0) for x in range(looks)))
+    model = replace(seen_whole(BESIDE_A_THING), spread=spread, looked_from=frozenset((x, 0) for x in range(looks)))
     (node,) = model.objects
     aim = before_taking(replace(node, stuck=stuck), turns, situation_of(model))
     assert (aim is not None) == first
@@ -106,8 +97,8 @@ def test_who_is_not_sure_of_his_map_looks_at_a_narrow_passage_from_close_by_befo
 
 
 def test_who_sees_what_contradicts_his_beliefs_looks_from_elsewhere_near_by() -> None:
-    assert misgiving(situation_of(stood_in(OPEN_ROOM, False))) is None
-    model = stood_in(OPEN_ROOM, True)
+    assert misgiving(situation_of(stood_in(BESIDE_A_THING, False))) is None
+    model = stood_in(BESIDE_A_THING, True)
     aim = misgiving(situation_of(model))
     assert aim is not None
     away = np.abs(squares_from(model, aim.squares)).max(1)
@@ -118,7 +109,7 @@ def test_who_sees_what_contradicts_his_beliefs_looks_from_elsewhere_near_by() ->
 
 @pytest.mark.parametrize("contradicted", [False, True])
 def test_nothing_is_held_for_done_while_the_last_look_contradicts_what_is_believed(contradicted: bool) -> None:
-    model = stood_in(OPEN_ROOM, contradicted)
+    model = stood_in(BESIDE_A_THING, contradicted)
     decider = Decider(AT_START)
     decision = decider.decide(model, [model.place])
     assert (decision.verdict == "done") == (not contradicted)
@@ -129,7 +120,7 @@ def test_nothing_is_held_for_done_while_the_last_look_contradicts_what_is_believ
 
 
 def test_who_has_looked_from_everywhere_and_still_sees_what_contradicts_says_that_he_does_not_know() -> None:
-    model = seen_whole(OPEN_ROOM)
+    model = seen_whole(BESIDE_A_THING)
     rows, columns = np.nonzero(model.floor)
     everywhere = frozenset(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))
     model = replace(model, contradicted=True, looked_from=everywhere)
@@ -145,7 +136,7 @@ def test_who_has_looked_from_everywhere_and_still_sees_what_contradicts_says_tha
 def test_that_a_thing_is_nowhere_is_proved_on_a_sure_map_without_anything_that_may_be_it(
     sure: bool, doubtful: tuple[tuple[str, str], ...], verdict: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    model = seen_whole(OPEN_ROOM)
+    model = seen_whole(BESIDE_A_THING)
     model = replace(model, objects=(), view=model.view._replace(sure=sure))
     monkeypatch.setattr(planner.deciding, "aims_towards", lambda *_: [])
     (goal,) = facts_of("in(x, room(next)).")
