@@ -14,7 +14,7 @@ from geometry.ends import prices
 from geometry.errand import Errand
 from geometry.guess import NEVER, STILL, guess
 from geometry.hauling import CALM, first_walk, haul
-from geometry.legs import Leg, commands, may_push, rounded
+from geometry.legs import Leg, commands, may_push, rounded, verified
 from geometry.retelling import MIDDLE, Retelling
 from geometry.rigid import Rotate, Translate
 from geometry.sequel import after
@@ -48,15 +48,33 @@ def _stencils_near(wkb: bytes, margin: float, own: tuple[int, int] | None) -> tu
 def carry_squarewise(errand: Errand) -> list[Leg] | None:
     """The cheapest legs by whole squares, or some in haste where that takes long; None when none are found.
 
-    Who has hold of the shape off the middle of a square comes there with his first push, or a push more: that is
+    Who has hold of the shape off the middle of a square pushes it by whole squares all the same, as long as he does not
+    turn it; or he comes to the middle with his first push, or a push more, where that takes fewer commands: both are
     cheaper than to let go and take it again.
     """
-    for nudge in _nudges(errand) if errand.held else ():
+    if not errand.held:
+        return _fewest(errand)
+    nudges = _nudges(errand)
+    off = math.hypot(*nudges[0]) > 0.0
+    straight = _pushed_off_the_middle(errand) if off else None
+    if straight is not None and len(straight) == len(straight[0].motions) == 1:
+        return straight
+    for nudge in nudges:
         first = Leg(errand.utak, (0, 0), (rounded(nudge),), errand.hold_from(errand.utak), taken=True)
         legs = _fewest(after(errand, [first], held=True), errand)
         if legs is not None and legs[0].taken and _may_begin(errand, legs[0]):
-            return legs
-    return _fewest(replace(errand, held=False))
+            return min((found for found in (straight, legs) if found), key=lambda found: _price(errand, found))
+    return straight or _fewest(replace(errand, held=False))
+
+
+def _pushed_off_the_middle(errand: Errand) -> list[Leg] | None:
+    """The cheapest legs by whole squares of one who stands off the middle of his square, if the first only pushes."""
+    x, y = errand.utak
+    legs = _fewest(replace(errand, utak=(math.floor(x) + 0.5, math.floor(y) + 0.5)))
+    if legs is None or not legs[0].taken or any(isinstance(motion, Rotate) for motion in legs[0].motions):
+        return None
+    legs = [replace(legs[0], place=errand.utak, hold=errand.hold_from(errand.utak)), *legs[1:]]
+    return legs if verified(errand.yard, errand.shape, legs) is not None else None
 
 
 def _nudges(errand: Errand) -> list[Translate]:
@@ -74,6 +92,12 @@ def _may_begin(errand: Errand, leg: Leg) -> bool:
     return pushes and errand.yard.lets(errand.shape, errand.utak, motion)
 
 
+def _price(errand: Errand, legs: Sequence[Leg]) -> float:
+    """About how many commands legs take, a turn for as many as it counts for."""
+    turns = sum(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
+    return commands(legs) + (errand.turn - 1.0) * turns
+
+
 def _fewest(errand: Errand, begun: Errand | None = None) -> list[Leg] | None:
     """The legs of one who stands in the middle of a square when he has hold of the shape.
 
@@ -85,7 +109,7 @@ def _fewest(errand: Errand, begun: Errand | None = None) -> list[Leg] | None:
     best: list[Leg] | None = None
     for bend in BENDS if search.sensible else ():
         legs = search.legs(bend)
-        best = min((found for found in (best, legs) if found), key=search.price, default=None)
+        best = min((found for found in (best, legs) if found), key=lambda told: _price(errand, told), default=None)
         if best is None or [len(leg.motions) for leg in best] == [1]:
             break
     return best
@@ -111,11 +135,6 @@ class _Search:
         self.ends = prices(errand.goal, errand.shape, self.body, self.board, self.grid)
         walk = first_walk(self.board, self.place, self.grid.number(*errand.square))
         self.begin = _begin(errand, self.body, walk)
-
-    def price(self, legs: Sequence[Leg]) -> float:
-        """About how many commands legs take, a turn for as many as it counts for."""
-        turns = sum(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
-        return commands(legs) + (self.errand.turn - 1.0) * turns
 
     def legs(self, bend: int) -> list[Leg] | None:
         """The cheapest legs when it costs so much to go on in another direction in the same push."""
