@@ -207,6 +207,23 @@ def promised(screens: Screens, lookouts: list[Lookout]) -> list[Lookout]:
     return [look._replace(chance=_chance(float(new[_nearest(screens, look.squares)]))) for look in lookouts]
 
 
+def best_views(screens: Screens, met: Mask, move: float, way: float) -> list[Lookout]:
+    """Of squares that one straight move leads to those from which most comes into sight for what it costs.
+
+    They need not border on what was never seen: a long move along it often shows more than a short one up to it.
+    met : (rows, columns), the squares that one move leads to. move, way : what a move, and a square of way, cost.
+    """
+    some = np.flatnonzero(met & _new(screens, APART))
+    new = _gain(screens).ravel()[some]
+    if not new.any():
+        return []
+    far = screens.distances[0].ravel()[some] / 5
+    worth = new / (move + way * far)
+    best = worth >= ALIKE * worth.max()
+    chance = _chance(float(new[best][far[best].argmin()]))
+    return [Lookout(some[best], "the floor goes on unseen", chance)]
+
+
 def _chance(squares: float) -> int:
     return max(1, min(90, round(100 * squares / HOMELY)))
 

@@ -12,11 +12,14 @@ from kb.worldmodel import Node, WorldModel
 from planner import exploring
 from planner.aims import Aim
 from planner.destinations import Destination, Situation
+from planner.fewest import MOVE, WAY
 from planner.screen import Screens, Squares, grown
+from planner.walking import one_move
 
 ODD = -10.0  # squares: how much rather what no straight wall explains is looked at
 ODDLY, HARDLY, PERHAPS = 4, 2, 20  # percent that odd squares, likely walls, floor beyond hold what is missing
 ANY_SHAPE = 0.4  # that a thing is the one looked for, when nothing is said of its shape
+FROM_AFAR = 0.7  # how much less a look promises that shows a thing, beside one that ends right before it
 LEAST = 3  # percent likewise, of whatever is not known to be another
 Heat = NDArray[np.float64]
 
@@ -49,7 +52,7 @@ def aims_towards(
         return [*aims, *(thing.aim for thing in things)]
     places = [] if likely is None else _places(screens, likely, arrive)
     aims += [candidate.aim for candidate in (*things, *places)]
-    return [*aims, *_beyond_all(screens, none_of([*things, *places]))]
+    return [*aims, *_beyond_all(screens, none_of([*things, *places]), arrive)]
 
 
 def _things(situation: Situation, reconciled: Reconciled, likely: Heat | None, arrive: bool) -> list[Candidate]:
@@ -92,11 +95,17 @@ def none_of(candidates: Sequence[Candidate]) -> float:
     return none
 
 
-def _beyond_all(screens: Screens, unseen: float) -> list[Aim]:
-    """Looks at what was never seen, and at what bounds the floor. unseen : that what is missing was not seen yet."""
+def _beyond_all(screens: Screens, unseen: float, arrive: bool) -> list[Aim]:
+    """Looks at what was never seen, and at what bounds the floor.
+
+    unseen : that what is missing was not seen yet. arrive : as for `aims_towards`. Who is to carry what he finds counts
+    moves: he looks from where most comes into sight, and must set out once more to what he sees from there.
+    """
+    views = [] if arrive else exploring.best_views(screens, one_move(screens, "explore"), MOVE, WAY)
+    promise = unseen * (1.0 if arrive else FROM_AFAR)
     for apart in (exploring.APART, 0):
-        frontiers = exploring.promised(screens, exploring.frontiers(screens, apart))
-        explored = [Aim("explore", *look)._replace(chance=max(1, round(look.chance * unseen))) for look in frontiers]
+        frontiers = [*views, *exploring.promised(screens, exploring.frontiers(screens, apart))]
+        explored = [Aim("explore", *look)._replace(chance=max(1, round(look.chance * promise))) for look in frontiers]
         odd, plain = (exploring.vague_places(screens, apart, odd=odd) for odd in (True, False))
         settled = [Aim("settle", *look, price=ODD)._replace(chance=ODDLY) for look in odd]
         settled += [Aim("settle", *look)._replace(chance=HARDLY) for look in plain]
