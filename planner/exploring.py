@@ -215,7 +215,7 @@ def best_views(screens: Screens, met: Mask, move: float, way: float) -> list[Loo
     """
     some = np.flatnonzero(met & _new(screens, APART))
     new = _gain(screens).ravel()[some]
-    if not new.any():
+    if new.max(initial=0.0) < BARREN:
         return []
     far = screens.distances[0].ravel()[some] / 5
     worth = new / (move + way * far)

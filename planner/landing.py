@@ -23,7 +23,7 @@ from kb.rooms import Rooms
 from kb.wkt import parse_wkt
 from kb.worldmodel import Node, in_doubt
 from planner.destinations import Situation, doorsteps, numbers, out_of_sight, rooms_to_see, unknown_corner
-from planner.exploring import Lookout, sight_of
+from planner.exploring import Lookout, short_of, sight_of
 from planner.hoping import BEYOND, spread
 from planner.screen import grown
 
@@ -151,8 +151,13 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     if land.holds or _lies_in(land.ends, node, situation):
         rooms = rooms_to_see(side, situation)
         if rooms:
-            return Landing({}, rooms[0].what, rooms, there=True)
+            return Landing({}, rooms[0].what, tuple(_from_afar(look, situation) for look in rooms), there=True)
     return land
+
+
+def _from_afar(look: Lookout, situation: Situation) -> Lookout:
+    """A look for which it will do to come near: what lies behind its squares is seen from short of them, too."""
+    return look._replace(squares=np.union1d(look.squares, short_of(situation.screens, look.squares)))
 
 
 def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
