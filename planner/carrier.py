@@ -68,12 +68,13 @@ Advice = Act | Go | See | Refusal
 class Beginning(NamedTuple):
     """Where the middle of something lay at first, in Utak's own frame.
 
-    name : of its node. moved : has he moved it since?
+    name : of its node. moved : has he moved it since? anew : had he been lost before then?
     """
 
     place: Place
     name: str = ""
     moved: bool = False
+    anew: bool = False
 
 
 @dataclass
@@ -118,9 +119,15 @@ class Carrier:
         known = self.began.get(parameter)
         gone = known is not None and known.moved and model.object(known.name) is None
         if known is None or (known.name != node.name and not gone):
-            known = Beginning(model.lattice.place_to_utak(node.polygon.centroid.x, node.polygon.centroid.y))
+            place = model.lattice.place_to_utak(node.polygon.centroid.x, node.polygon.centroid.y)
+            known = Beginning(place, anew=model.anew)
         self.began[parameter] = known = known._replace(name=node.name, moved=known.moved or node.moved)
         return model.lattice.place_from_utak(*known.place)
+
+    def strayed(self, parameter: str, model: WorldModel) -> bool:
+        """Was he lost since what a parameter means lay where it began? Then that may be squares from where he says."""
+        known = self.began.get(parameter)
+        return model.anew and known is not None and not known.anew
 
     def advise(self, node: Node, ends: Mapping[str, End], situation: Situation, hoped: Ends = dict) -> Advice:
         """What to do to carry an object to one of several ends. hoped : where they are if the floor goes on unseen."""

@@ -35,6 +35,7 @@ from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
 MISSED = 2  # plans that miss before where they should lead to is looked at
+FROM_THE_START = ("in", "through", "around")  # goals that are about where a thing lay at first
 DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
 
 
@@ -205,6 +206,8 @@ class Decider:
         if node.polygon is None:
             return Decision(None, f"{stage} is not attempted: the outline of {node.name} is not known", "limit")
         land = landing(goal, node, self.carrier.began_at(x, node, situation.model), situation)
+        if land.holds and goal.name in FROM_THE_START and self.carrier.strayed(x, situation.model):
+            return Decision(None, f"{stage} cannot be told: he was lost since {node.name} was taken", "limit")
         if land.holds:
             return None
         if node.movable == 0:

@@ -22,6 +22,7 @@ from planner.destinations import Situation
 from planner.exploring import CLOSE
 from planner.goals import Stage
 from planner.haulage import Haul, Hauler, Request
+from planner.landing import Landing
 from planner.refusing import Refusal
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of
@@ -199,6 +200,33 @@ def test_where_a_thing_began_is_remembered_though_its_name_is_not() -> None:
     assert began("o2", 9, True) == pytest.approx(6.0)
     assert began("o3", 10, False) == pytest.approx(6.0)  # the same, after all names were lost
     assert began("o4", 20, False, ("o3",)) == pytest.approx(21.0)
+
+
+@pytest.mark.parametrize(("before", "strayed"), [(False, True), (True, False)])
+def test_who_was_lost_does_not_know_where_a_thing_began_that_he_took_before(before: bool, strayed: bool) -> None:
+    carrier, model = Carrier(), beside(()).model
+    (node,) = model.objects
+    carrier.began_at("x", node, replace(model, anew=before))
+    assert not carrier.strayed("x", replace(model, anew=False))
+    assert carrier.strayed("x", replace(model, anew=True)) == strayed
+    assert not carrier.strayed("y", replace(model, anew=True))
+
+
+@pytest.mark.parametrize("lost", [False, True])
+def test_who_was_lost_does_not_say_that_a_thing_is_in_the_next_room(
+    lost: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    situation = beside(())
+    (node,) = situation.model.objects
+    decider, stage = Decider(NO_TASK, bound=situation.binding), Stage(facts_of("through(x, d)."))
+    decider.carrier.began_at("x", node, situation.model)
+    monkeypatch.setattr("planner.deciding.landing", lambda *_: Landing({}, holds=True))
+    after = situation_of(replace(situation.model, anew=lost), situation.binding)
+    decision = decider._carry(stage.goals[0], stage, after, Reconciled({}, (), (), ()))
+    if lost:
+        assert decision is not None and decision.verdict == "limit" and "he was lost" in decision.why
+    else:
+        assert decision is None
 
 
 def about_to_turn(spread: float, turn: float, looks: int) -> tuple[Situation, Decider, Node, Stage]:
