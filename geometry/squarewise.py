@@ -71,8 +71,11 @@ def _pushed_off_the_middle(errand: Errand) -> list[Leg] | None:
     """The cheapest legs by whole squares of one who stands off the middle of his square, if the first only pushes."""
     x, y = errand.utak
     legs = _fewest(replace(errand, utak=(math.floor(x) + 0.5, math.floor(y) + 0.5)))
-    if legs is None or not legs[0].taken or any(isinstance(motion, Rotate) for motion in legs[0].motions):
+    if legs is None or not legs[0].taken:
         return None
+    for motion in legs[0].motions:
+        if isinstance(motion, Rotate) or not (errand.pull or may_push(errand.shape, errand.utak, *motion)):
+            return None
     legs = [replace(legs[0], place=errand.utak, hold=errand.hold_from(errand.utak)), *legs[1:]]
     return legs if verified(errand.yard, errand.shape, legs) is not None else None
 

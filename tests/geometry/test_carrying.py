@@ -113,6 +113,26 @@ def test_who_has_hold_already_goes_on_with_it(utak: tuple[float, float], pull: b
     assert plan.commands < plan_carrying(shape, free, utak, Inside([ROOM]), pull=pull).commands
 
 
+@pytest.mark.parametrize(("dx", "dy"), [(0.0, 0.0), (0.35, 0.06), (-0.4, 0.49)])
+def test_a_thing_on_the_lattice_stays_there_wherever_in_his_square_he_holds_it(dx: float, dy: float) -> None:
+    """Two squares along the wall that it lies against, into the corner: not a push to the middle of a square first."""
+    free, utak = two_rooms(5), (18.5 + dx, 19.5 + dy)
+    square = box(19, 17, 22, 22)
+    plan = plan_carrying(square, free, utak, InCorner(24, 22, 1, 1, slack=0.5), held=True)
+    ((push,),) = [leg.motions for leg in plan.legs]
+    assert push == Translate(2.0, 0.0) and plan.legs[0].place == utak
+    assert replay(plan, square, free, utak).bounds == (21.0, 17.0, 24.0, 22.0)
+
+
+def test_who_holds_a_thing_off_the_middle_turns_it_from_the_middle() -> None:
+    """A turn about another place would leave it between the squares."""
+    free, utak = two_rooms(3), (7.7, 9.4)
+    brick = box(8, 8, 10, 13)
+    plan = plan_carrying(brick, free, utak, Inside([ROOM]), held=True)
+    turns = [motion for leg in plan.legs for motion in leg.motions if isinstance(motion, Rotate)]
+    assert turns and all(np.allclose(np.array(turn.about) % 1, 0.5) for turn in turns)
+
+
 def test_a_hold_that_was_refuted_is_let_go() -> None:
     shape, free, utak = box(8, 9, 12, 11), two_rooms(5), (7.5, 9.5)
     middle = shape.centroid

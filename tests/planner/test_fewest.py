@@ -12,6 +12,7 @@ from kb.rooms import rooms_of
 from kb.task import Task
 from planner.aims import Aim
 from planner.deciding import Decider
+from planner.exploring import REACH, best_views
 from planner.fewest import MANY_MOVES, MOVE, WAY, FewestMoves
 from planner.screen import Screens
 from planner.steps import clear
@@ -94,6 +95,38 @@ def test_the_first_of_two_moves_ends_where_the_second_can_begin(screens: Screens
     assert clear(screens.safe, screens.here, via)
     assert clear(screens.safe, via, end)
     assert FewestMoves(screens).way(aim((3, 2))) is None
+
+
+def half_seen(shown: int) -> Screens:
+    """A hall of which so many columns were seen, from its west, where he stands."""
+    model = seen_whole(["b" * 60, *["b" + "." * 58 + "b"] * 17, "b..U" + "." * 55 + "b", "b" * 60])
+    seen = model.view.seen.copy()
+    seen[:, shown:] = False
+    return Screens(replace(model, view=model.view._replace(seen=seen)))
+
+
+def test_the_best_view_is_had_where_most_comes_into_sight_for_its_way() -> None:
+    screens = half_seen(40)
+    met = one_move(screens, "explore")
+    (look,) = best_views(screens, met, MOVE, WAY)
+    columns = look.squares % met.shape[1]
+    assert met.ravel()[look.squares].all()
+    assert columns.min() > 40 - REACH  # from further west hardly anything new is seen
+    assert (columns < 39).any()  # and it need not be right beside what was not
+    west = met & (np.arange(met.shape[1]) < columns.min())
+    (nearer,) = best_views(screens, west, MOVE, WAY)
+    assert 1 <= nearer.chance <= look.chance
+
+
+def test_there_is_no_view_where_nothing_new_comes_into_sight() -> None:
+    screens = half_seen(60)
+    amid = np.zeros_like(one_move(screens, "explore"))
+    assert best_views(screens, amid, MOVE, WAY) == []
+    hall = seen_whole(["b" * 70, *["b" + "." * 68 + "b"] * 40, "b..U" + "." * 65 + "b", "b" * 70])
+    screens = Screens(hall)
+    amid = np.zeros(hall.view.seen.shape, bool)
+    amid[20:23, 30:40] = True
+    assert best_views(screens, amid, MOVE, WAY) == []
 
 
 def test_every_first_move_is_one_that_may_be_made() -> None:
