@@ -8,7 +8,6 @@
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
 from typing import Any
@@ -23,10 +22,10 @@ from geometry.errand import Errand
 from geometry.fewest import askew, fewest_motions, slant
 from geometry.holds import Hold, holds_about, promise
 from geometry.hop import new_scene
-from geometry.legs import Leg, Point, at_utak, grip_square, may_push, rounded, verified
+from geometry.legs import Leg, Point, at_utak, grip_square, only_pushes, rounded, verified
 from geometry.motion import plan_motion
 from geometry.mover import centre_pose, new_mover
-from geometry.rigid import Motion, Pose, Translate
+from geometry.rigid import Motion, Pose
 from geometry.sequel import after, joined
 from geometry.squarewise import carry_squarewise
 from geometry.stencil import Floats
@@ -104,7 +103,7 @@ def _leg(errand: Errand, hold: Hold, goal: Pose | Inside, roomy: bool, cells: in
     if square is None and not hold.taken:
         return None, 0
     motions, looked = _motions(errand, hold.place, goal, roomy, cells)
-    if not motions or not (errand.pull or _only_pushes(errand.shape, hold.place, motions)):
+    if not motions or not (errand.pull or only_pushes(errand.shape, hold.place, motions)):
         return None, looked
     return Leg(hold.place, square or (0, 0), motions, errand.hold_from(hold.place), hold.walk, hold.taken), looked
 
@@ -127,14 +126,3 @@ def _motions(
     few = fewest_motions(new_scene(mover, floor.ground(mover), floor.surface), way, slant(errand.shape))
     motions = few if few and len(few) < len(plan.motions) else plan.motions
     return at_utak(place, [rounded(motion) for motion in motions]), plan.cells
-
-
-def _only_pushes(shape: Any, place: Point, motions: Sequence[Motion]) -> bool:
-    """Whether no push goes backwards."""
-    for motion in motions:
-        if isinstance(motion, Translate):
-            if not may_push(shape, place, motion.dx, motion.dy):
-                return False
-            place = (place[0] + motion.dx, place[1] + motion.dy)
-        shape = motion.carry(shape)
-    return True

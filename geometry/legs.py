@@ -96,6 +96,17 @@ def may_push(shape: Any, utak: Point, dx: float, dy: float) -> bool:
     return bool(dx * (shape.centroid.x - utak[0]) + dy * (shape.centroid.y - utak[1]) > 1e-9)
 
 
+def only_pushes(shape: Any, place: Point, motions: Sequence[Motion]) -> bool:
+    """Whether no push goes backwards. shape, place : as the shape lies and where Utak is before the first motion."""
+    for motion in motions:
+        if isinstance(motion, Translate):
+            if not may_push(shape, place, motion.dx, motion.dy):
+                return False
+            place = (place[0] + motion.dx, place[1] + motion.dy)
+        shape = motion.carry(shape)
+    return True
+
+
 @dataclass(frozen=True)
 class Push:
     """A push in several pieces that shall have fewer.

@@ -14,7 +14,7 @@ from geometry.ends import prices
 from geometry.errand import Errand
 from geometry.guess import NEVER, STILL, guess
 from geometry.hauling import CALM, first_walk, haul
-from geometry.legs import Leg, commands, may_push, rounded, verified
+from geometry.legs import Leg, commands, may_push, only_pushes, rounded, verified
 from geometry.retelling import MIDDLE, Retelling
 from geometry.rigid import Rotate, Translate
 from geometry.sequel import after
@@ -55,8 +55,7 @@ def carry_squarewise(errand: Errand) -> list[Leg] | None:
     if not errand.held:
         return _fewest(errand)
     nudges = _nudges(errand)
-    off = math.hypot(*nudges[0]) > 0.0
-    straight = _pushed_off_the_middle(errand) if off else None
+    straight = _pushed_off_the_middle(errand) if any(nudges[0]) else None
     if straight is not None and len(straight) == len(straight[0].motions) == 1:
         return straight
     for nudge in nudges:
@@ -71,11 +70,10 @@ def _pushed_off_the_middle(errand: Errand) -> list[Leg] | None:
     """The cheapest legs by whole squares of one who stands off the middle of his square, if the first only pushes."""
     x, y = errand.utak
     legs = _fewest(replace(errand, utak=(math.floor(x) + 0.5, math.floor(y) + 0.5)))
-    if legs is None or not legs[0].taken:
+    if legs is None or not legs[0].taken or any(isinstance(motion, Rotate) for motion in legs[0].motions):
         return None
-    for motion in legs[0].motions:
-        if isinstance(motion, Rotate) or not (errand.pull or may_push(errand.shape, errand.utak, *motion)):
-            return None
+    if not (errand.pull or only_pushes(errand.shape, errand.utak, legs[0].motions)):
+        return None
     legs = [replace(legs[0], place=errand.utak, hold=errand.hold_from(errand.utak)), *legs[1:]]
     return legs if verified(errand.yard, errand.shape, legs) is not None else None
 
@@ -91,7 +89,7 @@ def _nudges(errand: Errand) -> list[Translate]:
 def _may_begin(errand: Errand, leg: Leg) -> bool:
     """Whether Utak, with hold of the shape, can and may make the first motion of a leg."""
     motion = leg.motions[0] if leg.motions else Translate(0.0, 0.0)
-    pushes = isinstance(motion, Rotate) or errand.pull or may_push(errand.shape, errand.utak, *motion)
+    pushes = errand.pull or only_pushes(errand.shape, errand.utak, [motion])
     return pushes and errand.yard.lets(errand.shape, errand.utak, motion)
 
 
