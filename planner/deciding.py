@@ -22,7 +22,7 @@ from planner.carrier import Act, Advice, Carrier, Go, See
 from planner.circling import pivot, ways_round, winding
 from planner.destinations import Situation, contains, destination, nowhere
 from planner.fewest import FewestMoves
-from planner.goals import BY_THE_WAY, Stage, constraints, stages
+from planner.goals import BY_THE_WAY, FROM_THE_START, Stage, constraints, stages
 from planner.landing import Landing, in_view, landing, lands_in_one
 from planner.refusing import Refusal
 from planner.repeating import Circles
@@ -35,7 +35,6 @@ from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
 MISSED = 2  # plans that miss before where they should lead to is looked at
-FROM_THE_START = ("in", "through", "around")  # goals that are about where a thing lay at first
 DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
 
 
@@ -206,10 +205,10 @@ class Decider:
         if node.polygon is None:
             return Decision(None, f"{stage} is not attempted: the outline of {node.name} is not known", "limit")
         land = landing(goal, node, self.carrier.began_at(x, node, situation.model), situation)
-        if land.holds and goal.name in FROM_THE_START and self.carrier.strayed(x, situation.model):
-            return Decision(None, f"{stage} cannot be told: he was lost since {node.name} was taken", "limit")
         if land.holds:
-            return None
+            strayed = goal.name in FROM_THE_START and self.carrier.strayed(x, situation.model)
+            why = f"{stage} cannot be told: he was lost since {node.name} was taken"
+            return Decision(None, why, "limit") if strayed else None
         if node.movable == 0:
             sure = situation.model.view.sure and not is_open(situation.model)  # else it may be another thing
             verdict = "impossible" if sure else "limit"

@@ -34,6 +34,7 @@ DEAR_LOOK = 12.0  # the same for who does not want to stay, and counts commands 
 ALIKE = 0.9  # places worth as much as this of the best are as good
 HOMELY = 800  # squares of floor unseen among which one thing that is looked for is expected
 HALF = 0.5
+GOES_ON = "the floor goes on unseen"
 FLOOR, WALL, NOTHING = 0, 1, 2  # what a square lies beside
 Mask = NDArray[np.bool_]
 
@@ -52,7 +53,7 @@ class Lookout(NamedTuple):
 def frontiers(screens: Screens, apart: int) -> list[Lookout]:
     """Floor that can be reached and borders on squares never seen, one Lookout for each connected stretch."""
     border = _new(screens, apart) & grown(~screens.model.view.seen, 1)
-    return [Lookout(squares, "the floor goes on unseen") for squares in _groups(_stretches(border))]
+    return [Lookout(squares, GOES_ON) for squares in _groups(_stretches(border))]
 
 
 def gaps(screens: Screens) -> list[Lookout]:
@@ -221,7 +222,7 @@ def best_views(screens: Screens, met: Mask, move: float, way: float) -> list[Loo
     worth = new / (move + way * far)
     best = worth >= ALIKE * worth.max()
     chance = _chance(float(new[best][far[best].argmin()]))
-    return [Lookout(some[best], "the floor goes on unseen", chance)]
+    return [Lookout(some[best], GOES_ON, chance)]
 
 
 def _chance(squares: float) -> int:

@@ -11,6 +11,7 @@ from kb.task import Task
 
 BY_THE_WAY = ("circled",)
 CONSTRAINTS = ("not_through",)
+FROM_THE_START = ("in", "through", "around")  # what is about where a thing lay at first
 
 
 @dataclass(frozen=True)
