@@ -7,8 +7,8 @@ as predicted, as explained (it shows squares not settled before), or as noise. W
 """
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -18,29 +18,28 @@ from geometry.rigid import Motion, Rotate
 from kb.belying import belied, likeliest_stop
 from kb.body import Command, Impression, Move, Push, Release, Turn
 from kb.doubting import explained
-from kb.evidence import FREE, OPEN, Evidence
+from kb.evidence import FREE, Evidence
 from kb.explanation import Accommodated, Explanation, cheapest, misled, statuses
 from kb.hauling import Outcome, otherwise, predicted
 from kb.heading import (
     ANYWHERE,
-    CENTRED,
     MEMORY,
-    Box,
     Hypothesis,
     Look,
     anywhere,
     candidates,
     cramped,
-    leeway,
     search,
     standing,
 )
-from kb.lattice import CENTRE, Lattice
+from kb.holding import RECENT, Holding
+from kb.lattice import Lattice
 from kb.leaning import after, leaning
 from kb.loads import ROUNDING, Load, borne_out, discounted
+from kb.recalling import recalled
 from kb.relaying import laid, relaid
 from kb.retina import count_ranges
-from kb.stops import HAIR, Moved, around, ends, next_square, retold
+from kb.stops import Moved, Retold, around, ends, next_square, retold, retold_both
 from kb.supposing import Surprise, agreeing, as_motion, clashes, laid_on
 from kb.suspecting import Hindrances, suspects
 
@@ -50,97 +49,13 @@ MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are bla
 HOPELESS = 18  # times that no other lattice explained it better, with things moved, before none is tried any more
 SETTLED = math.radians(5)  # by which angles may differ while that hardly is why looks contradict
 CONTRADICTED = 2  # misfits that a contradiction of looks weighs as much as: more than any other lattice costs
-REMEMBERED = 3  # motions that may turn out to have been stopped
-RECENT = 4  # looks by which he tells that he is lost
-LOST = 8  # misfits, of these looks
-ASTRAY = 24  # so many once he has moved a thing, which may just lie otherwise than he believes
+REMEMBERED = 6  # motions that may turn out to have been stopped
 Place = tuple[float, float]
 
 
 @dataclass
-class Memory:
-    """All that is held true of the pose and the map. One of the few places with state.
-
-    place is a point of the lattice; looks keep where each impression was received, in Utak's own frame. loads are the
-    things that he has held, by name, and held the one that he holds. moved : his last motions before he held any, which
-    may have ended otherwise than believed. barred : squares before which he was stopped himself; suspected : those of
-    which one stopped what he carried, for all that was known. unfit : misfits of each of the last looks. been : where
-    looks were received, in his own frame, before he was lost and began anew.
-    """
-
-    evidence: Evidence = field(default_factory=Evidence)
-    lattice: Lattice = field(default_factory=Lattice)
-    place: Place = CENTRE
-    looks: list[Look] = field(default_factory=list)
-    hypotheses: tuple[Hypothesis, ...] = CENTRED
-    trust: int = 0
-    barred: set[tuple[int, int]] = field(default_factory=set)
-    suspected: set[tuple[int, int]] = field(default_factory=set)
-    searches: int = 0
-    slipped: bool = False
-    moved: tuple[Moved, ...] = ()
-    loads: dict[str, Load] = field(default_factory=dict)
-    held: str | None = None
-    unfit: tuple[int, ...] = ()
-    been: tuple[Place, ...] = ()
-
-    @property
-    def lost(self) -> bool:
-        """Does what he sees agree with nothing that he believes, look after look?"""
-        most = ASTRAY if any(load.proven for load in self.loads.values()) else LOST
-        return sum(self.unfit) >= most and sum(unfit > 0 for unfit in self.unfit) > 1
-
-    @property
-    def square(self) -> tuple[int, int]:
-        """The square of the lattice on which Utak stands."""
-        return math.floor(self.place[0]), math.floor(self.place[1])
-
-    @property
-    def track(self) -> list[Place]:
-        """Where he has been, as points of the lattice."""
-        return [self.lattice.place_from_utak(*place) for place in (*self.been, *(look.place for look in self.looks))]
-
-    @property
-    def looked_from(self) -> frozenset[tuple[int, int]]:
-        """The squares on which an impression was received that he has not forgotten."""
-        return frozenset((math.floor(x), math.floor(y)) for x, y in self.track[len(self.been) :])
-
-    @property
-    def spread(self) -> float:
-        """By how many radians the angles that still stand differ from the believed one, at most."""
-        return math.radians(max((abs(other.angle - self.lattice.angle) for other in self.hypotheses), default=0))
-
-    @property
-    def closed(self) -> frozenset[tuple[int, int]]:
-        """The squares on which something stands, or likely does, for it stopped a motion."""
-        sure = set() if self.slipped else self.barred  # who slips may have stopped by himself
-        doubted = (self.barred | self.suspected) - sure
-        return frozenset((*sure, *(s for s in doubted if self.evidence.state[self.evidence.index(*s)] == OPEN)))
-
-    @property
-    def _off_middle(self) -> bool:
-        """Has it turned out that he did not wake amid his square?"""
-        return self.lattice.woke != CENTRE
-
-    @property
-    def _beside_line(self) -> bool:
-        """Was he stopped beside a line, which tells where he stands but for a hair?"""
-        return min(map(abs, self.leeway)) <= 2 * HAIR
-
-    @property
-    def leeway(self) -> Box:
-        """How far from where he believes it he may have woken: to the west and south (not above 0), east and north."""
-        return leeway(self.lattice, self.looks, self.hypotheses)
-
-    @property
-    def sure(self) -> bool:
-        """Is what the counts settle beyond doubt?
-
-        Not when a look contradicted another one or a motion ended beside where it should, nor while several places in
-        his square are left at which he may have woken, or several angles none of which is that of his own axes.
-        """
-        along = self.lattice.angle == 0 and all(other.box == CENTRE + CENTRE for other in self.hypotheses)
-        return not (self.evidence.overruled or self.slipped) and (along or len(self.hypotheses) == 1)
+class Memory(Holding):
+    """What is held true, kept up to date: one of the few places with state."""
 
     def anew(self) -> "Memory":
         """The memory of one who is lost, and begins anew with what he sees next, for nothing else leads back.
@@ -194,7 +109,10 @@ class Memory:
             outcomes += [self._outcome(ranges, load, other) for other in otherwise(self.place, load.polygon, motion)]
             simple = any(not one.misfits for one in outcomes if one.how != "slipped" or self.slipped)
             explanations = [chosen, *outcomes, *self._elsewhere(surprise, chosen.misfits, simple)]
+            explanations += self._recalled(surprise, explanations)
             chosen = self._choose(explanations, np.array_equal(ranges, self.looks[-1].ranges))
+        if isinstance(command, Push):
+            self._remember(command, load.name)
         self._lie(chosen)
         self._carried(self.loads[load.name], chosen, as_motion(command, self.lattice, self.place), ranges)
         self.place = chosen.place
@@ -256,6 +174,17 @@ class Memory:
             return []
         return [Explanation(outcome.how, outcome.place, self.lattice, found.misfits, outcome.distance, outcome)]
 
+    def _recalled(self, surprise: Surprise, others: Iterable[Explanation]) -> list[Explanation]:
+        """Earlier motions that ended elsewhere than is believed, unless there are others that explain a surprise."""
+        if any(not other.misfits for other in others if other.how != "slipped" or self.slipped):
+            return []
+        before = [motion for motion in self.tellable if motion.number < len(self.looks)]
+        found = []
+        for told, one in recalled(surprise, before):
+            far = math.hypot(*told.correction.shift)
+            found.append(Explanation("misled", one.place, one.lattice, 0, far, one.outcome, self.hypotheses, told))
+        return found
+
     def _outcome(self, ranges: NDArray[np.int16], load: Load, outcome: Outcome) -> Explanation:
         loads = [*self._others(load), load.moved(outcome.polygon, load.slack)]
         misfits = self._clashes(ranges, outcome.place, loads)
@@ -265,20 +194,24 @@ class Memory:
         self, impression: Impression, predicted: Place, stops: tuple[Place, ...], command: Command | None = None
     ) -> Accommodated:
         ranges = count_ranges(impression.retina)
-        if stops and not self.loads and isinstance(command, Move):
-            motion = Moved(len(self.looks), (command.east, command.north), self.hypotheses)
-            self.moved = (*self.moved[1 - REMEMBERED :], motion)
+        if stops and isinstance(command, Move):
+            self._remember(command)
         explanation = self._explain(ranges, predicted, stops, command)
         self._lie(explanation)
         self.trust = self.trust + 1 if explanation.how == "predicted" else 0
         if explanation.how == "slipped":
             self.slipped, self.moved = True, ()
         elif explanation.how in ("blocked", "misled"):
-            since = len(self.looks) if explanation.retold is None else explanation.retold.since
+            since = len(self.looks) if explanation.retold is None else explanation.retold.correction.since
             self.moved = tuple(m._replace(stopped=True) if m.number == since else m for m in self.moved)
         if explanation.how == "blocked" or explanation.place == self.place != predicted:
             self.barred.add(next_square(explanation.place, predicted))
         return self._take_in(explanation, ranges)
+
+    def _remember(self, command: Move | Push, load: str | None = None) -> None:
+        """A motion that is looked at next may turn out to have ended otherwise. load : the name of what is in hand."""
+        motion = Moved(len(self.looks), (command.east, command.north), self.hypotheses, load=load)
+        self.moved = (*self.moved[1 - REMEMBERED :], motion)
 
     def _take_in(self, explanation: Explanation, ranges: NDArray[np.int16]) -> Accommodated:
         """Take an explained impression into the evidence, freed of what the loads show."""
@@ -302,8 +235,7 @@ class Memory:
         first = self._explanation("predicted", predicted, ranges, predicted)
         look = Look(ranges, self.lattice.place_to_utak(*predicted))
         told = cache(lambda motion: tuple(retold(motion, self.lattice, [*self.looks, look])))
-        before = [motion for motion in self.moved if motion.number < len(self.looks)]  # their looks were taken in
-        stopped = [motion for motion in before if motion.stopped]
+        stopped = [motion for motion in self.tellable if motion.number < len(self.looks) and motion.stopped]
         if first.misfits and not self.loads and any(not one.misfits for motion in stopped for one in told(motion)):
             turned = misled(look, map(told, stopped))
         elif not self.loads:
@@ -320,12 +252,42 @@ class Memory:
         explanations += [self._explanation("blocked", stop, ranges, predicted) for stop in stops]
         explanations += [self._explanation("slipped", place, ranges, predicted) for place in around(predicted)]
         explanations += turned
-        if stops and not self.loads and all(e.misfits for e in turned):
-            simple = any(not e.misfits for e in explanations if e.how != "slipped" or self.slipped)
-            explanations += misled(look, map(told, before if simple else self.moved))
-        elif stops and not self.loads and not self._off_middle and all(e.odd for e in turned):
-            explanations += [e for e in misled(look, map(told, self.moved)) if e.retold is not None and e.retold.known]
+        if self.loads and command is not None:
+            explanations += self._recalled(self._surprise(command, ranges), explanations)
+        elif stops:
+            explanations += self._misled(look, told, turned, explanations)
         return self._choose(explanations)
+
+    def _misled(
+        self,
+        look: Look,
+        told: Callable[[Moved], Iterable[Retold]],
+        turned: list[Explanation],
+        others: list[Explanation],
+    ) -> list[Explanation]:
+        """That the newest motion, or an earlier one, was stopped where nobody thought so. look : as predicted.
+
+        told : what may have come of a motion. turned : the lattices to believe instead, if all went as commanded; where
+        one of them explains all, only stops by something known are thought of. others : all explanations so far.
+        """
+        before = [motion for motion in self.tellable if motion.number < len(self.looks)]
+        if all(e.misfits for e in turned):
+            simple = any(not e.misfits for e in others if e.how != "slipped" or self.slipped)
+            return misled(look, map(told, before if simple else self.tellable))
+        met = [e for e in misled(look, map(told, self.tellable)) if e.met]
+        if self._off_middle or not all(e.odd for e in turned):
+            met = [e for e in met if e.lattice == self.lattice]
+        return met or self._stopped_twice(look, before)
+
+    def _stopped_twice(self, look: Look, before: Sequence[Moved]) -> list[Explanation]:
+        """That the newest motion was stopped, and one before it unnoticed, on the lattice held. look : as predicted."""
+        looks, newest, found = [*self.looks, look], self.moved[-1], []
+        held = [hypothesis for hypothesis in newest.hypotheses if hypothesis.lattice == self.lattice][:1]
+        for told, own in (one for h in held for m in reversed(before) for one in retold_both(m, newest, h, looks)):
+            far = math.hypot(*told.correction.shift) + math.dist(own, look.place)
+            place = self.lattice.place_from_utak(*own)
+            found.append(Explanation("misled", place, self.lattice, 0, far, None, self.hypotheses, told))
+        return found
 
     def _turned(self, look: Look, misfits: int) -> list[Explanation]:
         """The lattice to believe instead, unless the one held explains all. look : the new one, as predicted."""
@@ -378,6 +340,7 @@ class Memory:
         """The explanation to believe. unchanged : nothing looks otherwise than at the last look."""
         facts = [f"trust({0 if self._off_middle else self.trust})", *["slips"] * self.slipped]
         facts += ["off_middle"] * self._off_middle
+        facts += [f"met({n})" for n, e in enumerate(explanations) if e.met and e.lattice == self.lattice]
         facts += ["proven"] * (self.held is not None and self.loads[self.held].proven)
         return cheapest(explanations, [*facts, *["unchanged"] * unchanged])
 
@@ -388,7 +351,10 @@ class Memory:
             self.hypotheses, self.trust = chosen.hypotheses, 0
             loads = borne_out(loads, self.held)
         if chosen.retold is not None:
-            self.looks = chosen.retold.looks(self.looks)
+            correction = chosen.retold.correction
+            own = self.lattice.place_to_utak(*self.place)
+            self.place = self.lattice.place_from_utak(*correction.place(own))
+            self.looks, loads = correction.looks(self.looks), correction.loads(loads, self.lattice)
         elif chosen.lattice == self.lattice:
             return
         if chosen.retold is not None or len(loads) < len(self.loads):

@@ -50,6 +50,11 @@ class Explanation(NamedTuple):
         return self.how in ("turned", "misled", "lost")
 
     @property
+    def met(self) -> bool:
+        """Does it say that an earlier motion was stopped by something that is known by now?"""
+        return self.retold is not None and self.retold.known
+
+    @property
     def odd(self) -> bool:
         """Does it say both that the lattice lies askew and that he did not wake amid his square?"""
         return self.lattice.angle != 0 and self.lattice.woke != CENTRE
@@ -86,9 +91,9 @@ def misled(look: Look, told: Iterable[Iterable[Retold]]) -> list[Explanation]:
     middle = statistics.median(hypothesis.angle for hypothesis in left)
     explanations = []
     for one in sorted(found, key=lambda one: (not one.known, abs(one.hypothesis.angle - middle))):
-        lattice, (east, north) = one.hypothesis.lattice, one.shift
-        place = lattice.place_from_utak(look.place[0] + east, look.place[1] + north)
-        far = math.hypot(east, north)
+        lattice = one.hypothesis.lattice
+        place = lattice.place_from_utak(*one.correction.place(look.place))
+        far = math.hypot(*one.correction.shift)
         explanations.append(Explanation("misled", place, lattice, one.misfits, far, None, left, one))
     return explanations
 

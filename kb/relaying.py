@@ -80,6 +80,11 @@ def shifted(load: Load, new: Lattice, old: Lattice) -> Load:
     return _carried(load, load, laid(load, old), new)
 
 
+def lain(load: Load, was: Laid, lattice: Lattice) -> Load:
+    """A load where it lay at some time, on the lattice that is believed."""
+    return _carried(load, load, was, lattice)
+
+
 def _taken(load: Load, new: Lattice, old: Lattice, evidence: Evidence) -> Load:
     """A load as it lay when it was first held, on the new lattice, of which so much was seen then."""
     skew = new.angle - old.angle

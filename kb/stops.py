@@ -7,16 +7,20 @@ one may tell: so motions are remembered, and told again when looks contradict ea
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import replace
 from typing import NamedTuple
 
+from geometry.rigid import Translate
 from kb.evidence import FREE, FULL, OPEN, Evidence
-from kb.heading import MEMORY, Hypothesis, Look, contradictions, fallen
+from kb.heading import MEMORY, Hypothesis, Laid, Look, contradictions, fallen
 from kb.lattice import Lattice
+from kb.loads import Load, Square
 from kb.relaying import Relaid, relaid
 
 Place = tuple[float, float]
 NEAR = 2  # squares about the predicted place in which Utak is looked for first
+NOTHING: frozenset[Square] = frozenset()
 HAIR = 1e-6  # squares from a line between two squares to what counts as beside it
 
 
@@ -33,35 +37,77 @@ class Crossing(NamedTuple):
 
 
 class Moved(NamedTuple):
-    """A motion as it was commanded.
+    """A straight motion as it was commanded.
 
     number : of the look that followed. shift : east and north, of Utak's own frame. hypotheses : how the lattice might
-    lie before that look. stopped : is it believed to have been stopped?
+    lie before that look. stopped : is it believed to have been stopped? load : the name of what was in hand, if any.
     """
 
     number: int
     shift: Place
     hypotheses: tuple[Hypothesis, ...]
     stopped: bool = False
+    load: str | None = None
 
 
-class Retold(NamedTuple):
-    """That the lattice lies as a hypothesis says, and all looks from one on were received elsewhere than is believed:
-    the motion before it had been stopped, or had not.
+class Correction(NamedTuple):
+    """That all looks from one on were received elsewhere than is believed, and what lay elsewhere by that.
 
     since : the number of that look. shift : east and north of where it is believed to have been received, in Utak's own
-    frame. known : does something stand there that stopped him? misfits : fields that contradict it, of all looks.
+    frame. seen : the names of things that were first held since, each with how far it lies, and lay when it was first
+    held, from where it is believed to. hauled : the name of the thing that he had in hand on the motion before.
     """
 
-    hypothesis: Hypothesis
     since: int
     shift: Place
-    known: bool
-    misfits: int
+    seen: tuple[tuple[str, Place], ...] = ()
+    hauled: str | None = None
+
+    def place(self, place: Place) -> Place:
+        """A place of his own frame where he is believed to have been since."""
+        return _plus(place, self.shift)
 
     def looks(self, looks: Sequence[Look]) -> list[Look]:
         """All looks, where they were received."""
-        return _shifted(looks, self.since, self.shift)
+        since = [
+            look._replace(place=self.place(look.place), moved=tuple(map(self._lain, look.moved)))
+            for look in looks[self.since :]
+        ]
+        return [*looks[: self.since], *since]
+
+    def loads(self, loads: Mapping[str, Load], lattice: Lattice) -> dict[str, Load]:
+        """What was moved, where it lies and lay. lattice : on which it is believed to."""
+        return {name: self._load(load, lattice) for name, load in loads.items()}
+
+    def _lain(self, was: Laid) -> Laid:
+        aside = self._aside(was.name)
+        if was.name != self.hauled:
+            was = was._replace(taken=_plus(was.taken, aside))
+        return was._replace(middle=_plus(was.middle, aside))
+
+    def _load(self, load: Load, lattice: Lattice) -> Load:
+        aside = Translate(*lattice.to_lattice(*self._aside(load.name)))
+        if not any(aside):
+            return load
+        first = load.first if load.name == self.hauled else aside.carry(load.first)
+        return replace(load.lying(aside.carry(load.polygon), load.slack), first=first)
+
+    def _aside(self, name: str) -> Place:
+        """How far a thing lies from where it is believed to, in his own frame."""
+        return self.shift if name == self.hauled else dict(self.seen).get(name, (0.0, 0.0))
+
+
+class Retold(NamedTuple):
+    """That the lattice lies as a hypothesis says, and a motion had been stopped where it is not believed to have been.
+
+    correction : of the looks since. known : does something stand there that stopped him? misfits : fields that
+    contradict it, of all looks.
+    """
+
+    hypothesis: Hypothesis
+    correction: Correction
+    known: bool
+    misfits: int
 
 
 def ends(start: Place, shift: Place) -> tuple[Place, ...]:
@@ -99,6 +145,12 @@ def crossings(start: Place, shift: Place) -> tuple[Crossing, ...]:
     return tuple(crossing for *_, crossing in sorted(found))
 
 
+def views(place: Place) -> tuple[Place, ...]:
+    """The places from which he may look who stands somewhere: either side of a line, all four squares of a corner."""
+    columns, rows = ((v,) if abs(v - round(v)) > 2 * HAIR else (round(v) - HAIR, round(v) + HAIR) for v in place)
+    return tuple((x, y) for x in columns for y in rows)
+
+
 def _crossing(line: int, across: float, axis: int, hair: float) -> Crossing:
     """Where a motion crosses a line of one axis, at a place along it. hair : a little further on its way."""
     before, after = ((at, across) if axis == 0 else (across, at) for at in (line - hair, line + hair))
@@ -116,50 +168,106 @@ def retold(motion: Moved, held: Lattice, looks: Sequence[Look]) -> Iterator[Reto
     """What else may have come of a motion, and how the lattice lies then, so that no look contradicts another.
 
     held : the lattice that is believed. looks : all, where they are believed to have been received, the newest where it
-    was commanded. That the newest motion was stopped on the lattice held is not among it, nor what is believed already.
+    was commanded. What is believed already is not among it, nor that the newest motion was stopped by what is not
+    known, on the lattice held.
 
     Until he was stopped he came over no square that is occupied, and into none that is free; rather before one that is
     occupied than before one of which it is open.
     """
     newest = motion.number == len(looks) - 1
     for hypothesis in motion.hypotheses:
-        if newest and hypothesis.lattice == held:
-            continue
         found = list(_otherwise(motion, hypothesis, looks))
         surest = any(one.known for one in found)
-        yield from (one for one in found if one.known == surest)
+        if surest or not (newest and hypothesis.lattice == held):
+            yield from (one for one in found if one.known == surest)
 
 
 def _otherwise(motion: Moved, hypothesis: Hypothesis, looks: Sequence[Look]) -> Iterator[Retold]:
     """What else may have come of one motion on one lattice."""
     lattice, number = hypothesis.lattice, motion.number
-    (x, y), believed = looks[number - 1].place, looks[number].place
-    met = crossings(lattice.place_from_utak(x, y), lattice.to_lattice(*motion.shift))
-    beside = [(at, place) for at, crossing in enumerate(met) for place in (crossing.before, crossing.after)]
-    halts = [(at, lattice.place_to_utak(*place)) for at, place in beside]
-    halts.append((len(met), (x + motion.shift[0], y + motion.shift[1])))
+    believed, walk = looks[number].place, Walk(motion, lattice, looks)
     judged: dict[bytes, Relaid | None] = {}
-    for at, own in halts:
-        shift = own[0] - believed[0], own[1] - believed[1]
+    for end in walk.ends:
+        shift = end.place[0] - believed[0], end.place[1] - believed[1]
         if math.hypot(*shift) < HAIR:  # as is believed
             continue
-        there = _shifted(looks, number, shift)
+        correction = Correction(number, shift)
+        there = correction.looks(looks)
         key = fallen(lattice, there).tobytes()
         if key not in judged:
             stands = not contradictions(lattice, there[-MEMORY - 1 :])
             judged[key] = relaid(lattice, lattice, there, ()) if stands else None
         under = judged[key]
-        if under is None or any(_state(under.evidence, crossing.entered) == FULL for crossing in met[:at]):
+        if under is not None and (ahead := walk.ahead(end, under.evidence)) != FREE:
+            yield Retold(hypothesis, correction, ahead == FULL, under.misfits)
+
+
+def retold_both(
+    motion: Moved, newest: Moved, hypothesis: Hypothesis, looks: Sequence[Look]
+) -> Iterator[tuple[Retold, Place]]:
+    """That both an earlier motion and the newest were stopped by what is known, so that no look contradicts another.
+
+    Told with the place, in Utak's own frame, at which the newest motion ended. looks : as for `retold`. Who goes on
+    against what stopped him does not move at all.
+    """
+    lattice, before, believed = hypothesis.lattice, looks[:-1], looks[motion.number].place
+    walk = Walk(motion, lattice, looks)
+    against = sum(a * b for a, b in zip(motion.shift, newest.shift, strict=True)) > 0
+    for end in walk.ends[:-1]:
+        correction = Correction(motion.number, (end.place[0] - believed[0], end.place[1] - believed[1]))
+        there = correction.looks(before)
+        if (
+            contradictions(lattice, there[-MEMORY:])
+            or walk.ahead(end, relaid(lattice, lattice, there, ()).evidence) == FREE
+        ):
             continue
-        ahead = _state(under.evidence, met[at].entered) if at < len(met) else OPEN
-        if ahead != FREE:
-            yield Retold(hypothesis, number, shift, ahead == FULL, under.misfits)
+        onward = Walk(newest, lattice, [*there, looks[-1]])
+        still = [End(there[-1].place, 0)] * (against and motion.number == newest.number - 1)
+        for halt in (*still, *onward.ends[:-1]):
+            told = [*there, looks[-1]._replace(place=halt.place)]
+            if contradictions(lattice, told[-MEMORY - 1 :]):
+                continue
+            under = relaid(lattice, lattice, told, ())
+            known = walk.ahead(end, under.evidence) == FULL and (
+                halt in still or onward.ahead(halt, under.evidence) == FULL
+            )
+            if known and not under.misfits:
+                yield Retold(hypothesis, correction, True, 0), halt.place
 
 
-def _shifted(looks: Sequence[Look], since: int, shift: Place) -> list[Look]:
-    """Looks, those from one on received so much further east and north."""
-    (dx, dy), far = shift, looks[since:]
-    return [*looks[:since], *(look._replace(place=(look.place[0] + dx, look.place[1] + dy)) for look in far)]
+class End(NamedTuple):
+    """Where a motion may have ended: a place of Utak's own frame, and how much of the motion was gone."""
+
+    place: Place
+    gone: float
+
+
+class Walk:
+    """A motion without anything in hand, on a lattice. looks : all, where they are believed to have been received.
+
+    ends : where he may have been stopped, in the order of the way, and its end; gone counts the crossings before it.
+    """
+
+    def __init__(self, motion: Moved, lattice: Lattice, looks: Sequence[Look]) -> None:
+        x, y = looks[motion.number - 1].place
+        self._met = met = crossings(lattice.place_from_utak(x, y), lattice.to_lattice(*motion.shift))
+        halts = [End(lattice.place_to_utak(*place), at) for at in range(len(met)) for place in views(met[at].before)]
+        self.ends = (*halts, End((x + motion.shift[0], y + motion.shift[1]), len(met)))
+
+    def ahead(self, end: End, evidence: Evidence, things: Set[Square] = NOTHING) -> int:
+        """What stands where he would have been stopped; FREE, too, where something would have stopped him before.
+
+        things : squares on which something stood then that was moved since.
+        """
+        states = [FULL if c.entered in things else _state(evidence, c.entered) for c in self._met]
+        at = int(end.gone)
+        if FULL in states[:at]:
+            return FREE
+        return states[at] if at < len(states) else OPEN
+
+
+def _plus(place: Place, shift: Place) -> Place:
+    return place[0] + shift[0], place[1] + shift[1]
 
 
 def _state(evidence: Evidence, square: tuple[int, int]) -> int:

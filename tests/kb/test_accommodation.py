@@ -10,10 +10,11 @@ from shapely.affinity import rotate, translate
 from kb.accommodation import Memory
 from kb.body import Move, Push, Turn
 from kb.evidence import FREE, OPEN
-from kb.explanation import CellStatus
+from kb.explanation import CellStatus, Explanation, cheapest
 from kb.heading import CENTRED, Hypothesis
-from kb.lattice import CENTRE, turned
+from kb.lattice import CENTRE, Lattice, turned
 from kb.loads import Load
+from kb.stops import Correction, Retold
 from tests.kb.drawings import LARGE_ROOM, walked
 from tests.kb.eyes import Occupied, impression, random_room, utak_in, world_of
 from tests.kb.test_relaying import around
@@ -127,6 +128,21 @@ def test_one_who_was_stopped_does_not_rather_believe_two_odd_things_at_once(seed
     stopped, *moved = walk
     assert stopped > 0.1
     assert max(moved) < 0.1
+
+
+@pytest.mark.parametrize("known", [True, False])
+@pytest.mark.parametrize("other", [Lattice(0, (0.97, 0.97)), Lattice(7)])
+def test_a_stop_at_what_is_known_is_believed_rather_than_another_lattice(known: bool, other: Lattice) -> None:
+    """Just where an earlier motion would have been stopped something stands, and all looks agree then."""
+    told = Retold(CENTRED[0], Correction(1, (0.5, -0.5)), known, 0)
+    explanations = [
+        Explanation("predicted", (9.5, 0.5), Lattice(), 6, 0.0),
+        Explanation("turned", (9.5, 0.5), other, 0, 0.0),
+        Explanation("misled", (10.0, 0.0), Lattice(), 0, 0.7, retold=told),
+    ]
+    numbers = [number for number, one in enumerate(explanations) if one.met and one.lattice == Lattice()]
+    chosen = cheapest(explanations, ["trust(3)", *(f"met({number})" for number in numbers)])
+    assert chosen.how == ("misled" if known else "turned")
 
 
 def stopped_and_walked(seed: int, remember: bool) -> list[float] | None:

@@ -7,11 +7,12 @@ import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from kb.evidence import FULL, Evidence
 from kb.heading import CENTRED, Look, contradictions
 from kb.lattice import Lattice, turned
 from kb.retina import count_ranges
-from kb.stops import HAIR, Moved, crossings, next_square, retold
-from tests.kb.eyes import impression, random_room, world_of
+from kb.stops import HAIR, Moved, crossings, next_square, retold, retold_both
+from tests.kb.eyes import Occupied, impression, random_room, world_of
 
 AWAY = st.floats(-9, 9, allow_nan=False).map(lambda v: round(v, 3))
 POINT = st.floats(0.05, 0.95).map(lambda v: round(v, 3) + 0.0003)
@@ -88,14 +89,16 @@ def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
     assume(math.dist(own, way) > 2 * HAIR)
     found = list(retold(Moved(1, way, CENTRED), Lattice(), looks))
     right = [
-        one for one in found if one.hypothesis.angle == heading and math.dist(one.looks(looks)[1].place, own) < 1e-3
+        one
+        for one in found
+        if one.hypothesis.angle == heading and math.dist(one.correction.looks(looks)[1].place, own) < 1e-3
     ]
     assert right
-    assert all(one.since == 1 and one.misfits == 0 for one in right)
+    assert all(one.correction.since == 1 and one.misfits == 0 for one in right)
     for one in found:
-        assert not contradictions(one.hypothesis.lattice, one.looks(looks))
-        assert one.looks(looks)[0] == looks[0]
-        assert math.dist(one.looks(looks)[2].place, looks[2].place) > HAIR
+        assert not contradictions(one.hypothesis.lattice, one.correction.looks(looks))
+        assert one.correction.looks(looks)[0] == looks[0]
+        assert math.dist(one.correction.looks(looks)[2].place, looks[2].place) > HAIR
 
 
 def test_who_met_nothing_has_nothing_to_tell_otherwise() -> None:
@@ -121,3 +124,46 @@ def test_at_a_corner_he_may_look_from_any_of_its_four_squares(way: tuple[int, in
         assert squares == {(x, y) for x in (beyond[0] - way[0], beyond[0]) for y in (beyond[1] - way[1], beyond[1])}
         assert there[2].entered == beyond
         assert there[0].before == there[1].before
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_two_stops_in_a_row_are_told_together(seed: int) -> None:
+    """He believes that a motion went as commanded, which a wall had stopped, and goes on against that wall."""
+    rng = np.random.default_rng(seed)
+    occupied = world_of(random_room(rng, 26, 26, 8))
+    free = [(i, j) for i in range(3, 23) for j in range(3, 23) if not occupied(i, j)]
+    x, y = free[int(rng.integers(len(free)))]
+    way = (float(rng.uniform(-14, 14)), float(rng.uniform(-14, 14)))
+    assume(not passes_corner(0.5, 0.5, *way))
+    met = crossings((x + 0.5, y + 0.5), way)
+    stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
+    assume(stop is not None)
+    assert stop is not None
+    away = stop.before[0] - x - 0.5, stop.before[1] - y - 0.5
+    assume(math.dist(away, way) > 0.3)
+    into = (stop.entered[0] + 0.5 - stop.before[0], stop.entered[1] + 0.5 - stop.before[1])
+    here = math.floor(stop.before[0]), math.floor(stop.before[1])
+    first = Look(count_ranges(impression(occupied, (x, y)).retina), (0.0, 0.0))
+    beside = Look(count_ranges(impression(occupied, here).retina), way)
+    looks = [first, beside, beside._replace(place=(way[0] + into[0], way[1] + into[1]))]
+    motions = Moved(1, way, CENTRED[:1]), Moved(2, into, CENTRED[:1])
+    found = list(retold_both(*motions, CENTRED[0], looks))
+    for one, place in found:
+        told = [*one.correction.looks(looks)[:2], looks[2]._replace(place=place)]
+        assert one.known
+        assert not contradictions(Lattice(), told)
+    known = one_field_is_full(occupied, (x, y), here, stop.entered)
+    assert not known or any(
+        math.dist(one.correction.shift, (away[0] - way[0], away[1] - way[1])) < 1e-6 and math.dist(place, away) < 1e-6
+        for one, place in found
+    )
+
+
+def one_field_is_full(occupied: Occupied, start: tuple[int, int], here: tuple[int, int], wall: tuple[int, int]) -> bool:
+    """Is a square known to be occupied by all that is seen from two others?"""
+    evidence = Evidence()
+    for number, (i, j) in enumerate((start, here)):
+        samples = Lattice().samples()
+        evidence.look(samples, count_ranges(impression(occupied, (i, j)).retina), i, j, number)
+    return bool(evidence.state[evidence.index(*wall)] == FULL)

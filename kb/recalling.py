@@ -1,0 +1,140 @@
+"""Motions told again once things have been moved: an earlier one ended elsewhere than believed, so a look contradicts.
+
+All that was seen since, and every thing that was first held since, lies where it would then. The motion after which the
+look came is told again with it, for what stopped the one may have stopped the other, seen where it is.
+"""
+
+import math
+from collections.abc import Iterator, Sequence, Set
+from dataclasses import replace
+from typing import NamedTuple
+
+import shapely
+
+from geometry.contact import Body, Obstacles
+from geometry.rigid import Translate
+from kb.evidence import FREE, FULL, OPEN, Evidence
+from kb.heading import MEMORY, Look, contradictions, fallen
+from kb.lattice import Lattice
+from kb.loads import Load, Square, covered, is_whole
+from kb.relaying import Relaid, lain, relaid
+from kb.stops import HAIR, Correction, End, Moved, Retold, Walk, views
+from kb.supposing import Place, Supposed, Surprise
+from kb.suspecting import Hindrances
+
+ALIKE = 1e-6  # parts of a motion by which two may differ that ended at the same
+
+
+class Recalled(NamedTuple):
+    """What may have come of an earlier motion, and what is to be believed then of all else."""
+
+    retold: Retold
+    supposed: Supposed
+
+
+class Haul:
+    """A straight motion with a thing in hand, on the lattice that is believed.
+
+    ends : where it may have been stopped, the likeliest first by what was seen before, and its end.
+    """
+
+    def __init__(self, motion: Moved, surprise: Surprise) -> None:
+        assert motion.load is not None
+        lattice, looks, loads = surprise.lattice, surprise.looks[: motion.number], surprise.loads
+        was = next(was for was in looks[-1].moved if was.name == motion.load)
+        self._place = lattice.place_from_utak(*looks[-1].place)
+        self._polygon = lain(loads[motion.load], was, lattice).polygon
+        self._motion = Translate(*lattice.to_lattice(*motion.shift))
+        before = relaid(lattice, lattice, looks, loads.values()).evidence
+        stops = self._hindrances(before).stops(self._place, self._polygon, self._motion)
+        parts = dict.fromkeys((*(stop.part for stop in sorted(stops, key=lambda stop: -stop.chance)), 1.0))
+        halts = [(part, view) for part in parts for view in views(self._after(part))]
+        self.ends = tuple(End(lattice.place_to_utak(*view), part) for part, view in halts)
+
+    def _after(self, part: float) -> Place:
+        """Where Utak is after a part of the motion."""
+        return self._place[0] + part * self._motion.dx, self._place[1] + part * self._motion.dy
+
+    def ahead(self, end: End, evidence: Evidence, things: Set[Square]) -> int:
+        """What stands where it would have been stopped; FREE, too, where something would have stopped it before.
+
+        things : squares on which something stood then that was moved since.
+        """
+        body = Body(self._polygon, [self._place])
+        known = self._hindrances(evidence).walls.first_contact(body, self._motion).fraction
+        if things:
+            stood = Obstacles([shapely.box(x, y, x + 1, y + 1) for x, y in things])
+            known = min(known, stood.first_contact(body, self._motion).fraction)
+        if known < end.gone - ALIKE:
+            return FREE
+        if known < 1.0 and known < end.gone + ALIKE:
+            return FULL
+        stops = self._hindrances(evidence).stops(self._place, self._polygon, self._motion)
+        return OPEN if end.gone == 1.0 or any(abs(stop.part - end.gone) < ALIKE for stop in stops) else FREE
+
+    def _hindrances(self, evidence: Evidence) -> Hindrances:
+        return Hindrances(evidence, self._place, self._polygon, self._motion)
+
+
+def recalled(surprise: Surprise, motions: Sequence[Moved]) -> list[Recalled]:
+    """All that may have come of earlier motions by which nothing is contradicted any more, on the lattice believed.
+
+    Those come first by which something known stopped him.
+    """
+    found = [one for motion in reversed(motions) for one in _otherwise(surprise, motion)]
+    return sorted(found, key=lambda one: not one.retold.known)
+
+
+def _otherwise(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
+    """What else may have come of one motion."""
+    looks, lattice = surprise.looks, surprise.lattice
+    believed = looks[motion.number].place
+    way = Walk(motion, lattice, looks) if motion.load is None else Haul(motion, surprise)
+    since = [load for load in surprise.loads.values() if load.since > motion.number]
+    judged: dict[Place, Relaid | None] = {}  # by the shift
+    for end in way.ends:
+        shift = end.place[0] - believed[0], end.place[1] - believed[1]
+        seen = tuple((load.name, _aside(load, shift, surprise)) for load in since)
+        correction = Correction(motion.number, shift, seen, motion.load)
+        if math.hypot(*correction.shift) < HAIR:  # as is believed
+            continue
+        there, loads = correction.looks(looks), correction.loads(surprise.loads, lattice)
+        place = lattice.place_from_utak(*correction.place(lattice.place_to_utak(*surprise.place)))
+        anew = replace(surprise, place=place, looks=there, loads=loads)
+        if shift not in judged:
+            stands = not contradictions(lattice, there[-MEMORY - 1 :], anew.unsettled)
+            judged[shift] = relaid(lattice, lattice, there, loads.values()) if stands else None
+        under = judged[shift]
+        if under is None or under.misfits:
+            continue
+        ahead = way.ahead(end, under.evidence, _stood(under, there, motion, lattice))
+        if ahead == FREE:
+            continue
+        supposed = replace(anew, evidence=under.evidence, loads=under.loads).tried(lattice, surprise.hypotheses)
+        if not supposed.misfits:
+            hypothesis = next((h for h in surprise.hypotheses if h.holds(lattice)), surprise.hypotheses[0])
+            yield Recalled(Retold(hypothesis, correction, ahead == FULL, 0), supposed)
+
+
+def _aside(load: Load, shift: Place, surprise: Surprise) -> Place:
+    """How far a thing lies from where it was seen to, if Utak stood aside: so many squares when its sides lie on lines.
+
+    For the eye tells squares, wherever in his own he stands.
+    """
+    if not is_whole(load.first):
+        return shift
+    lattice, look = surprise.lattice, surprise.looks[load.since - 1]
+    elsewhere = look._replace(place=(look.place[0] + shift[0], look.place[1] + shift[1]))
+    (west, south), (east, north) = fallen(lattice, [look, elsewhere])
+    return lattice.to_utak(float(east - west), float(north - south))
+
+
+def _stood(under: Relaid, looks: Sequence[Look], motion: Moved, lattice: Lattice) -> frozenset[Square]:
+    """The squares on which things stood when a motion was made that he has moved since, or before."""
+    before = {was.name: was for was in looks[motion.number - 1].moved}
+    squares: frozenset[Square] = frozenset()
+    for load in under.loads.values():
+        if load.name != motion.load:
+            lying = lain(load, before[load.name], lattice).polygon if load.name in before else load.first
+            squares |= covered(lying).squares()
+    return squares
