@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.rigid import Motion, Rotate
-from kb.belying import belied, likeliest_stop
+from kb.belying import belied, likeliest_stop, rather_short
 from kb.body import Command, Impression, Move, Push, Release, Turn
 from kb.doubting import explained
 from kb.evidence import FREE, Evidence
@@ -101,6 +101,10 @@ class Memory(Holding):
         chosen = self._outcome(ranges, load, predicted(self.place, load.polygon, motion))
         if chosen.outcome and not chosen.misfits and belied(surprise, chosen.outcome):
             stop = likeliest_stop(surprise, load, motion)
+            if stop is not None:
+                chosen = self._choose([chosen._replace(misfits=CONTRADICTED), self._outcome(ranges, load, stop)])
+        elif not chosen.misfits and isinstance(motion, Rotate):
+            stop = rather_short(surprise, load, motion)
             if stop is not None:
                 chosen = self._choose([chosen._replace(misfits=CONTRADICTED), self._outcome(ranges, load, stop)])
         elif chosen.misfits:

@@ -5,12 +5,19 @@ squares that it shares with earlier looks must hold together: where it does not,
 """
 
 import math
+from collections.abc import Sequence
 from copy import deepcopy
+from dataclasses import replace
+from typing import Any
 
-from geometry.rigid import Motion
-from kb.hauling import Outcome
-from kb.loads import Load, discounted
-from kb.supposing import Surprise, clashes
+from geometry.rigid import Motion, Rotate
+from kb.evidence import FULL
+from kb.hauling import STRIDE, Outcome, otherwise
+from kb.loads import Load, covered, discounted
+from kb.supposing import Place, Surprise, clashes
+
+CROWDED = 4  # squares that seem to stand right about a thing since it was turned, of which nothing told
+BESIDE = 1.0  # squares about a thing
 
 
 def belied(surprise: Surprise, outcome: Outcome) -> bool:
@@ -41,3 +48,45 @@ def _lying(surprise: Surprise, outcome: Outcome) -> list[Load]:
         load.moved(outcome.polygon, load.slack) if name == surprise.held else load
         for name, load in surprise.loads.items()
     ]
+
+
+def rather_short(surprise: Surprise, load: Load, motion: Rotate) -> Outcome | None:
+    """Where a turn rather ended short, if that explains what seems to stand right about the thing since it was turned.
+
+    No look contradicts the whole turn. But where the thing lay before, nothing can have come to stand meanwhile. Of
+    ends that explain as much the middle one is told.
+    """
+    place, polygon = surprise.place, load.polygon
+    others = [other for other in surprise.loads.values() if other.name != load.name]
+    whole = _turned(load, motion.carry(polygon), load.slack, motion.degrees)
+    seem = _crowded(surprise, whole, others, place)
+    if seem < CROWDED:
+        return None
+    ends = [*surprise.hindrances.ends(place, polygon, motion)]
+    ends += [end for end in otherwise(place, polygon, motion) if end.how == "blocked"]
+    stand: list[tuple[int, float, Outcome]] = []
+    for end in ends:
+        there = _turned(load, end.polygon, STRIDE, end.degrees)
+        if not clashes(surprise.lattice, surprise.evidence, [*others, there], place, surprise.ranges):
+            stand.append((_crowded(surprise, there, others, place), end.degrees, end))
+    fewest = min((many for many, *_ in stand), default=seem)
+    fitting = sorted((one for one in stand if one[0] == fewest), key=lambda one: one[1])
+    return fitting[len(fitting) // 2][2] if 2 * fewest < seem else None
+
+
+def _turned(load: Load, polygon: Any, slack: float, degrees: float) -> Load:
+    """A thing after a turn. It is the less astray the less it is turned in all, wherever in his square Utak stands."""
+    moved = load.moved(polygon, slack, degrees)
+    before, after = (abs(math.sin(math.radians(one.turned / 2))) for one in (load, moved))
+    return replace(moved, astray=load.astray * after / before) if before else moved
+
+
+def _crowded(surprise: Surprise, load: Load, others: Sequence[Load], place: Place) -> int:
+    """How many squares right about a thing are occupied of which no look told before, if it came to lie so."""
+    x, y = (math.floor(v) for v in place)
+    samples, counts = discounted(surprise.lattice.samples(), surprise.ranges, x, y, [*others, load])
+    about = covered(load.polygon.buffer(BESIDE, join_style="mitre")).squares()
+    evidence = deepcopy(surprise.evidence)
+    new = [square for square in about if evidence.state[evidence.index(*square)] != FULL]
+    evidence.look(samples, counts, x, y, len(surprise.looks))
+    return sum(evidence.state[evidence.index(*square)] == FULL for square in new)

@@ -196,8 +196,8 @@ class Decider:
         if node is None:
             unseen = nowhere(f"nothing seen so far is {x}")
             aims = aims_towards([unseen], situation, reconciled)
-            may_be = not situation.model.view.sure or any(name == x for name, _ in reconciled.doubtful)
-            return self._pursue(aims, stage, situation, lambda: unseen.missing, "limit" if may_be else "impossible")
+            # No proof that there is none: it may stand against a wall, and look like a piece of that.
+            return self._pursue(aims, stage, situation, lambda: unseen.missing, "limit")
         if node.polygon is None or node.vague or self.verifier.doubted(node):
             look = self._inspect(node, stage, situation)
             if look is not None:
@@ -214,6 +214,8 @@ class Decider:
             verdict = "impossible" if sure else "limit"
             return Decision(None, f"{stage} cannot be attained: {node.name} cannot be moved", verdict)
         advice = self._advice(node, land, situation)
+        if land.nearly and not self.carrier.closes(advice):
+            return None
         if isinstance(advice, Refusal) and land.loose:
             if lands_in_one(land.loose, in_view(node.polygon, situation)):
                 return None

@@ -19,6 +19,7 @@ from geometry.ends import End, met, moved, placed
 from geometry.reach import UNREACHED, reach
 from geometry.rigid import Pose
 from kb.facts import Fact, Number, Symbol, Text
+from kb.loads import is_whole
 from kb.rooms import Rooms
 from kb.wkt import parse_wkt
 from kb.worldmodel import Node, in_doubt
@@ -49,7 +50,8 @@ class Landing:
     missing, lookouts : what must be known first, in words, and where just that may be seen (as of a Destination).
     approach : places near to where it must end, from which it can be told better where that is; the best first.
     holds : the goal holds as the object lies now. there : it does, but for what must be known first.
-    loose : where it may lie if it cannot be brought to any of the ends.
+    loose : where it may lie if it cannot be brought to any of the ends. nearly : it lies there now, and that is enough
+    when more than a push is wanted.
     must_reach : what it must come to lie on wherever it must end, while that is not known: squares that were not seen,
     and those of the one end that may be it. Worked out when asked.
     hoped : the ends, if the floor goes on as it is hoped to (planner.hoping); worked out when asked.
@@ -62,6 +64,7 @@ class Landing:
     holds: bool = False
     there: bool = False
     loose: Mapping[str, End] = field(default_factory=dict)
+    nearly: bool = False
     must_reach: Ends = dict
     hoped: Ends = dict
 
@@ -187,18 +190,20 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
 def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Landing:
     """In a corner, and what was turned askew so that it reaches hardly further from the walls than it would straight.
 
-    Where that cannot be it may lie there askew. What lies only about where it is believed to must be nearer, if it can.
+    Where that cannot be it may lie there askew. What covers some squares in part looks larger than it is by up to one,
+    on either side: so it is brought nearer than a square, if a push does that. One who slips knows only about where it
+    is: he brings it nearer if he can.
     """
-    loosely = end
-    if node.inexact:
-        end = replace(end, slack=ABOUT)
+    close = replace(end, slack=ABOUT)
     if not lies_askew(node):
-        loose = {side: loosely} if node.inexact else {}
-        return Landing({side: replace(end, slack=ABOUT)}, holds=lands(end, shape), loose=loose)
+        in_squares = is_whole(node.polygon) and not node.inexact
+        tight = node.inexact or in_squares
+        holds, nearly = lands(close if tight else end, shape), in_squares and lands(end, shape)
+        return Landing({side: close}, holds=holds, loose={side: end} if tight else {}, nearly=nearly)
     x0, y0, x1, y1 = placed(shape, Pose(0.0, 0.0, -node.turned % 90.0)).bounds
     near, far = sorted((x1 - x0, y1 - y0))
-    flat = replace(end, within=(near + LEANING, far + LEANING))
-    loose = {} if lands(flat, shape) else {side: replace(end, slack=ABOUT)}
+    flat = replace(close if node.inexact else end, within=(near + LEANING, far + LEANING))
+    loose = {} if lands(flat, shape) else {side: close}
     return Landing({side: replace(flat, slack=ABOUT)}, holds=lands(flat, shape), loose=loose)
 
 

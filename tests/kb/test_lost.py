@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 import shapely
 
-from kb.accommodation import ASTRAY, LOST, Memory
+from kb.accommodation import Memory
 from kb.body import Impression, Move, Release, Turn
 from kb.evidence import FULL, OPEN
 from kb.explanation import Explanation
 from kb.heading import Hypothesis
+from kb.holding import ASTRAY, LOST
 from kb.knowledge import Knowledge
 from kb.lattice import Lattice, turned
 from kb.loads import Load

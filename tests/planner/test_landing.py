@@ -7,11 +7,16 @@ import pytest
 import shapely
 import shapely.affinity
 
+from geometry.carrying import Leg
+from geometry.rigid import Translate
+from kb.body import Push, Turn
 from kb.factfile import facts_of
 from kb.loads import covered
 from kb.worldmodel import Node, WorldModel
-from planner.carrier import Carrier
+from planner.carrier import Act, Carrier
+from planner.course import Course
 from planner.landing import Landing, landing, lands
+from planner.refusing import Refusal
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
 
@@ -137,3 +142,30 @@ def test_what_lies_only_about_there_must_be_nearer_to_its_corner_if_it_can(
     shape = shapely.affinity.translate(there, -model.view.west, -model.view.south)
     assert found.holds == holds
     assert [lands(end, shape) for end in found.loose.values()] == [True] * inexact
+    assert not found.nearly
+
+
+@pytest.mark.parametrize(("gap", "holds"), [(0, True), (1, False), (2, False)])
+def test_what_was_seen_in_whole_squares_is_brought_right_to_its_corner_by_a_push(gap: int, holds: bool) -> None:
+    """It may be smaller than it looks by nearly a square, on any side."""
+    model = seen_whole(WALLED)
+    row, column = np.argwhere(model.space)[-1]
+    east, north = model.view.west + column + 1 - gap, model.view.south + row + 1 - gap
+    there = shapely.box(east - 4, north - 4, east, north)
+    node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True)
+    found = landing(NORTHEAST, node, (3.5, 1.5), situation_of(replace(model, objects=(node,)), {"x": "o1"}))
+    assert found.holds == holds
+    assert found.nearly == (gap <= 1)
+
+
+def test_only_a_push_that_ends_a_plan_closes_it() -> None:
+    carrier, push = Carrier(), Act(Push(1.0, 0.0), "it is brought there")
+    assert carrier.closes(push)
+    assert not carrier.closes(replace(push, command=Turn(90.0)))
+    assert not carrier.closes(Refusal(False, str))
+    leg = Leg((0.5, 0.5), (0, 1), (Translate(1.0, 0.0),), (0.0, -2.5), 0.0)
+    left = Course("o1", "northeast", shapely.box(0, 0, 4, 4), (leg,), covered(shapely.box(0, 0, 5, 5)), 0)
+    carrier._course = left
+    assert not carrier.closes(push)
+    carrier._course = replace(left, legs=())
+    assert carrier.closes(push)
