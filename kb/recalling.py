@@ -14,7 +14,7 @@ import shapely
 from geometry.contact import Body, Obstacles
 from geometry.rigid import Translate
 from kb.evidence import FREE, FULL, OPEN, Evidence
-from kb.heading import MEMORY, Look, contradictions, fallen
+from kb.heading import MEMORY, Hypothesis, Look, contradictions, fallen
 from kb.lattice import Lattice
 from kb.loads import Load, Square, covered, is_whole
 from kb.relaying import Relaid, lain, relaid
@@ -81,8 +81,15 @@ def recalled(surprise: Surprise, motions: Sequence[Moved]) -> list[Recalled]:
 
     Those come first by which something known stopped him.
     """
-    found = [one for motion in reversed(motions) for one in _otherwise(surprise, motion)]
+    told = [motion for motion in reversed(motions) if _held_then(motion, surprise)]
+    found = [one for motion in told for one in _otherwise(surprise, motion)]
     return sorted(found, key=lambda one: not one.retold.known)
+
+
+def _held_then(motion: Moved, surprise: Surprise) -> bool:
+    """Is it told where the thing lay that was in hand on a motion, if one was?"""
+    before = surprise.looks[motion.number - 1].moved
+    return motion.load is None or any(was.name == motion.load for was in before)
 
 
 def _otherwise(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
@@ -112,8 +119,8 @@ def _otherwise(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
             continue
         supposed = replace(anew, evidence=under.evidence, loads=under.loads).tried(lattice, surprise.hypotheses)
         if not supposed.misfits:
-            hypothesis = next((h for h in surprise.hypotheses if h.holds(lattice)), surprise.hypotheses[0])
-            yield Recalled(Retold(hypothesis, correction, ahead == FULL, 0), supposed)
+            held = Hypothesis(lattice.angle, lattice.woke + lattice.woke)
+            yield Recalled(Retold(held, correction, ahead == FULL, 0), supposed)
 
 
 def _aside(load: Load, shift: Place, surprise: Surprise) -> Place:
