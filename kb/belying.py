@@ -13,7 +13,7 @@ from typing import Any
 from geometry.rigid import Motion, Rotate
 from kb.evidence import FULL
 from kb.hauling import STRIDE, Outcome, otherwise
-from kb.loads import Load, covered, discounted
+from kb.loads import WHOLE, Load, covered, discounted
 from kb.supposing import Place, Surprise, clashes
 
 CROWDED = 4  # squares that seem to stand right about a thing since it was turned, of which nothing told
@@ -78,7 +78,8 @@ def _turned(load: Load, polygon: Any, slack: float, degrees: float) -> Load:
     """A thing after a turn. It is the less astray the less it is turned in all, wherever in his square Utak stands."""
     moved = load.moved(polygon, slack, degrees)
     before, after = (abs(math.sin(math.radians(one.turned / 2))) for one in (load, moved))
-    return replace(moved, astray=load.astray * after / before) if before else moved
+    whole = before < WHOLE  # turned not at all, or all the way round: by how much it may then be astray is not told
+    return moved if whole else replace(moved, astray=load.astray * after / before)
 
 
 def _crowded(surprise: Surprise, load: Load, others: Sequence[Load], place: Place) -> int:

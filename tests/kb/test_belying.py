@@ -59,3 +59,10 @@ def test_what_stands_about_a_thing_since_it_was_turned_is_the_thing_itself(comma
 @pytest.mark.parametrize("commanded", [-90.0, 90.0, 180.0])
 def test_a_turn_that_was_not_stopped_is_not_told_to_be(commanded: float) -> None:
     assert rather_short(*turned_by(commanded, commanded)) is None
+
+
+@pytest.mark.parametrize("turned", [0.0, 360.0, -720.0])
+def test_a_thing_that_lies_as_it_was_taken_may_be_turned(turned: float) -> None:
+    surprise, load, motion = turned_by(90.0, 90.0)
+    load = replace(load, turned=turned)
+    assert rather_short(replace(surprise, loads={"o1": load}), load, motion) is None
