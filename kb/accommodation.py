@@ -7,7 +7,7 @@ as predicted, as explained (it shows squares not settled before), or as noise. W
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.rigid import Motion, Rotate
-from kb.belying import belied, likeliest_stop, rather_short
+from kb.belying import overlooked
 from kb.body import Command, Impression, Move, Push, Release, Turn
 from kb.doubting import explained
 from kb.evidence import FREE, Evidence
@@ -99,15 +99,11 @@ class Memory(Holding):
             load = self.loads[load.name] = replace(load, astray=max(load.astray, ROUNDING))
         surprise = self._surprise(command, ranges)
         chosen = self._outcome(ranges, load, predicted(self.place, load.polygon, motion))
-        if chosen.outcome and not chosen.misfits and belied(surprise, chosen.outcome):
-            stop = likeliest_stop(surprise, load, motion)
+        if not chosen.misfits:
+            stop = overlooked(surprise, load, motion)
             if stop is not None:
                 chosen = self._choose([chosen._replace(misfits=CONTRADICTED), self._outcome(ranges, load, stop)])
-        elif not chosen.misfits and isinstance(motion, Rotate):
-            stop = rather_short(surprise, load, motion)
-            if stop is not None:
-                chosen = self._choose([chosen._replace(misfits=CONTRADICTED), self._outcome(ranges, load, stop)])
-        elif chosen.misfits:
+        else:
             ends = surprise.hindrances.ends(self.place, load.polygon, motion)
             outcomes = [one for one in (self._outcome(ranges, load, end) for end in ends) if not one.misfits]
             outcomes += [self._outcome(ranges, load, other) for other in otherwise(self.place, load.polygon, motion)]
@@ -182,9 +178,8 @@ class Memory(Holding):
         """Earlier motions that ended elsewhere than is believed, unless there are others that explain a surprise."""
         if any(not other.misfits for other in others if other.how != "slipped" or self.slipped):
             return []
-        before = [motion for motion in self.tellable if motion.number < len(self.looks)]
         found = []
-        for told, one in recalled(surprise, before):
+        for told, one in recalled(surprise, self.earlier):
             far = math.hypot(*told.correction.shift)
             found.append(Explanation("misled", one.place, one.lattice, 0, far, one.outcome, self.hypotheses, told))
         return found
@@ -239,7 +234,7 @@ class Memory(Holding):
         first = self._explanation("predicted", predicted, ranges, predicted)
         look = Look(ranges, self.lattice.place_to_utak(*predicted))
         told = cache(lambda motion: tuple(retold(motion, self.lattice, [*self.looks, look])))
-        stopped = [motion for motion in self.tellable if motion.number < len(self.looks) and motion.stopped]
+        stopped = [motion for motion in self.earlier if motion.stopped]
         if first.misfits and not self.loads and any(not one.misfits for motion in stopped for one in told(motion)):
             turned = misled(look, map(told, stopped))
         elif not self.loads:
@@ -274,20 +269,20 @@ class Memory(Holding):
         told : what may have come of a motion. turned : the lattices to believe instead, if all went as commanded; where
         one of them explains all, only stops by something known are thought of. others : all explanations so far.
         """
-        before = [motion for motion in self.tellable if motion.number < len(self.looks)]
         if all(e.misfits for e in turned):
             simple = any(not e.misfits for e in others if e.how != "slipped" or self.slipped)
-            return misled(look, map(told, before if simple else self.tellable))
+            return misled(look, map(told, self.earlier if simple else self.tellable))
         met = [e for e in misled(look, map(told, self.tellable)) if e.met]
         if self._off_middle or not all(e.odd for e in turned):
             met = [e for e in met if e.lattice == self.lattice]
-        return met or self._stopped_twice(look, before)
+        return met or self._stopped_twice(look)
 
-    def _stopped_twice(self, look: Look, before: Sequence[Moved]) -> list[Explanation]:
+    def _stopped_twice(self, look: Look) -> list[Explanation]:
         """That the newest motion was stopped, and one before it unnoticed, on the lattice held. look : as predicted."""
         looks, newest, found = [*self.looks, look], self.moved[-1], []
         held = [hypothesis for hypothesis in newest.hypotheses if hypothesis.lattice == self.lattice][:1]
-        for told, own in (one for h in held for m in reversed(before) for one in retold_both(m, newest, h, looks)):
+        pairs = [(motion, hypothesis) for hypothesis in held for motion in reversed(self.earlier)]
+        for told, own in (one for motion, h in pairs for one in retold_both(motion, newest, h, looks)):
             far = math.hypot(*told.correction.shift) + math.dist(own, look.place)
             place = self.lattice.place_from_utak(*own)
             found.append(Explanation("misled", place, self.lattice, 0, far, None, self.hypotheses, told))

@@ -11,8 +11,8 @@ from dataclasses import replace
 from typing import Any
 
 from geometry.rigid import Motion, Rotate
-from kb.evidence import FULL
-from kb.hauling import STRIDE, Outcome, otherwise
+from kb.evidence import FULL, Evidence
+from kb.hauling import STRIDE, Outcome, otherwise, predicted
 from kb.loads import WHOLE, Load, covered, discounted
 from kb.supposing import Place, Surprise, clashes
 
@@ -20,15 +20,23 @@ CROWDED = 4  # squares that seem to stand right about a thing since it was turne
 BESIDE = 1.0  # squares about a thing
 
 
+def overlooked(surprise: Surprise, load: Load, motion: Motion) -> Outcome | None:
+    """Where the motion of a load in hand was stopped, if the look after it belies the whole of it; None else.
+
+    Nothing settled before disagrees with the whole motion.
+    """
+    if belied(surprise, predicted(surprise.place, load.polygon, motion)):
+        return likeliest_stop(surprise, load, motion)
+    return rather_short(surprise, load, motion) if isinstance(motion, Rotate) else None
+
+
 def belied(surprise: Surprise, outcome: Outcome) -> bool:
     """Does a look contradict what it settles together with all before it, if what is in hand came to lie so?
 
     outcome : of the command that the look followed, with which nothing settled before it disagrees.
     """
-    loads, (x, y) = _lying(surprise, outcome), (math.floor(v) for v in outcome.place)
-    samples, counts = discounted(surprise.lattice.samples(), surprise.ranges, x, y, loads)
-    evidence = deepcopy(surprise.evidence)
-    evidence.look(samples, counts, x, y, len(surprise.looks))
+    loads = _lying(surprise, outcome)
+    evidence = _looked(surprise, loads, outcome.place)
     return clashes(surprise.lattice, evidence, loads, outcome.place, surprise.ranges) > 0
 
 
@@ -84,10 +92,16 @@ def _turned(load: Load, polygon: Any, slack: float, degrees: float) -> Load:
 
 def _crowded(surprise: Surprise, load: Load, others: Sequence[Load], place: Place) -> int:
     """How many squares right about a thing are occupied of which no look told before, if it came to lie so."""
-    x, y = (math.floor(v) for v in place)
-    samples, counts = discounted(surprise.lattice.samples(), surprise.ranges, x, y, [*others, load])
+    before, after = surprise.evidence, _looked(surprise, [*others, load], place)
     about = covered(load.polygon.buffer(BESIDE, join_style="mitre")).squares()
+    new = [square for square in about if before.state[before.index(*square)] != FULL]
+    return sum(after.state[after.index(*square)] == FULL for square in new)
+
+
+def _looked(surprise: Surprise, loads: Sequence[Load], place: Place) -> Evidence:
+    """What is settled together with the new look, if it was received at a place, with the loads where they lie."""
+    x, y = (math.floor(v) for v in place)
+    samples, counts = discounted(surprise.lattice.samples(), surprise.ranges, x, y, loads)
     evidence = deepcopy(surprise.evidence)
-    new = [square for square in about if evidence.state[evidence.index(*square)] != FULL]
     evidence.look(samples, counts, x, y, len(surprise.looks))
-    return sum(evidence.state[evidence.index(*square)] == FULL for square in new)
+    return evidence

@@ -107,3 +107,8 @@ class Holding:
     def tellable(self) -> tuple[Moved, ...]:
         """The last straight motions that can be told again: alone, or with a thing that is still known, in hand."""
         return tuple(motion for motion in self.moved if motion.load is None or motion.load in self.loads)
+
+    @property
+    def earlier(self) -> tuple[Moved, ...]:
+        """Those of them after which a look was taken in already."""
+        return tuple(motion for motion in self.tellable if motion.number < len(self.looks))

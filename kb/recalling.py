@@ -9,20 +9,16 @@ from collections.abc import Iterator, Sequence, Set
 from dataclasses import replace
 from typing import NamedTuple
 
-import shapely
-
 from geometry.contact import Body, Obstacles
 from geometry.rigid import Translate
 from kb.evidence import FREE, FULL, OPEN, Evidence
-from kb.heading import MEMORY, Hypothesis, Look, contradictions, fallen
+from kb.heading import Hypothesis, Look, fallen
 from kb.lattice import Lattice
 from kb.loads import Load, Square, covered, is_whole
 from kb.relaying import Relaid, lain, relaid
-from kb.stops import HAIR, Correction, End, Moved, Retold, Walk, views
-from kb.supposing import Place, Supposed, Surprise
-from kb.suspecting import Hindrances
-
-ALIKE = 1e-6  # parts of a motion by which two may differ that ended at the same
+from kb.stops import HAIR, Correction, End, Moved, Place, Retold, Walk, agreed, plus, views
+from kb.supposing import Supposed, Surprise
+from kb.suspecting import TOGETHER, Hindrances, box_of
 
 
 class Recalled(NamedTuple):
@@ -60,17 +56,17 @@ class Haul:
 
         things : squares on which something stood then that was moved since.
         """
-        body = Body(self._polygon, [self._place])
-        known = self._hindrances(evidence).walls.first_contact(body, self._motion).fraction
+        body, hindrances = Body(self._polygon, [self._place]), self._hindrances(evidence)
+        known = hindrances.walls.first_contact(body, self._motion).fraction
         if things:
-            stood = Obstacles([shapely.box(x, y, x + 1, y + 1) for x, y in things])
+            stood = Obstacles([box_of(square) for square in things])
             known = min(known, stood.first_contact(body, self._motion).fraction)
-        if known < end.gone - ALIKE:
+        if known < end.gone - TOGETHER:
             return FREE
-        if known < 1.0 and known < end.gone + ALIKE:
+        if known < 1.0 and known < end.gone + TOGETHER:
             return FULL
-        stops = self._hindrances(evidence).stops(self._place, self._polygon, self._motion)
-        return OPEN if end.gone == 1.0 or any(abs(stop.part - end.gone) < ALIKE for stop in stops) else FREE
+        stops = hindrances.stops(self._place, self._polygon, self._motion)
+        return OPEN if end.gone == 1.0 or any(abs(stop.part - end.gone) < TOGETHER for stop in stops) else FREE
 
     def _hindrances(self, evidence: Evidence) -> Hindrances:
         return Hindrances(evidence, self._place, self._polygon, self._motion)
@@ -101,16 +97,15 @@ def _otherwise(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
     judged: dict[Place, Relaid | None] = {}  # by the shift
     for end in way.ends:
         shift = end.place[0] - believed[0], end.place[1] - believed[1]
+        if math.hypot(*shift) < HAIR:  # as is believed
+            continue
         seen = tuple((load.name, _aside(load, shift, surprise)) for load in since)
         correction = Correction(motion.number, shift, seen, motion.load)
-        if math.hypot(*correction.shift) < HAIR:  # as is believed
-            continue
         there, loads = correction.looks(looks), correction.loads(surprise.loads, lattice)
         place = lattice.place_from_utak(*correction.place(lattice.place_to_utak(*surprise.place)))
         anew = replace(surprise, place=place, looks=there, loads=loads)
         if shift not in judged:
-            stands = not contradictions(lattice, there[-MEMORY - 1 :], anew.unsettled)
-            judged[shift] = relaid(lattice, lattice, there, loads.values()) if stands else None
+            judged[shift] = agreed(lattice, there, loads.values(), anew.unsettled)
         under = judged[shift]
         if under is None or under.misfits:
             continue
@@ -131,7 +126,7 @@ def _aside(load: Load, shift: Place, surprise: Surprise) -> Place:
     if not is_whole(load.first):
         return shift
     lattice, look = surprise.lattice, surprise.looks[load.since - 1]
-    elsewhere = look._replace(place=(look.place[0] + shift[0], look.place[1] + shift[1]))
+    elsewhere = look._replace(place=plus(look.place, shift))
     (west, south), (east, north) = fallen(lattice, [look, elsewhere])
     return lattice.to_utak(float(east - west), float(north - south))
 

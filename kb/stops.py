@@ -6,21 +6,21 @@ he does, and then neither of the two is explained without the other. What the fi
 one may tell: so motions are remembered, and told again when looks contradict each other.
 """
 
+import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from typing import NamedTuple
 
 from geometry.rigid import Translate
 from kb.evidence import FREE, FULL, OPEN, Evidence
-from kb.heading import MEMORY, Hypothesis, Laid, Look, contradictions, fallen
+from kb.heading import MEMORY, Disc, Hypothesis, Laid, Look, contradictions, fallen
 from kb.lattice import Lattice
 from kb.loads import Load, Square
 from kb.relaying import Relaid, relaid
 
 Place = tuple[float, float]
 NEAR = 2  # squares about the predicted place in which Utak is looked for first
-NOTHING: frozenset[Square] = frozenset()
 HAIR = 1e-6  # squares from a line between two squares to what counts as beside it
 
 
@@ -65,7 +65,7 @@ class Correction(NamedTuple):
 
     def place(self, place: Place) -> Place:
         """A place of his own frame where he is believed to have been since."""
-        return _plus(place, self.shift)
+        return plus(place, self.shift)
 
     def looks(self, looks: Sequence[Look]) -> list[Look]:
         """All looks, where they were received."""
@@ -82,8 +82,8 @@ class Correction(NamedTuple):
     def _lain(self, was: Laid) -> Laid:
         aside = self._aside(was.name)
         if was.name != self.hauled:
-            was = was._replace(taken=_plus(was.taken, aside))
-        return was._replace(middle=_plus(was.middle, aside))
+            was = was._replace(taken=plus(was.taken, aside))
+        return was._replace(middle=plus(was.middle, aside))
 
     def _load(self, load: Load, lattice: Lattice) -> Load:
         aside = Translate(*lattice.to_lattice(*self._aside(load.name)))
@@ -195,8 +195,7 @@ def _otherwise(motion: Moved, hypothesis: Hypothesis, looks: Sequence[Look]) -> 
         there = correction.looks(looks)
         key = fallen(lattice, there).tobytes()
         if key not in judged:
-            stands = not contradictions(lattice, there[-MEMORY - 1 :])
-            judged[key] = relaid(lattice, lattice, there, ()) if stands else None
+            judged[key] = agreed(lattice, there)
         under = judged[key]
         if under is not None and (ahead := walk.ahead(end, under.evidence)) != FREE:
             yield Retold(hypothesis, correction, ahead == FULL, under.misfits)
@@ -216,23 +215,32 @@ def retold_both(
     for end in walk.ends[:-1]:
         correction = Correction(motion.number, (end.place[0] - believed[0], end.place[1] - believed[1]))
         there = correction.looks(before)
-        if (
-            contradictions(lattice, there[-MEMORY:])
-            or walk.ahead(end, relaid(lattice, lattice, there, ()).evidence) == FREE
-        ):
+        so_far = agreed(lattice, there, recent=MEMORY)
+        if so_far is None or walk.ahead(end, so_far.evidence) == FREE:
             continue
         onward = Walk(newest, lattice, [*there, looks[-1]])
         still = [End(there[-1].place, 0)] * (against and motion.number == newest.number - 1)
         for halt in (*still, *onward.ends[:-1]):
-            told = [*there, looks[-1]._replace(place=halt.place)]
-            if contradictions(lattice, told[-MEMORY - 1 :]):
+            under = agreed(lattice, [*there, looks[-1]._replace(place=halt.place)])
+            if under is None or under.misfits or walk.ahead(end, under.evidence) != FULL:
                 continue
-            under = relaid(lattice, lattice, told, ())
-            known = walk.ahead(end, under.evidence) == FULL and (
-                halt in still or onward.ahead(halt, under.evidence) == FULL
-            )
-            if known and not under.misfits:
+            if halt in still or onward.ahead(halt, under.evidence) == FULL:
                 yield Retold(hypothesis, correction, True, 0), halt.place
+
+
+def agreed(
+    lattice: Lattice,
+    looks: Sequence[Look],
+    loads: Iterable[Load] = (),
+    unsettled: Sequence[Disc] = (),
+    recent: int = MEMORY + 1,
+) -> Relaid | None:
+    """What all looks say on the lattice on which the loads lie; None when two of the last contradict each other.
+
+    unsettled : where looks need not agree. recent : how many of them are compared.
+    """
+    stands = not contradictions(lattice, looks[-recent:], unsettled)
+    return relaid(lattice, lattice, looks, loads) if stands else None
 
 
 class End(NamedTuple):
@@ -254,19 +262,21 @@ class Walk:
         halts = [End(lattice.place_to_utak(*place), at) for at in range(len(met)) for place in views(met[at].before)]
         self.ends = (*halts, End((x + motion.shift[0], y + motion.shift[1]), len(met)))
 
-    def ahead(self, end: End, evidence: Evidence, things: Set[Square] = NOTHING) -> int:
+    def ahead(self, end: End, evidence: Evidence, things: Set[Square] = frozenset()) -> int:
         """What stands where he would have been stopped; FREE, too, where something would have stopped him before.
 
         things : squares on which something stood then that was moved since.
         """
-        states = [FULL if c.entered in things else _state(evidence, c.entered) for c in self._met]
         at = int(end.gone)
-        if FULL in states[:at]:
+        entered = [crossing.entered for crossing in self._met[: at + 1]]
+        states = (FULL if square in things else _state(evidence, square) for square in entered)
+        if FULL in itertools.islice(states, at):
             return FREE
-        return states[at] if at < len(states) else OPEN
+        return next(states, OPEN)
 
 
-def _plus(place: Place, shift: Place) -> Place:
+def plus(place: Place, shift: Place) -> Place:
+    """A place so much further east and north."""
     return place[0] + shift[0], place[1] + shift[1]
 
 

@@ -45,13 +45,13 @@ class Hindrances:
 
     def __init__(self, evidence: Evidence, place: Place, polygon: Any, motion: Motion) -> None:
         known, open_ = (_there(evidence, place, polygon, motion, state) for state in (FULL, OPEN))
-        self.walls = Obstacles([_box(square) for square in known])
+        self.walls = Obstacles([box_of(square) for square in known])
         self._odds = {square: float(evidence.logit[evidence.index(*square)]) for square in open_}
 
     @cached_property
     def _open(self) -> list[tuple[Square, Obstacles]]:
         """Each open square as an obstacle of its own."""
-        return [(square, Obstacles([_box(square)])) for square in self._odds]
+        return [(square, Obstacles([box_of(square)])) for square in self._odds]
 
     def stops(self, place: Place, polygon: Any, motion: Motion) -> list[Stop]:
         """Where the motion may have been stopped, in its order, and what speaks for each.
@@ -127,6 +127,7 @@ def _there(evidence: Evidence, place: Place, polygon: Any, motion: Motion, state
     return list(zip(west.tolist(), south.tolist(), strict=True))
 
 
-def _box(square: Square) -> Any:
+def box_of(square: Square) -> Any:
+    """A square of the lattice, as a shapely polygon."""
     x, y = square
     return shapely.box(x, y, x + 1, y + 1)

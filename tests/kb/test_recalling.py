@@ -74,6 +74,13 @@ def surprised(command: Move | Push, after: Look, looks: list[Look], load: Load, 
     return Surprise(command, after.ranges, lattice, place, evidence, looks, {load.name: load}, name, CENTRED[:1])
 
 
+def room_with_a_thing(rng: np.random.Generator) -> tuple[Occupied, shapely.Polygon, tuple[int, int]]:
+    """A room, a thing that may lie in it, and the square of the room that is its southwest one."""
+    room = world_of(random_room(rng, SIDE, SIDE, 8))
+    x, y = (int(v) for v in rng.integers(4, SIDE - 7, 2))
+    return room, translate(BRICK, x, y), (x, y)
+
+
 def first_of(attempts: Iterator[Told | None]) -> Told:
     """The first scene that was made; none of a few hundred is a rare seed."""
     told = next((one for one in attempts if one is not None), None)
@@ -91,9 +98,7 @@ def test_a_walk_that_was_stopped_before_a_thing_was_taken_is_told_again_with_the
 
 def walked_and_pushed(rng: np.random.Generator) -> Told | None:
     """One who was stopped on his way, walked to a thing, took it and pushed it."""
-    room = world_of(random_room(rng, SIDE, SIDE, 8))
-    x, y = (int(v) for v in rng.integers(4, SIDE - 7, 2))
-    thing = translate(BRICK, x, y)
+    room, thing, (x, y) = room_with_a_thing(rng)
     occupied = around(thing, room)
     woke = (float(rng.integers(2, SIDE - 2)) + 0.5, float(rng.integers(2, SIDE - 2)) + 0.5)
     way = (float(rng.uniform(-14, 14)), float(rng.uniform(-14, 14)))
@@ -127,9 +132,8 @@ def test_a_push_that_was_stopped_unnoticed_is_told_again_with_what_was_in_hand(s
 
 def pushed_and_walked(rng: np.random.Generator) -> Told | None:
     """One who took a thing, was stopped as he pushed it, and walked on without it."""
-    room = world_of(random_room(rng, SIDE, SIDE, 8))
-    x, y = (int(v) for v in rng.integers(4, SIDE - 7, 2))
-    thing, woke = translate(BRICK, x, y), (x + 1.5, y - 0.5)
+    room, thing, (x, y) = room_with_a_thing(rng)
+    woke = (x + 1.5, y - 0.5)
     way = (float(rng.integers(-14, 15)), float(rng.integers(-14, 15)))
     walk = (float(rng.integers(-3, 4)), float(rng.integers(-3, 4)))
     if not free_about(room, x + 1, y + 1, 3) or not any(way):

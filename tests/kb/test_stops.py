@@ -153,14 +153,16 @@ def test_two_stops_in_a_row_are_told_together(seed: int) -> None:
         told = [*one.correction.looks(looks)[:2], looks[2]._replace(place=place)]
         assert one.known
         assert not contradictions(Lattice(), told)
-    known = one_field_is_full(occupied, (x, y), here, stop.entered)
+    known = known_to_be_occupied(occupied, (x, y), here, stop.entered)
     assert not known or any(
         math.dist(one.correction.shift, (away[0] - way[0], away[1] - way[1])) < 1e-6 and math.dist(place, away) < 1e-6
         for one, place in found
     )
 
 
-def one_field_is_full(occupied: Occupied, start: tuple[int, int], here: tuple[int, int], wall: tuple[int, int]) -> bool:
+def known_to_be_occupied(
+    occupied: Occupied, start: tuple[int, int], here: tuple[int, int], wall: tuple[int, int]
+) -> bool:
     """Is a square known to be occupied by all that is seen from two others?"""
     evidence = Evidence()
     for number, (i, j) in enumerate((start, here)):
