@@ -34,6 +34,8 @@ from geometry.ways import locate
 
 XY = tuple[float, float]
 Bools = NDArray[np.bool_]
+PLATEAU = 64  # cells as high as a saddle that are looked at
+TIE = 1e-9  # squares by which a neck must be narrower to be another one
 OFF_CENTRE = 0.75  # squares by which a clearance may differ between a square's centre and elsewhere in it
 
 
@@ -111,23 +113,94 @@ def describe(
     width = square.shape[1]
     others = [k for k in range(len(first)) if k != g]
     other = max(others, key=lambda k: (sides[k], -k))
-    left, right = slopes(square, saddle, int(first[g]))
-    ax, ay, bx, by = neck_ends(square, saddle, int(left[-1]), int(right[-1]))
-    cut = tuple(centre(cell, width) for cell in [*left[::-1].tolist(), saddle, *right.tolist()])
-    place = centre(saddle, width)
     chain, position = on_chain(chains, saddle, int(first[g]), state)
+    towards = int(first[g])
+    neck = neck_at(square, saddle, towards)
+    for cell, step, back, onward in plateau(square, saddle).tolist() if len(first) == 2 else ():
+        ahead = apart_squares(step, int(first[g]), width) < apart_squares(step, int(first[other]), width)
+        beyond = onward if ahead else back
+        nearby, on = neck_at(square, cell, beyond, strictly=True), leads_through(chains, cell, beyond, state)
+        narrower = nearby.width < min(neck.width, sides[g], sides[other]) - TIE
+        if on is not None and narrower and nearby.width >= 2.0 * clearance_of(square, saddle) - TIE:
+            neck, saddle, towards, (chain, position) = nearby, cell, beyond, on
     return Passage(
-        place,
+        centre(saddle, width),
         clearance_of(square, saddle),
-        float(np.hypot(bx - ax, by - ay)),
-        (ax, ay),
-        (bx, by),
+        neck.width,
+        neck.a,
+        neck.b,
         (sides[g], sides[other]),
-        cut,
-        centre(int(first[g]), width),
+        tuple(centre(cell, width) for cell in neck.cells),
+        centre(towards, width),
         chain,
         position,
     )
+
+
+class Neck(NamedTuple):
+    """The ends of a neck, from wall to wall, and the padded cells between them."""
+
+    a: XY
+    b: XY
+    cells: tuple[int, ...]
+
+    @property
+    def width(self) -> float:
+        """From end to end."""
+        return float(np.hypot(self.b[0] - self.a[0], self.b[1] - self.a[1]))
+
+
+def neck_at(square: Squares, saddle: int, side: int, strictly: bool = False) -> Neck:
+    """The neck at a cell, across the way to a cell beside it. strictly : no cell as high as it is on its slopes."""
+    left, right = slopes(square, saddle, side, strictly)
+    ax, ay, bx, by = neck_ends(square, saddle, int(left[-1]), int(right[-1]))
+    return Neck((ax, ay), (bx, by), (*left[::-1].tolist(), saddle, *right.tolist()))
+
+
+def apart_squares(one: int, other: int, width: int) -> int:
+    """The squared distance between the centres of two cells."""
+    return (one // width - other // width) ** 2 + (one % width - other % width) ** 2
+
+
+@compiled
+def plateau(square: Squares, saddle: int) -> Ints:
+    """Cells as high as a saddle and joined to it, with lower floor on both sides: rows (cell, step, back, onward).
+
+    Along a straight wall the clearance does not change, and any cell there may be the saddle that was found: but the
+    neck is where it falls off to both sides. step : the first cell of the way there. back, onward : the cells beside
+    it on that way and beyond it.
+    """
+    width = square.shape[1]
+    heights = square.reshape(-1)
+    queue = np.empty((PLATEAU, 3), np.int32)  # cell, step, back
+    found = np.empty((PLATEAU, 4), np.int32)
+    queue[0, 0], queue[0, 1], queue[0, 2] = saddle, -1, -1
+    first, last, count = 0, 1, 0
+    while first < last:
+        cell, step, back = queue[first]
+        first += 1
+        onward, changes = -1, 0
+        for k in range(8):
+            here, before = heights[cell + beside(k, width)], heights[cell + beside(k + 7, width)]
+            changes += (here < heights[saddle]) != (before < heights[saddle])
+        for k in range(0, 8, 2):
+            other = cell + beside(k, width)
+            if heights[other] < heights[saddle]:
+                continue
+            if other != back and other + back != 2 * cell:
+                onward = onward if onward >= 0 else other
+            elif other != back:
+                onward = other
+            known = other == saddle
+            for n in range(last):
+                known |= queue[n, 0] == other
+            if heights[other] == heights[saddle] and not known and last < PLATEAU:
+                queue[last, 0], queue[last, 1], queue[last, 2] = other, other if step < 0 else step, cell
+                last += 1
+        if cell != saddle and changes >= 4 and onward >= 0:
+            found[count, 0], found[count, 1], found[count, 2], found[count, 3] = cell, step, back, onward
+            count += 1
+    return found[:count]
 
 
 def on_chain(chains: Chains, saddle: int, side: int, state: States) -> tuple[int, int]:
@@ -143,6 +216,18 @@ def on_chain(chains: Chains, saddle: int, side: int, state: States) -> tuple[int
         if (cells[-1], cells[-2]) == (saddle, side):
             return chain, len(cells) - 1
     raise AssertionError("a saddle that is a node has a chain into each of its sides")
+
+
+def leads_through(chains: Chains, cell: int, side: int, state: States) -> tuple[int, int] | None:
+    """The chain that leads from a cell to one beside it, and the cell's position on it; None when none does."""
+    if not state.reshape(-1)[cell] & LINKS:
+        return None
+    anchor = locate(cell, state.reshape(-1), state.shape[1], chains.node, chains.leave, chains.start, chains.cells)
+    if anchor.node >= 0:
+        return None
+    first, last = chains.start[anchor.chain], chains.start[anchor.chain + 1] - 1
+    about = [chains.cells[first + n] for n in (anchor.position - 1, anchor.position + 1) if 0 <= n <= last - first]
+    return (anchor.chain, anchor.position) if side in about else None
 
 
 def compare_sides(square: Squares, state: States, saddles: Ints) -> tuple[Ints, Ints, Ints]:
@@ -212,14 +297,17 @@ def finest(square: Squares, cell: int) -> float:
 
 
 @compiled
-def slopes(square: Squares, saddle: int, side: int) -> tuple[Ints, Ints]:
-    """The steepest ways down to the walls, left and right of the way from a saddle to one of its sides."""
+def slopes(square: Squares, saddle: int, side: int, strictly: bool) -> tuple[Ints, Ints]:
+    """The steepest ways down to the walls, left and right of the way from a saddle to one of its sides.
+
+    strictly : over no cell as high as the saddle.
+    """
     width = square.shape[1]
     heights = square.reshape(-1)
     k = 0
     while saddle + beside(k, width) != side:
         k += 1
-    return descend(heights, saddle, k, 1, width), descend(heights, saddle, k, 7, width)
+    return descend(heights, saddle, k, 1, width, strictly), descend(heights, saddle, k, 7, width, strictly)
 
 
 def neck_ends(square: Squares, saddle: int, one: int, two: int) -> tuple[float, float, float, float]:
@@ -244,10 +332,12 @@ def neck_walls(square: Squares, saddle: int, one: int, two: int) -> tuple[int, i
 
 
 @compiled
-def descend(heights: Squares, saddle: int, k: int, turn: int, width: int) -> Ints:
+def descend(heights: Squares, saddle: int, k: int, turn: int, width: int, strictly: bool) -> Ints:
     """The cells of the steepest way down to a wall from the first lower neighbour, turning from the k-th one way."""
     k += turn
-    while above(saddle + beside(k, width), saddle, heights):
+    while above(saddle + beside(k, width), saddle, heights) or (
+        strictly and heights[saddle + beside(k, width)] == heights[saddle]
+    ):
         k += turn
     cells = [saddle + beside(k, width)]
     while heights[cells[-1]] > 0:

@@ -13,7 +13,7 @@ from geometry.goals import Region, entry, regions, way_in, word_of_cells
 from geometry.itinerary import OVERFLOW, Desk, Ground, ground_of, itineraries, new_desk
 from geometry.layer import Layer
 from geometry.loops import Arc, cells_of_way, closed_ways
-from geometry.passages import Passage, on_chain
+from geometry.passages import Passage, leads_through, on_chain
 from geometry.polyline import crossings_of, join_words, word_of_line
 from geometry.rope import Ends
 from geometry.route import Route, read_answers
@@ -191,12 +191,13 @@ class Questions:
         chains, state = self.layer.chains, self.layer.state
         bars: list[tuple[int, int]] = []
         for passage in avoid:
-            cell = self._cell(passage.place)
-            if not state.reshape(-1)[cell] & SADDLE:
+            cell, side = self._cell(passage.place), self._cell(passage.towards)
+            saddle = state.reshape(-1)[cell] & SADDLE
+            where = on_chain(chains, cell, side, state) if saddle else leads_through(chains, cell, side, state)
+            if where is None:
                 continue  # too narrow for this body anyway
-            chain, position = on_chain(chains, cell, self._cell(passage.towards), state)
-            desk.query.shut[chain] |= 1
-            bars.append((chain, position))
+            desk.query.shut[where[0]] |= 1
+            bars.append(where)
         bar = np.array(bars, np.int32).reshape(-1, 2)
         return desk._replace(query=desk.query._replace(bars=bar))
 

@@ -134,3 +134,24 @@ def test_one_door_for_every_width_and_thickness(wide, thick):
     label = screen.parts([door])
     assert label[3, 3] != label[3, 20 + thick]
     assert label.max() == 2
+
+
+@pytest.mark.parametrize("turn", range(4))
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("wide", [2, 3, 4, 5, 6, 7])
+def test_a_door_flush_with_a_wall_is_a_door(wide, mirrored, turn):
+    """Along that wall the clearance is the same to both sides of the neck as in it."""
+    free, mark = np.zeros((20, 36), bool), np.zeros((20, 36), int)
+    free[2:18, 2:17] = free[2:18, 19:34] = True
+    free[2 : 2 + wide, 17:19] = True
+    mark[10, 7], mark[10, 31] = 1, 2
+    free, mark = (np.ascontiguousarray(np.rot90(a[:, ::-1] if mirrored else a, turn)) for a in (free, mark))
+    screen = Screen(free)
+    (door,) = doors(screen)
+    assert door.width == wide
+    label = screen.parts([door])
+    assert label.max() == 2
+    assert label[mark == 1] != label[mark == 2]
+    start, goal = ((x + 0.5, y + 0.5) for ((y, x),) in (np.argwhere(mark == n) for n in (1, 2)))
+    assert screen.routes(start, goal)
+    assert not screen.routes(start, goal, avoid=[door])
