@@ -10,6 +10,7 @@ from geometry.overlay import (
     DISC,
     ELL,
     HORSESHOE,
+    NUMBERS,
     SQUARE,
     TRIANGLE,
     UNKNOWN,
@@ -24,6 +25,8 @@ from geometry.overlay import (
 
 STEPS = 150  # of settling
 ANGLES = 24  # in the fan, a whole turn
+CREDIT = 1  # squares more that arms of two widths must explain than arms of one
+NOTCH = 2  # squares
 STARTS = 4  # that settle
 FINE, ROUNDS = 0.03, 5  # squares by which a disc is moved, and how often, for fewer squares to be wrong
 SLACK = 2  # unknown squares by which a whole shape may reach beyond what is known of it
@@ -32,7 +35,7 @@ SLACK = 2  # unknown squares by which a whole shape may reach beyond what is kno
 @compiled
 def whole_best(kind: int, image: Image) -> tuple[Floats, float]:
     """The best shape of a class with whole corners and sides along the axes, and its misfit (infinite: none)."""
-    best, at = math.inf, np.zeros(6)
+    best, at = math.inf, np.zeros(NUMBERS)
     if kind == DISC:
         return at, best
     s0, n1, w0, e1 = _extent(image, WANTED)
@@ -67,7 +70,7 @@ def _whole_rectangles(
     kind: int, image: Image, west: int, south: int, east: int, north: int, limit: float
 ) -> tuple[Floats, float]:
     """The best square, brick, L, T or U that just fits in a rectangle, in all four directions."""
-    best, at = limit, np.zeros(6)
+    best, at = limit, np.zeros(NUMBERS)
     wide, high = east - west, north - south
     if kind == SQUARE and wide != high:
         return at, math.inf
@@ -75,12 +78,36 @@ def _whole_rectangles(
         a, b = (wide, high) if quarter % 2 == 0 else (high, wide)
         for thick in range(1, 2 if kind <= BRICK else min(a, b)):
             angle = quarter * math.pi / 2
-            shape = np.array([angle, (west + east) / 2, (south + north) / 2, a, b, thick])
+            shape = np.array([angle, (west + east) / 2, (south + north) / 2, a, b, thick, 0.0])
             if impropriety(kind, shape) == 0.0:
-                wrong = misfit(kind, shape, image)
+                wrong = misfit(kind, shape, image, best)
                 if wrong < best:
                     best, at = float(wrong), shape
+    if kind == ELL and best > 0.0:
+        return _whole_uneven(image, west, south, east, north, best, at)
     return at, best if best < limit else math.inf
+
+
+@compiled
+def _whole_uneven(
+    image: Image, west: int, south: int, east: int, north: int, limit: float, shape: Floats
+) -> tuple[Floats, float]:
+    """The best L with arms of two widths that just fits in a rectangle, if it is better than a shape.
+
+    Its notch is at least NOTCH squares long and wide: a turned rectangle may lack a square or two of a row at a corner.
+    """
+    best, at = limit, shape
+    for quarter in range(4):
+        a, b = (east - west, north - south) if quarter % 2 == 0 else (north - south, east - west)
+        for foot in range(1, b - NOTCH + 1):
+            for stem in range(1, a - NOTCH + 1):
+                angle = quarter * math.pi / 2
+                other = np.array([angle, (west + east) / 2, (south + north) / 2, a, b, foot, stem])
+                if foot != stem and impropriety(ELL, other) == 0.0:
+                    wrong = misfit(ELL, other, image, best)
+                    if wrong < best:
+                        best, at = float(wrong), other
+    return at, best if best < math.inf else math.inf
 
 
 @compiled
@@ -89,7 +116,7 @@ def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, 
 
     Right-angled ones are tried first, then those with two equal sides, then the rest.
     """
-    best, at = limit, np.zeros(6)
+    best, at = limit, np.zeros(NUMBERS)
     for turn in range(3):
         for side in range(4):
             length = east - west if side < 2 else north - south
@@ -99,10 +126,10 @@ def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, 
                     continue
                 if side < 2:
                     y0, y1 = (south, north) if side == 0 else (north, south)
-                    shape = np.array([west, y0, east, y0, west + tip, y1], np.float64)
+                    shape = np.array([west, y0, east, y0, west + tip, y1, 0.0], np.float64)
                 else:
                     x0, x1 = (west, east) if side == 2 else (east, west)
-                    shape = np.array([x0, south, x0, north, x1, south + tip], np.float64)
+                    shape = np.array([x0, south, x0, north, x1, south + tip, 0.0], np.float64)
                 wrong = misfit(TRIANGLE, shape, image)
                 if wrong < best:
                     best, at = float(wrong), shape
@@ -112,12 +139,25 @@ def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, 
 @compiled
 def settled_best(kind: int, image: Image) -> tuple[Floats, float]:
     """The best shape of a class at any place and angle that settling finds, and its misfit."""
-    starts = _fan(kind, image)
+    free = _freedom(kind)
+    at, best = _settled(kind, _fan(kind, image), free, image)
+    if kind == ELL and best > 0.0:  # perhaps with arms of two widths
+        starts = _fan(kind, image)
+        starts[:, 6] = starts[:, 5]
+        free[6] = free[5]
+        other, wrong = _settled(kind, starts, free, image)
+        if wrong + CREDIT < best:
+            return other, wrong
+    return at, best
+
+
+@compiled
+def _settled(kind: int, starts: Floats, free: Floats, image: Image) -> tuple[Floats, float]:
+    """The best of shapes that settle, and its misfit."""
     losses = np.empty(len(starts))
     for k in range(len(starts)):
         losses[k] = disagreement(kind, starts[k], image)
     best, at, least = math.inf, starts[0], math.inf
-    free = _freedom(kind)
     for _ in range(min(STARTS, len(losses))):
         next_best = np.argmin(losses)
         losses[next_best] = math.inf
@@ -161,10 +201,10 @@ def _round_best(disc: Floats, wrong: float, image: Image) -> tuple[Floats, float
 def _freedom(kind: int) -> Floats:
     """How far each number of a class is moved at first when it settles."""
     if kind == DISC:
-        return np.array([0.3, 0.3, 0.3, 0.0, 0.0, 0.0])
+        return np.array([0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0])
     if kind == TRIANGLE:
-        return np.full(6, 0.4)
-    free = np.array([0.1, 0.3, 0.3, 0.4, 0.4, 0.3])
+        return np.array([0.4, 0.4, 0.4, 0.4, 0.4, 0.4, 0.0])
+    free = np.array([0.1, 0.3, 0.3, 0.4, 0.4, 0.3, 0.0])
     if kind <= BRICK:
         free[5] = 0.0
     if kind == SQUARE:
@@ -174,12 +214,12 @@ def _freedom(kind: int) -> Floats:
 
 @compiled
 def _fan(kind: int, image: Image) -> Floats:
-    """Shapes to start from: (n, 6)."""
+    """Shapes to start from: (n, NUMBERS)."""
     if kind == DISC:
         return _round_start(image)
     thicknesses = 3 if kind >= ELL and kind <= HORSESHOE else 1
     angles = ANGLES if kind >= ELL else ANGLES // 4
-    starts = np.zeros((angles * thicknesses, 6))
+    starts = np.zeros((angles * thicknesses, NUMBERS))
     for k in range(angles):
         angle = 2 * math.pi * k / ANGLES
         for t in range(thicknesses):
@@ -198,7 +238,7 @@ def _round_start(image: Image) -> Floats:
                 x += column + 0.5
                 y += row + 0.5
                 count += 1
-    start = np.zeros((1, 6))
+    start = np.zeros((1, NUMBERS))
     start[0, 0], start[0, 1] = x / count, y / count
     start[0, 2] = max(math.sqrt(count / math.pi) - 0.5, 0.7)
     return start
@@ -206,7 +246,7 @@ def _round_start(image: Image) -> Floats:
 
 @compiled
 def _start(kind: int, image: Image, angle: float, thick: float, out: Floats) -> None:
-    """Write a shape in one direction to out (6,), its sizes read off the extent of the squares.
+    """Write a shape in one direction to out (NUMBERS,), its sizes read off the extent of the squares.
 
     A shape reaches into its outermost squares by less than half of what a square measures across that direction; a
     little less than that is taken off.

@@ -1,8 +1,8 @@
 """How badly a shape laid over a digital image agrees with it. Plain loops for numba.
 
-A shape is a class and six numbers. SQUARE, BRICK, ELL, TEE and HORSESHOE: radians turned, centre x and y of the
-rectangle that holds it, its width, its height, its thickness. TRIANGLE: three corners x, y. DISC: centre x and y,
-radius.
+A shape is a class and seven numbers. SQUARE, BRICK, ELL, TEE and HORSESHOE: radians turned, centre x and y of the
+rectangle that holds it, its width, its height, its thickness, and of an ELL the thickness of its stem where that is
+another one, else 0. TRIANGLE: three corners x, y. DISC: centre x and y, radius.
 
 An image is an array of WANTED, UNWANTED and UNKNOWN squares. A shape and a square overlap when no line separates them:
 their gap is the widest such separation, negative when there is none. Every class is a union of convex pieces, so the
@@ -21,6 +21,7 @@ Image = npt.NDArray[np.int8]
 UNWANTED, WANTED, UNKNOWN = 0, 1, 2
 SQUARE, BRICK, ELL, TEE, HORSESHOE, TRIANGLE, DISC = 0, 1, 2, 3, 4, 5, 6
 MARGIN = 0.02  # squares: agreement by less than this still costs
+NUMBERS = 7  # of a shape
 LEAST = 0.7  # squares: arms, gaps and notches are at least so long
 OBLONG = 1.15  # a brick is at least so much longer than wide
 
@@ -43,8 +44,11 @@ def disagreement(kind: int, shape: Floats, image: Image) -> float:
 
 
 @compiled
-def misfit(kind: int, shape: Floats, image: Image) -> int:
-    """The number of known squares that a shape gets wrong; touching is not overlapping."""
+def misfit(kind: int, shape: Floats, image: Image, most: float = math.inf) -> int:
+    """The number of known squares that a shape gets wrong, or one that is not below `most`.
+
+    Touching is not overlapping.
+    """
     wrong: int = 0
     pieces = convex_pieces(kind, shape)
     for row in range(image.shape[0]):
@@ -52,6 +56,8 @@ def misfit(kind: int, shape: Floats, image: Image) -> int:
             if image[row, column] != UNKNOWN:
                 covered = gap_to(pieces, column + 0.5, row + 0.5) < -1e-9
                 wrong += covered != (image[row, column] == WANTED)
+        if wrong >= most:
+            break
     return wrong
 
 
@@ -63,14 +69,16 @@ def impropriety(kind: int, shape: Floats) -> float:
     if kind == TRIANGLE:
         return max(0.0, LEAST - _least_height(shape))
     wide, high, thick = shape[3], shape[4], shape[5]
-    bad = max(0.0, 2 * LEAST - wide)
+    stem = shape[6] if kind == ELL and shape[6] != 0.0 else thick
+    bad = max(0.0, LEAST - wide)
     if kind >= BRICK:
         bad += max(0.0, LEAST - high)
     if kind == BRICK:
         bad += max(0.0, OBLONG * min(wide, high) - max(wide, high))
     if kind >= ELL:
-        across = thick if kind == ELL else 2 * thick if kind == HORSESHOE else thick + LEAST
+        across = stem if kind == ELL else 2 * thick if kind == HORSESHOE else thick + LEAST
         bad += max(0.0, LEAST - thick) + max(0.0, thick + LEAST - high) + max(0.0, across + LEAST - wide)
+        bad += max(0.0, LEAST - stem)
     return float(bad)
 
 
@@ -111,7 +119,8 @@ def convex_pieces(kind: int, shape: Floats) -> Floats:
     if kind == TEE:
         _rectangle_lines(shape, -thick / 2, south, thick / 2, north, lines, 8)
         return lines
-    _rectangle_lines(shape, west, south, west + thick, north, lines, 8)
+    stem = shape[6] if kind == ELL and shape[6] != 0.0 else thick
+    _rectangle_lines(shape, west, south, west + stem, north, lines, 8)
     if kind == HORSESHOE:
         _rectangle_lines(shape, east - thick, south, east, north, lines, 16)
     return lines
@@ -184,14 +193,14 @@ def gap_to(pieces: Floats, x: float, y: float) -> float:
 def settle(kind: int, shape: Floats, free: Floats, image: Image, steps: int) -> float:
     """Move a shape to where it disagrees least nearby, in place (Nelder and Mead 1965); its disagreement there.
 
-    free: how far each of the six numbers is moved at first; 0 for those that stay.
+    free: how far each of the numbers is moved at first; 0 for those that stay.
     """
-    simplex = np.empty((7, 6))
-    losses = np.empty(7)
-    middle, trial, further = np.empty(6), np.empty(6), np.empty(6)
+    simplex = np.empty((NUMBERS + 1, NUMBERS))
+    losses = np.empty(NUMBERS + 1)
+    middle, trial, further = np.empty(NUMBERS), np.empty(NUMBERS), np.empty(NUMBERS)
     _mix(1.0, shape, 0.0, shape, simplex[0])
     n = 0
-    for k in range(6):
+    for k in range(NUMBERS):
         if free[k] > 0.0:
             n += 1
             _mix(1.0, shape, 0.0, shape, simplex[n])
@@ -203,7 +212,7 @@ def settle(kind: int, shape: Floats, free: Floats, image: Image, steps: int) -> 
         low, high, second = _ends(losses, n + 1)
         if losses[low] <= 0.0 or losses[high] - losses[low] < 1e-4:
             break
-        for m in range(6):
+        for m in range(NUMBERS):
             middle[m] = 0.0
             for k in range(n + 1):
                 if k != high:
@@ -235,8 +244,8 @@ def settle(kind: int, shape: Floats, free: Floats, image: Image, steps: int) -> 
 
 @compiled
 def _mix(p: float, one: Floats, q: float, other: Floats, out: Floats) -> None:
-    """Write p one + q other into out, which may be one of them (shapes of six numbers)."""
-    for k in range(6):
+    """Write p one + q other into out, which may be one of them."""
+    for k in range(NUMBERS):
         out[k] = p * one[k] + q * other[k]
 
 

@@ -46,7 +46,8 @@ class Fit:
     polygon : shapely Polygon, in squares, origin at the corner of the image's square (0, 0).
     whole : all sides along the axes or corners on whole squares, tried exactly.
     width, height, thick : sizes in squares: of the rectangle that holds the shape, in the shape's own frame (a disc's
-        diameter, a triangle's longest side and the height on it), and of its arms or walls (0 where there are none).
+        diameter, a triangle's longest side and the height on it), and of its arms or walls (0 where there are none; of
+        an L with arms of two widths that of its foot, the arm as long as the rectangle is wide).
     degrees : how far the shape is turned, 0 to 360.
     """
 
@@ -135,12 +136,12 @@ def _fit(name: str, kind: int, image: overlay.Image, west: int, south: int) -> F
 def outline(kind: int, shape: Floats) -> Floats:
     """The corners (n, 2) of a shape, in order."""
     if kind == overlay.TRIANGLE:
-        return shape.reshape(3, 2)
+        return shape[:6].reshape(3, 2)
     if kind == overlay.DISC:
         angles = 2 * math.pi * (np.arange(CORNERS) + 0.5) / CORNERS
         return np.column_stack([shape[0] + shape[2] * np.cos(angles), shape[1] + shape[2] * np.sin(angles)])
     wide, high, thick = shape[3], shape[3] if kind == overlay.SQUARE else shape[4], shape[5]
-    corners = np.array(_corners(kind, wide, high, thick)) - np.array([wide, high]) / 2
+    corners = np.array(_corners(kind, wide, high, thick, shape[6] or thick)) - np.array([wide, high]) / 2
     quarters = shape[0] / (math.pi / 2)
     c, s = math.cos(shape[0]), math.sin(shape[0])
     if quarters == round(quarters):
@@ -149,12 +150,12 @@ def outline(kind: int, shape: Floats) -> Floats:
     return np.column_stack([shape[1] + c * x - s * y, shape[2] + s * x + c * y])
 
 
-def _corners(kind: int, wide: float, high: float, thick: float) -> list[tuple[float, float]]:
-    """The corners of a shape made of rectangles, not turned, lower left at the origin."""
+def _corners(kind: int, wide: float, high: float, thick: float, stem: float) -> list[tuple[float, float]]:
+    """The corners of a shape made of rectangles, not turned, lower left at the origin. stem : the width of an L's."""
     if kind <= overlay.BRICK:
         return [(0, 0), (wide, 0), (wide, high), (0, high)]
     if kind == overlay.ELL:
-        return [(0, 0), (wide, 0), (wide, thick), (thick, thick), (thick, high), (0, high)]
+        return [(0, 0), (wide, 0), (wide, thick), (stem, thick), (stem, high), (0, high)]
     left, right = (wide - thick) / 2, (wide + thick) / 2
     foot = [(0, 0), (wide, 0)]
     if kind == overlay.TEE:
@@ -168,7 +169,8 @@ def _sizes(kind: int, shape: Floats, polygon: Any) -> tuple[float, float, float]
     if kind == overlay.DISC:
         return 2 * float(shape[2]), 2 * float(shape[2]), 0.0
     if kind == overlay.TRIANGLE:
-        sides = np.hypot(*(shape.reshape(3, 2) - np.roll(shape.reshape(3, 2), 1, axis=0)).T)
+        corners = shape[:6].reshape(3, 2)
+        sides = np.hypot(*(corners - np.roll(corners, 1, axis=0)).T)
         return float(sides.max()), float(2 * polygon.area / sides.max()), 0.0
     high = shape[3] if kind == overlay.SQUARE else shape[4]
     return float(shape[3]), float(high), float(shape[5]) if kind >= overlay.ELL else 0.0
@@ -178,7 +180,7 @@ def _turn(kind: int, shape: Floats) -> float:
     """The degrees that a shape is turned; of a triangle the direction of its longest side."""
     if kind != overlay.TRIANGLE:
         return math.degrees(float(shape[0])) % 360.0
-    corners = shape.reshape(3, 2)
+    corners = shape[:6].reshape(3, 2)
     sides = np.roll(corners, -1, axis=0) - corners
     side = sides[int(np.argmax(np.hypot(*sides.T)))]
     return math.degrees(math.atan2(side[1], side[0])) % 360.0

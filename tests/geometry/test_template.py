@@ -16,10 +16,14 @@ HORSESHOE = shapely.Polygon([(0, 0), (6, 0), (6, 5), (4, 5), (4, 2), (2, 2), (2,
 WHOLE = [
     ("square", shapely.box(0, 0, 3, 3)),
     ("square", shapely.box(0, 0, 1, 1).buffer(1, join_style="mitre")),
+    ("square", shapely.box(0, 0, 1, 1)),
+    ("brick", shapely.box(0, 0, 1, 3)),
     ("brick", shapely.box(0, 0, 2, 4)),
     ("brick", shapely.box(0, 0, 6, 2)),
     ("brick", shapely.box(0, 0, 3, 4)),
     ("l_shape", ELL),
+    ("l_shape", shapely.Polygon([(0, 0), (7, 0), (7, 1), (3, 1), (3, 5), (0, 5)])),
+    ("l_shape", shapely.Polygon([(0, 0), (5, 0), (5, 3), (1, 3), (1, 6), (0, 6)])),
     ("t_shape", TEE),
     ("u_shape", HORSESHOE),
     ("triangle", shapely.Polygon([(0, 0), (4, 4), (4, 0)])),
@@ -78,6 +82,21 @@ def test_turned_shapes_keep_their_class(name: str) -> None:
         fits = fit_shapes(image_of(shape))
         right += fits[0].shape == name
     assert right >= 37
+
+
+def test_turned_ells_with_arms_of_two_widths_are_ells() -> None:
+    rng = np.random.default_rng(3)
+    right, kept = 0, 0
+    for _ in range(40):
+        long, high = rng.uniform(5.0, 8.0, 2)
+        foot, stem = rng.permutation([rng.uniform(1.0, 1.5), rng.uniform(2.0, 3.0)])
+        ell = shapely.Polygon([(0, 0), (long, 0), (long, foot), (stem, foot), (stem, high), (0, high)])
+        there = affinity.translate(affinity.rotate(ell, rng.uniform(0, 360)), *(15 + rng.random(2)))
+        best = fit_shapes(image_of(there))[0]
+        right += best.shape == "l_shape"
+        kept += best.polygon.symmetric_difference(there).area < 0.3 * there.area
+    assert right >= 38
+    assert kept >= 30
 
 
 def test_the_misfit_is_that_of_the_polygon() -> None:
