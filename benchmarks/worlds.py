@@ -12,12 +12,13 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.carrying import CARRYING, CARRYING_SNUG
+from benchmarks.loose import LOOSE
 from benchmarks.plain import PLAIN
 from benchmarks.scenes import Scenario, write
 from benchmarks.walking import WALKING
 
-MAKERS = {"wide": WALKING | CARRYING, "snug": WALKING | CARRYING_SNUG, "plain": PLAIN}
-STREAMS = {"wide": (), "plain": (1,), "snug": (2,)}
+MAKERS = {"wide": WALKING | CARRYING, "snug": WALKING | CARRYING_SNUG, "plain": PLAIN, "loose": LOOSE}
+STREAMS = {"wide": (), "plain": (1,), "snug": (2,), "loose": (3,)}
 UNABLE_EVERY = 12  # seeds
 TRIES = 20_000
 
@@ -30,7 +31,8 @@ def scenario(task: int, seed: int, kind: str = "wide") -> Scenario:
     task : 1 to 9, as in the paper: (i) to (ix).
     seed : any integer from 0; when it is 11 modulo 12 the task cannot be done.
     kind : "wide"; "snug", in which the rooms of what is carried are no larger than people mostly draw them (two or
-        three, of 18 to 24 squares); or "plain", a world of benchmarks.plain, in which every task can be done.
+        three, of 18 to 24 squares); "loose", the same with things between the squares, turned, and Ls of two widths
+        (tasks 5 to 9); or "plain", a world of benchmarks.plain, in which every task can be done.
 
     Raises
     ------
@@ -62,6 +64,7 @@ def add_kinds(parser: argparse.ArgumentParser) -> None:
     """Options that say of which kind worlds are."""
     kinds = parser.add_mutually_exclusive_group()
     said = {"plain": "one or two rooms, everything on whole squares", "snug": "smaller rooms to carry in"}
+    said["loose"] = "the same, with things between the squares"
     for kind, what in said.items():
         kinds.add_argument(f"--{kind}", dest="kind", action="store_const", const=kind, default="wide", help=what)
 
