@@ -26,6 +26,7 @@ from geometry.errand import Errand
 from geometry.held import carry_freed, carry_held
 from geometry.legs import Leg, Point, commands, shifted, verified
 from geometry.motion import Plan
+from geometry.pressing import pressed
 from geometry.rigid import Pose, Rotate, Translate
 from geometry.sound import check, sound
 from geometry.squarewise import carry_squarewise
@@ -159,7 +160,11 @@ def plan_carrying(
 
 def _planned(errand: Errand) -> Carrying:
     """The word of the first planner that finds something, or why none does."""
-    plan = _told(errand, carry_squarewise(errand)) or _told(errand, carry_straightened(errand))
+    plan = _told(errand, pressed(errand, carry_squarewise(errand)))
+    if plan is None and isinstance(errand.goal, InCorner) and errand.goal.press:
+        errand = replace(errand, goal=replace(errand.goal, press=0.0))
+        plan = _told(errand, carry_squarewise(errand))
+    plan = plan or _told(errand, carry_straightened(errand))
     if plan is not None:
         return plan
     body = move_alone(errand)
@@ -196,9 +201,9 @@ def _check_goal(goal: End) -> None:
     if isinstance(goal, At):
         check(goal.pose, "the goal")
     elif isinstance(goal, InCorner):
-        check([goal.x, goal.y, goal.slack], "the goal")
-        if abs(goal.sx) != 1 or abs(goal.sy) != 1 or goal.slack < 0.0:
-            raise ValueError("a corner's sx and sy must be 1 or -1, its slack not negative")
+        check([goal.x, goal.y, goal.slack, goal.press], "the goal")
+        if abs(goal.sx) != 1 or abs(goal.sy) != 1 or min(goal.slack, goal.press) < 0.0:
+            raise ValueError("a corner's sx and sy must be 1 or -1, its slack and press not negative")
         if not goal.within[0] <= goal.within[1]:
             raise ValueError("the lesser and the greater way within a corner must be told in this order")
     elif not isinstance(goal, Inside | Roomy):

@@ -36,6 +36,7 @@ class InCorner:
 
     x, y : the corner, where the walls meet, in squares. sx, sy : 1 when it is an eastern, a northern corner, else -1.
     within : how far from the two walls it may reach at most, the lesser and the greater; what lies askew reaches more.
+    press : squares further from its walls at which a body may come by whole squares, to be pressed on from there.
     """
 
     x: float
@@ -44,6 +45,7 @@ class InCorner:
     sy: int
     slack: float = 1.0
     within: tuple[float, float] = (math.inf, math.inf)
+    press: float = 0.0
 
     def gaps(self, bounds: tuple[Extent, Extent, Extent, Extent]) -> tuple[Extent, Extent]:
         """How far rectangles x0, y0, x1, y1 are from the two walls; negative beyond them."""
@@ -147,8 +149,8 @@ def _cornered(goal: InCorner, shape: Any, body: Stencil, k: int, grid: Grid) -> 
     row, column = np.divmod(np.arange((grid.rows + 2 * grid.pad) * grid.stride), grid.stride)
     dx, dy = column - grid.pad - body.home[0], row - grid.pad - body.home[1]
     bounds = x0 + dx, y0 + dy, x1 + dx, y1 + dy
-    gap = np.maximum(*goal.gaps(bounds))
-    return np.where(goal.admits(bounds), np.where(gap <= goal.slack / 2 + CLOSE, 0, UNEASY), -1).astype(np.int32)
+    gap, most = np.maximum(*goal.gaps(bounds)), replace(goal, slack=goal.slack + goal.press)
+    return np.where(most.admits(bounds), np.where(gap <= goal.slack / 2 + CLOSE, 0, UNEASY), -1).astype(np.int32)
 
 
 def lying_at(shape: Any, body: Stencil, k: int, place: tuple[int, int]) -> Any:

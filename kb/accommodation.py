@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,7 +36,7 @@ from kb.heading import (
 from kb.holding import RECENT, Holding
 from kb.lattice import Lattice
 from kb.leaning import after, leaning
-from kb.loads import ROUNDING, Load, borne_out, discounted
+from kb.loads import ROUNDING, Load, borne_out, covered, discounted
 from kb.recalling import recalled
 from kb.relaying import laid, relaid
 from kb.retina import count_ranges
@@ -49,6 +50,7 @@ MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are bla
 HOPELESS = 18  # times that no other lattice explained it better, with things moved, before none is tried any more
 SETTLED = math.radians(5)  # by which angles may differ while that hardly is why looks contradict
 CONTRADICTED = 2  # misfits that a contradiction of looks weighs as much as: more than any other lattice costs
+CLEAR = 0.25  # how likely a motion is stopped, at most, that comes upon nothing
 REMEMBERED = 6  # motions that may turn out to have been stopped
 Place = tuple[float, float]
 
@@ -107,15 +109,22 @@ class Memory(Holding):
             ends = surprise.hindrances.ends(self.place, load.polygon, motion)
             outcomes = [one for one in (self._outcome(ranges, load, end) for end in ends) if not one.misfits]
             outcomes += [self._outcome(ranges, load, other) for other in otherwise(self.place, load.polygon, motion)]
+            outcomes += self._smaller(ranges, load, chosen)
             simple = any(not one.misfits for one in outcomes if one.how != "slipped" or self.slipped)
             explanations = [chosen, *outcomes, *self._elsewhere(surprise, chosen.misfits, simple)]
             explanations += self._recalled(surprise, explanations)
-            chosen = self._choose(explanations, np.array_equal(ranges, self.looks[-1].ranges))
+            clear = surprise.hindrances.chance(self.place, load.polygon, motion) <= CLEAR
+            unchanged, uneven = np.array_equal(ranges, self.looks[-1].ranges), load.insets and any(load.insets.believed)
+            told = {"unchanged": unchanged, "clear": clear, "uneven": uneven}
+            chosen = self._choose(explanations, [fact for fact, so in told.items() if so])
         if isinstance(command, Push):
             self._remember(command, load.name)
         self._lie(chosen)
         self._carried(self.loads[load.name], chosen, as_motion(command, self.lattice, self.place), ranges)
         self.place = chosen.place
+        if chosen.outcome is not None and chosen.outcome.as_commanded:
+            carried = self.loads[load.name]
+            self.loads[load.name] = self._told(carried, ranges, self.place) or carried
         self._stray(ranges)
         return self._take_in(chosen, ranges)
 
@@ -131,6 +140,31 @@ class Memory(Holding):
             walls = Hindrances(self.evidence, place, carried.polygon, motion).walls
             carried = leaning(carried, motion, walls, lambda lying: self._clashes(ranges, place, [*others, lying]))
         self.loads[load.name] = carried
+
+    def _smaller(self, ranges: NDArray[np.int16], load: Load, whole: Explanation) -> list[Explanation]:
+        """That less of a thing was seen than was predicted, for it does not fill its squares. whole : as predicted."""
+        outcome = whole.outcome
+        assert outcome is not None
+        lying = load.moved(outcome.polygon, load.slack, outcome.degrees, commanded=True)
+        less = self._told(lying, ranges, outcome.place)
+        if less is None:
+            return []
+        told = outcome._replace(how="smaller", polygon=less.polygon, insets=less.insets)
+        return [whole._replace(how="smaller", misfits=0, outcome=told)]
+
+    def _told(self, load: Load, ranges: NDArray[np.int16], place: Place) -> Load | None:
+        """What a look tells of how far in the sides of a thing lie; None when it agrees with no such outline.
+
+        Where the thing may lie there is rather floor than something that happens to fill what the thing leaves free.
+        """
+        lattice, others, nothing = self.lattice, self._others(load), frozenset[tuple[int, int]]()
+        rather = self.evidence.supposing(covered(load.polygon).squares())
+
+        def agrees(outline: Any) -> bool:
+            lying = replace(load, polygon=outline, slack=0.0, full=nothing, empty=nothing)
+            return not clashes(lattice, rather, [*others, lying], place, ranges)
+
+        return load.told(agrees)
 
     def _others(self, load: Load) -> list[Load]:
         """All loads but one."""
@@ -185,7 +219,7 @@ class Memory(Holding):
         return found
 
     def _outcome(self, ranges: NDArray[np.int16], load: Load, outcome: Outcome) -> Explanation:
-        loads = [*self._others(load), load.moved(outcome.polygon, load.slack)]
+        loads = [*self._others(load), load.moved(outcome.polygon, load.slack, commanded=outcome.as_commanded)]
         misfits = self._clashes(ranges, outcome.place, loads)
         return Explanation(outcome.how, outcome.place, self.lattice, misfits, outcome.distance, outcome)
 
@@ -335,13 +369,13 @@ class Memory(Holding):
         """How many fields cannot be right if the impression was received at a place, with the loads where they lie."""
         return clashes(self.lattice, self.evidence, loads, place, ranges)
 
-    def _choose(self, explanations: list[Explanation], unchanged: bool = False) -> Explanation:
-        """The explanation to believe. unchanged : nothing looks otherwise than at the last look."""
+    def _choose(self, explanations: list[Explanation], told: Iterable[str] = ()) -> Explanation:
+        """The explanation to believe. told : facts about the motion and the look."""
         facts = [f"trust({0 if self._off_middle else self.trust})", *["slips"] * self.slipped]
         facts += ["off_middle"] * self._off_middle
         facts += [f"met({n})" for n, e in enumerate(explanations) if e.met and e.lattice == self.lattice]
         facts += ["proven"] * (self.held is not None and self.loads[self.held].proven)
-        return cheapest(explanations, [*facts, *["unchanged"] * unchanged])
+        return cheapest(explanations, [*facts, *told])
 
     def _lie(self, chosen: Explanation) -> None:
         """Believe what an explanation says of the lattice and of earlier motions; if that is new, all is laid anew."""

@@ -53,7 +53,7 @@ def likeliest_stop(surprise: Surprise, load: Load, motion: Motion) -> Outcome | 
 def _lying(surprise: Surprise, outcome: Outcome) -> list[Load]:
     """All loads where they lie if the motion of the one in hand came out so."""
     return [
-        load.moved(outcome.polygon, load.slack) if name == surprise.held else load
+        load.moved(outcome.polygon, load.slack, commanded=outcome.as_commanded) if name == surprise.held else load
         for name, load in surprise.loads.items()
     ]
 

@@ -12,6 +12,7 @@ the sets of counts alone.
 
 import math
 from collections.abc import Iterable
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -222,6 +223,27 @@ class Evidence:
         self.settled_by[mask] = number
 
     # -- solving ---------------------------------------------------------------------------------
+
+    def window(self, west: int, south: int, shape: tuple[int, ...]) -> NDArray[np.int8]:
+        """The states of a (rows, columns) part of the lattice from the square (west, south) on; OPEN beyond the map."""
+        row, column = self.index(west, south)
+        part = np.full(shape, OPEN, np.int8)
+        rows = slice(max(-row, 0), max(len(self.state) - row, 0))
+        columns = slice(max(-column, 0), max(self.state.shape[1] - column, 0))
+        there = part[rows, columns]
+        there[:] = self.state[max(row, 0) :, max(column, 0) :][: there.shape[0], : there.shape[1]]
+        return part
+
+    def supposing(self, squares: Iterable[tuple[int, int]]) -> "Evidence":
+        """The same, were those of some squares free that rather are: to be asked, and to be told nothing."""
+        other = copy(self)
+        other.state = self.state.copy()
+        for x, y in squares:
+            row, column = self.index(x, y)
+            inside = 0 <= row < self.state.shape[0] and 0 <= column < self.state.shape[1]
+            if inside and self.state[row, column] == OPEN and self.logit[row, column] < 0:
+                other.state[row, column] = FREE
+        return other
 
     def _settle(self, number: int) -> None:
         for _ in range(20):

@@ -12,6 +12,7 @@ import numpy as np
 
 from geometry.contact import Body, Obstacles
 from geometry.rigid import Motion, Rotate, Translate
+from kb.insets import Insets
 
 Place = tuple[float, float]
 STRIDE = 0.25  # squares between places at which a motion may have ended
@@ -25,9 +26,10 @@ OFFSETS = sorted((math.hypot(i, j) * STRIDE, i * STRIDE, j * STRIDE) for i in ST
 class Outcome(NamedTuple):
     """What a motion may have led to.
 
-    how : predicted, stuck, blocked or slipped. place : of Utak; polygon : of the load, both on the lattice.
-    degrees : by which the load was turned. distance : from what was predicted, in squares. against : the squares one of
-    which stopped it, if it is open what stands there.
+    how : predicted, stuck, blocked, slipped, or smaller: it went as predicted, but the load does not fill its squares.
+    place : of Utak; polygon : of the load, both on the lattice. degrees : by which the load was turned. distance : from
+    what was predicted, in squares. against : the squares one of which stopped it, if it is open what stands there.
+    insets : of the load, where that is believed otherwise.
     """
 
     how: str
@@ -36,6 +38,12 @@ class Outcome(NamedTuple):
     degrees: float
     distance: float
     against: frozenset[tuple[int, int]] = frozenset()
+    insets: Insets | None = None
+
+    @property
+    def as_commanded(self) -> bool:
+        """Did the motion go as it was commanded?"""
+        return self.how in ("predicted", "smaller")
 
     @property
     def stopped(self) -> bool:

@@ -18,12 +18,14 @@ from kb.body import DIRECTIONS, Command, Grasp, Impression
 from kb.evidence import FREE, FULL, OPEN, MapView
 from kb.explanation import Accommodated
 from kb.imagining import NOTHING_IMAGINED, imagine
+from kb.insets import NONE
 from kb.interpretation import Kinds, interpret, shapes
 from kb.lattice import AROUND
-from kb.loads import Load, covered, slack_of
+from kb.loads import Load, covered, seen_insets, seen_short, slack_of
 from kb.measuring import Measured, Measurer
-from kb.regions import label_of, map_regions
-from kb.worldmodel import SPACE, Names, Node, Patch, WorldModel, patch_of, unsettled
+from kb.protruding import VERGE, protrusions, told_apart
+from kb.regions import Percept, Region, label_of, map_regions
+from kb.worldmodel import SPACE, Names, Node, Patch, WorldModel, patch_of, solid, unsettled
 
 Mask = NDArray[np.bool_]
 LEAST_OBJECT = 5  # percent: a region is kept as a possible object from here on
@@ -80,6 +82,7 @@ class Knowledge:
             polygon=node.polygon,
             first=node.polygon,
             slack=slack_of(node.polygon),
+            insets=seen_insets(node.polygon),
             shape=node.shape,
             colour=node.colour,
             support=node.support,
@@ -111,6 +114,7 @@ class Knowledge:
         percept, labels = map_regions(occupied, view.seen, view.state != OPEN, view.probability)
         touched = [(f"part{labels[view.locate(x, y)]}", colour) for (x, y), colour in sorted(self.felt.items())]
         kinds = interpret(percept, touched, self.rules)
+        percept, labels, kinds = self._told_apart(percept, labels, kinds, view)
         model = WorldModel(
             self.memory.lattice,
             self.memory.place,
@@ -126,6 +130,7 @@ class Knowledge:
             held=self.memory.held,
             imagined=imagined,
             touch=impression.touch,
+            felt=dict(self.felt),
             lost=self.memory.lost,
             anew=bool(self.memory.been),
             contradicted=accommodated.explanation.misfits > 0,
@@ -138,6 +143,25 @@ class Knowledge:
             self.objects += (_node(load, patch, int(model.labels.max())),)
         self.objects = tuple(sorted(self.objects, key=lambda node: int(node.name[1:])))
         return replace(model, objects=self.objects), accommodated
+
+    def _told_apart(
+        self, percept: Percept, labels: NDArray[np.int32], kinds: Kinds, view: MapView
+    ) -> tuple[Percept, NDArray[np.int32], Kinds]:
+        """The regions, with what was felt to be a thing that stands against the verge as regions of their own."""
+        occupied = solid(view)
+        felt = {view.locate(x, y): colour for (x, y), colour in self.felt.items()}
+        felt = {place: colour for place, colour in felt.items() if occupied[place]}
+        if not any(colour != VERGE and kinds.of(f"part{labels[p]}", "object") == 0 for p, colour in felt.items()):
+            return percept, labels, kinds
+        labels, regions, kind = labels.copy(), [*percept.regions], dict(kinds.kind)
+        for thing in told_apart(protrusions(view.seen & (view.probability <= SPACE), occupied), felt):
+            label = int(labels.max()) + 1
+            labels[thing] = label
+            regions.append(part_of_verge(thing, label, view))
+            kind[f"part{label}"] = {"object": 95}
+        left = set(np.unique(labels).tolist())
+        there = tuple(region for region in regions if label_of(region.name) in left)
+        return percept._replace(regions=there), labels, kinds._replace(kind=kind)
 
     def _feel(self, impression: Impression) -> None:
         self._touch = impression.touch
@@ -173,6 +197,8 @@ class Knowledge:
                 polygon=measured[name].polygon,
                 colour=self._colour(patch),
                 support=_support(part.mask, part.view),
+                short=NONE if measured[name].polygon is None else seen_short(measured[name].polygon),
+                insets=seen_insets(measured[name].polygon),
             )
             for name, region, part, patch in sorted(
                 zip(names, regions, parts, patches, strict=True), key=lambda entry: int(entry[0][1:])
@@ -223,6 +249,8 @@ def _node(load: Load, patch: Patch, label: int) -> Node:
         stuck=load.stuck,
         dubious=load.dubious,
         inexact=load.inexact,
+        short=load.short,
+        insets=load.lying_insets,
     )
 
 
@@ -256,6 +284,14 @@ def _laid(model: WorldModel, load: Load) -> tuple[WorldModel, Patch]:
     kinds = Kinds({**model.kinds.kind, f"part{label}": {"object": 100}}, model.kinds.hidden_passages)
     laid = view._replace(state=state.astype(np.int8), probability=probability, by_counts=by_counts, seen=seen)
     return replace(model, view=laid, labels=labels, kinds=kinds), patch
+
+
+def part_of_verge(thing: Mask, label: int, view: MapView) -> Region:
+    """The region of a thing that stands against the verge."""
+    rows, columns = np.nonzero(thing)
+    settled = int(100 * (view.state[thing] == FULL).sum() // len(rows))
+    extent = int(max(np.ptp(rows), np.ptp(columns))) + 1
+    return Region(f"part{label}", True, settled, False, extent, round(10 * float(view.probability[thing].sum())))
 
 
 def _may_be_object(region: str, extent: int, kinds: Kinds) -> bool:

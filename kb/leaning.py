@@ -31,8 +31,10 @@ def after(load: Load, outcome: Outcome | None, misfits: int, suspected: bool = F
     if outcome is None or outcome.how == "stuck" or outcome.polygon.equals(load.polygon):
         thwarted = load.thwarted + (load.proven and not suspected)
         return replace(load.resisted(), thwarted=thwarted, inexact=load.inexact or thwarted >= OFTEN)
-    slack = load.slack if outcome.how == "predicted" else max(load.slack, slack_of(outcome.polygon))
-    moved = load.moved(outcome.polygon, slack, outcome.degrees)
+    if outcome.insets is not None:
+        load = load.inset(outcome.insets) or load
+    slack = load.slack if outcome.as_commanded else max(load.slack, slack_of(outcome.polygon))
+    moved = load.moved(outcome.polygon, slack, outcome.degrees, outcome.as_commanded)
     moved = replace(moved, empty=moved.empty | outcome.against)
     nowhere = outcome.how == "blocked" and load.polygon.hausdorff_distance(outcome.polygon) < NOWHERE
     return replace(moved, stuck=load.stuck + 1) if nowhere else moved

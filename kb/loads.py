@@ -6,7 +6,7 @@ every look is freed of what the shape itself shows before it is counted as evide
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -16,6 +16,7 @@ import shapely
 from numpy.typing import NDArray
 
 from geometry.digital import squares
+from kb.insets import Insets, Sides, further, moved_in, told, turned, within_play
 from kb.lattice import Samples
 from kb.worldmodel import Patch
 
@@ -44,7 +45,8 @@ class Load:
     unexplained : fields that the worst explained of its motions left as noise. skewed : its outline was measured on
     another lattice, and could not be measured on this one. thwarted : motions in all that did not move it though it had
     moved before, and nothing is suspected to have stopped it. inexact : it lies only about where it is believed to,
-    also where its corners seem to lie on the lattice.
+    also where its corners seem to lie on the lattice. insets : how far its sides may lie within the squares in which it
+    was seen; None when it does not lie along them. stopped : one of its motions ended early, or beside.
     """
 
     name: str
@@ -65,6 +67,8 @@ class Load:
     skewed: bool = False
     thwarted: int = 0
     inexact: bool = False
+    insets: Insets | None = None
+    stopped: bool = False
 
     @property
     def dubious(self) -> bool:
@@ -77,10 +81,28 @@ class Load:
         play = max(self.slack, self.astray)
         return play if play >= WHOLE else 0.0
 
+    @property
+    def lying_insets(self) -> Insets | None:
+        """How far in its sides lie, those to the west, east, south, north as it lies now; None when it lies askew."""
+        quarters = self._quarters
+        return None if self.insets is None or quarters is None else self.insets.after(quarters)
+
+    @property
+    def short(self) -> Sides:
+        """By how much they may lie further in than they are believed to."""
+        insets = self.lying_insets
+        return (self.play, self.play, self.play, self.play) if insets is None else insets.short
+
+    @property
+    def _quarters(self) -> int | None:
+        """How many quarter turns it was turned; None when it lies askew."""
+        quarters = round(self.turned / 90.0)
+        return quarters if abs(self.turned - 90.0 * quarters) < WHOLE else None
+
     @cached_property
     def sure(self) -> Patch:
         """The squares that it surely covers."""
-        inner = self.polygon.buffer(-self.play, join_style="mitre") if self.play else self.polygon
+        inner = self._within(1) if self.play else self.polygon
         patch = NOTHING if inner.is_empty else covered(inner)
         return patch if not self.full else patch_of_squares(patch.squares() | self.full)
 
@@ -89,12 +111,28 @@ class Load:
         """The squares that it covers or may cover."""
         if not self.play:
             return self.sure
-        patch = covered(self.polygon.buffer(self.play, join_style="mitre"))
+        patch = covered(self._within(-1))
         return patch if not self.empty else patch_of_squares(patch.squares() - self.empty)
 
-    def moved(self, polygon: Any, slack: float, degrees: float = 0.0) -> "Load":
-        """The load after a motion that it was seen to make. degrees: by which it was turned."""
-        return replace(self.lying(polygon, slack), turned=self.turned + degrees, proven=True, stuck=0)
+    def _within(self, inwards: int) -> Any:
+        """The outline where it is least, or where it is most with -1: what is known of each side is made use of."""
+        insets = self.lying_insets
+        if insets is not None and not self.stopped and self.play <= max(insets.play, ROUNDING):
+            west, east, south, north = insets.plays[inwards > 0]
+            far = inwards * west, inwards * east, inwards * south, inwards * north
+            outline = within_play(self.polygon, far, inwards * ROUNDING)
+            if outline is not None:
+                return outline
+        return self.polygon.buffer(-inwards * self.play, join_style="mitre")
+
+    def moved(self, polygon: Any, slack: float, degrees: float = 0.0, commanded: bool = False) -> "Load":
+        """The load after a motion that it was seen to make.
+
+        degrees : by which it was turned. commanded : whether it went all the way; where it was stopped it lies right
+        beside a line of the lattice as often as on it.
+        """
+        stopped, turned = self.stopped or not commanded, self.turned + degrees
+        return replace(self.lying(polygon, slack), turned=turned, proven=True, stuck=0, stopped=stopped)
 
     def lying(self, polygon: Any, otherwise: float = SLIGHT) -> "Load":
         """The load where a polygon says, of which no look has told yet. otherwise : its slack, unless it is whole."""
@@ -114,6 +152,31 @@ class Load:
         full = self.full | {square for square in open_ if counts.get(square, (0, 1))[0] > 0}
         empty = self.empty | {square for square in open_ if counts.get(square, (0, 1))[1] == 0}
         return replace(self, full=full, empty=empty)
+
+    def told(self, agrees: Callable[[Any], bool]) -> "Load | None":
+        """The load as a look leaves it that tells how far in its sides lie; None when it agrees with no such outline.
+
+        agrees : does the look agree with the load if that is its outline?
+        """
+        quarters = self._quarters
+        if self.insets is None or quarters is None or self.inexact or self.skewed or self.astray > ROUNDING:
+            return None
+        left = told(self.insets.after(quarters), self.polygon, agrees)
+        return None if left is None else self.inset(left.after(-quarters))
+
+    def inset(self, insets: Insets) -> "Load | None":
+        """The load with its sides where they are believed to lie then; None when it would be no outline."""
+        quarters = self._quarters
+        if self.insets is None or quarters is None:
+            return None
+        change = further(insets, self.insets)
+        if not any(change):
+            return replace(self, insets=insets, slack=max(insets.play, ROUNDING) if insets.play else self.slack)
+        polygon, first = moved_in(self.polygon, turned(change, quarters)), moved_in(self.first, change)
+        if polygon is None or first is None:
+            return None
+        lying = self.lying(polygon, max(insets.play, ROUNDING))
+        return replace(lying, first=first, insets=insets)
 
     def woken(self, far: float) -> "Load":
         """The load, if where Utak woke is known up to so many squares, which tells about what point it was turned."""
@@ -160,6 +223,17 @@ def is_whole(polygon: Any) -> bool:
 def slack_of(polygon: Any, otherwise: float = SLIGHT) -> float:
     """By how much an outline may lie otherwise: not at all where it is whole, for then its image tells it exactly."""
     return 0.0 if is_whole(polygon) else max(otherwise, ROUNDING)
+
+
+def seen_insets(polygon: Any) -> Insets | None:
+    """How far in the sides of a thing may lie that never moved; None when they are not along the lattice."""
+    return Insets() if polygon is not None and is_whole(polygon) else None
+
+
+def seen_short(polygon: Any) -> Sides:
+    """By how much they may lie further in than those of its outline."""
+    insets = seen_insets(polygon)
+    return (SLIGHT, SLIGHT, SLIGHT, SLIGHT) if insets is None else insets.short
 
 
 def discounted(

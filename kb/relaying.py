@@ -18,6 +18,7 @@ from geometry.rigid import Rotate, Translate
 from geometry.template import fit_shapes
 from kb.evidence import FREE, FULL, OPEN, Evidence
 from kb.heading import Laid, Look
+from kb.insets import Insets
 from kb.lattice import Lattice
 from kb.loads import Load, covered, discounted, is_whole, whole
 from kb.worldmodel import Patch
@@ -57,6 +58,7 @@ def relaid(new: Lattice, old: Lattice, looks: Sequence[Look], loads: Iterable[Lo
             if min(load.since, len(looks)) == number:
                 taken[load.name] = _taken(load, new, old, evidence)
                 patch = taken[load.name].possible
+                evidence.make_room(patch.west, patch.south)
                 evidence.declare(evidence.squares(patch.west, patch.south, patch.mask), FREE, number - 1)
         if number == len(looks):
             break
@@ -98,7 +100,8 @@ def _taken(load: Load, new: Lattice, old: Lattice, evidence: Evidence) -> Load:
     elif straight:
         first = _straightened(Rotate(askew, middle).carry(first), evidence)
     lying = load.lying(first)
-    return replace(lying, first=lying.polygon, skewed=skewed)
+    insets = load.insets if skew == 0.0 and seen is None else Insets() if is_whole(lying.polygon) else None
+    return replace(lying, first=lying.polygon, skewed=skewed, insets=insets)
 
 
 def _straightened(polygon: Any, evidence: Evidence) -> Any:
@@ -111,9 +114,8 @@ def _straightened(polygon: Any, evidence: Evidence) -> Any:
 
 def _outline(patch: Patch, evidence: Evidence) -> Any:
     """The outline of what was seen where a thing is said to lie, if nearly all of it was told by then; None else."""
-    row, column = evidence.index(patch.west - REACH, patch.south - REACH)
     own = np.pad(patch.mask, REACH)
-    state = evidence.state[row : row + own.shape[0], column : column + own.shape[1]]
+    state = evidence.window(patch.west - REACH, patch.south - REACH, own.shape)
     labels = components(state != FREE).labels
     met = np.bincount(labels[own & (labels > 0)], minlength=1)
     part = labels == met.argmax()
@@ -136,8 +138,7 @@ def _unlike(polygon: Any, evidence: Evidence) -> int:
     about[:-1] |= own[1:]
     about[:, 1:] |= own[:, :-1]
     about[:, :-1] |= own[:, 1:]
-    row, column = evidence.index(patch.west - 1, patch.south - 1)
-    state = evidence.state[row : row + own.shape[0], column : column + own.shape[1]]
+    state = evidence.window(patch.west - 1, patch.south - 1, own.shape)
     return int(((state == FREE) & own).sum() + ((state == FULL) & about & ~own).sum())
 
 
@@ -147,7 +148,7 @@ def _carried(taken: Load, load: Load, was: Laid, new: Lattice) -> Load:
     aside = Rotate(was.degrees, (0.0, 0.0)).points(began)[0]
     middle = new.place_from_utak(was.middle[0] + float(aside[0]), was.middle[1] + float(aside[1]))
     lying = load.lying(_put(taken.first, was.degrees, middle), was.slack)
-    return replace(lying, first=taken.first, skewed=taken.skewed)
+    return replace(lying, first=taken.first, skewed=taken.skewed, insets=taken.insets)
 
 
 def _put(polygon: Any, degrees: float, middle: tuple[float, float]) -> Any:

@@ -155,7 +155,8 @@ class Surprise:
         """
         assert self.moving is not None
         held, loads = self.moving[0], self.laid(lattice).loads
-        moved = loads[held].moved(outcome.polygon, max(loads[held].slack, slack), outcome.degrees)
+        slack, commanded = max(loads[held].slack, slack), outcome.as_commanded
+        moved = loads[held].moved(outcome.polygon, slack, outcome.degrees, commanded)
         misfits = self._misfits(lattice, {**loads, held: moved}.values(), outcome.place, far)
         return Supposed(lattice, hypotheses, outcome.place, outcome, misfits, searched)
 

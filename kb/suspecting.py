@@ -70,6 +70,10 @@ class Hindrances:
             free *= clear
         return [*stops, Stop(end, free)] if end < 1.0 else stops
 
+    def chance(self, place: Place, polygon: Any, motion: Motion) -> float:
+        """How likely it is that the motion was stopped by any of them."""
+        return sum(stop.chance for stop in self.stops(place, polygon, motion))
+
     def ends(self, place: Place, polygon: Any, motion: Motion) -> list[Outcome]:
         """What the stops would have led to, the likeliest first."""
         stops = sorted(self.stops(place, polygon, motion), key=lambda stop: -stop.chance)

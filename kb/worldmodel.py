@@ -18,13 +18,16 @@ from numpy.typing import NDArray
 
 from kb.evidence import OPEN, MapView
 from kb.imagining import NOTHING_IMAGINED, Imagined
+from kb.insets import NONE, Insets, Sides
 from kb.interpretation import Kinds
 from kb.lattice import Lattice
+from kb.protruding import protrusions
 from kb.regions import Percept
 
 NEARLY = math.radians(5)  # by which two lattices differ little enough to explain the same impressions
 SHIFTED = 0.3  # squares by which a square may lie elsewhere and still be the same
 SPACE = 0.06  # a square that is occupied with at most this probability counts as floor
+SOLID = 0.5  # a square that is occupied with at least this probability may be part of a thing
 CLEAR = 0.12  # a square that is occupied, or free, but for this probability is not in doubt
 SMALLEST_WALL = 13  # squares: what is one thing and as long as this is no object
 SURELY_VERGE = 40 + 4 * SMALLEST_WALL  # percent: as sure of verge as kb/asp/interpretation.lp is of what goes on so far
@@ -68,7 +71,9 @@ class Node:
     colour : as felt, or None. support : the impressions that settled its squares.
     movable : that it can be moved, in percent. moved : he has moved it. turned : degrees by which, since he first held
     it. stuck : motions in a row that did not move it. dubious : it may well lie elsewhere or be of another outline, for
-    what is seen agrees ill with how it came there. inexact : it lies only about there.
+    what is seen agrees ill with how it came there. inexact : it lies only about there. short : by how many squares its
+    sides, to the west, east, south and north, may lie further in than those of its outline. insets : how far in they
+    lie within the squares in which it was seen; None when they do not lie along them.
     """
 
     name: str
@@ -88,6 +93,8 @@ class Node:
     stuck: int = 0
     dubious: bool = False
     inexact: bool = False
+    short: Sides = NONE
+    insets: Insets | None = None
 
 
 @dataclass(frozen=True)
@@ -108,7 +115,8 @@ class WorldModel:
     imagined : pictures that agree with all counts.
     beneath : (rows, columns), floor of the standing map, upon which things that he has moved may lie now; None while he
     has moved none.
-    touch : as of the impression, the colours felt in DIRECTIONS; () when it is not known.
+    touch : as of the impression, the colours felt in DIRECTIONS; () when it is not known. felt : squares of the lattice
+    of which it is known what colour they have.
     lost : does what he sees agree with none of it? anew : was he lost before, and has forgotten what he had seen then?
     contradicted : is there a part of the impression that agrees with nothing that is believed?
     """
@@ -128,6 +136,7 @@ class WorldModel:
     imagined: Imagined = NOTHING_IMAGINED
     beneath: Mask | None = None
     touch: tuple[str | None, ...] = ()
+    felt: Mapping[tuple[int, int], str] = field(default_factory=dict)
     lost: bool = False
     anew: bool = False
     contradicted: bool = False
@@ -183,6 +192,12 @@ class WorldModel:
         names = [f"part{n}" for n in range(int(self.labels.max()) + 1)]
         mask: Mask = np.array([self.kinds.of(name, "verge") >= least for name in names])[self.labels]
         return mask
+
+    @cached_property
+    def protruding(self) -> list[Mask]:
+        """(rows, columns) masks of what sticks out into the floor from what bounds it, and was not felt."""
+        felt = self.squares(self.felt)
+        return [mask for mask in protrusions(self.space, solid(self.view)) if not (mask & felt).any()]
 
     def object(self, name: str) -> Node | None:
         """The object of this name, if there is one."""
@@ -262,6 +277,12 @@ def unsettled(mask: Mask, view: MapView) -> tuple[int, int]:
     framed = np.pad(mask, 1)
     about = framed[1:-1, 1:-1] | framed[:-2, 1:-1] | framed[2:, 1:-1] | framed[1:-1, :-2] | framed[1:-1, 2:]
     return int((about & ~told(view)).sum()), int((about & in_doubt(view)).sum())
+
+
+def solid(view: MapView) -> Mask:
+    """(rows, columns): squares on which something rather is than not."""
+    mask: Mask = view.seen & (view.probability >= SOLID)
+    return mask
 
 
 def told(view: MapView) -> Mask:

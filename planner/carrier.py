@@ -111,11 +111,6 @@ class Carrier:
         legs = () if self._course is None else self._course.legs
         return any(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
 
-    def closes(self, advice: Advice) -> bool:
-        """Is what was just advised a push with which the plan under way ends?"""
-        pushes = isinstance(advice, Act) and isinstance(advice.command, Push)
-        return pushes and (self._course is None or self._course.ended)
-
     def began_at(self, parameter: str, node: Node, model: WorldModel) -> Place:
         """The point of the lattice where the middle of what a parameter means lay at first.
 
@@ -268,6 +263,8 @@ class Carrier:
             if clear is None:
                 return seen
             haul = clear
+        if not haul.plan.legs:
+            return Refusal(False, lambda: f"{node.name} seems to lie there already")
         self._went_on = situation.model.place if request.held else None
         self._plans += 1
         if self._plans > MOST_PLANS:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from geometry.ends import End
 from kb.body import Command, Grasp, Move, Push, Release, Turn
 from kb.corners import Corner, corners
 from kb.facts import Fact
@@ -27,15 +28,16 @@ from planner.landing import Landing, in_view, landing, lands_in_one
 from planner.refusing import Refusal
 from planner.repeating import Circles
 from planner.screen import Screens, Squares, vicinity
-from planner.searching import aims_towards
+from planner.searching import against_walls, aims_towards
+from planner.sizing import Sizer, least_outline
 from planner.steps import Square
 from planner.verifying import Verifier, before_taking, misgiving
 from planner.walking import HURRY, STROLL, halting, is_open, next_move
 from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
+SIZE = "size"  # the target of a push that only tells how large a thing is
 MISSED = 2  # plans that miss before where they should lead to is looked at
-DOUBT = 0.15  # squares of detour that a percent of confidence in an object is worth
 
 
 @dataclass(frozen=True)
@@ -69,6 +71,7 @@ class Decider:
         self.constraints = constraints(self.task)
         self.carrier = Carrier(self.pull)
         self.verifier = Verifier()
+        self.sizer = Sizer()
         self._aimed: frozenset[Square] = frozenset()  # squares of the lattice
         self._path: tuple[Square, ...] = ()  # squares of the lattice
         self._level = 0
@@ -120,7 +123,9 @@ class Decider:
             if there or look is not None:
                 return look
         missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
-        return self._pursue(aims_towards(where, situation, reconciled, arrive=True), stage, situation, lambda: missing)
+        aims = aims_towards(where, situation, reconciled, arrive=True)
+        decision = self._pursue(aims, stage, situation, lambda: missing)
+        return self._felt(decision, stage, situation) if reconciled.hypothesised else decision
 
     def _made_sure(self, goals: Sequence[Fact], there: bool, stage: Stage, situation: Situation) -> Decision | None:
         """A look at what goals are about, before they are held for attained; None when all of that is settled.
@@ -131,6 +136,12 @@ class Decider:
         doubted = [n for n in nodes if n is not None and (self.verifier.doubted(n) or (there and n.vague))]
         looks = (self._inspect(node, stage, situation) for node in doubted)
         return next((look for look in looks if look is not None), None)
+
+    def _felt(self, decision: Decision, stage: Stage, situation: Situation) -> Decision:
+        """What was decided; rather than give up, to feel what may be a thing that stands against a wall."""
+        aims = against_walls(situation) if decision.verdict else []
+        instead = self._pursue(aims, stage, situation, lambda: "") if aims else decision
+        return decision if instead.verdict else instead
 
     def _pursue(
         self,
@@ -197,7 +208,8 @@ class Decider:
             unseen = nowhere(f"nothing seen so far is {x}")
             aims = aims_towards([unseen], situation, reconciled)
             # No proof that there is none: it may stand against a wall, and look like a piece of that.
-            return self._pursue(aims, stage, situation, lambda: unseen.missing, "limit")
+            decision = self._pursue(aims, stage, situation, lambda: unseen.missing, "limit")
+            return self._felt(decision, stage, situation)
         if node.polygon is None or node.vague or self.verifier.doubted(node):
             look = self._inspect(node, stage, situation)
             if look is not None:
@@ -214,8 +226,6 @@ class Decider:
             verdict = "impossible" if sure else "limit"
             return Decision(None, f"{stage} cannot be attained: {node.name} cannot be moved", verdict)
         advice = self._advice(node, land, situation)
-        if land.nearly and not self.carrier.closes(advice):
-            return None
         if isinstance(advice, Refusal) and land.loose:
             if lands_in_one(land.loose, in_view(node.polygon, situation)):
                 return None
@@ -251,8 +261,31 @@ class Decider:
             if shut_in is not None and shut_in.proved:
                 why = f"{stage} cannot be attained: {shut_in.reason()}"
                 advice, decision = shut_in, Decision(None, why, "impossible")
-        again = self.verifier.narrow_again(advice, situation) if decision.verdict == "impossible" else None
-        return decision if again is None else self._pursue([again], stage, situation, advice.reason)
+        if decision.verdict != "impossible":
+            return decision
+        again = self.verifier.narrow_again(advice, situation)
+        if again is not None:
+            return self._pursue([again], stage, situation, advice.reason)
+        return self._sized(node, must_reach or land.ends, stage, situation) or decision
+
+    def _sized(self, node: Node, ends: Mapping[str, End], stage: Stage, situation: Situation) -> Decision | None:
+        """The next command to tell how large a thing is that seems too large; None when it is so for certain.
+
+        ends : those to which it cannot be brought as it is believed to be.
+        """
+        for pose in self.sizer.poses(node):
+            advice = self.carrier.advise(node, {SIZE: pose}, situation)
+            if isinstance(advice, Act):
+                return Decision(advice.command, f"how large {node.name} is is not sure; {stage}")
+            if isinstance(advice, Go):
+                walk = self._go(advice, stage, situation)
+                if walk.command is not None:
+                    return walk
+        least = least_outline(node)
+        refused = least and self.carrier.refused(replace(node, polygon=least), ends, situation)
+        if refused and refused.proved:
+            return None
+        return Decision(None, f"{stage} cannot be told: how large {node.name} is is not known well", "limit")
 
     def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
         """What to do to carry something to where its goal holds; while that is not known, to near it."""

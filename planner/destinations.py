@@ -23,7 +23,7 @@ Mask = NDArray[np.bool_]
 # How much further towards a corner what is not seen may go, in squares east and north added:
 FURTHEST = 45  # at most
 BARE, A_PERCENT = 12, 2  # behind floor that goes on: so many for each percent that it promises more than BARE
-GAP, WIDEST_DOOR = 15, 6  # behind a stretch of floor no wider than a door: at least so many
+GAP, WIDEST_DOOR = 36, 6  # behind a stretch of floor no wider than a door: at least so many
 CUT_OFF = 30  # floor that no way leads to yet
 ONWARD = 30  # straight on behind where the floor goes on
 ASIDE = 28  # to either side behind that

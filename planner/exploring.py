@@ -155,6 +155,12 @@ def inspection(screens: Screens, node: Node, touch: bool, chance: float, arrive:
     return Lookout(close(screens, mask, chance, arrive), f"what {node.name} is is not clear")
 
 
+def against_the_wall(screens: Screens, mask: Mask) -> Lookout:
+    """Floor from which it is felt whether something is part of a wall."""
+    beside = np.flatnonzero(_new(screens, 0) & edged(mask))
+    return Lookout(beside, "what may stand against the wall was not felt")
+
+
 def sight_of(screens: Screens, mask: NDArray[np.bool_], what: str) -> Lookout:
     """Floor close to some squares, from which they are seen as well as can be; none when all of it was looked from."""
     for reach, apart in ((CLOSE, APART), (CLOSE, 0), (FURTHER, APART)):

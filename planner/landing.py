@@ -19,10 +19,9 @@ from geometry.ends import End, met, moved, placed
 from geometry.reach import UNREACHED, reach
 from geometry.rigid import Pose
 from kb.facts import Fact, Number, Symbol, Text
-from kb.loads import is_whole
 from kb.rooms import Rooms
 from kb.wkt import parse_wkt
-from kb.worldmodel import Node, in_doubt
+from kb.worldmodel import CLEAR, Node
 from planner.destinations import Situation, doorsteps, numbers, out_of_sight, rooms_to_see, unknown_corner
 from planner.exploring import Lookout, short_of, sight_of
 from planner.hoping import BEYOND, spread
@@ -35,6 +34,8 @@ IN_SIGHT = 6  # squares from a corner within which it is seen well
 FLUSH = 0.1  # squares between an object and walls that it touches
 RIM = 1.0  # squares from the edge of a region within which he is not sure that something is in it
 LEANING = 1.25  # squares that what lies askew in a corner may reach further from its walls than it is long
+PRESS = 0.25  # squares that a thing is pressed on into a corner: it shows, then, how far in its sides lie
+HAIR = 0.01  # squares that do not matter
 ABOUT = 0.5  # squares from its walls at which an object is brought to a corner that is settled
 BESIDE = 1.0  # squares from a thing within which it is reached
 POSED, TURNED = 0.25, 2.0  # squares and degrees within which a pose is attained
@@ -50,8 +51,7 @@ class Landing:
     missing, lookouts : what must be known first, in words, and where just that may be seen (as of a Destination).
     approach : places near to where it must end, from which it can be told better where that is; the best first.
     holds : the goal holds as the object lies now. there : it does, but for what must be known first.
-    loose : where it may lie if it cannot be brought to any of the ends. nearly : it lies there now, and that is enough
-    when more than a push is wanted.
+    loose : where it may lie if it cannot be brought to any of the ends.
     must_reach : what it must come to lie on wherever it must end, while that is not known: squares that were not seen,
     and those of the one end that may be it. Worked out when asked.
     hoped : the ends, if the floor goes on as it is hoped to (planner.hoping); worked out when asked.
@@ -64,7 +64,6 @@ class Landing:
     holds: bool = False
     there: bool = False
     loose: Mapping[str, End] = field(default_factory=dict)
-    nearly: bool = False
     must_reach: Ends = dict
     hoped: Ends = dict
 
@@ -74,7 +73,8 @@ def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landi
     found = _landing(goal, node, began, situation)
     if not situation.model.view.sure:
         found = replace(found, ends={name: _well_in(end) for name, end in found.ends.items()})
-    return replace(found, holds=found.holds or _lies_in(found.ends, node, situation))
+    in_corner = any(isinstance(end, InCorner) for end in found.ends.values())  # of which it is told already
+    return replace(found, holds=found.holds or (not in_corner and _lies_in(found.ends, node, situation)))
 
 
 def _well_in(end: End) -> End:
@@ -151,7 +151,7 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
             must_reach = partial(_must_reach, side, node, situation)
             return Landing({}, unknown.missing, unknown.lookouts, near, must_reach=must_reach)
     land = _in_corner(side, node, situation)
-    if land.holds or _lies_in(land.ends, node, situation):
+    if land.holds:
         rooms = rooms_to_see(side, situation)
         if rooms:
             return Landing({}, rooms[0].what, tuple(_from_afar(look, situation) for look in rooms), there=True)
@@ -182,29 +182,44 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
         return _flat(side, end, node, shape)
     near = replace(end, slack=FLUSH if view.sure else ABOUT)
     lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
-    if len(lookout.squares) and (not view.sure or ((around & in_doubt(view)).any() and lands(near, shape))):
+    may_go_on = unclear & (view.probability < 1 - CLEAR)
+    if len(lookout.squares) and (not view.sure or (may_go_on.any() and lands(near, shape))):
         return Landing({}, lookout.what, (lookout,), there=True)
-    return Landing({side: near}, lookout.what, (lookout,))
+    return Landing({side: near}, lookout.what, (lookout,), holds=lands(near, shape))
 
 
 def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Landing:
     """In a corner, and what was turned askew so that it reaches hardly further from the walls than it would straight.
 
-    Where that cannot be it may lie there askew. What covers some squares in part looks larger than it is by up to one,
-    on either side: so it is brought nearer than a square, if a push does that. One who slips knows only about where it
-    is: he brings it nearer if he can.
+    Where that cannot be it may lie there askew. What covers some squares in part looks larger than it is, on any side
+    by up to one: so it is there when it looks as if it touched the walls, or was seen not to be smaller. One who slips
+    knows only about where it is: he brings it nearer if he can.
     """
     close = replace(end, slack=ABOUT)
     if not lies_askew(node):
-        in_squares = is_whole(node.polygon) and not node.inexact
-        tight = node.inexact or in_squares
-        holds, nearly = lands(close if tight else end, shape), in_squares and lands(end, shape)
-        return Landing({side: close}, holds=holds, loose={side: end} if tight else {}, nearly=nearly)
+        if node.inexact:
+            return Landing({side: close}, holds=lands(close, shape), loose={side: end})
+        goals = [_pressed(end), replace(close, press=ABOUT), replace(end, slack=FLUSH, press=1.0)]
+        goal = next((one for one in goals if not lands(one, shape)), goals[-1])
+        return Landing({side: goal}, holds=_surely(end, node, shape) or lands(goals[-1], shape))
     x0, y0, x1, y1 = placed(shape, Pose(0.0, 0.0, -node.turned % 90.0)).bounds
     near, far = sorted((x1 - x0, y1 - y0))
     flat = replace(close if node.inexact else end, within=(near + LEANING, far + LEANING))
     loose = {} if lands(flat, shape) else {side: close}
     return Landing({side: replace(flat, slack=ABOUT)}, holds=lands(flat, shape), loose=loose)
+
+
+def _pressed(end: InCorner) -> InCorner:
+    """The same corner, for a thing that is pressed on into it where whole squares leave one free."""
+    return replace(end, slack=end.slack - PRESS, press=PRESS)
+
+
+def _surely(end: InCorner, node: Node, shape: Any) -> bool:
+    """Does an object lie in a corner, however far in its sides lie?"""
+    west, east, south, north = node.short
+    gaps = end.gaps(shape.bounds)
+    further = east if end.sx > 0 else west, north if end.sy > 0 else south
+    return lands(end, shape) and all(gap + far <= end.slack + HAIR for gap, far in zip(gaps, further, strict=True))
 
 
 def _into_corner(side: str, situation: Situation) -> InCorner:
@@ -225,7 +240,7 @@ def _near(side: str, node: Node, situation: Situation, floor: Mask) -> Mapping[s
     mask = situation.model.space & floor | situation.model.mask(node.patch)
     about = Inside(region_of(mask & _about(side, IN_SIGHT, situation)))
     there = about.polygon.is_empty or lands(about, shape)
-    return {f"near_{side}": into} | ({} if there else {f"about_{side}": about})
+    return {f"near_{side}": _pressed(into)} | ({} if there else {f"about_{side}": about})
 
 
 def _must_reach(side: str, node: Node, situation: Situation) -> Mapping[str, End]:

@@ -55,6 +55,12 @@ def aims_towards(
     return [*aims, *_beyond_all(screens, none_of([*things, *places]), arrive)]
 
 
+def against_walls(situation: Situation) -> list[Aim]:
+    """What may be things that stand against a wall: where each can be felt."""
+    looks = [exploring.against_the_wall(situation.screens, mask) for mask in situation.model.protruding]
+    return [Aim("inspect", *look) for look in looks if len(look.squares)]
+
+
 def _things(situation: Situation, reconciled: Reconciled, likely: Heat | None, arrive: bool) -> list[Candidate]:
     """The objects of the world model that may be what is looked for. likely, arrive : as for exploring.sightings."""
     screens, model = situation.screens, situation.model

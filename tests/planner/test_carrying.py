@@ -305,4 +305,26 @@ def test_what_goes_round_in_circles_is_let_go_and_taken_elsewhere(
     assert isinstance(after[0], Release)
     assert taken[0] == circling[0]
     assert math.dist(taken[0], taken[1]) >= 1
-    lies_as_believed(session)
+    _, _, east, north = session.table.polygons["t"].bounds
+    assert max(30 - east, 20 - north) <= 1
+
+
+def into_northeast(folder: Path) -> None:
+    """The square is carried into the northeast corner, and truly lies there."""
+    done = run(folder)
+    assert done.result.verdict == "done", done.result.reason
+    _, _, east, north = done.session.table.polygons["t"].bounds
+    assert max(30 - east, 20 - north) <= 1
+
+
+@pytest.mark.parametrize("corners", [(12, 2, 15, 5), (2, 9, 5, 12), (2, 2, 5, 5)])
+def test_what_stands_against_a_wall_is_felt_and_carried(corners: tuple[float, ...], tmp_path: Path) -> None:
+    x0, y0, x1, y1 = corners
+    world = room(f'object(t, g, "{box(x0, y0, x1, y1)}").')
+    into_northeast(scene(tmp_path, world, "object(x). shape(x, square).", "at(x, corner(northeast))."))
+
+
+@pytest.mark.parametrize("part", [0.07, 0.35, 0.5, 0.81])
+def test_what_lies_between_the_squares_is_brought_right_into_its_corner(part: float, tmp_path: Path) -> None:
+    world = room(f'object(t, g, "{box(8 + part, 6 + part, 11 + part, 9 + part)}").')
+    into_northeast(scene(tmp_path, world, "object(x). shape(x, square).", "at(x, corner(northeast))."))

@@ -7,16 +7,11 @@ import pytest
 import shapely
 import shapely.affinity
 
-from geometry.carrying import Leg
-from geometry.rigid import Translate
-from kb.body import Push, Turn
 from kb.factfile import facts_of
 from kb.loads import covered
 from kb.worldmodel import Node, WorldModel
-from planner.carrier import Act, Carrier
-from planner.course import Course
+from planner.carrier import Carrier
 from planner.landing import Landing, landing, lands
-from planner.refusing import Refusal
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
 
@@ -142,30 +137,22 @@ def test_what_lies_only_about_there_must_be_nearer_to_its_corner_if_it_can(
     shape = shapely.affinity.translate(there, -model.view.west, -model.view.south)
     assert found.holds == holds
     assert [lands(end, shape) for end in found.loose.values()] == [True] * inexact
-    assert not found.nearly
 
 
-@pytest.mark.parametrize(("gap", "holds"), [(0, True), (1, False), (2, False)])
-def test_what_was_seen_in_whole_squares_is_brought_right_to_its_corner_by_a_push(gap: int, holds: bool) -> None:
-    """It may be smaller than it looks by nearly a square, on any side."""
+@pytest.mark.parametrize(
+    ("gap", "short", "holds"),
+    [(0, 1.0, True), (1, 1.0, False), (1, 0.0, True), (0.75, 0.25, True), (0.75, 0.3, False), (0.75, 1.0, False)],
+)
+def test_what_may_be_smaller_than_it_looks_is_in_a_corner_when_it_is_however_small(
+    gap: float, short: float, holds: bool
+) -> None:
     model = seen_whole(WALLED)
     row, column = np.argwhere(model.space)[-1]
     east, north = model.view.west + column + 1 - gap, model.view.south + row + 1 - gap
     there = shapely.box(east - 4, north - 4, east, north)
-    node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True)
+    sides = (1.0, short, 1.0, short)  # how small it is on the other sides does not matter
+    node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True, short=sides)
     found = landing(NORTHEAST, node, (3.5, 1.5), situation_of(replace(model, objects=(node,)), {"x": "o1"}))
+    shape = shapely.affinity.translate(there, -model.view.west, -model.view.south)
     assert found.holds == holds
-    assert found.nearly == (gap <= 1)
-
-
-def test_only_a_push_that_ends_a_plan_closes_it() -> None:
-    carrier, push = Carrier(), Act(Push(1.0, 0.0), "it is brought there")
-    assert carrier.closes(push)
-    assert not carrier.closes(replace(push, command=Turn(90.0)))
-    assert not carrier.closes(Refusal(False, str))
-    leg = Leg((0.5, 0.5), (0, 1), (Translate(1.0, 0.0),), (0.0, -2.5), 0.0)
-    left = Course("o1", "northeast", shapely.box(0, 0, 4, 4), (leg,), covered(shapely.box(0, 0, 5, 5)), 0)
-    carrier._course = left
-    assert not carrier.closes(push)
-    carrier._course = replace(left, legs=())
-    assert carrier.closes(push)
+    assert holds or not any(lands(end, shape) for end in found.ends.values())  # there is something left to do
