@@ -35,6 +35,7 @@ from geometry.ways import locate
 XY = tuple[float, float]
 Bools = NDArray[np.bool_]
 PLATEAU = 64  # cells as high as a saddle that are looked at
+ROOMY = 1.5  # squares of clearance from which on a saddle may be moved along its wall
 TIE = 1e-9  # squares by which a neck must be narrower to be another one
 OFF_CENTRE = 0.75  # squares by which a clearance may differ between a square's centre and elsewhere in it
 
@@ -115,13 +116,13 @@ def describe(
     other = max(others, key=lambda k: (sides[k], -k))
     chain, position = on_chain(chains, saddle, int(first[g]), state)
     towards = int(first[g])
-    neck = neck_at(square, saddle, towards)
+    neck, roomy = neck_at(square, saddle, towards), clearance_of(square, saddle) >= ROOMY
     for cell, step, back, onward in plateau(square, saddle).tolist() if len(first) == 2 else ():
         ahead = apart_squares(step, int(first[g]), width) < apart_squares(step, int(first[other]), width)
         beyond = onward if ahead else back
         nearby, on = neck_at(square, cell, beyond, strictly=True), leads_through(chains, cell, beyond, state)
         narrower = nearby.width < min(neck.width, sides[g], sides[other]) - TIE
-        if on is not None and narrower and nearby.width >= 2.0 * clearance_of(square, saddle) - TIE:
+        if on is not None and narrower and nearby.straight and roomy:
             neck, saddle, towards, (chain, position) = nearby, cell, beyond, on
     return Passage(
         centre(saddle, width),
@@ -145,6 +146,11 @@ class Neck(NamedTuple):
     cells: tuple[int, ...]
 
     @property
+    def straight(self) -> bool:
+        """Does it run along a row or a column?"""
+        return self.a[0] == self.b[0] or self.a[1] == self.b[1]
+
+    @property
     def width(self) -> float:
         """From end to end."""
         return float(np.hypot(self.b[0] - self.a[0], self.b[1] - self.a[1]))
@@ -166,9 +172,8 @@ def apart_squares(one: int, other: int, width: int) -> int:
 def plateau(square: Squares, saddle: int) -> Ints:
     """Cells as high as a saddle and joined to it, with lower floor on both sides: rows (cell, step, back, onward).
 
-    Along a straight wall the clearance does not change, and any cell there may be the saddle that was found: but the
-    neck is where it falls off to both sides. step : the first cell of the way there. back, onward : the cells beside
-    it on that way and beyond it.
+    Along a straight wall the clearance does not change: any cell may be the saddle, but the neck is at such a one.
+    step : the first cell of the way there. back, onward : the cells beside it on that way and beyond it.
     """
     width = square.shape[1]
     heights = square.reshape(-1)
@@ -298,10 +303,7 @@ def finest(square: Squares, cell: int) -> float:
 
 @compiled
 def slopes(square: Squares, saddle: int, side: int, strictly: bool) -> tuple[Ints, Ints]:
-    """The steepest ways down to the walls, left and right of the way from a saddle to one of its sides.
-
-    strictly : over no cell as high as the saddle.
-    """
+    """The steepest ways down to the walls, left and right of the way to a side; strictly: over no cell as high."""
     width = square.shape[1]
     heights = square.reshape(-1)
     k = 0
