@@ -83,13 +83,13 @@ def laid(rng: np.random.Generator, polygon: Polygon, centre: Point, turned: bool
     if turned:
         spun = rotate(polygon, float(rng.uniform(0, 360)), origin="center")
         middle = spun.envelope.centroid
-        return laid_out(translate(spun, centre.x - middle.x, centre.y - middle.y))
+        return rounded(translate(spun, centre.x - middle.x, centre.y - middle.y))
     spun = rotate(polygon, 90.0 * int(rng.integers(4)), origin=(0, 0))
     west, south, east, north = spun.bounds
     x, y = round(centre.x - (east - west) / 2), round(centre.y - (north - south) / 2)
-    return laid_out(translate(spun, x - west, y - south))
+    return rounded(translate(spun, x - west, y - south))
 
 
-def laid_out(polygon: Polygon) -> Polygon:
+def rounded(polygon: Polygon) -> Polygon:
     """Corners to six decimals: what the world file says is then exactly what the truth says."""
     return Polygon([(round(x, 6) + 0.0, round(y, 6) + 0.0) for x, y in polygon.exterior.coords[:-1]])

@@ -12,7 +12,7 @@ from shapely import Polygon, box
 from shapely.affinity import rotate, translate
 
 from benchmarks.carrying import CARRYING_SNUG
-from benchmarks.furniture import laid_out
+from benchmarks.furniture import rounded
 from benchmarks.scenes import Maker, Scenario, Thing
 
 BETWEEN = 0.7  # of all things lie between the squares
@@ -36,18 +36,17 @@ def loosened(rng: np.random.Generator, seed: int, unable: bool, maker: Maker) ->
                 polygon = rotate(polygon, float(rng.uniform(0, 360)), origin="center")
         if rng.random() < BETWEEN:
             polygon = translate(polygon, *(float(part) for part in rng.uniform(-0.5, 0.5, 2)))
-        things.append(replace(thing, polygon=laid_out(polygon)))
+        things.append(replace(thing, polygon=rounded(polygon)))
     return replace(made, things=tuple(things)) if clear(made, things) else None
 
 
 def thinned(rng: np.random.Generator, ell: Polygon) -> Polygon:
     """An L on whole squares with one of its arms a square thinner, on the inside."""
-    bounds = box(*ell.bounds)
+    bounds = ell.envelope
     notch = bounds.difference(ell)
     west, south, east, north = notch.bounds
-    step = 1.0
     ways = [(1, 0), (-1, 0), (0, 1), (0, -1)]
-    inner = [(dx, dy) for dx, dy in ways if bounds.covers(translate(notch, dx * step, dy * step))]
+    inner = [(dx, dy) for dx, dy in ways if bounds.covers(translate(notch, dx, dy))]
     dx, dy = inner[int(rng.integers(len(inner)))]
     grown = box(min(west, west + dx), min(south, south + dy), max(east, east + dx), max(north, north + dy))
     left = ell.difference(grown)
@@ -57,7 +56,8 @@ def thinned(rng: np.random.Generator, ell: Polygon) -> Polygon:
 
 def clear(world: Scenario, things: list[Thing]) -> bool:
     """Whether all things stand apart from the walls, each other and Utak."""
-    square = box(*(int(v) for v in (world.utak.x, world.utak.y)), *(int(v) + 1 for v in (world.utak.x, world.utak.y)))
+    x, y = int(world.utak.x), int(world.utak.y)
+    square = box(x, y, x + 1, y + 1)
     solid = [world.plan.verge, square]
     for thing in things:
         if any(thing.polygon.distance(other) < CLEAR for other in solid):

@@ -31,6 +31,16 @@ def components(mask: Bools) -> Components:
     return Components(labels, int(_label(np.ascontiguousarray(mask), labels, np.empty(mask.size // 2 + 2, np.int32))))
 
 
+def edged(mask: Bools) -> Bools:
+    """A mask, and all squares that share an edge with one of it."""
+    edges = mask.copy()
+    edges[1:] |= mask[:-1]
+    edges[:-1] |= mask[1:]
+    edges[:, 1:] |= mask[:, :-1]
+    edges[:, :-1] |= mask[:, 1:]
+    return edges
+
+
 def boxes(labels: Labels, number: int) -> NDArray[np.int64]:
     """(number + 1, 4) by label: its first row, first column, last row and last column; -1 as last ones of no square.
 

@@ -26,7 +26,7 @@ from geometry.overlay import (
 STEPS = 150  # of settling
 ANGLES = 24  # in the fan, a whole turn
 CREDIT = 1  # squares more that arms of two widths must explain than arms of one
-NOTCH = 2  # squares
+NOTCH = 2  # squares that the notch of an L with arms of two widths is long and wide, at least
 STARTS = 4  # that settle
 FINE, ROUNDS = 0.03, 5  # squares by which a disc is moved, and how often, for fewer squares to be wrong
 SLACK = 2  # unknown squares by which a whole shape may reach beyond what is known of it
@@ -107,7 +107,7 @@ def _whole_uneven(
                     wrong = misfit(ELL, other, image, best)
                     if wrong < best:
                         best, at = float(wrong), other
-    return at, best if best < math.inf else math.inf
+    return at, best
 
 
 @compiled
@@ -139,10 +139,9 @@ def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, 
 @compiled
 def settled_best(kind: int, image: Image) -> tuple[Floats, float]:
     """The best shape of a class at any place and angle that settling finds, and its misfit."""
-    free = _freedom(kind)
-    at, best = _settled(kind, _fan(kind, image), free, image)
+    free, starts = _freedom(kind), _fan(kind, image)
+    at, best = _settled(kind, starts, free, image)
     if kind == ELL and best > 0.0:  # perhaps with arms of two widths
-        starts = _fan(kind, image)
         starts[:, 6] = starts[:, 5]
         free[6] = free[5]
         other, wrong = _settled(kind, starts, free, image)

@@ -69,7 +69,7 @@ def impropriety(kind: int, shape: Floats) -> float:
     if kind == TRIANGLE:
         return max(0.0, LEAST - _least_height(shape))
     wide, high, thick = shape[3], shape[4], shape[5]
-    stem = shape[6] if kind == ELL and shape[6] != 0.0 else thick
+    stem = stem_of(shape)
     bad = max(0.0, LEAST - wide)
     if kind >= BRICK:
         bad += max(0.0, LEAST - high)
@@ -80,6 +80,12 @@ def impropriety(kind: int, shape: Floats) -> float:
         bad += max(0.0, LEAST - thick) + max(0.0, thick + LEAST - high) + max(0.0, across + LEAST - wide)
         bad += max(0.0, LEAST - stem)
     return float(bad)
+
+
+@compiled
+def stem_of(shape: Floats) -> float:
+    """How thick the stem of a shape is: as its other arms, but for an ELL with arms of two widths."""
+    return float(shape[6] if shape[6] != 0.0 else shape[5])
 
 
 @compiled
@@ -119,7 +125,7 @@ def convex_pieces(kind: int, shape: Floats) -> Floats:
     if kind == TEE:
         _rectangle_lines(shape, -thick / 2, south, thick / 2, north, lines, 8)
         return lines
-    stem = shape[6] if kind == ELL and shape[6] != 0.0 else thick
+    stem = stem_of(shape)
     _rectangle_lines(shape, west, south, west + stem, north, lines, 8)
     if kind == HORSESHOE:
         _rectangle_lines(shape, east - thick, south, east, north, lines, 16)

@@ -141,7 +141,7 @@ def outline(kind: int, shape: Floats) -> Floats:
         angles = 2 * math.pi * (np.arange(CORNERS) + 0.5) / CORNERS
         return np.column_stack([shape[0] + shape[2] * np.cos(angles), shape[1] + shape[2] * np.sin(angles)])
     wide, high, thick = shape[3], shape[3] if kind == overlay.SQUARE else shape[4], shape[5]
-    corners = np.array(_corners(kind, wide, high, thick, shape[6] or thick)) - np.array([wide, high]) / 2
+    corners = np.array(_corners(kind, wide, high, thick, overlay.stem_of(shape))) - np.array([wide, high]) / 2
     quarters = shape[0] / (math.pi / 2)
     c, s = math.cos(shape[0]), math.sin(shape[0])
     if quarters == round(quarters):

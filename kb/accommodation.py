@@ -42,7 +42,7 @@ from kb.relaying import laid, relaid
 from kb.retina import count_ranges
 from kb.stops import Moved, Retold, around, ends, next_square, retold, retold_both
 from kb.supposing import Surprise, agreeing, as_motion, clashes, laid_on
-from kb.suspecting import Hindrances, suspects
+from kb.suspecting import Hindrances, led_to, suspects
 
 MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one is believed
 NONE_FITS = 10**6  # misfits of no lattice at all
@@ -106,14 +106,15 @@ class Memory(Holding):
             if stop is not None:
                 chosen = self._choose([chosen._replace(misfits=CONTRADICTED), self._outcome(ranges, load, stop)])
         else:
-            ends = surprise.hindrances.ends(self.place, load.polygon, motion)
+            stops = surprise.hindrances.stops(self.place, load.polygon, motion)
+            ends = led_to(stops, self.place, load.polygon, motion)
             outcomes = [one for one in (self._outcome(ranges, load, end) for end in ends) if not one.misfits]
             outcomes += [self._outcome(ranges, load, other) for other in otherwise(self.place, load.polygon, motion)]
             outcomes += self._smaller(ranges, load, chosen)
             simple = any(not one.misfits for one in outcomes if one.how != "slipped" or self.slipped)
             explanations = [chosen, *outcomes, *self._elsewhere(surprise, chosen.misfits, simple)]
             explanations += self._recalled(surprise, explanations)
-            clear = surprise.hindrances.chance(self.place, load.polygon, motion) <= CLEAR
+            clear = sum(stop.chance for stop in stops) <= CLEAR
             unchanged, uneven = np.array_equal(ranges, self.looks[-1].ranges), load.insets and any(load.insets.believed)
             told = {"unchanged": unchanged, "clear": clear, "uneven": uneven}
             chosen = self._choose(explanations, [fact for fact, so in told.items() if so])

@@ -18,7 +18,6 @@ from kb.body import DIRECTIONS, Command, Grasp, Impression
 from kb.evidence import FREE, FULL, OPEN, MapView
 from kb.explanation import Accommodated
 from kb.imagining import NOTHING_IMAGINED, imagine
-from kb.insets import NONE
 from kb.interpretation import Kinds, interpret, shapes
 from kb.lattice import AROUND
 from kb.loads import Load, covered, seen_insets, seen_short, slack_of
@@ -197,7 +196,7 @@ class Knowledge:
                 polygon=measured[name].polygon,
                 colour=self._colour(patch),
                 support=_support(part.mask, part.view),
-                short=NONE if measured[name].polygon is None else seen_short(measured[name].polygon),
+                short=seen_short(measured[name].polygon),
                 insets=seen_insets(measured[name].polygon),
             )
             for name, region, part, patch in sorted(

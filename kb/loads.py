@@ -16,7 +16,7 @@ import shapely
 from numpy.typing import NDArray
 
 from geometry.digital import squares
-from kb.insets import Insets, Sides, further, moved_in, told, turned, within_play
+from kb.insets import NONE, Insets, Sides, further, moved_in, told, turned, within_play
 from kb.lattice import Samples
 from kb.worldmodel import Patch
 
@@ -232,6 +232,8 @@ def seen_insets(polygon: Any) -> Insets | None:
 
 def seen_short(polygon: Any) -> Sides:
     """By how much they may lie further in than those of its outline."""
+    if polygon is None:
+        return NONE
     insets = seen_insets(polygon)
     return (SLIGHT, SLIGHT, SLIGHT, SLIGHT) if insets is None else insets.short
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.components import boxes, components
+from geometry.components import boxes, components, edged
 
 Mask = NDArray[np.bool_]
 Place = tuple[int, int]
@@ -24,7 +24,7 @@ def protrusions(floor: Mask, solid: Mask) -> list[Mask]:
     floor, solid : (rows, columns) squares where floor is seen, and where something is.
     """
     found = [*_between(floor, solid), *(mask.T for mask in _between(floor.T, solid.T)), *_in_corners(floor, solid)]
-    unlike = {mask.tobytes(): mask for mask in found if _touches(mask, solid)}
+    unlike = {mask.tobytes(): mask for mask in found if (edged(mask) & solid & ~mask).any()}
     return sorted(unlike.values(), key=lambda mask: int(mask.sum()))
 
 
@@ -39,16 +39,6 @@ def told_apart(parts: list[Mask], felt: Mapping[Place, str]) -> list[Mask]:
         if not any(thing[place] for thing in things):
             things += [part for part in parts if part[place] and not any(part[other] for other in wall)][:1]
     return things
-
-
-def _touches(mask: Mask, solid: Mask) -> bool:
-    """Is anything right beside a part?"""
-    beside = np.zeros_like(mask)
-    beside[1:] |= mask[:-1]
-    beside[:-1] |= mask[1:]
-    beside[:, 1:] |= mask[:, :-1]
-    beside[:, :-1] |= mask[:, 1:]
-    return bool((beside & solid & ~mask).any())
 
 
 def _between(floor: Mask, solid: Mask) -> Iterator[Mask]:

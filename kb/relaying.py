@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
-from geometry.components import components
+from geometry.components import components, edged
 from geometry.rigid import Rotate, Translate
 from geometry.template import fit_shapes
 from kb.evidence import FREE, FULL, OPEN, Evidence
@@ -133,11 +133,7 @@ def _unlike(polygon: Any, evidence: Evidence) -> int:
     """How many squares speak against a thing where it is said to lie: free ones under it, occupied ones beside it."""
     patch = covered(polygon)
     own = np.pad(patch.mask, 1)
-    about = own.copy()
-    about[1:] |= own[:-1]
-    about[:-1] |= own[1:]
-    about[:, 1:] |= own[:, :-1]
-    about[:, :-1] |= own[:, 1:]
+    about = edged(own)
     state = evidence.window(patch.west - 1, patch.south - 1, own.shape)
     return int(((state == FREE) & own).sum() + ((state == FULL) & about & ~own).sum())
 

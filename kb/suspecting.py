@@ -70,20 +70,21 @@ class Hindrances:
             free *= clear
         return [*stops, Stop(end, free)] if end < 1.0 else stops
 
-    def chance(self, place: Place, polygon: Any, motion: Motion) -> float:
-        """How likely it is that the motion was stopped by any of them."""
-        return sum(stop.chance for stop in self.stops(place, polygon, motion))
-
     def ends(self, place: Place, polygon: Any, motion: Motion) -> list[Outcome]:
         """What the stops would have led to, the likeliest first."""
-        stops = sorted(self.stops(place, polygon, motion), key=lambda stop: -stop.chance)
-        return [part_way(place, polygon, motion, stop.part, stop.against) for stop in stops]
+        return led_to(self.stops(place, polygon, motion), place, polygon, motion)
 
     def near(self, place: Place, polygon: Any, motion: Motion, part: float) -> Stop | None:
         """The likeliest stop about where a motion seems to have ended; None when there is nothing near."""
         far = NEARLY / length_of(place, polygon, motion)
         about = [stop for stop in self.stops(place, polygon, motion) if abs(stop.part - part) < far]
         return max(about, key=lambda stop: stop.chance, default=None)
+
+
+def led_to(stops: Iterable[Stop], place: Place, polygon: Any, motion: Motion) -> list[Outcome]:
+    """What stops of a motion would have led to, the likeliest first."""
+    likely = sorted(stops, key=lambda stop: -stop.chance)
+    return [part_way(place, polygon, motion, stop.part, stop.against) for stop in likely]
 
 
 def suspects(

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.components import edged
 from kb.evidence import OPEN, MapView
 from kb.imagining import NOTHING_IMAGINED, Imagined
 from kb.insets import NONE, Insets, Sides
@@ -274,8 +275,7 @@ def patch_of(mask: Mask, view: MapView) -> Patch:
 
 def unsettled(mask: Mask, view: MapView) -> tuple[int, int]:
     """How many squares of a region, and of the squares that touch it, are not told; how many look doubtful."""
-    framed = np.pad(mask, 1)
-    about = framed[1:-1, 1:-1] | framed[:-2, 1:-1] | framed[2:, 1:-1] | framed[1:-1, :-2] | framed[1:-1, 2:]
+    about = edged(mask)
     return int((about & ~told(view)).sum()), int((about & in_doubt(view)).sum())
 
 

@@ -11,13 +11,14 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from geometry.components import edged
 from kb.corners import Corner
 from kb.facts import Fact, Symbol, Term
 from kb.rooms import LIKELY_DOOR, SURE, Rooms, rooms_of
 from kb.task import Task
 from kb.worldmodel import WorldModel
 from planner.exploring import APART, Lookout, frontiers, gaps, jambs, promised, rooms_beyond, short_of, sight_of
-from planner.screen import Screens, Squares, edged, grown
+from planner.screen import Screens, Squares, grown
 
 Mask = NDArray[np.bool_]
 # How much further towards a corner what is not seen may go, in squares east and north added:

@@ -10,12 +10,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.components import components
+from geometry.components import components, edged
 from geometry.reach import UNREACHED
 from kb.evidence import OPEN
 from kb.rooms import Door
 from kb.worldmodel import SPACE, Node
-from planner.screen import Screens, Squares, edged, grown, marked
+from planner.screen import Screens, Squares, grown, marked
 
 FURTHER = 7  # squares from which a thing lies within the middle zone of the eye
 JAMB = 8  # squares beside what may be a door within which its walls are looked at

@@ -7,8 +7,8 @@ lie beyond all that was seen, so that masks of it have a frame of BEYOND squares
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.components import edged
 from planner.destinations import Situation
-from planner.screen import edged
 
 Mask = NDArray[np.bool_]
 BEYOND = 6  # squares that floor is hoped to go on unseen

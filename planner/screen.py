@@ -141,13 +141,3 @@ def grown(mask: Mask, squares: int) -> Mask:
             far[:-step] |= near[step:]
             mask, done = further, done + step
     return mask
-
-
-def edged(mask: Mask) -> Mask:
-    """A mask, and all squares that share an edge with one of it."""
-    edges = mask.copy()
-    edges[1:] |= mask[:-1]
-    edges[:-1] |= mask[1:]
-    edges[:, 1:] |= mask[:, :-1]
-    edges[:, :-1] |= mask[:, 1:]
-    return edges

@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from geometry.components import edged
 from planner.aims import Aim
 from planner.exploring import CLOSE, FURTHER, SHORT_OF, close, short_of
-from planner.screen import Screens, edged, grown, marked
+from planner.screen import Screens, grown, marked
 from planner.searching import Candidate, none_of
 from tests.kb.drawings import drawing, seen_whole
 
