@@ -1,7 +1,7 @@
 """Parts of what bounds the floor that stick out into it, and may be things that stand against it.
 
-What touches a wall is one with it to the eye: only touch tells them apart. But a thing is short, and floor lies on both
-sides of it, or on two sides that meet where it stands in a corner.
+What touches a wall is one with it to the eye: only touch tells them apart. But a thing is short: floor lies on both
+sides of it, or it stands where two walls meet and ends soon along both.
 """
 
 from collections.abc import Iterator, Mapping
@@ -14,35 +14,63 @@ from geometry.components import boxes, components, edged
 Mask = NDArray[np.bool_]
 Place = tuple[int, int]
 VERGE = "b"  # its colour
-LONGEST = 10  # squares that a thing may measure between floor and floor, or from a corner to a wall
+LONGEST = 10  # squares that a thing may measure between floor and floor, or from a corner along a wall
 LARGEST = 12  # squares that it may measure in all
 
 
 def protrusions(floor: Mask, solid: Mask) -> list[Mask]:
     """What sticks out into the floor: (rows, columns) masks, the smaller first. What stands free does not.
 
+    One may be part of another: where a thing ends is not told by what is seen of it.
+
     floor, solid : (rows, columns) squares where floor is seen, and where something is.
     """
-    found = [*_between(floor, solid), *(mask.T for mask in _between(floor.T, solid.T)), *_in_corners(floor, solid)]
+    across, along = _short(floor, solid), _short(floor.T, solid.T).T
+    pockets = list(_in_corners(floor, solid))
+    found = [part for mask in (across, along, across | along) for part in _parts(mask)]
+    found += pockets
+    for pocket in pockets:
+        found += [part for part in _parts(across | along | pocket) if (part & pocket).any()]
     unlike = {mask.tobytes(): mask for mask in found if (edged(mask) & solid & ~mask).any()}
     return sorted(unlike.values(), key=lambda mask: int(mask.sum()))
 
 
 def told_apart(parts: list[Mask], felt: Mapping[Place, str]) -> list[Mask]:
-    """Of such parts those that are things, by what was felt of them: the smallest with each square that is no wall.
+    """Of such parts those that are things, by what was felt of them.
 
-    felt : the colour of each square (row, column) that was felt.
+    The smallest with a square that is no wall is one; a larger one about it is, where the rest of it was felt, too, and
+    has the same colour. felt : the colour of each square (row, column) that was felt.
     """
-    wall = [place for place, colour in felt.items() if colour == VERGE]
     things: list[Mask] = []
-    for place in (place for place, colour in felt.items() if colour != VERGE):
-        if not any(thing[place] for thing in things):
-            things += [part for part in parts if part[place] and not any(part[other] for other in wall)][:1]
+    for place, colour in felt.items():
+        if colour == VERGE or any(thing[place] for thing in things):
+            continue
+        thing: Mask | None = None
+        for part in parts:
+            if not part[place] or any(part[other] and other_colour != colour for other, other_colour in felt.items()):
+                continue
+            if thing is None or _felt_beyond(thing, part, felt):
+                thing = part
+        things += [] if thing is None else [thing]
     return things
 
 
-def _between(floor: Mask, solid: Mask) -> Iterator[Mask]:
-    """The connected parts of which each row lies between floor to the west and to the east."""
+def unfelt(parts: list[Mask], felt: Mapping[Place, str]) -> list[Mask]:
+    """What of such parts may be a thing, or more of one, and was not felt."""
+    things = told_apart(parts, felt)
+    known = np.any(things, axis=0) if things else np.False_
+    left = [part & ~known for part in parts if not any(part[p] for p, colour in felt.items() if colour == VERGE)]
+    unlike = {mask.tobytes(): mask for mask in left if mask.any() and not any(mask[place] for place in felt)}
+    return list(unlike.values())
+
+
+def _felt_beyond(thing: Mask, part: Mask, felt: Mapping[Place, str]) -> bool:
+    """Does a part contain a thing, and something besides it that was felt?"""
+    return not (thing & ~part).any() and any(part[place] and not thing[place] for place in felt)
+
+
+def _short(floor: Mask, solid: Mask) -> Mask:
+    """(rows, columns): squares between floor to the west and floor to the east, not far from each other."""
     short = np.zeros_like(solid)
     for row in range(len(solid)):
         line = solid[row].astype(np.int8)
@@ -52,29 +80,31 @@ def _between(floor: Mask, solid: Mask) -> Iterator[Mask]:
             inside = start > 0 and stop < len(line)
             if inside and stop - start <= LONGEST and floor[row, start - 1] and floor[row, stop]:
                 short[row, start:stop] = True
-    parts = components(short)
+    return short
+
+
+def _parts(mask: Mask) -> Iterator[Mask]:
+    """The connected parts of a mask that are no larger than a thing."""
+    parts = components(mask)
     for n, (south, west, north, east) in enumerate(boxes(parts.labels, parts.number)[1:].tolist(), 1):
         if max(north - south, east - west) < LARGEST:
             yield parts.labels == n
 
 
 def _in_corners(floor: Mask, solid: Mask) -> Iterator[Mask]:
-    """Rectangles of which two sides that meet border on floor, and end at what bounds it."""
+    """What lies in a corner between two straight walls, from where floor meets the one to where it meets the other."""
     for up, on in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
         ground, full = floor[::up, ::on], solid[::up, ::on]
-        tip = full[1:, 1:] & ground[:-1, 1:] & ground[1:, :-1] & ground[:-1, :-1]
-        for row, column in (np.argwhere(tip) + 1).tolist():
-            east = _run(full[row, column:], ground[row - 1, column:])
-            north = _run(full[row:, column], ground[row:, column - 1])
-            part = (slice(row, row + north), slice(column, column + east))
-            if 0 < east <= LONGEST and 0 < north <= LONGEST and full[part].all():
-                mask = np.zeros_like(full)
-                mask[part] = True
-                yield np.ascontiguousarray(mask[::up, ::on])
-
-
-def _run(full: Mask, ground: Mask) -> int:
-    """How far a side goes on that borders on floor, up to where something stands before it; 0 where nothing does."""
-    goes_on = full & ground
-    length = len(goes_on) if goes_on.all() else int(np.argmin(goes_on))
-    return length if length < len(full) and full[length] and not ground[length] else 0
+        meets = np.zeros_like(full)  # floor to the south and to the west of which something is
+        meets[1:, 1:] = ground[1:, 1:] & full[:-1, 1:] & full[1:, :-1]
+        places = np.argwhere(meets)
+        for top, left in places.tolist():
+            near = (places[:, 0] < top) & (places[:, 0] >= top - LONGEST)
+            near &= (places[:, 1] > left) & (places[:, 1] <= left + LONGEST)
+            for low, right in places[near].tolist():
+                walls = full[low - 1 : top + 1, left - 1].all() and full[low - 1, left - 1 : right + 1].all()
+                part = full[low:top, left:right]
+                if walls and part[0, 0] and components(np.ascontiguousarray(part)).number == 1:
+                    mask = np.zeros_like(full)
+                    mask[low:top, left:right] = part
+                    yield np.ascontiguousarray(mask[::up, ::on])

@@ -22,7 +22,7 @@ from kb.imagining import NOTHING_IMAGINED, Imagined
 from kb.insets import NONE, Insets, Sides
 from kb.interpretation import Kinds
 from kb.lattice import Lattice
-from kb.protruding import protrusions
+from kb.protruding import protrusions, unfelt
 from kb.regions import Percept
 
 NEARLY = math.radians(5)  # by which two lattices differ little enough to explain the same impressions
@@ -197,8 +197,10 @@ class WorldModel:
     @cached_property
     def protruding(self) -> list[Mask]:
         """(rows, columns) masks of what sticks out into the floor from what bounds it, and was not felt."""
-        felt = self.squares(self.felt)
-        return [mask for mask in protrusions(self.space, solid(self.view)) if not (mask & felt).any()]
+        height, width = self.labels.shape
+        felt = {self.view.locate(x, y): colour for (x, y), colour in self.felt.items()}
+        within = {(row, column): c for (row, column), c in felt.items() if 0 <= row < height and 0 <= column < width}
+        return unfelt(protrusions(self.space, solid(self.view)), within)
 
     def object(self, name: str) -> Node | None:
         """The object of this name, if there is one."""

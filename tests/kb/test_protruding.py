@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from kb.protruding import LONGEST, protrusions, told_apart
+from geometry.components import components
+from kb.protruding import LONGEST, protrusions, told_apart, unfelt
 
 Mask = NDArray[np.bool_]
 WIDE, HIGH = 24, 20
@@ -61,6 +62,18 @@ def test_an_ell_against_a_wall_is_found(quarter: int) -> None:
     assert among(protrusions(~occupied, occupied), thing)
 
 
+@given(st.integers(0, 3), st.booleans(), st.booleans(), st.integers(1, 4), st.integers(1, 3))
+@settings(max_examples=60, deadline=None)
+def test_an_ell_in_a_corner_is_found(quarter: int, up: bool, on: bool, arm: int, thick: int) -> None:
+    shape = np.zeros((thick + arm, thick + arm + 1), np.bool_)
+    shape[:thick] = shape[:, :thick] = True
+    shape = np.rot90(shape, quarter)
+    high, wide = shape.shape
+    occupied, thing = with_thing(HIGH - 2 - high if up else 2, WIDE - 2 - wide if on else 2, shape)
+    assume(components(~occupied).number == 1)  # else it shuts in a part of the floor, that no eye sees
+    assert among(protrusions(~occupied, occupied), thing)
+
+
 def test_what_stands_free_and_what_is_long_does_not_stick_out() -> None:
     occupied, _ = with_thing(8, 8, full(3, 3))
     occupied[2:15, 18:20] = True  # a wall into the room
@@ -85,3 +98,20 @@ def test_of_parts_with_a_square_of_a_thing_the_smallest_is_it() -> None:
     assert among(told_apart([thing, *parts], {(5, 4): "g"}), thing)
     both = [part for part in parts if part[5, 4] and part[8, 4]]
     assert both and not among(told_apart(both, {(5, 4): "g", (8, 4): "b"}), both[0])
+
+
+def test_a_larger_part_is_the_thing_where_the_rest_of_it_was_felt() -> None:
+    shape = np.zeros((6, 7), np.bool_)
+    shape[3:, :] = shape[:, :3] = True  # steps down from the wall to the north to that to the west
+    occupied, thing = with_thing(HIGH - 8, 2, shape)
+    parts, on_stem, on_foot = protrusions(~occupied, occupied), (HIGH - 8, 3), (HIGH - 4, 8)
+    (stem,) = told_apart(parts, {on_stem: "g"})
+    assert stem.sum() < thing.sum()
+    rest = unfelt(parts, {on_stem: "g"})
+    assert among(rest, thing & ~stem)
+    (whole,) = told_apart(parts, {on_stem: "g", on_foot: "g"})
+    assert np.array_equal(whole, thing)
+    assert not among(unfelt(parts, {on_stem: "g", on_foot: "g"}), thing)
+    (alone,) = told_apart(parts, {on_stem: "g", on_foot: "b"})
+    assert np.array_equal(alone, stem)
+    assert len(told_apart(parts, {on_stem: "g", on_foot: "h"})) == 2
