@@ -15,12 +15,14 @@ class Reconciled(NamedTuple):
 
     binding : parameter -> node. hypothesised : parameters that nothing seen so far can be.
     doubtful : (parameter, node) pairs that a closer look decides. contradicted : (parameter, node, property).
+    unmovable : (parameter, node) pairs that agree, but what is to be carried cannot be moved.
     """
 
     binding: Mapping[str, str]
     hypothesised: tuple[str, ...]
     doubtful: tuple[tuple[str, str], ...]
     contradicted: tuple[tuple[str, str, str], ...]
+    unmovable: tuple[tuple[str, str], ...] = ()
 
 
 def reconcile(
@@ -29,13 +31,15 @@ def reconcile(
     distances: Mapping[str, float],
     before: Mapping[str, str],
     rules: tuple[Path, ...] = (),
+    carried: Iterable[str] = (),
 ) -> Reconciled:
     """Bind the object parameters of a task by the best match.
 
     distances: way to each node in squares, where one is known. before: the binding up to now, which is kept unless
-    another is clearly better.
+    another is clearly better. carried : the parameters that shall be brought somewhere.
     """
-    facts = [*_task_facts(task), *(fact for node in model.objects for fact in _node_facts(node))]
+    facts = [*_task_facts(task), *(f"carried({x})" for x in carried)]
+    facts += [fact for node in model.objects for fact in _node_facts(node)]
     facts += [f"distance({name},{round(way)})" for name, way in sorted(distances.items())]
     facts += [f"bound_before({x},{node})" for x, node in sorted(before.items())]
     found: dict[str, list[tuple[str, ...]]] = {}
@@ -46,6 +50,7 @@ def reconcile(
         tuple(x for (x,) in found.get("hypothesised", ())),
         tuple((x, node) for x, node in found.get("doubtful", ())),
         tuple((x, node, p) for x, node, p in found.get("contradicted", ())),
+        tuple((x, node) for x, node in found.get("unmovable", ())),
     )
 
 
@@ -68,3 +73,5 @@ def _node_facts(node: Node) -> Iterable[str]:
         yield f"settled({node.name},colour)"
     if node.open == 0:
         yield f"settled({node.name},shape)"
+    if node.movable == 0:
+        yield f"fixed({node.name})"

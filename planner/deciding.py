@@ -205,10 +205,13 @@ class Decider:
         x = str(goal.args[0])
         node = situation.model.object(self.bound.get(x, ""))
         if node is None:
-            unseen = nowhere(f"nothing seen so far is {x}")
+            fixed = dict(reconciled.unmovable).get(x)
+            unseen = nowhere(f"{fixed} cannot be moved" if fixed else f"nothing seen so far is {x}")
             aims = aims_towards([unseen], situation, reconciled)
-            # No proof that there is none: it may stand against a wall, and look like a piece of that.
-            decision = self._pursue(aims, stage, situation, lambda: unseen.missing, "limit")
+            # No proof that there is none: it may stand against a wall, and look like a piece of that; and who does not
+            # know how the squares lie may have pushed at another thing.
+            proved = fixed and situation.model.view.sure and not is_open(situation.model)
+            decision = self._pursue(aims, stage, situation, lambda: unseen.missing, "impossible" if proved else "limit")
             return self._felt(decision, stage, situation)
         if node.polygon is None or node.vague or self.verifier.doubted(node):
             look = self._inspect(node, stage, situation)
@@ -221,10 +224,6 @@ class Decider:
             strayed = goal.name in FROM_THE_START and self.carrier.strayed(x, situation.model)
             why = f"{stage} cannot be told: he was lost since {node.name} was taken"
             return Decision(None, why, "limit") if strayed else None
-        if node.movable == 0:
-            sure = situation.model.view.sure and not is_open(situation.model)  # else it may be another thing
-            verdict = "impossible" if sure else "limit"
-            return Decision(None, f"{stage} cannot be attained: {node.name} cannot be moved", verdict)
         advice = self._advice(node, land, situation)
         if isinstance(advice, Refusal) and land.loose:
             if lands_in_one(land.loose, in_view(node.polygon, situation)):
@@ -390,7 +389,8 @@ class Decider:
             reached = screens.nearest(vicinity(model, node.patch, 1))
             if reached is not None:
                 distances[node.name] = reached.cost
-        reconciled = reconcile(self.task, model, distances, self.bound, self.rules)
+        carried = {str(goal.args[0]) for stage in self.stages for goal in stage.carried}
+        reconciled = reconcile(self.task, model, distances, self.bound, self.rules, sorted(carried))
         self.bound = reconciled.binding
         return reconciled
 

@@ -104,6 +104,14 @@ def test_what_is_fixed_is_found_out(tmp_path: Path) -> None:
     assert done.result.steps < 30
 
 
+def test_what_is_fixed_is_not_what_shall_be_carried(tmp_path: Path) -> None:
+    other = f'fixed(s, g, "{box(20, 10, 23, 13)}").'
+    folder = scene(tmp_path, room(SQUARE + other), "object(x). shape(x, square).", "at(x, corner(southeast)).")
+    done = run(folder)
+    assert done.result.verdict == "done", done.result.reason
+    lies_as_believed(done.session)
+
+
 def test_he_who_stands_off_the_middle_of_his_square_learns_from_the_first_turn(tmp_path: Path) -> None:
     brick = f'object(t, g, "{box(8, 6, 13, 8)}").'
     pose = 'pose(x, "POINT (4 -4)", 90).'

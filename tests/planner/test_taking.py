@@ -15,6 +15,7 @@ from kb.evidence import OPEN
 from kb.factfile import facts_of
 from kb.reconciliation import Reconciled
 from kb.worldmodel import Node, WorldModel
+from planner import deciding
 from planner.carrier import Act, Carrier, Go
 from planner.course import Course
 from planner.deciding import Decider
@@ -254,14 +255,20 @@ def test_he_looks_before_he_makes_ready_to_take_it(command: Command, monkeypatch
     ("spread", "sure", "verdict"), [(math.pi, True, "limit"), (0.0, True, "impossible"), (0.0, False, "limit")]
 )
 def test_while_it_is_open_how_the_squares_lie_nothing_is_proved_of_what_does_not_move(
-    spread: float, sure: bool, verdict: str
+    spread: float, sure: bool, verdict: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     situation, decider, node, stage = about_to_turn(spread, 0.0, 9)
+    decider.bound = {}
     view = situation.model.view._replace(sure=sure)
     fixed = replace(situation.model, objects=(replace(node, movable=0),), view=view)
-    decision = decider._carry(stage.goals[0], stage, situation_of(fixed, situation.binding), Reconciled({}, (), (), ()))
+    reconciled = Reconciled({}, ("x",), (), (), (("x", node.name),))
+    looking = decider._carry(stage.goals[0], stage, situation_of(fixed, {}), reconciled)
+    assert looking is not None and looking.command is not None  # for another x
+    monkeypatch.setattr(deciding, "aims_towards", lambda *_: [])
+    decision = decider._carry(stage.goals[0], stage, situation_of(fixed, {}), reconciled)
     assert decision is not None
     assert (decision.command, decision.verdict) == (None, verdict)
+    assert f"{node.name} cannot be moved" in decision.why
 
 
 @pytest.mark.parametrize(
