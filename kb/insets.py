@@ -15,7 +15,8 @@ import shapely
 
 Sides = tuple[float, float, float, float]  # west, east, south, north
 ALONG = 1e-6  # squares: how straight a side along the lattice is
-TELLING = 1e-3  # squares: less of a row than this tells nothing
+TELLING = 0.04  # squares: what is known that well of a side is not told better
+HAIR = 1e-3  # squares: less of a row than this tells nothing
 NONE: Sides = (0.0, 0.0, 0.0, 0.0)
 WHOLE: Sides = (1.0, 1.0, 1.0, 1.0)
 
@@ -153,7 +154,7 @@ def told(insets: Insets, polygon: Any, agrees: Callable[[Any], bool]) -> Insets 
 
 def _halves(least: float, most: float, deep: float) -> list[tuple[float, float]]:
     """What may be of one side: parts in each of which it covers the same squares."""
-    if TELLING < deep < 1.0 - TELLING and least + TELLING < deep < most - TELLING:
+    if least + HAIR < deep < most - HAIR and most - least > TELLING:
         return [(least, deep), (deep, most)]
     return [(least, most)]
 

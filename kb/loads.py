@@ -135,10 +135,15 @@ class Load:
         return replace(self.lying(polygon, slack), turned=turned, proven=True, stuck=0, stopped=stopped)
 
     def lying(self, polygon: Any, otherwise: float = SLIGHT) -> "Load":
-        """The load where a polygon says, of which no look has told yet. otherwise : its slack, unless it is whole."""
+        """The load where a polygon says, of which no look has told yet.
+
+        otherwise : its slack; what is whole has none, unless its sides may lie further in or out.
+        """
         nothing: frozenset[Square] = frozenset()
         placed = whole(polygon)
         slack = max(otherwise, SLIGHT) if self.inexact else slack_of(placed, otherwise)
+        if self.insets is not None and self._quarters is not None and self.insets.play:
+            slack = max(slack, self.insets.play)
         return replace(self, polygon=placed, slack=slack, full=nothing, empty=nothing)
 
     def seen(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> "Load":
