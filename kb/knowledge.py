@@ -24,6 +24,7 @@ from kb.loads import Load, covered, seen_insets, seen_short, slack_of
 from kb.measuring import Measured, Measurer
 from kb.protruding import VERGE, protrusions, told_apart
 from kb.regions import Percept, Region, label_of, map_regions
+from kb.sizes import reshaped
 from kb.worldmodel import SPACE, Names, Node, Patch, WorldModel, patch_of, solid, unsettled
 
 Mask = NDArray[np.bool_]
@@ -238,7 +239,7 @@ def _node(load: Load, patch: Patch, label: int) -> Node:
         region=f"part{label}",
         patch=patch,
         open=0,
-        shape=load.shape,
+        shape=reshaped(load.shape, load.polygon, load.lying_insets),
         polygon=load.polygon,
         colour=load.colour,
         support=load.support,

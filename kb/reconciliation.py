@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from kb.encodings import KB, solve
 from kb.facts import Symbol
+from kb.sizes import may_be
 from kb.task import Task
 from kb.worldmodel import Node, WorldModel
 
@@ -16,6 +17,7 @@ class Reconciled(NamedTuple):
     binding : parameter -> node. hypothesised : parameters that nothing seen so far can be.
     doubtful : (parameter, node) pairs that a closer look decides. contradicted : (parameter, node, property).
     unmovable : (parameter, node) pairs that agree, but what is to be carried cannot be moved.
+    measurable : (parameter, node) pairs that may agree when it is told better how large the node is.
     """
 
     binding: Mapping[str, str]
@@ -23,6 +25,7 @@ class Reconciled(NamedTuple):
     doubtful: tuple[tuple[str, str], ...]
     contradicted: tuple[tuple[str, str, str], ...]
     unmovable: tuple[tuple[str, str], ...] = ()
+    measurable: tuple[tuple[str, str], ...] = ()
 
 
 def reconcile(
@@ -51,6 +54,7 @@ def reconcile(
         tuple((x, node) for x, node in found.get("doubtful", ())),
         tuple((x, node, p) for x, node, p in found.get("contradicted", ())),
         tuple((x, node) for x, node in found.get("unmovable", ())),
+        tuple((x, node) for x, node in found.get("measurable", ())),
     )
 
 
@@ -75,3 +79,5 @@ def _node_facts(node: Node) -> Iterable[str]:
         yield f"settled({node.name},shape)"
     if node.movable == 0:
         yield f"fixed({node.name})"
+    for shape in may_be(node.polygon, node.insets):
+        yield f"may_be({node.name},shape,{shape})"

@@ -24,13 +24,13 @@ from planner.circling import pivot, ways_round, winding
 from planner.destinations import Situation, contains, destination, nowhere
 from planner.fewest import FewestMoves
 from planner.goals import BY_THE_WAY, FROM_THE_START, Stage, constraints, stages
+from planner.keeping import Kept, lattice_squares
 from planner.landing import Landing, in_view, landing, lands_in_one
 from planner.refusing import Refusal
 from planner.repeating import Circles
-from planner.screen import Screens, Squares, vicinity
+from planner.screen import Screens, vicinity
 from planner.searching import against_walls, aims_towards
 from planner.sizing import Sizer, least_outline
-from planner.steps import Square
 from planner.verifying import Verifier, before_taking, misgiving
 from planner.walking import HURRY, STROLL, halting, is_open, next_move
 from planner.ways import Way, choose_way, ways
@@ -72,9 +72,7 @@ class Decider:
         self.carrier = Carrier(self.pull)
         self.verifier = Verifier()
         self.sizer = Sizer()
-        self._aimed: frozenset[Square] = frozenset()  # squares of the lattice
-        self._path: tuple[Square, ...] = ()  # squares of the lattice
-        self._level = 0
+        self._kept = Kept()
         self._circles = Circles()
         self._looked = 0  # squares he had looked from when he went to see where it must end, until it is one more
         self._turn = 0  # the sign of the turn that was begun about an object
@@ -163,7 +161,7 @@ class Decider:
             offered = self._circles.priced(aims, model)
             if fewest is not None:
                 offered = fewest.priced(offered)
-            aim = choose(offered, situation.screens, self._old_aim(model))
+            aim = choose(offered, situation.screens, self._kept.aim(model))
             if aim is None and len(offered) < len(aims):
                 why = f"{stage} cannot be attained: {missing()}, and he goes round in circles"
                 return Decision(None, why, "limit")
@@ -178,7 +176,7 @@ class Decider:
             decision = self._walk(aim, stage, situation, fewest)
             if decision.command is None or not self._circles.noticed(model, decision.command):
                 return decision
-            self._circles.tire(_lattice_squares(aim.squares, model))
+            self._circles.tire(lattice_squares(aim.squares, model))
 
     def _taken_along(
         self, node: Node, stage: Stage, situation: Situation, aim: Aim, fetched: bool = False
@@ -212,7 +210,11 @@ class Decider:
             # know how the squares lie may have pushed at another thing.
             proved = fixed and situation.model.view.sure and not is_open(situation.model)
             decision = self._pursue(aims, stage, situation, lambda: unseen.missing, "impossible" if proved else "limit")
-            return self._felt(decision, stage, situation)
+            decision = self._felt(decision, stage, situation)
+            like = [name for parameter, name in reconciled.measurable if parameter == x and decision.verdict]
+            seen = (thing for thing in situation.model.objects if thing.name in like)
+            gauged = (self._gauged(thing, stage, situation) for thing in seen)
+            return next((push for push in gauged if push is not None), decision)
         if node.polygon is None or node.vague or self.verifier.doubted(node):
             look = self._inspect(node, stage, situation)
             if look is not None:
@@ -272,6 +274,17 @@ class Decider:
 
         ends : those to which it cannot be brought as it is believed to be.
         """
+        push = self._gauged(node, stage, situation)
+        if push is not None:
+            return push
+        least = least_outline(node)
+        refused = least and self.carrier.refused(replace(node, polygon=least), ends, situation)
+        if refused and refused.proved:
+            return None
+        return Decision(None, f"{stage} cannot be told: how large {node.name} is is not known well", "limit")
+
+    def _gauged(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
+        """The next command to push a thing by a part of a square, which tells how large it is; None when it is told."""
         for pose in self.sizer.poses(node):
             advice = self.carrier.advise(node, {SIZE: pose}, situation)
             if isinstance(advice, Act):
@@ -280,11 +293,7 @@ class Decider:
                 walk = self._go(advice, stage, situation)
                 if walk.command is not None:
                     return walk
-        least = least_outline(node)
-        refused = least and self.carrier.refused(replace(node, polygon=least), ends, situation)
-        if refused and refused.proved:
-            return None
-        return Decision(None, f"{stage} cannot be told: how large {node.name} is is not known well", "limit")
+        return None
 
     def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
         """What to do to carry something to where its goal holds; while that is not known, to near it."""
@@ -326,7 +335,7 @@ class Decider:
         if way is None:
             return Decision(None, f"{stage} cannot be attained: no way leads round {name}", "impossible")
         self._turn = next(turn for turn, other in offered.items() if other is way)
-        self._keep(way, frozenset(), model)
+        self._kept.keep(way, frozenset(), model)
         x, y = pivot(node)
         about = (x - model.view.west, y - model.view.south)
         kind = "attain" if way.level == 0 else "explore"
@@ -340,12 +349,12 @@ class Decider:
         straight = fewest.way(aim) if fewest is not None and reached.level == 0 else None
         way = None if straight is None else self._choose([straight], situation)
         if way is None:
-            way = self._continued(aim, reached.level, situation)
+            way = self._kept.rest(aim, reached.level, model, screens)
         if way is None:
             way = self._choose(ways(screens, reached.level, aim.squares, self.paths), situation)
         if way is None:
             return Decision(None, f"{stage} cannot be attained: every way there is forbidden", "impossible")
-        self._keep(way, _lattice_squares(aim.squares, model), model)
+        self._kept.keep(way, lattice_squares(aim.squares, model), model)
         kind = aim.kind if reached.level == 0 else "pass"
         move = next_move(screens, way.squares, kind, pace=STROLL if fewest is None else HURRY)
         return Decision(move, f"{aim.what}; {stage}")
@@ -353,35 +362,10 @@ class Decider:
     def _choose(self, offered: Sequence[Way], situation: Situation) -> Way | None:
         if not offered:
             return None
-        view = situation.model.view
-        before = frozenset((x - view.west, y - view.south) for x, y in self._path)
+        before = frozenset(self._kept.path(situation.model))
         doors = [door for door in situation.rooms.doors if door.sure]
         forbidden = frozenset(doors[0].name for goal in self.constraints if doors and str(goal.args[0]) == "utak")
         return choose_way(offered, situation.screens, before, doors, forbidden)
-
-    def _continued(self, aim: Aim, level: int, situation: Situation) -> Way | None:
-        """What is left of the way chosen before, when it still leads to the aim over squares believed free."""
-        view, screens = situation.model.view, situation.screens
-        path = [(x - view.west, y - view.south) for x, y in self._path]
-        if level != self._level or screens.here not in path:
-            return None
-        rest = path[path.index(screens.here) :]
-        columns, rows = np.array(rest).T
-        end = rest[-1][1] * situation.model.labels.shape[1] + rest[-1][0]
-        if len(rest) < 2 or end not in aim.squares or not screens.free(level)[rows, columns].all():
-            return None
-        return Way(tuple(rest), float(len(rest)), 0.0, level)
-
-    def _keep(self, way: Way, aimed: frozenset[Square], model: WorldModel) -> None:
-        view = model.view
-        self._path = tuple((column + view.west, row + view.south) for column, row in way.squares)
-        self._aimed, self._level = aimed, way.level
-
-    def _old_aim(self, model: WorldModel) -> frozenset[int]:
-        """The squares aimed at last time, as flat indices of this view."""
-        rows, columns = model.labels.shape
-        places = ((y - model.view.south, x - model.view.west) for x, y in self._aimed)
-        return frozenset(row * columns + column for row, column in places if 0 <= row < rows and 0 <= column < columns)
 
     def _reconcile(self, model: WorldModel, screens: Screens) -> Reconciled:
         distances = {}
@@ -393,8 +377,3 @@ class Decider:
         reconciled = reconcile(self.task, model, distances, self.bound, self.rules, sorted(carried))
         self.bound = reconciled.binding
         return reconciled
-
-
-def _lattice_squares(squares: Squares, model: WorldModel) -> frozenset[Square]:
-    rows, columns = np.divmod(squares, model.labels.shape[1])
-    return frozenset(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))

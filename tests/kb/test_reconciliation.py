@@ -111,4 +111,4 @@ def test_two_parameters_share_two_things_out() -> None:
 def test_doors_and_rooms_are_not_bound_to_objects() -> None:
     wanted = Task({"d": Parameter("d", "door", NOWHERE)}, (), ())
     found = reconcile(wanted, MODEL, {}, {})
-    assert found == ({}, (), (), (), ())
+    assert found == ({}, (), (), (), (), ())

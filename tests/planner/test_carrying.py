@@ -104,6 +104,23 @@ def test_what_is_fixed_is_found_out(tmp_path: Path) -> None:
     assert done.result.steps < 30
 
 
+def test_a_square_that_looks_like_a_brick_is_measured(tmp_path: Path) -> None:
+    between = f'object(t, g, "{box(8.5, 6, 11.5, 9)}").'
+    folder = scene(tmp_path, room(between), "object(x). shape(x, square).", "at(x, corner(northeast)).")
+    done = run(folder)
+    assert done.result.verdict == "done", done.result.reason
+    _, _, east, north = done.session.table.polygons["t"].bounds
+    assert max(30 - east, 20 - north) <= 1.0
+
+
+def test_a_brick_that_is_measured_stays_one(tmp_path: Path) -> None:
+    brick = f'object(t, g, "{box(8, 6, 12, 9)}").'
+    folder = scene(tmp_path, room(brick), "object(x). shape(x, square).", "at(x, corner(northeast)).")
+    done = run(folder)
+    assert done.result.verdict == "limit" and "nothing seen so far is x" in done.result.reason
+    assert done.session.table.polygons["t"].centroid.distance(shapely.Point(10, 7.5)) < 1.0
+
+
 def test_what_is_fixed_is_not_what_shall_be_carried(tmp_path: Path) -> None:
     other = f'fixed(s, g, "{box(20, 10, 23, 13)}").'
     folder = scene(tmp_path, room(SQUARE + other), "object(x). shape(x, square).", "at(x, corner(southeast)).")
