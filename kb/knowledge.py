@@ -154,7 +154,7 @@ class Knowledge:
         if not any(colour != VERGE and kinds.of(f"part{labels[p]}", "object") == 0 for p, colour in felt.items()):
             return percept, labels, kinds
         labels, regions, kind = labels.copy(), [*percept.regions], dict(kinds.kind)
-        for thing in told_apart(protrusions(view.seen & (view.probability <= SPACE), occupied), felt):
+        for thing in told_apart(protrusions(view.seen & (view.probability <= SPACE), occupied, view.seen), felt):
             label = int(labels.max()) + 1
             labels[thing] = label
             regions.append(part_of_verge(thing, label, view))

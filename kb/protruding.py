@@ -18,15 +18,16 @@ LONGEST = 10  # squares that a thing may measure between floor and floor, or fro
 LARGEST = 12  # squares that it may measure in all
 
 
-def protrusions(floor: Mask, solid: Mask) -> list[Mask]:
+def protrusions(floor: Mask, solid: Mask, seen: Mask) -> list[Mask]:
     """What sticks out into the floor: (rows, columns) masks, the smaller first. What stands free does not.
 
     One may be part of another: where a thing ends is not told by what is seen of it.
 
-    floor, solid : (rows, columns) squares where floor is seen, and where something is.
+    floor, solid : (rows, columns) squares where floor is, and where something is. seen : those that were seen.
     """
-    across, along = _short(floor, solid), _short(floor.T, solid.T).T
-    pockets = list(_in_corners(floor, solid))
+    bounds = seen & ~floor  # beside what is there it may be open what is: what lies askew does not end on a line
+    across, along = (short & solid for short in (_short(floor, bounds), _short(floor.T, bounds.T).T))
+    pockets = [pocket & solid for pocket in _in_corners(floor, bounds)]
     found = [part for mask in (across, along, across | along) for part in _parts(mask)]
     found += pockets
     for pocket in pockets:
@@ -69,11 +70,11 @@ def _felt_beyond(thing: Mask, part: Mask, felt: Mapping[Place, str]) -> bool:
     return not (thing & ~part).any() and any(part[place] and not thing[place] for place in felt)
 
 
-def _short(floor: Mask, solid: Mask) -> Mask:
+def _short(floor: Mask, bounds: Mask) -> Mask:
     """(rows, columns): squares between floor to the west and floor to the east, not far from each other."""
-    short = np.zeros_like(solid)
-    for row in range(len(solid)):
-        line = solid[row].astype(np.int8)
+    short = np.zeros_like(bounds)
+    for row in range(len(bounds)):
+        line = bounds[row].astype(np.int8)
         change = np.diff(np.concatenate([[0], line, [0]]))
         starts, stops = np.flatnonzero(change == 1), np.flatnonzero(change == -1)
         for start, stop in zip(starts.tolist(), stops.tolist(), strict=True):
@@ -91,10 +92,10 @@ def _parts(mask: Mask) -> Iterator[Mask]:
             yield parts.labels == n
 
 
-def _in_corners(floor: Mask, solid: Mask) -> Iterator[Mask]:
+def _in_corners(floor: Mask, bounds: Mask) -> Iterator[Mask]:
     """What lies in a corner between two straight walls, from where floor meets the one to where it meets the other."""
     for up, on in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
-        ground, full = floor[::up, ::on], solid[::up, ::on]
+        ground, full = floor[::up, ::on], bounds[::up, ::on]
         meets = np.zeros_like(full)  # floor to the south and to the west of which something is
         meets[1:, 1:] = ground[1:, 1:] & full[:-1, 1:] & full[1:, :-1]
         places = np.argwhere(meets)

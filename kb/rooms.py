@@ -99,9 +99,17 @@ class Rooms:
 NOTHING = Rooms((), np.zeros((0, 0), np.int32), np.zeros((0, 0), np.bool_))
 
 
-def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), supposed: bool = False) -> Rooms:
-    """The rooms of a world model. supposed : as they are if what may yet be an object is one, not a piece of wall."""
+def rooms_of(
+    model: WorldModel, rules: tuple[Path, ...] = (), supposed: bool = False, without: Mask | None = None
+) -> Rooms:
+    """The rooms of a world model.
+
+    supposed : as they are if what may yet be an object is one, not a piece of wall. without : as they are if these
+    squares (rows, columns) are no wall.
+    """
     verge = model.walls if supposed else model.verge
+    if without is not None:
+        verge = verge & ~without
     if not verge.any():
         return Rooms((), np.ones(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
     doubtful = verge & (model.view.probability < HALF)  # part of no room, but no bound of a door either

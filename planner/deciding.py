@@ -31,7 +31,7 @@ from planner.repeating import Circles
 from planner.screen import Screens, vicinity
 from planner.searching import against_walls, aims_towards
 from planner.sizing import Sizer, least_outline
-from planner.verifying import Verifier, before_taking, misgiving
+from planner.verifying import Verifier, before_taking, misgiving, unfelt_wall
 from planner.walking import HURRY, STROLL, halting, is_open, next_move
 from planner.ways import Way, choose_way, ways
 
@@ -89,7 +89,7 @@ class Decider:
         while self.attained < len(self.stages):
             stage = self.stages[self.attained]
             decision = self._towards(stage, situation, reconciled, track)
-            decision = decision or self._look(misgiving(situation), stage, situation)
+            decision = decision or self._look(self._doubt(stage, situation), stage, situation)
             if decision is not None:
                 unproved = model.anew and decision.verdict == "impossible"
                 return replace(decision, verdict="limit") if unproved else decision
@@ -124,6 +124,14 @@ class Decider:
         aims = aims_towards(where, situation, reconciled, arrive=True)
         decision = self._pursue(aims, stage, situation, lambda: missing)
         return self._felt(decision, stage, situation) if reconciled.hypothesised else decision
+
+    def _doubt(self, stage: Stage, situation: Situation) -> Aim | None:
+        """What to look at before a stage is held for attained."""
+        model = situation.model
+        nodes = [(x, model.object(self.bound.get(x, ""))) for x in _in_rooms(stage.carried)]
+        places = [self.carrier.began_at(x, node, model) for x, node in nodes if node is not None]
+        places += [model.lattice.woke] * bool(_in_rooms(stage.own))
+        return misgiving(situation) or unfelt_wall(places, situation)
 
     def _made_sure(self, goals: Sequence[Fact], there: bool, stage: Stage, situation: Situation) -> Decision | None:
         """A look at what goals are about, before they are held for attained; None when all of that is settled.
@@ -377,3 +385,8 @@ class Decider:
         reconciled = reconcile(self.task, model, distances, self.bound, self.rules, sorted(carried))
         self.bound = reconciled.binding
         return reconciled
+
+
+def _in_rooms(goals: Sequence[Fact]) -> list[str]:
+    """What some goals say of that it shall be in another room."""
+    return [str(goal.args[0]) for goal in goals if goal.name in ("in", "through")]

@@ -56,8 +56,8 @@ class Situation:
 
         The rooms are others if what goes on unseen, and is taken for verge, is an object.
         """
-        mask = self._next_to(place, self.rooms, SURE)
-        both = mask & self._next_to(place, self.supposed, LIKELY_DOOR)
+        mask = self.next_to(place, self.rooms, SURE)
+        both = mask & self.next_to(place, self.supposed, LIKELY_DOOR)
         if both.any() or not mask.any():
             return both, ()
         return mask, loose_ends(self)
@@ -65,12 +65,12 @@ class Situation:
     def likely_beyond(self, place: tuple[float, float]) -> tuple[Rooms, Mask]:
         """The rooms, and (rows, columns) what shares a likely door with the room of a point of the lattice."""
         for rooms in (self.rooms, self.supposed):
-            mask = self._next_to(place, rooms, LIKELY_DOOR)
+            mask = self.next_to(place, rooms, LIKELY_DOOR)
             if mask.any():
                 break
         return rooms, mask
 
-    def _next_to(self, place: tuple[float, float], rooms: Rooms, least: int) -> Mask:
+    def next_to(self, place: tuple[float, float], rooms: Rooms, least: int) -> Mask:
         """(rows, columns) what shares a door with the room of a point, if that is one with so many percent."""
         row, column = self.model.view.locate(*place)
         return rooms.beyond(int(rooms.labels[row, column]), least)

@@ -5,7 +5,9 @@ Each is an aim to go to first, or None where there is nothing to make sure of.
 """
 
 import math
+from collections.abc import Iterable
 
+from kb.rooms import SURE, rooms_of
 from kb.worldmodel import Node
 from planner import exploring
 from planner.aims import Aim
@@ -82,3 +84,21 @@ def misgiving(situation: Situation) -> Aim | None:
         return None
     here = model.squares([(math.floor(model.place[0]), math.floor(model.place[1]))])
     return Aim("inspect", *exploring.sight_of(situation.screens, here, "what is seen is not as it is believed to be"))
+
+
+def unfelt_wall(places: Iterable[Place], situation: Situation) -> Aim | None:
+    """Where to feel whether something is part of a wall, before one says that something is in the next room.
+
+    If it were a thing that stands against the wall, other rooms would be next to that of one of some points.
+    """
+    model = situation.model
+    for place in places:
+        beyond = situation.next_to(place, situation.rooms, SURE)
+        for mask in model.protruding:
+            look = exploring.against_the_wall(situation.screens, mask)
+            if not len(look.squares):
+                continue
+            other = situation.next_to(place, rooms_of(model, situation.rules, without=mask), SURE)
+            if other.any() and not (other & beyond).any():
+                return Aim("inspect", *look)
+    return None

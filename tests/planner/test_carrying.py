@@ -104,6 +104,17 @@ def test_what_is_fixed_is_found_out(tmp_path: Path) -> None:
     assert done.result.steps < 30
 
 
+def test_what_stands_against_a_wall_and_makes_a_door_of_a_passage_is_felt(tmp_path: Path) -> None:
+    """With the thing in its corner taken for wall the room to the west is too narrow to have a door to the next one."""
+    west, east = "2 2, 2 18, 18 18, 18 14, 20 14, 20 18, 24 18", "30 18, 46 18, 46 2, 20 2, 20 7, 18 7, 18 2"
+    ring = f"(0 0, 0 38, 48 38, 48 0, 0 0), ({west}, 24 20, 20 20, 20 36, 46 36, 46 20, 30 20, {east}, 2 2)"
+    things = f'object(p, h, "{box(2, 12, 8, 17)}").\nobject(t, g, "{box(9, 4, 13, 8)}").'
+    world = f'table(48, 38).\nverge("POLYGON ({ring})").\nutak("POINT (33.5 28.5)", 0).\n{things}\n'
+    done = run(scene(tmp_path, world, "object(x). shape(x, square).", "in(x, room(next))."))
+    assert done.result.verdict == "done", done.result.reason
+    assert shapely.box(20, 2, 46, 18).covers(done.session.table.polygons["t"])
+
+
 def test_a_square_that_looks_like_a_brick_is_measured(tmp_path: Path) -> None:
     between = f'object(t, g, "{box(8.5, 6, 11.5, 9)}").'
     folder = scene(tmp_path, room(between), "object(x). shape(x, square).", "at(x, corner(northeast)).")
