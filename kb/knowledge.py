@@ -148,13 +148,15 @@ class Knowledge:
         self, percept: Percept, labels: NDArray[np.int32], kinds: Kinds, view: MapView
     ) -> tuple[Percept, NDArray[np.int32], Kinds]:
         """The regions, with what was felt to be a thing that stands against the verge as regions of their own."""
-        occupied = solid(view)
+        bounds = np.array([kinds.of(f"part{n}", "object") == 0 for n in range(int(labels.max()) + 1)])[labels]
+        occupied = solid(view) & bounds
         felt = {view.locate(x, y): colour for (x, y), colour in self.felt.items()}
         felt = {place: colour for place, colour in felt.items() if occupied[place]}
-        if not any(colour != VERGE and kinds.of(f"part{labels[p]}", "object") == 0 for p, colour in felt.items()):
+        if all(colour == VERGE for colour in felt.values()):
             return percept, labels, kinds
         labels, regions, kind = labels.copy(), [*percept.regions], dict(kinds.kind)
-        for thing in told_apart(protrusions(view.seen & (view.probability <= SPACE), occupied, view.seen), felt):
+        floor = view.seen & (view.probability <= SPACE)
+        for thing in told_apart(protrusions(floor, occupied, view.seen), felt):
             label = int(labels.max()) + 1
             labels[thing] = label
             regions.append(part_of_verge(thing, label, view))

@@ -263,7 +263,7 @@ class Decider:
         # squares lie keeps the outline that it seems to have then.
         fetched = not land.lookouts and not land.ends and not is_open(situation.model)
         brought = None if land.there else partial(along, fetched=fetched)
-        decision = self._pursue(aims, stage, situation, advice.reason, verdict, brought)
+        decision = self._felt(self._pursue(aims, stage, situation, advice.reason, verdict, brought), stage, situation)
         must_reach = land.must_reach() if decision.verdict else {}
         if must_reach:
             shut_in = self.carrier.refused(node, must_reach, situation)
