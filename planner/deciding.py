@@ -31,7 +31,7 @@ from planner.repeating import Circles
 from planner.screen import Screens, vicinity
 from planner.searching import against_walls, aims_towards
 from planner.sizing import Sizer, least_outline
-from planner.verifying import Verifier, before_taking, misgiving, unfelt_wall
+from planner.verifying import Verifier, before_taking, misgiving, more_of, unfelt_wall
 from planner.walking import HURRY, STROLL, halting, is_open, next_move
 from planner.ways import Way, choose_way, ways
 
@@ -227,6 +227,9 @@ class Decider:
             look = self._inspect(node, stage, situation)
             if look is not None:
                 return look
+        look = self._look(more_of(node, situation), stage, situation) if situation.model.held != node.name else None
+        if look is not None and look.command is not None:
+            return look
         if node.polygon is None:
             return Decision(None, f"{stage} is not attempted: the outline of {node.name} is not known", "limit")
         land = landing(goal, node, self.carrier.began_at(x, node, situation.model), situation)

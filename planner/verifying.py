@@ -7,6 +7,7 @@ Each is an aim to go to first, or None where there is nothing to make sure of.
 import math
 from collections.abc import Iterable
 
+from geometry.components import edged
 from kb.rooms import SURE, rooms_of
 from kb.worldmodel import Node
 from planner import exploring
@@ -84,6 +85,17 @@ def misgiving(situation: Situation) -> Aim | None:
         return None
     here = model.squares([(math.floor(model.place[0]), math.floor(model.place[1]))])
     return Aim("inspect", *exploring.sight_of(situation.screens, here, "what is seen is not as it is believed to be"))
+
+
+def more_of(node: Node, situation: Situation) -> Aim | None:
+    """Where to feel whether an object that stands against a wall goes on in what seems to be part of that."""
+    model = situation.model
+    beside = edged(model.mask(node.patch))
+    for mask in () if node.moved else model.protruding:
+        look = exploring.against_the_wall(situation.screens, mask)
+        if (mask & beside).any() and len(look.squares):
+            return Aim("inspect", *look)
+    return None
 
 
 def unfelt_wall(places: Iterable[Place], situation: Situation) -> Aim | None:
