@@ -226,7 +226,7 @@ class Carrier:
         if held.stuck > 1 or self._tight.get(held.name, 0) > (SLIPPERY if held.inexact else TIGHTEST):
             self.failed.blame(held, model)
         elif held.moved and pushed is not None and self.pull:
-            drawn = drawn_back(held, pushed, model)
+            drawn = drawn_back(held, pushed, model, doubted=self._tight[held.name] > 1)
             return Act(_command(drawn, model), f"{held.name} is drawn back from what it stands against")
         return Act(Release(), f"{held.name} did not move")
 

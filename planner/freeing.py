@@ -18,10 +18,13 @@ ROOM = 0.3  # squares more than what just lets it pass, if there is so much room
 ABOUT = 4  # squares about it in which something may stand in its way
 
 
-def drawn_back(node: Node, pushed: Translate, model: WorldModel) -> Translate:
+def drawn_back(node: Node, pushed: Translate, model: WorldModel, doubted: bool = False) -> Translate:
     """The push that frees a thing which was stopped in a push: aside as well when it lies only about where he believes.
 
     Where it is known exactly nothing that he knows can have stopped it.
+
+    doubted : it was stopped again where nothing known is in its way, so it lies, or is, otherwise than he believes. It
+    is drawn back to the middle of the room that there is to either side, then.
     """
     if not any(pushed):
         return pushed
@@ -30,7 +33,7 @@ def drawn_back(node: Node, pushed: Translate, model: WorldModel) -> Translate:
     def way(aside: float) -> Translate:
         return pushed.steered(-far, aside)
 
-    if not node.inexact:
+    if not (node.inexact or doubted):
         return way(0.0)
     walls, body, onward = _walls(node, model), Body(node.polygon), pushed.steered(far + ONWARD, 0.0)
 
@@ -41,8 +44,11 @@ def drawn_back(node: Node, pushed: Translate, model: WorldModel) -> Translate:
 
     sides = sorted((STEP * n for n in range(-MOST, MOST + 1)), key=abs)
     least = next((aside for aside in sides if passes(aside)), None)
-    if not least:  # there is no such way, or nothing known stands in its way
+    if least is None or (least == 0.0 and not doubted):  # there is no such way, or nothing known stands in its way
         return way(0.0)
+    if least == 0.0:
+        left, right = (list(itertools.takewhile(passes, (s * STEP * n for n in range(MOST + 1)))) for s in (-1, 1))
+        return way((left[-1] + right[-1]) / 2)
     side = math.copysign(1.0, least)
     further = (least + side * STEP * n for n in range(1, 2 * round(ROOM / STEP) + 1))
     free = [least, *itertools.takewhile(passes, further)]

@@ -83,6 +83,23 @@ def test_what_lies_just_where_it_is_believed_to_is_only_drawn_back() -> None:
     assert tuple(drawn_back(node, NORTH, model)) == pytest.approx((0.0, -BACK))
 
 
+@given(st.floats(0.0, 1.0), st.sampled_from([4.0, 4.6, 5.0]))
+@settings(max_examples=20, deadline=None)
+def test_what_is_stopped_again_where_nothing_is_known_to_be_is_brought_to_the_middle(part: float, wide: float) -> None:
+    node, model = before_the_door(WEST + part * (6 - wide), wide, inexact=False)
+    walls = walls_of(model)
+    freed = drawn_back(node, NORTH, model, doubted=True)
+    assert freed.dy == pytest.approx(-BACK)
+    assert passes(node.polygon, freed, walls)
+    offs = [abs(x - WEST - (6 - wide) / 2) for x in (node.polygon.bounds[0], node.polygon.bounds[0] + freed.dx)]
+    assert offs[1] <= max(0.1, offs[0] - 0.2)
+
+
+def test_what_stands_in_the_open_is_drawn_back_straight_for_all_doubt() -> None:
+    node, model = before_the_door(WEST + 1.0, 4.0)
+    assert tuple(drawn_back(node, Translate(0.0, -3.0), model, doubted=True)) == pytest.approx((0.0, BACK))
+
+
 def test_what_is_wider_than_the_door_is_only_drawn_back() -> None:
     node, model = before_the_door(WEST - 0.5, 7.0)
     assert tuple(drawn_back(node, NORTH, model)) == pytest.approx((0.0, -BACK))
