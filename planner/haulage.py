@@ -24,7 +24,7 @@ from kb.worldmodel import Node, WorldModel
 from planner.aims import ASP
 from planner.destinations import Situation
 from planner.hoping import BEYOND, BOLD, framed, hoped_floor
-from planner.landing import Ends, in_view
+from planner.landing import Ends, in_view, region_of
 from planner.refusing import Refusal, refusal
 from planner.screen import UNSEEN, grown
 from planner.walking import is_open
@@ -35,6 +35,8 @@ LEVELS = (0, BOLD, UNSEEN)  # of certainty, that are tried
 FEWEST = 2  # commands of a plan: to push once, and to let go
 MOST_ROUNDS = 12  # choices that geometry is asked to verify
 STRIDE = 0.25  # squares between the places at which the squares of a motion are taken down
+OFTEN = 2  # times that a thing stood against something unawares before its way must leave room for its being otherwise
+KEPT = 0.15  # squares that it keeps from walls then
 MARGIN = 0.3  # squares kept free about a thing whose outline is not whole
 WIDEST = 0.6  # at most: what is kept free on either side must leave a way through doors
 
@@ -192,10 +194,23 @@ class Hauler:
             if len(self._known) > 64:
                 self._known.clear()
             margin = min(MARGIN * (tight + (not is_whole(shape))), WIDEST)
-            self._known[key] = plan_carrying(
-                shape, free, utak, end, margin, self._pull, avoid, walk, held=held, turn=turn
-            )
+
+            def ask(free: Mask, walls: Any = None) -> Carrying:
+                return plan_carrying(
+                    shape, free, utak, end, margin, self._pull, avoid, walk, walls=walls, held=held, turn=turn
+                )
+
+            roomy = ask(*_with_room(free, shape)) if tight >= OFTEN else None
+            self._known[key] = roomy if roomy is not None and roomy.legs else ask(free)
         return self._known[key]
+
+
+def _with_room(free: Mask, shape: Any) -> tuple[Mask, Any]:
+    """The squares and the walls for a thing that shall keep its distance, but for where it does not now."""
+    rows, columns = free.shape
+    walls = shapely.box(0, 0, columns, rows).difference(region_of(free))
+    thick = walls.union(walls.buffer(KEPT, join_style="mitre").difference(shape.buffer(2 * KEPT, join_style="mitre")))
+    return free & ~grown(~np.pad(free, 1), 1)[1:-1, 1:-1], thick
 
 
 def _utak(model: WorldModel) -> Place:

@@ -12,7 +12,7 @@ from geometry.carrying import Carrying, Inside
 from kb.evidence import FULL
 from kb.loads import covered
 from kb.worldmodel import Node
-from planner.haulage import Haul, Hauler, Request
+from planner.haulage import KEPT, OFTEN, Haul, Hauler, Request
 from planner.refusing import Refusal, nearest_to_done, refusal
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
@@ -133,3 +133,39 @@ def test_what_may_be_part_of_what_is_carried_proves_nothing(inexact: bool, apart
 def test_the_passage_told_is_one_that_could_be_widened(plans: list[tuple[int, float]], told: int) -> None:
     asked_for = [(level, cast(Carrying, SimpleNamespace(missing=missing))) for level, missing in plans]
     assert nearest_to_done(asked_for) is asked_for[told][1]
+
+
+FLUSH = [  # an L of five squares, and a door as wide
+    "b" * 30,
+    *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 4,
+    "b" + "." * 28 + "b",
+    "b....gg" + "." * 22 + "b",
+    "b....gg" + "." * 15 + "U......b",
+    "b....ggggg" + "." * 19 + "b",
+    "b....ggggg" + "." * 19 + "b",
+    *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 5,
+    "b" * 30,
+]
+
+
+@pytest.mark.parametrize(("tight", "kept"), [(0, 0.0), (OFTEN, KEPT)])
+def test_what_stood_against_something_often_keeps_its_distance(tight: int, kept: float) -> None:
+    model = seen_whole(FLUSH)
+    (node,) = model.objects
+    west, south = model.view.west + 5, model.view.south + 6
+    ell = [(0, 0), (5, 0), (5, 2), (2, 2), (2, 4), (0, 4)]
+    node = replace(node, polygon=shapely.Polygon([(x + west, y + south) for x, y in ell]))
+    room = Inside(shapely.box(16, 1, 29, 15))
+    found = Hauler().find(Request(node, {"r": room}, tight=tight), situation_of(model))
+    assert isinstance(found, Haul)
+    walls = shapely.union_all(
+        [shapely.box(c, r, c + 1, r + 1) for r, c in zip(*(model.view.state == FULL).nonzero(), strict=True)]
+    ).difference(shapely.box(5, 6, 10, 10))
+    shape = shapely.Polygon([(x + 5, y + 6) for x, y in ell])
+    nearest = 1.0
+    for leg in found.plan.legs:
+        for motion in leg.motions:
+            nearest = min(nearest, *(motion.part(n / 64).carry(shape).distance(walls) for n in range(1, 65)))
+            shape = motion.carry(shape)
+    assert room.polygon.covers(shape)
+    assert nearest >= kept - 1e-6
