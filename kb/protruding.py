@@ -23,7 +23,8 @@ def protrusions(floor: Mask, solid: Mask, seen: Mask) -> list[Mask]:
 
     One may be part of another: where a thing ends is not told by what is seen of it.
 
-    floor, solid : (rows, columns) squares where floor is, and of what is taken for verge. seen : those that were seen.
+    floor, solid : (rows, columns) squares where floor is, and where something is that bounds it, or stands against what
+    does. seen : those that were seen.
     """
     bounds = seen & ~floor  # beside what is there it may be open what is: what lies askew does not end on a line
     across, along = (short & solid for short in (_short(floor, bounds), _short(floor.T, bounds.T).T))

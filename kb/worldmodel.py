@@ -200,7 +200,10 @@ class WorldModel:
         height, width = self.labels.shape
         felt = {self.view.locate(x, y): colour for (x, y), colour in self.felt.items()}
         within = {(row, column): c for (row, column), c in felt.items() if 0 <= row < height and 0 <= column < width}
-        return unfelt(protrusions(self.space, solid(self.view) & self.verge, self.view.seen), within)
+        standing, beside = self.verge.copy(), edged(self.verge)
+        for patch in (self.mask(node.patch) for node in self.objects if not node.moved):
+            standing |= patch & (patch & beside).any()  # what was felt to be a thing, and may go on
+        return unfelt(protrusions(self.space, standing & solid(self.view), self.view.seen), within)
 
     def object(self, name: str) -> Node | None:
         """The object of this name, if there is one."""

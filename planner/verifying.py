@@ -108,6 +108,8 @@ def unfelt_wall(places: Iterable[Place], situation: Situation) -> Aim | None:
         beyond = situation.next_to(place, situation.rooms, SURE)
         for mask in model.protruding:
             look = exploring.against_the_wall(situation.screens, mask)
+            if not len(look.squares):  # whatever lies askew must be seen better before one can stand right beside it
+                look = exploring.sight_of(situation.screens, mask, look.what)
             if not len(look.squares):
                 continue
             other = situation.next_to(place, rooms_of(model, situation.rules, without=mask), SURE)
