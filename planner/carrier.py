@@ -15,6 +15,7 @@ from geometry.rigid import Motion, Rotate, Translate
 from kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
 from kb.evidence import OPEN
 from kb.lattice import CENTRE
+from kb.loads import is_whole
 from kb.worldmodel import SPACE, Node, WorldModel
 from planner.course import Course, Place, clear_part, course_of, followed, from_here, square_of, stands
 from planner.destinations import Situation
@@ -226,7 +227,8 @@ class Carrier:
         if held.stuck > 1 or self._tight.get(held.name, 0) > (SLIPPERY if held.inexact else TIGHTEST):
             self.failed.blame(held, model)
         elif held.moved and pushed is not None and self.pull:
-            drawn = drawn_back(held, pushed, model, doubted=self._tight[held.name] > 1)
+            doubted = self._tight[held.name] > 1 or not is_whole(held.polygon)
+            drawn = drawn_back(held, pushed, model, doubted)
             return Act(_command(drawn, model), f"{held.name} is drawn back from what it stands against")
         return Act(Release(), f"{held.name} did not move")
 

@@ -31,7 +31,7 @@ from planner.repeating import Circles
 from planner.screen import Screens, vicinity
 from planner.searching import against_walls, aims_towards
 from planner.sizing import Sizer, least_outline
-from planner.verifying import Verifier, before_taking, misgiving, more_of, unfelt_wall
+from planner.verifying import Verifier, before_taking, here, misgiving, more_of, unfelt_wall
 from planner.walking import HURRY, STROLL, halting, is_open, next_move
 from planner.ways import Way, choose_way, ways
 
@@ -128,10 +128,16 @@ class Decider:
     def _doubt(self, stage: Stage, situation: Situation) -> Aim | None:
         """What to look at before a stage is held for attained."""
         model = situation.model
-        nodes = [(x, model.object(self.bound.get(x, ""))) for x in _in_rooms(stage.carried)]
-        places = [self.carrier.began_at(x, node, model) for x, node in nodes if node is not None]
-        places += [model.lattice.woke] * bool(_in_rooms(stage.own))
-        return misgiving(situation) or unfelt_wall(places, situation)
+        doubt = misgiving(situation)
+        for goal in stage.goals if doubt is None else ():
+            x = str(goal.args[0])
+            node = model.object(self.bound.get(x, ""))
+            if goal.name not in FROM_THE_START or (node is None and x != "utak"):
+                continue
+            began = model.lattice.woke if node is None else self.carrier.began_at(x, node, model)
+            lying = here(model) if node is None else model.mask(node.patch)
+            doubt = doubt or unfelt_wall(goal.name, began, lying, situation)
+        return doubt
 
     def _made_sure(self, goals: Sequence[Fact], there: bool, stage: Stage, situation: Situation) -> Decision | None:
         """A look at what goals are about, before they are held for attained; None when all of that is settled.
@@ -388,8 +394,3 @@ class Decider:
         reconciled = reconcile(self.task, model, distances, self.bound, self.rules, sorted(carried))
         self.bound = reconciled.binding
         return reconciled
-
-
-def _in_rooms(goals: Sequence[Fact]) -> list[str]:
-    """What some goals say of that it shall be in another room."""
-    return [str(goal.args[0]) for goal in goals if goal.name in ("in", "through")]

@@ -304,13 +304,12 @@ def doorsteps(situation: Situation, tried: bool = False) -> tuple[Lookout, ...]:
 def around_corner(situation: Situation) -> Destination:
     """The squares wholly out of sight of the place where Utak woke: a corner of the verge lies in between."""
     model = situation.model
-    squares = np.flatnonzero(out_of_sight(model, model.lattice.woke) & situation.screens.floor)
+    squares = np.flatnonzero(out_of_sight(model.verge, model, model.lattice.woke) & situation.screens.floor)
     return Destination(squares) if len(squares) else nowhere("no corner is seen yet that hides a place")
 
 
-def out_of_sight(model: WorldModel, place: tuple[float, float]) -> Mask:
-    """(rows, columns): squares none of whose corners is seen from a point of the lattice past the verge."""
-    verge = model.verge
+def out_of_sight(verge: Mask, model: WorldModel, place: tuple[float, float]) -> Mask:
+    """(rows, columns): squares none of whose corners is seen from a point of the lattice past a verge."""
     height, width = verge.shape
     x, y = place[0] - model.view.west, place[1] - model.view.south
     corners = np.stack(np.meshgrid(np.arange(width + 1), np.arange(height + 1)), axis=-1).astype(float)

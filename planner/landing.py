@@ -302,7 +302,7 @@ def _insides(rooms: Rooms, beyond: Mask, hoping: Situation | None = None) -> dic
 
 def _around_corner(began: Place, node: Node, situation: Situation) -> Landing:
     model = situation.model
-    hidden = out_of_sight(model, began) & (model.space | model.mask(node.patch))
+    hidden = out_of_sight(model.verge, model, began) & (model.space | model.mask(node.patch))
     if hidden.sum() < node.polygon.area:
         return Landing({}, "no corner is seen yet that hides a place for it")
     return Landing({"hidden": Inside(region_of(hidden))}, hoped=lambda: {"hidden": _hoped(hidden, situation)})

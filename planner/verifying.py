@@ -5,18 +5,21 @@ Each is an aim to go to first, or None where there is nothing to make sure of.
 """
 
 import math
-from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
 
 from geometry.components import edged
 from kb.rooms import SURE, rooms_of
-from kb.worldmodel import Node
+from kb.worldmodel import Node, WorldModel
 from planner import exploring
 from planner.aims import Aim
-from planner.destinations import Situation, contains
+from planner.destinations import Situation, contains, out_of_sight
 from planner.refusing import Refusal
 from planner.walking import is_open
 
 Place = tuple[float, float]
+Mask = NDArray[np.bool_]
 FEW = 4  # squares looked from by one who has hardly looked
 
 
@@ -83,8 +86,13 @@ def misgiving(situation: Situation) -> Aim | None:
     model = situation.model
     if not model.contradicted:
         return None
-    here = model.squares([(math.floor(model.place[0]), math.floor(model.place[1]))])
-    return Aim("inspect", *exploring.sight_of(situation.screens, here, "what is seen is not as it is believed to be"))
+    look = exploring.sight_of(situation.screens, here(model), "what is seen is not as it is believed to be")
+    return Aim("inspect", *look)
+
+
+def here(model: WorldModel) -> Mask:
+    """(rows, columns): the square in which Utak stands."""
+    return model.squares([(math.floor(model.place[0]), math.floor(model.place[1]))])
 
 
 def more_of(node: Node, situation: Situation) -> Aim | None:
@@ -98,21 +106,28 @@ def more_of(node: Node, situation: Situation) -> Aim | None:
     return None
 
 
-def unfelt_wall(places: Iterable[Place], situation: Situation) -> Aim | None:
-    """Where to feel whether something is part of a wall, before one says that something is in the next room.
+def unfelt_wall(goal: str, began: Place, lying: Mask, situation: Situation) -> Aim | None:
+    """Where to feel whether something is part of a wall, before one says that something is elsewhere than it began.
 
-    If it were a thing that stands against the wall, other rooms would be next to that of one of some points.
+    If it were a thing that stands against the wall, the goal would hold no more.
+
+    goal : in, through or around. began : where it began, a point of the lattice. lying : (rows, columns) where it lies.
     """
-    model = situation.model
-    for place in places:
-        beyond = situation.next_to(place, situation.rooms, SURE)
-        for mask in model.protruding:
-            look = exploring.against_the_wall(situation.screens, mask)
-            if not len(look.squares):  # whatever lies askew must be seen better before one can stand right beside it
-                look = exploring.sight_of(situation.screens, mask, look.what)
-            if not len(look.squares):
-                continue
-            other = situation.next_to(place, rooms_of(model, situation.rules, without=mask), SURE)
-            if other.any() and not (other & beyond).any():
-                return Aim("inspect", *look)
+    for mask in situation.model.protruding:
+        look = exploring.against_the_wall(situation.screens, mask)
+        if not len(look.squares):  # whatever lies askew must be seen better before one can stand right beside it
+            look = exploring.sight_of(situation.screens, mask, look.what)
+        if len(look.squares) and _holds_by(mask, goal, began, lying, situation):
+            return Aim("inspect", *look)
     return None
+
+
+def _holds_by(mask: Mask, goal: str, began: Place, lying: Mask, situation: Situation) -> bool:
+    """Does a goal hold only if some squares of what bounds the floor are wall?"""
+    model = situation.model
+    if goal == "around":
+        hidden = out_of_sight(model.verge, model, began)
+        return bool((lying & hidden & ~out_of_sight(model.verge & ~mask, model, began)).any())
+    beyond = situation.next_to(began, situation.rooms, SURE)
+    other = situation.next_to(began, rooms_of(model, situation.rules, without=mask), SURE)
+    return bool(other.any() and not (other & beyond).any())

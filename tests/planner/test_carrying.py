@@ -122,6 +122,18 @@ def test_what_stands_against_a_wall_and_makes_a_door_of_a_passage_is_felt(
     assert not any((part & model.mask(node.patch)).any() for part in model.protruding for node in model.objects)
 
 
+def test_what_may_be_no_wall_hides_nothing_until_it_is_felt(tmp_path: Path) -> None:
+    ring = "(0 0, 0 34, 34 34, 34 0, 0 0), (18 4, 18 20, 4 20, 4 30, 30 30, 30 4, 18 4)"
+    ell = "POLYGON ((18 11, 24 11, 24 19, 22 19, 22 13, 18 13, 18 11))"
+    things = f'fixed(p, h, "{ell}").\nobject(t, g, "{box(12, 23, 14, 27)}").'
+    world = f'table(34, 34).\nverge("POLYGON ({ring})").\nutak("POINT (27.5 21.5)", 200).\n{things}\n'
+    done = run(scene(tmp_path, world, "object(x). shape(x, brick).", "around(x, corner)."))
+    assert done.result.verdict == "done", done.result.reason
+    wall, began = shapely.box(0, 0, 18, 20), shapely.Point(13, 25)
+    corners = shapely.points(done.session.table.polygons["t"].exterior.coords)
+    assert all(shapely.LineString([began, corner]).intersection(wall).length > 0 for corner in corners)
+
+
 def test_a_square_that_looks_like_a_brick_is_measured(tmp_path: Path) -> None:
     between = f'object(t, g, "{box(8.5, 6, 11.5, 9)}").'
     folder = scene(tmp_path, room(between), "object(x). shape(x, square).", "at(x, corner(northeast)).")
