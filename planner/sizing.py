@@ -17,6 +17,7 @@ from kb.worldmodel import Node
 FINE = 0.12  # squares up to which it is told how far in a side lies
 FIRST = 0.1  # squares by which a thing is pushed first: one of whole squares is told from all others by that, and back
 MOST = 16  # pushes
+SHOWN = 0.5  # squares: what was pushed so far looks otherwise than before
 NOTHING, AWAY = 0.02, 0.3  # squares: a push that is none, and one that only leads elsewhere
 
 
@@ -27,13 +28,17 @@ class Sizer:
         self._tries: dict[str, int] = {}
 
     def poses(self, node: Node) -> Iterator[At]:
-        """Where to push a thing by parts of a square, to tell its size better; nothing when it is told."""
+        """Where to push a thing by parts of a square, to tell its size better; nothing when it is told.
+
+        Whether it moves at all is not known of one that never did: then it is pushed so far that this shows.
+        """
         wanted = phases(node)
         if wanted is None or self._tries.get(node.name, 0) >= MOST:
             return
         self._tries[node.name] = self._tries.get(node.name, 0) + 1
         steps = [_steps(part) for part in wanted]
-        for dx, dy in sorted(product(*steps), key=lambda step: math.hypot(*step)):
+        pushes = sorted((math.hypot(*step), *step) for step in product(*steps))
+        for _, dx, dy in sorted(pushes, key=lambda push: push[0] < SHOWN and not node.moved):
             yield At(Pose(dx, dy, 0.0))
 
 

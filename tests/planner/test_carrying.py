@@ -148,7 +148,7 @@ def test_a_brick_that_is_measured_stays_one(tmp_path: Path) -> None:
     folder = scene(tmp_path, room(brick), "object(x). shape(x, square).", "at(x, corner(northeast)).")
     done = run(folder)
     assert done.result.verdict == "limit" and "nothing seen so far is x" in done.result.reason
-    assert done.session.table.polygons["t"].centroid.distance(shapely.Point(10, 7.5)) < 1.0
+    assert done.session.table.polygons["t"].centroid.distance(shapely.Point(10, 7.5)) < 3.0
 
 
 def test_what_is_fixed_is_not_what_shall_be_carried(tmp_path: Path) -> None:
