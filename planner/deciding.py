@@ -75,6 +75,7 @@ class Decider:
         self._kept = Kept()
         self._circles = Circles()
         self._looked = 0  # squares he had looked from when he went to see where it must end, until it is one more
+        self._feeling = False  # is he about to feel what may stand against a wall?
         self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
@@ -122,18 +123,14 @@ class Decider:
                 return look
         missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
         aims = aims_towards(where, situation, reconciled, arrive=True)
-        decision = self._pursue(aims, stage, situation, lambda: missing)
-        return self._felt(decision, stage, situation) if reconciled.hypothesised else decision
+        return self._felt(lambda: self._pursue(aims, stage, situation, lambda: missing), stage, situation)
 
     def _doubt(self, stage: Stage, situation: Situation) -> Aim | None:
         """What to look at before a stage is held for attained."""
-        model = situation.model
-        doubt = misgiving(situation)
-        for goal in stage.goals if doubt is None else ():
+        model, doubt = situation.model, misgiving(situation)
+        for goal in (goal for goal in stage.goals if goal.name in FROM_THE_START):
             x = str(goal.args[0])
             node = model.object(self.bound.get(x, ""))
-            if goal.name not in FROM_THE_START or (node is None and x != "utak"):
-                continue
             began = model.lattice.woke if node is None else self.carrier.began_at(x, node, model)
             lying = here(model) if node is None else model.mask(node.patch)
             doubt = doubt or unfelt_wall(goal.name, began, lying, situation)
@@ -146,14 +143,21 @@ class Decider:
         """
         nodes = [situation.model.object(self.bound.get(str(goal.args[1]), "")) for goal in goals]
         doubted = [n for n in nodes if n is not None and (self.verifier.doubted(n) or (there and n.vague))]
-        looks = (self._inspect(node, stage, situation) for node in doubted)
+        looks = (self._look(self.verifier.inspection(node, situation), stage, situation) for node in doubted)
         return next((look for look in looks if look is not None), None)
 
-    def _felt(self, decision: Decision, stage: Stage, situation: Situation) -> Decision:
-        """What was decided; rather than give up, to feel what may be a thing that stands against a wall."""
-        aims = against_walls(situation) if decision.verdict else []
-        instead = self._pursue(aims, stage, situation, lambda: "") if aims else decision
-        return decision if instead.verdict else instead
+    def _felt(self, ask: Callable[[], Decision], stage: Stage, situation: Situation) -> Decision:
+        """What is decided; rather than give up, to feel what may be a thing that stands against a wall.
+
+        What was begun is gone on with: on the way there, too, something else may come to be worth a look.
+        """
+        decision = None if self._feeling else ask()
+        if decision is None or decision.verdict:
+            aims = against_walls(situation)
+            felt = [self._pursue(aims, stage, situation, lambda: "")] if aims else []
+            self._feeling = any(not instead.verdict for instead in felt)
+            return felt[0] if self._feeling else decision or ask()
+        return decision
 
     def _pursue(
         self,
@@ -223,17 +227,18 @@ class Decider:
             # No proof that there is none: it may stand against a wall, and look like a piece of that; and who does not
             # know how the squares lie may have pushed at another thing.
             proved = fixed and situation.model.view.sure and not is_open(situation.model)
-            decision = self._pursue(aims, stage, situation, lambda: unseen.missing, "impossible" if proved else "limit")
-            decision = self._felt(decision, stage, situation)
+            verdict = "impossible" if proved else "limit"
+            ask = partial(self._pursue, aims, stage, situation, lambda: unseen.missing, verdict)
+            decision = self._felt(ask, stage, situation)
             like = [name for parameter, name in reconciled.measurable if parameter == x and decision.verdict]
             seen = (thing for thing in situation.model.objects if thing.name in like)
             gauged = (self._gauged(thing, stage, situation) for thing in seen)
             return next((push for push in gauged if push is not None), decision)
         if node.polygon is None or node.vague or self.verifier.doubted(node):
-            look = self._inspect(node, stage, situation)
+            look = self._look(self.verifier.inspection(node, situation), stage, situation)
             if look is not None:
                 return look
-        look = self._look(more_of(node, situation), stage, situation) if situation.model.held != node.name else None
+        look = self._look(more_of(node, situation), stage, situation)
         if look is not None and look.command is not None:
             return look
         if node.polygon is None:
@@ -272,7 +277,8 @@ class Decider:
         # squares lie keeps the outline that it seems to have then.
         fetched = not land.lookouts and not land.ends and not is_open(situation.model)
         brought = None if land.there else partial(along, fetched=fetched)
-        decision = self._felt(self._pursue(aims, stage, situation, advice.reason, verdict, brought), stage, situation)
+        ask = partial(self._pursue, aims, stage, situation, advice.reason, verdict, brought)
+        decision = self._felt(ask, stage, situation)
         must_reach = land.must_reach() if decision.verdict else {}
         if must_reach:
             shut_in = self.carrier.refused(node, must_reach, situation)
@@ -329,10 +335,6 @@ class Decider:
                 return advice
         self._looked = looked
         return Refusal(not self.carrier.begun, lambda: land.missing)
-
-    def _inspect(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
-        """A look at an object that is not settled yet; None when no look is left that may tell more."""
-        return self._look(self.verifier.inspection(node, situation), stage, situation)
 
     def _look(self, aim: Aim | None, stage: Stage, situation: Situation) -> Decision | None:
         """The next command towards what he wants to make sure of, if there is anything."""

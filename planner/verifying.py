@@ -99,7 +99,7 @@ def more_of(node: Node, situation: Situation) -> Aim | None:
     """Where to feel whether an object that stands against a wall goes on in what seems to be part of that."""
     model = situation.model
     beside = edged(model.mask(node.patch))
-    for mask in () if node.moved else model.protruding:
+    for mask in () if node.moved or model.held == node.name else model.protruding:
         look = exploring.against_the_wall(situation.screens, mask)
         if (mask & beside).any() and len(look.squares):
             return Aim("inspect", *look)
