@@ -29,10 +29,9 @@ def protrusions(floor: Mask, solid: Mask, seen: Mask) -> list[Mask]:
     bounds = seen & ~floor  # beside what is there it may be open what is: what lies askew does not end on a line
     across, along = (short & solid for short in (_short(floor, bounds), _short(floor.T, bounds.T).T))
     pockets = [pocket & solid for pocket in _in_corners(floor, bounds)]
-    found = [part for mask in (across, along, across | along) for part in _parts(mask)]
-    found += pockets
-    for pocket in pockets:
-        found += [part for part in _parts(across | along | pocket) if (part & pocket).any()]
+    between = across, along, across | along
+    found = [*pockets, *(part for mask in between for part in _parts(mask))]
+    found += [part for pocket in pockets for mask in between for part in _parts(mask | pocket) if (part & pocket).any()]
     unlike = {mask.tobytes(): mask for mask in found if (edged(mask) & solid & ~mask).any()}
     return sorted(unlike.values(), key=lambda mask: int(mask.sum()))
 

@@ -127,3 +127,14 @@ def test_what_lies_askew_sticks_out_amid_squares_that_are_not_clear() -> None:
     vague[3, 8] = vague[4, 11] = vague[2, 12] = True
     parts = protrusions(~occupied & ~vague, occupied, np.ones_like(occupied))
     assert among(parts, thing)
+
+
+def test_a_thing_in_a_corner_is_told_from_the_thin_wall_on_which_it_stands() -> None:
+    shape = np.zeros((6, 5), np.bool_)
+    shape[:3, :] = shape[:, 2:] = True
+    occupied, thing = with_thing(2, 2, shape)
+    occupied = np.pad(occupied, ((9, 0), (0, 0)))
+    occupied[:2] = occupied[:, :2] = occupied[:, -2:] = True  # another room to the south, and the wall between
+    occupied[9:11, 12:16] = False
+    parts = sticking_out(occupied)
+    assert among(parts, np.pad(thing, ((9, 0), (0, 0))))
