@@ -38,8 +38,11 @@ class Sizer:
         self._tries[node.name] = self._tries.get(node.name, 0) + 1
         steps = [_steps(part) for part in wanted]
         pushes = sorted((math.hypot(*step), *step) for step in product(*steps))
-        for _, dx, dy in sorted(pushes, key=lambda push: push[0] < SHOWN and not node.moved):
-            yield At(Pose(dx, dy, 0.0))
+        both = sorted(pushes, key=lambda push: push[0] < SHOWN and not node.moved)
+        single = [push for _, dx, dy in pushes for push in ((dx, 0.0), (0.0, dy))]  # where there is no room for both
+        for dx, dy in dict.fromkeys([*((dx, dy) for _, dx, dy in both), *single]):
+            if dx or dy:
+                yield At(Pose(dx, dy, 0.0))
 
 
 def _steps(part: float | None) -> list[float]:

@@ -49,6 +49,18 @@ def test_all_stays_on_the_lattice() -> None:
     assert shapely.get_coordinates(plan.polygon).tolist() == shapely.get_coordinates(plan.polygon).round().tolist()
 
 
+@given(st.floats(-4, 4), st.floats(-5, 5), st.booleans())
+@settings(max_examples=30, deadline=None)
+def test_where_one_push_will_do_it_is_one(dx: float, dy: float, held: bool) -> None:
+    shape, free = box(8, 9, 12, 11), two_rooms(5)
+    utak = (7.5, 10.5) if held else (3.5, 18.5)
+    plan = plan_carrying(shape, free, utak, At(Pose(dx, dy, 0.0)), held=held)
+    end = replay(plan, shape, free, utak)
+    assert end.symmetric_difference(affinity.translate(shape, dx, dy)).area < 1e-6
+    assert [len(leg.motions) for leg in plan.legs] in ([1], [])
+    assert plan.goes_on == (held and bool(plan.legs))
+
+
 @pytest.mark.parametrize("pose", [Pose(30, 2, 0), Pose(30.3, 1.7, 90), Pose(28, 5, 180), Pose(0.25, 0, 0)])
 def test_a_pose_is_reached_exactly(pose: Pose) -> None:
     shape = box(8, 9, 12, 11)
