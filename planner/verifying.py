@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.components import edged
-from kb.rooms import SURE, rooms_of
+from kb.rooms import SURE, Door, rooms_of
 from kb.worldmodel import Node, WorldModel
 from planner import exploring
 from planner.aims import Aim
@@ -20,6 +20,8 @@ from planner.walking import is_open
 
 Place = tuple[float, float]
 Mask = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+THIN = 4  # squares that a wall between rooms is thick at most
 FEW = 4  # squares looked from by one who has hardly looked
 
 
@@ -113,13 +115,36 @@ def unfelt_wall(goal: str, began: Place, lying: Mask, situation: Situation) -> A
 
     goal : in, through or around. began : where it began, a point of the lattice. lying : (rows, columns) where it lies.
     """
+    doors = [door for door in situation.rooms.doors if door.sure]
     for mask in situation.model.protruding:
+        if any(_jambs_in_line(mask, door, situation.model) for door in doors):
+            continue
         look = exploring.against_the_wall(situation.screens, mask)
         if not len(look.squares):  # whatever lies askew must be seen better before one can stand right beside it
             look = exploring.sight_of(situation.screens, mask, look.what)
         if len(look.squares) and _holds_by(mask, goal, began, lying, situation):
             return Aim("inspect", *look)
     return None
+
+
+def _jambs_in_line(mask: Mask, door: Door, model: WorldModel) -> bool:
+    """Is something one jamb of a door, and the other one a thin wall, too? Then they are hardly but one wall."""
+    for end, other in ((door.a, door.b), (door.b, door.a)):
+        column, row = (math.floor(v + 0.5) for v in end)
+        if mask[max(row - 1, 0) : row + 1, max(column - 1, 0) : column + 1].any():
+            x, y = np.subtract(other, end) / max(door.width, 1e-9)
+            place = np.add(other, (0.5 * x, 0.5 * y))
+            return all(_floor_beside(place, way, model) for way in ((-y, x), (y, -x)))
+    return False
+
+
+def _floor_beside(place: Floats, way: tuple[float, float], model: WorldModel) -> bool:
+    """Is there floor not far from a place in a direction?"""
+    steps = np.arange(1, THIN + 1)[:, None] * np.array(way) + place
+    columns, rows = np.floor(steps).astype(int).T
+    height, width = model.space.shape
+    inside = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
+    return bool(model.space[rows[inside], columns[inside]].any())
 
 
 def _holds_by(mask: Mask, goal: str, began: Place, lying: Mask, situation: Situation) -> bool:

@@ -18,7 +18,7 @@ from planner.exploring import CLOSE
 from planner.goals import Stage
 from planner.haulage import Hauler, Request
 from planner.refusing import Refusal
-from planner.verifying import Verifier, before_taking, misgiving
+from planner.verifying import Verifier, _jambs_in_line, before_taking, misgiving
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of
 
@@ -141,3 +141,27 @@ def test_that_a_thing_is_nowhere_is_not_proved_by_not_seeing_it(sure: bool, monk
     assert decision is not None
     assert (decision.command, decision.verdict) == (None, "limit")
     assert "nothing seen so far is x" in decision.why
+
+
+STUB = [  # a wall between two rooms with a door in it
+    "b" * 30,
+    *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 5,
+    *["b" + "." * 28 + "b"] * 4,
+    *["b" + "." * 13 + "bb" + "." * 8 + "U" + "." * 4 + "b"] * 5,
+    "b" * 30,
+]
+BAR = [  # what may be a thing that stands against a wall, and leaves a passage
+    "b" * 34,
+    *["b" + "." * 32 + "b"] * 5,
+    *["b" + "." * 15 + "bb" + "." * 8 + "U" + "." * 6 + "b"] * 8,
+    "b" * 34,
+]
+
+
+@pytest.mark.parametrize(("rows", "wall"), [(STUB, True), (BAR, False)])
+def test_two_jambs_in_line_are_one_wall(rows: list[str], wall: bool) -> None:
+    situation = situation_of(seen_whole(rows))
+    (door,) = situation.rooms.doors
+    beside = [mask for mask in situation.model.protruding if mask.sum() in (10, 16)]
+    assert beside
+    assert all(_jambs_in_line(mask, door, situation.model) == wall for mask in beside)
