@@ -6,6 +6,7 @@ leads there gets dearer, until another one is chosen; what is chosen all the sam
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import astuple
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from planner.steps import Square
 
 WEARY = 25.0  # squares that an aim gets dearer each time
 MOST = 4  # times that an aim may lead in circles before it is given up
+DIGITS = 3  # of places and commands: what differs by less is the same
 State = tuple[object, ...]
 
 
@@ -24,14 +26,15 @@ class Circles:
     """Remembers what was done in which state of belief, and which squares were aimed at in vain."""
 
     def __init__(self) -> None:
-        self._done: set[tuple[State, Command]] = set()
+        self._done: set[tuple[State, State]] = set()
         self._vain: Counter[Square] = Counter()  # of the lattice
         self._known: State = ()  # when they were
 
     def noticed(self, model: WorldModel, command: Command) -> bool:
         """Was this command given before when just as much was known? It is remembered that it is given now."""
         x, y = model.place
-        key = ((round(x, 3), round(y, 3), model.held, _known(model)), command)
+        told = tuple(round(v, DIGITS) if isinstance(v, float) else v for v in astuple(command))
+        key = (round(x, DIGITS), round(y, DIGITS), model.held, _known(model)), (type(command).__name__, *told)
         again = key in self._done
         self._done.add(key)
         return again

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from kb.body import Move
+from kb.body import Move, Push, Release
 from planner.aims import Aim
 from planner.repeating import WEARY, Circles
 from tests.kb.drawings import seen_whole
@@ -18,6 +18,9 @@ def test_the_same_command_in_the_same_state_is_noticed() -> None:
     assert not circles.noticed(MODEL, Move(1.0, 0.0))
     assert not circles.noticed(MODEL, Move(0.0, 1.0))
     assert circles.noticed(MODEL, Move(1.0, 0.0))
+    assert circles.noticed(MODEL, Move(1.0 + 4e-9, -4e-9))  # but for the rounding of the place
+    assert not circles.noticed(MODEL, Push(1.0, 0.0))
+    assert not circles.noticed(MODEL, Release()) and circles.noticed(MODEL, Release())
 
 
 def test_who_knows_more_or_is_elsewhere_does_not_go_in_circles() -> None:
