@@ -25,7 +25,7 @@ from kb.measuring import Measured, Measurer
 from kb.protruding import VERGE, protrusions, told_apart
 from kb.regions import Percept, Region, label_of, map_regions
 from kb.sizes import reshaped
-from kb.worldmodel import SPACE, Names, Node, Patch, WorldModel, patch_of, solid, unsettled
+from kb.worldmodel import SPACE, Names, Node, Patch, WorldModel, patch_of, solid, space, unsettled
 
 Mask = NDArray[np.bool_]
 LEAST_OBJECT = 5  # percent: a region is kept as a possible object from here on
@@ -155,8 +155,7 @@ class Knowledge:
         if all(colour == VERGE for colour in felt.values()):
             return percept, labels, kinds
         labels, regions, kind = labels.copy(), [*percept.regions], dict(kinds.kind)
-        floor = view.seen & (view.probability <= SPACE)
-        for thing in told_apart(protrusions(floor, occupied, view.seen), felt):
+        for thing in told_apart(protrusions(space(view), occupied, view.seen), felt):
             label = int(labels.max()) + 1
             labels[thing] = label
             regions.append(part_of_verge(thing, label, view))

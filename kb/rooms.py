@@ -99,17 +99,9 @@ class Rooms:
 NOTHING = Rooms((), np.zeros((0, 0), np.int32), np.zeros((0, 0), np.bool_))
 
 
-def rooms_of(
-    model: WorldModel, rules: tuple[Path, ...] = (), supposed: bool = False, without: Mask | None = None
-) -> Rooms:
-    """The rooms of a world model.
-
-    supposed : as they are if what may yet be an object is one, not a piece of wall. without : as they are if these
-    squares (rows, columns) are no wall.
-    """
-    verge = model.walls if supposed else model.verge
-    if without is not None:
-        verge = verge & ~without
+def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), verge: Mask | None = None) -> Rooms:
+    """The rooms of a world model. verge : (rows, columns) what bounds them; None for all that is taken for verge."""
+    verge = model.verge if verge is None else verge
     if not verge.any():
         return Rooms((), np.ones(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
     doubtful = verge & (model.view.probability < HALF)  # part of no room, but no bound of a door either
@@ -190,7 +182,7 @@ def _known(passage: Passage, model: WorldModel, verge: Mask, doubtful: Mask, wal
     inner = np.minimum(parts, 1 - parts) * passage.width >= min(UNCLEAR, passage.width / 4) - 1e-9
     if not (model.view.seen[across] & ~verge[across] & ~(doubtful[across] & inner)).all():
         return 0
-    jambs = [_jamb(verge, end) for end in (passage.a, passage.b)]
+    jambs = [jamb(verge, end) for end in (passage.a, passage.b)]
     if not all(len(rows) for rows, _ in jambs):
         return 0
     walled = min(int(walls.extents[walls.labels[jamb]].max()) for jamb in jambs)
@@ -216,7 +208,7 @@ def _share_told(jamb: Indices, outward: Floats, furthest: float, told: Mask) -> 
     return max(shares)
 
 
-def _jamb(wall: Mask, end: tuple[float, float]) -> Indices:
+def jamb(wall: Mask, end: tuple[float, float]) -> Indices:
     """The squares of a wall that an end of a neck touches, as rows and columns."""
     columns, rows = (sorted({math.floor(v - 0.5), math.floor(v + 0.5)}) for v in end)
     touched = [

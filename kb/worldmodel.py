@@ -176,8 +176,7 @@ class WorldModel:
     @cached_property
     def space(self) -> Mask:
         """(rows, columns): all squares seen and taken for floor, wherever they are."""
-        mask: Mask = self.view.seen & (self.view.probability <= SPACE)
-        return mask
+        return space(self.view)
 
     @cached_property
     def verge(self) -> Mask:
@@ -282,6 +281,12 @@ def unsettled(mask: Mask, view: MapView) -> tuple[int, int]:
     """How many squares of a region, and of the squares that touch it, are not told; how many look doubtful."""
     about = edged(mask)
     return int((about & ~told(view)).sum()), int((about & in_doubt(view)).sum())
+
+
+def space(view: MapView) -> Mask:
+    """(rows, columns): squares seen and taken for floor."""
+    mask: Mask = view.seen & (view.probability <= SPACE)
+    return mask
 
 
 def solid(view: MapView) -> Mask:

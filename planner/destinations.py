@@ -49,7 +49,7 @@ class Situation:
         """The rooms as they are if what may be an object is one."""
         if (self.model.walls == self.model.verge).all():
             return self.rooms
-        return rooms_of(self.model, self.rules, supposed=True)
+        return rooms_of(self.model, self.rules, self.model.walls)
 
     def beyond(self, place: tuple[float, float]) -> tuple[Mask, tuple[Lookout, ...]]:
         """(rows, columns) what shares a door with the room of a point, and what to look at before that is believed.

@@ -5,12 +5,13 @@ Each is an aim to go to first, or None where there is nothing to make sure of.
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.components import edged
-from kb.rooms import SURE, Door, rooms_of
+from kb.rooms import SURE, Door, jamb, rooms_of
 from kb.worldmodel import Node, WorldModel
 from planner import exploring
 from planner.aims import Aim
@@ -101,7 +102,9 @@ def more_of(node: Node, situation: Situation) -> Aim | None:
     """Where to feel whether an object that stands against a wall goes on in what seems to be part of that."""
     model = situation.model
     beside = edged(model.mask(node.patch))
-    for mask in () if node.moved or model.held == node.name else model.protruding:
+    standing = [model.verge, *(model.mask(other.patch) for other in model.objects if other.name != node.name)]
+    alone = node.moved or model.held == node.name or not any((beside & mask).any() for mask in standing)
+    for mask in () if alone else model.protruding:
         look = exploring.against_the_wall(situation.screens, mask)
         if (mask & beside).any() and len(look.squares):
             return Aim("inspect", *look)
@@ -116,13 +119,14 @@ def unfelt_wall(goal: str, began: Place, lying: Mask, situation: Situation) -> A
     goal : in, through or around. began : where it began, a point of the lattice. lying : (rows, columns) where it lies.
     """
     doors = [door for door in situation.rooms.doors if door.sure]
+    holds_by = _holding(goal, began, lying, situation)
     for mask in situation.model.protruding:
         if any(_jambs_in_line(mask, door, situation.model) for door in doors):
             continue
         look = exploring.against_the_wall(situation.screens, mask)
         if not len(look.squares):  # whatever lies askew must be seen better before one can stand right beside it
             look = exploring.sight_of(situation.screens, mask, look.what)
-        if len(look.squares) and _holds_by(mask, goal, began, lying, situation):
+        if len(look.squares) and holds_by(mask):
             return Aim("inspect", *look)
     return None
 
@@ -130,8 +134,7 @@ def unfelt_wall(goal: str, began: Place, lying: Mask, situation: Situation) -> A
 def _jambs_in_line(mask: Mask, door: Door, model: WorldModel) -> bool:
     """Is something one jamb of a door, and the other one a thin wall, too? Then they are hardly but one wall."""
     for end, other in ((door.a, door.b), (door.b, door.a)):
-        column, row = (math.floor(v + 0.5) for v in end)
-        if mask[max(row - 1, 0) : row + 1, max(column - 1, 0) : column + 1].any():
+        if len(jamb(mask, end)[0]):
             x, y = np.subtract(other, end) / max(door.width, 1e-9)
             place = np.add(other, (0.5 * x, 0.5 * y))
             return all(_floor_beside(place, way, model) for way in ((-y, x), (y, -x)))
@@ -147,12 +150,16 @@ def _floor_beside(place: Floats, way: tuple[float, float], model: WorldModel) ->
     return bool(model.space[rows[inside], columns[inside]].any())
 
 
-def _holds_by(mask: Mask, goal: str, began: Place, lying: Mask, situation: Situation) -> bool:
-    """Does a goal hold only if some squares of what bounds the floor are wall?"""
+def _holding(goal: str, began: Place, lying: Mask, situation: Situation) -> Callable[[Mask], bool]:
+    """Whether a goal holds only if some squares of what bounds the floor are wall. All as of unfelt_wall."""
     model = situation.model
     if goal == "around":
-        hidden = out_of_sight(model.verge, model, began)
-        return bool((lying & hidden & ~out_of_sight(model.verge & ~mask, model, began)).any())
+        hidden = lying & out_of_sight(model.verge, model, began)
+        return lambda mask: bool((hidden & ~out_of_sight(model.verge & ~mask, model, began)).any())
     beyond = situation.next_to(began, situation.rooms, SURE)
-    other = situation.next_to(began, rooms_of(model, situation.rules, without=mask), SURE)
-    return bool(other.any() and not (other & beyond).any())
+
+    def elsewhere(mask: Mask) -> bool:
+        other = situation.next_to(began, rooms_of(model, situation.rules, model.verge & ~mask), SURE)
+        return bool(other.any() and not (other & beyond).any())
+
+    return elsewhere

@@ -188,7 +188,7 @@ def test_what_may_be_an_object_makes_no_door_of_supposed_rooms() -> None:
     may_be_object = model.verge & ~model.walls
     assert set(np.argwhere(may_be_object)[:, 1].tolist()) == {20, 21}
     assert [door.a for door in rooms_of(model).doors] == [(16.0, 6.0)]
-    assert not rooms_of(model, supposed=True).doors
+    assert not rooms_of(model, verge=model.walls).doors
 
 
 @pytest.mark.parametrize(("length", "sure"), [(8, False), (12, False), (13, True), (17, True)])
@@ -205,7 +205,7 @@ def test_what_goes_on_unseen_for_thirteen_squares_is_a_wall_beside_a_door(length
     (door,) = rooms_of(model).doors
     assert door.width == pytest.approx(5)
     assert door.sure == sure
-    assert bool(rooms_of(model, supposed=True).doors) == sure
+    assert bool(rooms_of(model, verge=model.walls).doors) == sure
 
 
 def test_what_is_seen_of_a_doorway_alone_stays_a_part_of_its_own() -> None:
