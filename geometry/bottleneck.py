@@ -26,6 +26,7 @@ SHIFTS = 9  # copies of the free space that stand for moving a wall, at least
 MOST_SHIFTS = 129  # in a slit they lie as close as it is wide, that no bars are left between them
 DETOUR = 1000.0  # going through pixels narrower than need be looks so much dearer
 LOOK = 2.5  # radii of the body: how far from where it is stuck the neck is looked for
+EVEN = 1e-9  # squares: room that differs by less is the same
 FINER = (1, 2, 4)  # times as fine as the floor's raster: a slit between its pixels is looked for more finely
 
 
@@ -56,10 +57,22 @@ def neck_near(floor: Floor, goals: Mask, reached: Floats, radius: float) -> Neck
     centres = field.frame[:2] + (track[:, ::-1] + 0.5) * field.frame[2]
     near = np.hypot(*(centres - stuck).T) <= LOOK * radius
     room = field.raster[track[:, 0], track[:, 1]]
-    if near.any() and room[near].min() < radius:
-        room = np.where(near, room, np.inf)
-    x, y = centres[int(np.argmin(room))]
+    stopped = near.any() and room[near].min() < radius
+    x, y = centres[_narrowest(room, near if stopped else np.ones(len(room), np.bool_))]
     return _neck_at(floor, (float(x), float(y)))
+
+
+def _narrowest(room: Floats, asked: Mask) -> int:
+    """Where a way is narrowest, of the pixels asked for, and on from there as long as it grows narrower.
+
+    That is amid a neck of several pixels, not at its mouth. room : of each pixel of the way, in squares.
+    """
+    first = int(np.argmin(np.where(asked, room, np.inf)))
+    for ahead in (1, -1):
+        while 0 <= first + ahead < len(room) and room[first + ahead] < room[first] - EVEN:
+            first += ahead
+    wider = np.flatnonzero(room[first:] > room[first] + EVEN)
+    return first + (int(wider[0]) if len(wider) else len(room) - first) // 2
 
 
 class Field(NamedTuple):
@@ -96,10 +109,13 @@ def _field_with_a_way(floor: Floor, goals: Mask, start: Floats) -> tuple[Field, 
 def _ways(field: Field, wide: float) -> Floats:
     """What it costs to the goal from every pixel, by ways nowhere narrower than the widest way from the start is.
 
-    Room is cheap, so that ways keep off walls and are narrow only where they must be.
+    Room is cheap, so that ways keep off walls and are narrow only where they must be. They end at goal pixels that are
+    as wide, if there are any: a narrower one beside the neck would be taken for it.
     """
     room = np.maximum(field.raster, wide)
-    return cheapest(np.where(field.raster < wide - 1e-9, DETOUR, (wide / room) ** 3), field.goals)
+    narrower = field.raster < wide - 1e-9
+    goals = field.goals & ~narrower
+    return cheapest(np.where(narrower, DETOUR, (wide / room) ** 3), goals if goals.any() else field.goals)
 
 
 @compiled

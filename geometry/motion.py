@@ -28,7 +28,8 @@ from geometry.sound import check
 __all__ = ["Inside", "Plan", "plan_motion"]
 
 Floats = npt.NDArray[np.float64]
-CAPACITY = 100_000  # cells: enough for margins of a few times the resolution
+FIRST, CAPACITY = 100_000, 400_000  # cells: enough for margins of a few times the resolution; and for wide rooms
+AGAIN = 0.25  # of the resolution, when it is asked again with more cells
 COARSE, FEW = 4e-4, 40_000  # resolution and cells for the missing width
 
 
@@ -141,7 +142,8 @@ def plan_motion(
     bounds : (x0, y0, x1, y1) of the reference point; None for the box around obstacles, start and goal.
     resolution : cells smaller than this times the bounds' greater side are not split.
     points : (x, y) in the body's own frame that move with it and must not enter obstacles, such as Utak.
-    cells : no more than so many cells are looked at.
+    cells : no more than so many cells are looked at. When that is more than FIRST, what is not decided with FIRST cells
+        is asked once more with all of them, and AGAIN times the resolution.
     pivot : (x, y) in the body's own frame that it is turned about in every motion; None for what is quickest.
 
     Returns
@@ -159,11 +161,14 @@ def plan_motion(
                 raise ValueError(f"{name} must be finite")
     mover = new_mover(shape, points, pivot)
     floor = obstacles if isinstance(obstacles, Floor) else Floor(obstacles, _bounds(obstacles, start, goal, bounds))
-    problem = Problem(mover, floor, start, goal, resolution, cells)
+    problem = Problem(mover, floor, start, goal, resolution, min(cells, FIRST))
     for name, pose in (("start", start), ("goal", goal)):
         if isinstance(pose, Pose) and not floor.has_room(mover, shape, points, pose):
             return Plan("impossible", resolution=problem.least, reason=name)
     status, motions = problem.solve()
+    if status == "limit" and cells > FIRST:
+        problem = Problem(mover, floor, start, goal, AGAIN * resolution, cells)
+        status, motions = problem.solve()
     poses = [start] if status == "found" else []
     for motion in motions:
         poses.append(motion.pose(poses[-1]))

@@ -17,7 +17,7 @@ from geometry.hop import BLOCKED, hop, new_scene
 from geometry.mover import centre_pose
 from geometry.pursuit import FOUND, MORE, next_chain, pursue
 from geometry.rigid import Motion, Pose
-from geometry.separation import Ground, Mover
+from geometry.separation import OPEN, Ground, Mover
 from geometry.shorten import loosened, motions_along, shorten
 from geometry.sound import sound
 
@@ -104,9 +104,13 @@ class Problem:
         return "limit" if lost else "impossible", ()
 
     def reached(self) -> Floats:
-        """Where the middle of the body's greatest inscribed disc got to: (n, 2), the start first."""
+        """Where the middle of the body's greatest inscribed disc got to: (n, 2), the start first.
+
+        These are the middles of cells; one in which the body overlaps something may be anywhere beside a wall.
+        """
         known = self.hunt.seen[0]
-        settled = np.nonzero((self.hunt.state[:known] >= SETTLED) & (self.tree.child[:known] < 0))[0]
+        leaf, free = self.tree.child[:known] < 0, self.tree.kind[:known] <= OPEN
+        settled = np.nonzero((self.hunt.state[:known] >= SETTLED) & leaf & free)[0]
         x, y, angle = np.vstack([self.start, self.tree.middle[settled]]).T
         c, s, (px, py) = np.cos(angle), np.sin(angle), self.hunt.eye
         return np.column_stack([x + c * px - s * py, y + s * px + c * py])
