@@ -10,7 +10,7 @@ square, alone or with what lies opposite, so that a wall moves without being tak
 """
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from geometry.compiled import bare
 
 FREE, FULL, DRAWN, UNSEEN = 0, 1, 2, 3
-EDGE, CORNER = 0.4, 0.8
+EDGE, CORNER = 0.3, 1.5
 WRONG = 4.0  # edges that a square too many or too few under a field is worth
 COLD = 2.5  # the inverse temperature at which a picture is taken
 THICKEST = 4  # squares of what is moved as a whole
@@ -30,7 +30,7 @@ ALONG = (4, 4, 6, 6)  # and the next one on the same edge
 GENERATOR, MODULUS = 48271, 2147483647  # of random numbers; Park and Miller (1988)
 LUCKS = 1024
 SETTLED, HIDDEN = -1, -2
-Bits = NDArray[np.int64]
+Bits = NDArray[np.integer[Any]]
 
 
 class Counts(NamedTuple):
@@ -96,6 +96,23 @@ def pictures(
     return begun[:, 1:-1, 1:-1]
 
 
+def costs(
+    images: NDArray[np.int8], ground: NDArray[np.int8], counts: Counts, edge: float = EDGE
+) -> NDArray[np.float64]:
+    """(m,): what each picture costs: its edges, its corners, and the squares by which counts are wrong.
+
+    images : (m, rows, columns), as drawn. ground, counts : as they were drawn with. edge : what an edge costs; 0 where
+    pictures of grounds of different sizes are compared, for a wall that goes on straight is what is to be expected.
+    """
+    seen = ground != UNSEEN
+    amid = seen[:-1, :-1] & seen[1:, :-1] & seen[:-1, 1:] & seen[1:, 1:]
+    points = _price(images[:, :-1, :-1], images[:, :-1, 1:], images[:, 1:, :-1], images[:, 1:, 1:], edge) * amid
+    count = (images.reshape(len(images), -1)[:, counts.where] * counts.weight).sum(2)
+    wrong = np.maximum(counts.low - count, 0) + np.maximum(count - counts.high, 0)
+    answer: NDArray[np.float64] = points.sum((1, 2)) + WRONG * wrong.sum(1)
+    return answer
+
+
 def _board(framed: NDArray[np.int8], counts: Counts) -> _Board:
     columns = framed.shape[1]
     row, column = np.divmod(counts.where, columns - 2)
@@ -144,11 +161,11 @@ def _prices() -> NDArray[np.float32]:
     return change.astype(np.float32).ravel()
 
 
-def _price(square: Bits, beside: Bits, over: Bits, beyond: Bits) -> NDArray[np.float64]:
+def _price(square: Bits, beside: Bits, over: Bits, beyond: Bits, edge: float = EDGE) -> NDArray[np.float64]:
     """What four squares about a point cost: half of each edge between two of them, and each corner."""
     edges = (square ^ beside) + (over ^ beyond) + (square ^ over) + (beside ^ beyond)
     corners = np.where(edges == 4, 2, (square + beside + over + beyond) % 2)
-    answer: NDArray[np.float64] = EDGE * edges / 2 + CORNER * corners
+    answer: NDArray[np.float64] = edge * edges / 2 + CORNER * corners
     return answer
 
 

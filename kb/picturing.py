@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.components import Components, boxes, components
-from geometry.sketch import DRAWN, FREE, FULL, UNSEEN, Counts, pictures
+from geometry.sketch import DRAWN, FREE, FULL, UNSEEN, Counts, costs, pictures
 from kb.evidence import OPEN, STRAY, MapView
 
 PICTURES = 12
+DRAWINGS = 2  # for each of them
+RATHER = 0.3  # how much rather a drawing is kept that costs less by 1: by this power of e
 SEED = 20031
 BEGINNING = (60, 0.5)  # sweeps over a scene that was not drawn yet, and the inverse temperature of the first one
 GOING_ON = (30, 1.0)  # likewise, over one that was
@@ -57,6 +59,15 @@ class Pictures(NamedTuple):
     ground: Image
     images: Image
     scenes: Mapping[Told, Image]
+
+    def at(self, x: int, y: int) -> NDArray[np.bool_] | None:
+        """(PICTURES,): which pictures show a square of the lattice occupied; None where it was never seen."""
+        row, column = y - self.south, x - self.west
+        inside = 0 <= row < self.ground.shape[0] and 0 <= column < self.ground.shape[1]
+        if not inside or self.ground[row, column] == UNSEEN:
+            return None
+        shown: NDArray[np.bool_] = self.images[:, row, column] > 0
+        return shown
 
     def over(self, scene: Scene, view: MapView) -> "Pictures":
         """The part that lies where a scene of another map is; unseen where there is none."""
@@ -101,8 +112,17 @@ def _drawn(scene: Scene, before: Pictures) -> Image:
     open_ = scene.ground == DRAWN
     known = open_ & (before.ground != UNSEEN)
     sweeps, hot = GOING_ON if known.sum() > open_.sum() / 2 else BEGINNING
-    first = np.where(known, before.images, scene.first)
-    return pictures(scene.ground, scene.counts, first, sweeps, hot, SEED)[:, open_]
+    first = np.repeat(np.where(known, before.images, scene.first), DRAWINGS, axis=0)
+    drawn = pictures(scene.ground, scene.counts, first, sweeps, hot, SEED)
+    return drawn[_kept(costs(drawn, scene.ground, scene.counts))][:, open_]
+
+
+def _kept(costs: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Which of some drawings are kept as pictures: the plainer ones rather, and those more than once."""
+    weight = np.cumsum(np.exp(-RATHER * (costs - costs.min())))
+    marks = (np.arange(PICTURES) + 0.5) / PICTURES
+    kept: NDArray[np.int64] = np.searchsorted(weight, marks * weight[-1])
+    return kept
 
 
 def scenes(view: MapView, ground: Image) -> Iterator[Scene]:

@@ -7,7 +7,21 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from geometry.blobs import blobs
-from geometry.sketch import AROUND, COLD, CORNER, DRAWN, EDGE, FREE, FULL, UNSEEN, Counts, _prices, pictures
+from geometry.sketch import (
+    AROUND,
+    COLD,
+    CORNER,
+    DRAWN,
+    EDGE,
+    FREE,
+    FULL,
+    UNSEEN,
+    WRONG,
+    Counts,
+    _prices,
+    costs,
+    pictures,
+)
 
 
 def counted(truth: np.ndarray, side: int, shift: int = 0) -> Counts:
@@ -71,7 +85,7 @@ def test_a_wall_that_lies_a_square_off_is_moved_as_a_whole() -> None:
     assert (drawn[:, shown] == truth[shown]).mean() > 0.97
 
 
-def cost(image: np.ndarray, ground: np.ndarray) -> float:
+def cost(image: np.ndarray, ground: np.ndarray, edge: float = EDGE) -> float:
     """What the outline of a picture costs, edge by edge and corner by corner."""
     total = 0.0
     for row, column in np.ndindex(image.shape[0] - 1, image.shape[1] - 1):
@@ -81,7 +95,7 @@ def cost(image: np.ndarray, ground: np.ndarray) -> float:
         (a, b), (c, d) = image[part].tolist()
         edges = (a != b) + (c != d) + (a != c) + (b != d)
         corners = {0: 0, 2: 0 if a != d else 1, 4: 2}[edges] if edges != 2 or (a, b, c, d).count(1) == 2 else 1
-        total += EDGE * edges / 2 + CORNER * corners
+        total += edge * edges / 2 + CORNER * corners
     return total
 
 
@@ -101,6 +115,23 @@ def test_the_price_of_a_change_is_the_difference_of_two_pictures(image: np.ndarr
     near = sum(int(image[2 + rows, 2 + across]) << n for n, (rows, across) in enumerate(AROUND))
     price = _prices()[(shown << 9) + (near << 1) + int(image[2, 2])]
     assert price == pytest.approx(cost(changed, ground) - cost(image, ground), abs=1e-5)
+
+
+@given(
+    arrays(np.int8, (2, 6, 7), elements=st.integers(0, 1)),
+    arrays(np.int8, (6, 7), elements=st.sampled_from([DRAWN, DRAWN, DRAWN, UNSEEN])),
+    arrays(np.int8, (6, 7), elements=st.integers(0, 1)),
+    st.sampled_from([EDGE, 0.0]),
+)
+def test_a_picture_costs_its_outline_and_what_counts_say_against_it(
+    images: np.ndarray, ground: np.ndarray, truth: np.ndarray, edge: float
+) -> None:
+    images[:, ground == UNSEEN] = 0
+    counts = counted(truth, 3)
+    where = counts.where.reshape(-1, 9)
+    for image, found in zip(images, costs(images, ground, counts, edge), strict=True):
+        off = abs(image.ravel()[where].sum(1, dtype=int) - truth.ravel()[where].sum(1, dtype=int)).sum()
+        assert found == pytest.approx(cost(image, ground, edge) + WRONG * off)
 
 
 def test_the_same_arguments_give_the_same_pictures() -> None:

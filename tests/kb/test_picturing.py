@@ -5,7 +5,7 @@ import pytest
 
 from geometry.sketch import DRAWN, FULL
 from kb.evidence import MapView
-from kb.picturing import NO_PICTURES, PICTURES, Pictures, ground_of, pictured, scenes
+from kb.picturing import DRAWINGS, NO_PICTURES, PICTURES, Pictures, _kept, ground_of, pictured, scenes
 from tests.kb.drawings import LARGE_ROOM, drawing, looked
 
 LOOKS = [(20, 20), (22, 21), (23, 23)]
@@ -101,3 +101,15 @@ def test_the_part_of_pictures_over_a_scene_is_what_they_show_there(view: MapView
             if part.west <= x < part.west + wide and part.south <= y < part.south + high
         }
         assert inside == set(shown)
+
+
+def test_drawings_that_cost_less_are_kept_rather() -> None:
+    alike = _kept(np.full(DRAWINGS * PICTURES, 7.0))
+    assert len(set(alike.tolist())) == PICTURES
+    one = np.full(DRAWINGS * PICTURES, 40.0)
+    one[5] = 7.0
+    assert _kept(one).tolist() == [5] * PICTURES
+    costs = np.arange(DRAWINGS * PICTURES, dtype=float)
+    kept = _kept(costs)
+    assert (np.diff(costs[kept]) >= 0).all()
+    assert costs[kept].mean() < costs.mean()
