@@ -6,14 +6,13 @@ squares that it shares with earlier looks must hold together: where it does not,
 
 import math
 from collections.abc import Sequence
-from copy import deepcopy
 from dataclasses import replace
 from typing import Any
 
 from geometry.rigid import Motion, Rotate
-from kb.evidence import FULL, Evidence
+from kb.evidence import FULL
 from kb.hauling import STRIDE, Outcome, otherwise, predicted
-from kb.loads import WHOLE, Load, covered, discounted
+from kb.loads import WHOLE, Load, covered
 from kb.supposing import Place, Surprise, clashes
 
 CROWDED = 4  # squares that seem to stand right about a thing since it was turned, of which nothing told
@@ -35,27 +34,19 @@ def belied(surprise: Surprise, outcome: Outcome) -> bool:
 
     outcome : of the command that the look followed, with which nothing settled before it disagrees.
     """
-    loads = _lying(surprise, outcome)
-    evidence = _looked(surprise, loads, outcome.place)
+    loads = surprise.lying(outcome)
+    evidence = surprise.looked(loads, outcome.place)
     return clashes(surprise.lattice, evidence, loads, outcome.place, surprise.ranges) > 0
 
 
 def likeliest_stop(surprise: Surprise, load: Load, motion: Motion) -> Outcome | None:
     """Where the motion of a load in hand was likeliest stopped so that the look contradicts nothing, if anywhere."""
     for end in surprise.hindrances.ends(surprise.place, load.polygon, motion):
-        there = _lying(surprise, end)
+        there = surprise.lying(end)
         fits = not clashes(surprise.lattice, surprise.evidence, there, end.place, surprise.ranges)
         if fits and not belied(surprise, end):
             return end
     return None
-
-
-def _lying(surprise: Surprise, outcome: Outcome) -> list[Load]:
-    """All loads where they lie if the motion of the one in hand came out so."""
-    return [
-        load.moved(outcome.polygon, load.slack, commanded=outcome.as_commanded) if name == surprise.held else load
-        for name, load in surprise.loads.items()
-    ]
 
 
 def rather_short(surprise: Surprise, load: Load, motion: Rotate) -> Outcome | None:
@@ -92,16 +83,7 @@ def _turned(load: Load, polygon: Any, slack: float, degrees: float) -> Load:
 
 def _crowded(surprise: Surprise, load: Load, others: Sequence[Load], place: Place) -> int:
     """How many squares right about a thing are occupied of which no look told before, if it came to lie so."""
-    before, after = surprise.evidence, _looked(surprise, [*others, load], place)
+    before, after = surprise.evidence, surprise.looked([*others, load], place)
     about = covered(load.polygon.buffer(BESIDE, join_style="mitre")).squares()
     new = [square for square in about if before.state[before.index(*square)] != FULL]
     return sum(after.state[after.index(*square)] == FULL for square in new)
-
-
-def _looked(surprise: Surprise, loads: Sequence[Load], place: Place) -> Evidence:
-    """What is settled together with the new look, if it was received at a place, with the loads where they lie."""
-    x, y = (math.floor(v) for v in place)
-    samples, counts = discounted(surprise.lattice.samples(), surprise.ranges, x, y, loads)
-    evidence = deepcopy(surprise.evidence)
-    evidence.look(samples, counts, x, y, len(surprise.looks))
-    return evidence

@@ -3,7 +3,9 @@
 What was left is tried first, then what had been given up; that a motion was stopped by what is not known comes last.
 """
 
-from kb.heading import CENTRED, Hypothesis, anywhere, candidates, search
+from collections.abc import Iterator
+
+from kb.heading import Hypothesis, anywhere, candidates, search
 from kb.pivoting import pivoted
 from kb.supposing import Supposed, Surprise
 
@@ -13,6 +15,7 @@ FEW = 12  # lattices on which all is laid anew, at most
 LEAST = 4  # at least
 MOST_REPLAYS = 200  # looks that are taken in anew for that
 BEST = 3  # of those, on which the motion may have been stopped by what was not known
+ELSEWHERE = 2.5  # log odds against having woken elsewhere than amid his square
 SLIVER = 0.02  # squares^2: where there is no more room for where he woke, he was rather stopped
 
 
@@ -35,7 +38,7 @@ def _otherwise_turned(surprise: Surprise) -> Supposed | None:
     That he woke amid his square is assumed as long as that explains all.
     """
     angle = surprise.lattice.angle
-    others = [other for other in surprise.hypotheses if other in CENTRED and other.angle != angle]
+    others = [other for other in surprise.hypotheses if other.is_centred and other.angle != angle]
     left = search(surprise.recent, others, surprise.unsettled)
     tried = (surprise.tried(lattice, left) for lattice in candidates(left, surprise.lattice)[:FEW])
     return next((one for one in tried if not one.misfits), None)
@@ -45,10 +48,7 @@ def _laid_otherwise(surprise: Surprise, anew: bool) -> Supposed | None:
     """The lattice on which, when all is laid on it, the fewest fields contradict."""
     found: list[Supposed] = []
     few = max(LEAST, min(FEW, MOST_REPLAYS // (len(surprise.looks) + 1)))
-    hypotheses = search(surprise.recent, surprise.hypotheses, surprise.unsettled)
-    for searched in (False, True)[: 1 + anew]:
-        if searched:
-            hypotheses = _searched(surprise)
+    for hypotheses, searched in _by_turns(surprise, anew):
         if searched and sum(hypothesis.area for hypothesis in hypotheses) < SLIVER:
             short = _cut_short(surprise, few)
             if short is not None:
@@ -65,6 +65,22 @@ def _laid_otherwise(surprise: Surprise, anew: bool) -> Supposed | None:
         for lattice in candidates(surprise.before, surprise.lattice)[:few]:
             found += [surprise.tried(lattice, surprise.before, cut_short=cut_short) for cut_short in (False, True)]
     return min(found, key=lambda one: one.misfits, default=None)
+
+
+def _by_turns(surprise: Surprise, anew: bool) -> Iterator[tuple[tuple[Hypothesis, ...], bool]]:
+    """Hypotheses to try one after the other, the likeliest first, each time with whether they had been given up.
+
+    That he woke elsewhere in his square is thought of before angles at which the table looks less plain.
+    """
+    left = search(surprise.recent, surprise.hypotheses, surprise.unsettled)
+    plainest = tuple(hypothesis for hypothesis in left if hypothesis.dear <= ELSEWHERE)
+    yield plainest, False
+    if len(plainest) < len(left):
+        if anew:
+            yield search(surprise.recent, anywhere((surprise.lattice.angle,)), surprise.unsettled), True
+        yield tuple(hypothesis for hypothesis in left if hypothesis.dear > ELSEWHERE), False
+    if anew:
+        yield _searched(surprise), True
 
 
 def _searched(surprise: Surprise) -> tuple[Hypothesis, ...]:

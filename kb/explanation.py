@@ -14,9 +14,12 @@ from kb.evidence import OPEN, Evidence
 from kb.hauling import Outcome
 from kb.heading import Hypothesis, Look
 from kb.lattice import CENTRE, Lattice, Samples
+from kb.loads import Square
 from kb.retina import FIELDS
 from kb.stops import Retold
 
+NAT = 2  # prices of accommodation.lp that make something less likely by a factor of e
+LEAST_CHANCE = 1e-9
 Place = tuple[float, float]
 
 
@@ -33,6 +36,9 @@ class Explanation(NamedTuple):
 
     outcome: what it means for the load in hand; None when nothing was to be moved with him. hypotheses: what is left
     if the lattice lies otherwise than believed. retold: which looks were received elsewhere than is believed, if any.
+    chance: how likely the motion ended so by what was known before it; None when that was not asked. crooked: by how
+    much the simplest picture of the table costs more than where it is plainest (kb.plainness). against: the open
+    squares one of which stopped it.
     """
 
     how: str
@@ -43,6 +49,9 @@ class Explanation(NamedTuple):
     outcome: Outcome | None = None
     hypotheses: tuple[Hypothesis, ...] = ()
     retold: Retold | None = None
+    chance: float | None = None
+    crooked: float = 0.0
+    against: frozenset[Square] = frozenset()
 
     @property
     def anew(self) -> bool:
@@ -92,7 +101,7 @@ def misled(look: Look, told: Iterable[Iterable[Retold]]) -> list[Explanation]:
     explanations = []
     for one in sorted(found, key=lambda one: (not one.known, abs(one.hypothesis.angle - middle))):
         lattice = one.hypothesis.lattice
-        place = lattice.place_from_utak(*one.correction.place(look.place))
+        place = lattice.place_from_utak(*one.newest)
         far = math.hypot(*one.correction.shift)
         explanations.append(Explanation("misled", place, lattice, one.misfits, far, None, left, one))
     return explanations
@@ -104,6 +113,10 @@ def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Expla
         f"explanation({number},{e.how},{e.misfits},{math.ceil(e.distance)})" for number, e in enumerate(explanations)
     ]
     offered += [f"odd({number})" for number, e in enumerate(explanations) if e.odd]
+    for number, e in enumerate(explanations):
+        offered += [f"crooked({number},{round(NAT * e.crooked)})"] * (e.crooked > 0)
+        if e.chance is not None:
+            offered.append(f"unlikely({number},{round(-NAT * math.log(max(e.chance, LEAST_CHANCE)))})")
     answer = solve([KB / "accommodation.lp"], [*offered, *facts])
     if not answer:
         raise AssertionError("accommodation.lp always has an answer")

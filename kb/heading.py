@@ -1,9 +1,8 @@
 """How the lattice of the table may lie under Utak, judged by all looks so far.
 
 Under a wrong angle two looks, or two fields of one look, claim of one square that it is free and that it is occupied.
-A lattice that leads to such
-a contradiction is given up. One along Utak's own axes is preferred as long as it stands; else the middle of what is
-left is believed.
+A lattice that leads to such a contradiction is given up. Of those that stand that one is preferred on which the table
+looks plainest (kb.plainness).
 """
 
 import math
@@ -23,11 +22,13 @@ ANGLES = tuple(sorted(range(-44, 46), key=lambda angle: (abs(angle), angle)))
 class Hypothesis(NamedTuple):
     """How the lattice may lie.
 
-    Its angle in degrees, and a box (west, south, east, north) within the square, in which Utak woke.
+    Its angle in degrees, and a box (west, south, east, north) within the square, in which Utak woke. dear : by how many
+    edges the simplest picture on it costs more than the simplest on any other; 0 when that was not weighed.
     """
 
     angle: int
     box: Box
+    dear: float = 0.0
 
     @property
     def lattice(self) -> Lattice:
@@ -44,6 +45,16 @@ class Hypothesis(NamedTuple):
     def is_point(self) -> bool:
         """Does it say exactly where he woke?"""
         return self.box[:2] == self.box[2:]
+
+    @property
+    def is_centred(self) -> bool:
+        """Does it say that he woke right amid his square?"""
+        return self.box == CENTRE + CENTRE
+
+    @property
+    def is_plausible(self) -> bool:
+        """Is the table hardly less plain on it than on any other?"""
+        return self.dear <= DOUBTED
 
     @property
     def area(self) -> float:
@@ -67,11 +78,12 @@ class Hypothesis(NamedTuple):
         dx, dy = Lattice(self.angle).to_lattice(*place)
         columns = _cut(west, east, math.ceil(dx) - dx)
         rows = _cut(south, north, math.ceil(dy) - dy)
-        return [Hypothesis(self.angle, (w, s, e, n)) for w, e in columns for s, n in rows]
+        return [self._replace(box=(w, s, e, n)) for w, e in columns for s, n in rows]
 
 
 CENTRED = tuple(Hypothesis(angle, CENTRE + CENTRE) for angle in ANGLES)
 ANYWHERE = tuple(Hypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in ANGLES)
+DOUBTED = 5.0  # edges by which the simplest picture may cost more on a lattice that is likely yet
 ODD = 0.1  # of the side of the square that looks leave of it on average, below which they left suspiciously little
 GRID = 11  # points along either side of what is left of the square in which he woke
 
@@ -207,7 +219,7 @@ def leeway(lattice: Lattice, looks: Sequence[Look], hypotheses: Sequence[Hypothe
     That he woke amid his square he only assumes.
     """
     west, south, east, north = within(lattice, looks)
-    boxes = np.array([h.box for h in hypotheses if h.angle == lattice.angle and h not in CENTRED])
+    boxes = np.array([h.box for h in hypotheses if h.angle == lattice.angle and not h.is_centred])
     if len(boxes):
         west, south = max(west, boxes[:, 0].min()), max(south, boxes[:, 1].min())
         east, north = min(east, boxes[:, 2].max()), min(north, boxes[:, 3].max())
@@ -229,7 +241,7 @@ def cramped(hypotheses: Sequence[Hypothesis], looks: int) -> bool:
     Each look cuts either side of his square in two, anywhere. Then a side of what he truly woke in is shorter than
     ODD / looks about once in two hundred times: more likely a look was received elsewhere than is believed.
     """
-    if not hypotheses or any(hypothesis in CENTRED for hypothesis in hypotheses):
+    if not hypotheses or any(hypothesis.is_centred for hypothesis in hypotheses):
         return False
     west, south, east, north = np.array([hypothesis.box for hypothesis in hypotheses]).T
     return bool(min((east - west).max(), (north - south).max()) < ODD / max(looks, 1))
@@ -243,16 +255,16 @@ def cells(where: Sequence[Hypothesis]) -> tuple[float, float]:
 
 
 def candidates(hypotheses: Sequence[Hypothesis], held: Lattice) -> list[Lattice]:
-    """The lattices to try, the likeliest first: the one held, one along his own axes, then from the middle outwards.
+    """The lattices to try, the likeliest first: those on which the table is plainest, the one held, one along his own
+    axes, then from the middle outwards.
 
     Of one angle that first which leaves the most room for where he woke.
     """
     angles = sorted({h.angle for h in hypotheses})
     middle = (len(angles) - 1) / 2
     outwards = sorted(angles, key=lambda angle: (angle != 0, abs(angles.index(angle) - middle)))
-    ordered = sorted(hypotheses, key=lambda h: (outwards.index(h.angle), -h.area, h.box))
-    lattices = [h.lattice for h in ordered]
-    return list(dict.fromkeys([held] * (held in lattices) + lattices))
+    ordered = sorted(hypotheses, key=lambda h: (h.dear, h.lattice != held, outwards.index(h.angle), -h.area, h.box))
+    return list(dict.fromkeys(h.lattice for h in ordered))
 
 
 def _cut(low: float, high: float, at: float) -> list[tuple[float, float]]:

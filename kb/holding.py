@@ -4,17 +4,21 @@ How it is made to agree with every new impression is for kb.accommodation.
 """
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from kb.evidence import OPEN, Evidence
+from kb.explanation import Explanation
 from kb.heading import CENTRED, Box, Hypothesis, Look, leeway
 from kb.lattice import CENTRE, Lattice
 from kb.loads import Load
+from kb.picturing import Pictures
 from kb.stops import HAIR, Moved
 
 RECENT = 4  # looks by which he tells that he is lost
 LOST = 8  # misfits, of these looks
 ASTRAY = 24  # so many once he has moved a thing, which may just lie otherwise than he believes
+DOUBTED = 0.05  # how likely one of his last motions ended elsewhere, and nothing is sure
 Place = tuple[float, float]
 
 
@@ -26,7 +30,9 @@ class Holding:
     things that he has held, by name, and held the one that he holds. moved : his last straight motions, which may have
     ended otherwise than believed. barred : squares before which he was stopped himself; suspected : those of
     which one stopped what he carried, for all that was known. unfit : misfits of each of the last looks. been : where
-    looks were received, in his own frame, before he was lost and began anew.
+    looks were received, in his own frame, before he was lost and began anew. ended : where the newest motion may have
+    ended by the look after it, if it came upon anything. pictures : the last ones of the
+    map on this lattice, if any were drawn.
     """
 
     evidence: Evidence = field(default_factory=Evidence)
@@ -44,6 +50,8 @@ class Holding:
     held: str | None = None
     unfit: tuple[int, ...] = ()
     been: tuple[Place, ...] = ()
+    ended: tuple[Explanation, ...] = ()
+    pictures: Pictures | None = None
 
     @property
     def lost(self) -> bool:
@@ -69,7 +77,15 @@ class Holding:
     @property
     def spread(self) -> float:
         """By how many radians the angles that still stand differ from the believed one, at most."""
-        return math.radians(max((abs(other.angle - self.lattice.angle) for other in self.hypotheses), default=0))
+        return self._spread(self.hypotheses)
+
+    @property
+    def likely_spread(self) -> float:
+        """The same of those on which the table is hardly less plain than on any other."""
+        return self._spread(other for other in self.hypotheses if other.is_plausible)
+
+    def _spread(self, hypotheses: Iterable[Hypothesis]) -> float:
+        return math.radians(max((abs(other.angle - self.lattice.angle) for other in hypotheses), default=0))
 
     @property
     def closed(self) -> frozenset[tuple[int, int]]:
@@ -97,11 +113,21 @@ class Holding:
     def sure(self) -> bool:
         """Is what the counts settle beyond doubt?
 
-        Not when a look contradicted another one or a motion ended beside where it should, nor while several places in
-        his square are left at which he may have woken, or several angles none of which is that of his own axes.
+        Not when a look contradicted another one or a motion ended beside where it should, nor while it is open where
+        one of his last motions ended, while several places in his square are left at which he may have woken, or
+        several angles none of which is that of his own axes.
         """
-        along = self.lattice.angle == 0 and all(other.box == CENTRE + CENTRE for other in self.hypotheses)
-        return not (self.evidence.overruled or self.slipped) and (along or len(self.hypotheses) == 1)
+        along = self.lattice.angle == 0 and all(other.is_centred for other in self.hypotheses)
+        told = not (self.evidence.overruled or self.slipped or any(map(self._elsewhere_likely, self.moved)))
+        return told and (along or len(self.hypotheses) == 1)
+
+    def _elsewhere_likely(self, motion: Moved) -> bool:
+        """Did a motion likely end in another square than is believed, by the look after it?"""
+        if motion.number >= len(self.looks):
+            return False
+        places = [self.looks[motion.number].place, *(there for there, chance in motion.doubts if chance > DOUBTED)]
+        squares = {(math.floor(x), math.floor(y)) for x, y in (self.lattice.place_from_utak(*own) for own in places)}
+        return len(squares) > 1
 
     @property
     def tellable(self) -> tuple[Moved, ...]:

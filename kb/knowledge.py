@@ -110,6 +110,7 @@ class Knowledge:
         view = counted._replace(
             probability=imagined.probability(counted.probability), by_counts=counted.probability, sure=self.memory.sure
         )
+        self.memory.pictures = imagined.pictures
         occupied = view.seen & (view.probability > SPACE)
         percept, labels = map_regions(occupied, view.seen, view.state != OPEN, view.probability)
         touched = [(f"part{labels[view.locate(x, y)]}", colour) for (x, y), colour in sorted(self.felt.items())]
@@ -126,6 +127,7 @@ class Knowledge:
             looked_from=self.memory.looked_from,
             barred=self.memory.closed,
             spread=self.memory.spread,
+            likely_spread=self.memory.likely_spread,
             leeway=self.memory.leeway,
             held=self.memory.held,
             imagined=imagined,

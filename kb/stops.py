@@ -41,6 +41,7 @@ class Moved(NamedTuple):
 
     number : of the look that followed. shift : east and north, of Utak's own frame. hypotheses : how the lattice might
     lie before that look. stopped : is it believed to have been stopped? load : the name of what was in hand, if any.
+    doubts : where else it may have ended by the look after it, in his own frame, each with how likely that is.
     """
 
     number: int
@@ -48,6 +49,12 @@ class Moved(NamedTuple):
     hypotheses: tuple[Hypothesis, ...]
     stopped: bool = False
     load: str | None = None
+    doubts: tuple[tuple[Place, float], ...] = ()
+
+    def doubt(self, place: Place) -> float | None:
+        """How likely it ended at a place, of his own frame, by the look after it; None when that was not thought of."""
+        near = (chance for there, chance in self.doubts if math.dist(there, place) < 4 * HAIR)
+        return max(near, default=None)
 
 
 class Correction(NamedTuple):
@@ -101,13 +108,14 @@ class Retold(NamedTuple):
     """That the lattice lies as a hypothesis says, and a motion had been stopped where it is not believed to have been.
 
     correction : of the looks since. known : does something stand there that stopped him? misfits : fields that
-    contradict it, of all looks.
+    contradict it, of all looks. newest : where the newest look was received then, in his own frame.
     """
 
     hypothesis: Hypothesis
     correction: Correction
     known: bool
     misfits: int
+    newest: Place = (0.0, 0.0)
 
 
 def ends(start: Place, shift: Place) -> tuple[Place, ...]:
@@ -145,10 +153,27 @@ def crossings(start: Place, shift: Place) -> tuple[Crossing, ...]:
     return tuple(crossing for *_, crossing in sorted(found))
 
 
+def on_line(place: Place) -> Place:
+    """Where he stands who looks from beside a line: on it, for something stopped him there."""
+    x, y = (float(round(v)) if abs(v - round(v)) <= 2 * HAIR else v for v in place)
+    return x, y
+
+
+def amid(place: Place) -> Place:
+    """The place itself, but right amid a square where it is not a hair from that: there he came from a line."""
+    x, y = (math.floor(v) + 0.5 if abs(v - math.floor(v) - 0.5) <= 2 * HAIR else v for v in place)
+    return x, y
+
+
 def views(place: Place) -> tuple[Place, ...]:
     """The places from which he may look who stands somewhere: either side of a line, all four squares of a corner."""
     columns, rows = ((v,) if abs(v - round(v)) > 2 * HAIR else (round(v) - HAIR, round(v) + HAIR) for v in place)
     return tuple((x, y) for x in columns for y in rows)
+
+
+def _seen_from(place: Place, lattice: Lattice) -> list[Place]:
+    """The places of his own frame from which he may look who stands at one of them."""
+    return [lattice.place_to_utak(*view) for view in views(lattice.place_from_utak(*place))]
 
 
 def _crossing(line: int, across: float, axis: int, hair: float) -> Crossing:
@@ -192,22 +217,21 @@ def _otherwise(motion: Moved, hypothesis: Hypothesis, looks: Sequence[Look]) -> 
         if math.hypot(*shift) < HAIR:  # as is believed
             continue
         correction = Correction(number, shift)
-        there = correction.looks(looks)
-        key = fallen(lattice, there).tobytes()
-        if key not in judged:
-            judged[key] = agreed(lattice, there)
-        under = judged[key]
-        if under is not None and (ahead := walk.ahead(end, under.evidence)) != FREE:
-            yield Retold(hypothesis, correction, ahead == FULL, under.misfits)
+        *before, newest = correction.looks(looks)
+        for place in _seen_from(newest.place, lattice) if number < len(looks) - 1 else [newest.place]:
+            there = [*before, newest._replace(place=place)]
+            key = fallen(lattice, there).tobytes()
+            if key not in judged:
+                judged[key] = agreed(lattice, there)
+            under = judged[key]
+            if under is not None and (ahead := walk.ahead(end, under.evidence)) != FREE:
+                yield Retold(hypothesis, correction, ahead == FULL, under.misfits, place)
 
 
-def retold_both(
-    motion: Moved, newest: Moved, hypothesis: Hypothesis, looks: Sequence[Look]
-) -> Iterator[tuple[Retold, Place]]:
+def retold_both(motion: Moved, newest: Moved, hypothesis: Hypothesis, looks: Sequence[Look]) -> Iterator[Retold]:
     """That both an earlier motion and the newest were stopped by what is known, so that no look contradicts another.
 
-    Told with the place, in Utak's own frame, at which the newest motion ended. looks : as for `retold`. Who goes on
-    against what stopped him does not move at all.
+    looks : as for `retold`. Who goes on against what stopped him does not move at all.
     """
     lattice, before, believed = hypothesis.lattice, looks[:-1], looks[motion.number].place
     walk = Walk(motion, lattice, looks)
@@ -225,7 +249,7 @@ def retold_both(
             if under is None or under.misfits or walk.ahead(end, under.evidence) != FULL:
                 continue
             if halt in still or onward.ahead(halt, under.evidence) == FULL:
-                yield Retold(hypothesis, correction, True, 0), halt.place
+                yield Retold(hypothesis, correction, True, 0, halt.place)
 
 
 def agreed(

@@ -6,6 +6,7 @@ the things laid on it anew. Which are tried is for kb.doubting and kb.pivoting.
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -21,6 +22,7 @@ from kb.hauling import STRIDE, Outcome, arrested, otherwise, predicted
 from kb.heading import Disc, Hypothesis, Look, cells, fallen, search
 from kb.lattice import Lattice
 from kb.loads import Load, discounted
+from kb.picturing import Pictures
 from kb.relaying import Relaid, relaid, shifted
 from kb.suspecting import Hindrances
 
@@ -50,6 +52,7 @@ class Surprise:
     """A look, after a command, that contradicts what was believed before.
 
     place : of Utak before it, on the lattice. held : the name of the load in his hand. hypotheses : what was left.
+    pictures : of the map before it; None where none were drawn.
     """
 
     command: Command
@@ -61,6 +64,7 @@ class Surprise:
     loads: Mapping[str, Load]
     held: str | None
     hypotheses: tuple[Hypothesis, ...]
+    pictures: Pictures | None = None
 
     # -- what is known of it ---------------------------------------------------------------------
 
@@ -200,7 +204,24 @@ class Surprise:
     @cached_property
     def hindrances(self) -> Hindrances:
         """What stands, or may stand, about the motion on the lattice that is believed."""
-        return Hindrances(self.evidence, *self.begun(self.lattice))
+        return Hindrances(self.evidence, *self.begun(self.lattice), self.pictures)
+
+    # -- after it ---------------------------------------------------------------------------------
+
+    def lying(self, outcome: Outcome) -> list[Load]:
+        """All loads where they lie on the lattice that is believed, if the motion of the one in hand came out so."""
+        return [
+            load.moved(outcome.polygon, load.slack, commanded=outcome.as_commanded) if name == self.held else load
+            for name, load in self.loads.items()
+        ]
+
+    def looked(self, loads: Sequence[Load], place: Place) -> Evidence:
+        """What is settled together with the look, if it was received at a place, with the loads where they lie."""
+        x, y = (math.floor(v) for v in place)
+        samples, counts = discounted(self.lattice.samples(), self.ranges, x, y, loads)
+        evidence = deepcopy(self.evidence)
+        evidence.look(samples, counts, x, y, len(self.looks))
+        return evidence
 
 
 def agreeing(

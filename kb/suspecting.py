@@ -15,6 +15,8 @@ from geometry.rigid import Motion, Rotate
 from kb.evidence import FULL, OPEN, Evidence
 from kb.hauling import Outcome, ahead, length_of, part_way
 from kb.loads import Load, Square, covered
+from kb.outlook import Outlook
+from kb.picturing import Pictures
 
 Place = tuple[float, float]
 
@@ -40,18 +42,20 @@ class Stop(NamedTuple):
 class Hindrances:
     """What stands, or may stand, where a thing and Utak come on a motion.
 
-    evidence : of the squares about. place, polygon : of Utak and of the thing before it.
+    evidence : of the squares about. place, polygon : of Utak and of the thing before it. pictures : of the map.
     """
 
-    def __init__(self, evidence: Evidence, place: Place, polygon: Any, motion: Motion) -> None:
-        known, open_ = (_there(evidence, place, polygon, motion, state) for state in (FULL, OPEN))
+    def __init__(
+        self, evidence: Evidence, place: Place, polygon: Any, motion: Motion, pictures: Pictures | None = None
+    ) -> None:
+        known, self._squares = (_there(evidence, place, polygon, motion, state) for state in (FULL, OPEN))
         self.walls = Obstacles([box_of(square) for square in known])
-        self._odds = {square: float(evidence.logit[evidence.index(*square)]) for square in open_}
+        self._outlook = Outlook(evidence, pictures)
 
     @cached_property
     def _open(self) -> list[tuple[Square, Obstacles]]:
         """Each open square as an obstacle of its own."""
-        return [(square, Obstacles([box_of(square)])) for square in self._odds]
+        return [(square, Obstacles([box_of(square)])) for square in self._squares]
 
     def stops(self, place: Place, polygon: Any, motion: Motion) -> list[Stop]:
         """Where the motion may have been stopped, in its order, and what speaks for each.
@@ -61,14 +65,14 @@ class Hindrances:
         body = Body(polygon, [place])
         end = self.walls.first_contact(body, motion).fraction
         met = ((obstacle.first_contact(body, motion).fraction, square) for square, obstacle in self._open)
-        stops, free = [], 1.0
-        for _, group in itertools.groupby(sorted(m for m in met if m[0] < end), lambda m: round(m[0] / TOGETHER)):
-            parts, squares = zip(*group, strict=True)
-            odds = {square: self._odds[square] for square in squares}
-            clear = math.prod(1.0 / (1.0 + math.exp(odd)) for odd in odds.values())
-            stops.append(Stop(parts[0], free * (1.0 - clear), _likeliest(odds)))
-            free *= clear
-        return [*stops, Stop(end, free)] if end < 1.0 else stops
+        ordered = sorted(m for m in met if m[0] < end)
+        together = [[*group] for _, group in itertools.groupby(ordered, lambda m: round(m[0] / TOGETHER))]
+        chances = self._outlook.met([[square for _, square in group] for group in together])
+        stops = [
+            Stop(group[0][0], chance, _likeliest({square: self._outlook.odds(square) for _, square in group}))
+            for group, chance in zip(together, chances, strict=True)
+        ]
+        return [*stops, Stop(end, max(1.0 - sum(chances), 0.0))] if end < 1.0 else stops
 
     def ends(self, place: Place, polygon: Any, motion: Motion) -> list[Outcome]:
         """What the stops would have led to, the likeliest first."""

@@ -111,8 +111,9 @@ class WorldModel:
     held : the node that is held, or None.
     looked_from : the squares on which an impression was received. barred : squares that stopped a motion, or likely
     did.
-    spread : by how many radians the lattice may still lie otherwise than believed. leeway : (west, south, east, north)
-    how far from where he believes it he may have woken in his square, the first two not above 0.
+    spread, likely_spread : by how many radians the lattice may still lie otherwise than believed, and likely may.
+    leeway : (west, south, east, north) how far from where he believes it he may have woken in his square, the first two
+    not above 0.
     imagined : pictures that agree with all counts.
     beneath : (rows, columns), floor of the standing map, upon which things that he has moved may lie now; None while he
     has moved none.
@@ -133,6 +134,7 @@ class WorldModel:
     looked_from: frozenset[tuple[int, int]] = frozenset()
     barred: frozenset[tuple[int, int]] = frozenset()
     spread: float = 0.0
+    likely_spread: float = 0.0
     leeway: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     imagined: Imagined = NOTHING_IMAGINED
     beneath: Mask | None = None

@@ -68,8 +68,7 @@ def test_a_slip_of_one_who_slips_is_understood() -> None:
 
 def test_a_turned_table_is_noticed() -> None:
     memory, occupied, (x, y) = Memory(), world_of(ROOM), utak_in(ROOM)
-    memory.wake(impression(occupied, (x, y), heading=30))
-    hows = []
+    hows = [memory.wake(impression(occupied, (x, y), heading=30)).explanation.how]
     for n in range(1, 7):  # north in his frame: 30 degrees from the table's north
         px, py = x + 0.5 - 0.5 * n, y + 0.5 + 0.8660254 * n
         hows.append(
@@ -81,8 +80,8 @@ def test_a_turned_table_is_noticed() -> None:
 
 
 def test_one_who_runs_against_something_on_a_turned_table_finds_out_both() -> None:
-    found = []
-    for seed in range(40):
+    far, off = [], []
+    for seed in range(30):
         rng = np.random.default_rng(seed)
         occupied, heading = world_of(random_room(rng, 36, 36, 16)), int(rng.integers(-44, 46))
         free = [(i, j) for i in range(8, 28) for j in range(8, 28) if not occupied(i, j)]
@@ -93,41 +92,32 @@ def test_one_who_runs_against_something_on_a_turned_table_finds_out_both() -> No
         memory.wake(impression(occupied, (x, y), heading))
         stop = ran(occupied, middle, way, heading)
         seen = impression(occupied, (math.floor(stop[0]), math.floor(stop[1])), heading)
-        how = memory.accommodate(Move(*way), seen).explanation.how
+        memory.accommodate(Move(*way), seen)
         walked = math.dist(memory.lattice.place_to_utak(*memory.place), (0, 0))
-        if how == "misled":
-            found.append((abs(memory.lattice.angle - heading), abs(walked - math.dist(stop, middle))))
-    assert len(found) >= 8
-    assert sum(off <= 2 and far <= 0.3 for off, far in found) >= 0.6 * len(found)
+        if math.dist(stop, middle) < 9 - 0.3:
+            off.append(abs(memory.lattice.angle - heading))
+            far.append(abs(walked - math.dist(stop, middle)))
+    assert len(far) >= 9
+    assert sum(angle <= 1 for angle in off) >= 0.9 * len(off)
+    assert sum(squares <= 0.3 for squares in far) >= 0.75 * len(far)
 
 
 def test_what_stopped_him_where_is_found_out_by_the_next_looks() -> None:
-    """Who is stopped on an unknown table often takes himself for elsewhere: what he sees fits more than one place."""
-    there, remembered, forgotten = [], [], []
-    for seed in range(24):
-        walks = [stopped_and_walked(seed, remember) for remember in (True, False)]
-        if walks[0] is None or walks[1] is None:
-            continue
-        there.append(walks[0][0])
-        remembered.append(walks[0][-1])
-        forgotten.append(walks[1][-1])
-    wrong = [n for n, off in enumerate(there) if off > 0.1]
-    assert len(wrong) >= 6
-    assert all(remembered[n] < 0.1 for n, off in enumerate(there) if off < 0.1)  # what was right stays so
-    assert sum(remembered[n] < 0.1 for n in wrong) >= 0.7 * len(wrong)
-    assert sum(forgotten[n] < 0.1 for n in wrong) <= 0.3 * len(wrong)
+    """Who is stopped on an unknown table may take himself for elsewhere: what he sees fits more than one place."""
+    walks = [walk for walk in (stopped_and_walked(seed, True) for seed in range(24)) if walk is not None]
+    assert len(walks) >= 12
+    assert sum(at_once < 0.1 for at_once, *_ in walks) >= 0.7 * len(walks)
+    assert sum(then < 0.1 for _, then, _ in walks) >= 0.9 * len(walks)
+    assert all(then < 0.1 and later < 0.1 for at_once, then, later in walks if at_once < 0.1)  # what was right stays so
 
 
-@pytest.mark.parametrize("seed", [1009, 1078, 1112, 1213, 1295])
-def test_one_who_was_stopped_does_not_rather_believe_two_odd_things_at_once(seed: int) -> None:
-    """The next look soon tells of a stop that he has overlooked, before he takes the table for askew and himself for
-    awoken beside the middle of his square.
-    """
-    walk = stopped_and_walked(seed, True)
-    assert walk is not None
-    stopped, *moved = walk
-    assert stopped > 0.1
-    assert max(moved) < 0.1
+@pytest.mark.parametrize("seed", [1047, 1096, 1102, 1147, 1161])
+def test_what_was_told_wrongly_is_told_again_by_the_next_looks(seed: int) -> None:
+    """A stop that he has overlooked, or took for one further on, while one who remembers no motion stays wrong."""
+    remembered, forgotten = stopped_and_walked(seed, True), stopped_and_walked(seed, False)
+    assert remembered is not None and forgotten is not None
+    assert min(remembered[0], *forgotten) > 0.1
+    assert remembered[-1] < 0.1
 
 
 @pytest.mark.parametrize("known", [True, False])
@@ -190,8 +180,9 @@ def test_where_a_motion_ends_need_not_be_floor() -> None:
     memory, occupied, (x, y) = Memory(), world_of(ROOM), utak_in(ROOM)
     memory.wake(impression(occupied, (x, y)))
     wall = len(ROOM[0]) - 1
-    found = memory.accommodate(Move(wall - x, 0.0), impression(occupied, (wall, y)))  # stopped as he touched it
-    assert found.explanation.how == "predicted"
+    memory.accommodate(Move(wall - x, 0.0), impression(occupied, (wall, y)))  # stopped as he touched it
+    assert memory.place == pytest.approx((wall - x, 0.5), abs=1e-5)
+    assert memory.place[0] < wall - x
     assert memory.evidence.state[memory.evidence.index(wall - x, 0)] != FREE
     assert memory.evidence.state[memory.evidence.index(0, 0)] == FREE
 
@@ -243,7 +234,7 @@ def test_what_looks_as_before_after_a_push_did_not_move() -> None:
     memory = holding(thing, (37.5, 20.5))
     memory.hypotheses, memory.trust = (Hypothesis(0.0, CENTRE + CENTRE),), 20  # how the lattice lies is known
     found = memory.accommodate(Push(1.0, 0.0), impression(around(thing, PLAIN), (37, 20)))
-    assert found.explanation.how == "stuck"
+    assert found.explanation.outcome is not None and found.explanation.outcome.stopped
     assert memory.place == CENTRE
     assert memory.loads["o1"].polygon.equals(translate(thing, -37, -20))
     assert memory.loads["o1"].stuck == 1

@@ -133,9 +133,9 @@ def test_a_false_place_is_a_contradiction() -> None:
 def test_a_split_covers_the_box_and_tells_squares_apart(angle: int, place: Point) -> None:
     whole = Hypothesis(angle, (0.0, 0.0, 1.0, 1.0))
     parts = whole.split(place)
-    area = sum((e - w) * (n - s) for _, (w, s, e, n) in parts)
+    area = sum(part.area for part in parts)
     assert area == pytest.approx(1.0)
-    for _, (w, s, e, n) in parts:
+    for w, s, e, n in (part.box for part in parts):
         squares = set()
         for fx, fy in ((0.01, 0.01), (0.5, 0.5), (0.99, 0.99), (0.01, 0.99)):
             point = (w + fx * (e - w), s + fy * (n - s))

@@ -8,10 +8,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
-from kb.accommodation import MOST_SEARCHES, Memory
+from kb.accommodation import Memory
 from kb.body import Turn
 from kb.evidence import OPEN
 from kb.heading import CENTRED, points
+from kb.judging import MOST_SEARCHES
 from kb.lattice import CENTRE, Lattice
 from kb.loads import Load
 from kb.pivoting import Part
@@ -33,7 +34,7 @@ def turned_until(thing: shapely.Polygon, about: tuple[float, float], post: shape
     return most
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(within, within, st.sampled_from([(25, 24), (26, 23), (24, 25)]))
 def test_a_turn_that_was_stopped_tells_where_he_woke_and_how_far_it_went(
     fx: float, fy: float, post_at: tuple[int, int]

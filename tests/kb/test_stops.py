@@ -149,14 +149,14 @@ def test_two_stops_in_a_row_are_told_together(seed: int) -> None:
     looks = [first, beside, beside._replace(place=(way[0] + into[0], way[1] + into[1]))]
     motions = Moved(1, way, CENTRED[:1]), Moved(2, into, CENTRED[:1])
     found = list(retold_both(*motions, CENTRED[0], looks))
-    for one, place in found:
-        told = [*one.correction.looks(looks)[:2], looks[2]._replace(place=place)]
+    for one in found:
+        told = [*one.correction.looks(looks)[:2], looks[2]._replace(place=one.newest)]
         assert one.known
         assert not contradictions(Lattice(), told)
     known = known_to_be_occupied(occupied, (x, y), here, stop.entered)
+    short = away[0] - way[0], away[1] - way[1]
     assert not known or any(
-        math.dist(one.correction.shift, (away[0] - way[0], away[1] - way[1])) < 1e-6 and math.dist(place, away) < 1e-6
-        for one, place in found
+        math.dist(one.correction.shift, short) < 1e-6 and math.dist(one.newest, away) < 1e-6 for one in found
     )
 
 

@@ -1,0 +1,124 @@
+"""What speaks for and against an explanation of a look: what contradicts it, and what else may have come about."""
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kb.body import Command
+from kb.doubting import explained
+from kb.explanation import Explanation, cheapest
+from kb.holding import Holding
+from kb.loads import Load, borne_out
+from kb.recalling import recalled
+from kb.relaying import relaid
+from kb.supposing import Surprise, clashes, laid_on
+
+MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are blamed for what contradicts
+HOPELESS = 18  # times that no other lattice explained it better, with things moved, before none is tried any more
+CONTRADICTED = 2  # misfits that a contradiction of looks weighs as much as: more than any other lattice costs
+Place = tuple[float, float]
+
+
+class Judging(Holding):
+    """What is held true, with what it says of new looks and of explanations of them."""
+
+    def _surprise(self, command: Command, ranges: NDArray[np.int16]) -> Surprise:
+        """A look that contradicts what is believed, now that things have been moved."""
+        return Surprise(
+            command,
+            ranges,
+            self.lattice,
+            self.place,
+            self.evidence,
+            self.looks,
+            self.loads,
+            self.held,
+            self.hypotheses,
+            self.pictures,
+        )
+
+    def _elsewhere(self, surprise: Surprise, misfits: int, simple: bool = False) -> list[Explanation]:
+        """The lattice that explains a surprise better, if there is one.
+
+        simple : is it explained by a motion that ended early?
+        """
+        if self.searches >= HOPELESS:
+            return []
+        found = explained(surprise, self.searches < MOST_SEARCHES, simple)
+        if found is None or found.misfits >= misfits:
+            self.searches += 1
+            return []
+        self.searches += found.searched
+        outcome = found.outcome
+        if found.lattice != self.lattice or set(found.hypotheses) != set(self.hypotheses):
+            far = 0.0 if outcome is None else outcome.distance
+            return [Explanation("turned", found.place, found.lattice, found.misfits, far, outcome, found.hypotheses)]
+        if outcome is None or outcome.how == "predicted":  # as is judged already
+            return []
+        return [Explanation(outcome.how, outcome.place, self.lattice, found.misfits, outcome.distance, outcome)]
+
+    def _recalled(self, surprise: Surprise, others: Iterable[Explanation]) -> list[Explanation]:
+        """Earlier motions that ended elsewhere than is believed, unless there are others that explain a surprise."""
+        if any(not other.misfits for other in others if other.how != "slipped" or self.slipped):
+            return []
+        found = []
+        for told, one in recalled(surprise, self.earlier):
+            far = math.hypot(*told.correction.shift)
+            misled = Explanation("misled", one.place, one.lattice, 0, far, one.outcome, self.hypotheses, told)
+            found.append(self._doubted(misled))
+        return found
+
+    def _doubted(self, explanation: Explanation) -> Explanation:
+        """That an earlier motion ended otherwise, with how likely that was by the look after it, if that was told."""
+        assert explanation.retold is not None
+        correction = explanation.retold.correction
+        motion = next((motion for motion in self.moved if motion.number == correction.since), None)
+        if motion is None or motion.number >= len(self.looks) or explanation.lattice != self.lattice:
+            return explanation
+        return explanation._replace(chance=motion.doubt(correction.place(self.looks[motion.number].place)))
+
+    def _doubt(self, chosen: Explanation) -> None:
+        """Remember where else the newest motion may have ended than an explanation says that is believed."""
+        if not self.ended or chosen.lattice != self.lattice or self.moved[-1].number != len(self.looks):
+            return
+        weights = [(one, (one.chance or 0.0) * math.exp(-one.crooked)) for one in self.ended]
+        total = sum(weight for _, weight in weights)
+        others = [
+            (self.lattice.place_to_utak(*one.place), w / total) for one, w in weights if one.place != chosen.place
+        ]
+        self.moved = (*self.moved[:-1], self.moved[-1]._replace(doubts=tuple(others)))
+
+    def _clashes(self, ranges: NDArray[np.int16], place: Place, loads: Iterable[Load]) -> int:
+        """How many fields cannot be right if the impression was received at a place, with the loads where they lie."""
+        return clashes(self.lattice, self.evidence, loads, place, ranges)
+
+    def _choose(self, explanations: list[Explanation], told: Iterable[str] = ()) -> Explanation:
+        """The explanation to believe. told : facts about the motion and the look."""
+        facts = [f"trust({0 if self._off_middle else self.trust})", *["slips"] * self.slipped]
+        facts += ["off_middle"] * self._off_middle
+        facts += [f"met({n})" for n, e in enumerate(explanations) if e.met and e.lattice == self.lattice]
+        facts += ["proven"] * (self.held is not None and self.loads[self.held].proven)
+        return cheapest(explanations, [*facts, *told])
+
+    def _lie(self, chosen: Explanation) -> None:
+        """Believe what an explanation says of the lattice and of earlier motions; if that is new, all is laid anew."""
+        loads = self.loads
+        if chosen.anew:
+            self.hypotheses, self.trust = chosen.hypotheses, 0
+            loads = borne_out(loads, self.held)
+        if chosen.retold is not None:
+            correction = chosen.retold.correction
+            own = self.lattice.place_to_utak(*self.place)
+            self.place = self.lattice.place_from_utak(*correction.place(own))
+            self.looks, loads = correction.looks(self.looks), correction.loads(loads, self.lattice)
+        elif chosen.lattice == self.lattice:
+            return
+        if chosen.retold is not None or len(loads) < len(self.loads):
+            under = relaid(chosen.lattice, self.lattice, self.looks, loads.values())
+        else:
+            under = laid_on(chosen.lattice, self.lattice, self.evidence, self.looks, loads)
+        if under.evidence is not self.evidence:
+            self.barred, self.suspected, self.pictures = set(), set(), None
+        self.lattice, self.evidence, self.loads = chosen.lattice, under.evidence, dict(under.loads)

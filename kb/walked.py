@@ -1,0 +1,181 @@
+"""What a look says that was received after a walk, or on waking: how it came about, and how the lattice lies."""
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.rigid import Translate
+from kb.body import Command, Move
+from kb.explanation import Explanation, misled
+from kb.halting import borne_out, halts, whole_first
+from kb.heading import MEMORY, Hypothesis, Look, anywhere, candidates, cramped, search, standing
+from kb.judging import CONTRADICTED, MOST_SEARCHES, Judging, Place
+from kb.lattice import Lattice
+from kb.plainness import UNTRIED, weighed
+from kb.relaying import relaid
+from kb.stops import Moved, Retold, around, retold, retold_both, views
+
+MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one is believed
+NONE_FITS = 10**6  # misfits of no lattice at all
+SETTLED = math.radians(5)  # by which angles may differ while that hardly is why looks contradict
+
+
+class Walked(Judging):
+    """What is held true, with the explanations of a look after a walk."""
+
+    def _explain(
+        self, ranges: NDArray[np.int16], predicted: Place, stops: tuple[Place, ...], command: Command | None
+    ) -> Explanation:
+        ahead = [self._explanation("predicted", place, ranges, predicted) for place in views(predicted)]
+        first = min(ahead, key=lambda one: one.misfits)
+        predicted = first.place
+        look = Look(ranges, self.lattice.place_to_utak(*predicted))
+        halted = self._halted_walk(command, ranges) if stops and command is not None else []
+        if halted and not whole_first(halted) and not first.misfits:
+            first = first._replace(misfits=CONTRADICTED)
+        told = cache(lambda motion: tuple(retold(motion, self.lattice, [*self.looks, look])))
+        stopped = [motion for motion in self.earlier if motion.stopped]
+        if first.misfits and not self.loads and any(not one.misfits for motion in stopped for one in told(motion)):
+            turned = self._stopped(look, map(told, stopped))
+        elif not self.loads:
+            recent = [*self.looks[-MEMORY:], look]
+            left = weighed(standing(self.hypotheses, recent), recent)
+            if not first.misfits and any(hypothesis.holds(self.lattice) for hypothesis in left):
+                return self._plainest(halted or [first], look, left)
+            turned = self._turned(look, left, recent)
+        elif first.misfits and command is not None:
+            turned = self._elsewhere(self._surprise(command, ranges), first.misfits)
+        elif halted:
+            return self._choose(halted)
+        else:
+            turned = []
+        if not first.misfits and not turned:
+            return first
+        if not first.misfits:  # no settled square is otherwise, but two looks contradict each other on this lattice
+            first = first._replace(misfits=CONTRADICTED)
+        explanations = [first]
+        explanations += [one for one in halted if one.how != "predicted"]
+        explanations += [self._explanation("blocked", stop, ranges, predicted) for stop in stops if not halted]
+        explanations += [self._explanation("slipped", place, ranges, predicted) for place in around(predicted)]
+        explanations += turned
+        if self.loads and command is not None:
+            explanations += self._recalled(self._surprise(command, ranges), explanations)
+        elif stops:
+            explanations += self._misled(look, told, turned, explanations)
+        return self._choose(explanations)
+
+    def _halted_walk(self, command: Command, ranges: NDArray[np.int16]) -> list[Explanation]:
+        """Where a walk came to a halt that may have been stopped, of the halts that the look bears out."""
+        assert isinstance(command, Move)
+        surprise = self._surprise(command, ranges)
+        motion = Translate(*self.lattice.to_lattice(command.east, command.north))
+        ended: list[Explanation] = []
+        for halt in (found := halts(surprise, None, motion)):
+            one = self._explanation(halt.how, halt.place, ranges, found[0].place)
+            ended.append(one._replace(chance=halt.chance, against=halt.against))
+        self.ended = tuple(borne_out(surprise, [one for one in ended if not one.misfits]))
+        return list(self.ended)
+
+    def _misled(
+        self,
+        look: Look,
+        told: Callable[[Moved], Iterable[Retold]],
+        turned: list[Explanation],
+        others: list[Explanation],
+    ) -> list[Explanation]:
+        """That the newest motion, or an earlier one, was stopped where nobody thought so. look : as predicted.
+
+        told : what may have come of a motion. turned : the lattices to believe instead, if all went as commanded; where
+        one of them explains all, only stops by something known are thought of. others : all explanations so far.
+        """
+        if all(e.misfits for e in turned):
+            simple = any(not e.misfits for e in others if e.how != "slipped" or self.slipped)
+            return self._stopped(look, map(told, self.earlier if simple else self.tellable))
+        met = [e for e in self._stopped(look, map(told, self.tellable)) if e.met or e.chance]
+        if self._off_middle or not all(e.odd for e in turned):
+            met = [e for e in met if e.lattice == self.lattice]
+        return met or self._stopped_twice(look)
+
+    def _stopped(self, look: Look, told: Iterable[Iterable[Retold]]) -> list[Explanation]:
+        """That one of some motions was stopped, as it was told. look : as predicted.
+
+        Where the newest one came to a halt on the lattice held is judged already, if it may have been stopped at all.
+        """
+        judged = len(self.looks) if self.ended else None
+        found = ((e, e.retold) for e in misled(look, told) if e.retold is not None)
+        return [
+            self._doubted(e._replace(crooked=one.hypothesis.dear))
+            for e, one in found
+            if one.correction.since != judged or e.lattice != self.lattice
+        ]
+
+    def _stopped_twice(self, look: Look) -> list[Explanation]:
+        """That the newest motion was stopped, and one before it unnoticed, on the lattice held. look : as predicted."""
+        looks, newest, found = [*self.looks, look], self.moved[-1], []
+        held = [hypothesis for hypothesis in newest.hypotheses if hypothesis.lattice == self.lattice][:1]
+        pairs = [(motion, hypothesis) for hypothesis in held for motion in reversed(self.earlier)]
+        for told in (one for motion, h in pairs for one in retold_both(motion, newest, h, looks)):
+            far = math.hypot(*told.correction.shift) + math.dist(told.newest, look.place)
+            place = self.lattice.place_from_utak(*told.newest)
+            found.append(Explanation("misled", place, self.lattice, 0, far, None, self.hypotheses, told))
+        return found
+
+    def _plainest(self, ended: Sequence[Explanation], look: Look, left: tuple[Hypothesis, ...]) -> Explanation:
+        """The lattice held, on which nothing contradicts, or another one on which the table looks plainer.
+
+        ended : explanations of a look on the lattice held. left : the hypotheses that stand, weighed.
+        """
+        self.hypotheses = left
+        dear = next(h.dear for h in left if h.holds(self.lattice))
+        explanations = [one._replace(crooked=one.crooked + dear) for one in ended]
+        plainest = candidates(left, self.lattice)[0]
+        if plainest.angle != self.lattice.angle:
+            place = plainest.place_from_utak(*look.place)
+            explanations.append(Explanation("turned", place, plainest, 0, 0.0, None, left))
+        return self._choose(explanations, ["stands"])
+
+    def _turned(self, look: Look, left: tuple[Hypothesis, ...], recent: list[Look]) -> list[Explanation]:
+        """The lattice to believe instead of the one held, on which looks contradict.
+
+        look : the new one, as predicted, recent : the last ones with it. left : the hypotheses that stand.
+        """
+        lattice, misfits = self.lattice, NONE_FITS
+        if self.likely_spread <= SETTLED:  # rather he woke elsewhere in his square than that the angle is another one
+            beside = search(recent, anywhere((self.lattice.angle,)))
+            lattice, misfits = self._borne_out(beside, look)
+            others = tuple(h for h in left if h.angle != self.lattice.angle)
+        if misfits:
+            lattice, misfits = self._borne_out(left, look)
+        else:
+            left = (*beside, *others)
+        if misfits and self.searches < MOST_SEARCHES:
+            self.searches += 1
+            found = search(recent)
+            another, fewer = self._borne_out(found, look)
+            if fewer < misfits:
+                left, lattice, misfits = found, another, fewer
+        place = lattice.place_from_utak(*look.place)
+        misfits += cramped(left, len(self.looks))
+        dear = next((h.dear for h in self.hypotheses if h.angle == lattice.angle), UNTRIED)  # by all looks before
+        crooked = 0.0 if lattice.angle == self.lattice.angle else dear
+        return [Explanation("turned", place, lattice, misfits, 0.0, None, left, crooked=crooked)] * bool(left)
+
+    def _borne_out(self, left: tuple[Hypothesis, ...], look: Look) -> tuple[Lattice, int]:
+        """Of the lattices left, the one that all looks bear out best, and how many fields it leaves as noise."""
+        if not left:
+            return self.lattice, NONE_FITS
+        tried: list[tuple[int, int]] = []
+        lattices = candidates(left, self.lattice)[: max(6, MOST_REPLAYS // (len(self.looks) + 1))]
+        for number, lattice in enumerate(lattices):
+            tried.append((relaid(lattice, self.lattice, [*self.looks, look], ()).misfits, number))
+            if tried[-1][0] == 0:
+                break
+        misfits, number = min(tried)
+        return lattices[number], misfits
+
+    def _explanation(self, how: str, place: Place, ranges: NDArray[np.int16], predicted: Place) -> Explanation:
+        misfits = self._clashes(ranges, place, self.loads.values())
+        return Explanation(how, place, self.lattice, misfits, math.dist(place, predicted))
