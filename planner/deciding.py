@@ -32,7 +32,7 @@ from planner.screen import Screens, vicinity
 from planner.searching import against_walls, aims_towards
 from planner.sizing import Sizer, least_outline
 from planner.verifying import Verifier, before_taking, here, misgiving, more_of, unfelt_wall
-from planner.walking import HURRY, STROLL, halting, is_open, next_move
+from planner.walking import HURRY, STROLL, halting, is_open, is_settled, next_move
 from planner.ways import Way, choose_way, ways
 
 Place = tuple[float, float]
@@ -226,7 +226,7 @@ class Decider:
             aims = aims_towards([unseen], situation, reconciled)
             # No proof that there is none: it may stand against a wall, and look like a piece of that; and who does not
             # know how the squares lie may have pushed at another thing.
-            proved = fixed and situation.model.view.sure and not is_open(situation.model)
+            proved = fixed and situation.model.view.sure and is_settled(situation.model)
             verdict = "impossible" if proved else "limit"
             ask = partial(self._pursue, aims, stage, situation, lambda: unseen.missing, verdict)
             decision = self._felt(ask, stage, situation)
@@ -266,6 +266,7 @@ class Decider:
             if walk.command is not None:
                 return walk
             advice = Refusal(False, lambda: f"{node.name} cannot be reached to be taken")
+        situation = situation.along_with(node.patch) if land.shut_in else situation
         along = partial(self._taken_along, node, stage, situation)
         if isinstance(advice, See):
             return self._pursue([Aim("inspect", *advice.lookout)], stage, situation, lambda: "", along=along)
@@ -274,11 +275,13 @@ class Decider:
         aims = aims_towards([unknown], situation, reconciled)
         # Where a door may be is looked at from places where a thing would be in the way; where it cannot be brought to
         # where it shall end, another way there is looked for without it; and what is taken while it is open how the
-        # squares lie keeps the outline that it seems to have then.
-        fetched = not land.lookouts and not land.ends and not is_open(situation.model)
+        # squares lie keeps the outline that it seems to have then. What shuts him in he takes along.
+        fetched = land.shut_in or not (land.lookouts or land.ends or is_open(situation.model))
         brought = None if land.there else partial(along, fetched=fetched)
         ask = partial(self._pursue, aims, stage, situation, advice.reason, verdict, brought)
         decision = self._felt(ask, stage, situation)
+        if land.shut_in and not isinstance(decision.command, Push | Turn):
+            return Decision(None, f"{stage} cannot be told: {land.missing}, and {node.name} shuts him in", "limit")
         must_reach = land.must_reach() if decision.verdict else {}
         if must_reach:
             shut_in = self.carrier.refused(node, must_reach, situation)
@@ -297,8 +300,7 @@ class Decider:
 
         ends : those to which it cannot be brought as it is believed to be.
         """
-        push = self._gauged(node, stage, situation)
-        if push is not None:
+        if (push := self._gauged(node, stage, situation)) is not None:
             return push
         least = least_outline(node)
         refused = least and self.carrier.refused(replace(node, polygon=least), ends, situation)
@@ -312,10 +314,11 @@ class Decider:
             advice = self.carrier.advise(node, {SIZE: pose}, situation)
             if isinstance(advice, Act):
                 return Decision(advice.command, f"how large {node.name} is is not sure; {stage}")
-            if isinstance(advice, Go):
-                walk = self._go(advice, stage, situation)
-                if walk.command is not None:
-                    return walk
+            walk = self._go(advice, stage, situation) if isinstance(advice, Go) else None
+            if isinstance(advice, See):
+                walk = self._look(Aim("inspect", *advice.lookout), stage, situation)
+            if walk is not None and walk.command is not None:
+                return walk
         return None
 
     def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
@@ -330,7 +333,7 @@ class Decider:
         if going_on is not None:
             return going_on
         for name, end in land.approach.items():
-            advice = self.carrier.advise(node, {name: end}, situation)
+            advice = self.carrier.advise(node, {name: end}, situation, land.hoped)
             if isinstance(advice, Act | Go):
                 return advice
         self._looked = looked
@@ -367,10 +370,8 @@ class Decider:
         assert reached is not None
         straight = fewest.way(aim) if fewest is not None and reached.level == 0 else None
         way = None if straight is None else self._choose([straight], situation)
-        if way is None:
-            way = self._kept.rest(aim, reached.level, model, screens)
-        if way is None:
-            way = self._choose(ways(screens, reached.level, aim.squares, self.paths), situation)
+        way = way or self._kept.rest(aim, reached.level, model, screens)
+        way = way or self._choose(ways(screens, reached.level, aim.squares, self.paths), situation)
         if way is None:
             return Decision(None, f"{stage} cannot be attained: every way there is forbidden", "impossible")
         self._kept.keep(way, lattice_squares(aim.squares, model), model)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from kb.corners import Corner
 from kb.facts import Fact, Symbol, Term
 from kb.rooms import LIKELY_DOOR, SURE, Rooms, rooms_of
 from kb.task import Task
-from kb.worldmodel import WorldModel
+from kb.worldmodel import Patch, WorldModel
 from planner.exploring import APART, Lookout, frontiers, gaps, jambs, promised, rooms_beyond, short_of, sight_of
 from planner.screen import Screens, Squares, grown
 
@@ -25,6 +25,7 @@ Mask = NDArray[np.bool_]
 FURTHEST = 45  # at most
 BARE, A_PERCENT = 12, 2  # behind floor that goes on: so many for each percent that it promises more than BARE
 GAP, WIDEST_DOOR = 36, 6  # behind a stretch of floor no wider than a door: at least so many
+WIDELY = 24  # behind floor of another room that goes on more widely: at least so many
 CUT_OFF = 30  # floor that no way leads to yet
 ONWARD = 30  # straight on behind where the floor goes on
 ASIDE = 28  # to either side behind that
@@ -50,6 +51,10 @@ class Situation:
         if (self.model.walls == self.model.verge).all():
             return self.rooms
         return rooms_of(self.model, self.rules, self.model.walls)
+
+    def along_with(self, patch: Patch) -> "Situation":
+        """The same for who takes something along wherever he goes, from its squares on."""
+        return replace(self, screens=Screens(self.model, self.model.mask(patch)))
 
     def beyond(self, place: tuple[float, float]) -> tuple[Mask, tuple[Lookout, ...]]:
         """(rows, columns) what shares a door with the room of a point, and what to look at before that is believed.
@@ -185,7 +190,7 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
         elif narrow(look):
             least, aside = GAP, BESIDE_DOOR
         elif apart(look):
-            least, aside = 0, ASIDE
+            least, aside = WIDELY, ASIDE
         else:
             continue
         if short(look) <= reach(look, least, aside):

@@ -152,13 +152,15 @@ class Hauler:
         if haul.level == BOLD:
             return replace(haul, hopes=not haul.askew)
         least = FEWEST if request.held else FEWEST + 1
-        if haul.level or haul.aside or haul.plan.commands <= least:
+        further = isinstance(request.hoped().get(haul.target), InCorner)
+        if haul.level or haul.aside or (haul.plan.commands <= least and not further):
             return haul
         hauls = [haul, *self._hoped(request, situation)]
         facts = []
         for number, one in enumerate(hauls):
             facts.append(f"plan({number},{one.plan.commands})")
-            told = {"hopes": one.hopes, "askew": one.askew, "aside": bool(one.aside)}
+            short = further and not one.hopes
+            told = {"hopes": one.hopes, "askew": one.askew, "aside": bool(one.aside), "short": short}
             facts += [f"{fact}({number})" for fact, so in told.items() if so]
         answer = solve([ASP / "boldness.lp"], facts)
         return hauls[answer[0].arguments[0].number] if answer else haul

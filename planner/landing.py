@@ -3,6 +3,7 @@
 Goals of geometry.carrying are in the frame of the view's arrays, as all of planning on a screen is.
 """
 
+import itertools
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -37,6 +38,8 @@ LEANING = 1.25  # squares that what lies askew in a corner may reach further fro
 PRESS = 0.25  # squares that a thing is pressed on into a corner: it shows, then, how far in its sides lie
 HAIR = 0.01  # squares that do not matter
 ABOUT = 0.5  # squares from its walls at which an object is brought to a corner that is settled
+RATHER = 0.4  # that a square is occupied which is rather floor than not
+MOST_FURTHER, BROAD = 2, 3  # squares that a corner may lie further than what surely is floor, and as broad as that is
 BESIDE = 1.0  # squares from a thing within which it is reached
 POSED, TURNED = 0.25, 2.0  # squares and degrees within which a pose is attained
 
@@ -51,6 +54,7 @@ class Landing:
     missing, lookouts : what must be known first, in words, and where just that may be seen (as of a Destination).
     approach : places near to where it must end, from which it can be told better where that is; the best first.
     holds : the goal holds as the object lies now. there : it does, but for what must be known first.
+    shut_in : likewise, and he cannot leave the object where it is, for it shuts him in.
     loose : where it may lie if it cannot be brought to any of the ends.
     must_reach : what it must come to lie on wherever it must end, while that is not known: squares that were not seen,
     and those of the one end that may be it. Worked out when asked.
@@ -63,6 +67,7 @@ class Landing:
     approach: Mapping[str, End] = field(default_factory=dict)
     holds: bool = False
     there: bool = False
+    shut_in: bool = False
     loose: Mapping[str, End] = field(default_factory=dict)
     must_reach: Ends = dict
     hoped: Ends = dict
@@ -149,13 +154,27 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
         if unknown is not None:
             near = _near(side, node, situation, floor)
             must_reach = partial(_must_reach, side, node, situation)
-            return Landing({}, unknown.missing, unknown.lookouts, near, must_reach=must_reach)
+            hoped = partial(_further, side, next(iter(near), ""), situation)
+            return Landing({}, unknown.missing, unknown.lookouts, near, must_reach=must_reach, hoped=hoped)
     land = _in_corner(side, node, situation)
-    if land.holds:
+    if not land.holds:
+        return land
+    rooms = rooms_to_see(side, situation)
+    shut_in = not rooms and situation.model.held == node.name and not _can_leave(node, situation)
+    if shut_in:
+        situation = situation.along_with(node.patch)
         rooms = rooms_to_see(side, situation)
-        if rooms:
-            return Landing({}, rooms[0].what, tuple(_from_afar(look, situation) for look in rooms), there=True)
-    return land
+    if not rooms:
+        return land
+    looks = tuple(_from_afar(look, situation) for look in rooms)
+    return Landing({}, looks[0].what, looks, there=not shut_in, shut_in=shut_in)
+
+
+def _can_leave(node: Node, situation: Situation) -> bool:
+    """Does Utak, with an object in hand, not stand in a nook between that and the walls?"""
+    reached = situation.screens.floor
+    beside = grown(situation.model.mask(node.patch), 1)
+    return bool((reached & ~grown(beside, 1)).any())
 
 
 def _from_afar(look: Lookout, situation: Situation) -> Lookout:
@@ -178,14 +197,15 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
         around = grown(around, 1) & ~under
     unclear = around & ~model.told
     shape = in_view(node.polygon, situation)
+    hoped = partial(_further, side, side, situation)
     if not unclear.any():
-        return _flat(side, end, node, shape)
+        return replace(_flat(side, end, node, shape), hoped=hoped)
     near = replace(end, slack=FLUSH if view.sure else ABOUT)
     lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
     may_go_on = unclear & (view.probability < 1 - CLEAR)
     if len(lookout.squares) and (not view.sure or (may_go_on.any() and lands(near, shape))):
         return Landing({}, lookout.what, (lookout,), there=True)
-    return Landing({side: near}, lookout.what, (lookout,), holds=lands(near, shape))
+    return Landing({side: near}, lookout.what, (lookout,), holds=lands(near, shape), hoped=hoped)
 
 
 def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Landing:
@@ -226,6 +246,23 @@ def _into_corner(side: str, situation: Situation) -> InCorner:
     """In the furthest corner of the known floor."""
     (x, y), (column, row) = situation.corners[side].point, situation.corners[side].square
     return InCorner(x, y, 1 if x > column else -1, 1 if y > row else -1)
+
+
+def _further(side: str, name: str, situation: Situation) -> Mapping[str, End]:
+    """The corner of what is rather floor than not, by a name, where that goes further than what surely is."""
+    (column, row), end = situation.corners[side].square, _into_corner(side, situation)
+    view = situation.model.view
+    rather = np.pad(view.seen & (view.probability <= RATHER), MOST_FURTHER)
+    along = [step * np.array([-end.sy, -end.sx]) for step in range(BROAD)]
+    more = []
+    for axis in (1, 0):
+        out = np.array([end.sy, end.sx]) * (np.arange(2) == axis)
+        back = [step * (np.arange(2) != axis) for step in along]
+        there = (all(rather[tuple(np.array([row, column]) + MOST_FURTHER + n * out + b)] for b in back) for n in (1, 2))
+        more.append(sum(itertools.takewhile(bool, there)))
+    if not any(more):
+        return {}
+    return {name: _pressed(replace(end, x=end.x + end.sx * more[0], y=end.y + end.sy * more[1]))}
 
 
 def _near(side: str, node: Node, situation: Situation, floor: Mask) -> Mapping[str, End]:
@@ -304,7 +341,10 @@ def _around_corner(began: Place, node: Node, situation: Situation) -> Landing:
     model = situation.model
     hidden = out_of_sight(model.verge, model, began) & (model.space | model.mask(node.patch))
     if hidden.sum() < node.polygon.area:
-        return Landing({}, "no corner is seen yet that hides a place for it")
+        # Where it ends it lies on what is hidden, as far as that is seen, and on what never was.
+        rest = {"hidden": hidden | ~model.view.seen} if hidden.any() else {}
+        missing = "no corner is seen yet that hides a place for it"
+        return Landing({}, missing, must_reach=lambda: {name: Inside(region_of(mask)) for name, mask in rest.items()})
     return Landing({"hidden": Inside(region_of(hidden))}, hoped=lambda: {"hidden": _hoped(hidden, situation)})
 
 

@@ -35,11 +35,13 @@ class Reached(NamedTuple):
 class Screens:
     """One world model, projected at every level of certainty.
 
-    Arrays are (rows, columns), as those of the model's view.
+    Arrays are (rows, columns), as those of the model's view. carried : the squares of what goes along with him, and so
+    is not in his way.
     """
 
-    def __init__(self, model: WorldModel) -> None:
+    def __init__(self, model: WorldModel, carried: Mask | None = None) -> None:
         self.model = model
+        self._carried = carried
         row, column = model.view.locate(*model.place)
         self.here = (column, row)
         self._barred = model.squares(model.barred)
@@ -53,6 +55,8 @@ class Screens:
         else:
             mask &= view.seen
         mask &= ~self._barred
+        if self._carried is not None:
+            mask |= self._carried
         mask[self.here[1], self.here[0]] = True
         return mask
 

@@ -14,6 +14,7 @@ from geometry.straight import straight
 from geometry.winding import crossings
 from kb.body import Command, Move
 from kb.lattice import turned
+from kb.stops import on_line
 from kb.worldmodel import WorldModel
 from planner.screen import Screens, grown
 from planner.steps import Square, clear, clear_line
@@ -29,8 +30,13 @@ ASIDE = (0.0618, 0.0341)  # squares from a centre, where no turn by whole degree
 
 
 def is_open(model: WorldModel) -> bool:
-    """Is it open, by more than a few degrees, how the lattice lies?"""
-    return model.spread > ASKEW
+    """Is it open, by more than a few degrees, how the lattice lies? What is unlikely by all pictures is left out."""
+    return model.likely_spread > ASKEW
+
+
+def is_settled(model: WorldModel) -> bool:
+    """Is it beyond doubt, but for a few degrees, how the lattice lies?"""
+    return model.spread <= ASKEW
 
 
 class Pace(NamedTuple):
@@ -110,7 +116,13 @@ def _halfway(here: Square, there: Square) -> Square:
 def move_to(model: WorldModel, square: Square, aside: tuple[float, float]) -> Move:
     """The move from where Utak believes himself to a square (column, row) of the view, aside from its centre."""
     x, y = model.view.west + square[0] + 0.5 + aside[0], model.view.south + square[1] + 0.5 + aside[1]
-    east, north = model.lattice.to_utak(x - model.place[0], y - model.place[1])
+    return _straight_to((x, y), model)
+
+
+def _straight_to(place: tuple[float, float], model: WorldModel) -> Move:
+    """The move to a place (of the lattice)."""
+    here = on_line(model.place)
+    east, north = model.lattice.to_utak(place[0] - here[0], place[1] - here[1])
     return Move(round(east, DIGITS) + 0.0, round(north, DIGITS) + 0.0)
 
 
@@ -148,8 +160,7 @@ def halting(command: Command | None, place: tuple[float, float], model: WorldMod
     dx, dy = model.lattice.to_lattice(command.east, command.north)
     if model.view.locate(model.place[0] + dx, model.place[1] + dy) != model.view.locate(*place):
         return command
-    east, north = model.lattice.to_utak(place[0] - model.place[0], place[1] - model.place[1])
-    return Move(round(east, DIGITS) + 0.0, round(north, DIGITS) + 0.0)
+    return _straight_to(place, model)
 
 
 def _same_side(part: Sequence[Square], about: tuple[float, float] | None) -> bool:

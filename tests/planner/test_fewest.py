@@ -131,7 +131,7 @@ def test_there_is_no_view_where_nothing_new_comes_into_sight() -> None:
 
 def test_every_first_move_is_one_that_may_be_made() -> None:
     for spread in (0.0, math.pi):
-        screens = Screens(replace(seen_whole(WALLS), spread=spread))
+        screens = Screens(replace(seen_whole(WALLS), likely_spread=spread))
         reached = one_move(screens, "explore")
         for square in np.flatnonzero(screens.floor)[::7].tolist():
             way = FewestMoves(screens).way(Aim("explore", np.array([square]), "there"))

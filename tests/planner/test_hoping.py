@@ -84,7 +84,7 @@ def found(
     model: WorldModel, ends: dict[str, End], hoped: dict[str, End] | None = None, open_: bool = False
 ) -> tuple[Haul, Situation]:
     """The way that is chosen. open_ : is it open how the lattice lies?"""
-    model = replace(model, spread=0.3) if open_ else model
+    model = replace(model, likely_spread=0.3) if open_ else model
     situation = situation_of(model)
     answer = Hauler().find(Request(thing(model), ends, hoped=lambda: hoped or {}), situation)
     assert isinstance(answer, Haul)

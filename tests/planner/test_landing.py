@@ -12,7 +12,7 @@ from kb.loads import covered
 from kb.worldmodel import Node, WorldModel
 from planner.carrier import Carrier
 from planner.landing import Landing, landing, lands
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import seen_whole, unclear
 from tests.planner.situations import situation_of
 
 SHUT_IN = [
@@ -156,3 +156,44 @@ def test_what_may_be_smaller_than_it_looks_is_in_a_corner_when_it_is_however_sma
     shape = shapely.affinity.translate(there, -model.view.west, -model.view.south)
     assert found.holds == holds
     assert holds or not any(lands(end, shape) for end in found.ends.values())  # there is something left to do
+
+
+@pytest.mark.parametrize(
+    ("chance", "rows_open", "further"),
+    [(0.3, 1, 1), (0.3, 2, 2), (0.3, 3, 2), (0.6, 1, 0), (0.0, 0, 0)],
+)
+def test_a_corner_that_rather_lies_further_is_hoped_for_there(chance: float, rows_open: int, further: int) -> None:
+    """Some rows of the wall to the north are not settled, and rather floor or not."""
+    model = seen_whole([*["b" * 22] * 4, *WALLED[1:]])
+    top = int(np.argwhere(model.space)[-1][0])
+    model = unclear(model, slice(top + 1, top + 1 + rows_open), slice(1, 21), chance)
+    square = shapely.box(2, 0, 5, 3)
+    node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square)
+    situation = situation_of(replace(model, objects=(node,)), {"x": "o1"})
+    found = landing(NORTHEAST, node, (3.5, 1.5), situation)
+    (name, end), *_ = [*found.ends.items(), *found.approach.items()]
+    hoped = found.hoped()
+    assert list(hoped) == [name] * (further > 0)
+    for other in hoped.values():
+        assert (other.x - end.x, other.y - end.y) == (0, further)
+        assert other.press > 0  # on to the wall, however far it is
+
+
+@pytest.mark.parametrize("behind", ["?", "b"])
+def test_who_is_shut_in_a_corner_by_what_he_holds_sees_the_rooms_that_he_could_take_it_to(behind: str) -> None:
+    """There is a door in the south wall; what lies behind it was never seen, or is wall."""
+    wall, door = "b" * 18, "b" * 12 + "..." + "b" * 3
+    rows = [wall, "b" + "." * 12 + "gggUb", *["b" + "." * 12 + "ggggb"] * 3, *["b" + "." * 16 + "b"] * 6]
+    rows += [door if behind == "?" else wall] * 2
+    model = seen_whole([*rows, *[behind * 18] * 3])
+    there = shapely.box(-2.75, -2.75, 0.25, 0.25)  # three quarters of a square from the walls that meet about him
+    node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True, movable=99)
+    for held in ("o1", None):
+        situation = situation_of(replace(model, objects=(node,), held=held), {"x": "o1"})
+        assert np.count_nonzero(situation.screens.floor) <= 1
+        found = landing(NORTHEAST, node, (-1.5, -1.5), situation)
+        if behind == "?" and held:
+            assert found.shut_in and not found.holds and not found.there
+            assert "a room is not seen" in found.missing
+        else:
+            assert found.holds and not found.shut_in

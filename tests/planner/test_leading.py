@@ -130,7 +130,7 @@ def test_nothing_is_fetched_while_it_is_open_how_the_squares_lie(
     spread: float, command: type, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     situation = beside()
-    unsure = situation_of(replace(situation.model, spread=spread), situation.binding)
+    unsure = situation_of(replace(situation.model, likely_spread=spread), situation.binding)
     decision = exploring(unsure, at(unsure, (9, 6), (10, 6)), lookouts=False, monkeypatch=monkeypatch)
     assert isinstance(decision.command, command)
 

@@ -296,7 +296,7 @@ def test_he_halts_near_the_edge_of_a_square_while_he_may_have_woken_elsewhere(le
 
 
 def test_while_it_is_open_how_the_lattice_lies_no_turn_leads_to_the_line_between_two_squares() -> None:
-    model = replace(seen_whole(HALL), spread=math.pi)
+    model = replace(seen_whole(HALL), likely_spread=math.pi)
     screens = Screens(model)
     plain = 0
     for goal in np.flatnonzero(screens.floor).tolist():
@@ -316,7 +316,7 @@ def test_while_it_is_open_how_the_lattice_lies_no_turn_leads_to_the_line_between
 
 @pytest.mark.parametrize("pace", [STROLL, HURRY])
 def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear_unless_they_are_bold(pace: Pace) -> None:
-    model = replace(seen_whole(HALL), spread=math.pi)
+    model = replace(seen_whole(HALL), likely_spread=math.pi)
     screens = Screens(model)
     clear_of = ~grown(~screens.safe, 1)
     longest, near = 0.0, []
@@ -349,7 +349,7 @@ def test_the_bold_go_right_up_to_what_is_not_settled_but_not_to_what_was_never_s
 
 @pytest.mark.parametrize("spread", [0.0, math.pi])
 def test_who_hurries_is_bold_and_who_strolls_is_not(spread: float) -> None:
-    screens = Screens(replace(random_walk(3), spread=spread))
+    screens = Screens(replace(random_walk(3), likely_spread=spread))
     assert (HURRY.ground(screens) == screens.believed).all()
     assert (STROLL.ground(screens) == screens.safe).all()
     assert (screens.believed != screens.safe).any()
@@ -358,7 +358,7 @@ def test_who_hurries_is_bold_and_who_strolls_is_not(spread: float) -> None:
 @pytest.mark.parametrize("spread", [0.0, math.pi])
 @pytest.mark.parametrize("kind", sorted(STROLL.longest))
 def test_one_move_leads_just_where_the_next_move_may_end(kind: str, spread: float) -> None:
-    screens = Screens(replace(seen_whole(HALL), spread=spread))
+    screens = Screens(replace(seen_whole(HALL), likely_spread=spread))
     reached = one_move(screens, kind)
     ended = np.zeros_like(reached)
     ended[screens.here[1], screens.here[0]] = True

@@ -234,7 +234,8 @@ def about_to_turn(spread: float, turn: float, looks: int) -> tuple[Situation, De
     """One who has looked so often and is about to take a thing and to turn it."""
     situation = beside(())
     looked = frozenset((x, 0) for x in range(looks))
-    situation = situation_of(replace(situation.model, spread=spread, looked_from=looked), situation.binding)
+    model = replace(situation.model, spread=spread, likely_spread=spread, looked_from=looked)
+    situation = situation_of(model, situation.binding)
     (node,) = situation.model.objects
     motions = (Rotate(turn, (0.5, 0.5)),) if turn else (Translate(3.0, 0.0),)
     decider = Decider(NO_TASK, bound=situation.binding)

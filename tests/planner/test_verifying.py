@@ -63,7 +63,8 @@ def squares_from(model: WorldModel, squares: np.ndarray) -> np.ndarray:
 def test_before_a_thing_is_turned_or_tried_again_he_looks_how_the_squares_lie(
     spread: float, turns: bool, looks: int, stuck: int, first: bool
 ) -> None:
-    model = replace(seen_whole(BESIDE_A_THING), spread=spread, looked_from=frozenset((x, 0) for x in range(looks)))
+    looked = frozenset((x, 0) for x in range(looks))
+    model = replace(seen_whole(BESIDE_A_THING), likely_spread=spread, looked_from=looked)
     (node,) = model.objects
     aim = before_taking(replace(node, stuck=stuck), turns, situation_of(model))
     assert (aim is not None) == first
