@@ -7,6 +7,7 @@ stands at the end. Where he woke must then fall on (0, 0) of the lattice; by how
 
 import math
 from collections.abc import Iterable, Mapping
+from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from benchmarks.furniture import SHAPES
 
 FULL = 1  # the state of kb.evidence of a square that is certainly occupied
 FOVEA = 4  # squares from Utak to the edge of his fovea
+HAIR = 1e-5  # squares from a line between two squares to a point that is on it
 NEAR = 0.1  # the least common part of union for a believed object to be the true one
 
 
@@ -80,8 +82,10 @@ def beliefs(robot: Any, woke: tuple[float, float], now: tuple[float, float], hea
         return Beliefs([], [])
     quarters = round((heading - model.lattice.angle) / 90) % 4
     x, y = Frame(quarters, 0, 0).square(*(math.floor(v) for v in model.place))
-    frame = Frame(quarters, math.floor(now[0]) - x, math.floor(now[1]) - y)
-    drift = max(abs(frame.east - math.floor(woke[0])), abs(frame.north - math.floor(woke[1])))
+    frames = [Frame(quarters, east - x, north - y) for east, north in _beside(now)]
+    drift, frame = min(
+        (max(abs(frame.east - math.floor(woke[0])), abs(frame.north - math.floor(woke[1]))), frame) for frame in frames
+    )
     objects = [(_class(node.shape), frame.polygon(_outline(node))) for node in model.objects]
     rows, columns = np.nonzero(model.certain)
     full = model.view.state[rows, columns] == FULL
@@ -91,6 +95,11 @@ def beliefs(robot: Any, woke: tuple[float, float], now: tuple[float, float], hea
         for row, column, occupied in zip(rows.tolist(), columns.tolist(), full.tolist(), strict=True)
     ]
     return Beliefs(objects, certain, drift)
+
+
+def _beside(place: tuple[float, float]) -> Iterable[tuple[int, int]]:
+    """The square of a point; right on a line those to either side, for he may be believed to stand on any of them."""
+    return product(*({math.floor(v - HAIR), math.floor(v + HAIR)} for v in place))
 
 
 def _class(shape: Mapping[str, int]) -> str:

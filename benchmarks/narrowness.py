@@ -9,6 +9,8 @@ from shapely import Point
 from benchmarks.scenes import Scenario
 from kb.lattice import turned
 
+ALLOWED = 0.25  # squares by which a missing width may be off
+NEAR = 1.5  # squares from the true passage to the one told
 SAID = re.compile(r"at POINT \((\S+) (\S+)\), is too narrow by (\S+) squares")
 
 
@@ -20,6 +22,11 @@ class Narrowness(NamedTuple):
 
     off: float
     away: float
+
+    @property
+    def right(self) -> bool:
+        """Whether the passage was told, and rightly."""
+        return abs(self.off) <= ALLOWED and self.away <= NEAR
 
 
 def narrowness(world: Scenario, reason: str) -> Narrowness | None:

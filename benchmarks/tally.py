@@ -7,8 +7,6 @@ from statistics import median
 
 from benchmarks.trial import Trial
 
-ALLOWED = 0.25  # squares by which a missing width may be off
-NEAR = 1.5  # squares from the true passage to the one told
 ROMAN = {1: "i", 2: "ii", 3: "iii", 4: "iv", 5: "v", 6: "vi", 7: "vii", 8: "viii", 9: "ix"}
 
 
@@ -85,7 +83,7 @@ def narrowness(trials: Sequence[Trial]) -> str:
     told = [trial.narrow for trial in trials if trial.narrow is not None]
     if not told:
         return ""
-    right = [abs(narrow.off) <= ALLOWED and narrow.away <= NEAR for narrow in told]
+    right = [narrow.right for narrow in told]
     off, away = (
         max((abs(v) for v in values if not math.isnan(v)), default=math.nan) for values in zip(*told, strict=True)
     )
@@ -112,7 +110,7 @@ def _faults(trial: Trial) -> list[str]:
     if not trial.right and not trial.crash:
         what = "not achieved" if trial.possible else "should have been refused"
         found.append(f"{what}: {trial.verdict}: {trial.reason}")
-    if trial.narrow is not None and not (abs(trial.narrow.off) <= ALLOWED and trial.narrow.away <= NEAR):
+    if trial.narrow is not None and not trial.narrow.right:
         found.append(f"the passage is told wrongly: {trial.reason}")
     if trial.judged:
         found.append(f"judge: {trial.judged[0]}" + (f" (+{len(trial.judged) - 1})" if len(trial.judged) > 1 else ""))
