@@ -20,7 +20,7 @@ from kb.explanation import Accommodated
 from kb.imagining import NOTHING_IMAGINED, imagine
 from kb.interpretation import Kinds, interpret, shapes
 from kb.lattice import AROUND
-from kb.loads import Load, covered, seen_insets, seen_short, slack_of
+from kb.loads import ROUNDING, Load, covered, seen_insets, seen_short, slack_of
 from kb.measuring import Measured, Measurer
 from kb.protruding import VERGE, protrusions, told_apart
 from kb.regions import Percept, Region, label_of, map_regions
@@ -252,6 +252,7 @@ def _node(load: Load, patch: Patch, label: int) -> Node:
         stuck=load.stuck,
         dubious=load.dubious,
         inexact=load.inexact,
+        astray=load.astray > ROUNDING,
         short=load.short,
         insets=load.lying_insets,
     )

@@ -72,9 +72,10 @@ class Node:
     colour : as felt, or None. support : the impressions that settled its squares.
     movable : that it can be moved, in percent. moved : he has moved it. turned : degrees by which, since he first held
     it. stuck : motions in a row that did not move it. dubious : it may well lie elsewhere or be of another outline, for
-    what is seen agrees ill with how it came there. inexact : it lies only about there. short : by how many squares its
-    sides, to the west, east, south and north, may lie further in than those of its outline. insets : how far in they
-    lie within the squares in which it was seen; None when they do not lie along them.
+    what is seen agrees ill with how it came there. inexact : it lies only about there. astray : it does until it is
+    turned back, for by a turn lies elsewhere what is turned by one who did not wake where he believes. short : by how
+    many squares its sides, to the west, east, south and north, may lie further in than those of its outline. insets :
+    how far in they lie within the squares in which it was seen; None when they do not lie along them.
     """
 
     name: str
@@ -94,6 +95,7 @@ class Node:
     stuck: int = 0
     dubious: bool = False
     inexact: bool = False
+    astray: bool = False
     short: Sides = NONE
     insets: Insets | None = None
 

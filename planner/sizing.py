@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from itertools import product
 from typing import Any
 
+import shapely.affinity
+
 from geometry.ends import At
 from geometry.rigid import Pose
 from kb.insets import Insets, depths, moved_in
@@ -18,6 +20,7 @@ FINE = 0.12  # squares up to which it is told how far in a side lies
 FIRST = 0.1  # squares by which a thing is pushed first: one of whole squares is told from all others by that, and back
 MOST = 16  # pushes
 SHOWN = 0.5  # squares: what was pushed so far looks otherwise than before
+ABOUT = 2  # squares aside at which a thing is turned back, at most
 NOTHING, AWAY = 0.02, 0.3  # squares: a push that is none, and one that only leads elsewhere
 
 
@@ -36,6 +39,9 @@ class Sizer:
         if wanted is None or self._tries.get(node.name, 0) >= MOST:
             return
         self._tries[node.name] = self._tries.get(node.name, 0) + 1
+        if node.astray:  # looks tell nothing of its sides until it is turned back
+            yield from _turned_back(node)
+            return
         steps = [_steps(part) for part in wanted]
         pushes = sorted((math.hypot(*step), *step) for step in product(*steps))
         both = sorted(pushes, key=lambda push: push[0] < SHOWN and not node.moved)
@@ -43,6 +49,14 @@ class Sizer:
         for dx, dy in dict.fromkeys([*((dx, dy) for _, dx, dy in both), *single]):
             if dx or dy:
                 yield At(Pose(dx, dy, 0.0))
+
+
+def _turned_back(node: Node) -> Iterator[At]:
+    """Where a thing lies along the lattice as it did when it was first held: near to where it is, the nearest first."""
+    shape = shapely.affinity.rotate(node.polygon, -node.turned, origin="centroid")
+    x0, y0, _, _ = shape.bounds
+    for dx, dy in sorted(product(range(-ABOUT, ABOUT + 1), repeat=2), key=lambda step: math.hypot(*step)):
+        yield At(Pose(round(x0) - x0 + dx, round(y0) - y0 + dy, -node.turned))
 
 
 def _steps(part: float | None) -> list[float]:
