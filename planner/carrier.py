@@ -12,19 +12,29 @@ from typing import NamedTuple
 from geometry.carrying import Inside, Leg
 from geometry.ends import End
 from geometry.rigid import Motion, Rotate, Translate
-from kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
+from kb.body import Command, Grasp, Move, Push, Release, Turn
 from kb.evidence import OPEN
 from kb.lattice import CENTRE
 from kb.loads import is_whole
 from kb.worldmodel import SPACE, Node, WorldModel
-from planner.course import Course, Place, clear_part, course_of, followed, from_here, square_of, stands
+from planner.course import (
+    Course,
+    Place,
+    clear_part,
+    course_of,
+    followed,
+    from_here,
+    grasp_direction,
+    square_of,
+    stands,
+)
 from planner.destinations import Situation
 from planner.exploring import Lookout, inspection, sight_of
 from planner.failing import FailedHolds
 from planner.freeing import drawn_back
 from planner.haulage import Haul, Hauler, Request
 from planner.landing import Ends, region_of
-from planner.leading import lead, near
+from planner.leading import lead, near, out
 from planner.refusing import Refusal
 from planner.screen import Squares, grown
 from planner.walking import is_open
@@ -189,6 +199,15 @@ class Carrier:
             return Act(_command(push, model), f"{node.name} is taken along")
         return self._led_near(node, squares, situation) if fetched else None
 
+    def led_out(self, node: Node, situation: Situation) -> Act | None:
+        """Lead what he holds to where it does not shut him in, to take it otherwise; None where that cannot be."""
+        push = out(node, situation) if self.pull and self._plans < MOST_PLANS else None
+        if push is None:
+            return None
+        self._course, self._plans, self._pushed = None, self._plans + 1, push
+        self.failed.blame(node, situation.model)
+        return Act(_command(push, situation.model), f"{node.name} is led out, to be taken otherwise")
+
     def _led_near(self, node: Node, squares: Squares, situation: Situation) -> Act | Go | None:
         """Bring an object near to where he wants to look, by one hold and a push or two, as was begun if it was."""
         course, self._led = self._led, None
@@ -351,7 +370,7 @@ class Carrier:
         if begun is None:
             dx, dy = leg.place[0] - model.place[0], leg.place[1] - model.place[1]
             return Act(Move(*model.lattice.to_utak(dx, dy)), "to the middle of the square")
-        direction = _direction(leg, course, model)
+        direction = grasp_direction(leg, course, model)
         if direction is None:
             return None
         self._course, self._pushed = replace(begun, grasped=True, place=begun.legs[0].place), None
@@ -365,26 +384,6 @@ def _price_of_a_turn(model: WorldModel) -> float:
     if is_open(model):
         return OPEN_TURN
     return LOOSE_TURN if max(model.leeway) > LOOSE else 1.0
-
-
-def _direction(leg: Leg, course: Course, model: WorldModel) -> str | None:
-    """The compass point by which the object is taken: that of the plan, or another by which it is felt; else None."""
-    node = model.object(course.name)
-    assert node is not None
-    x, y = math.floor(leg.place[0]), math.floor(leg.place[1])
-    ways, covered = model.lattice.directions(), node.patch.squares()
-    planned = ways.get(leg.direction_square)
-    others = [direction for (dx, dy), direction in ways.items() if (x + dx, y + dy) in covered]
-    directions = [planned, *others] if planned is not None else others
-    if not model.touch:
-        return next(iter(directions), None)
-    felt = [
-        direction
-        for direction, colour in zip(DIRECTIONS, model.touch, strict=True)
-        if colour is not None and node.colour in (None, colour)
-    ]
-    there = [direction for direction in directions if direction in felt]
-    return next(iter(there if node.colour is None else [*there, *felt]), None)
 
 
 def _command(motion: Motion, model: WorldModel) -> Command:

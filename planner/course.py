@@ -14,6 +14,7 @@ from geometry.ends import End
 from geometry.legs import shifted, verified
 from geometry.rigid import Motion, Translate
 from geometry.yard import Yard
+from kb.body import DIRECTIONS
 from kb.worldmodel import Node, Patch, WorldModel
 from planner.destinations import Situation
 from planner.haulage import Haul, swept_squares
@@ -168,3 +169,23 @@ def _led(course: Course, node: Node, free: Mask, situation: Situation) -> Any:
     first, *others = course.legs
     legs = [first if course.place is None else replace(first, place=course.place), *others]
     return verified(Yard(free), in_view(node.polygon, situation), [shifted(leg, -west, -south) for leg in legs])
+
+
+def grasp_direction(leg: Leg, course: Course, model: WorldModel) -> str | None:
+    """The compass point by which the object is taken: that of the plan, or another by which it is felt; else None."""
+    node = model.object(course.name)
+    assert node is not None
+    x, y = math.floor(leg.place[0]), math.floor(leg.place[1])
+    ways, covered = model.lattice.directions(), node.patch.squares()
+    planned = ways.get(leg.direction_square)
+    others = [direction for (dx, dy), direction in ways.items() if (x + dx, y + dy) in covered]
+    directions = [planned, *others] if planned is not None else others
+    if not model.touch:
+        return next(iter(directions), None)
+    felt = [
+        direction
+        for direction, colour in zip(DIRECTIONS, model.touch, strict=True)
+        if colour is not None and node.colour in (None, colour)
+    ]
+    there = [direction for direction in directions if direction in felt]
+    return next(iter(there if node.colour is None else [*there, *felt]), None)

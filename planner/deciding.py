@@ -234,10 +234,9 @@ class Decider:
             seen = (thing for thing in situation.model.objects if thing.name in like)
             gauged = (self._gauged(thing, stage, situation) for thing in seen)
             return next((push for push in gauged if push is not None), decision)
-        if node.polygon is None or node.vague or self.verifier.doubted(node):
-            look = self._look(self.verifier.inspection(node, situation), stage, situation)
-            if look is not None:
-                return look
+        doubted = node.polygon is None or node.vague or self.verifier.doubted(node)
+        if doubted and (look := self._look(self.verifier.inspection(node, situation), stage, situation)) is not None:
+            return look
         look = self._look(more_of(node, situation), stage, situation)
         if look is not None and look.command is not None:
             return look
@@ -281,7 +280,9 @@ class Decider:
         ask = partial(self._pursue, aims, stage, situation, advice.reason, verdict, brought)
         decision = self._felt(ask, stage, situation)
         if land.shut_in and not isinstance(decision.command, Push | Turn):
-            return Decision(None, f"{stage} cannot be told: {land.missing}, and {node.name} shuts him in", "limit")
+            out = self.carrier.led_out(node, situation)
+            why = f"{stage} cannot be told: {land.missing}, and {node.name} shuts him in"
+            return Decision(None, why, "limit") if out is None else Decision(out.command, f"{out.why}; {stage}")
         must_reach = land.must_reach() if decision.verdict else {}
         if must_reach:
             shut_in = self.carrier.refused(node, must_reach, situation)

@@ -173,8 +173,7 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
 def _can_leave(node: Node, situation: Situation) -> bool:
     """Does Utak, with an object in hand, not stand in a nook between that and the walls?"""
     reached = situation.screens.floor
-    beside = grown(situation.model.mask(node.patch), 1)
-    return bool((reached & ~grown(beside, 1)).any())
+    return bool((reached & ~grown(situation.model.mask(node.patch), 2)).any())
 
 
 def _from_afar(look: Lookout, situation: Situation) -> Lookout:

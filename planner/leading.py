@@ -1,8 +1,12 @@
 """Taking a thing along to where Utak wants to look: who walks there without it must come back for it."""
 
+import math
+from itertools import product
+
 import numpy as np
 
 from geometry.carrying import Inside
+from geometry.components import components
 from geometry.contact import Body
 from geometry.rigid import Translate
 from geometry.yard import Yard
@@ -14,6 +18,7 @@ from planner.walking import HURRY
 
 NEARBY = 4  # squares from where he wants to look within which a thing is brought
 TRIED = 64  # squares of an aim that are tried
+OUT, ABOUT = 8, 2  # squares by which what shuts him in is led out, at most, and about it that are no room to go
 
 
 def lead(node: Node, squares: Squares, situation: Situation) -> Translate | None:
@@ -34,6 +39,26 @@ def lead(node: Node, squares: Squares, situation: Situation) -> Translate | None
     yard = Yard(situation.screens.free(0) | model.mask(node.patch))
     free = able[yard.far(Body(in_view(node.polygon, situation), [(x, y)]), vectors[able])]
     return Translate(*(float(v) for v in vectors[free[0]])) if len(free) else None
+
+
+def out(node: Node, situation: Situation) -> Translate | None:
+    """The shortest straight push with what shuts him in by which it no longer does, by whole squares; None for none."""
+    model = situation.model
+    x, y = model.place[0] - model.view.west, model.place[1] - model.view.south
+    steps = np.array([step for step in product(range(-OUT, OUT + 1), repeat=2) if any(step)])
+    steps = steps[np.argsort(np.hypot(*steps.T), kind="stable")]
+    lies = model.mask(node.patch)
+    free = situation.screens.free(0) | lies
+    within = Yard(free).far(Body(in_view(node.polygon, situation), [(x, y)]), steps.astype(float))
+    for dx, dy in steps[within].tolist():
+        here = math.floor(y) + dy, math.floor(x) + dx
+        beside = np.roll(lies, (dy, dx), (0, 1))
+        left = free & ~beside
+        left[here] = True
+        rooms = components(left).labels
+        if ((rooms == rooms[here]) & ~grown(beside, ABOUT)).any():
+            return Translate(float(dx), float(dy))
+    return None
 
 
 def near(squares: Squares, situation: Situation) -> Inside | None:

@@ -10,7 +10,7 @@ import planner.deciding
 from kb.body import Grasp, Move, Push, Release
 from kb.factfile import facts_of
 from kb.reconciliation import Reconciled
-from kb.worldmodel import Node
+from kb.worldmodel import Node, Patch
 from planner.aims import Aim
 from planner.carrier import Carrier, See
 from planner.deciding import Decider, Decision
@@ -18,7 +18,7 @@ from planner.destinations import Situation
 from planner.exploring import Lookout
 from planner.goals import Stage
 from planner.landing import Landing
-from planner.leading import NEARBY, lead, near
+from planner.leading import NEARBY, lead, near, out
 from planner.screen import Squares
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import NO_TASK, situation_of
@@ -151,3 +151,27 @@ def test_near_is_what_is_free_about() -> None:
     assert north + view.south == NEARBY + 1
     wall = shapely.Point(13.5 - view.west, 0.5 - view.south)
     assert not end.polygon.intersects(wall)
+
+
+def in_a_nook(rows: list[str]) -> tuple[Situation, Node]:
+    """One who has hold of an L, in its nook; what he holds is not drawn."""
+    outline = shapely.union_all([shapely.box(-2, 0, 0, 1), shapely.box(-2, -1, 1, 0)])
+    patch = Patch(-2, -1, np.array([[1, 1, 1], [1, 1, 0]], np.bool_))
+    node = Node("o1", "object", 100, "", patch, 0, polygon=outline, colour="g")
+    return situation_of(replace(seen_whole(rows), objects=(node,), held="o1"), {"x": "o1"}), node
+
+
+NOOK = ["b" * 16, "b.............Ub", "b..............b"]
+
+
+def test_what_shuts_him_in_is_led_out_no_further_than_need_be() -> None:
+    situation, node = in_a_nook([*NOOK, *["b" + "." * 14 + "b"] * 6, "b" * 16])
+    assert out(node, situation) == (-1, 0)  # down beside the wall he goes then
+    situation, node = in_a_nook([*NOOK, "b" * 16])
+    assert out(node, situation) == (-3, 0)  # the squares right beside it are no room
+
+
+def test_what_cannot_be_led_out_stays() -> None:
+    row = "b" * 12
+    situation, node = in_a_nook(["b" * 16, row + "..Ub", row + "...b", "b" * 16])
+    assert out(node, situation) is None

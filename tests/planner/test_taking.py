@@ -8,6 +8,7 @@ import pytest
 import shapely
 
 import planner.carrier
+import planner.course
 from geometry.carrying import Carrying, Inside, Leg
 from geometry.rigid import Rotate, Translate
 from kb.body import Command, Grasp, Move, Push, Release
@@ -75,7 +76,7 @@ def way_of(situation: Situation) -> str | None:
     (node,) = situation.model.objects
     leg = Leg(situation.model.place, (1, 0), ())
     course = Course(node.name, "r", node.polygon, (leg,), node.patch, 0)
-    return planner.carrier._direction(leg, course, situation.model)
+    return planner.course.grasp_direction(leg, course, situation.model)
 
 
 @pytest.mark.parametrize(
