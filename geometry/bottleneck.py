@@ -113,7 +113,7 @@ def _ways(field: Field, wide: float) -> Floats:
     as wide, if there are any: a narrower one beside the neck would be taken for it.
     """
     room = np.maximum(field.raster, wide)
-    narrower = field.raster < wide - 1e-9
+    narrower = field.raster < wide - EVEN
     goals = field.goals & ~narrower
     return cheapest(np.where(narrower, DETOUR, (wide / room) ** 3), goals if goals.any() else field.goals)
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from geometry.rigid import Motion, Rotate
 from kb.belying import overlooked
 from kb.explanation import Explanation
-from kb.halting import borne_out, halts, whole_first
+from kb.halting import halts, whole_first
 from kb.hauling import Outcome, otherwise, predicted
 from kb.judging import CONTRADICTED, Judging, Place
 from kb.leaning import after, leaning
@@ -26,7 +26,7 @@ class Carried(Judging):
     def _came_of(self, surprise: Surprise, load: Load, motion: Motion) -> Explanation:
         """What came of a motion with a load in hand, by the look after it."""
         ranges = surprise.ranges
-        whole = self._outcome(ranges, load, predicted(self.place, load.polygon, motion))
+        whole = self._outcome(surprise, predicted(self.place, load.polygon, motion))
         halted = self._halted_push(surprise, load, motion)
         if whole_first(halted):
             return self._choose(halted)
@@ -34,13 +34,13 @@ class Carried(Judging):
             stop = overlooked(surprise, load, motion)
             if stop is None:
                 return whole
-            return self._choose([whole._replace(misfits=CONTRADICTED), self._outcome(ranges, load, stop)])
+            return self._choose([whole._replace(misfits=CONTRADICTED), self._outcome(surprise, stop)])
         if not whole.misfits:
             whole = whole._replace(misfits=CONTRADICTED)
         stops = surprise.hindrances.stops(self.place, load.polygon, motion)
         ends = led_to(stops, self.place, load.polygon, motion)
-        outcomes = halted or [one for one in (self._outcome(ranges, load, end) for end in ends) if not one.misfits]
-        outcomes += [self._outcome(ranges, load, other) for other in otherwise(self.place, load.polygon, motion)]
+        outcomes = halted or [one for one in (self._outcome(surprise, end) for end in ends) if not one.misfits]
+        outcomes += [self._outcome(surprise, other) for other in otherwise(self.place, load.polygon, motion)]
         outcomes += self._smaller(ranges, load, whole)
         simple = any(not one.misfits for one in outcomes if one.how != "slipped" or self.slipped)
         explanations = [whole, *outcomes, *self._elsewhere(surprise, whole.misfits, simple)]
@@ -55,10 +55,8 @@ class Carried(Judging):
         ended = []
         for halt in halts(surprise, load, motion):
             assert halt.outcome is not None
-            one = self._outcome(surprise.ranges, load, halt.outcome)
-            ended.append(one._replace(chance=halt.chance, against=halt.against))
-        self.ended = tuple(borne_out(surprise, [one for one in ended if not one.misfits]))
-        return list(self.ended)
+            ended.append((halt, self._outcome(surprise, halt.outcome)))
+        return self._halted(surprise, ended)
 
     def _carried(self, load: Load, chosen: Explanation, motion: Motion, ranges: NDArray[np.int16]) -> None:
         """Believe what came of a motion with a load in hand."""
@@ -114,7 +112,6 @@ class Carried(Judging):
             least = ROUNDING if self._beside_line and load.turned % 360 else 0.0
             self.loads[name] = replace(load, astray=float(far.max(initial=least)))
 
-    def _outcome(self, ranges: NDArray[np.int16], load: Load, outcome: Outcome) -> Explanation:
-        loads = [*self._others(load), load.moved(outcome.polygon, load.slack, commanded=outcome.as_commanded)]
-        misfits = self._clashes(ranges, outcome.place, loads)
+    def _outcome(self, surprise: Surprise, outcome: Outcome) -> Explanation:
+        misfits = self._clashes(surprise.ranges, outcome.place, surprise.lying(outcome))
         return Explanation(outcome.how, outcome.place, self.lattice, misfits, outcome.distance, outcome)

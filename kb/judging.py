@@ -6,6 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from kb import halting
 from kb.body import Command
 from kb.doubting import explained
 from kb.explanation import Explanation, cheapest
@@ -38,6 +39,12 @@ class Judging(Holding):
             self.hypotheses,
             self.pictures,
         )
+
+    def _halted(self, surprise: Surprise, ended: Iterable[tuple[halting.Halt, Explanation]]) -> list[Explanation]:
+        """Of the halts of the newest motion, told so, those that its look bears out: they are remembered."""
+        told = (one._replace(chance=halt.chance, against=halt.against) for halt, one in ended if not one.misfits)
+        self.ended = tuple(halting.borne_out(surprise, told))
+        return list(self.ended)
 
     def _elsewhere(self, surprise: Surprise, misfits: int, simple: bool = False) -> list[Explanation]:
         """The lattice that explains a surprise better, if there is one.

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from geometry.rigid import Translate
 from kb.body import Command, Move
 from kb.explanation import Explanation, misled
-from kb.halting import borne_out, halts, whole_first
+from kb.halting import halts, whole_first
 from kb.heading import MEMORY, Hypothesis, Look, anywhere, candidates, cramped, search, standing
 from kb.judging import CONTRADICTED, MOST_SEARCHES, Judging, Place
 from kb.lattice import Lattice
@@ -72,12 +72,9 @@ class Walked(Judging):
         assert isinstance(command, Move)
         surprise = self._surprise(command, ranges)
         motion = Translate(*self.lattice.to_lattice(command.east, command.north))
-        ended: list[Explanation] = []
-        for halt in (found := halts(surprise, None, motion)):
-            one = self._explanation(halt.how, halt.place, ranges, found[0].place)
-            ended.append(one._replace(chance=halt.chance, against=halt.against))
-        self.ended = tuple(borne_out(surprise, [one for one in ended if not one.misfits]))
-        return list(self.ended)
+        found = halts(surprise, None, motion)
+        ended = [(halt, self._explanation(halt.how, halt.place, ranges, found[0].place)) for halt in found]
+        return self._halted(surprise, ended)
 
     def _misled(
         self,

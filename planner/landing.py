@@ -37,6 +37,7 @@ RIM = 1.0  # squares from the edge of a region within which he is not sure that 
 LEANING = 1.25  # squares that what lies askew in a corner may reach further from its walls than it is long
 PRESS = 0.25  # squares that a thing is pressed on into a corner: it shows, then, how far in its sides lie
 HAIR = 0.01  # squares that do not matter
+NOOK = 2  # squares about a thing that are no room to go
 ABOUT = 0.5  # squares from its walls at which an object is brought to a corner that is settled
 RATHER = 0.4  # that a square is occupied which is rather floor than not
 MOST_FURTHER, BROAD = 2, 3  # squares that a corner may lie further than what surely is floor, and as broad as that is
@@ -172,8 +173,12 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
 
 def _can_leave(node: Node, situation: Situation) -> bool:
     """Does Utak, with an object in hand, not stand in a nook between that and the walls?"""
-    reached = situation.screens.floor
-    return bool((reached & ~grown(situation.model.mask(node.patch), 2)).any())
+    return leads_away(situation.screens.floor, situation.model.mask(node.patch))
+
+
+def leads_away(floor: Mask, thing: Mask) -> bool:
+    """Does floor that he reaches lead further from a thing than a nook beside it? Both (rows, columns)."""
+    return bool((floor & ~grown(thing, NOOK)).any())
 
 
 def _from_afar(look: Lookout, situation: Situation) -> Lookout:

@@ -12,13 +12,13 @@ from geometry.rigid import Translate
 from geometry.yard import Yard
 from kb.worldmodel import Node
 from planner.destinations import Situation
-from planner.landing import in_view, region_of
+from planner.landing import in_view, leads_away, region_of
 from planner.screen import Squares, grown, marked
 from planner.walking import HURRY
 
 NEARBY = 4  # squares from where he wants to look within which a thing is brought
 TRIED = 64  # squares of an aim that are tried
-OUT, ABOUT = 8, 2  # squares by which what shuts him in is led out, at most, and about it that are no room to go
+OUT = 8  # squares by which what shuts him in is led out, at most
 
 
 def lead(node: Node, squares: Squares, situation: Situation) -> Translate | None:
@@ -56,7 +56,7 @@ def out(node: Node, situation: Situation) -> Translate | None:
         left = free & ~beside
         left[here] = True
         rooms = components(left).labels
-        if ((rooms == rooms[here]) & ~grown(beside, ABOUT)).any():
+        if leads_away(rooms == rooms[here], beside):
             return Translate(float(dx), float(dy))
     return None
 

@@ -9,9 +9,7 @@ from collections.abc import Iterator
 from itertools import product
 from typing import Any
 
-import shapely.affinity
-
-from geometry.ends import At
+from geometry.ends import At, placed
 from geometry.rigid import Pose
 from kb.insets import Insets, depths, moved_in
 from kb.worldmodel import Node
@@ -53,8 +51,7 @@ class Sizer:
 
 def _turned_back(node: Node) -> Iterator[At]:
     """Where a thing lies along the lattice as it did when it was first held: near to where it is, the nearest first."""
-    shape = shapely.affinity.rotate(node.polygon, -node.turned, origin="centroid")
-    x0, y0, _, _ = shape.bounds
+    x0, y0, _, _ = placed(node.polygon, Pose(0.0, 0.0, -node.turned)).bounds
     for dx, dy in sorted(product(range(-ABOUT, ABOUT + 1), repeat=2), key=lambda step: math.hypot(*step)):
         yield At(Pose(round(x0) - x0 + dx, round(y0) - y0 + dy, -node.turned))
 
