@@ -25,10 +25,10 @@ from planner.destinations import Situation, contains, destination, nowhere
 from planner.fewest import FewestMoves
 from planner.goals import BY_THE_WAY, FROM_THE_START, Stage, constraints, stages
 from planner.keeping import Kept, lattice_squares
-from planner.landing import Landing, in_view, landing, lands_in_one
+from planner.landing import Landing, can_leave, in_view, landing, lands_in_one
 from planner.refusing import Refusal
 from planner.repeating import Circles
-from planner.screen import Screens, vicinity
+from planner.screen import Screens, ways_to_objects
 from planner.searching import against_walls, aims_towards
 from planner.sizing import Sizer, least_outline
 from planner.verifying import Verifier, before_taking, here, misgiving, more_of, unfelt_wall
@@ -82,7 +82,7 @@ class Decider:
         """What to do after an impression. track: the places where Utak has been, this one included."""
         screens = Screens(model)
         self.rooms = rooms_of(model, self.rules)
-        reconciled = self._reconcile(model, screens)
+        reconciled = self._reconcile(screens)
         self.corners = corners(model, self.rules)
         if model.lost and model.held is not None:
             return Decision(Release(), f"{model.held} is let go, for nothing looks as it should")
@@ -180,12 +180,12 @@ class Decider:
             if fewest is not None:
                 offered = fewest.priced(offered)
             aim = choose(offered, situation.screens, self._kept.aim(model))
-            if aim is None and len(offered) < len(aims):
-                why = f"{stage} cannot be attained: {missing()}, and he goes round in circles"
-                return Decision(None, why, "limit")
             if aim is None:
-                why = f"{stage} cannot be attained: {missing()}, and nothing is left to look at"
-                return Decision(None, why, verdict)
+                circles = len(offered) < len(aims)
+                end = "he goes round in circles" if circles else "nothing is left to look at"
+                return Decision(
+                    None, f"{stage} cannot be attained: {missing()}, and {end}", "limit" if circles else verdict
+                )
             taken = None if along is None else along(aim)
             if taken is not None:
                 return taken
@@ -280,9 +280,11 @@ class Decider:
         ask = partial(self._pursue, aims, stage, situation, advice.reason, verdict, brought)
         decision = self._felt(ask, stage, situation)
         if land.shut_in and not isinstance(decision.command, Push | Turn):
-            out = self.carrier.led_out(node, situation)
             why = f"{stage} cannot be told: {land.missing}, and {node.name} shuts him in"
-            return Decision(None, why, "limit") if out is None else Decision(out.command, f"{out.why}; {stage}")
+            decision = Decision(None, why, "limit")
+        if decision.verdict == "limit" and (land.shut_in or not can_leave(node, situation)):
+            out = self.carrier.led_out(node, situation)
+            decision = decision if out is None else Decision(out.command, f"{out.why}; {stage}")
         must_reach = land.must_reach() if decision.verdict else {}
         if must_reach:
             shut_in = self.carrier.refused(node, must_reach, situation)
@@ -388,13 +390,9 @@ class Decider:
         forbidden = frozenset(doors[0].name for goal in self.constraints if doors and str(goal.args[0]) == "utak")
         return choose_way(offered, situation.screens, before, doors, forbidden)
 
-    def _reconcile(self, model: WorldModel, screens: Screens) -> Reconciled:
-        distances = {}
-        for node in model.objects:
-            reached = screens.nearest(vicinity(model, node.patch, 1))
-            if reached is not None:
-                distances[node.name] = reached.cost
-        carried = {str(goal.args[0]) for stage in self.stages for goal in stage.carried}
-        reconciled = reconcile(self.task, model, distances, self.bound, self.rules, sorted(carried))
+    def _reconcile(self, screens: Screens) -> Reconciled:
+        carried = sorted({str(goal.args[0]) for stage in self.stages for goal in stage.carried})
+        known = ways_to_objects(screens)
+        reconciled = reconcile(self.task, screens.model, known, self.bound, self.rules, carried)
         self.bound = reconciled.binding
         return reconciled

@@ -161,7 +161,7 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     if not land.holds:
         return land
     rooms = rooms_to_see(side, situation)
-    shut_in = not rooms and situation.model.held == node.name and not _can_leave(node, situation)
+    shut_in = not rooms and not can_leave(node, situation)
     if shut_in:
         situation = situation.along_with(node.patch)
         rooms = rooms_to_see(side, situation)
@@ -171,9 +171,10 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     return Landing({}, looks[0].what, looks, there=not shut_in, shut_in=shut_in)
 
 
-def _can_leave(node: Node, situation: Situation) -> bool:
-    """Does Utak, with an object in hand, not stand in a nook between that and the walls?"""
-    return leads_away(situation.screens.floor, situation.model.mask(node.patch))
+def can_leave(node: Node, situation: Situation) -> bool:
+    """Does Utak, if he has an object in hand, not stand in a nook between that and the walls?"""
+    held = situation.model.held == node.name
+    return not held or leads_away(situation.screens.floor, situation.model.mask(node.patch))
 
 
 def leads_away(floor: Mask, thing: Mask) -> bool:

@@ -116,10 +116,20 @@ class Distances:
         return self._known[level]
 
 
-def vicinity(model: WorldModel, patch: Patch, squares: int) -> Squares:
-    """The squares of the view (flat indices) within so many rows and columns of a patch."""
-    rows, columns = np.nonzero(grown(np.pad(patch.mask, squares), squares))
-    rows, columns = rows + patch.south - squares - model.view.south, columns + patch.west - squares - model.view.west
+def ways_to_objects(screens: Screens) -> dict[str, float]:
+    """How far it is to beside each object, in squares, by name; of those alone to which a way is known."""
+    found = {}
+    for node in screens.model.objects:
+        reached = screens.nearest(_vicinity(screens.model, node.patch))
+        if reached is not None:
+            found[node.name] = reached.cost
+    return found
+
+
+def _vicinity(model: WorldModel, patch: Patch) -> Squares:
+    """The squares of the view (flat indices) of a patch, and those beside it."""
+    rows, columns = np.nonzero(grown(np.pad(patch.mask, 1), 1))
+    rows, columns = rows + patch.south - 1 - model.view.south, columns + patch.west - 1 - model.view.west
     high, wide = model.labels.shape
     inside = (rows >= 0) & (rows < high) & (columns >= 0) & (columns < wide)
     flat: Squares = rows[inside] * wide + columns[inside]

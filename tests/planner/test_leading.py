@@ -19,6 +19,7 @@ from planner.exploring import Lookout
 from planner.goals import Stage
 from planner.landing import Landing
 from planner.leading import NEARBY, lead, near, out
+from planner.refusing import Refusal
 from planner.screen import Squares
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import NO_TASK, situation_of
@@ -175,3 +176,23 @@ def test_what_cannot_be_led_out_stays() -> None:
     row = "b" * 12
     situation, node = in_a_nook(["b" * 16, row + "..Ub", row + "...b", "b" * 16])
     assert out(node, situation) is None
+
+
+def at_a_loss(situation: Situation, monkeypatch: pytest.MonkeyPatch) -> Decision:
+    """What he does with something in hand who knows no way for it, and nothing to look at."""
+    monkeypatch.setattr(Decider, "_advice", lambda *_: Refusal(False, lambda: "it is not seen yet"))
+    monkeypatch.setattr(planner.deciding, "against_walls", lambda _: [])
+    return exploring(situation, at(situation), lookouts=False, monkeypatch=monkeypatch)
+
+
+def test_who_is_shut_in_and_at_a_loss_leads_it_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For from there he sees nothing that he has not seen."""
+    drawn = ["b" * 16, "b...........ggUb", "b...........gggb", *["b" + "." * 14 + "b"] * 6, "b" * 16]
+    decision = at_a_loss(in_a_nook(drawn)[0], monkeypatch)
+    assert decision.command == Push(-1.0, 0.0)
+    assert "led out" in decision.why
+
+
+def test_who_is_not_shut_in_and_at_a_loss_gives_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    decision = at_a_loss(holding()[0], monkeypatch)
+    assert decision.command is None and decision.verdict == "limit"
