@@ -5,7 +5,7 @@ What was left is tried first, then what had been given up; that a motion was sto
 
 from collections.abc import Iterator
 
-from kb.heading import Hypothesis, anywhere, candidates, search
+from kb.heading import ELSEWHERE, Hypothesis, anywhere, candidates, search
 from kb.pivoting import pivoted
 from kb.supposing import Supposed, Surprise
 
@@ -15,7 +15,6 @@ FEW = 12  # lattices on which all is laid anew, at most
 LEAST = 4  # at least
 MOST_REPLAYS = 200  # looks that are taken in anew for that
 BEST = 3  # of those, on which the motion may have been stopped by what was not known
-ELSEWHERE = 2.5  # log odds against having woken elsewhere than amid his square
 SLIVER = 0.02  # squares^2: where there is no more room for where he woke, he was rather stopped
 
 

@@ -84,6 +84,7 @@ class Hypothesis(NamedTuple):
 CENTRED = tuple(Hypothesis(angle, CENTRE + CENTRE) for angle in ANGLES)
 ANYWHERE = tuple(Hypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in ANGLES)
 DOUBTED = 5.0  # edges by which the simplest picture may cost more on a lattice that is likely yet
+ELSEWHERE = 2.5  # log odds against having woken elsewhere than amid his square
 ODD = 0.1  # of the side of the square that looks leave of it on average, below which they left suspiciously little
 GRID = 11  # points along either side of what is left of the square in which he woke
 

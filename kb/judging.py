@@ -12,7 +12,8 @@ from kb.doubting import explained
 from kb.explanation import Explanation, cheapest
 from kb.holding import Holding
 from kb.loads import Load, borne_out
-from kb.recalling import recalled
+from kb.plainness import UNTRIED
+from kb.recalling import Recalled, recalled, recalled_elsewhere
 from kb.relaying import relaid
 from kb.supposing import Surprise, clashes, laid_on
 
@@ -61,21 +62,30 @@ class Judging(Holding):
         outcome = found.outcome
         if found.lattice != self.lattice or set(found.hypotheses) != set(self.hypotheses):
             far = 0.0 if outcome is None else outcome.distance
-            return [Explanation("turned", found.place, found.lattice, found.misfits, far, outcome, found.hypotheses)]
+            turned = Explanation("turned", found.place, found.lattice, found.misfits, far, outcome, found.hypotheses)
+            return [turned._replace(crooked=self._dear(found.lattice.angle))]
         if outcome is None or outcome.how == "predicted":  # as is judged already
             return []
         return [Explanation(outcome.how, outcome.place, self.lattice, found.misfits, outcome.distance, outcome)]
 
     def _recalled(self, surprise: Surprise, others: Iterable[Explanation]) -> list[Explanation]:
-        """Earlier motions that ended elsewhere than is believed, unless there are others that explain a surprise."""
-        if any(not other.misfits for other in others if other.how != "slipped" or self.slipped):
+        """Earlier motions that ended elsewhere than is believed, unless something simpler explains a surprise."""
+        if any(map(self._simple, others)):
             return []
-        found = []
-        for told, one in recalled(surprise, self.earlier):
-            far = math.hypot(*told.correction.shift)
-            misled = Explanation("misled", one.place, one.lattice, 0, far, one.outcome, self.hypotheses, told)
-            found.append(self._doubted(misled))
-        return found
+        found = recalled(surprise, self.earlier) or recalled_elsewhere(surprise, self.earlier)
+        return [self._told_again(one) for one in found]
+
+    def _simple(self, explanation: Explanation) -> bool:
+        """Does an explanation leave nothing as noise, and say neither that he slipped nor that the angle is another?"""
+        likely = explanation.how != "slipped" or self.slipped
+        return likely and not explanation.misfits and explanation.lattice.angle == self.lattice.angle
+
+    def _told_again(self, recalled: Recalled) -> Explanation:
+        """That an earlier motion ended elsewhere than is believed, as it was told again."""
+        told, one = recalled
+        far = math.hypot(*told.correction.shift)
+        misled = Explanation("misled", one.place, one.lattice, 0, far, one.outcome, one.hypotheses, told)
+        return self._doubted(misled)
 
     def _doubted(self, explanation: Explanation) -> Explanation:
         """That an earlier motion ended otherwise, with how likely that was by the look after it, if that was told."""
@@ -96,6 +106,12 @@ class Judging(Holding):
             (self.lattice.place_to_utak(*one.place), w / total) for one, w in weights if one.place != chosen.place
         ]
         self.moved = (*self.moved[:-1], self.moved[-1]._replace(doubts=tuple(others)))
+
+    def _dear(self, angle: int) -> float:
+        """How much less plain the table looked at an angle than at the one believed, by all looks before."""
+        if angle == self.lattice.angle:
+            return 0.0
+        return next((one.dear for one in self.hypotheses if one.angle == angle), UNTRIED)
 
     def _clashes(self, ranges: NDArray[np.int16], place: Place, loads: Iterable[Load]) -> int:
         """How many fields cannot be right if the impression was received at a place, with the loads where they lie."""

@@ -4,6 +4,7 @@ All that was seen since, and every thing that was first held since, lies where i
 look came is told again with it, for what stopped the one may have stopped the other, seen where it is.
 """
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import replace
@@ -12,13 +13,16 @@ from typing import NamedTuple
 from geometry.contact import Body, Obstacles
 from geometry.rigid import Translate
 from kb.evidence import FREE, FULL, OPEN, Evidence
-from kb.heading import Hypothesis, Look, fallen
+from kb.heading import Hypothesis, Look, anywhere, candidates, fallen, search
 from kb.lattice import Lattice
 from kb.loads import Load, Square, covered, is_whole
 from kb.relaying import Relaid, lain, relaid
 from kb.stops import HAIR, Correction, End, Moved, Place, Retold, Walk, agreed, plus, views
 from kb.supposing import Supposed, Surprise
 from kb.suspecting import TOGETHER, Hindrances, box_of
+
+LAST = 4  # motions that are told again together with where he woke
+FEW = 3  # lattices on which each is tried
 
 
 class Recalled(NamedTuple):
@@ -82,6 +86,17 @@ def recalled(surprise: Surprise, motions: Sequence[Moved]) -> list[Recalled]:
     return sorted(found, key=lambda one: not one.retold.known)
 
 
+def recalled_elsewhere(surprise: Surprise, motions: Sequence[Moved]) -> list[Recalled]:
+    """The same of the last motion of a thing that explains all, if he woke elsewhere in his square besides.
+
+    Neither is told without the other: where a thing was stopped depends on where it lay, which is known in squares;
+    from where he looked then does on where he woke.
+    """
+    told = (motion for motion in reversed(motions) if motion.load is not None and _held_then(motion, surprise))
+    found = ([*_elsewhere(surprise, motion)] for motion in itertools.islice(told, LAST))
+    return sorted(next(filter(None, found), []), key=lambda one: not one.retold.known)
+
+
 def _held_then(motion: Moved, surprise: Surprise) -> bool:
     """Is it told where the thing lay that was in hand on a motion, if one was?"""
     before = surprise.looks[motion.number - 1].moved
@@ -93,29 +108,58 @@ def _otherwise(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
     looks, lattice = surprise.looks, surprise.lattice
     believed = looks[motion.number].place
     way = Walk(motion, lattice, looks) if motion.load is None else Haul(motion, surprise)
-    since = [load for load in surprise.loads.values() if load.since > motion.number]
     judged: dict[Place, Relaid | None] = {}  # by the shift
     for end in way.ends:
         shift = end.place[0] - believed[0], end.place[1] - believed[1]
         if math.hypot(*shift) < HAIR:  # as is believed
             continue
-        seen = tuple((load.name, _aside(load, shift, surprise)) for load in since)
-        correction = Correction(motion.number, shift, seen, motion.load)
-        there, loads = correction.looks(looks), correction.loads(surprise.loads, lattice)
-        place = lattice.place_from_utak(*correction.place(lattice.place_to_utak(*surprise.place)))
-        anew = replace(surprise, place=place, looks=there, loads=loads)
+        anew, correction = _corrected(surprise, motion, end)
         if shift not in judged:
-            judged[shift] = agreed(lattice, there, loads.values(), anew.unsettled)
+            judged[shift] = agreed(lattice, anew.looks, anew.loads.values(), anew.unsettled)
         under = judged[shift]
         if under is None or under.misfits:
             continue
-        ahead = way.ahead(end, under.evidence, _stood(under, there, motion, lattice))
+        ahead = way.ahead(end, under.evidence, _stood(under, anew.looks, motion, lattice))
         if ahead == FREE:
             continue
         supposed = replace(anew, evidence=under.evidence, loads=under.loads).tried(lattice, surprise.hypotheses)
         if not supposed.misfits:
             held = Hypothesis(lattice.angle, lattice.woke + lattice.woke)
             yield Recalled(Retold(held, correction, ahead == FULL, 0), supposed)
+
+
+def _elsewhere(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
+    """What else may have come of one motion of a thing, if he woke elsewhere in his square."""
+    anywhere_in_it = anywhere((surprise.lattice.angle,))
+    for end in Haul(motion, surprise).ends:
+        anew, correction = _corrected(surprise, motion, end)
+        left = search(anew.recent, anywhere_in_it, anew.unsettled)
+        if not left:
+            continue
+        under = relaid(surprise.lattice, surprise.lattice, anew.looks, anew.loads.values())
+        anew = replace(anew, evidence=under.evidence, loads=under.loads)
+        for lattice in candidates(left, surprise.lattice)[:FEW]:
+            supposed = anew.tried(lattice, left)
+            if supposed.misfits:
+                continue
+            under = anew.laid(lattice)
+            way = Haul(motion, replace(anew, lattice=lattice, evidence=under.evidence, loads=under.loads))
+            ahead = way.ahead(end, under.evidence, _stood(under, anew.looks, motion, lattice))
+            if ahead != FREE:
+                held = Hypothesis(lattice.angle, lattice.woke + lattice.woke)
+                yield Recalled(Retold(held, correction, ahead == FULL, 0), supposed)
+
+
+def _corrected(surprise: Surprise, motion: Moved, end: End) -> tuple[Surprise, Correction]:
+    """A surprise as it is if an earlier motion ended elsewhere, and what is corrected by that."""
+    lattice, believed = surprise.lattice, surprise.looks[motion.number].place
+    shift = end.place[0] - believed[0], end.place[1] - believed[1]
+    since = [load for load in surprise.loads.values() if load.since > motion.number]
+    seen = tuple((load.name, _aside(load, shift, surprise)) for load in since)
+    correction = Correction(motion.number, shift, seen, motion.load)
+    there, loads = correction.looks(surprise.looks), correction.loads(surprise.loads, lattice)
+    place = lattice.place_from_utak(*correction.place(lattice.place_to_utak(*surprise.place)))
+    return replace(surprise, place=place, looks=there, loads=loads), correction
 
 
 def _aside(load: Load, shift: Place, surprise: Surprise) -> Place:

@@ -11,10 +11,11 @@ from geometry.rigid import Translate
 from kb.body import Command, Move
 from kb.explanation import Explanation, misled
 from kb.halting import halts, whole_first
-from kb.heading import MEMORY, Hypothesis, Look, anywhere, candidates, cramped, search, standing
+from kb.heading import DOUBTED, MEMORY, Hypothesis, Look, anywhere, candidates, cramped, search, standing
 from kb.judging import CONTRADICTED, MOST_SEARCHES, Judging, Place
 from kb.lattice import Lattice
-from kb.plainness import UNTRIED, weighed
+from kb.misplaced import misplaced
+from kb.plainness import weighed
 from kb.relaying import relaid
 from kb.stops import Moved, Retold, around, retold, retold_both, views
 
@@ -65,6 +66,8 @@ class Walked(Judging):
             explanations += self._recalled(self._surprise(command, ranges), explanations)
         elif stops:
             explanations += self._misled(look, told, turned, explanations)
+            if not any(map(self._simple, explanations)):
+                explanations += misplaced(self.tellable, self.lattice, [*self.looks, look])
         return self._choose(explanations)
 
     def _halted_walk(self, command: Command, ranges: NDArray[np.int16]) -> list[Explanation]:
@@ -148,16 +151,15 @@ class Walked(Judging):
             lattice, misfits = self._borne_out(left, look)
         else:
             left = (*beside, *others)
-        if misfits and self.searches < MOST_SEARCHES:
+        if (misfits or self._dear(lattice.angle) > DOUBTED) and self.searches < MOST_SEARCHES:
             self.searches += 1
-            found = search(recent)
+            found = tuple(one._replace(dear=self._dear(one.angle)) for one in search(recent))
             another, fewer = self._borne_out(found, look)
-            if fewer < misfits:
+            if (fewer, self._dear(another.angle)) < (misfits, self._dear(lattice.angle)):
                 left, lattice, misfits = found, another, fewer
         place = lattice.place_from_utak(*look.place)
         misfits += cramped(left, len(self.looks))
-        dear = next((h.dear for h in self.hypotheses if h.angle == lattice.angle), UNTRIED)  # by all looks before
-        crooked = 0.0 if lattice.angle == self.lattice.angle else dear
+        crooked = self._dear(lattice.angle)
         return [Explanation("turned", place, lattice, misfits, 0.0, None, left, crooked=crooked)] * bool(left)
 
     def _borne_out(self, left: tuple[Hypothesis, ...], look: Look) -> tuple[Lattice, int]:

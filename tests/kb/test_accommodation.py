@@ -111,7 +111,7 @@ def test_what_stopped_him_where_is_found_out_by_the_next_looks() -> None:
     assert all(then < 0.1 and later < 0.1 for at_once, then, later in walks if at_once < 0.1)  # what was right stays so
 
 
-@pytest.mark.parametrize("seed", [1047, 1096, 1102, 1147, 1161])
+@pytest.mark.parametrize("seed", [1047, 1096, 1098, 1147, 1161])
 def test_what_was_told_wrongly_is_told_again_by_the_next_looks(seed: int) -> None:
     """A stop that he has overlooked, or took for one further on, while one who remembers no motion stays wrong."""
     remembered, forgotten = stopped_and_walked(seed, True), stopped_and_walked(seed, False)

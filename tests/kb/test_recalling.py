@@ -1,7 +1,7 @@
 """An earlier motion told again when things have been moved since: the truth is among what is told."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import shapely
@@ -15,7 +15,7 @@ from kb.body import Move, Push
 from kb.heading import CENTRED, Look
 from kb.lattice import CENTRE, Lattice
 from kb.loads import Load
-from kb.recalling import Recalled, recalled
+from kb.recalling import Recalled, recalled, recalled_elsewhere
 from kb.relaying import laid, relaid
 from kb.retina import count_ranges
 from kb.stops import Moved
@@ -50,9 +50,15 @@ def square_of(point: Point) -> tuple[int, int]:
     return math.floor(point[0]), math.floor(point[1])
 
 
-def right(surprise: Surprise, motion: Moved, shift: Point, thing: shapely.Polygon) -> list[Recalled]:
+def right(
+    surprise: Surprise,
+    motion: Moved,
+    shift: Point,
+    thing: shapely.Polygon,
+    told: Callable[[Surprise, list[Moved]], list[Recalled]] = recalled,
+) -> list[Recalled]:
     """What is told that is right of both: by how much he was elsewhere, and where the thing is."""
-    found = recalled(surprise, [motion])
+    found = told(surprise, [motion])
     for one in found:
         assert one.supposed.misfits == 0
         assert one.retold.correction.since == motion.number
@@ -130,24 +136,42 @@ def test_a_push_that_was_stopped_unnoticed_is_told_again_with_what_was_in_hand(s
     assert right(*first_of(pushed_and_walked(rng) for _ in range(300)))
 
 
-def pushed_and_walked(rng: np.random.Generator) -> Told | None:
-    """One who took a thing, was stopped as he pushed it, and walked on without it."""
+@settings(max_examples=15, deadline=None)
+@given(seeds)
+def test_such_a_push_is_told_again_together_with_where_he_woke(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    beside = (round(float(rng.uniform(0.05, 0.95)), 2), round(float(rng.uniform(0.05, 0.95)), 2))
+    told = first_of(pushed_and_walked(rng, beside) for _ in range(300))
+    assert right(*told, told=recalled_elsewhere)
+
+
+@settings(max_examples=5, deadline=None)
+@given(seeds)
+def test_where_nothing_was_in_hand_nothing_is_told_together_with_where_he_woke(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    surprise, motion, *_ = first_of(pushed_and_walked(rng) for _ in range(300))
+    assert recalled_elsewhere(surprise, [motion._replace(load=None)]) == []
+
+
+def pushed_and_walked(rng: np.random.Generator, beside: Point = CENTRE) -> Told | None:
+    """One who took a thing, was stopped as he pushed it, and walked on without it. beside : where in his square."""
     room, thing, (x, y) = room_with_a_thing(rng)
-    woke = (x + 1.5, y - 0.5)
+    woke = (x + 1 + beside[0], y - 1 + beside[1])
     way = (float(rng.integers(-14, 15)), float(rng.integers(-14, 15)))
     walk = (float(rng.integers(-3, 4)), float(rng.integers(-3, 4)))
     if not free_about(room, x + 1, y + 1, 3) or not any(way):
         return None
     walls = [shapely.box(i, j, i + 1, j + 1) for i in range(SIDE) for j in range(SIDE) if room(i, j)]
     part = Obstacles(walls).first_contact(Body(thing, [woke]), Translate(*way)).fraction
+    alone = Obstacles(walls).first_contact(Body(thing, []), Translate(*way)).fraction
     went = way[0] * part, way[1] * part
     shift = went[0] - way[0], went[1] - way[1]
     there = around(translate(thing, *went), room)
     end = plus(plus(woke, went), walk)
-    if not 0.2 < math.hypot(*shift) < 6 or part == 0 or there(*square_of(end)):
+    if not 0.2 < math.hypot(*shift) < 6 or part == 0 or there(*square_of(end)) or (beside != CENTRE and part != alone):
         return None
     lattice = Lattice()
-    lies = translate(thing, CENTRE[0] - woke[0], CENTRE[1] - woke[1])
+    lies = translate(thing, -math.floor(woke[0]), -math.floor(woke[1]))
     load = Load("o1", translate(lies, *way), lies, since=1, proven=True)
     first = look(around(thing, room), woke, (0.0, 0.0))
     taken = first._replace(moved=(laid(Load("o1", lies, lies, since=1), lattice),))

@@ -1,0 +1,60 @@
+"""That a walk was stopped, and that he woke elsewhere in his square: neither is told without the other.
+
+Who was stopped stands on a line between two squares, wherever he woke; but how far he came, and so where all lies that
+he looks at later, depends on where in his square he began.
+"""
+
+import math
+from collections.abc import Sequence
+
+from kb.explanation import Explanation
+from kb.heading import ELSEWHERE, Hypothesis, Look, fallen
+from kb.lattice import CENTRE, Lattice
+from kb.plainness import Drawn, Sketch, plainness
+from kb.relaying import relaid
+from kb.stops import Moved, Retold, retold
+
+LAST = 4  # motions one of which may have been stopped where nobody thought so
+GRID = 7  # points along either side of the square in which he woke
+PLACES = tuple(((i + 0.5) / GRID, (j + 0.5) / GRID) for i in range(GRID) for j in range(GRID))
+
+
+def misplaced(motions: Sequence[Moved], held: Lattice, looks: Sequence[Look]) -> list[Explanation]:
+    """That one of the last motions was stopped, and he woke elsewhere, by which no look contradicts another.
+
+    Those that say the same of every look are told as one, each with what speaks against it: how plain the table looks
+    then, and how small the part of the square is in which he woke. held : the lattice that is believed. looks : all,
+    where they are believed to have been received, the newest where it was commanded.
+    """
+    places = tuple(Hypothesis(held.angle, place + place) for place in PLACES)
+    alike: dict[tuple[int, bytes], list[Retold]] = {}
+    for motion in motions[-LAST:]:
+        for told in retold(motion._replace(hypotheses=places), held, looks):
+            if not told.misfits:
+                key = motion.number, fallen(told.hypothesis.lattice, _received(told, looks)).tobytes()
+                alike.setdefault(key, []).append(told)
+    centred, drawn = held.woke == CENTRE, Drawn()
+    against = [ELSEWHERE * centred - math.log(len(told) / len(PLACES)) for told in alike.values()]
+    sketches = [_sketch(told[0], looks, drawn) for told in alike.values()]
+    prices = plainness([*zip(sketches, against, strict=True)])
+    found = map(_explanation, alike.values())
+    return [one._replace(crooked=price + odds) for one, price, odds in zip(found, prices, against, strict=True)]
+
+
+def _received(told: Retold, looks: Sequence[Look]) -> list[Look]:
+    """All looks where they were received then."""
+    *before, newest = told.correction.looks(looks)
+    return [*before, newest._replace(place=told.newest)]
+
+
+def _sketch(told: Retold, looks: Sequence[Look], drawn: Drawn) -> Sketch:
+    lattice = told.hypothesis.lattice
+    return Sketch(relaid(lattice, lattice, _received(told, looks), ()).evidence, drawn)
+
+
+def _explanation(alike: Sequence[Retold]) -> Explanation:
+    """What says the same, as one explanation: by the likeliest of them."""
+    told = min(alike, key=lambda one: (not one.known, math.dist(one.hypothesis.lattice.woke, CENTRE)))
+    lattice, far = told.hypothesis.lattice, math.hypot(*told.correction.shift)
+    left = tuple(one.hypothesis for one in alike)
+    return Explanation("misled", lattice.place_from_utak(*told.newest), lattice, 0, far, None, left, told)
