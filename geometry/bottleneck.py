@@ -217,16 +217,18 @@ def widened(solid: Any, neck: Neck, extra: float, reach: float) -> Any:
     return solid.difference(shapely.union_all(copies).intersection(window))
 
 
+def helps(solid: Any, neck: Neck, radius: float, answer: Callable[[Any], str]) -> bool:
+    """Would a body of some radius get through if only a neck were as wide as that? answer : as for missing_width."""
+    return answer(widened(solid, neck, _most(neck, radius), _reach(neck, radius))) == "found"
+
+
 def missing_width(solid: Any, neck: Neck, radius: float, answer: Callable[[Any], str]) -> float:
-    """How much wider a neck must be, in squares, for a body of some radius to pass; inf when that is not enough.
+    """How much wider a neck must be, in squares, for a body of some radius to pass, if that helps.
 
     answer : the status of planning the body's motion when the obstacles are these. What is not decided lies within the
     resolution of the very width that is sought.
     """
-    low, high = 0.0, max(2.2 * radius - neck.width, 4 * CLOSE)
-    reach = neck.width + 2 * radius + high
-    if answer(widened(solid, neck, high, reach)) != "found":
-        return math.inf
+    low, high, reach = 0.0, _most(neck, radius), _reach(neck, radius)
     while high - low > CLOSE:
         middle = (low + high) / 2
         status = answer(widened(solid, neck, middle, reach))
@@ -237,3 +239,13 @@ def missing_width(solid: Any, neck: Neck, radius: float, answer: Callable[[Any],
         else:
             low = middle
     return (low + high) / 2
+
+
+def _most(neck: Neck, radius: float) -> float:
+    """By how much a neck is widened at most, in squares."""
+    return max(2.2 * radius - neck.width, 4 * CLOSE)
+
+
+def _reach(neck: Neck, radius: float) -> float:
+    """Within how many squares of a neck its sides are moved."""
+    return neck.width + 2 * radius + _most(neck, radius)

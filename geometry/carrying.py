@@ -93,6 +93,11 @@ class Carrying:
         return None if self.body is None else self.body.passage
 
     @cached_property
+    def opens(self) -> bool:
+        """Would widening it alone help? Worked out when asked."""
+        return self.body is not None and self.body.opens
+
+    @cached_property
     def missing(self) -> float:
         """By how much it is too narrow, in squares: see Plan.missing. nan unless there is a passage."""
         return math.nan if self.body is None else self.body.missing

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from geometry.bottleneck import Neck, missing_width, neck_near
+from geometry.bottleneck import Neck, helps, missing_width, neck_near
 from geometry.floor import Floor
 from geometry.mover import new_mover
 from geometry.problem import Inside, Problem
@@ -49,6 +49,19 @@ class Question:
     radius: float
     reached: Floats
     goals: npt.NDArray[np.bool_]
+
+    @cached_property
+    def solid(self) -> Any:
+        """All obstacles, as one geometry."""
+        return shapely.union_all(self.floor.polygons)
+
+    def among(self, walls: Any) -> str:
+        """The status of the same question with less wall: what was wall is part of a goal that it borders on."""
+        floor, goal = Floor(walls, self.floor.bounds.tolist()), self.goal
+        if isinstance(goal, Inside):
+            opened = self.solid.difference(walls)
+            goal = Inside([shapely.union_all([part, opened]) for part in shapely.get_parts(goal.polygon)])
+        return plan_motion(self.shape, floor, self.start, goal, None, COARSE, self.points, FEW).status
 
 
 @dataclass(frozen=True)
@@ -84,6 +97,12 @@ class Plan:
         return None if q is None else neck_near(q.floor, q.goals, q.reached, q.radius)
 
     @cached_property
+    def opens(self) -> bool:
+        """Would widening the passage alone help? Worked out when asked for."""
+        q, neck = self.question, self.passage
+        return q is not None and neck is not None and helps(q.solid, neck, q.radius, q.among)
+
+    @cached_property
     def missing(self) -> float:
         """How much wider the passage must be, in squares, to about 0.03: a second or so of work when asked for.
 
@@ -92,18 +111,7 @@ class Plan:
         q, neck = self.question, self.passage
         if q is None or neck is None:
             return math.nan
-
-        solid = shapely.union_all(q.floor.polygons)
-
-        def answer(walls: Any) -> str:
-            floor = Floor(walls, q.floor.bounds.tolist())
-            goal = q.goal
-            if isinstance(goal, Inside):
-                opened = solid.difference(walls)
-                goal = Inside([shapely.union_all([part, opened]) for part in shapely.get_parts(goal.polygon)])
-            return plan_motion(q.shape, floor, q.start, goal, None, COARSE, q.points, FEW).status
-
-        return missing_width(solid, neck, q.radius, answer)
+        return missing_width(q.solid, neck, q.radius, q.among) if self.opens else math.inf
 
     @cached_property
     def length(self) -> float:

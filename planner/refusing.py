@@ -1,6 +1,5 @@
 """Why something cannot be carried to where it should be: what geometry proved, and what speaks against the proof."""
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -47,7 +46,7 @@ def refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel
         x, y = passage.place
         east, north = model.lattice.place_to_utak(x + model.view.west, y + model.view.south)
         where = f"{passage.width:.2f} squares wide at POINT ({east:.1f} {north:.1f})"
-        if math.isinf(closest.missing):
+        if _hopeless(closest):
             return f"{node.name} cannot be carried there: even were the passage, {where}, as wide as it, it could not"
         return f"the passage for {node.name}, {where}, is too narrow by {closest.missing:.2f} squares"
 
@@ -70,11 +69,16 @@ def _doubt(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel)
         return "it was turned askew"
     # He has brought it there. When no wider passage would let it go on, it rather is elsewhere.
     amid_squares = node.moved and not is_whole(node.polygon)
-    return "it was stopped on its way there" if amid_squares and math.isinf(nearest_to_done(plans).missing) else ""
+    return "it was stopped on its way there" if amid_squares and _hopeless(nearest_to_done(plans)) else ""
 
 
 def nearest_to_done(plans: Sequence[tuple[int, Carrying]]) -> Carrying:
     """Of plans that are impossible the last that is so by a passage, over as many squares as any of them."""
     widest = max(level for level, _ in plans)
     asked = [plan for level, plan in reversed(plans) if level == widest]
-    return next((plan for plan in asked if math.isfinite(plan.missing)), asked[0])
+    return next((plan for plan in asked if plan.opens), asked[0])
+
+
+def _hopeless(plan: Carrying) -> bool:
+    """Is there a passage that is too narrow, and it is not for want of that alone?"""
+    return plan.passage is not None and not plan.opens
