@@ -75,6 +75,7 @@ class Decider:
         self._kept = Kept()
         self._circles = Circles()
         self._looked = 0  # squares he had looked from when he went to see where it must end, until it is one more
+        self._led_along = False  # has he taken along what shut him in, to look?
         self._feeling = False  # is he about to feel what may stand against a wall?
         self._turn = 0  # the sign of the turn that was begun about an object
 
@@ -237,8 +238,7 @@ class Decider:
         doubted = node.polygon is None or node.vague or self.verifier.doubted(node)
         if doubted and (look := self._look(self.verifier.inspection(node, situation), stage, situation)) is not None:
             return look
-        look = self._look(more_of(node, situation), stage, situation)
-        if look is not None and look.command is not None:
+        if (look := self._look(more_of(node, situation), stage, situation)) is not None and look.command is not None:
             return look
         if node.polygon is None:
             return Decision(None, f"{stage} is not attempted: the outline of {node.name} is not known", "limit")
@@ -276,9 +276,11 @@ class Decider:
         # where it shall end, another way there is looked for without it; and what is taken while it is open how the
         # squares lie keeps the outline that it seems to have then. What shuts him in he takes along.
         fetched = land.shut_in or not (land.lookouts or land.ends or is_open(situation.model))
-        brought = None if land.there else partial(along, fetched=fetched)
+        again = land.shut_in and self._led_along  # he has taken it along, and brought it back
+        brought = None if land.there or again else partial(along, fetched=fetched)
         ask = partial(self._pursue, aims, stage, situation, advice.reason, verdict, brought)
         decision = self._felt(ask, stage, situation)
+        self._led_along |= land.shut_in and isinstance(decision.command, Push)
         if land.shut_in and not isinstance(decision.command, Push | Turn):
             why = f"{stage} cannot be told: {land.missing}, and {node.name} shuts him in"
             decision = Decision(None, why, "limit")
@@ -293,9 +295,9 @@ class Decider:
                 advice, decision = shut_in, Decision(None, why, "impossible")
         if decision.verdict != "impossible":
             return decision
-        again = self.verifier.narrow_again(advice, situation)
-        if again is not None:
-            return self._pursue([again], stage, situation, advice.reason)
+        narrow = self.verifier.narrow_again(advice, situation)
+        if narrow is not None:
+            return self._pursue([narrow], stage, situation, advice.reason)
         return self._sized(node, must_reach or land.ends, stage, situation) or decision
 
     def _sized(self, node: Node, ends: Mapping[str, End], stage: Stage, situation: Situation) -> Decision | None:

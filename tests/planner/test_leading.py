@@ -193,6 +193,18 @@ def test_who_is_shut_in_and_at_a_loss_leads_it_out(monkeypatch: pytest.MonkeyPat
     assert "led out" in decision.why
 
 
+def test_what_shuts_him_in_is_taken_along_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who comes back, and must look once more, leads it out and takes it from elsewhere: so he is shut in no more."""
+    drawn = ["b" * 16, "b...........ggUb", "b...........gggb", *["b" + "." * 14 + "b"] * 6, "b" * 16]
+    situation, _ = in_a_nook(drawn)
+    looks = (Lookout(at(situation, (-5, -5)), "a room is not seen"),)
+    monkeypatch.setattr(planner.deciding, "landing", lambda *_: Landing({}, "a room is not seen", looks, shut_in=True))
+    monkeypatch.setattr(planner.deciding, "aims_towards", lambda *_: [Aim("inspect", looks[0].squares, looks[0].what)])
+    decider, (goal,) = Decider(NO_TASK, bound=situation.binding), facts_of("at(x, corner(northeast)).")
+    decisions = [decider._carry(goal, Stage((goal,)), situation, Reconciled({}, (), (), ())) for _ in range(2)]
+    assert [decision and decision.command for decision in decisions] == [Push(-5.0, -5.0), Push(-1.0, 0.0)]
+
+
 def test_who_is_not_shut_in_and_at_a_loss_gives_up(monkeypatch: pytest.MonkeyPatch) -> None:
     decision = at_a_loss(holding()[0], monkeypatch)
     assert decision.command is None and decision.verdict == "limit"
