@@ -18,7 +18,7 @@ from kb.relaying import relaid
 from kb.supposing import Surprise, clashes, laid_on
 
 MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are blamed for what contradicts
-HOPELESS = 18  # times that no other lattice explained it better, with things moved, before none is tried any more
+HOPELESS = 18  # times that nothing else explained it better before nothing more is tried that takes as long
 CONTRADICTED = 2  # misfits that a contradiction of looks weighs as much as: more than any other lattice costs
 Place = tuple[float, float]
 
@@ -72,7 +72,10 @@ class Judging(Holding):
         """Earlier motions that ended elsewhere than is believed, unless something simpler explains a surprise."""
         if any(map(self._simple, others)):
             return []
-        found = recalled(surprise, self.earlier) or recalled_elsewhere(surprise, self.earlier)
+        found = recalled(surprise, self.earlier)
+        if not found and self.searches < HOPELESS:
+            found = recalled_elsewhere(surprise, self.earlier)
+            self.searches += not found
         return [self._told_again(one) for one in found]
 
     def _simple(self, explanation: Explanation) -> bool:

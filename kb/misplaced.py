@@ -14,7 +14,7 @@ from kb.plainness import Drawn, Sketch, plainness
 from kb.relaying import relaid
 from kb.stops import Moved, Retold, retold
 
-LAST = 4  # motions one of which may have been stopped where nobody thought so
+LAST = 3  # motions one of which may have been stopped where nobody thought so
 GRID = 7  # points along either side of the square in which he woke
 PLACES = tuple(((i + 0.5) / GRID, (j + 0.5) / GRID) for i in range(GRID) for j in range(GRID))
 

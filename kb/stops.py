@@ -20,6 +20,8 @@ from kb.loads import Load, Square
 from kb.relaying import Relaid, relaid
 
 Place = tuple[float, float]
+MOST = 90  # hypotheses on which a motion is told again: as many as there are angles
+FEW = 3  # looks that are compared before all
 NEAR = 2  # squares about the predicted place in which Utak is looked for first
 HAIR = 1e-6  # squares from a line between two squares to what counts as beside it
 
@@ -200,11 +202,19 @@ def retold(motion: Moved, held: Lattice, looks: Sequence[Look]) -> Iterator[Reto
     occupied than before one of which it is open.
     """
     newest = motion.number == len(looks) - 1
-    for hypothesis in motion.hypotheses:
+    for hypothesis in _likeliest(motion.hypotheses):
         found = list(_otherwise(motion, hypothesis, looks))
         surest = any(one.known for one in found)
         if surest or not (newest and hypothesis.lattice == held):
             yield from (one for one in found if one.known == surest)
+
+
+def _likeliest(hypotheses: tuple[Hypothesis, ...]) -> tuple[Hypothesis, ...]:
+    """Of hypotheses the MOST that are the least dear, in their order."""
+    if len(hypotheses) <= MOST:
+        return hypotheses
+    likely = sorted(range(len(hypotheses)), key=lambda number: hypotheses[number].dear)[:MOST]
+    return tuple(hypotheses[number] for number in sorted(likely))
 
 
 def _otherwise(motion: Moved, hypothesis: Hypothesis, looks: Sequence[Look]) -> Iterator[Retold]:
@@ -263,7 +273,9 @@ def agreed(
 
     unsettled : where looks need not agree. recent : how many of them are compared.
     """
-    stands = not contradictions(lattice, looks[-recent:], unsettled)
+    compared = looks[-recent:]
+    few = compared[:: -max(len(compared) // FEW, 1)]  # the newest one among them: mostly these contradict already
+    stands = not (contradictions(lattice, few, unsettled) or contradictions(lattice, compared, unsettled))
     return relaid(lattice, lattice, looks, loads) if stands else None
 
 
