@@ -26,7 +26,7 @@ from kb.stops import Moved, amid, ends, next_square, views
 from kb.supposing import as_motion
 from kb.walked import Walked
 
-REMEMBERED = 6  # motions that may turn out to have been stopped
+REMEMBERED = 12  # motions that may turn out to have been stopped
 
 
 @dataclass

@@ -69,11 +69,15 @@ class Judging(Holding):
         return [Explanation(outcome.how, outcome.place, self.lattice, found.misfits, outcome.distance, outcome)]
 
     def _recalled(self, surprise: Surprise, others: Iterable[Explanation]) -> list[Explanation]:
-        """Earlier motions that ended elsewhere than is believed, unless something simpler explains a surprise."""
-        if any(map(self._simple, others)):
+        """Earlier motions that ended elsewhere than is believed, unless a simple thing explains all as the lattice is.
+
+        That he woke elsewhere in his square as well is told only where nothing simple explains it on any other either.
+        """
+        simple = [other for other in others if self._simple(other)]
+        if any(other.lattice == self.lattice for other in simple):
             return []
         found = recalled(surprise, self.earlier)
-        if not found and self.searches < HOPELESS:
+        if not found and not simple and self.searches < HOPELESS:
             found = recalled_elsewhere(surprise, self.earlier)
             self.searches += not found
         return [self._told_again(one) for one in found]
