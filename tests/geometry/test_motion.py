@@ -186,7 +186,17 @@ def test_the_passage_and_what_it_lacks_are_told(door: float, missing: float) -> 
     assert plan.passage is not None
     assert plan.passage.width == pytest.approx(door, abs=0.01)
     assert math.dist(plan.passage.place, (12.5, 6)) < 0.7
+    assert plan.opens
     assert plan.missing == pytest.approx(missing, abs=0.05)
+
+
+def test_where_two_passages_are_too_narrow_widening_one_alone_does_not_help() -> None:
+    doors = [box(12, 6 - 0.8, 13, 6 + 0.8), box(25, 6 - 0.8, 26, 6 + 0.8)]
+    rooms = shapely.union_all([box(0, 0, 12, 12), box(13, 0, 25, 12), box(26, 0, 38, 12), *doors])
+    plan = plan_motion(BRICK, box(-1, -1, 39, 13).difference(rooms), Pose(5, 6), Pose(32, 6), (0, 0, 38, 12))
+    assert plan.passage is not None and plan.passage.width == pytest.approx(1.6, abs=0.01)
+    assert not plan.opens
+    assert plan.missing == math.inf
 
 
 @pytest.mark.parametrize("bottom", [28.0, 28.3, 28.57, 29.0])
@@ -211,5 +221,5 @@ def test_moving_the_sides_of_a_door_opens_no_wall_behind_which_there_is_room() -
 
 def test_what_is_found_has_no_missing_width() -> None:
     plan = plan_motion(BRICK, two_rooms(3.0), Pose(5, 6, 90), Pose(19, 7, 30))
-    assert plan.passage is None
+    assert plan.passage is None and not plan.opens
     assert math.isnan(plan.missing)

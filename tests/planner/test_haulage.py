@@ -8,6 +8,7 @@ from typing import cast
 import pytest
 import shapely
 
+from geometry.bottleneck import Neck
 from geometry.carrying import Carrying, Inside
 from kb.evidence import FULL
 from kb.loads import covered
@@ -76,21 +77,22 @@ def test_what_he_has_turned_askew_proves_nothing(turned: float, proved: bool) ->
 
 
 @pytest.mark.parametrize(
-    ("moved", "west", "missing", "proved"),
+    ("moved", "west", "opens", "proved"),
     [
-        (True, 4.3, math.inf, False),
-        (True, 4.0, math.inf, True),
-        (False, 4.3, math.inf, True),
-        (True, 4.3, 0.5, True),
+        (True, 4.3, False, False),
+        (True, 4.0, False, True),
+        (False, 4.3, False, True),
+        (True, 4.3, True, True),
     ],
 )
 def test_what_was_stopped_amid_squares_and_no_wider_passage_would_let_on_proves_nothing(
-    moved: bool, west: float, missing: float, proved: bool
+    moved: bool, west: float, opens: bool, proved: bool
 ) -> None:
     shape = shapely.box(west, 5, west + 4, 9)
     node = Node("o1", "object", 60, "part1", covered(shape), 0, polygon=shape, moved=moved)
     plan = Carrying("impossible", reason="body")
-    plan.__dict__["missing"] = missing  # as if it had been worked out
+    neck = Neck((9.0, 7.0), ((9.0, 6.0), (9.0, 8.0)), 2.0)
+    plan.__dict__.update(passage=neck, opens=opens, missing=0.5 if opens else math.inf)  # as if it had been worked out
     answer = refusal(node, [(2, plan)], seen_whole(PARTED))
     assert answer.proved == proved
     assert ("stopped on its way" in answer.reason()) != proved
@@ -131,7 +133,7 @@ def test_what_may_be_part_of_what_is_carried_proves_nothing(inexact: bool, apart
     [([(4, 1.0), (4, math.inf)], 0), ([(0, 1.0), (4, math.inf)], 1), ([(4, 2.0), (4, 1.0)], 1), ([(4, math.nan)], 0)],
 )
 def test_the_passage_told_is_one_that_could_be_widened(plans: list[tuple[int, float]], told: int) -> None:
-    asked_for = [(level, cast(Carrying, SimpleNamespace(missing=missing))) for level, missing in plans]
+    asked_for = [(level, cast(Carrying, SimpleNamespace(opens=math.isfinite(missing)))) for level, missing in plans]
     assert nearest_to_done(asked_for) is asked_for[told][1]
 
 
