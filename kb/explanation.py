@@ -98,13 +98,15 @@ def misled(look: Look, told: Iterable[Iterable[Retold]]) -> list[Explanation]:
         return []
     left = tuple(dict.fromkeys(one.hypothesis for one in found))
     middle = statistics.median(hypothesis.angle for hypothesis in left)
-    explanations = []
-    for one in sorted(found, key=lambda one: (not one.known, abs(one.hypothesis.angle - middle))):
-        lattice = one.hypothesis.lattice
-        place = lattice.place_from_utak(*one.newest)
-        far = math.hypot(*one.correction.shift)
-        explanations.append(Explanation("misled", place, lattice, one.misfits, far, None, left, one))
-    return explanations
+    ordered = sorted(found, key=lambda one: (not one.known, abs(one.hypothesis.angle - middle)))
+    return [told_again(one, left) for one in ordered]
+
+
+def told_again(one: Retold, left: tuple[Hypothesis, ...]) -> Explanation:
+    """What came of a motion as it was told again. left : how the lattice may lie then."""
+    lattice, far = one.hypothesis.lattice, math.hypot(*one.correction.shift)
+    place = lattice.place_from_utak(*one.newest)
+    return Explanation("misled", place, lattice, one.misfits, far, None, left, one)
 
 
 def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Explanation:

@@ -1,7 +1,8 @@
 """What speaks for and against an explanation of a look: what contradicts it, and what else may have come about."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are bla
 HOPELESS = 18  # times that nothing else explained it better before nothing more is tried that takes as long
 CONTRADICTED = 2  # misfits that a contradiction of looks weighs as much as: more than any other lattice costs
 Place = tuple[float, float]
+T = TypeVar("T")
 
 
 class Judging(Holding):
@@ -77,10 +79,17 @@ class Judging(Holding):
         if any(other.lattice == self.lattice for other in simple):
             return []
         found = recalled(surprise, self.earlier)
-        if not found and not simple and self.searches < HOPELESS:
-            found = recalled_elsewhere(surprise, self.earlier)
-            self.searches += not found
+        if not found and not simple:
+            found = self._at_length(lambda: recalled_elsewhere(surprise, self.earlier))
         return [self._told_again(one) for one in found]
+
+    def _at_length(self, tell: Callable[[], list[T]]) -> list[T]:
+        """What is told by trying much; nothing any more after that told nothing too often."""
+        if self.searches >= HOPELESS:
+            return []
+        found = tell()
+        self.searches += not found
+        return found
 
     def _simple(self, explanation: Explanation) -> bool:
         """Does an explanation leave nothing as noise, and say neither that he slipped nor that the angle is another?"""

@@ -7,7 +7,7 @@ he looks at later, depends on where in his square he began.
 import math
 from collections.abc import Sequence
 
-from kb.explanation import Explanation
+from kb.explanation import Explanation, told_again
 from kb.heading import ELSEWHERE, Hypothesis, Look, fallen
 from kb.lattice import CENTRE, Lattice
 from kb.plainness import Drawn, Sketch, plainness
@@ -55,6 +55,4 @@ def _sketch(told: Retold, looks: Sequence[Look], drawn: Drawn) -> Sketch:
 def _explanation(alike: Sequence[Retold]) -> Explanation:
     """What says the same, as one explanation: by the likeliest of them."""
     told = min(alike, key=lambda one: (not one.known, math.dist(one.hypothesis.lattice.woke, CENTRE)))
-    lattice, far = told.hypothesis.lattice, math.hypot(*told.correction.shift)
-    left = tuple(one.hypothesis for one in alike)
-    return Explanation("misled", lattice.place_from_utak(*told.newest), lattice, 0, far, None, left, told)
+    return told_again(told, tuple(one.hypothesis for one in alike))

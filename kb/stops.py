@@ -21,7 +21,7 @@ from kb.relaying import Relaid, relaid
 
 Place = tuple[float, float]
 MOST = 90  # hypotheses on which a motion is told again: as many as there are angles
-FEW = 3  # looks that are compared before all
+FEW = 3  # looks, about, that are compared before all: mostly these contradict each other already
 NEAR = 2  # squares about the predicted place in which Utak is looked for first
 HAIR = 1e-6  # squares from a line between two squares to what counts as beside it
 
@@ -274,8 +274,10 @@ def agreed(
     unsettled : where looks need not agree. recent : how many of them are compared.
     """
     compared = looks[-recent:]
-    few = compared[:: -max(len(compared) // FEW, 1)]  # the newest one among them: mostly these contradict already
-    stands = not (contradictions(lattice, few, unsettled) or contradictions(lattice, compared, unsettled))
+    apart = len(compared) // FEW
+    if apart > 1 and contradictions(lattice, compared[::-apart], unsettled):  # the newest one among them
+        return None
+    stands = not contradictions(lattice, compared, unsettled)
     return relaid(lattice, lattice, looks, loads) if stands else None
 
 

@@ -12,7 +12,7 @@ from kb.body import Command, Move
 from kb.explanation import Explanation, misled
 from kb.halting import halts, whole_first
 from kb.heading import DOUBTED, MEMORY, Hypothesis, Look, anywhere, candidates, cramped, search, standing
-from kb.judging import CONTRADICTED, HOPELESS, MOST_SEARCHES, Judging, Place
+from kb.judging import CONTRADICTED, MOST_SEARCHES, Judging, Place
 from kb.lattice import Lattice
 from kb.misplaced import misplaced
 from kb.plainness import weighed
@@ -66,10 +66,8 @@ class Walked(Judging):
             explanations += self._recalled(self._surprise(command, ranges), explanations)
         elif stops:
             explanations += self._misled(look, told, turned, explanations)
-            if self.searches < HOPELESS and not any(map(self._simple, explanations)):
-                told_both = misplaced(self.tellable, self.lattice, [*self.looks, look])
-                self.searches += not told_both
-                explanations += told_both
+            if not any(map(self._simple, explanations)):
+                explanations += self._at_length(lambda: misplaced(self.tellable, self.lattice, [*self.looks, look]))
         return self._choose(explanations)
 
     def _halted_walk(self, command: Command, ranges: NDArray[np.int16]) -> list[Explanation]:
