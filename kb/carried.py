@@ -45,6 +45,8 @@ class Carried(Judging):
         simple = any(not one.misfits for one in outcomes if one.how != "slipped" or self.slipped)
         explanations = [whole, *outcomes, *self._elsewhere(surprise, whole.misfits, simple)]
         explanations += self._recalled(surprise, explanations)
+        if not any(map(self._simple, explanations)):
+            explanations += self._halted_elsewhere(surprise)
         clear = sum(stop.chance for stop in stops) <= CLEAR
         unchanged, uneven = np.array_equal(ranges, self.looks[-1].ranges), load.insets and any(load.insets.believed)
         told = {"unchanged": unchanged, "clear": clear, "uneven": uneven}

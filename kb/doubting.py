@@ -3,11 +3,21 @@
 What was left is tried first, then what had been given up; that a motion was stopped by what is not known comes last.
 """
 
+import math
 from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
 
+from kb.halting import MOST, UNLIKELY
+from kb.hauling import part_way
 from kb.heading import ELSEWHERE, Hypothesis, anywhere, candidates, search
+from kb.lattice import CENTRE, Lattice
+from kb.loads import Square
+from kb.misplaced import PLACES
 from kb.pivoting import pivoted
+from kb.stops import views
 from kb.supposing import Supposed, Surprise
+from kb.suspecting import Hindrances
 
 ABOUT = 2  # degrees by which the lattice may lie otherwise than any that was left
 WIDEST = 8  # degrees between those that were left, for more to be thought of
@@ -105,3 +115,52 @@ def _cut_short(surprise: Surprise, few: int) -> Supposed | None:
         if fitting:
             return fitting[(len(fitting) - 1) // 2]
     return None
+
+
+class HaltedElsewhere(NamedTuple):
+    """That a push was stopped, and he woke elsewhere in his square. chance : how likely the push was stopped so.
+
+    against : log odds against it, by the part of his square in which he woke then.
+    """
+
+    supposed: Supposed
+    chance: float
+    against: float
+
+
+def halted_elsewhere(surprise: Surprise) -> list[HaltedElsewhere]:
+    """How a push may have been stopped by which nothing contradicts, if he woke elsewhere, of a grid of places.
+
+    Where he himself runs against something depends on where he woke.
+    """
+    alike: dict[tuple[int, int, frozenset[Square]], list[tuple[Supposed, float]]] = {}
+    for woke in PLACES if surprise.moving is not None and not surprise.degrees else ():
+        for supposed, chance in _halts(surprise, replace(surprise.lattice, woke=woke)):
+            assert supposed.outcome is not None
+            x, y = supposed.place
+            key = math.floor(x), math.floor(y), supposed.outcome.against
+            alike.setdefault(key, []).append((supposed, chance))
+    found = []
+    for same in alike.values():
+        supposed, chance = min(same, key=lambda one: math.dist(one[0].lattice.woke, CENTRE))
+        left = tuple(dict.fromkeys(hypothesis for one, _ in same for hypothesis in one.hypotheses))
+        against = ELSEWHERE * (surprise.lattice.woke == CENTRE) - math.log(len(left) / len(PLACES))
+        found.append(HaltedElsewhere(supposed._replace(hypotheses=left), chance, against))
+    return found
+
+
+def _halts(surprise: Surprise, lattice: Lattice) -> Iterator[tuple[Supposed, float]]:
+    """How a push may have been stopped on a lattice on which nothing contradicts then, with how likely that was."""
+    under = surprise.laid(lattice)
+    place, polygon, motion = surprise.begun(lattice)
+    if under.misfits:
+        return
+    held = (Hypothesis(lattice.angle, lattice.woke + lattice.woke),)
+    stops = Hindrances(under.evidence, place, polygon, motion).stops(place, polygon, motion)
+    likely = sorted((stop for stop in stops if stop.chance > UNLIKELY), key=lambda stop: -stop.chance)
+    for stop in likely[:MOST]:
+        end = part_way(place, polygon, motion, stop.part, stop.against)
+        for view in views(end.place):
+            supposed = surprise.judged(lattice, held, end._replace(place=view))
+            if not supposed.misfits:
+                yield supposed, stop.chance

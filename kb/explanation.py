@@ -38,7 +38,7 @@ class Explanation(NamedTuple):
     if the lattice lies otherwise than believed. retold: which looks were received elsewhere than is believed, if any.
     chance: how likely the motion ended so by what was known before it; None when that was not asked. crooked: by how
     much the simplest picture of the table costs more than where it is plainest (kb.plainness). against: the open
-    squares one of which stopped it.
+    squares one of which stopped it. weighed: does crooked tell as well how likely he woke where he did then?
     """
 
     how: str
@@ -52,6 +52,7 @@ class Explanation(NamedTuple):
     chance: float | None = None
     crooked: float = 0.0
     against: frozenset[Square] = frozenset()
+    weighed: bool = False
 
     @property
     def anew(self) -> bool:
@@ -65,8 +66,8 @@ class Explanation(NamedTuple):
 
     @property
     def odd(self) -> bool:
-        """Does it say both that the lattice lies askew and that he did not wake amid his square?"""
-        return self.lattice.angle != 0 and self.lattice.woke != CENTRE
+        """Does it say both that the lattice lies askew and that he did not wake amid his square, and weighs neither?"""
+        return self.lattice.angle != 0 and self.lattice.woke != CENTRE and not self.weighed
 
 
 class Accommodated(NamedTuple):

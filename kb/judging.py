@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from kb import halting
 from kb.body import Command
-from kb.doubting import explained
+from kb.doubting import explained, halted_elsewhere
 from kb.explanation import Explanation, cheapest
 from kb.holding import Holding
 from kb.loads import Load, borne_out
@@ -62,6 +62,9 @@ class Judging(Holding):
             return []
         self.searches += found.searched
         outcome = found.outcome
+        pushed = outcome is not None and outcome.stopped and surprise.degrees == 0.0
+        if simple and pushed and found.lattice == self.lattice:  # where that was is judged more finely already
+            return []
         if found.lattice != self.lattice or set(found.hypotheses) != set(self.hypotheses):
             far = 0.0 if outcome is None else outcome.distance
             turned = Explanation("turned", found.place, found.lattice, found.misfits, far, outcome, found.hypotheses)
@@ -69,6 +72,15 @@ class Judging(Holding):
         if outcome is None or outcome.how == "predicted":  # as is judged already
             return []
         return [Explanation(outcome.how, outcome.place, self.lattice, found.misfits, outcome.distance, outcome)]
+
+    def _halted_elsewhere(self, surprise: Surprise) -> list[Explanation]:
+        """That a push was stopped, and he woke elsewhere in his square: each the likelier the more of that is left."""
+        found = []
+        for one, chance, against in self._at_length(lambda: halted_elsewhere(surprise)):
+            far = 0.0 if one.outcome is None else one.outcome.distance
+            turned = Explanation("turned", one.place, one.lattice, 0, far, one.outcome, one.hypotheses)
+            found.append(turned._replace(chance=chance, crooked=against, weighed=True))
+        return found
 
     def _recalled(self, surprise: Surprise, others: Iterable[Explanation]) -> list[Explanation]:
         """Earlier motions that ended elsewhere than is believed, unless a simple thing explains all as the lattice is.
@@ -127,7 +139,7 @@ class Judging(Holding):
         """How much less plain the table looked at an angle than at the one believed, by all looks before."""
         if angle == self.lattice.angle:
             return 0.0
-        return next((one.dear for one in self.hypotheses if one.angle == angle), UNTRIED)
+        return min((one.dear for one in self.hypotheses if one.angle == angle), default=UNTRIED)
 
     def _clashes(self, ranges: NDArray[np.int16], place: Place, loads: Iterable[Load]) -> int:
         """How many fields cannot be right if the impression was received at a place, with the loads where they lie."""

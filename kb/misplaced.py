@@ -38,7 +38,10 @@ def misplaced(motions: Sequence[Moved], held: Lattice, looks: Sequence[Look]) ->
     sketches = [_sketch(told[0], looks, drawn) for told in alike.values()]
     prices = plainness([*zip(sketches, against, strict=True)])
     found = map(_explanation, alike.values())
-    return [one._replace(crooked=price + odds) for one, price, odds in zip(found, prices, against, strict=True)]
+    return [
+        one._replace(crooked=price + odds, weighed=True)
+        for one, price, odds in zip(found, prices, against, strict=True)
+    ]
 
 
 def _received(told: Retold, looks: Sequence[Look]) -> list[Look]:

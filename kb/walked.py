@@ -131,8 +131,8 @@ class Walked(Judging):
         self.hypotheses = left
         dear = next(h.dear for h in left if h.holds(self.lattice))
         explanations = [one._replace(crooked=one.crooked + dear) for one in ended]
-        plainest = candidates(left, self.lattice)[0]
-        if plainest.angle != self.lattice.angle:
+        if dear > 0:
+            plainest = candidates(left, self.lattice)[0]
             place = plainest.place_from_utak(*look.place)
             explanations.append(Explanation("turned", place, plainest, 0, 0.0, None, left))
         return self._choose(explanations, ["stands"])
@@ -142,15 +142,10 @@ class Walked(Judging):
 
         look : the new one, as predicted, recent : the last ones with it. left : the hypotheses that stand.
         """
-        lattice, misfits = self.lattice, NONE_FITS
         if self.likely_spread <= SETTLED:  # rather he woke elsewhere in his square than that the angle is another one
             beside = search(recent, anywhere((self.lattice.angle,)))
-            lattice, misfits = self._borne_out(beside, look)
-            others = tuple(h for h in left if h.angle != self.lattice.angle)
-        if misfits:
-            lattice, misfits = self._borne_out(left, look)
-        else:
-            left = (*beside, *others)
+            left = weighed((*beside, *(h for h in left if h.angle != self.lattice.angle)), recent)
+        lattice, misfits = self._borne_out(left, look)
         if (misfits or self._dear(lattice.angle) > DOUBTED) and self.searches < MOST_SEARCHES:
             self.searches += 1
             found = tuple(one._replace(dear=self._dear(one.angle)) for one in search(recent))

@@ -1,18 +1,22 @@
 """How plain a table looks: by that it is told at the first look how the lattice lies under him."""
 
+import math
+
 import numpy as np
 import pytest
 
 from geometry.sketch import CORNER
 from kb.evidence import Evidence
-from kb.heading import CENTRED, Hypothesis, Look
-from kb.lattice import Lattice
-from kb.plainness import LESS_LIKELY, UNTRIED, Sketch, plainness, weighed
+from kb.heading import ANYWHERE, CENTRED, Hypothesis, Look, search, standing
+from kb.lattice import CENTRE, Lattice
+from kb.plainness import BESIDE, LESS_LIKELY, UNTRIED, Sketch, plainness, weighed
 from kb.retina import count_ranges
 from tests.kb.drawings import LARGE_ROOM, drawing, looked
 from tests.kb.eyes import impression, random_room, world_of
 
 LOOKS = [(20, 20), (21, 22), (25, 24)]
+LONG_ROOM = ["b" * 80, *["b" * 2 + "." * 76 + "b" * 2] * 20, "b" * 80]
+Point = tuple[float, float]
 
 
 def a_look(rng: np.random.Generator, heading: int) -> Look:
@@ -55,9 +59,50 @@ def test_only_the_likely_ones_are_weighed_again_until_they_are_given_up() -> Non
     first = weighed(CENTRED, [look])
     assert abs(likeliest(first) + 20) <= 2
     told = tuple(h._replace(dear=0.0 if h.angle == 7 else 40.0) for h in first)
-    assert likeliest(weighed(told, [look])) == 7  # he was sure, and nothing else is asked
-    without = tuple(h for h in told if h.angle != 7)
+    again = weighed(told, [look])  # he was sure, and nothing else is asked
+    assert abs(likeliest(again) - 7) <= BESIDE
+    assert {h.angle for h in again if h.dear < 40.0} <= {7 + step for step in range(-BESIDE, BESIDE + 1)}
+    without = tuple(h for h in told if abs(h.angle - 7) > BESIDE)
     assert abs(likeliest(weighed(without, [look])) + 20) <= 2
+
+
+def strolled(heading: int, woke: Point, seed: int) -> list[Look]:
+    """Looks from here and there in a long room. woke : where in his square."""
+    room, rng = world_of(LONG_ROOM), np.random.default_rng(seed)
+    true = Lattice(heading, woke)
+    places = [(0.0, 0.0), *(true.place_to_utak(*rng.uniform((-34, -8), (34, 8))) for _ in range(9))]
+    looks = []
+    for place in places:
+        i, j = (math.floor(v) for v in true.place_from_utak(*place))
+        looks.append(Look(count_ranges(impression(room, (i + 40, j + 11), heading).retina), place))
+    return looks
+
+
+@pytest.mark.parametrize("heading", [-2, -1, 0, 1, 2])
+def test_a_degree_shows_by_and_by_however_sure_he_was_at_first(heading: int) -> None:
+    for seed in range(3):
+        looks = strolled(heading, CENTRE, seed)
+        left: tuple[Hypothesis, ...] = tuple(h._replace(dear=40.0 * (h.angle != 0)) for h in CENTRED)
+        for number in range(1, len(looks) + 1):
+            left = weighed(standing(left, looks[:number]), looks[:number])
+        assert likeliest(left) == heading
+
+
+def test_where_in_his_square_he_woke_is_nothing_to_a_single_look() -> None:
+    look = strolled(-7, (0.8, 0.3), 1)[0]._replace(place=(3.3, -2.2))
+    left = search([look], [h for h in ANYWHERE if -12 < h.angle < 0])
+    found = weighed(left, [look])
+    assert [h._replace(dear=0.0) for h in found] == list(left)
+    assert len(left) > 30
+    assert len({h.dear for h in found}) == len({h.angle for h in found}) == 11
+    assert likeliest(found) in (-8, -7, -6)
+
+
+def test_the_less_is_left_of_his_square_the_less_likely_he_woke_elsewhere_than_amid_it() -> None:
+    looks = strolled(1, CENTRE, 0)[:4]
+    own = Hypothesis(1, CENTRE * 2, dear=1.0)
+    half, whole = (weighed([Hypothesis(0, (0.4, 0.4, east, 0.6), dear=1.0), own], looks)[0].dear for east in (0.5, 0.6))
+    assert half == pytest.approx(whole + math.log(2))
 
 
 @pytest.mark.parametrize("room", [LARGE_ROOM, drawing(24, 24, 5, 5)])
