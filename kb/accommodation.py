@@ -34,12 +34,13 @@ class Memory(Walked, Carried):
     """What is held true, kept up to date: one of the few places with state."""
 
     def anew(self) -> "Memory":
-        """The memory of one who is lost, and begins anew with what he sees next, for nothing else leads back.
+        """The memory of one who begins anew with what he sees next, for he is lost, or gives up what was contradicted.
 
-        In his own frame he goes on from where he believes himself, so that he knows about where he came from.
+        In his own frame he goes on from where he believes himself, so that he knows about where he came from. That he
+        slips he takes no longer from what he has forgotten.
         """
         been = (*self.been, *(look.place for look in self.looks[:-1]))
-        return Memory(Evidence(), self.lattice, self.place, hypotheses=ANYWHERE, slipped=self.slipped, been=been)
+        return Memory(Evidence(), self.lattice, self.place, hypotheses=ANYWHERE, been=been)
 
     def wake(self, impression: Impression) -> Accommodated:
         """Take in the first impression."""

@@ -57,7 +57,7 @@ class Explanation(NamedTuple):
     @property
     def anew(self) -> bool:
         """Does it say that the lattice lies otherwise, or that looks were received elsewhere, than was believed?"""
-        return self.how in ("turned", "misled", "lost")
+        return self.how in ("turned", "misled", "lost", "anew")
 
     @property
     def met(self) -> bool:

@@ -30,9 +30,8 @@ class Holding:
     things that he has held, by name, and held the one that he holds. moved : his last straight motions, which may have
     ended otherwise than believed. barred : squares before which he was stopped himself; suspected : those of
     which one stopped what he carried, for all that was known. unfit : misfits of each of the last looks. been : where
-    looks were received, in his own frame, before he was lost and began anew. ended : where the newest motion may have
-    ended by the look after it, if it came upon anything. pictures : the last ones of the
-    map on this lattice, if any were drawn.
+    looks were received, in his own frame, before he began anew. ended : where the newest motion may have ended by the
+    look after it, if it came upon anything. pictures : the last ones of the map on this lattice, if any were drawn.
     """
 
     evidence: Evidence = field(default_factory=Evidence)
@@ -118,8 +117,13 @@ class Holding:
         several angles none of which is that of his own axes.
         """
         along = self.lattice.angle == 0 and all(other.is_centred for other in self.hypotheses)
-        told = not (self.evidence.overruled or self.slipped or any(map(self._elsewhere_likely, self.moved)))
+        told = not (self.shaken or any(map(self._elsewhere_likely, self.moved)))
         return told and (along or len(self.hypotheses) == 1)
+
+    @property
+    def shaken(self) -> bool:
+        """Did a look contradict another one, or a motion end beside where it should?"""
+        return self.slipped or self.evidence.overruled > 0
 
     def _elsewhere_likely(self, motion: Moved) -> bool:
         """Did a motion likely end in another square than is believed, by the look after it?"""

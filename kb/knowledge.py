@@ -58,15 +58,16 @@ class Knowledge:
             self._grasp(command.direction)
         accommodated = self.memory.accommodate(command, impression)
         if self.memory.lost and self.memory.held is None:
-            accommodated = self._begin_anew(impression)
+            return self.begin_anew(impression, lost=True)
         return self._model(impression, accommodated)
 
-    def _begin_anew(self, impression: Impression) -> Accommodated:
-        """Forget all but where he has been, and see as if for the first time."""
+    def begin_anew(self, impression: Impression, lost: bool = False) -> tuple[WorldModel, Accommodated]:
+        """Forget all but where he has been, and see as if for the first time. impression : the newest one."""
         self.memory = self.memory.anew()
         self._names.forget()
         woken = self.memory.wake(impression)
-        return woken._replace(explanation=woken.explanation._replace(how="lost"))
+        woken = woken._replace(explanation=woken.explanation._replace(how="lost" if lost else "anew"))
+        return self._model(impression, woken)
 
     def _grasp(self, direction: str) -> None:
         """Believe that the thing on an adjacent square is in hand, if one of known outline lies or is felt there."""
@@ -135,6 +136,7 @@ class Knowledge:
             felt=dict(self.felt),
             lost=self.memory.lost,
             anew=bool(self.memory.been),
+            shaken=self.memory.shaken,
             contradicted=accommodated.explanation.misfits > 0,
         )
         self.objects = self._objects(model)

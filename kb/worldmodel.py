@@ -121,7 +121,8 @@ class WorldModel:
     has moved none.
     touch : as of the impression, the colours felt in DIRECTIONS; () when it is not known. felt : squares of the lattice
     of which it is known what colour they have.
-    lost : does what he sees agree with none of it? anew : was he lost before, and has forgotten what he had seen then?
+    lost : does what he sees agree with none of it? anew : has he begun anew, and forgotten what he had seen before?
+    shaken : did a look contradict another one, or a motion end beside where it should?
     contradicted : is there a part of the impression that agrees with nothing that is believed?
     """
 
@@ -144,6 +145,7 @@ class WorldModel:
     felt: Mapping[tuple[int, int], str] = field(default_factory=dict)
     lost: bool = False
     anew: bool = False
+    shaken: bool = False
     contradicted: bool = False
 
     @cached_property

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from kb.belief import Places, belief
-from kb.body import Body, Command, Impression
+from kb.body import Body, Command, Impression, Release
 from kb.explanation import Accommodated
 from kb.knowledge import Knowledge
 from kb.task import Task
@@ -68,12 +68,15 @@ class Robot:
         self.verdict = Verdict(False, "limit", "not awake yet")
         self.finished = False
         self.steps = 0
+        self._gives_up = False  # does he give up what he believes, as soon as his hand is empty?
+        self._gave_up = False
 
     def wake(self) -> StepReport:
         """Steps 1 to 7: see for the first time, interpret, make the first plan."""
         impression = self.body.wake()  # (2)
         self.model, accommodated = self.knowledge.wake(impression)  # (3, 4, 5)
         self._decide()  # (6, 7)
+        self._test()
         return self._report(None, impression, accommodated, "he wakes")
 
     def step(self) -> StepReport:
@@ -84,12 +87,28 @@ class Robot:
         impression = self.body.act(command)  # (10)
         self.steps += 1
         self.model, accommodated = self.knowledge.perceive(command, impression)  # (11)
-        self._decide()  # (12, 13)
+        if not self._gives_up:
+            self._decide()  # (12, 13)
+            at_a_loss = self.decision.verdict == "limit"
+            self._gives_up = at_a_loss and self.model.shaken and not self._gave_up
+        if self._gives_up:
+            accommodated = self._give_up(impression) or accommodated
+        self._test()
         return self._report(command, impression, accommodated, why)
 
     def _decide(self) -> None:
         self.decision: Decision = self.decider.decide(self.model, self.knowledge.memory.track)
-        self._test()
+
+    def _give_up(self, impression: Impression) -> Accommodated | None:
+        """Begin anew, who is at a loss with what looks contradicted; None while he has to let go of something first."""
+        held = self.model.held
+        if held is not None:
+            self.decision = Decision(Release(), f"{held} is let go, to begin anew; {self.decision.why}")
+            return None
+        self._gives_up, self._gave_up = False, True
+        self.model, accommodated = self.knowledge.begin_anew(impression)
+        self._decide()
+        return accommodated
 
     def _report(
         self, command: Command | None, impression: Impression, accommodated: Accommodated, why: str

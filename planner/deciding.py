@@ -93,7 +93,7 @@ class Decider:
             decision = self._towards(stage, situation, reconciled, track)
             decision = decision or self._look(self._doubt(stage, situation), stage, situation)
             if decision is not None:
-                unproved = model.anew and decision.verdict == "impossible"
+                unproved = model.anew and model.shaken and decision.verdict == "impossible"
                 return replace(decision, verdict="limit") if unproved else decision
             self.attained += 1
         return Decision(None, " and ".join(map(str, self.stages)) + " holds", "done")

@@ -334,9 +334,15 @@ def test_he_who_is_carried_off_does_his_task_all_the_same() -> None:
         assert body.square == (30, 16)
 
 
-def test_who_was_lost_proves_nothing() -> None:
+@pytest.mark.parametrize(
+    ("anew", "shaken", "verdict"),
+    [(False, True, "impossible"), (True, False, "impossible"), (True, True, "limit")],
+)
+def test_who_began_anew_proves_nothing_if_looks_contradict_each_other_again(
+    anew: bool, shaken: bool, verdict: str
+) -> None:
     model = seen_whole(EMPTY)
     found = Decider(SQUARE).decide(model, [model.place])
     assert (found.command, found.verdict) == (None, "impossible")
-    after = Decider(SQUARE).decide(replace(model, anew=True), [model.place])
-    assert (after.command, after.verdict, after.why) == (None, "limit", found.why)
+    after = Decider(SQUARE).decide(replace(model, anew=anew, shaken=shaken), [model.place])
+    assert (after.command, after.verdict, after.why) == (None, verdict, found.why)
