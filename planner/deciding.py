@@ -31,7 +31,7 @@ from planner.repeating import Circles
 from planner.screen import Screens, ways_to_objects
 from planner.searching import against_walls, aims_towards
 from planner.sizing import Sizer, least_outline
-from planner.verifying import Verifier, before_taking, here, misgiving, more_of, unfelt_wall
+from planner.verifying import Verifier, before_elsewhere, before_taking, here, misgiving, more_of
 from planner.walking import HURRY, STROLL, halting, is_open, is_settled, next_move
 from planner.ways import Way, choose_way, ways
 
@@ -134,7 +134,7 @@ class Decider:
             node = model.object(self.bound.get(x, ""))
             began = model.lattice.woke if node is None else self.carrier.began_at(x, node, model)
             lying = here(model) if node is None else model.mask(node.patch)
-            doubt = doubt or unfelt_wall(goal.name, began, lying, situation)
+            doubt = doubt or before_elsewhere(goal.name, began, lying, situation)
         return doubt
 
     def _made_sure(self, goals: Sequence[Fact], there: bool, stage: Stage, situation: Situation) -> Decision | None:

@@ -6,6 +6,7 @@ Each is an aim to go to first, or None where there is nothing to make sure of.
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from kb.worldmodel import Node, WorldModel
 from planner import exploring
 from planner.aims import Aim
 from planner.destinations import Situation, contains, out_of_sight
+from planner.exploring import Lookout
 from planner.refusing import Refusal
 from planner.walking import is_open
 
@@ -111,12 +113,18 @@ def more_of(node: Node, situation: Situation) -> Aim | None:
     return None
 
 
+def before_elsewhere(goal: str, began: Place, lying: Mask, situation: Situation) -> Aim | None:
+    """What to look at or to feel, before one says that something is elsewhere than it began.
+
+    goal : in, through or around. began : where it began, a point of the lattice. lying : (rows, columns) where it lies.
+    """
+    return unseen_beyond(goal, began, lying, situation) or unfelt_wall(goal, began, lying, situation)
+
+
 def unfelt_wall(goal: str, began: Place, lying: Mask, situation: Situation) -> Aim | None:
     """Where to feel whether something is part of a wall, before one says that something is elsewhere than it began.
 
-    If it were a thing that stands against the wall, the goal would hold no more.
-
-    goal : in, through or around. began : where it began, a point of the lattice. lying : (rows, columns) where it lies.
+    If it were a thing that stands against the wall, the goal would hold no more. All as of before_elsewhere.
     """
     doors = [door for door in situation.rooms.doors if door.sure]
     holds_by = _holding(goal, began, lying, situation)
@@ -129,6 +137,29 @@ def unfelt_wall(goal: str, began: Place, lying: Mask, situation: Situation) -> A
         if len(look.squares) and holds_by(mask):
             return Aim("inspect", *look)
     return None
+
+
+def unseen_beyond(goal: str, began: Place, lying: Mask, situation: Situation) -> Aim | None:
+    """Where to see how wide the floor is beyond a door, before one says that something is there.
+
+    A door is a neck, and what was never seen counts as floor: behind an arm of the room there may be nothing but that.
+    All as of before_elsewhere.
+    """
+    model, view = situation.model, situation.model.view
+    if goal == "around":
+        return None
+    shut = view._replace(probability=np.where(view.seen, view.probability, 1.0).astype(np.float32))
+    rooms = rooms_of(replace(model, view=shut), situation.rules, model.verge | ~view.seen)
+    if (situation.next_to(began, rooms, SURE) & lying).any():
+        return None
+    rows, columns = np.nonzero(lying)
+
+    def far(look: Lookout) -> float:
+        there = np.unravel_index(look.squares, lying.shape)
+        return float(np.hypot(there[0] - rows.mean(), there[1] - columns.mean()).min())
+
+    nearest = min(exploring.frontiers(situation.screens, exploring.APART), key=far, default=None)
+    return None if nearest is None else Aim("inspect", *nearest)
 
 
 def _jambs_in_line(mask: Mask, door: Door, model: WorldModel) -> bool:
@@ -151,7 +182,7 @@ def _floor_beside(place: Floats, way: tuple[float, float], model: WorldModel) ->
 
 
 def _holding(goal: str, began: Place, lying: Mask, situation: Situation) -> Callable[[Mask], bool]:
-    """Whether a goal holds only if some squares of what bounds the floor are wall. All as of unfelt_wall."""
+    """Whether a goal holds only if some squares of what bounds the floor are wall. All as of before_elsewhere."""
     model = situation.model
     if goal == "around":
         hidden = lying & out_of_sight(model.verge, model, began)

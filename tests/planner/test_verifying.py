@@ -12,14 +12,15 @@ from geometry.carrying import Inside
 from kb.body import Move
 from kb.factfile import facts_of
 from kb.reconciliation import Reconciled
+from kb.rooms import SURE
 from kb.worldmodel import WorldModel
 from planner.deciding import Decider
 from planner.exploring import CLOSE
 from planner.goals import Stage
 from planner.haulage import Hauler, Request
 from planner.refusing import Refusal
-from planner.verifying import Verifier, _jambs_in_line, before_taking, misgiving
-from tests.kb.drawings import seen_whole
+from planner.verifying import Verifier, _jambs_in_line, before_elsewhere, before_taking, misgiving, unseen_beyond
+from tests.kb.drawings import seen_whole, walked
 from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of
 
 AT_START = replace(NO_TASK, goals=facts_of("at(utak, start)."))
@@ -166,3 +167,36 @@ def test_two_jambs_in_line_are_one_wall(rows: list[str], wall: bool) -> None:
     beside = [mask for mask in situation.model.protruding if mask.sum() in (10, 16)]
     assert beside
     assert all(_jambs_in_line(mask, door, situation.model) == wall for mask in beside)
+
+
+ARM = [  # a room with an arm to the east, just as long as it is seen to be
+    *["b" * 54] * 2,
+    *["bb" + "." * 25 + "b" * 27] * 11,
+    "bb" + "." * 8 + "U" + "." * 16 + "b" * 27,
+    *["bb" + "." * 25 + "b" * 27] * 6,
+    *["bb" + "." * 50 + "bb"] * 9,
+    *["b" * 54] * 2,
+]
+NEXT = [row[:27] + "bb" + row[29:] if "." * 40 in row else row for row in ARM]  # the same with a wall before the arm
+NEXT[22:25] = ARM[22:25]  # and a door in it
+WAY = [(0, 3), (4, -3), (-2, 4), (2, -17), (8, 0)]
+
+
+@pytest.mark.parametrize("goal", ["in", "through"])
+def test_what_was_never_seen_makes_no_door_of_the_mouth_of_an_arm(goal: str) -> None:
+    situation = situation_of(walked(ARM, WAY).model)
+    model = situation.model
+    lying, began = model.squares([(24, -10), (25, -10)]), (0.5, 5.0)
+    look = before_elsewhere(goal, began, lying, situation)
+    assert look is not None
+    rows, columns = np.divmod(look.squares, model.labels.shape[1])
+    assert (columns + model.view.west > 16).all() and (rows + model.view.south < -4).all()
+    assert before_elsewhere("around", began, lying, situation) is None
+    assert situation.next_to(began, situation.rooms, SURE).any()
+
+
+def test_what_is_seen_to_be_wide_enough_is_another_room() -> None:
+    situation = situation_of(walked(NEXT, [*WAY, (10, 2)]).model)
+    lying = situation.model.squares([(24, -10), (25, -10)])
+    assert unseen_beyond("in", (0.5, 5.0), lying, situation) is None
+    assert situation.next_to((0.5, 5.0), situation.rooms, SURE)[lying].all()
