@@ -139,6 +139,11 @@ class Holding:
         return tuple(motion for motion in self.moved if motion.load is None or motion.load in self.loads)
 
     @property
+    def in_doubt(self) -> tuple[Moved, ...]:
+        """Those that likely ended elsewhere than is believed."""
+        return tuple(motion for motion in self.earlier if any(chance > DOUBTED for _, chance in motion.doubts))
+
+    @property
     def earlier(self) -> tuple[Moved, ...]:
         """Those of them after which a look was taken in already."""
         return tuple(motion for motion in self.tellable if motion.number < len(self.looks))

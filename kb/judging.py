@@ -83,13 +83,18 @@ class Judging(Holding):
         return found
 
     def _recalled(self, surprise: Surprise, others: Iterable[Explanation]) -> list[Explanation]:
-        """Earlier motions that ended elsewhere than is believed, unless a simple thing explains all as the lattice is.
+        """Earlier motions that ended elsewhere than is believed.
 
-        That he woke elsewhere in his square as well is told only where nothing simple explains it on any other either.
+        Where a simple thing explains all as the lattice is, only those that likely did by the look after them, and none
+        if it is known how likely that thing is. That he woke elsewhere in his square as well is told only where nothing
+        simple explains it on any other lattice either.
         """
         simple = [other for other in others if self._simple(other)]
-        if any(other.lattice == self.lattice for other in simple):
-            return []
+        here = [other for other in simple if other.lattice == self.lattice]
+        if here:
+            known = any(other.chance is not None for other in here)
+            likely = [] if known else [self._told_again(one) for one in recalled(surprise, self.in_doubt)]
+            return [one for one in likely if one.chance is not None]
         found = recalled(surprise, self.earlier)
         if not found and not simple:
             found = self._at_length(lambda: recalled_elsewhere(surprise, self.earlier))
