@@ -131,10 +131,10 @@ class HaltedElsewhere(NamedTuple):
 def halted_elsewhere(surprise: Surprise) -> list[HaltedElsewhere]:
     """How a push may have been stopped by which nothing contradicts, if he woke elsewhere, of a grid of places.
 
-    Where he himself runs against something depends on where he woke.
+    Where he himself runs against something depends on where he woke. Once a thing was turned that tells where he woke.
     """
     alike: dict[tuple[int, int, frozenset[Square]], list[tuple[Supposed, float]]] = {}
-    for woke in PLACES if surprise.moving is not None and not surprise.degrees else ():
+    for woke in PLACES if surprise.moving is not None and not surprise.turned else ():
         for supposed, chance in _halts(surprise, replace(surprise.lattice, woke=woke)):
             assert supposed.outcome is not None
             x, y = supposed.place
