@@ -5,15 +5,14 @@ What was left is tried first, then what had been given up; that a motion was sto
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import NamedTuple
 
-from kb.halting import MOST, UNLIKELY
+from kb.halting import likeliest
 from kb.hauling import part_way
-from kb.heading import ELSEWHERE, Hypothesis, anywhere, candidates, search
+from kb.heading import ELSEWHERE, Hypothesis, anywhere, candidates, exactly, search
 from kb.lattice import CENTRE, Lattice
 from kb.loads import Square
-from kb.misplaced import PLACES
+from kb.misplaced import lattices, odds_against
 from kb.pivoting import pivoted
 from kb.stops import views
 from kb.supposing import Supposed, Surprise
@@ -134,8 +133,8 @@ def halted_elsewhere(surprise: Surprise) -> list[HaltedElsewhere]:
     Where he himself runs against something depends on where he woke. Once a thing was turned that tells where he woke.
     """
     alike: dict[tuple[int, int, frozenset[Square]], list[tuple[Supposed, float]]] = {}
-    for woke in PLACES if surprise.moving is not None and not surprise.turned else ():
-        for supposed, chance in _halts(surprise, replace(surprise.lattice, woke=woke)):
+    for lattice in lattices(surprise.lattice) if surprise.moving is not None and not surprise.turned else ():
+        for supposed, chance in _halts(surprise, lattice):
             assert supposed.outcome is not None
             x, y = supposed.place
             key = math.floor(x), math.floor(y), supposed.outcome.against
@@ -144,7 +143,7 @@ def halted_elsewhere(surprise: Surprise) -> list[HaltedElsewhere]:
     for same in alike.values():
         supposed, chance = min(same, key=lambda one: math.dist(one[0].lattice.woke, CENTRE))
         left = tuple(dict.fromkeys(hypothesis for one, _ in same for hypothesis in one.hypotheses))
-        against = ELSEWHERE * (surprise.lattice.woke == CENTRE) - math.log(len(left) / len(PLACES))
+        against = odds_against(surprise.lattice, len(left))
         found.append(HaltedElsewhere(supposed._replace(hypotheses=left), chance, against))
     return found
 
@@ -155,10 +154,8 @@ def _halts(surprise: Surprise, lattice: Lattice) -> Iterator[tuple[Supposed, flo
     place, polygon, motion = surprise.begun(lattice)
     if under.misfits:
         return
-    held = (Hypothesis(lattice.angle, lattice.woke + lattice.woke),)
-    stops = Hindrances(under.evidence, place, polygon, motion).stops(place, polygon, motion)
-    likely = sorted((stop for stop in stops if stop.chance > UNLIKELY), key=lambda stop: -stop.chance)
-    for stop in likely[:MOST]:
+    held, hindrances = (exactly(lattice),), Hindrances(under.evidence, place, polygon, motion)
+    for stop in likeliest(hindrances.stops(place, polygon, motion)):
         end = part_way(place, polygon, motion, stop.part, stop.against)
         for view in views(end.place):
             supposed = surprise.judged(lattice, held, end._replace(place=view))

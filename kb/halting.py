@@ -9,7 +9,7 @@ where he was stopped there is none ahead; and walls that were seen twice are str
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from geometry.rigid import Motion, Translate
 from kb.evidence import FREE, FULL, OPEN, Evidence
@@ -20,10 +20,14 @@ from kb.outlook import Outlook
 from kb.plainness import Drawn, Sketch, plainness
 from kb.stops import crossings, views
 from kb.supposing import Place, Surprise, clashes
+from kb.suspecting import Stop
 
 RISK = 0.02  # how likely a motion may be stopped before it is asked where
 UNLIKELY = 1e-4  # how likely a halt is at least that is thought of
 MOST = 24  # such halts
+
+
+T = TypeVar("T", "Halt", Stop)
 
 
 class Halt(NamedTuple):
@@ -54,8 +58,12 @@ def halts(surprise: Surprise, load: Load | None, motion: Motion) -> list[Halt]:
     whole = _seen(Halt("predicted", (x + motion.dx, y + motion.dy), 1.0 - sum(s.chance for s in stops), outcome=end))
     if len(whole) == 1 and whole[0].chance >= 1.0 - RISK:
         return []
-    likely = sorted((stop for stop in stops if stop.chance > UNLIKELY), key=lambda stop: -stop.chance)
-    return [*whole, *likely[:MOST]]
+    return [*whole, *likeliest(stops)]
+
+
+def likeliest(stops: Iterable[T]) -> list[T]:
+    """Those halts, or stops, that are thought of, by how likely they are."""
+    return sorted((stop for stop in stops if stop.chance > UNLIKELY), key=lambda stop: -stop.chance)[:MOST]
 
 
 def _seen(halt: Halt) -> list[Halt]:

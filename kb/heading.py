@@ -81,6 +81,11 @@ class Hypothesis(NamedTuple):
         return [self._replace(box=(w, s, e, n)) for w, e in columns for s, n in rows]
 
 
+def exactly(lattice: Lattice) -> Hypothesis:
+    """That it is just this lattice, and he woke just there."""
+    return Hypothesis(lattice.angle, lattice.woke + lattice.woke)
+
+
 CENTRED = tuple(Hypothesis(angle, CENTRE + CENTRE) for angle in ANGLES)
 ANYWHERE = tuple(Hypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in ANGLES)
 DOUBTED = 5.0  # edges by which the simplest picture may cost more on a lattice that is likely yet

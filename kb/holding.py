@@ -129,7 +129,7 @@ class Holding:
         """Did a motion likely end in another square than is believed, by the look after it?"""
         if motion.number >= len(self.looks):
             return False
-        places = [self.looks[motion.number].place, *(there for there, chance in motion.doubts if chance > DOUBTED)]
+        places = [self.looks[motion.number].place, *motion.likely(DOUBTED)]
         squares = {(math.floor(x), math.floor(y)) for x, y in (self.lattice.place_from_utak(*own) for own in places)}
         return len(squares) > 1
 
@@ -141,7 +141,7 @@ class Holding:
     @property
     def in_doubt(self) -> tuple[Moved, ...]:
         """Those that likely ended elsewhere than is believed."""
-        return tuple(motion for motion in self.earlier if any(chance > DOUBTED for _, chance in motion.doubts))
+        return tuple(motion for motion in self.earlier if motion.likely(DOUBTED))
 
     @property
     def earlier(self) -> tuple[Moved, ...]:

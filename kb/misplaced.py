@@ -6,9 +6,10 @@ he looks at later, depends on where in his square he began.
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 from kb.explanation import Explanation, told_again
-from kb.heading import ELSEWHERE, Hypothesis, Look, fallen
+from kb.heading import ELSEWHERE, Look, exactly, fallen
 from kb.lattice import CENTRE, Lattice
 from kb.plainness import Drawn, Sketch, plainness
 from kb.relaying import relaid
@@ -19,6 +20,16 @@ GRID = 7  # points along either side of the square in which he woke
 PLACES = tuple(((i + 0.5) / GRID, (j + 0.5) / GRID) for i in range(GRID) for j in range(GRID))
 
 
+def lattices(held: Lattice) -> list[Lattice]:
+    """The lattices that are turned like the one held, if he woke at one of PLACES."""
+    return [replace(held, woke=place) for place in PLACES]
+
+
+def odds_against(held: Lattice, places: int) -> float:
+    """Log odds against having woken at one of so many of PLACES, rather than where he is believed to."""
+    return ELSEWHERE * (held.woke == CENTRE) - math.log(places / len(PLACES))
+
+
 def misplaced(motions: Sequence[Moved], held: Lattice, looks: Sequence[Look]) -> list[Explanation]:
     """That one of the last motions was stopped, and he woke elsewhere, by which no look contradicts another.
 
@@ -26,15 +37,14 @@ def misplaced(motions: Sequence[Moved], held: Lattice, looks: Sequence[Look]) ->
     then, and how small the part of the square is in which he woke. held : the lattice that is believed. looks : all,
     where they are believed to have been received, the newest where it was commanded.
     """
-    places = tuple(Hypothesis(held.angle, place + place) for place in PLACES)
+    places = tuple(exactly(lattice) for lattice in lattices(held))
     alike: dict[tuple[int, bytes], list[Retold]] = {}
     for motion in motions[-LAST:]:
         for told in retold(motion._replace(hypotheses=places), held, looks):
             if not told.misfits:
                 key = motion.number, fallen(told.hypothesis.lattice, _received(told, looks)).tobytes()
                 alike.setdefault(key, []).append(told)
-    centred, drawn = held.woke == CENTRE, Drawn()
-    against = [ELSEWHERE * centred - math.log(len(told) / len(PLACES)) for told in alike.values()]
+    drawn, against = Drawn(), [odds_against(held, len(told)) for told in alike.values()]
     sketches = [_sketch(told[0], looks, drawn) for told in alike.values()]
     prices = plainness([*zip(sketches, against, strict=True)])
     found = map(_explanation, alike.values())

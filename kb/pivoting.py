@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 
 from kb.hauling import length_of, part_way
-from kb.heading import Box, Hypothesis, cells, points
+from kb.heading import Box, Hypothesis, cells, exactly, points
 from kb.lattice import Lattice
 from kb.supposing import Place, Supposed, Surprise
 
@@ -91,12 +91,10 @@ def _halted(surprise: Surprise, room: Box) -> list[Supposed]:
 
 def _ended(surprise: Surprise, part: Part, length: float) -> Supposed:
     """What contradicts that he woke in a part of his square, and that a turn ended in a part of it."""
-    angle = surprise.lattice.angle
-    lattice = Lattice(angle, part.woke)
+    lattice = Lattice(surprise.lattice.angle, part.woke)
     place, polygon, motion = surprise.begun(lattice)
     outcome = part_way(place, polygon, motion, sum(part.turn) / 2)
-    left = (Hypothesis(angle, part.woke + part.woke),)
-    return surprise.judged(lattice, left, outcome, _slack(part, length), part.far)
+    return surprise.judged(lattice, (exactly(lattice),), outcome, _slack(part, length), part.far)
 
 
 def _stoppable(surprise: Surprise, fitting: Sequence[tuple[Part, Supposed]], length: float) -> list[Supposed]:

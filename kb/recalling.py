@@ -13,7 +13,7 @@ from typing import NamedTuple
 from geometry.contact import Body, Obstacles
 from geometry.rigid import Translate
 from kb.evidence import FREE, FULL, OPEN, Evidence
-from kb.heading import Hypothesis, Look, anywhere, candidates, fallen, search
+from kb.heading import Look, anywhere, candidates, exactly, fallen, search
 from kb.lattice import Lattice
 from kb.loads import Load, Square, covered, is_whole
 from kb.relaying import Relaid, lain, relaid
@@ -124,8 +124,7 @@ def _otherwise(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
             continue
         supposed = replace(anew, evidence=under.evidence, loads=under.loads).tried(lattice, surprise.hypotheses)
         if not supposed.misfits:
-            held = Hypothesis(lattice.angle, lattice.woke + lattice.woke)
-            yield Recalled(Retold(held, correction, ahead == FULL, 0), supposed)
+            yield Recalled(Retold(exactly(lattice), correction, ahead == FULL, 0), supposed)
 
 
 def _elsewhere(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
@@ -146,8 +145,7 @@ def _elsewhere(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
             way = Haul(motion, replace(anew, lattice=lattice, evidence=under.evidence, loads=under.loads))
             ahead = way.ahead(end, under.evidence, _stood(under, anew.looks, motion, lattice))
             if ahead != FREE:
-                held = Hypothesis(lattice.angle, lattice.woke + lattice.woke)
-                yield Recalled(Retold(held, correction, ahead == FULL, 0), supposed)
+                yield Recalled(Retold(exactly(lattice), correction, ahead == FULL, 0), supposed)
 
 
 def _corrected(surprise: Surprise, motion: Moved, end: End) -> tuple[Surprise, Correction]:

@@ -53,6 +53,10 @@ class Moved(NamedTuple):
     load: str | None = None
     doubts: tuple[tuple[Place, float], ...] = ()
 
+    def likely(self, least: float) -> list[Place]:
+        """Where else it ended with a greater chance than that, by the look after it."""
+        return [there for there, chance in self.doubts if chance > least]
+
     def doubt(self, place: Place) -> float | None:
         """How likely it ended at a place, of his own frame, by the look after it; None when that was not thought of."""
         near = (chance for there, chance in self.doubts if math.dist(there, place) < 4 * HAIR)

@@ -17,7 +17,6 @@ from kb.worldmodel import Node, WorldModel
 from planner import exploring
 from planner.aims import Aim
 from planner.destinations import Situation, contains, out_of_sight
-from planner.exploring import Lookout
 from planner.refusing import Refusal
 from planner.walking import is_open
 
@@ -154,7 +153,7 @@ def unseen_beyond(goal: str, began: Place, lying: Mask, situation: Situation) ->
         return None
     rows, columns = np.nonzero(lying)
 
-    def far(look: Lookout) -> float:
+    def far(look: exploring.Lookout) -> float:
         there = np.unravel_index(look.squares, lying.shape)
         return float(np.hypot(there[0] - rows.mean(), there[1] - columns.mean()).min())
 

@@ -1,6 +1,7 @@
 """A push that was stopped, of one who did not wake amid his square: both are told together."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import shapely
@@ -73,15 +74,5 @@ def test_what_is_turned_or_not_in_hand_is_not_told_so() -> None:
     assert halted_elsewhere(surprise)
     for command in (Turn(30.0), Move(1.0, 0.0)):
         held = surprise.held if isinstance(command, Turn) else None
-        other = Surprise(
-            command,
-            surprise.ranges,
-            surprise.lattice,
-            surprise.place,
-            surprise.evidence,
-            surprise.looks,
-            surprise.loads,
-            held,
-            surprise.hypotheses,
-        )
+        other = replace(surprise, command=command, held=held)
         assert halted_elsewhere(other) == []
