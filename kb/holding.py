@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from kb.evidence import OPEN, Evidence
+from kb.evidence import FREE, OPEN, Evidence
 from kb.explanation import Explanation
 from kb.heading import CENTRED, Box, Hypothesis, Look, leeway
 from kb.lattice import CENTRE, Lattice
@@ -88,10 +88,20 @@ class Holding:
 
     @property
     def closed(self) -> frozenset[tuple[int, int]]:
-        """The squares on which something stands, or likely does, for it stopped a motion."""
-        sure = set() if self.slipped else self.barred  # who slips may have stopped by himself
+        """The squares on which something stands, or likely does, for it stopped a motion.
+
+        Not those that are seen to be free, by one who slips and may have stopped by himself, or with all about them:
+        then it was believed wrongly that he was stopped, or where.
+        """
+        sure = set() if self.slipped else {square for square in self.barred if not self._free_about(*square)}
         doubted = (self.barred | self.suspected) - sure
         return frozenset((*sure, *(s for s in doubted if self.evidence.state[self.evidence.index(*s)] == OPEN)))
+
+    def _free_about(self, x: int, y: int) -> bool:
+        """Are a square of the lattice and the eight about it seen to be free?"""
+        row, column = self.evidence.index(x, y)
+        about = self.evidence.state[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
+        return bool((about == FREE).all())
 
     @property
     def _off_middle(self) -> bool:

@@ -286,12 +286,23 @@ def test_what_stops_a_thing_unawares_makes_the_squares_before_it_suspect() -> No
     assert min(memory.suspected) not in memory.closed
 
 
-@pytest.mark.parametrize(("slips", "state", "closed"), [(False, FREE, True), (True, FREE, False), (True, OPEN, True)])
-def test_what_seemed_to_stop_one_who_slips_and_is_seen_to_be_free_is_free(
-    slips: bool, state: int, closed: bool
+@pytest.mark.parametrize(
+    ("slips", "state", "about", "closed"),
+    [
+        (False, FREE, OPEN, True),
+        (False, FREE, FREE, False),
+        (False, OPEN, FREE, True),
+        (True, FREE, OPEN, False),
+        (True, OPEN, FREE, True),
+    ],
+)
+def test_what_seemed_to_stop_him_and_is_seen_to_be_free_is_free(
+    slips: bool, state: int, about: int, closed: bool
 ) -> None:
     memory = walked(ROOM, [(2, 0)]).knowledge.memory
     memory.slipped = slips
     memory.barred.add((3, 1))
-    memory.evidence.state[memory.evidence.index(3, 1)] = state
+    row, column = memory.evidence.index(3, 1)
+    memory.evidence.state[row - 1 : row + 2, column - 1 : column + 2] = about
+    memory.evidence.state[row, column] = state
     assert ((3, 1) in memory.closed) == closed
