@@ -21,7 +21,9 @@ from geometry.floor import Floor, cheapest
 
 Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
+Answer = Callable[[Any, bool], str]
 CLOSE = 0.02  # squares: to which the missing width is found
+NEARLY = 0.25  # squares: until it is told to that, what is hard to decide is asked at length
 SHIFTS = 9  # copies of the free space that stand for moving a wall, at least
 MOST_SHIFTS = 129  # in a slit they lie as close as it is wide, that no bars are left between them
 DETOUR = 1000.0  # going through pixels narrower than need be looks so much dearer
@@ -217,21 +219,23 @@ def widened(solid: Any, neck: Neck, extra: float, reach: float) -> Any:
     return solid.difference(shapely.union_all(copies).intersection(window))
 
 
-def helps(solid: Any, neck: Neck, radius: float, answer: Callable[[Any], str]) -> bool:
+def helps(solid: Any, neck: Neck, radius: float, answer: Answer) -> bool:
     """Would a body of some radius get through if only a neck were as wide as that? answer : as for missing_width."""
-    return answer(widened(solid, neck, _most(neck, radius), _reach(neck, radius))) == "found"
+    return _decided(widened(solid, neck, _most(neck, radius), _reach(neck, radius)), answer) == "found"
 
 
-def missing_width(solid: Any, neck: Neck, radius: float, answer: Callable[[Any], str]) -> float:
+def missing_width(solid: Any, neck: Neck, radius: float, answer: Answer) -> float:
     """How much wider a neck must be, in squares, for a body of some radius to pass, if that helps.
 
-    answer : the status of planning the body's motion when the obstacles are these. What is not decided lies within the
-    resolution of the very width that is sought.
+    answer : the status of planning the body's motion when the obstacles are these, and whether it is asked at length.
+    What is not decided lies within the resolution of the very width that is sought, unless it is hard otherwise:
+    so that is asked at length only while the width is not told to NEARLY.
     """
     low, high, reach = 0.0, _most(neck, radius), _reach(neck, radius)
     while high - low > CLOSE:
         middle = (low + high) / 2
-        status = answer(widened(solid, neck, middle, reach))
+        walls = widened(solid, neck, middle, reach)
+        status = answer(walls, False) if high - low <= NEARLY else _decided(walls, answer)
         if status == "limit":
             return middle
         if status == "found":
@@ -239,6 +243,12 @@ def missing_width(solid: Any, neck: Neck, radius: float, answer: Callable[[Any],
         else:
             low = middle
     return (low + high) / 2
+
+
+def _decided(walls: Any, answer: Answer) -> str:
+    """The status when the obstacles are these, asked at length when it is not told otherwise."""
+    status = answer(walls, False)
+    return answer(walls, True) if status == "limit" else status
 
 
 def _most(neck: Neck, radius: float) -> float:

@@ -30,7 +30,7 @@ __all__ = ["Inside", "Plan", "plan_motion"]
 Floats = npt.NDArray[np.float64]
 FIRST, CAPACITY = 100_000, 400_000  # cells: enough for margins of a few times the resolution; and for wide rooms
 AGAIN = 0.25  # of the resolution, when it is asked again with more cells
-COARSE, FEW = 4e-4, 40_000  # resolution and cells for the missing width
+COARSE, FEW = 4e-4, 40_000  # resolution and cells for the missing width at first
 
 
 @dataclass(frozen=True)
@@ -55,13 +55,17 @@ class Question:
         """All obstacles, as one geometry."""
         return shapely.union_all(self.floor.polygons)
 
-    def among(self, walls: Any) -> str:
-        """The status of the same question with less wall: what was wall is part of a goal that it borders on."""
+    def among(self, walls: Any, at_length: bool) -> str:
+        """The status of the same question with less wall: what was wall is part of a goal that it borders on.
+
+        at_length : with as many cells as the question itself, rather than with a few.
+        """
         floor, goal = Floor(walls, self.floor.bounds.tolist()), self.goal
         if isinstance(goal, Inside):
             opened = self.solid.difference(walls)
             goal = Inside([shapely.union_all([part, opened]) for part in shapely.get_parts(goal.polygon)])
-        return plan_motion(self.shape, floor, self.start, goal, None, COARSE, self.points, FEW).status
+        cells = CAPACITY if at_length else FEW
+        return plan_motion(self.shape, floor, self.start, goal, None, COARSE, self.points, cells).status
 
 
 @dataclass(frozen=True)
