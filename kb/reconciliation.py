@@ -79,5 +79,7 @@ def _node_facts(node: Node) -> Iterable[str]:
         yield f"settled({node.name},shape)"
     if node.movable == 0:
         yield f"fixed({node.name})"
+    if node.moved:
+        yield f"moved({node.name})"
     for shape in may_be(node.polygon, node.insets):
         yield f"may_be({node.name},shape,{shape})"

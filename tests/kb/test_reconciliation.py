@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -92,6 +93,16 @@ def test_a_colour_claim_counts() -> None:
     found = reconcile(task(claims), replace(MODEL, objects=things), {"o1": 1, "o2": 30}, {})
     assert found.binding == {"x": "o2"}
     assert ("x", "o1", "colour") in found.contradicted
+
+
+@pytest.mark.parametrize(
+    ("moved", "better", "chosen"), [(True, 0, "o1"), (True, 15, "o1"), (True, 35, "o2"), (False, 0, "o2")]
+)
+def test_what_was_moved_to_be_brought_somewhere_is_gone_on_with(moved: bool, better: int, chosen: str) -> None:
+    things = (replace(node("o1", {"square": 60}), moved=moved), node("o2", {"square": 60 + better}))
+    wanted, far = task({"x": [("shape", "square", 100)]}), {"o1": 30.0, "o2": 1.0}
+    found = reconcile(wanted, replace(MODEL, objects=things), far, {"x": "o1"}, carried=["x"])
+    assert found.binding == {"x": chosen}
 
 
 def test_a_thing_whose_colour_is_not_felt_yet_is_doubtful() -> None:
