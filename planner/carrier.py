@@ -35,6 +35,7 @@ from planner.freeing import drawn_back
 from planner.haulage import Haul, Hauler, Request
 from planner.landing import Ends, region_of
 from planner.leading import lead, near, out
+from planner.leaving import Leaving
 from planner.refusing import Refusal
 from planner.screen import Squares, grown
 from planner.walking import is_open
@@ -102,6 +103,7 @@ class Carrier:
     missed: int = 0
 
     def __post_init__(self) -> None:
+        self._leaving = Leaving()
         self._hauler = Hauler(self.pull)
         self._leader = Hauler(self.pull)  # asks for ways to look: that there is none tells nothing of the goal
         self._course: Course | None = None
@@ -135,10 +137,15 @@ class Carrier:
         self.began[parameter] = known = known._replace(name=node.name, moved=known.moved or node.moved)
         return model.lattice.place_from_utak(*known.place)
 
-    def strayed(self, parameter: str, model: WorldModel) -> bool:
-        """Was he lost since what a parameter means lay where it began? Then that may be squares from where he says."""
-        known = self.began.get(parameter)
-        return model.anew and known is not None and not known.anew
+    def lost(self, parameter: str, node: Node, began: Place, situation: Situation) -> str:
+        """What is lost, in words, since what a parameter means lay where it began; nothing when nothing is.
+
+        Who was lost himself may be squares from where he says. began : a point of the lattice.
+        """
+        known, missed = self.began.get(parameter), self._leaving.misses_a_door(parameter, node, began, situation)
+        if situation.model.anew and known is not None and not known.anew:
+            return "he was lost"
+        return "a door of its room was lost" if missed else ""
 
     def advise(self, node: Node, ends: Mapping[str, End], situation: Situation, hoped: Ends = dict) -> Advice:
         """What to do to carry an object to one of several ends. hoped : where they are if the floor goes on unseen."""

@@ -242,11 +242,11 @@ class Decider:
             return look
         if node.polygon is None:
             return Decision(None, f"{stage} is not attempted: the outline of {node.name} is not known", "limit")
-        land = landing(goal, node, self.carrier.began_at(x, node, situation.model), situation)
+        began = self.carrier.began_at(x, node, situation.model)
+        land, lost = landing(goal, node, began, situation), self.carrier.lost(x, node, began, situation)
         if land.holds:
-            strayed = goal.name in FROM_THE_START and self.carrier.strayed(x, situation.model)
-            why = f"{stage} cannot be told: he was lost since {node.name} was taken"
-            return Decision(None, why, "limit") if strayed else None
+            why = f"{stage} cannot be told: {lost} since {node.name} was taken"
+            return Decision(None, why, "limit") if lost and goal.name in FROM_THE_START else None
         advice = self._advice(node, land, situation)
         if isinstance(advice, Refusal) and land.loose:
             if lands_in_one(land.loose, in_view(node.polygon, situation)):

@@ -91,12 +91,13 @@ def sightings(screens: Screens, likely: NDArray[np.float64], what: str, arrive: 
 def close(screens: Screens, mask: Mask, chance: float, arrive: bool) -> Squares:
     """Floor from which something is seen better than it was.
 
-    At first the floor right beside it: for it may well be there that he is wanted. arrive : to be beside it is all that
-    is wanted, so there any place will do; and what hardly is it is looked at from further away first, where most of it
-    is told already. Else he goes where most of it can be told.
+    At first the floor at its sides, and of what he shall take at the sides of what surely belongs to it: for it may
+    well be there that he is wanted. arrive : to be beside it is all that is wanted, so there any place will do; and
+    what hardly is it is looked at from further away first, where most of it is told already. Else he goes where most of
+    it can be told.
     """
     beside = grown(mask, 1)
-    near = np.flatnonzero(screens.floor & (edged(mask) if arrive else beside))
+    near = _at_sides(screens, mask, mask if arrive else mask & (screens.model.view.probability >= WALL_LIKE))
     if (chance >= LIKELY or not arrive) and len(near) and not (beside & screens.looked_from).any():
         return near if arrive else _telling(screens, near, mask, chance, arrive)
     if arrive:
@@ -110,6 +111,12 @@ def close(screens: Screens, mask: Mask, chance: float, arrive: bool) -> Squares:
         if len(near):
             break
     return _telling(screens, near, mask, chance, arrive)
+
+
+def _at_sides(screens: Screens, mask: Mask, surely: Mask) -> Squares:
+    """Floor at the sides of what surely belongs to a thing, or else of all that may."""
+    near = np.flatnonzero(screens.floor & edged(surely))
+    return near if len(near) else np.flatnonzero(screens.floor & edged(mask))
 
 
 def _telling(screens: Screens, near: Squares, mask: Mask, chance: float, arrive: bool) -> Squares:

@@ -47,8 +47,20 @@ def test_what_is_likely_looked_for_is_gone_up_to(arrive: bool) -> None:
     screens, mask = room()
     squares = close(screens, mask, 0.8, arrive)
     assert (distance_from(squares, mask) == 1).all()
-    if arrive:
-        assert edged(mask).ravel()[squares].all()
+    assert edged(mask).ravel()[squares].all()
+
+
+def test_what_he_shall_take_is_gone_up_to_where_it_surely_is() -> None:
+    screens, mask = room()
+    column = int(np.argwhere(mask)[:, 1].min())
+    rim = mask & (np.arange(mask.shape[1]) == column)[None]  # may be part of the thing, and may be floor
+    view = screens.model.view
+    doubtful = np.where(rim, 0.5, view.probability).astype(np.float32)
+    screens = Screens(replace(screens.model, view=view._replace(probability=doubtful)))
+    squares = close(screens, mask, 0.8, arrive=False)
+    assert edged(mask & ~rim).ravel()[squares].all()
+    only = Screens(replace(screens.model, view=view._replace(probability=np.where(mask, 0.5, doubtful))))
+    assert edged(mask).ravel()[close(only, mask, 0.8, arrive=False)].all()
 
 
 @given(st.integers(1, 12), st.integers(1, 12), st.integers(0, 2**32 - 1))

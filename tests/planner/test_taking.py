@@ -204,14 +204,18 @@ def test_where_a_thing_began_is_remembered_though_its_name_is_not() -> None:
     assert began("o4", 20, False, ("o3",)) == pytest.approx(21.0)
 
 
-@pytest.mark.parametrize(("before", "strayed"), [(False, True), (True, False)])
-def test_who_was_lost_does_not_know_where_a_thing_began_that_he_took_before(before: bool, strayed: bool) -> None:
+@pytest.mark.parametrize(("before", "lost"), [(False, "he was lost"), (True, "")])
+def test_who_was_lost_does_not_know_where_a_thing_began_that_he_took_before(before: bool, lost: str) -> None:
     carrier, model = Carrier(), beside(()).model
     (node,) = model.objects
     carrier.began_at("x", node, replace(model, anew=before))
-    assert not carrier.strayed("x", replace(model, anew=False))
-    assert carrier.strayed("x", replace(model, anew=True)) == strayed
-    assert not carrier.strayed("y", replace(model, anew=True))
+
+    def said(parameter: str, anew: bool) -> str:
+        return carrier.lost(parameter, node, (0.5, 0.5), situation_of(replace(model, anew=anew)))
+
+    assert not said("x", anew=False)
+    assert said("x", anew=True) == lost
+    assert not said("y", anew=True)
 
 
 @pytest.mark.parametrize("lost", [False, True])
