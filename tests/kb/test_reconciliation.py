@@ -96,10 +96,13 @@ def test_a_colour_claim_counts() -> None:
 
 
 @pytest.mark.parametrize(
-    ("moved", "better", "chosen"), [(True, 0, "o1"), (True, 15, "o1"), (True, 35, "o2"), (False, 0, "o2")]
+    ("moved", "better", "chosen"), [(True, 0, "o1"), (True, 15, "o1"), (True, 31, "o2"), (False, 0, "o2")]
 )
-def test_what_was_moved_to_be_brought_somewhere_is_gone_on_with(moved: bool, better: int, chosen: str) -> None:
-    things = (replace(node("o1", {"square": 60}), moved=moved), node("o2", {"square": 60 + better}))
+@pytest.mark.parametrize("alike", [50, 60, 62, 68])
+def test_what_was_moved_to_be_brought_somewhere_is_gone_on_with(
+    alike: int, moved: bool, better: int, chosen: str
+) -> None:
+    things = (replace(node("o1", {"square": alike}), moved=moved), node("o2", {"square": alike + better}))
     wanted, far = task({"x": [("shape", "square", 100)]}), {"o1": 30.0, "o2": 1.0}
     found = reconcile(wanted, replace(MODEL, objects=things), far, {"x": "o1"}, carried=["x"])
     assert found.binding == {"x": chosen}
