@@ -9,7 +9,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from shapely import affinity, box
 
-from geometry.bottleneck import neck_near
+from geometry.bottleneck import NEARLY, Neck, helps, missing_width, neck_near
 from geometry.ends import Inside
 from geometry.floor import Floor
 from geometry.motion import plan_motion
@@ -73,3 +73,23 @@ def test_the_passage_between_two_rooms_is_the_door(
     assert plan.passage is not None
     assert plan.passage.width == pytest.approx(gap, abs=0.05)
     assert turned(door).buffer(0.5).covers(shapely.Point(plan.passage.place))
+
+
+@pytest.mark.parametrize("lacking", [0.4, 1.3, 2.6])
+def test_what_a_few_cells_do_not_decide_is_asked_at_length(lacking: float) -> None:
+    solid, gap, radius = box(0, 0, 30, 10).union(box(0, 12, 30, 22)), 2.0, 3.0
+    neck = Neck((15.0, 11.0), ((15.0, 10.0), (15.0, 12.0)), gap)
+    asked = []
+
+    def answer(walls: shapely.Geometry, at_length: bool) -> str:
+        asked.append(at_length)
+        opened = (
+            shapely.LineString([(15.0, -9.0), (15.0, 31.0)]).intersection(box(0, 0, 30, 22).difference(walls)).length
+        )
+        return "limit" if not at_length else "found" if opened >= gap + lacking else "impossible"
+
+    assert helps(solid, neck, radius, answer)
+    assert asked == [False, True]
+    assert missing_width(solid, neck, radius, answer) == pytest.approx(lacking, abs=NEARLY / 2)
+    assert not asked[-1]  # what is not decided then is what is sought
+    assert not helps(solid, neck, radius, lambda walls, at_length: "limit")
