@@ -1,16 +1,18 @@
 """Routes: in free space, tight, distinct, and the best there are, against brute force and shapely."""
 
-from itertools import pairwise
+from itertools import islice, pairwise
 
 import networkx as nx
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from geometry import Route, Screen
 from tests.geometry import oracles
+
+MANY = 500  # ways over a pathgraph: screens with more are left out, for there may be any number
 
 
 def polygon(free):
@@ -46,9 +48,8 @@ def graph_routes(screen, start, goal):
             graph.add_edge(p, q, key=(a, b, key, n))
     graph.add_nodes_from((d["x"], d["y"]) for _, d in screen.pathgraph.nodes(data=True))
     up, down = (walk_up(screen, p, graph) for p in (start, goal))
-    if up[-1] == down[-1]:
-        return [[start, *up, *down[::-1], goal]]
-    return [[start, *up, *way[1:-1], *down[::-1], goal] for way in nx.all_simple_paths(graph, up[-1], down[-1])]
+    between = [[up[-1]]] if up[-1] == down[-1] else nx.all_simple_paths(graph, up[-1], down[-1])
+    yield from ([start, *up, *way[1:-1], *down[::-1], goal] for way in between)
 
 
 def walk_up(screen, point, graph):
@@ -86,7 +87,9 @@ def test_routes_are_the_best_classes_of_all(trip):
     screen = Screen(free)
     if not screen.routes(start, goal, k=1):
         return
-    best = sorted(oracles.length(oracles.rubber_band(way, free)) for way in graph_routes(screen, start, goal))
+    ways = list(islice(graph_routes(screen, start, goal), MANY + 1))
+    assume(len(ways) <= MANY)
+    best = sorted(oracles.length(oracles.rubber_band(way, free)) for way in ways)
     found = [route.length for route in screen.routes(start, goal, k=5)]
     assert found == pytest.approx(best[:5], abs=1e-9)
 
