@@ -61,8 +61,7 @@ def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
         yield from _object(node, model, places.rooms)
     yield from _rooms(model, places.rooms)
     for side, corner in sorted(places.corners.items()):
-        x, y = corner.point[0] + model.view.west, corner.point[1] + model.view.south
-        east, north = model.lattice.place_to_utak(x, y)
+        east, north = model.place_to_utak(*corner.point)
         yield f"corner({side},{_hundredths(east)},{_hundredths(north)})"
 
 
@@ -189,7 +188,7 @@ def _rooms(model: WorldModel, rooms: Rooms) -> Iterator[str]:
     row, column = model.view.locate(*model.place)
     if rooms.labels[row, column]:
         yield f"in({ORG},r{rooms.labels[row, column]})"
-    for door in (door for door in rooms.doors if door.sure):
+    for door in rooms.sure:
         yield f"door({door.name})"
         yield f"width({door.name},{_hundredths(door.width)})"
         yield from (f"connects({door.name},r{a},r{b})" for a, b in ((door.sides), (door.sides[1], door.sides[0])))

@@ -50,8 +50,7 @@ def corners(model: WorldModel, rules: tuple[Path, ...] = ()) -> Mapping[str, Cor
     found = _convex(known_floor(model))
     facts = []
     for number, corner in enumerate(found):
-        x, y = corner.point[0] + model.view.west, corner.point[1] + model.view.south
-        east, north = model.lattice.place_to_utak(x, y)
+        east, north = model.place_to_utak(*corner.point)
         facts.append(f"convex({number},{round(HUNDREDTHS * east)},{round(HUNDREDTHS * north)})")
     answer = solve([KB / "corners.lp", *rules], facts) or ()
     return {str(a.arguments[0]): found[a.arguments[1].number] for a in answer if a.match("furthest", 2)}

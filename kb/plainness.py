@@ -152,12 +152,14 @@ def weighed(hypotheses: Sequence[Hypothesis], looks: Sequence[Look]) -> tuple[Hy
     else:  # for the first time, or all that were likely are given up
         trials = _first_tried(alike, looks)
     odds = {key: trial.odds + alike[key].against for key, trial in trials.items()}
-    close = [key for key in odds if odds[key] <= min(odds.values()) + CLOSE]
+    best = min(odds.values())
+    close = [key for key in odds if odds[key] <= best + CLOSE]
     for key in close if len(close) > 1 else ():
         trials[key].draw()
         odds[key] = trials[key].odds + alike[key].against
+    best = min(odds.values())
     dear = {key: max(one.dear - least, UNTRIED) for key, one in alike.items()}
-    dear |= {key: odd - min(odds.values()) for key, odd in odds.items()}
+    dear |= {key: odd - best for key, odd in odds.items()}
     return tuple(h._replace(dear=dear[key]) for h, key in zip(hypotheses, keys, strict=True))
 
 

@@ -85,13 +85,21 @@ class Rooms:
     labels: NDArray[np.int32]
     doorways: Mask
 
+    @property
+    def sure(self) -> tuple[Door, ...]:
+        """The doors beyond reasonable doubt."""
+        return tuple(door for door in self.doors if door.sure)
+
+    def leading(self, room: int, least: int = SURE) -> list[Door]:
+        """The doors of a room. least : percent of belief in them."""
+        return [door for door in self.doors if door.confidence >= least and room in door.sides]
+
     def beyond(self, room: int, least: int = SURE) -> Mask:
         """(rows, columns): squares of the rooms that share a door with a room, but for the doorways.
 
         least : percent of belief in that door.
         """
-        leading = [door for door in self.doors if door.confidence >= least and room in door.sides]
-        others = {side for door in leading for side in door.sides} - {room}
+        others = {side for door in self.leading(room, least) for side in door.sides} - {room}
         mask: Mask = np.isin(self.labels, sorted(others)) & ~self.doorways
         return mask
 

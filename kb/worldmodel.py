@@ -214,6 +214,10 @@ class WorldModel:
         """The object of this name, if there is one."""
         return next((node for node in self.objects if node.name == name), None)
 
+    def place_to_utak(self, x: float, y: float) -> tuple[float, float]:
+        """A point of the frame of the view's arrays, in Utak's own: east and north of where he woke."""
+        return self.lattice.place_to_utak(x + self.view.west, y + self.view.south)
+
     def squares(self, squares: Iterable[tuple[int, int]]) -> Mask:
         """(rows, columns): squares of the lattice on the arrays of the view."""
         mask: Mask = np.zeros(self.labels.shape, np.bool_)

@@ -388,7 +388,7 @@ class Decider:
         if not offered:
             return None
         before = frozenset(self._kept.path(situation.model))
-        doors = [door for door in situation.rooms.doors if door.sure]
+        doors = situation.rooms.sure
         forbidden = frozenset(doors[0].name for goal in self.constraints if doors and str(goal.args[0]) == "utak")
         return choose_way(offered, situation.screens, before, doors, forbidden)
 

@@ -263,11 +263,7 @@ def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
     squares = np.flatnonzero(beyond & situation.screens.floor)
     if len(squares):
         return Destination(squares)
-    what = (
-        "no door is seen yet"
-        if not any(door.sure for door in situation.rooms.doors)
-        else "no next room is seen yet that can be reached"
-    )
+    what = "no door is seen yet" if not situation.rooms.sure else "no next room is seen yet that can be reached"
     likely = _likely_rooms(situation)
     return nowhere(what, (*likely, *doorsteps(situation, tried=bool(likely))))
 

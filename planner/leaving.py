@@ -6,7 +6,6 @@ of these may be lost from the map: then the room behind it seems to be one with 
 
 import math
 
-from kb.rooms import Door
 from kb.worldmodel import Node
 from planner.destinations import Situation
 
@@ -25,19 +24,12 @@ class Leaving:
 
         parameter : of the task, that means the object. began : a point of the lattice.
         """
-        model = situation.model
+        model, rooms = situation.model, situation.rooms
         if not node.moved:
-            row, column = model.view.locate(*began)
-            room = int(situation.rooms.labels[row, column])
-            leading = (door for door in situation.rooms.doors if door.sure and room in door.sides)
-            self._doors[parameter] = [_own(door, situation) for door in leading]
-        if not (node.moved and model.shaken):
+            room = int(rooms.labels[model.view.locate(*began)])
+            self._doors[parameter] = [model.place_to_utak(*door.place) for door in rooms.leading(room)]
             return False
-        known = [_own(door, situation) for door in situation.rooms.doors if door.sure]
+        if not model.shaken:
+            return False
+        known = [model.place_to_utak(*door.place) for door in rooms.sure]
         return any(all(math.dist(was, now) > SAME for now in known) for was in self._doors.get(parameter, ()))
-
-
-def _own(door: Door, situation: Situation) -> Place:
-    """The middle of a door, in Utak's own frame."""
-    model = situation.model
-    return model.lattice.place_to_utak(door.place[0] + model.view.west, door.place[1] + model.view.south)

@@ -43,8 +43,7 @@ def refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel
         passage = closest.passage
         if passage is None:
             return f"{node.name} cannot be carried there"
-        x, y = passage.place
-        east, north = model.lattice.place_to_utak(x + model.view.west, y + model.view.south)
+        east, north = model.place_to_utak(*passage.place)
         where = f"{passage.width:.2f} squares wide at POINT ({east:.1f} {north:.1f})"
         if _hopeless(closest):
             return f"{node.name} cannot be carried there: even were the passage, {where}, as wide as it, it could not"

@@ -125,10 +125,9 @@ def unfelt_wall(goal: str, began: Place, lying: Mask, situation: Situation) -> A
 
     If it were a thing that stands against the wall, the goal would hold no more. All as of before_elsewhere.
     """
-    doors = [door for door in situation.rooms.doors if door.sure]
     holds_by = _holding(goal, began, lying, situation)
     for mask in situation.model.protruding:
-        if any(_jambs_in_line(mask, door, situation.model) for door in doors):
+        if any(_jambs_in_line(mask, door, situation.model) for door in situation.rooms.sure):
             continue
         look = exploring.against_the_wall(situation.screens, mask)
         if not len(look.squares):  # whatever lies askew must be seen better before one can stand right beside it
