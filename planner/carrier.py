@@ -7,7 +7,6 @@ where it says and while the squares that it needs are still believed free.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 from geometry.carrying import Inside, Leg
 from geometry.ends import End
@@ -35,7 +34,6 @@ from planner.freeing import drawn_back
 from planner.haulage import Haul, Hauler, Request
 from planner.landing import Ends, region_of
 from planner.leading import lead, near, out
-from planner.leaving import Leaving
 from planner.refusing import Refusal
 from planner.screen import Squares, grown
 from planner.walking import is_open
@@ -77,33 +75,19 @@ class See:
 Advice = Act | Go | See | Refusal
 
 
-class Beginning(NamedTuple):
-    """Where the middle of something lay at first, in Utak's own frame.
-
-    name : of its node. moved : has he moved it since? anew : had he been lost before then?
-    """
-
-    place: Place
-    name: str = ""
-    moved: bool = False
-    anew: bool = False
-
-
 @dataclass
 class Carrier:
     """Carries things, one plan after the other.
 
-    began : where what is meant by each parameter lay at first. failed : holds by which a thing did not move.
-    missed : plans that did not lead where they should, with the thing in hand, since this was last set.
+    failed : holds by which a thing did not move. missed : plans that did not lead where they should, with the thing in
+    hand, since this was last set.
     """
 
     pull: bool = True
-    began: dict[str, Beginning] = field(default_factory=dict)
     failed: FailedHolds = field(default_factory=FailedHolds)
     missed: int = 0
 
     def __post_init__(self) -> None:
-        self._leaving = Leaving()
         self._hauler = Hauler(self.pull)
         self._leader = Hauler(self.pull)  # asks for ways to look: that there is none tells nothing of the goal
         self._course: Course | None = None
@@ -123,29 +107,6 @@ class Carrier:
         """Does the plan under way turn what it carries?"""
         legs = () if self._course is None else self._course.legs
         return any(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
-
-    def began_at(self, parameter: str, node: Node, model: WorldModel) -> Place:
-        """The point of the lattice where the middle of what a parameter means lay at first.
-
-        What he has moved and then lost sight of is the same thing still when he takes up another one for it.
-        """
-        known = self.began.get(parameter)
-        gone = known is not None and known.moved and model.object(known.name) is None
-        if known is None or (known.name != node.name and not gone):
-            place = model.lattice.place_to_utak(node.polygon.centroid.x, node.polygon.centroid.y)
-            known = Beginning(place, anew=model.anew)
-        self.began[parameter] = known = known._replace(name=node.name, moved=known.moved or node.moved)
-        return model.lattice.place_from_utak(*known.place)
-
-    def lost(self, parameter: str, node: Node, began: Place, situation: Situation) -> str:
-        """What is lost, in words, since what a parameter means lay where it began; nothing when nothing is.
-
-        Who was lost himself may be squares from where he says. began : a point of the lattice.
-        """
-        known, missed = self.began.get(parameter), self._leaving.misses_a_door(parameter, node, began, situation)
-        if situation.model.anew and known is not None and not known.anew:
-            return "he was lost"
-        return "a door of its room was lost" if missed else ""
 
     def advise(self, node: Node, ends: Mapping[str, End], situation: Situation, hoped: Ends = dict) -> Advice:
         """What to do to carry an object to one of several ends. hoped : where they are if the floor goes on unseen."""

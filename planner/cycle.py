@@ -12,7 +12,8 @@ from kb.body import Body, Command, Impression, Release
 from kb.explanation import Accommodated
 from kb.knowledge import Knowledge
 from kb.task import Task
-from planner.deciding import Decider, Decision
+from planner.deciding import Decider
+from planner.pursuing import Decision
 
 
 @dataclass(frozen=True)

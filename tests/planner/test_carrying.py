@@ -254,7 +254,7 @@ def test_a_plan_to_take_it_from_where_he_cannot_stand_is_dropped(tmp_path: Path)
     folder = scene(tmp_path, room(SQUARE), "object(x). shape(x, square).", "at(x, corner(northeast)).")
     session = Session(read_scenario(folder), Settings(), make_robot, EpisodeLog(None))
     session.wake()
-    carrier = session.robot.decider.carrier
+    carrier = session.robot.decider.transporter.carrier
     while carrier._course is None or carrier._course.grasped:
         session.step()
     within = carrier._course.polygon.centroid
@@ -341,7 +341,7 @@ def test_what_goes_round_in_circles_is_let_go_and_taken_elsewhere(
     folder = scene(tmp_path, room(SQUARE), "object(x). shape(x, square).", "at(x, corner(northeast)).")
     session = Session(read_scenario(folder), Settings(), make_robot, EpisodeLog(None))
     session.wake()
-    circles, circling = session.robot.decider._circles, []
+    circles, circling = session.robot.decider.pursuer._circles, []
 
     def noticed(model: WorldModel, command: object) -> bool:
         again = isinstance(command, Push) and not circling

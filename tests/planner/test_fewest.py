@@ -153,5 +153,5 @@ def test_no_straight_move_leads_through_a_forbidden_door() -> None:
         task = Task({}, (), goals)
         decider = Decider(task)
         situation = situation_of(model, task=task)
-        decision = decider._walk(beyond, decider.stages[0], situation, FewestMoves(screens))
+        decision = decider.pursuer._walk(beyond, decider.stages[0], situation, FewestMoves(screens))
         assert (decision.command is not None) == moves

@@ -6,21 +6,24 @@ import numpy as np
 import pytest
 import shapely
 
-import planner.deciding
+import planner.pursuing
+import planner.transporting
 from kb.body import Grasp, Move, Push, Release
 from kb.factfile import facts_of
 from kb.reconciliation import Reconciled
 from kb.worldmodel import Node, Patch
 from planner.aims import Aim
 from planner.carrier import Carrier, See
-from planner.deciding import Decider, Decision
+from planner.deciding import Decider
 from planner.destinations import Situation
 from planner.exploring import Lookout
 from planner.goals import Stage
 from planner.landing import Landing
 from planner.leading import NEARBY, lead, near, out
+from planner.pursuing import Decision
 from planner.refusing import Refusal
 from planner.screen import Squares
+from planner.transporting import Transporter
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import NO_TASK, situation_of
 
@@ -71,7 +74,7 @@ def to_be_seen(decider: Decider, situation: Situation, squares: Squares, monkeyp
     """What he does who must look from some squares before he can go on with what he holds."""
     monkeypatch.setattr(Carrier, "advise", lambda *_: See(Lookout(squares, "the way is not clear")))
     (goal,) = facts_of("at(x, corner(northeast)).")
-    decision = decider._carry(goal, Stage((goal,)), situation, Reconciled({}, (), (), ()))
+    decision = decider.transporter.towards(goal, Stage((goal,)), situation, Reconciled({}, (), (), ()))
     assert decision is not None
     return decision.command
 
@@ -100,10 +103,10 @@ def exploring(situation: Situation, squares: Squares, lookouts: bool, monkeypatc
     """
     looks = (Lookout(squares, "what may be a door is not clear"),)
     nowhere = Landing({}, "it is not seen yet", looks if lookouts else ())
-    monkeypatch.setattr(planner.deciding, "landing", lambda *_: nowhere)
-    monkeypatch.setattr(planner.deciding, "aims_towards", lambda *_: [Aim("explore", squares, "it goes on unseen")])
+    monkeypatch.setattr(planner.transporting, "landing", lambda *_: nowhere)
+    monkeypatch.setattr(planner.transporting, "aims_towards", lambda *_: [Aim("explore", squares, "it goes on unseen")])
     (goal,) = facts_of("around(x, corner).")
-    decision = Decider(NO_TASK, bound=situation.binding)._carry(
+    decision = Decider(NO_TASK, bound=situation.binding).transporter.towards(
         goal, Stage((goal,)), situation, Reconciled({}, (), (), ())
     )
     assert decision is not None
@@ -180,8 +183,8 @@ def test_what_cannot_be_led_out_stays() -> None:
 
 def at_a_loss(situation: Situation, monkeypatch: pytest.MonkeyPatch) -> Decision:
     """What he does with something in hand who knows no way for it, and nothing to look at."""
-    monkeypatch.setattr(Decider, "_advice", lambda *_: Refusal(False, lambda: "it is not seen yet"))
-    monkeypatch.setattr(planner.deciding, "against_walls", lambda _: [])
+    monkeypatch.setattr(Transporter, "_advice", lambda *_: Refusal(False, lambda: "it is not seen yet"))
+    monkeypatch.setattr(planner.pursuing, "against_walls", lambda _: [])
     return exploring(situation, at(situation), lookouts=False, monkeypatch=monkeypatch)
 
 
@@ -198,10 +201,13 @@ def test_what_shuts_him_in_is_taken_along_once(monkeypatch: pytest.MonkeyPatch) 
     drawn = ["b" * 16, "b...........ggUb", "b...........gggb", *["b" + "." * 14 + "b"] * 6, "b" * 16]
     situation, _ = in_a_nook(drawn)
     looks = (Lookout(at(situation, (-5, -5)), "a room is not seen"),)
-    monkeypatch.setattr(planner.deciding, "landing", lambda *_: Landing({}, "a room is not seen", looks, shut_in=True))
-    monkeypatch.setattr(planner.deciding, "aims_towards", lambda *_: [Aim("inspect", looks[0].squares, looks[0].what)])
+    land = Landing({}, "a room is not seen", looks, shut_in=True)
+    aims = [Aim("inspect", looks[0].squares, looks[0].what)]
+    monkeypatch.setattr(planner.transporting, "landing", lambda *_: land)
+    monkeypatch.setattr(planner.transporting, "aims_towards", lambda *_: aims)
     decider, (goal,) = Decider(NO_TASK, bound=situation.binding), facts_of("at(x, corner(northeast)).")
-    decisions = [decider._carry(goal, Stage((goal,)), situation, Reconciled({}, (), (), ())) for _ in range(2)]
+    stage, nothing = Stage((goal,)), Reconciled({}, (), (), ())
+    decisions = [decider.transporter.towards(goal, stage, situation, nothing) for _ in range(2)]
     assert [decision and decision.command for decision in decisions] == [Push(-5.0, -5.0), Push(-1.0, 0.0)]
 
 

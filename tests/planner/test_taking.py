@@ -16,7 +16,7 @@ from kb.evidence import OPEN
 from kb.factfile import facts_of
 from kb.reconciliation import Reconciled
 from kb.worldmodel import Node, WorldModel
-from planner import deciding
+from planner import transporting
 from planner.carrier import Act, Carrier, Go
 from planner.course import Course
 from planner.deciding import Decider
@@ -185,39 +185,6 @@ def test_he_does_not_let_go_of_a_thing_to_look_at_its_way_unless_that_is_tedious
     assert (Carrier()._seen(haul, node, situation) is not None) == looks
 
 
-def test_where_a_thing_began_is_remembered_though_its_name_is_not() -> None:
-    carrier, situation = Carrier(), beside(())
-    (node,) = situation.model.objects
-
-    def began(name: str, east: int, moved: bool, others: tuple[str, ...] = ()) -> float:
-        there = replace(node, name=name, polygon=shapely.box(east, 0, east + 2, 2), moved=moved)
-        objects = (there, *(replace(node, name=other) for other in others))
-        x, y = carrier.began_at("x", there, replace(situation.model, objects=objects))
-        assert y == pytest.approx(1.0)
-        return x
-
-    assert began("o1", 0, False) == pytest.approx(1.0)
-    assert began("o1", 1, False) == pytest.approx(1.0)  # it is only seen better
-    assert began("o2", 5, False, ("o1",)) == pytest.approx(6.0)  # another thing is meant
-    assert began("o2", 9, True) == pytest.approx(6.0)
-    assert began("o3", 10, False) == pytest.approx(6.0)  # the same, after all names were lost
-    assert began("o4", 20, False, ("o3",)) == pytest.approx(21.0)
-
-
-@pytest.mark.parametrize(("before", "lost"), [(False, "he was lost"), (True, "")])
-def test_who_was_lost_does_not_know_where_a_thing_began_that_he_took_before(before: bool, lost: str) -> None:
-    carrier, model = Carrier(), beside(()).model
-    (node,) = model.objects
-    carrier.began_at("x", node, replace(model, anew=before))
-
-    def said(parameter: str, anew: bool) -> str:
-        return carrier.lost(parameter, node, (0.5, 0.5), situation_of(replace(model, anew=anew)))
-
-    assert not said("x", anew=False)
-    assert said("x", anew=True) == lost
-    assert not said("y", anew=True)
-
-
 @pytest.mark.parametrize("lost", [False, True])
 def test_who_was_lost_does_not_say_that_a_thing_is_in_the_next_room(
     lost: bool, monkeypatch: pytest.MonkeyPatch
@@ -225,10 +192,10 @@ def test_who_was_lost_does_not_say_that_a_thing_is_in_the_next_room(
     situation = beside(())
     (node,) = situation.model.objects
     decider, stage = Decider(NO_TASK, bound=situation.binding), Stage(facts_of("through(x, d)."))
-    decider.carrier.began_at("x", node, situation.model)
-    monkeypatch.setattr("planner.deciding.landing", lambda *_: Landing({}, holds=True))
+    decider.transporter.beginnings.at("x", node, situation.model)
+    monkeypatch.setattr("planner.transporting.landing", lambda *_: Landing({}, holds=True))
     after = situation_of(replace(situation.model, anew=lost), situation.binding)
-    decision = decider._carry(stage.goals[0], stage, after, Reconciled({}, (), (), ()))
+    decision = decider.transporter.towards(stage.goals[0], stage, after, Reconciled({}, (), (), ()))
     if lost:
         assert decision is not None and decision.verdict == "limit" and "he was lost" in decision.why
     else:
@@ -244,7 +211,8 @@ def about_to_turn(spread: float, turn: float, looks: int) -> tuple[Situation, De
     (node,) = situation.model.objects
     motions = (Rotate(turn, (0.5, 0.5)),) if turn else (Translate(3.0, 0.0),)
     decider = Decider(NO_TASK, bound=situation.binding)
-    decider.carrier._course = Course(node.name, "r", node.polygon, (Leg((0.5, 0.5), (1, 0), motions),), node.patch, 0)
+    leg = Leg((0.5, 0.5), (1, 0), motions)
+    decider.transporter.carrier._course = Course(node.name, "r", node.polygon, (leg,), node.patch, 0)
     return situation, decider, node, Stage(facts_of("at(x, corner(northeast))."))
 
 
@@ -252,7 +220,7 @@ def about_to_turn(spread: float, turn: float, looks: int) -> tuple[Situation, De
 def test_he_looks_before_he_makes_ready_to_take_it(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     situation, decider, _, stage = about_to_turn(math.pi, 90.0, 2)
     monkeypatch.setattr(Carrier, "advise", lambda *_: Act(command, "so"))
-    decision = decider._carry(stage.goals[0], stage, situation, Reconciled({}, (), (), ()))
+    decision = decider.transporter.towards(stage.goals[0], stage, situation, Reconciled({}, (), (), ()))
     assert decision is not None
     assert decision.why.startswith("so" if isinstance(command, Push) else "how the squares lie")
 
@@ -268,10 +236,10 @@ def test_while_it_is_open_how_the_squares_lie_nothing_is_proved_of_what_does_not
     view = situation.model.view._replace(sure=sure)
     fixed = replace(situation.model, objects=(replace(node, movable=0),), view=view)
     reconciled = Reconciled({}, ("x",), (), (), (("x", node.name),))
-    looking = decider._carry(stage.goals[0], stage, situation_of(fixed, {}), reconciled)
+    looking = decider.transporter.towards(stage.goals[0], stage, situation_of(fixed, {}), reconciled)
     assert looking is not None and looking.command is not None  # for another x
-    monkeypatch.setattr(deciding, "aims_towards", lambda *_: [])
-    decision = decider._carry(stage.goals[0], stage, situation_of(fixed, {}), reconciled)
+    monkeypatch.setattr(transporting, "aims_towards", lambda *_: [])
+    decision = decider.transporter.towards(stage.goals[0], stage, situation_of(fixed, {}), reconciled)
     assert decision is not None
     assert (decision.command, decision.verdict) == (None, verdict)
     assert f"{node.name} cannot be moved" in decision.why

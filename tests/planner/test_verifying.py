@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import shapely
 
-import planner.deciding
+import planner.transporting
 from geometry.carrying import Inside
 from kb.body import Move
 from kb.factfile import facts_of
@@ -137,9 +137,10 @@ def test_that_a_thing_is_nowhere_is_not_proved_by_not_seeing_it(sure: bool, monk
     """It may stand against a wall, and look like a piece of that."""
     model = seen_whole(BESIDE_A_THING)
     model = replace(model, objects=(), view=model.view._replace(sure=sure))
-    monkeypatch.setattr(planner.deciding, "aims_towards", lambda *_: [])
+    monkeypatch.setattr(planner.transporting, "aims_towards", lambda *_: [])
     (goal,) = facts_of("in(x, room(next)).")
-    decision = Decider(NO_TASK)._carry(goal, Stage((goal,)), situation_of(model), Reconciled({}, ("x",), (), ()))
+    unseen = Reconciled({}, ("x",), (), ())
+    decision = Decider(NO_TASK).transporter.towards(goal, Stage((goal,)), situation_of(model), unseen)
     assert decision is not None
     assert (decision.command, decision.verdict) == (None, "limit")
     assert "nothing seen so far is x" in decision.why

@@ -1,0 +1,214 @@
+"""Towards a goal for something that must be carried: look at it, carry it, look where it must end, or give up.
+
+What to do with the thing planner.carrier says; here it is settled what must be known first, and what a refusal proves.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+
+from geometry.ends import End
+from kb.body import Grasp, Move, Push, Turn
+from kb.facts import Fact
+from kb.reconciliation import Reconciled
+from kb.worldmodel import Node
+from planner.aims import Aim
+from planner.beginning import Beginnings
+from planner.carrier import Act, Advice, Carrier, Go, See
+from planner.destinations import Situation, nowhere
+from planner.goals import FROM_THE_START, Stage
+from planner.landing import Landing, can_leave, in_view, landing, lands_in_one
+from planner.pursuing import Decision, Pursuer
+from planner.refusing import Refusal
+from planner.searching import aims_towards
+from planner.sizing import Sizer, least_outline
+from planner.verifying import Verifier, before_taking, more_of
+from planner.walking import is_open, is_settled
+
+SIZE = "size"  # the target of a push that only tells how large a thing is
+MISSED = 2  # plans that miss before where they should lead to is looked at
+
+
+class Transporter:
+    """Brings things where goals hold for them, and remembers where they began and what he looked at for that."""
+
+    def __init__(self, pull: bool, pursuer: Pursuer, verifier: Verifier) -> None:
+        self.pursuer, self.verifier = pursuer, verifier
+        self.carrier = Carrier(pull)
+        self.beginnings = Beginnings()
+        self.sizer = Sizer()
+        self._looked = 0  # squares he had looked from when he went to see where it must end, until it is one more
+        self._led_along = False  # has he taken along what shut him in, to look?
+
+    def towards(self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciled) -> Decision | None:
+        """The next command towards a goal for something that must be carried, or None when it holds."""
+        x = str(goal.args[0])
+        node = situation.model.object(situation.binding.get(x, ""))
+        if node is None:
+            return self._found(x, stage, situation, reconciled)
+        look = self._clear(node, stage, situation)
+        if look is not None:
+            return look
+        if node.polygon is None:
+            return Decision(None, f"{stage} is not attempted: the outline of {node.name} is not known", "limit")
+        land = landing(goal, node, self.beginnings.at(x, node, situation.model), situation)
+        lost = self.beginnings.lost(x, node, situation)
+        if land.holds:
+            why = f"{stage} cannot be told: {lost} since {node.name} was taken"
+            return Decision(None, why, "limit") if lost and goal.name in FROM_THE_START else None
+        advice = self._advice(node, land, situation)
+        if isinstance(advice, Refusal) and land.loose:
+            if lands_in_one(land.loose, in_view(node.polygon, situation)):
+                return None
+            advice = self.carrier.advise(node, land.loose, situation)
+        if isinstance(advice, Act):
+            return self._act(advice, node, stage, situation)
+        if isinstance(advice, Go):
+            walk = self.pursuer.go(advice, stage, situation)
+            if walk.command is not None:
+                return walk
+            advice = Refusal(False, lambda: f"{node.name} cannot be reached to be taken")
+        situation = situation.along_with(node.patch) if land.shut_in else situation
+        if isinstance(advice, See):
+            along = partial(self._taken_along, node, stage, situation)
+            return self.pursuer.pursue([Aim("inspect", *advice.lookout)], stage, situation, lambda: "", along=along)
+        unknown = nowhere(land.missing or "no way is known to carry it there", land.lookouts)
+        aims = aims_towards([unknown], situation, reconciled)
+        decision = self._missing(advice, node, land, aims, stage, situation)
+        return self._proved(advice, decision, node, land, stage, situation)
+
+    def _found(self, x: str, stage: Stage, situation: Situation, reconciled: Reconciled) -> Decision:
+        """The next command to find what a parameter means, or the verdict when nothing can be that."""
+        fixed = dict(reconciled.unmovable).get(x)
+        unseen = nowhere(f"{fixed} cannot be moved" if fixed else f"nothing seen so far is {x}")
+        aims = aims_towards([unseen], situation, reconciled)
+        # No proof that there is none: it may stand against a wall, and look like a piece of that; and who does not
+        # know how the squares lie may have pushed at another thing.
+        proved = fixed and situation.model.view.sure and is_settled(situation.model)
+        verdict = "impossible" if proved else "limit"
+        ask = partial(self.pursuer.pursue, aims, stage, situation, lambda: unseen.missing, verdict)
+        decision = self.pursuer.felt(ask, stage, situation)
+        like = [name for parameter, name in reconciled.measurable if parameter == x and decision.verdict]
+        seen = (thing for thing in situation.model.objects if thing.name in like)
+        gauged = (self._gauged(thing, stage, situation) for thing in seen)
+        return next((push for push in gauged if push is not None), decision)
+
+    def _clear(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
+        """A look at what is to be carried, where it is not clear what that is; None when no look tells more."""
+        if node.polygon is None or node.vague or self.verifier.doubted(node):
+            look = self.pursuer.look(self.verifier.inspection(node, situation), stage, situation)
+            if look is not None:
+                return look
+        look = self.pursuer.look(more_of(node, situation), stage, situation)
+        return None if look is None or look.command is None else look
+
+    def _act(self, advice: Act, node: Node, stage: Stage, situation: Situation) -> Decision:
+        """A command of the plan, unless it goes round in circles, or a look should come before it."""
+        if isinstance(advice.command, Push | Turn) and self.pursuer.noticed(situation.model, advice.command):
+            advice = self.carrier.given_up(situation.model)
+        if isinstance(advice.command, Move | Grasp):
+            look = self.pursuer.look(before_taking(node, self.carrier.turns, situation), stage, situation)
+            if look is not None:
+                return look
+        return Decision(advice.command, f"{advice.why}; {stage}")
+
+    def _missing(
+        self, refused: Refusal, node: Node, land: Landing, aims: Sequence[Aim], stage: Stage, situation: Situation
+    ) -> Decision:
+        """The next command to see what must be known of where a thing shall end, or of another way there.
+
+        Where a door may be is looked at from places where a thing would be in the way; where it cannot be brought to
+        where it shall end, another way there is looked for without it; and what is taken while it is open how the
+        squares lie keeps the outline that it seems to have then. What shuts him in he takes along.
+        """
+        fetched = land.shut_in or not (land.lookouts or land.ends or is_open(situation.model))
+        again = land.shut_in and self._led_along  # he has taken it along, and brought it back
+        along = partial(self._taken_along, node, stage, situation, fetched=fetched)
+        brought = None if land.there or again else along
+        verdict = "impossible" if refused.proved else "limit"
+        ask = partial(self.pursuer.pursue, aims, stage, situation, refused.reason, verdict, brought)
+        decision = self.pursuer.felt(ask, stage, situation)
+        self._led_along |= land.shut_in and isinstance(decision.command, Push)
+        if land.shut_in and not isinstance(decision.command, Push | Turn):
+            why = f"{stage} cannot be told: {land.missing}, and {node.name} shuts him in"
+            decision = Decision(None, why, "limit")
+        if decision.verdict == "limit" and (land.shut_in or not can_leave(node, situation)):
+            out = self.carrier.led_out(node, situation)
+            decision = decision if out is None else Decision(out.command, f"{out.why}; {stage}")
+        return decision
+
+    def _proved(
+        self, refused: Refusal, decision: Decision, node: Node, land: Landing, stage: Stage, situation: Situation
+    ) -> Decision:
+        """What was decided; a verdict is "impossible" where a refusal proves that, and nothing is left to check."""
+        must_reach = land.must_reach() if decision.verdict else {}
+        if must_reach:
+            shut_in = self.carrier.refused(node, must_reach, situation)
+            if shut_in is not None and shut_in.proved:
+                why = f"{stage} cannot be attained: {shut_in.reason()}"
+                refused, decision = shut_in, Decision(None, why, "impossible")
+        if decision.verdict != "impossible":
+            return decision
+        narrow = self.verifier.narrow_again(refused, situation)
+        if narrow is not None:
+            return self.pursuer.pursue([narrow], stage, situation, refused.reason)
+        return self._sized(node, must_reach or land.ends, stage, situation) or decision
+
+    def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
+        """What to do to carry something to where its goal holds; while that is not known, to near it."""
+        looked = len(situation.model.looked_from)
+        if land.lookouts and (looked == self._looked or (land.ends and self.carrier.missed >= MISSED)):
+            self.carrier.missed, self._looked = 0, looked
+            return Refusal(False, lambda: land.missing)
+        if land.ends:
+            return self.carrier.advise(node, land.ends, situation, land.hoped)
+        going_on = self.carrier.gone_on(node, situation)
+        if going_on is not None:
+            return going_on
+        for name, end in land.approach.items():
+            advice = self.carrier.advise(node, {name: end}, situation, land.hoped)
+            if isinstance(advice, Act | Go):
+                return advice
+        self._looked = looked
+        return Refusal(not self.carrier.begun, lambda: land.missing)
+
+    def _taken_along(
+        self, node: Node, stage: Stage, situation: Situation, aim: Aim, fetched: bool = False
+    ) -> Decision | None:
+        """The next command to take an object along to where he wants to look; None when he had better walk there.
+
+        fetched : also one that he has not got hold of.
+        """
+        advice = self.carrier.taken_along(node, aim.squares, fetched, situation)
+        if isinstance(advice, Go):
+            walk = self.pursuer.go(replace(advice, why=f"{node.name} is taken along: {aim.what}"), stage, situation)
+            return None if walk.command is None else walk
+        if advice is None or self.pursuer.noticed(situation.model, advice.command):
+            return None
+        return Decision(advice.command, f"{advice.why}: {aim.what}; {stage}")
+
+    def _sized(self, node: Node, ends: Mapping[str, End], stage: Stage, situation: Situation) -> Decision | None:
+        """The next command to tell how large a thing is that seems too large; None when it is so for certain.
+
+        ends : those to which it cannot be brought as it is believed to be.
+        """
+        if (push := self._gauged(node, stage, situation)) is not None:
+            return push
+        least = least_outline(node)
+        refused = least and self.carrier.refused(replace(node, polygon=least), ends, situation)
+        if refused and refused.proved:
+            return None
+        return Decision(None, f"{stage} cannot be told: how large {node.name} is is not known well", "limit")
+
+    def _gauged(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
+        """The next command to push a thing by a part of a square, which tells how large it is; None when it is told."""
+        for pose in self.sizer.poses(node):
+            advice = self.carrier.advise(node, {SIZE: pose}, situation)
+            if isinstance(advice, Act):
+                return Decision(advice.command, f"how large {node.name} is is not sure; {stage}")
+            walk = self.pursuer.go(advice, stage, situation) if isinstance(advice, Go) else None
+            if isinstance(advice, See):
+                walk = self.pursuer.look(Aim("inspect", *advice.lookout), stage, situation)
+            if walk is not None and walk.command is not None:
+                return walk
+        return None
