@@ -33,7 +33,7 @@ from planner.failing import FailedHolds
 from planner.freeing import drawn_back
 from planner.haulage import Haul, Hauler, Request
 from planner.landing import Ends, region_of
-from planner.leading import lead, near, out
+from planner.leading import by_way, lead, near, out
 from planner.refusing import Refusal
 from planner.screen import Squares, grown
 from planner.walking import is_open
@@ -166,6 +166,23 @@ class Carrier:
             self._course, self._plans, self._pushed = None, self._plans + 1, push
             return Act(_command(push, model), f"{node.name} is taken along")
         return self._led_near(node, squares, situation) if fetched else None
+
+    def by_way_of(self, node: Node, squares: Squares, situation: Situation) -> Act | None:
+        """The push with what he holds after which he sees something and then needs one more to where the plan leads.
+
+        It takes the place of the command that was advised; None when there is none.
+        """
+        course = self._course
+        if not self.pull or course is None or course.name != node.name or len(course.legs) != 1 or not course.grasped:
+            return None
+        if self._pushed is None or not all(isinstance(motion, Translate) for motion in course.legs[0].motions):
+            return None
+        end, middle = course.end.centroid, node.polygon.centroid
+        push = by_way(node, squares, (end.x - middle.x, end.y - middle.y), situation)
+        if push is None:
+            return None
+        self._course, self._pushed = None, push
+        return Act(_command(push, situation.model), f"{node.name} is taken along")
 
     def led_out(self, node: Node, situation: Situation) -> Act | None:
         """Lead what he holds to where it does not shut him in, to take it otherwise; None where that cannot be."""

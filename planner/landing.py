@@ -60,6 +60,7 @@ class Landing:
     must_reach : what it must come to lie on wherever it must end, while that is not known: squares that were not seen,
     and those of the one end that may be it. Worked out when asked.
     hoped : the ends, if the floor goes on as it is hoped to (planner.hoping); worked out when asked.
+    by_the_way : what must be seen before it holds, where it does not yet: to come back for that would take longer.
     """
 
     ends: Mapping[str, End]
@@ -72,6 +73,7 @@ class Landing:
     loose: Mapping[str, End] = field(default_factory=dict)
     must_reach: Ends = dict
     hoped: Ends = dict
+    by_the_way: tuple[Lookout, ...] = ()
 
 
 def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
@@ -146,7 +148,8 @@ def region_of(mask: Mask) -> Any:
 def _cornered(side: str, node: Node, situation: Situation) -> Landing:
     """The corner that Utak would go to; how the floor goes on about it is not asked once the object lies in it.
 
-    Whether there is another one in a room that is not seen he looks only then: mostly there is none.
+    Whether there is another one in a room that is not seen he looks only then, for mostly there is none; or by the way
+    there with the object in hand.
     """
     column, row = situation.corners[side].square
     if not situation.model.mask(node.patch)[row, column]:
@@ -158,9 +161,11 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
             hoped = partial(_further, side, next(iter(near), ""), situation)
             return Landing({}, unknown.missing, unknown.lookouts, near, must_reach=must_reach, hoped=hoped)
     land = _in_corner(side, node, situation)
-    if not land.holds:
+    if not land.holds and situation.model.held != node.name:
         return land
     rooms = rooms_to_see(side, situation)
+    if not land.holds:
+        return replace(land, by_the_way=tuple(_from_afar(look, situation) for look in rooms))
     shut_in = not rooms and not can_leave(node, situation)
     if shut_in:
         situation = situation.along_with(node.patch)

@@ -4,6 +4,7 @@ import math
 from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geometry.carrying import Inside
 from geometry.components import components
@@ -17,6 +18,7 @@ from planner.screen import Squares, grown, marked
 from planner.walking import HURRY
 
 NEARBY = 4  # squares from where he wants to look within which a thing is brought
+Floats = NDArray[np.float64]
 TRIED = 64  # squares of an aim that are tried
 OUT = 8  # squares by which what shuts him in is led out, at most
 
@@ -27,18 +29,27 @@ def lead(node: Node, squares: Squares, situation: Situation) -> Translate | None
     On the lattice; None when none is free.
     """
     model = situation.model
+    utak = model.place[0] - model.view.west, model.place[1] - model.view.south
+    pushes = _pushes_to(squares, situation)
+    free = pushes[_yard(node, situation).far(Body(in_view(node.polygon, situation), [utak]), pushes)]
+    return Translate(*free[0].tolist()) if len(free) else None
+
+
+def by_way(node: Node, squares: Squares, end: tuple[float, float], situation: Situation) -> Translate | None:
+    """The straight push by which Utak comes to one of some squares (flat indices) and from where one more leads to an
+    end, so that both are as short as can be. end : how far it lies from where the thing is. None when there is none.
+    """
+    model = situation.model
     x, y = model.place[0] - model.view.west, model.place[1] - model.view.south
-    rows, columns = np.divmod(squares, model.labels.shape[1])
-    vectors = np.column_stack([columns + 0.5 - x, rows + 0.5 - y])
-    far = np.hypot(*vectors.T)
-    able = np.flatnonzero((far > 0.5) & (np.abs(vectors).max(axis=1) <= HURRY.most("explore", model)))
-    able = able[np.argsort(far[able], kind="stable")]
-    if not len(able):
-        return None
-    able = able[np.unique(np.linspace(0, len(able) - 1, TRIED).astype(int))]
-    yard = Yard(situation.screens.free(0) | model.mask(node.patch))
-    free = able[yard.far(Body(in_view(node.polygon, situation), [(x, y)]), vectors[able])]
-    return Translate(*(float(v) for v in vectors[free[0]])) if len(free) else None
+    pushes = _pushes_to(squares, situation)
+    way = np.hypot(*pushes.T) + np.hypot(*(np.array(end) - pushes).T)
+    pushes = pushes[np.argsort(way, kind="stable")]
+    shape, yard = in_view(node.polygon, situation), _yard(node, situation)
+    for dx, dy in pushes[yard.far(Body(shape, [(x, y)]), pushes)].tolist():
+        push, on = Translate(dx, dy), Translate(end[0] - dx, end[1] - dy)
+        if yard.lets(push.carry(shape), (x + dx, y + dy), on):
+            return push
+    return None
 
 
 def out(node: Node, situation: Situation) -> Translate | None:
@@ -59,6 +70,28 @@ def out(node: Node, situation: Situation) -> Translate | None:
         if leads_away(rooms == rooms[here], beside):
             return Translate(float(dx), float(dy))
     return None
+
+
+def _pushes_to(squares: Squares, situation: Situation) -> Floats:
+    """(n, 2): the pushes by which he comes to the middles of some squares (flat indices), a choice of TRIED of them.
+
+    The shortest first; none that is longer than he goes before he looks.
+    """
+    model = situation.model
+    rows, columns = np.divmod(squares, model.labels.shape[1])
+    x, y = model.place[0] - model.view.west, model.place[1] - model.view.south
+    pushes = np.column_stack([columns + 0.5 - x, rows + 0.5 - y])
+    far = np.hypot(*pushes.T)
+    able = np.flatnonzero((far > 0.5) & (np.abs(pushes).max(axis=1) <= HURRY.most("explore", model)))
+    able = able[np.argsort(far[able], kind="stable")]
+    spread = np.unique(np.linspace(0, len(able) - 1, TRIED).astype(int)) if len(able) else able
+    chosen: Floats = pushes[able[spread]]
+    return chosen
+
+
+def _yard(node: Node, situation: Situation) -> Yard:
+    """What is surely free for a thing and him who holds it."""
+    return Yard(situation.screens.free(0) | situation.model.mask(node.patch))
 
 
 def near(squares: Squares, situation: Situation) -> Inside | None:

@@ -62,7 +62,7 @@ class Transporter:
                 return None
             advice = self.carrier.advise(node, land.loose, situation)
         if isinstance(advice, Act):
-            return self._act(advice, node, stage, situation)
+            return self._by_the_way(node, land, stage, situation) or self._act(advice, node, stage, situation)
         if isinstance(advice, Go):
             walk = self.pursuer.go(advice, stage, situation)
             if walk.command is not None:
@@ -101,6 +101,14 @@ class Transporter:
                 return look
         look = self.pursuer.look(more_of(node, situation), stage, situation)
         return None if look is None or look.command is None else look
+
+    def _by_the_way(self, node: Node, land: Landing, stage: Stage, situation: Situation) -> Decision | None:
+        """Instead of a push of the plan, one by which he sees on the way what he would have to come back for."""
+        for look in land.by_the_way:
+            act = self.carrier.by_way_of(node, look.squares, situation)
+            if act is not None and not self.pursuer.noticed(situation.model, act.command):
+                return Decision(act.command, f"{act.why}: {look.what}; {stage}")
+        return None
 
     def _act(self, advice: Act, node: Node, stage: Stage, situation: Situation) -> Decision:
         """A command of the plan, unless it goes round in circles, or a look should come before it."""

@@ -197,3 +197,19 @@ def test_who_is_shut_in_a_corner_by_what_he_holds_sees_the_rooms_that_he_could_t
             assert "a room is not seen" in found.missing
         else:
             assert found.holds and not found.shut_in
+
+
+@pytest.mark.parametrize("held", [True, False])
+@pytest.mark.parametrize("behind", ["?", "b"])
+def test_rooms_that_he_must_see_before_it_is_there_he_may_see_by_the_way(behind: str, held: bool) -> None:
+    """There is a door in the south wall; what lies behind it was never seen, or is wall."""
+    wall, door = "b" * 18, "b" * 12 + "..." + "b" * 3
+    rows = [wall, *["b" + "." * 16 + "b"] * 8, "bUggg" + "." * 12 + "b", *["b.ggg" + "." * 12 + "b"] * 2]
+    rows += [door if behind == "?" else wall] * 2
+    model = seen_whole([*rows, *[behind * 18] * 3])
+    there = shapely.box(1, -2, 4, 1)
+    node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True, movable=99)
+    situation = situation_of(replace(model, objects=(node,), held="o1" if held else None), {"x": "o1"})
+    found = landing(NORTHEAST, node, (2.5, -0.5), situation)
+    assert found.ends and not found.holds
+    assert bool(found.by_the_way) == (behind == "?" and held)

@@ -1,25 +1,32 @@
 """Taking a thing along to where Utak wants to look, instead of letting it go and coming back for it."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import planner.pursuing
 import planner.transporting
+from geometry.carrying import Leg
+from geometry.rigid import Motion, Rotate, Translate
+from geometry.yard import Yard
 from kb.body import Grasp, Move, Push, Release
 from kb.factfile import facts_of
 from kb.reconciliation import Reconciled
 from kb.worldmodel import Node, Patch
 from planner.aims import Aim
-from planner.carrier import Carrier, See
+from planner.carrier import Act, Carrier, See
+from planner.course import Course
 from planner.deciding import Decider
 from planner.destinations import Situation
 from planner.exploring import Lookout
 from planner.goals import Stage
-from planner.landing import Landing
-from planner.leading import NEARBY, lead, near, out
+from planner.landing import Landing, in_view
+from planner.leading import NEARBY, by_way, lead, near, out
 from planner.pursuing import Decision
 from planner.refusing import Refusal
 from planner.screen import Squares
@@ -214,3 +221,61 @@ def test_what_shuts_him_in_is_taken_along_once(monkeypatch: pytest.MonkeyPatch) 
 def test_who_is_not_shut_in_and_at_a_loss_gives_up(monkeypatch: pytest.MonkeyPatch) -> None:
     decision = at_a_loss(holding()[0], monkeypatch)
     assert decision.command is None and decision.verdict == "limit"
+
+
+def surely_free(situation: Situation, node: Node) -> Yard:
+    return Yard(situation.screens.free(0) | situation.model.mask(node.patch))
+
+
+@given(st.integers(-3, 14), st.integers(-2, 6), st.integers(-3, 14), st.integers(-2, 6))
+@settings(max_examples=60, deadline=None)
+def test_a_way_by_a_place_to_look_is_two_pushes_that_are_free(x: int, y: int, dx: int, dy: int) -> None:
+    situation, node = holding()
+    push = by_way(node, at(situation, (x, y)), (float(dx), float(dy)), situation)
+    yard, shape = surely_free(situation, node), in_view(node.polygon, situation)
+    here = 0.5 - situation.model.view.west, 0.5 - situation.model.view.south
+    there = Translate(float(x), float(y))
+    on = Translate(float(dx - x), float(dy - y))
+    direct = math.hypot(x, y) > 0.5 and yard.lets(shape, here, there)
+    possible = direct and yard.lets(there.carry(shape), (here[0] + x, here[1] + y), on)
+    assert push == (there if possible else None)
+
+
+def test_of_the_places_to_look_from_that_which_is_least_out_of_the_way() -> None:
+    situation, node = holding()
+    squares = at(situation, (0, 5), (5, 4), (2, 5))
+    assert by_way(node, squares, (9.0, 4.0), situation) == Translate(5.0, 4.0)
+    assert by_way(node, squares, (-3.0, 4.0), situation) == Translate(0.0, 5.0)
+
+
+@pytest.mark.parametrize("pull", [True, False])
+@pytest.mark.parametrize(
+    ("motions", "taken"),
+    [
+        ((Translate(9.0, 4.0),), True),
+        ((Translate(9.0, 0.0), Translate(0.0, 4.0)), True),
+        ((Rotate(90.0, (0.5, 0.5)), Translate(4.0, 0.0)), False),
+        ((Translate(4.0, 0.0), Rotate(90.0, (4.5, 0.5))), False),
+    ],
+)
+def test_he_sees_by_the_way_of_a_push_what_he_would_have_to_come_back_for(
+    motions: tuple[Motion, ...], taken: bool, pull: bool
+) -> None:
+    situation, node = holding()
+    carrier = Carrier(pull)
+    leg = Leg((0.5, 0.5), (1, 0), motions)
+    carrier._course = Course(node.name, "northeast", node.polygon, (leg,), node.patch, 0, (0.5, 0.5), grasped=True)
+    assert isinstance(carrier.gone_on(node, situation), Act)
+    act = carrier.by_way_of(node, at(situation, (4, 5)), situation)
+    assert (act is not None) == (taken and pull)
+    if act is not None:
+        assert act.command == Push(4.0, 5.0)
+        assert carrier.gone_on(node, situation) is None  # from there it is planned anew
+
+
+def test_what_he_has_not_got_hold_of_he_takes_first() -> None:
+    situation, node = holding()
+    leg = Leg((0.5, 0.5), (1, 0), (Translate(9.0, 4.0),))
+    carrier = Carrier()
+    carrier._course = Course(node.name, "northeast", node.polygon, (leg,), node.patch, 0)
+    assert carrier.by_way_of(node, at(situation, (4, 5)), situation) is None
