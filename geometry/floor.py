@@ -29,7 +29,7 @@ RIM = 0.1  # of the longer side, around the bounds
 TOUCH = 1e-6  # squares: a start or goal may be this deep in an obstacle, or out of bounds
 SIDE, DIAGONAL = 10, 14  # the cost of a pixel's way
 FAR = 2**40  # dearer than any
-WALL = 6  # going through pixels where the body's disc does not fit looks so much dearer
+WALL = 60  # going through pixels where the disc does not fit, but for a slot in them, looks so much dearer
 
 
 class Floor:

@@ -35,7 +35,8 @@ def new_mover(
     at = None if pivot is None else (float(pivot[0]), float(pivot[1]))
     specks = tuple((float(x), float(y)) for x, y in points)
     check([*specks, *([] if at is None else [at])], "points and pivot")
-    return _mover(shapely.to_wkb(sound(shape, "the body")), specks, at)
+    told = shapely.normalize(shapely.simplify(sound(shape, "the body"), 0))  # however its rings are told
+    return _mover(shapely.to_wkb(told), specks, at)
 
 
 @lru_cache(maxsize=32)

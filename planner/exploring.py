@@ -217,7 +217,7 @@ def promised(screens: Screens, lookouts: list[Lookout]) -> list[Lookout]:
     """Frontiers, each with how likely it is that what is looked for comes into sight at its nearest square."""
     if not lookouts:
         return []
-    new = _gain(screens).ravel()
+    new = gain(screens).ravel()
     return [look._replace(chance=_chance(float(new[_nearest(screens, look.squares)]))) for look in lookouts]
 
 
@@ -228,7 +228,7 @@ def best_views(screens: Screens, met: Mask, move: float, way: float) -> list[Loo
     met : (rows, columns), the squares that one move leads to. move, way : what a move, and a square of way, cost.
     """
     some = np.flatnonzero(met & _new(screens, APART))
-    new = _gain(screens).ravel()[some]
+    new = gain(screens).ravel()[some]
     if new.max(initial=0.0) < BARREN:
         return []
     far = screens.distances[0].ravel()[some] / 5
@@ -251,7 +251,7 @@ def _nearest(screens: Screens, squares: Squares) -> int:
     return int(squares[np.where(far < 0, far.max() + 1, far).argmin()])
 
 
-def _gain(screens: Screens) -> NDArray[np.float64]:
+def gain(screens: Screens) -> NDArray[np.float64]:
     """(rows, columns): how many squares never seen come into sight there, each by what it promises."""
     view = screens.model.view
     seen = np.pad(view.seen, REACH)

@@ -1,23 +1,27 @@
 """Where to look next by the fewest straight moves, for who counts commands and not squares: who carries things.
 
 A way along walls bends at every corner of theirs. Often an aim can be met at a square that a single move leads to, or
-by way of one that a second move leads on from, and little is lost by going further.
+by way of one that a second move leads on from, and little is lost by going further; least of all where something comes
+into sight by that.
 """
 
 import math
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.straight import straight
 from planner.aims import Aim
+from planner.exploring import gain
 from planner.screen import Screens, Squares
 from planner.steps import Square
 from planner.walking import HURRY, one_move
 from planner.ways import Way
 
 MOVE, WAY = 20.0, 0.3  # what a move, and a square of way, cost
+SHOWN = 0.05  # squares of way that it is worth when a square never seen comes into sight where he turns
 MANY_MOVES = 3  # that a way with more bends than one is taken for
 TRIED = 8  # squares of an aim to which two moves are sought
 Mask = NDArray[np.bool_]
@@ -79,7 +83,7 @@ class FewestMoves:
         return self._reached[most]
 
     def _turning(self, aim: Aim) -> Square | None:
-        """Where the first of two moves to an aim ends, if two will do: on the shortest such way."""
+        """Where the first of two moves to an aim ends, if two will do: on a short way, and where he sees more."""
         key = (aim.kind, aim.squares.tobytes())
         if key not in self._by_way:
             self._by_way[key] = self._found(aim)
@@ -97,10 +101,16 @@ class FewestMoves:
             rows, columns = np.nonzero(straight(ground, column, row, HURRY.longest[aim.kind], first))
             if len(rows):
                 lengths = np.hypot(rows - y, columns - x) + np.hypot(rows - row, columns - column)
+                lengths = lengths - SHOWN * self._gain[rows, columns]
                 if lengths.min() < best:
                     best, k = lengths.min(), lengths.argmin()
                     found = (int(columns[k]), int(rows[k]))
         return found
+
+    @cached_property
+    def _gain(self) -> NDArray[np.float64]:
+        """(rows, columns): what comes into sight there that was never seen."""
+        return gain(self._screens)
 
     def _square(self, flat: int) -> Square:
         row, column = divmod(flat, self._screens.safe.shape[1])

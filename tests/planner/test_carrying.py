@@ -344,7 +344,7 @@ def test_what_goes_round_in_circles_is_let_go_and_taken_elsewhere(
     circles, circling = session.robot.decider.pursuer._circles, []
 
     def noticed(model: WorldModel, command: object) -> bool:
-        again = isinstance(command, Push) and not circling
+        again = isinstance(command, Push) and (not circling or circling[0] == model.place)
         circling.extend([model.place] * again)
         return again
 

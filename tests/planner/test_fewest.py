@@ -97,6 +97,21 @@ def test_the_first_of_two_moves_ends_where_the_second_can_begin(screens: Screens
     assert FewestMoves(screens).way(aim((3, 2))) is None
 
 
+@pytest.mark.parametrize("unseen", ["north", "south"])
+def test_he_turns_where_he_sees_what_he_has_not_seen(unseen: str) -> None:
+    """A block stands between him and what he aims at; either side of it leads round as far."""
+    hall, block = "b" + "." * 58 + "b", "b" + "." * 25 + "b" * 8 + "." * 25 + "b"
+    here = "b..U" + block[4:]
+    model = seen_whole(["b" * 60, *[hall] * 9, *[block] * 4, here, *[block] * 4, *[hall] * 9, "b" * 60])
+    seen = model.view.seen.copy()
+    seen[slice(-4, None) if unseen == "north" else slice(4)] = False
+    screens = Screens(replace(model, view=model.view._replace(seen=seen)))
+    row = screens.here[1]
+    way = FewestMoves(screens).way(Aim("explore", np.array([row * 60 + 56]), "there"))
+    assert way is not None
+    assert (way.squares[1][1] > row) == (unseen == "north")
+
+
 def half_seen(shown: int) -> Screens:
     """A hall of which so many columns were seen, from its west, where he stands."""
     model = seen_whole(["b" * 60, *["b" + "." * 58 + "b"] * 17, "b..U" + "." * 55 + "b", "b" * 60])
