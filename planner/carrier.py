@@ -163,8 +163,7 @@ class Carrier:
             return None
         push = lead(node, squares, situation) if self.pull and model.held is not None else None
         if push is not None:
-            self._course, self._plans, self._pushed = None, self._plans + 1, push
-            return Act(_command(push, model), f"{node.name} is taken along")
+            return self._pushed_off(push, f"{node.name} is taken along", model)
         return self._led_near(node, squares, situation) if fetched else None
 
     def by_way_of(self, node: Node, squares: Squares, situation: Situation) -> Act | None:
@@ -179,19 +178,20 @@ class Carrier:
             return None
         end, middle = course.end.centroid, node.polygon.centroid
         push = by_way(node, squares, (end.x - middle.x, end.y - middle.y), situation)
-        if push is None:
-            return None
-        self._course, self._pushed = None, push
-        return Act(_command(push, situation.model), f"{node.name} is taken along")
+        return None if push is None else self._pushed_off(push, f"{node.name} is taken along", situation.model)
 
     def led_out(self, node: Node, situation: Situation) -> Act | None:
         """Lead what he holds to where it does not shut him in, to take it otherwise; None where that cannot be."""
         push = out(node, situation) if self.pull and self._plans < MOST_PLANS else None
         if push is None:
             return None
-        self._course, self._plans, self._pushed = None, self._plans + 1, push
         self.failed.blame(node, situation.model)
-        return Act(_command(push, situation.model), f"{node.name} is led out, to be taken otherwise")
+        return self._pushed_off(push, f"{node.name} is led out, to be taken otherwise", situation.model)
+
+    def _pushed_off(self, push: Translate, why: str, model: WorldModel) -> Act:
+        """A push that no plan asks for, and that ends the one under way."""
+        self._course, self._plans, self._pushed = None, self._plans + 1, push
+        return Act(_command(push, model), why)
 
     def _led_near(self, node: Node, squares: Squares, situation: Situation) -> Act | Go | None:
         """Bring an object near to where he wants to look, by one hold and a push or two, as was begun if it was."""
