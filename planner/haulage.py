@@ -238,12 +238,16 @@ def _kinds(situation: Situation) -> list[tuple[int, str]]:
 def _free(node: Node, situation: Situation, level: int, aside: str) -> Mask:
     """The squares that may be used for carrying an object: those of the level, its own, and those of movable things.
 
-    What lies only about where it is believed to may cover what seems to be another thing right beside it: nothing is
-    proved by that.
+    What lies only about where it is believed to may cover what seems to be another thing right beside it, and what
+    cannot be moved may cover the squares at its rim in part: nothing is proved by those.
     """
     model = situation.model
     own = model.mask(node.patch)
     free = situation.screens.free(level) | own
+    if level == UNSEEN:
+        for other in model.objects:
+            if other.movable == 0 and other.name != node.name:
+                free |= model.mask(other.patch) & grown(~model.mask(other.patch), 1)
     if level == UNSEEN and node.inexact:
         for other in model.objects:
             beside = model.mask(other.patch)

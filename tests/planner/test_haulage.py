@@ -128,6 +128,24 @@ def test_what_may_be_part_of_what_is_carried_proves_nothing(inexact: bool, apart
     assert not isinstance(answer, Refusal) or answer.proved
 
 
+@pytest.mark.parametrize(("movable", "thick", "proved"), [(0, 1, False), (0, 3, True), (50, 1, True)])
+def test_what_cannot_be_moved_may_cover_the_squares_at_its_rim_in_part(movable: int, thick: int, proved: bool) -> None:
+    """It stands in a door of five squares, as high and as thick as that; what is carried is four squares wide."""
+    rows, half = [line.replace("r", ".") for line in STOPPED_UP], thick // 2
+    for n in range(6 - half, 7 + half):
+        rows[n] = rows[n][: 11 - half] + "r" * thick + rows[n][12 + half :]
+    model = seen_whole(rows)
+    x, y = model.view.west + 11 - half, model.view.south + 6 - half
+    assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == FULL
+    fixed, square = shapely.box(x, y, x + thick, y + thick), shapely.box(x - 6, y - 2, x - 2, y + 2)
+    other = Node("o1", "object", 60, "part1", covered(fixed), 0, polygon=fixed, movable=movable)
+    node = Node("o2", "object", 99, "part2", covered(square), 0, polygon=square)
+    model = replace(model, objects=(other, node))
+    answer = Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 12))}), situation_of(model))
+    assert isinstance(answer, Refusal) == proved
+    assert answer.proved if isinstance(answer, Refusal) else answer.aside == ("o1",)
+
+
 @pytest.mark.parametrize(
     ("plans", "told"),
     [([(4, 1.0), (4, math.inf)], 0), ([(0, 1.0), (4, math.inf)], 1), ([(4, 2.0), (4, 1.0)], 1), ([(4, math.nan)], 0)],
