@@ -214,6 +214,11 @@ class WorldModel:
         """The object of this name, if there is one."""
         return next((node for node in self.objects if node.name == name), None)
 
+    @property
+    def place_on_view(self) -> tuple[float, float]:
+        """Where Utak stands, in the frame of the view's arrays."""
+        return self.place[0] - self.view.west, self.place[1] - self.view.south
+
     def place_to_utak(self, x: float, y: float) -> tuple[float, float]:
         """A point of the frame of the view's arrays, in Utak's own: east and north of where he woke."""
         return self.lattice.place_to_utak(x + self.view.west, y + self.view.south)

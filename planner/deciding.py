@@ -49,9 +49,8 @@ class Decider:
 
     def __post_init__(self) -> None:
         self.stages = stages(self.task)
-        self.constraints = constraints(self.task)
         self._verifier = Verifier()
-        self.pursuer = Pursuer(self.paths, self.constraints)
+        self.pursuer = Pursuer(self.paths, constraints(self.task))
         self.transporter = Transporter(self.pull, self.pursuer, self._verifier)
         self._turn = 0  # the sign of the turn that was begun about an object
 

@@ -115,7 +115,7 @@ class Hauler:
 
     def find(self, request: Request, situation: Situation) -> Haul | Refusal:
         """The way that is chosen and verified, or why there is none."""
-        shape, utak = in_view(request.node.polygon, situation), _utak(situation.model)
+        shape, utak = in_view(request.node.polygon, situation), situation.model.place_on_view
         floors = {(level, aside): _free(request.node, situation, level, aside) for level, aside in _kinds(situation)}
         options = [
             f"option({name},{level},{aside},{round(10 * _way(end, shape))})"
@@ -176,7 +176,7 @@ class Hauler:
         free = hoped_floor(situation) | own
         if (free == walk | own).all():
             return
-        shape, (x, y) = in_view(node.polygon, situation), _utak(model)
+        shape, (x, y) = in_view(node.polygon, situation), model.place_on_view
         ground = Ground(Translate(BEYOND, BEYOND).carry(shape), (x + BEYOND, y + BEYOND), free, walk)
         ends = {**request.ends, **({} if is_open(model) else request.hoped())}
         for name, end in sorted(ends.items()):
@@ -215,11 +215,6 @@ def _with_room(free: Mask, shape: Any) -> tuple[Mask, Any]:
     return free & ~grown(~np.pad(free, 1), 1)[1:-1, 1:-1], thick
 
 
-def _utak(model: WorldModel) -> Place:
-    """Where Utak stands, in the frame of the view's arrays."""
-    return model.place[0] - model.view.west, model.place[1] - model.view.south
-
-
 def _untouchable(node: Node, model: WorldModel) -> Iterator[tuple[float, float]]:
     """Holds by which no direction of his frame surely names a square of an object: at a corner, as the lattice lies."""
     covered, ways, middle = node.patch.squares(), model.lattice.directions(), node.polygon.centroid
@@ -245,14 +240,12 @@ def _free(node: Node, situation: Situation, level: int, aside: str) -> Mask:
     own = model.mask(node.patch)
     free = situation.screens.free(level) | own
     if level == UNSEEN:
-        for other in model.objects:
-            if other.movable == 0 and other.name != node.name:
-                free |= model.mask(other.patch) & grown(~model.mask(other.patch), 1)
-    if level == UNSEEN and node.inexact:
-        for other in model.objects:
-            beside = model.mask(other.patch)
-            if (grown(own, 1) & beside).any():
-                free |= beside
+        for other in (other for other in model.objects if other.name != node.name):
+            mask = model.mask(other.patch)
+            if other.movable == 0:
+                free |= mask & grown(~mask, 1)
+            if node.inexact and (grown(own, 1) & mask).any():
+                free |= mask
     if aside == "aside":
         for other in model.objects:
             if other.movable > 0 and other.confidence >= 95:

@@ -31,6 +31,7 @@ from planner.screen import grown
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
 Ends = Callable[[], Mapping[str, End]]  # by their names, worked out when asked
+Looks = Callable[[], tuple[Lookout, ...]]  # worked out when asked
 IN_SIGHT = 6  # squares from a corner within which it is seen well
 FLUSH = 0.1  # squares between an object and walls that it touches
 RIM = 1.0  # squares from the edge of a region within which he is not sure that something is in it
@@ -60,7 +61,7 @@ class Landing:
     must_reach : what it must come to lie on wherever it must end, while that is not known: squares that were not seen,
     and those of the one end that may be it. Worked out when asked.
     hoped : the ends, if the floor goes on as it is hoped to (planner.hoping); worked out when asked.
-    by_the_way : what must be seen before it holds, where it does not yet: to come back for that would take longer.
+    by_the_way : what must be seen before it holds, where it does not yet: to come back for that takes longer. Likewise.
     """
 
     ends: Mapping[str, End]
@@ -73,7 +74,7 @@ class Landing:
     loose: Mapping[str, End] = field(default_factory=dict)
     must_reach: Ends = dict
     hoped: Ends = dict
-    by_the_way: tuple[Lookout, ...] = ()
+    by_the_way: Looks = tuple
 
 
 def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
@@ -161,18 +162,15 @@ def _cornered(side: str, node: Node, situation: Situation) -> Landing:
             hoped = partial(_further, side, next(iter(near), ""), situation)
             return Landing({}, unknown.missing, unknown.lookouts, near, must_reach=must_reach, hoped=hoped)
     land = _in_corner(side, node, situation)
-    if not land.holds and situation.model.held != node.name:
-        return land
-    rooms = rooms_to_see(side, situation)
     if not land.holds:
-        return replace(land, by_the_way=tuple(_from_afar(look, situation) for look in rooms))
-    shut_in = not rooms and not can_leave(node, situation)
+        held = situation.model.held == node.name
+        return replace(land, by_the_way=partial(_looks_into_rooms, side, situation)) if held else land
+    looks = _looks_into_rooms(side, situation)
+    shut_in = not looks and not can_leave(node, situation)
     if shut_in:
-        situation = situation.along_with(node.patch)
-        rooms = rooms_to_see(side, situation)
-    if not rooms:
+        looks = _looks_into_rooms(side, situation.along_with(node.patch))
+    if not looks:
         return land
-    looks = tuple(_from_afar(look, situation) for look in rooms)
     return Landing({}, looks[0].what, looks, there=not shut_in, shut_in=shut_in)
 
 
@@ -187,9 +185,13 @@ def leads_away(floor: Mask, thing: Mask) -> bool:
     return bool((floor & ~grown(thing, NOOK)).any())
 
 
-def _from_afar(look: Lookout, situation: Situation) -> Lookout:
-    """A look for which it will do to come near: what lies behind its squares is seen from short of them, too."""
-    return look._replace(squares=np.union1d(look.squares, short_of(situation.screens, look.squares)))
+def _looks_into_rooms(side: str, situation: Situation) -> tuple[Lookout, ...]:
+    """Looks into rooms that may go further towards a side, for which it will do to come near.
+
+    What lies behind their squares is seen from short of them, too.
+    """
+    rooms = rooms_to_see(side, situation)
+    return tuple(r._replace(squares=np.union1d(r.squares, short_of(situation.screens, r.squares))) for r in rooms)
 
 
 def _in_corner(side: str, node: Node, situation: Situation) -> Landing:

@@ -17,8 +17,8 @@ from planner.landing import in_view, leads_away, region_of
 from planner.screen import Squares, grown, marked
 from planner.walking import HURRY
 
-NEARBY = 4  # squares from where he wants to look within which a thing is brought
 Floats = NDArray[np.float64]
+NEARBY = 4  # squares from where he wants to look within which a thing is brought
 TRIED = 64  # squares of an aim that are tried
 OUT = 8  # squares by which what shuts him in is led out, at most
 
@@ -28,10 +28,9 @@ def lead(node: Node, squares: Squares, situation: Situation) -> Translate | None
 
     On the lattice; None when none is free.
     """
-    model = situation.model
-    utak = model.place[0] - model.view.west, model.place[1] - model.view.south
     pushes = _pushes_to(squares, situation)
-    free = pushes[_yard(node, situation).far(Body(in_view(node.polygon, situation), [utak]), pushes)]
+    body = Body(in_view(node.polygon, situation), [situation.model.place_on_view])
+    free = pushes[_yard(node, situation).far(body, pushes)]
     return Translate(*free[0].tolist()) if len(free) else None
 
 
@@ -39,8 +38,7 @@ def by_way(node: Node, squares: Squares, end: tuple[float, float], situation: Si
     """The straight push by which Utak comes to one of some squares (flat indices) and from where one more leads to an
     end, so that both are as short as can be. end : how far it lies from where the thing is. None when there is none.
     """
-    model = situation.model
-    x, y = model.place[0] - model.view.west, model.place[1] - model.view.south
+    x, y = situation.model.place_on_view
     pushes = _pushes_to(squares, situation)
     way = np.hypot(*pushes.T) + np.hypot(*(np.array(end) - pushes).T)
     pushes = pushes[np.argsort(way, kind="stable")]
@@ -55,16 +53,15 @@ def by_way(node: Node, squares: Squares, end: tuple[float, float], situation: Si
 def out(node: Node, situation: Situation) -> Translate | None:
     """The shortest straight push with what shuts him in by which it no longer does, by whole squares; None for none."""
     model = situation.model
-    x, y = model.place[0] - model.view.west, model.place[1] - model.view.south
+    x, y = model.place_on_view
     steps = np.array([step for step in product(range(-OUT, OUT + 1), repeat=2) if any(step)])
     steps = steps[np.argsort(np.hypot(*steps.T), kind="stable")]
-    lies = model.mask(node.patch)
-    free = situation.screens.free(0) | lies
-    within = Yard(free).far(Body(in_view(node.polygon, situation), [(x, y)]), steps.astype(float))
+    lies, yard = model.mask(node.patch), _yard(node, situation)
+    within = yard.far(Body(in_view(node.polygon, situation), [(x, y)]), steps.astype(float))
     for dx, dy in steps[within].tolist():
         here = math.floor(y) + dy, math.floor(x) + dx
         beside = np.roll(lies, (dy, dx), (0, 1))
-        left = free & ~beside
+        left = yard.free & ~beside
         left[here] = True
         rooms = components(left).labels
         if leads_away(rooms == rooms[here], beside):
@@ -79,7 +76,7 @@ def _pushes_to(squares: Squares, situation: Situation) -> Floats:
     """
     model = situation.model
     rows, columns = np.divmod(squares, model.labels.shape[1])
-    x, y = model.place[0] - model.view.west, model.place[1] - model.view.south
+    x, y = model.place_on_view
     pushes = np.column_stack([columns + 0.5 - x, rows + 0.5 - y])
     far = np.hypot(*pushes.T)
     able = np.flatnonzero((far > 0.5) & (np.abs(pushes).max(axis=1) <= HURRY.most("explore", model)))

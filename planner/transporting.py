@@ -62,7 +62,8 @@ class Transporter:
                 return None
             advice = self.carrier.advise(node, land.loose, situation)
         if isinstance(advice, Act):
-            return self._by_the_way(node, land, stage, situation) or self._act(advice, node, stage, situation)
+            instead = self._by_the_way(node, land, stage, situation) if isinstance(advice.command, Push) else None
+            return instead or self._act(advice, node, stage, situation)
         if isinstance(advice, Go):
             walk = self.pursuer.go(advice, stage, situation)
             if walk.command is not None:
@@ -104,10 +105,11 @@ class Transporter:
 
     def _by_the_way(self, node: Node, land: Landing, stage: Stage, situation: Situation) -> Decision | None:
         """Instead of a push of the plan, one by which he sees on the way what he would have to come back for."""
-        for look in land.by_the_way:
+        for look in land.by_the_way():
             act = self.carrier.by_way_of(node, look.squares, situation)
-            if act is not None and not self.pursuer.noticed(situation.model, act.command):
-                return Decision(act.command, f"{act.why}: {look.what}; {stage}")
+            led = self._led(act, look.what, stage, situation)
+            if led is not None:
+                return led
         return None
 
     def _act(self, advice: Act, node: Node, stage: Stage, situation: Situation) -> Decision:
@@ -191,9 +193,13 @@ class Transporter:
         if isinstance(advice, Go):
             walk = self.pursuer.go(replace(advice, why=f"{node.name} is taken along: {aim.what}"), stage, situation)
             return None if walk.command is None else walk
-        if advice is None or self.pursuer.noticed(situation.model, advice.command):
+        return self._led(advice, aim.what, stage, situation)
+
+    def _led(self, act: Act | None, what: str, stage: Stage, situation: Situation) -> Decision | None:
+        """What is done to see something with an object in hand, unless that goes round in circles."""
+        if act is None or self.pursuer.noticed(situation.model, act.command):
             return None
-        return Decision(advice.command, f"{advice.why}: {aim.what}; {stage}")
+        return Decision(act.command, f"{act.why}: {what}; {stage}")
 
     def _sized(self, node: Node, ends: Mapping[str, End], stage: Stage, situation: Situation) -> Decision | None:
         """The next command to tell how large a thing is that seems too large; None when it is so for certain.

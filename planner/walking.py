@@ -139,7 +139,7 @@ def _aside(screens: Screens, square: Square, kind: str) -> tuple[float, float]:
         return ASIDE if _may_halt_between(model, square) else (0.0, 0.0)
     west, south, east, north = model.leeway
     test = tuple(EDGE if up > LOOSE else -EDGE if -down > LOOSE else 0.0 for down, up in ((west, east), (south, north)))
-    here = (model.place[0] - model.view.west, model.place[1] - model.view.south)
+    here = model.place_on_view
     there = (square[0] + 0.5 + test[0], square[1] + 0.5 + test[1])
     if kind not in TESTING or not clear_line(screens.safe, here, there):
         return (0.0, 0.0)

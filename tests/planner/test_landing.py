@@ -212,4 +212,4 @@ def test_rooms_that_he_must_see_before_it_is_there_he_may_see_by_the_way(behind:
     situation = situation_of(replace(model, objects=(node,), held="o1" if held else None), {"x": "o1"})
     found = landing(NORTHEAST, node, (2.5, -0.5), situation)
     assert found.ends and not found.holds
-    assert bool(found.by_the_way) == (behind == "?" and held)
+    assert bool(found.by_the_way()) == (behind == "?" and held)
