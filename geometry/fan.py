@@ -139,7 +139,7 @@ def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, 
 @compiled
 def settled_best(kind: int, image: Image) -> tuple[Floats, float]:
     """The best shape of a class at any place and angle that settling finds, and its misfit."""
-    free, starts = _freedom(kind), _fan(kind, image)
+    free, starts = freedom(kind), _fan(kind, image)
     at, best = _settled(kind, starts, free, image)
     if kind == ELL and best > 0.0:  # perhaps with arms of two widths
         starts[:, 6] = starts[:, 5]
@@ -197,8 +197,8 @@ def _round_best(disc: Floats, wrong: float, image: Image) -> tuple[Floats, float
 
 
 @compiled
-def _freedom(kind: int) -> Floats:
-    """How far each number of a class is moved at first when it settles."""
+def freedom(kind: int) -> Floats:
+    """How far each number of a class is moved at first when it settles; 0 where it stays."""
     if kind == DISC:
         return np.array([0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0])
     if kind == TRIANGLE:

@@ -6,12 +6,14 @@ any place and angle, and says how many squares are wrong. What to believe is for
 # Strategy: shapes with whole corners and sides along the axes are tried one and all, since most things are so and their
 # images are exact. For turned ones a coarse fan of angles, with sizes read off the image's extent in that direction,
 # gives starts; the best few settle downhill on the sum of the wrong gaps (geometry.overlay), which tells the way where
-# the number of wrong squares is flat.
+# the number of wrong squares is flat. Of classes that then agree equally well the one comes first that makes such an
+# image most likely (geometry.likelihood).
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +21,7 @@ import shapely
 
 from geometry import overlay
 from geometry.fan import settled_best, whole_best
+from geometry.likelihood import room_for
 
 Bools = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
@@ -33,6 +36,7 @@ CLASSES = {
 }  # by the number of their parameters, then as the eye prefers them
 PAD = 2  # squares of known floor that are looked at around the image
 CORNERS = 32  # of the polygon that stands for a disc
+SLIGHT = 0.3  # of its sides: such a notch an L hardly has
 
 
 @dataclass(frozen=True)
@@ -72,8 +76,8 @@ def fit_shapes(occupied: Bools, possible: Bools | None = None) -> list[Fit]:
 
     Returns
     -------
-    One Fit a class, the likeliest first: by misfit, then whole corners before others, then fewer parameters; a disc
-    before turned shapes when the image has all the symmetries of one.
+    One Fit a class, the likeliest first: by misfit, then whole corners before others, then fewer parameters, but of
+    others that agree best the one of whose class most shapes do. A disc comes before an L with a slight notch.
 
     Raises
     ------
@@ -86,20 +90,50 @@ def fit_shapes(occupied: Bools, possible: Bools | None = None) -> list[Fit]:
     ('square', 0, 3.0)
     """
     image, west, south = _image(occupied, possible)
-    fits = [_fit(name, kind, image, west, south) for name, kind in CLASSES.items()]
-    rank = sorted(CLASSES, key=lambda name: name != "disc") if _is_round(image) else list(CLASSES)
-    return sorted(fits, key=lambda fit: (fit.misfit, not fit.whole, rank.index(fit.shape)))
-
-
-def _is_round(image: overlay.Image) -> bool:
-    """Does the image look the same in the mirror, upright and lying? A disc's does.
-
-    That of a square hardly when it is turned.
-    """
-    seen = image == overlay.WANTED
-    return seen.shape[0] == seen.shape[1] and all(
-        np.array_equal(seen, other) for other in (seen[::-1], seen[:, ::-1], seen.T)
+    laid = sorted(
+        (_lay(name, kind, image) for name, kind in CLASSES.items()), key=lambda one: (one.wrong, not one.whole)
     )
+    ties = sum(one.wrong == laid[0].wrong for one in laid)
+    return [_fit(one, west, south) for one in (*_likeliest_first(laid[:ties], image), *laid[ties:])]
+
+
+class _Laid(NamedTuple):
+    """The best shape of a class for an image, as in geometry.overlay, with how many squares are wrong."""
+
+    name: str
+    kind: int
+    shape: Floats
+    wrong: int
+    whole: bool
+
+
+def _lay(name: str, kind: int, image: overlay.Image) -> _Laid:
+    """The best of a class: the best whole one unless a turned one has fewer squares wrong."""
+    shape, wrong = whole_best(kind, image)
+    if wrong > 0:
+        other, worse = settled_best(kind, image)
+        if worse < wrong:
+            return _Laid(name, kind, other, int(worse), False)
+    return _Laid(name, kind, shape, int(wrong), True)
+
+
+def _likeliest_first(ties: Sequence[_Laid], image: overlay.Image) -> list[_Laid]:
+    """Shapes that agree equally well, whole ones before others; those that are all right are laid amid all such."""
+    whole = [one for one in ties if one.whole]
+    others = [one for one in ties if not one.whole]
+    if len(others) > 1 or (others and not others[0].wrong):
+        rooms = [(one, room_for(one.kind, one.shape, image, one.wrong)) for one in others]
+        rooms.sort(key=lambda pair: -pair[1].log_likelihood)
+        others = [one if one.wrong else one._replace(shape=room.mean) for one, room in rooms]
+    rounded = bool(whole) and _is_cut_square(whole[0]) and not (image == overlay.UNKNOWN).any()
+    return sorted([*whole, *others], key=lambda one: not (rounded and one.kind == overlay.DISC))
+
+
+def _is_cut_square(laid: _Laid) -> bool:
+    """Is it an L that is hardly one: with a notch less than SLIGHT of its sides, as a small disc leaves it?"""
+    wide, high, thick = laid.shape[3:6]
+    notch = max((wide - overlay.stem_of(laid.shape)) / wide, (high - thick) / high)
+    return laid.kind == overlay.ELL and bool(notch < SLIGHT)
 
 
 def _image(occupied: Bools, possible: Bools | None) -> tuple[overlay.Image, int, int]:
@@ -119,18 +153,12 @@ def _image(occupied: Bools, possible: Bools | None) -> tuple[overlay.Image, int,
     return image, west - PAD, south - PAD
 
 
-def _fit(name: str, kind: int, image: overlay.Image, west: int, south: int) -> Fit:
-    """The best of a class: the best whole one unless a turned one has fewer squares wrong."""
-    shape, wrong = whole_best(kind, image)
-    whole = wrong < math.inf
-    if wrong > 0:
-        other, worse = settled_best(kind, image)
-        if worse < wrong:
-            shape, wrong, whole = other, worse, False
-    polygon = shapely.Polygon(outline(kind, shape) + np.array([west, south], float))
-    wide, high, thick = _sizes(kind, shape, polygon)
-    degrees = 0.0 if kind == overlay.DISC else _turn(kind, shape)
-    return Fit(name, int(wrong), polygon, whole, wide, high, thick, degrees)
+def _fit(laid: _Laid, west: int, south: int) -> Fit:
+    """What was laid, in squares of what was asked for. west, south : of the image's corner."""
+    polygon = shapely.Polygon(outline(laid.kind, laid.shape) + np.array([west, south], float))
+    wide, high, thick = _sizes(laid.kind, laid.shape, polygon)
+    degrees = 0.0 if laid.kind == overlay.DISC else _turn(laid.kind, laid.shape)
+    return Fit(laid.name, laid.wrong, polygon, laid.whole, wide, high, thick, degrees)
 
 
 def outline(kind: int, shape: Floats) -> Floats:
