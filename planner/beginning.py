@@ -8,7 +8,7 @@ lost from the map: then the room behind it seems to be one with the first, and t
 import math
 from typing import NamedTuple
 
-from kb.worldmodel import Node, WorldModel
+from kb.worldmodel import Node
 from planner.destinations import Situation
 
 Place = tuple[float, float]
@@ -35,39 +35,37 @@ class Beginnings:
     def __init__(self) -> None:
         self._known: dict[str, Beginning] = {}
 
-    def at(self, parameter: str, node: Node, model: WorldModel) -> Place:
-        """The point of the lattice where the middle of what a parameter means lay at first.
+    def at(self, parameter: str, node: Node, situation: Situation) -> Place:
+        """The point of the lattice where the middle of what a parameter means lay at first: noted now, or before.
 
         What he has moved and then lost sight of is the same thing still when he takes up another one for it.
         """
-        known = self._known.get(parameter)
+        model, known = situation.model, self._known.get(parameter)
         gone = known is not None and known.moved and model.object(known.name) is None
         if known is None or (known.name != node.name and not gone):
             place = model.lattice.place_to_utak(node.polygon.centroid.x, node.polygon.centroid.y)
             known = Beginning(place, node.name, anew=model.anew, doors=() if known is None else known.doors)
-        self._known[parameter] = known = known._replace(name=node.name, moved=known.moved or node.moved)
-        return model.lattice.place_from_utak(*known.place)
+        began = model.lattice.place_from_utak(*known.place)
+        doors = known.doors if node.moved else _doors_of_its_room(began, situation)
+        self._known[parameter] = known._replace(name=node.name, moved=known.moved or node.moved, doors=doors)
+        return began
 
     def lost(self, parameter: str, node: Node, situation: Situation) -> str:
-        """What is lost, in words, since what a parameter means lay where it began; nothing when nothing is.
+        """What is lost, in words, since what a parameter means lay where it was noted; nothing when nothing is.
 
-        Who was lost himself may be squares from where he says.
+        Who was lost himself may be squares from where he says. A door may be believed no more only where looks
+        contradict what is believed.
         """
-        began = self.at(parameter, node, situation.model)
-        missed = self._misses_a_door(parameter, node, began, situation)
-        if situation.model.anew and not self._known[parameter].anew:
+        known, model = self._known[parameter], situation.model
+        if model.anew and not known.anew:
             return "he was lost"
-        return "a door of its room was lost" if missed else ""
+        now = [model.place_to_utak(*door.place) for door in situation.rooms.sure]
+        gone = any(all(math.dist(was, door) > SAME for door in now) for was in known.doors)
+        return "a door of its room was lost" if gone and node.moved and model.shaken else ""
 
-    def _misses_a_door(self, parameter: str, node: Node, began: Place, situation: Situation) -> bool:
-        """Is a door of the room where something began believed no more, while looks contradict what is believed?"""
-        model, rooms, known = situation.model, situation.rooms, self._known[parameter]
-        if not node.moved:
-            room = int(rooms.labels[model.view.locate(*began)])
-            doors = tuple(model.place_to_utak(*door.place) for door in rooms.leading(room))
-            self._known[parameter] = known._replace(doors=doors)
-            return False
-        if not model.shaken:
-            return False
-        now = [model.place_to_utak(*door.place) for door in rooms.sure]
-        return any(all(math.dist(was, door) > SAME for door in now) for was in known.doors)
+
+def _doors_of_its_room(began: Place, situation: Situation) -> tuple[Place, ...]:
+    """The middles of the doors of the room where something lies, in Utak's own frame."""
+    model, rooms = situation.model, situation.rooms
+    room = int(rooms.labels[model.view.locate(*began)])
+    return tuple(model.place_to_utak(*door.place) for door in rooms.leading(room))

@@ -50,10 +50,11 @@ ABOUT = 2  # squares beside the way of a plan within which more room would help
 
 @dataclass(frozen=True)
 class Act:
-    """A command to give now."""
+    """A command to give now. departs : the push that it is, when no plan asks for it (Carrier.depart)."""
 
     command: Command
     why: str
+    departs: Translate | None = None
 
 
 @dataclass(frozen=True)
@@ -163,7 +164,7 @@ class Carrier:
             return None
         push = lead(node, squares, situation) if self.pull and model.held is not None else None
         if push is not None:
-            return self._pushed_off(push, f"{node.name} is taken along", model)
+            return _departing(push, f"{node.name} is taken along", model)
         return self._led_near(node, squares, situation) if fetched else None
 
     def by_way_of(self, node: Node, squares: Squares, situation: Situation) -> Act | None:
@@ -172,13 +173,15 @@ class Carrier:
         It takes the place of the command that was advised; None when there is none.
         """
         course = self._course
-        if not self.pull or course is None or course.name != node.name or len(course.legs) != 1 or not course.grasped:
+        if not self.pull or self._plans >= MOST_PLANS or course is None or course.name != node.name:
+            return None
+        if len(course.legs) != 1 or not course.grasped:
             return None
         if self._pushed is None or not all(isinstance(motion, Translate) for motion in course.legs[0].motions):
             return None
         end, middle = course.end.centroid, node.polygon.centroid
         push = by_way(node, squares, (end.x - middle.x, end.y - middle.y), situation)
-        return None if push is None else self._pushed_off(push, f"{node.name} is taken along", situation.model)
+        return None if push is None else _departing(push, f"{node.name} is taken along", situation.model)
 
     def led_out(self, node: Node, situation: Situation) -> Act | None:
         """Lead what he holds to where it does not shut him in, to take it otherwise; None where that cannot be."""
@@ -186,12 +189,12 @@ class Carrier:
         if push is None:
             return None
         self.failed.blame(node, situation.model)
-        return self._pushed_off(push, f"{node.name} is led out, to be taken otherwise", situation.model)
+        return _departing(push, f"{node.name} is led out, to be taken otherwise", situation.model)
 
-    def _pushed_off(self, push: Translate, why: str, model: WorldModel) -> Act:
-        """A push that no plan asks for, and that ends the one under way."""
-        self._course, self._plans, self._pushed = None, self._plans + 1, push
-        return Act(_command(push, model), why)
+    def depart(self, act: Act) -> None:
+        """Know that a command is given: one that no plan asks for ends the plan under way."""
+        if act.departs is not None:
+            self._course, self._plans, self._pushed = None, self._plans + 1, act.departs
 
     def _led_near(self, node: Node, squares: Squares, situation: Situation) -> Act | Go | None:
         """Bring an object near to where he wants to look, by one hold and a push or two, as was begun if it was."""
@@ -369,6 +372,11 @@ def _price_of_a_turn(model: WorldModel) -> float:
     if is_open(model):
         return OPEN_TURN
     return LOOSE_TURN if max(model.leeway) > LOOSE else 1.0
+
+
+def _departing(push: Translate, why: str, model: WorldModel) -> Act:
+    """A push that no plan asks for."""
+    return Act(_command(push, model), why, push)
 
 
 def _command(motion: Motion, model: WorldModel) -> Command:

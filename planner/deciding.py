@@ -107,7 +107,7 @@ class Decider:
         for goal in (goal for goal in stage.goals if goal.name in FROM_THE_START):
             x = str(goal.args[0])
             node = model.object(self.bound.get(x, ""))
-            began = model.lattice.woke if node is None else self.transporter.beginnings.at(x, node, model)
+            began = model.lattice.woke if node is None else self.transporter.beginnings.at(x, node, situation)
             lying = here(model) if node is None else model.mask(node.patch)
             doubt = doubt or before_elsewhere(goal.name, began, lying, situation)
         return doubt

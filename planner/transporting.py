@@ -51,7 +51,7 @@ class Transporter:
             return look
         if node.polygon is None:
             return Decision(None, f"{stage} is not attempted: the outline of {node.name} is not known", "limit")
-        land = landing(goal, node, self.beginnings.at(x, node, situation.model), situation)
+        land = landing(goal, node, self.beginnings.at(x, node, situation), situation)
         lost = self.beginnings.lost(x, node, situation)
         if land.holds:
             why = f"{stage} cannot be told: {lost} since {node.name} was taken"
@@ -144,7 +144,9 @@ class Transporter:
             decision = Decision(None, why, "limit")
         if decision.verdict == "limit" and (land.shut_in or not can_leave(node, situation)):
             out = self.carrier.led_out(node, situation)
-            decision = decision if out is None else Decision(out.command, f"{out.why}; {stage}")
+            if out is not None:
+                self.carrier.depart(out)
+                decision = Decision(out.command, f"{out.why}; {stage}")
         return decision
 
     def _proved(
@@ -199,6 +201,7 @@ class Transporter:
         """What is done to see something with an object in hand, unless that goes round in circles."""
         if act is None or self.pursuer.noticed(situation.model, act.command):
             return None
+        self.carrier.depart(act)
         return Decision(act.command, f"{act.why}: {what}; {stage}")
 
     def _sized(self, node: Node, ends: Mapping[str, End], stage: Stage, situation: Situation) -> Decision | None:

@@ -270,6 +270,8 @@ def test_he_sees_by_the_way_of_a_push_what_he_would_have_to_come_back_for(
     assert (act is not None) == (taken and pull)
     if act is not None:
         assert act.command == Push(4.0, 5.0)
+        assert carrier.by_way_of(node, at(situation, (4, 5)), situation) == act  # the plan is kept till it is given
+        carrier.depart(act)
         assert carrier.gone_on(node, situation) is None  # from there it is planned anew
 
 

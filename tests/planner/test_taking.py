@@ -192,7 +192,7 @@ def test_who_was_lost_does_not_say_that_a_thing_is_in_the_next_room(
     situation = beside(())
     (node,) = situation.model.objects
     decider, stage = Decider(NO_TASK, bound=situation.binding), Stage(facts_of("through(x, d)."))
-    decider.transporter.beginnings.at("x", node, situation.model)
+    decider.transporter.beginnings.at("x", node, situation)
     monkeypatch.setattr("planner.transporting.landing", lambda *_: Landing({}, holds=True))
     after = situation_of(replace(situation.model, anew=lost), situation.binding)
     decision = decider.transporter.towards(stage.goals[0], stage, after, Reconciled({}, (), (), ()))
