@@ -65,10 +65,14 @@ class Memory(Walked, Carried):
         A thing lies on the floor, so there is floor under it.
         """
         if load.name not in self.loads:
-            patch = load.possible
-            self.evidence.declare(self.evidence.squares(patch.west, patch.south, patch.mask), FREE, len(self.looks) - 1)
+            self._take_out(load)
         self.loads.setdefault(load.name, replace(load, since=len(self.looks)))
         self.held = load.name
+
+    def _take_out(self, load: Load) -> None:
+        """Believe that there is floor where a load lies."""
+        patch = load.possible
+        self.evidence.declare(self.evidence.squares(patch.west, patch.south, patch.mask), FREE, len(self.looks) - 1)
 
     def _carry(self, impression: Impression, load: Load, command: Push | Turn) -> Accommodated:
         """Take in the impression that followed a push or a turn with a load in hand."""
@@ -80,6 +84,9 @@ class Memory(Walked, Carried):
             self._remember(command, load.name)
             self._doubt(chosen)
         self._lie(chosen)
+        if chosen.larger is not None:
+            self._take_out(chosen.larger)
+            self.loads[load.name] = chosen.larger
         self._carried(self.loads[load.name], chosen, as_motion(command, self.lattice, self.place), ranges)
         self.place = chosen.place
         if chosen.outcome is not None and chosen.outcome.as_commanded:

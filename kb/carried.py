@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from geometry.rigid import Motion, Rotate
 from kb.belying import overlooked
+from kb.enlarging import larger
 from kb.explanation import Explanation
 from kb.halting import halts, whole_first
 from kb.hauling import Outcome, otherwise, predicted
@@ -41,7 +42,7 @@ class Carried(Judging):
         ends = led_to(stops, self.place, load.polygon, motion)
         outcomes = halted or [one for one in (self._outcome(surprise, end) for end in ends) if not one.misfits]
         outcomes += [self._outcome(surprise, other) for other in otherwise(self.place, load.polygon, motion)]
-        outcomes += self._smaller(ranges, load, whole)
+        outcomes += [*self._smaller(ranges, load, whole), *larger(surprise, load, motion)]
         simple = any(not one.misfits for one in outcomes if one.how != "slipped" or self.slipped)
         explanations = [whole, *outcomes, *self._elsewhere(surprise, whole.misfits, simple)]
         explanations += self._recalled(surprise, explanations)

@@ -14,7 +14,7 @@ from kb.evidence import OPEN, Evidence
 from kb.hauling import Outcome
 from kb.heading import Hypothesis, Look
 from kb.lattice import CENTRE, Lattice, Samples
-from kb.loads import Square
+from kb.loads import Load, Square
 from kb.retina import FIELDS
 from kb.stops import Retold
 
@@ -38,7 +38,8 @@ class Explanation(NamedTuple):
     if the lattice lies otherwise than believed. retold: which looks were received elsewhere than is believed, if any.
     chance: how likely the motion ended so by what was known before it; None when that was not asked. crooked: by how
     much the simplest picture of the table costs more than where it is plainest (kb.plainness). against: the open
-    squares one of which stopped it. weighed: does crooked tell as well how likely he woke where he did then?
+    squares one of which stopped it. weighed: does crooked tell as well how likely he woke where he did then? larger:
+    the load before the motion, if more of it was there than was seen.
     """
 
     how: str
@@ -53,6 +54,7 @@ class Explanation(NamedTuple):
     crooked: float = 0.0
     against: frozenset[Square] = frozenset()
     weighed: bool = False
+    larger: Load | None = None
 
     @property
     def anew(self) -> bool:

@@ -26,7 +26,8 @@ OFFSETS = sorted((math.hypot(i, j) * STRIDE, i * STRIDE, j * STRIDE) for i in ST
 class Outcome(NamedTuple):
     """What a motion may have led to.
 
-    how : predicted, stuck, blocked, slipped, or smaller: it went as predicted, but the load does not fill its squares.
+    how : predicted, stuck, blocked, slipped, or smaller: it went as predicted, but the load does not fill its squares;
+    or larger: likewise, but there is more of it than was seen.
     place : of Utak; polygon : of the load, both on the lattice. degrees : by which the load was turned. distance : from
     what was predicted, in squares. against : the squares one of which stopped it, if it is open what stands there.
     insets : of the load, where that is believed otherwise.
@@ -43,7 +44,7 @@ class Outcome(NamedTuple):
     @property
     def as_commanded(self) -> bool:
         """Did the motion go as it was commanded?"""
-        return self.how in ("predicted", "smaller")
+        return self.how in ("predicted", "smaller", "larger")
 
     @property
     def stopped(self) -> bool:

@@ -32,8 +32,8 @@ from planner.exploring import Lookout, inspection, sight_of
 from planner.failing import FailedHolds
 from planner.freeing import drawn_back
 from planner.haulage import Haul, Hauler, Request
-from planner.landing import Ends, region_of
 from planner.leading import by_way, lead, near, out
+from planner.lying import Ends, region_of
 from planner.refusing import Refusal
 from planner.screen import Squares, grown
 from planner.walking import is_open

@@ -18,7 +18,7 @@ from kb.body import DIRECTIONS
 from kb.worldmodel import Node, Patch, WorldModel
 from planner.destinations import Situation
 from planner.haulage import Haul, swept_squares
-from planner.landing import in_view, lands_in_one
+from planner.lying import in_view, lands_in_one
 from planner.screen import Squares
 
 Mask = NDArray[np.bool_]

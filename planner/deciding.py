@@ -18,6 +18,7 @@ from kb.task import Task
 from kb.worldmodel import WorldModel
 from planner.aims import Aim
 from planner.circling import pivot, ways_round, winding
+from planner.clearing import Clearer
 from planner.destinations import Situation, contains, destination
 from planner.goals import BY_THE_WAY, FROM_THE_START, Stage, constraints, stages
 from planner.pursuing import Decision, Pursuer
@@ -52,6 +53,7 @@ class Decider:
         self._verifier = Verifier()
         self.pursuer = Pursuer(self.paths, constraints(self.task))
         self.transporter = Transporter(self.pull, self.pursuer, self._verifier)
+        self._clearer = Clearer(self.transporter.carrier, self.pursuer, self._verifier)
         self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
@@ -65,7 +67,8 @@ class Decider:
         situation = Situation(model, screens, self.bound, self.rooms, self.corners, self.task, self.rules)
         while self.attained < len(self.stages):
             stage = self.stages[self.attained]
-            decision = self._towards(stage, situation, reconciled, track)
+            decision = self._clearer.going_on(stage, situation)
+            decision = decision or self._towards(stage, situation, reconciled, track)
             decision = decision or self.pursuer.look(self._doubt(stage, situation), stage, situation)
             if decision is not None:
                 unproved = model.anew and model.shaken and decision.verdict == "impossible"
@@ -79,11 +82,19 @@ class Decider:
         """The next command towards a stage, the verdict when it cannot be attained, or None when it is."""
         for goal in stage.carried:
             decision = self.transporter.towards(goal, stage, situation, reconciled)
-            if decision is not None:
-                return decision
+            if decision is None:
+                continue
+            decision = self.transporter.freed(str(goal.args[0]), stage, situation) or decision
+            proved = decision.verdict == "impossible"  # whatever else is moved
+            return decision if proved else self._clearer.cleared(decision, stage, situation)
+        decision = self._going(stage, situation, reconciled, track) if stage.own else None
+        return None if decision is None else self._clearer.cleared(decision, stage, situation)
+
+    def _going(
+        self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[Place]
+    ) -> Decision | None:
+        """The next command towards where Utak himself shall be, or the verdict; None when he is there."""
         goals = stage.own
-        if not goals:
-            return None
         if situation.model.held is not None:
             return Decision(Release(), f"{situation.model.held} is let go, to walk; {stage}")
         if goals[0].name in BY_THE_WAY:

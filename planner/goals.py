@@ -4,7 +4,7 @@ Goals without first(...) or then(...) hold together at the end. What a track ful
 then what a place fulfils (at, in, beside), all at once.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from kb.facts import Fact, Symbol
 from kb.task import Task
@@ -16,9 +16,13 @@ FROM_THE_START = ("in", "through", "around")  # what is about where a thing lay 
 
 @dataclass(frozen=True)
 class Stage:
-    """Goals that shall hold at one time; those of the way (`circled`) stand alone in their stage."""
+    """Goals that shall hold at one time; those of the way (`circled`) stand alone in their stage.
+
+    followed : another stage comes after it.
+    """
 
     goals: tuple[Fact, ...]
+    followed: bool = False
 
     @property
     def own(self) -> tuple[Fact, ...]:
@@ -29,6 +33,11 @@ class Stage:
     def carried(self) -> tuple[Fact, ...]:
         """What shall hold for things, which he must carry."""
         return tuple(goal for goal in self.goals if str(goal.args[0]) != "utak")
+
+    @property
+    def goes_on(self) -> bool:
+        """Is there more to do for Utak when things are where they shall be?"""
+        return self.followed or len(self.own) > 0
 
     def __str__(self) -> str:
         return " and ".join(str(goal) for goal in self.goals)
@@ -42,7 +51,8 @@ def stages(task: Task) -> tuple[Stage, ...]:
             steps.append([])
         if fact.name not in CONSTRAINTS:
             steps[-1].append(_inner(fact))
-    return tuple(stage for goals in steps for stage in _ordered(goals))
+    found = [stage for goals in steps for stage in _ordered(goals)]
+    return tuple(replace(stage, followed=stage is not found[-1]) for stage in found)
 
 
 def constraints(task: Task) -> tuple[Fact, ...]:

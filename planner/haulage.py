@@ -24,7 +24,7 @@ from kb.worldmodel import Node, WorldModel
 from planner.aims import ASP
 from planner.destinations import Situation
 from planner.hoping import BEYOND, BOLD, framed, hoped_floor
-from planner.landing import Ends, in_view, region_of
+from planner.lying import Ends, in_view, region_of
 from planner.refusing import Refusal, refusal
 from planner.screen import UNSEEN, grown
 from planner.walking import is_open

@@ -13,7 +13,7 @@ from geometry.rigid import Translate
 from geometry.yard import Yard
 from kb.worldmodel import Node
 from planner.destinations import Situation
-from planner.landing import in_view, leads_away, region_of
+from planner.lying import in_view, leads_away, region_of
 from planner.screen import Squares, grown, marked
 from planner.walking import HURRY
 

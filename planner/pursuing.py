@@ -10,7 +10,7 @@ from kb.body import Command, Release
 from kb.facts import Fact
 from kb.worldmodel import WorldModel
 from planner.aims import Aim, choose
-from planner.carrier import Go
+from planner.carrier import Advice, Go, See
 from planner.destinations import Situation
 from planner.fewest import FewestMoves
 from planner.goals import Stage
@@ -92,6 +92,14 @@ class Pursuer:
         """The next command on the way to where something is taken, to halt right there."""
         walk = self.pursue([Aim("attain", go.square, go.why)], stage, situation, lambda: "no way leads there")
         return replace(walk, command=halting(walk.command, go.place, situation.model))
+
+    def prepared(self, advice: Advice, stage: Stage, situation: Situation) -> Decision | None:
+        """The next command to come to where something is taken, or to see what must be seen before that; or None."""
+        if isinstance(advice, Go):
+            walk: Decision | None = self.go(advice, stage, situation)
+        else:
+            walk = self.look(Aim("inspect", *advice.lookout), stage, situation) if isinstance(advice, See) else None
+        return None if walk is None or walk.command is None else walk
 
     def felt(self, ask: Callable[[], Decision], stage: Stage, situation: Situation) -> Decision:
         """What is decided; rather than give up, to feel what may be a thing that stands against a wall.

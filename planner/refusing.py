@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from geometry.carrying import Carrying
 from kb.loads import is_whole
 from kb.worldmodel import Node, WorldModel
-from planner.landing import lies_askew
+from planner.lying import lies_askew
 
 Place = tuple[float, float]
 

@@ -17,7 +17,8 @@ from planner.beginning import Beginnings
 from planner.carrier import Act, Advice, Carrier, Go, See
 from planner.destinations import Situation, nowhere
 from planner.goals import FROM_THE_START, Stage
-from planner.landing import Landing, can_leave, in_view, landing, lands_in_one
+from planner.landing import landing
+from planner.lying import Landing, can_leave, in_view, lands_in_one
 from planner.pursuing import Decision, Pursuer
 from planner.refusing import Refusal
 from planner.searching import aims_towards
@@ -55,12 +56,16 @@ class Transporter:
         lost = self.beginnings.lost(x, node, situation)
         if land.holds:
             why = f"{stage} cannot be told: {lost} since {node.name} was taken"
-            return Decision(None, why, "limit") if lost and goal.name in FROM_THE_START else None
+            if lost and goal.name in FROM_THE_START:
+                return Decision(None, why, "limit")
+            return self._led_out(node, stage, situation) if stage.goes_on else None
         advice = self._advice(node, land, situation)
         if isinstance(advice, Refusal) and land.loose:
             if lands_in_one(land.loose, in_view(node.polygon, situation)):
-                return None
+                return self._led_out(node, stage, situation) if stage.goes_on else None
             advice = self.carrier.advise(node, land.loose, situation)
+        if isinstance(advice, Refusal) and land.some:
+            advice = replace(advice, proved=False)
         if isinstance(advice, Act):
             instead = self._by_the_way(node, land, stage, situation) if isinstance(advice.command, Push) else None
             return instead or self._act(advice, node, stage, situation)
@@ -77,6 +82,12 @@ class Transporter:
         aims = aims_towards([unknown], situation, reconciled)
         decision = self._missing(advice, node, land, aims, stage, situation)
         return self._proved(advice, decision, node, land, stage, situation)
+
+    def freed(self, x: str, stage: Stage, situation: Situation) -> Decision | None:
+        """The push by which what he holds no longer shuts him in, when he wants something else than that, x."""
+        held = situation.model.held
+        node = situation.model.object(held or "")
+        return None if node is None or held == situation.binding.get(x) else self._led_out(node, stage, situation)
 
     def _found(self, x: str, stage: Stage, situation: Situation, reconciled: Reconciled) -> Decision:
         """The next command to find what a parameter means, or the verdict when nothing can be that."""
@@ -142,11 +153,8 @@ class Transporter:
         if land.shut_in and not isinstance(decision.command, Push | Turn):
             why = f"{stage} cannot be told: {land.missing}, and {node.name} shuts him in"
             decision = Decision(None, why, "limit")
-        if decision.verdict == "limit" and (land.shut_in or not can_leave(node, situation)):
-            out = self.carrier.led_out(node, situation)
-            if out is not None:
-                self.carrier.depart(out)
-                decision = Decision(out.command, f"{out.why}; {stage}")
+        if decision.verdict == "limit":
+            decision = self._led_out(node, stage, situation, land.shut_in) or decision
         return decision
 
     def _proved(
@@ -197,6 +205,16 @@ class Transporter:
             return None if walk.command is None else walk
         return self._led(advice, aim.what, stage, situation)
 
+    def _led_out(self, node: Node, stage: Stage, situation: Situation, shut_in: bool = False) -> Decision | None:
+        """The push by which what he holds no longer shuts him in, to take it otherwise; None when it does not, or where
+        that cannot be. shut_in : it is known to.
+        """
+        out = self.carrier.led_out(node, situation) if shut_in or not can_leave(node, situation) else None
+        if out is None:
+            return None
+        self.carrier.depart(out)
+        return Decision(out.command, f"{out.why}; {stage}")
+
     def _led(self, act: Act | None, what: str, stage: Stage, situation: Situation) -> Decision | None:
         """What is done to see something with an object in hand, unless that goes round in circles."""
         if act is None or self.pursuer.noticed(situation.model, act.command):
@@ -223,9 +241,7 @@ class Transporter:
             advice = self.carrier.advise(node, {SIZE: pose}, situation)
             if isinstance(advice, Act):
                 return Decision(advice.command, f"how large {node.name} is is not sure; {stage}")
-            walk = self.pursuer.go(advice, stage, situation) if isinstance(advice, Go) else None
-            if isinstance(advice, See):
-                walk = self.pursuer.look(Aim("inspect", *advice.lookout), stage, situation)
-            if walk is not None and walk.command is not None:
+            walk = self.pursuer.prepared(advice, stage, situation)
+            if walk is not None:
                 return walk
         return None

@@ -16,7 +16,7 @@ from kb.worldmodel import Node, WorldModel
 from planner.course import ALIKE, Course, course_of, followed, from_here
 from planner.destinations import Situation
 from planner.haulage import Haul
-from planner.landing import in_view, lands
+from planner.lying import in_view, lands
 
 
 def turns(course: Course) -> bool:

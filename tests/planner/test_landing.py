@@ -1,5 +1,6 @@
 """Where something that is carried must end."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,8 @@ from kb.factfile import facts_of
 from kb.loads import covered
 from kb.worldmodel import Node, WorldModel
 from planner.carrier import Carrier
-from planner.landing import Landing, landing, lands
+from planner.landing import landing
+from planner.lying import Landing, lands
 from tests.kb.drawings import seen_whole, unclear
 from tests.planner.situations import situation_of
 
@@ -213,3 +215,43 @@ def test_rooms_that_he_must_see_before_it_is_there_he_may_see_by_the_way(behind:
     found = landing(NORTHEAST, node, (2.5, -0.5), situation)
     assert found.ends and not found.holds
     assert bool(found.by_the_way()) == (behind == "?" and held)
+
+
+NOOK = [  # where he woke, too narrow for a thing to lie on any side of that with its middle beside it
+    "b" * 14,
+    "b" + "." * 12 + "b",
+    "bU" + "." * 11 + "b",
+    *["b" + "." * 12 + "b"] * 8,
+    "b" * 14,
+]
+
+
+@pytest.mark.parametrize("goal", ["at(x, start).", 'pose(x, "POINT (1.9 -1)", 0).'])
+def test_that_a_thing_can_be_brought_to_none_of_some_ends_proves_nothing(goal: str) -> None:
+    """It may lie across the corner of where he woke, or nearly where its pose is."""
+    model = seen_whole(NOOK)
+    square = shapely.box(5, -6, 10, -1)
+    node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square, moved=True, movable=99)
+    situation = situation_of(replace(model, objects=(node,)), {"x": node.name})
+    found = landing(facts_of(goal)[0], node, (0.0, 0.0), situation)
+    assert found.some
+    refused = Carrier().refused(node, found.ends, situation)
+    assert refused is not None
+    assert refused.proved
+    assert Carrier().refused(node, found.must_reach(), situation) is None
+
+
+def test_what_lies_loosely_near_to_something_is_near_to_it() -> None:
+    model = seen_whole(NOOK)
+    square = shapely.box(5, -6, 9, -3)
+    node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square, moved=True, movable=99)
+    situation = situation_of(replace(model, objects=(node,)), {"x": node.name})
+    found = landing(facts_of("at(x, start).")[0], node, (0.0, 0.0), situation)
+    (end,) = found.loose.values()
+    start = shapely.box(1, 9, 2, 10)  # on the view's arrays
+    near = 0
+    for dx, dy in itertools.product(np.arange(-6.0, 1.0, 0.25), np.arange(2.0, 9.0, 0.25)):
+        lying = shapely.affinity.translate(shapely.box(6, 4, 10, 7), dx, dy)
+        near += lands(end, lying)
+        assert not lands(end, lying) or lying.distance(start) <= 1.0
+    assert near

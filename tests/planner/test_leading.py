@@ -25,8 +25,8 @@ from planner.deciding import Decider
 from planner.destinations import Situation
 from planner.exploring import Lookout
 from planner.goals import Stage
-from planner.landing import Landing, in_view
 from planner.leading import NEARBY, by_way, lead, near, out
+from planner.lying import Landing, in_view
 from planner.pursuing import Decision
 from planner.refusing import Refusal
 from planner.screen import Squares

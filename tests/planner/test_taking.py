@@ -24,7 +24,7 @@ from planner.destinations import Situation
 from planner.exploring import CLOSE
 from planner.goals import Stage
 from planner.haulage import Haul, Hauler, Request
-from planner.landing import Landing
+from planner.lying import Landing
 from planner.refusing import Refusal
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of

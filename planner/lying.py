@@ -1,0 +1,98 @@
+"""Where a thing lies, and where it shall: what planning on a screen says of that.
+
+Shapes and goals of geometry.carrying are in the frame of the view's arrays.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from geometry.ends import End, met
+from kb.worldmodel import Node
+from planner.destinations import Situation
+from planner.exploring import Lookout
+from planner.screen import grown
+
+Mask = NDArray[np.bool_]
+Ends = Callable[[], Mapping[str, End]]  # by their names, worked out when asked
+Looks = Callable[[], tuple[Lookout, ...]]  # worked out when asked
+NOOK = 2  # squares about a thing that are no room to go
+TURNED = 2.0  # degrees within which a thing lies as it was meant to
+
+
+@dataclass(frozen=True)
+class Landing:
+    """Where a goal holds for an object.
+
+    Attributes
+    ----------
+    ends : target's name -> where the object must lie; empty while that is not known.
+    missing, lookouts : what must be known first, in words, and where just that may be seen (as of a Destination).
+    approach : places near to where it must end, from which it can be told better where that is; the best first.
+    holds : the goal holds as the object lies now. there : it does, but for what must be known first.
+    shut_in : likewise, and he cannot leave the object where it is, for it shuts him in.
+    loose : where it may lie if it cannot be brought to any of the ends.
+    must_reach : what it must come to lie on wherever it must end, while that is not known: squares that were not seen,
+    and those of the one end that may be it. Worked out when asked.
+    some : it may end elsewhere, too: that it can be brought to none of the ends proves nothing.
+    hoped : the ends, if the floor goes on as it is hoped to (planner.hoping); worked out when asked.
+    by_the_way : what must be seen before it holds, where it does not yet: to come back for that takes longer. Likewise.
+    """
+
+    ends: Mapping[str, End]
+    missing: str = ""
+    lookouts: tuple[Lookout, ...] = ()
+    approach: Mapping[str, End] = field(default_factory=dict)
+    holds: bool = False
+    there: bool = False
+    shut_in: bool = False
+    loose: Mapping[str, End] = field(default_factory=dict)
+    must_reach: Ends = dict
+    hoped: Ends = dict
+    by_the_way: Looks = tuple
+    some: bool = False
+
+
+def lands(end: End, shape: Any) -> bool:
+    """Does a shape, in the frame of the view's arrays, lie where a goal holds?"""
+    return met(end, shape, shape)
+
+
+def lands_in_one(ends: Mapping[str, End], shape: Any) -> bool:
+    """Does a shape, in the frame of the view's arrays, lie where one of some goals holds?"""
+    return any(lands(end, shape) for end in ends.values())
+
+
+def lies_askew(node: Node) -> bool:
+    """Was it turned otherwise than by quarter turns?"""
+    over = node.turned % 90.0
+    return min(over, 90.0 - over) > TURNED
+
+
+def in_view(shape: Any, situation: Situation) -> Any:
+    """A shape of the lattice in the frame of the view's arrays."""
+    west, south = situation.model.view.west, situation.model.view.south
+    return shapely.transform(shape, lambda points: points - np.array([west, south]))
+
+
+def region_of(mask: Mask) -> Any:
+    """The True squares of a (rows, columns) mask as one geometry."""
+    runs = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    rows, starts = np.nonzero(runs == 1)
+    stops = np.nonzero(runs == -1)[1]
+    return shapely.union_all(shapely.box(starts, rows, stops, rows + 1))
+
+
+def can_leave(node: Node, situation: Situation) -> bool:
+    """Does Utak, if he has an object in hand, not stand in a nook between that and the walls?"""
+    held = situation.model.held == node.name
+    return not held or leads_away(situation.screens.floor, situation.model.mask(node.patch))
+
+
+def leads_away(floor: Mask, thing: Mask) -> bool:
+    """Does floor that he reaches lead further from a thing than a nook beside it? Both (rows, columns)."""
+    return bool((floor & ~grown(thing, NOOK)).any())

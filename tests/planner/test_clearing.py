@@ -1,0 +1,135 @@
+"""What shuts Utak off and can be moved is moved aside, when nothing else is left."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+import shapely.affinity
+
+from geometry.carrying import At, Inside
+from geometry.digital import areas
+from geometry.reach import UNREACHED, reach
+from geometry.rigid import Pose
+from kb.body import Grasp, Move, Push, Turn
+from kb.factfile import facts_of
+from kb.worldmodel import Node, Patch
+from planner.carrier import Carrier
+from planner.clearing import Clearer, Obstacle, obstacles
+from planner.destinations import Situation
+from planner.goals import Stage
+from planner.lying import in_view
+from planner.pursuing import Decision, Pursuer
+from planner.verifying import Verifier
+from tests.kb.drawings import seen_whole
+from tests.planner.situations import situation_of
+
+WALL = "b" * 12 + "bb" + "b" * 12
+OPEN_ROW = "b" + "." * 11 + "bb" + "." * 11 + "b"
+
+
+def rooms(middle: list[str]) -> list[str]:
+    """Two rooms and what lies in the rows of the door between them; Utak stands in the western one."""
+    return [WALL, *[OPEN_ROW] * 4, *middle, *[OPEN_ROW] * 3, "b..U" + "." * 8 + "bb" + "." * 11 + "b", WALL]
+
+
+BEFORE = rooms(["b" + "." * 9 + "gg" + "." * 13 + "b"] * 3)  # the door
+ELSEWHERE = rooms(["b..gg" + "." * 20 + "b"] * 3)
+BEHIND = rooms(["b" + "." * 9 + "gg" + ".." + "kk" + "." * 9 + "b"] * 3)  # each other
+WITHIN = rooms(["b" + "." * 9 + "ggb" + "." * 12 + "b"] * 3)  # one column of the door
+AGAINST = rooms(["b" + "." * 9 + "gg" + "bb" + "." * 11 + "b"] * 3)  # a wall
+UTAK = Stage(facts_of("in(utak, room(next))."))
+GIVEN_UP = Decision(None, "no way leads there", "impossible")
+
+
+def known(rows: list[str], moved: bool = False, movable: int = 50, held: str | None = None) -> Situation:
+    """What one believes who has seen all of a drawing, and knows of each letter but b that it is a thing."""
+    marks, model = np.array([list(row) for row in reversed(rows)]), seen_whole(rows, objects=False)
+    nodes = []
+    for letter in sorted(set(marks.ravel()) - set("b.U")):
+        south, west = np.argwhere(marks == letter).min(0)
+        north, east = np.argwhere(marks == letter).max(0) + 1
+        mask = marks[south:north, west:east] == letter
+        patch = Patch(int(west) + model.view.west, int(south) + model.view.south, mask)
+        box = shapely.box(patch.west, patch.south, patch.west + mask.shape[1], patch.south + mask.shape[0])
+        nodes.append(Node(letter, "object", 95, "part1", patch, 0, polygon=box, moved=moved, movable=movable))
+    return situation_of(replace(model, objects=tuple(nodes), held=held))
+
+
+def deciding() -> Clearer:
+    return Clearer(Carrier(), Pursuer("skeleton", ()), Verifier())
+
+
+def found_in(situation: Situation) -> list[Obstacle]:
+    return list(obstacles(situation.model.objects, situation))
+
+
+def test_what_stands_before_the_only_door_is_in_the_way() -> None:
+    situation = known(BEFORE)
+    (node,), (found,) = situation.model.objects, found_in(situation)
+    assert found.node == node
+    assert isinstance(found.aside, Inside)
+    shape = in_view(node.polygon, situation)
+    lying = [shapely.affinity.translate(shape, dx, dy) for dx in range(-9, 3) for dy in range(-6, 6)]
+    fits = [found.aside.polygon.covers(there) for there in lying]
+    assert any(fits)
+    for there, fit in zip(lying, fits, strict=True):  # where it may lie, he comes to the other room
+        if fit:
+            free = situation.model.space | situation.model.mask(node.patch)
+            free &= areas(there, free.shape[1], free.shape[0]) == 0.0
+            assert reach(free, *situation.screens.here)[5, 20] != UNREACHED
+
+
+@pytest.mark.parametrize("rows", [ELSEWHERE, AGAINST])
+def test_what_stands_elsewhere_is_not(rows: list[str]) -> None:
+    thick = [row[:13] + "bb" + row[13:] for row in rows]  # than a thing may reach into it
+    assert not found_in(known(thick))
+
+
+def test_of_two_that_stand_behind_each_other_the_first() -> None:
+    assert [one.node.name for one in found_in(known(BEHIND))] == ["g"]
+
+
+def test_what_stands_in_a_door_is_drawn_out_once() -> None:
+    for found in found_in(known(WITHIN)) or pytest.fail("nothing is found"):
+        assert found.aside == At(Pose(-3.0, 0.0, 0.0))
+    assert not found_in(known(WITHIN, moved=True))
+
+
+def test_he_takes_what_shuts_him_off_and_goes_on_with_it() -> None:
+    situation, clearer = known(BEFORE), deciding()
+    (node,) = situation.model.objects
+    assert clearer.cleared(Decision(Push(1.0, 0.0), "on"), UTAK, situation).command == Push(1.0, 0.0)
+    first = clearer.cleared(GIVEN_UP, UTAK, situation)
+    assert isinstance(first.command, Move)
+    beside = replace(situation.model, place=(node.patch.west - 0.5, node.patch.south + 0.5))
+    taken = clearer.cleared(GIVEN_UP, UTAK, situation_of(beside))
+    assert isinstance(taken.command, Grasp)
+    assert "shuts him off" in taken.why
+    held = situation_of(replace(beside, held=node.name))
+    pushed = clearer.going_on(UTAK, held)
+    assert pushed is not None
+    assert isinstance(pushed.command, Push | Turn)
+    assert deciding().going_on(UTAK, held) is None
+
+
+def test_what_may_be_a_piece_of_wall_is_felt_first() -> None:
+    situation = known(BEFORE)
+    (node,) = situation.model.objects
+    unsure = situation_of(replace(situation.model, objects=(replace(node, confidence=40),)))
+    assert "colour" in deciding().cleared(GIVEN_UP, UTAK, unsure).why
+    hardly = situation_of(replace(situation.model, objects=(replace(node, confidence=10),)))
+    assert deciding().cleared(GIVEN_UP, UTAK, hardly) == GIVEN_UP
+
+
+def test_what_the_task_is_about_stays() -> None:
+    situation = replace(known(BEFORE), binding={"x": "g"})
+    assert deciding().cleared(GIVEN_UP, Stage(facts_of("circled(utak, x).")), situation) == GIVEN_UP
+    assert deciding().cleared(GIVEN_UP, UTAK, situation).command is not None
+
+
+@pytest.mark.parametrize(("rows", "verdict"), [(BEFORE, "limit"), (WITHIN, "limit"), (ELSEWHERE, "impossible")])
+def test_what_did_not_move_may_be_wedged_in(rows: list[str], verdict: str) -> None:
+    decided = deciding().cleared(GIVEN_UP, UTAK, known(rows, movable=0))
+    assert (decided.command, decided.verdict) == (None, verdict)
+    assert ("g shuts him off" in decided.why) == (verdict == "limit")
