@@ -17,14 +17,13 @@ from geometry.rigid import Pose
 from kb.worldmodel import CLEAR, Node
 from planner.destinations import Situation, rooms_to_see, unknown_corner
 from planner.exploring import Lookout, short_of, sight_of
-from planner.lying import Landing, Mask, can_leave, in_view, lands, lies_askew, region_of
+from planner.lying import HAIR, Landing, Mask, can_leave, in_view, lands, lies_askew, region_of
 from planner.screen import grown
 
 IN_SIGHT = 6  # squares from a corner within which it is seen well
 FLUSH = 0.1  # squares between an object and walls that it touches
 LEANING = 1.25  # squares that what lies askew in a corner may reach further from its walls than it is long
 PRESS = 0.25  # squares that a thing is pressed on into a corner: it shows, then, how far in its sides lie
-HAIR = 0.01  # squares that do not matter
 ABOUT = 0.5  # squares from its walls at which an object is brought to a corner that is settled
 RATHER = 0.4  # that a square is occupied which is rather floor than not
 MOST_FURTHER, BROAD = 2, 3  # squares that a corner may lie further than what surely is floor, and as broad as that is

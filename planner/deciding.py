@@ -20,7 +20,7 @@ from planner.aims import Aim
 from planner.circling import pivot, ways_round, winding
 from planner.clearing import Clearer
 from planner.destinations import Situation, contains, destination
-from planner.goals import BY_THE_WAY, FROM_THE_START, Stage, constraints, stages
+from planner.goals import BY_THE_WAY, FROM_THE_START, Stage, stages
 from planner.pursuing import Decision, Pursuer
 from planner.screen import Screens, ways_to_objects
 from planner.searching import aims_towards
@@ -51,7 +51,7 @@ class Decider:
     def __post_init__(self) -> None:
         self.stages = stages(self.task)
         self._verifier = Verifier()
-        self.pursuer = Pursuer(self.paths, constraints(self.task))
+        self.pursuer = Pursuer(self.paths)
         self.transporter = Transporter(self.pull, self.pursuer, self._verifier)
         self._clearer = Clearer(self.transporter.carrier, self.pursuer, self._verifier)
         self._turn = 0  # the sign of the turn that was begun about an object

@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from geometry.components import edged
 from kb.corners import Corner
 from kb.facts import Fact, Symbol, Term
-from kb.rooms import LIKELY_DOOR, SURE, Rooms, rooms_of
+from kb.rooms import LIKELY_DOOR, SURE, Door, Rooms, rooms_of
 from kb.task import Task
 from kb.worldmodel import Patch, WorldModel
 from planner.exploring import APART, Lookout, frontiers, gaps, jambs, promised, rooms_beyond, short_of, sight_of
+from planner.goals import constraints
 from planner.screen import Screens, Squares, grown
 
 Mask = NDArray[np.bool_]
@@ -74,6 +75,11 @@ class Situation:
             if mask.any():
                 break
         return rooms, mask
+
+    def forbidden(self, *who: str) -> tuple[Door, ...]:
+        """The doors that some, "utak" and nodes, may not all go through by the constraints of the task."""
+        meant = {self.binding.get(str(goal.args[0]), str(goal.args[0])) for goal in constraints(self.task)}
+        return self.rooms.sure[:1] if meant.intersection(who) else ()
 
     def next_to(self, place: tuple[float, float], rooms: Rooms, least: int) -> Mask:
         """(rows, columns) what shares a door with the room of a point, if that is one with so many percent."""

@@ -24,7 +24,7 @@ from kb.worldmodel import Node, WorldModel
 from planner.aims import ASP
 from planner.destinations import Situation
 from planner.hoping import BEYOND, BOLD, framed, hoped_floor
-from planner.lying import Ends, in_view, region_of
+from planner.lying import Ends, barred, in_view, region_of
 from planner.refusing import Refusal, refusal
 from planner.screen import UNSEEN, grown
 from planner.walking import is_open
@@ -141,7 +141,9 @@ class Hauler:
             fact = "refuted" if plan.status == "impossible" else "undecided"
             verdicts.append(f"{fact}({name},{level},{aside})")
         self._hopeless = True
-        return refusal(request.node, plans, situation.model)
+        told = refusal(request.node, plans, situation.model)
+        by_itself = situation.forbidden("utak") and not situation.forbidden(request.node.name)
+        return replace(told, proved=False) if by_itself else told  # it may go where he may not
 
     def _bolder(self, request: Request, haul: Haul, situation: Situation) -> Haul:
         """What planner/asp/boldness.lp chooses of a way that was found and of those over what is hoped to be floor.
@@ -173,7 +175,7 @@ class Hauler:
         """
         model, node = situation.model, request.node
         own, walk = framed(model.mask(node.patch)), framed(situation.screens.free(0))
-        free = hoped_floor(situation) | own
+        free = (hoped_floor(situation) | own) & ~framed(barred(node, situation))
         if (free == walk | own).all():
             return
         shape, (x, y) = in_view(node.polygon, situation), model.place_on_view
@@ -250,7 +252,7 @@ def _free(node: Node, situation: Situation, level: int, aside: str) -> Mask:
         for other in model.objects:
             if other.movable > 0 and other.confidence >= 95:
                 free |= model.mask(other.patch)
-    return free
+    return free & ~barred(node, situation)
 
 
 def _way(end: End, shape: Any) -> float:

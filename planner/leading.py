@@ -13,7 +13,7 @@ from geometry.rigid import Translate
 from geometry.yard import Yard
 from kb.worldmodel import Node
 from planner.destinations import Situation
-from planner.lying import in_view, leads_away, region_of
+from planner.lying import barred, in_view, leads_away, region_of
 from planner.screen import Squares, grown, marked
 from planner.walking import HURRY
 
@@ -88,7 +88,8 @@ def _pushes_to(squares: Squares, situation: Situation) -> Floats:
 
 def _yard(node: Node, situation: Situation) -> Yard:
     """What is surely free for a thing and him who holds it."""
-    return Yard(situation.screens.free(0) | situation.model.mask(node.patch))
+    free = situation.screens.free(0) & ~barred(node, situation)
+    return Yard(free | situation.model.mask(node.patch))
 
 
 def near(squares: Squares, situation: Situation) -> Inside | None:

@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from geometry.digital import squares
 from geometry.ends import End, met
 from kb.worldmodel import Node
 from planner.destinations import Situation
@@ -20,6 +21,7 @@ from planner.screen import grown
 Mask = NDArray[np.bool_]
 Ends = Callable[[], Mapping[str, End]]  # by their names, worked out when asked
 Looks = Callable[[], tuple[Lookout, ...]]  # worked out when asked
+HAIR = 0.01  # squares that do not matter
 NOOK = 2  # squares about a thing that are no room to go
 TURNED = 2.0  # degrees within which a thing lies as it was meant to
 
@@ -85,6 +87,17 @@ def region_of(mask: Mask) -> Any:
     rows, starts = np.nonzero(runs == 1)
     stops = np.nonzero(runs == -1)[1]
     return shapely.union_all(shapely.box(starts, rows, stops, rows + 1))
+
+
+def barred(node: Node, situation: Situation) -> Mask:
+    """(rows, columns): the necks of doors that a thing, or he with it, may not go through; none where it lies on them.
+
+    He holds it wherever it goes through, so a door that is forbidden to either is to both.
+    """
+    columns, rows = situation.model.labels.shape[::-1]
+    necks = (shapely.LineString([door.a, door.b]).buffer(HAIR) for door in situation.forbidden("utak", node.name))
+    mask: Mask = np.any([squares(neck, columns, rows) for neck in necks] or [np.zeros((rows, columns), bool)], axis=0)
+    return mask & ~situation.model.mask(node.patch)
 
 
 def can_leave(node: Node, situation: Situation) -> bool:

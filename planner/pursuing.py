@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from kb.body import Command, Release
-from kb.facts import Fact
 from kb.worldmodel import WorldModel
 from planner.aims import Aim, choose
 from planner.carrier import Advice, Go, See
@@ -34,11 +33,11 @@ class Decision:
 class Pursuer:
     """Walks after aims, and remembers the way that he is on and the commands that led round in circles.
 
-    paths : how the ways are found that are chosen among (as of planner.ways). constraints : of the task.
+    paths : how the ways are found that are chosen among (as of planner.ways).
     """
 
-    def __init__(self, paths: str, constraints: Sequence[Fact]) -> None:
-        self._paths, self._constraints = paths, constraints
+    def __init__(self, paths: str) -> None:
+        self._paths = paths
         self._kept = Kept()
         self._circles = Circles()
         self._feeling = False  # is he about to feel what may stand against a wall?
@@ -139,6 +138,5 @@ class Pursuer:
         if not offered:
             return None
         before = frozenset(self._kept.path(situation.model))
-        doors = situation.rooms.sure
-        forbidden = frozenset(doors[0].name for goal in self._constraints if doors and str(goal.args[0]) == "utak")
-        return choose_way(offered, situation.screens, before, doors, forbidden)
+        forbidden = frozenset(door.name for door in situation.forbidden("utak"))
+        return choose_way(offered, situation.screens, before, situation.rooms.sure, forbidden)

@@ -57,7 +57,7 @@ def known(rows: list[str], moved: bool = False, movable: int = 50, held: str | N
 
 
 def deciding() -> Clearer:
-    return Clearer(Carrier(), Pursuer("skeleton", ()), Verifier())
+    return Clearer(Carrier(), Pursuer("skeleton"), Verifier())
 
 
 def found_in(situation: Situation) -> list[Obstacle]:

@@ -11,7 +11,9 @@ import shapely
 from geometry.bottleneck import Neck
 from geometry.carrying import Carrying, Inside
 from kb.evidence import FULL
+from kb.factfile import facts_of
 from kb.loads import covered
+from kb.task import Task
 from kb.worldmodel import Node
 from planner.haulage import KEPT, OFTEN, Haul, Hauler, Request
 from planner.refusing import Refusal, nearest_to_done, refusal
@@ -189,3 +191,23 @@ def test_what_stood_against_something_often_keeps_its_distance(tight: int, kept:
             shape = motion.carry(shape)
     assert room.polygon.covers(shape)
     assert nearest >= kept - 1e-6
+
+
+@pytest.mark.parametrize(
+    ("who", "found", "proved"), [("", True, False), ("y", True, False), ("x", False, True), ("utak", False, False)]
+)
+def test_nothing_is_carried_through_a_door_that_the_task_forbids(who: str, found: bool, proved: bool) -> None:
+    """It may go through where only he may not: that no way is found with him proves nothing."""
+    rows = [row.replace("gggg", "gg..") for row in PARTED]
+    model = seen_whole(rows)
+    (node,) = model.objects
+    left, bottom = node.patch.west, node.patch.south
+    node = replace(node, polygon=shapely.box(left, bottom, left + 2, bottom + 4))
+    model = replace(model, objects=(node,), held=node.name, place=(left + 2.5, bottom + 1.5))
+    task = Task({}, (), facts_of(f"not_through({who}, d).") if who else ())
+    situation = situation_of(model, {"x": node.name}, task)
+    assert len(situation.rooms.sure) == 1
+    request = Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}, held=True)
+    answer = Hauler().find(request, situation)
+    assert isinstance(answer, Haul) == found
+    assert not isinstance(answer, Refusal) or answer.proved == proved
