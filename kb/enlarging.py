@@ -42,7 +42,7 @@ def larger(surprise: Surprise, load: Load, motion: Motion) -> Iterator[Explanati
 
 
 def _going_on(load: Load, side: tuple[int, int], depth: int) -> Load:
-    """A load that goes on to one side by so many squares."""
+    """A load that goes on to one side by so many squares: what shape it has is not known then."""
     steps = (Translate(step * side[0], step * side[1]) for step in range(depth + 1))
     polygon = shapely.union_all([step.carry(load.polygon) for step in steps])
-    return replace(load, polygon=polygon, first=polygon)
+    return replace(load, polygon=polygon, first=polygon, shape={})

@@ -142,6 +142,7 @@ class Knowledge:
         self.objects = self._objects(model)
         if self.memory.loads:
             model = replace(model, beneath=model.space)
+        self._measure_loads()
         for load in self.memory.loads.values():
             model, patch = _laid(model, load)
             self.objects += (_node(load, patch, int(model.labels.max())),)
@@ -210,6 +211,14 @@ class Knowledge:
             )
             for left in [unsettled(part.mask, part.view)]
         )
+
+    def _measure_loads(self) -> None:
+        """Tell the shape of loads that were found to be larger than they seemed."""
+        for name, load in self.memory.loads.items():
+            if not load.shape:
+                measured = self._measurer.measure_whole(covered(load.first))
+                shape = shapes(_shape_facts({name: measured}), self.rules)
+                self.memory.loads[name] = replace(load, shape=shape.get(name, {}))
 
     def _colour(self, patch: Patch) -> str | None:
         colours = [self.felt[square] for square in sorted(patch.squares()) if square in self.felt]

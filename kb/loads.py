@@ -38,7 +38,8 @@ class Load:
     name : of its node in the world model. polygon : where it is believed to lie (shapely, lattice frame).
     first : where it lay when he first took hold of it. slack : squares by which its outline may lie otherwise.
     full, empty : squares, of those that the slack leaves open, that were seen to be covered or not since it last moved.
-    shape, colour, support : as of the node, from before it was grasped; support grows with every look at it.
+    shape, colour, support : as of the node, from before it was grasped; support grows with every look at it. The shape
+    of what was found to be larger since is {} until it is measured.
     turned : degrees that it was turned since then. proven : it was seen to move. stuck : motions in a row that did not
     move it. since : how many looks had been received when it was first held. astray : squares by which it may lie
     otherwise besides, for it is not known where in his square Utak stands, and so about what it was turned.

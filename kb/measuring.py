@@ -51,6 +51,12 @@ class Measurer:
         placed = shapely.transform(polygon, lambda points: points + np.array([patch.west, patch.south]))
         return Measured(fits, placed, int(open_.sum()), int(settled.sum()))
 
+    def measure_whole(self, patch: Patch) -> Measured:
+        """The fits of a patch of which all is known."""
+        fits, polygon = self._fit(patch.mask, np.zeros_like(patch.mask))
+        placed = shapely.transform(polygon, lambda points: points + np.array([patch.west, patch.south]))
+        return Measured(fits, placed, 0, int(patch.mask.sum()))
+
     def _fit(self, full: Mask, possible: Mask) -> tuple[tuple[tuple[str, int], ...], Any]:
         key = (full.tobytes() + bytes(full.shape), possible.tobytes())
         if key not in self._known:

@@ -63,6 +63,13 @@ class Beginnings:
         gone = any(all(math.dist(was, door) > SAME for door in now) for was in known.doors)
         return "a door of its room was lost" if gone and node.moved and model.shaken else ""
 
+    def left(self, parameter: str, node: Node, situation: Situation) -> bool:
+        """Does what a parameter means lie in another room than where it was noted?"""
+        rooms, view = situation.rooms.labels, situation.model.view
+        began = situation.model.lattice.place_from_utak(*self._known[parameter].place)
+        now = node.polygon.centroid.x, node.polygon.centroid.y
+        return bool(rooms[view.locate(*began)] != rooms[view.locate(*now)])
+
 
 def _doors_of_its_room(began: Place, situation: Situation) -> tuple[Place, ...]:
     """The middles of the doors of the room where something lies, in Utak's own frame."""

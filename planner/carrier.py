@@ -33,7 +33,7 @@ from planner.failing import FailedHolds
 from planner.freeing import drawn_back
 from planner.haulage import Haul, Hauler, Request
 from planner.leading import by_way, lead, near, out
-from planner.lying import Ends, region_of
+from planner.lying import SURELY, Ends, drawn_out, region_of
 from planner.refusing import Refusal
 from planner.screen import Squares, grown
 from planner.walking import is_open
@@ -191,6 +191,11 @@ class Carrier:
         self.failed.blame(node, situation.model)
         return _departing(push, f"{node.name} is led out, to be taken otherwise", situation.model)
 
+    def keep_to(self, name: str) -> None:
+        """Give up the plan under way, but for one to carry that thing."""
+        if self._course is not None and self._course.name != name:
+            self._course = None
+
     def depart(self, act: Act) -> None:
         """Know that a command is given: one that no plan asks for ends the plan under way."""
         if act.departs is not None:
@@ -251,6 +256,13 @@ class Carrier:
             again = not haul.proved and self.failed.forgiven(node)
             return self._planned(replace(asked, avoid=self.failed.of(node)), situation) if again else haul
         if haul.aside:
+            unfelt = (
+                thing for thing in situation.model.objects if thing.name in haul.aside and thing.confidence < SURELY
+            )
+            felt = (inspection(situation.screens, thing, touch=True, chance=1.0, arrive=False) for thing in unfelt)
+            touch = next((look for look in felt if len(look.squares)), None)
+            if touch is not None:
+                return See(touch)
             cleared = (self._clearing(other, haul, situation) for other in situation.model.objects)
             first = next((found for found in cleared if found is not None), None)
             if first is None:
@@ -294,8 +306,8 @@ class Carrier:
         if other.name not in haul.aside or other.polygon is None or other.movable == 0:
             return None
         room = situation.screens.free(0) | situation.model.mask(other.patch)
-        request = self._request(other, {"away": Inside(region_of(room & ~haul.swept))}, "", situation.model)
-        found = self._hauler.find(request, situation)
+        end = drawn_out(other, haul.swept, situation) or Inside(region_of(room & ~haul.swept))
+        found = self._hauler.find(self._request(other, {"away": end}, "", situation.model), situation)
         return (other, found) if isinstance(found, Haul) and found.plan.legs and not found.aside else None
 
     def _seen(self, haul: Haul, node: Node, situation: Situation) -> See | None:

@@ -12,23 +12,19 @@ import numpy as np
 from geometry.carrying import At, Inside
 from geometry.ends import End
 from geometry.reach import UNREACHED
-from geometry.rigid import Pose
+from kb.facts import Fact
 from kb.worldmodel import Node, WorldModel
 from planner.aims import Aim
 from planner.carrier import Act, Carrier
 from planner.destinations import Situation
 from planner.exploring import inspection
 from planner.goals import Stage
-from planner.lying import leads_away, region_of
+from planner.lying import DEEPEST, LIKELY, SIDES, SURELY, hidden_behind, leads_away, out_of_wall, region_of
 from planner.pursuing import Decision, Pursuer
 from planner.screen import UNSEEN, Mask, Screens
 from planner.verifying import Verifier
 from planner.ways import Way, ways
 
-SURELY = 95  # percent: what is a thing with less may be a piece of wall, and is felt before it is taken
-LIKELY = 20  # percent: with less it is hardly one
-DEEPEST = 2  # squares by which a thing may stand in what seems to be wall
-SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))
 ASIDE = "aside"  # the target of what he moves out of his way
 
 
@@ -77,67 +73,69 @@ def _first_on(way: Way, things: Sequence[Node], model: WorldModel) -> Node:
 def _in_doors(thing: Node, depth: int, situation: Situation) -> Iterator[Obstacle]:
     """A thing that was never moved, where it shuts him off if it goes on so deep in what seems to be wall.
 
-    It is drawn out by as much as it may be in there and one square more, where that is free: so it is seen whole.
+    It is drawn out by so much and one square more, or as far as that is free: so it is seen whole.
     """
     model, mask = situation.model, situation.model.mask(thing.patch)
-    room = np.pad(situation.screens.free(0) | mask, DEEPEST + 1)
-    rows, columns = np.nonzero(np.pad(mask, DEEPEST + 1))
-    for dx, dy in () if thing.moved else SIDES:
-        steps = ((step * dx, step * dy) for step in range(1, depth + 1))
-        behind = np.any([_shifted(mask, *step) & model.verge for step in steps], axis=0)
-        if not behind.any() or not _ways(mask | behind, situation):
-            continue
-        out = (step for step in range(1, DEEPEST + 2) if not room[rows - step * dy, columns - step * dx].all())
-        far = next(out, DEEPEST + 2) - 1
-        if far:
-            yield Obstacle(thing, At(Pose(-float(far * dx), -float(far * dy), 0.0)))
-
-
-def _shifted(mask: Mask, dx: int, dy: int) -> Mask:
-    """A mask so many columns and rows further on."""
-    rows, columns = mask.shape
-    wide = np.pad(mask, DEEPEST)
-    return wide[DEEPEST - dy : DEEPEST - dy + rows, DEEPEST - dx : DEEPEST - dx + columns]
+    for side in SIDES:
+        behind = hidden_behind(thing, side, depth, model)
+        pose = out_of_wall(thing, side, depth, situation) if behind.any() and _ways(mask | behind, situation) else None
+        if pose is not None:
+            yield Obstacle(thing, At(pose))
 
 
 class Clearer:
-    """Moves things out of Utak's way, and remembers which one he is moving."""
+    """Moves things out of Utak's way, and remembers which one he is moving, and what is to stay meanwhile."""
 
     def __init__(self, carrier: Carrier, pursuer: Pursuer, verifier: Verifier) -> None:
         self._carrier, self._pursuer, self._verifier = carrier, pursuer, verifier
         self._moving = ""
+        self._stays: frozenset[str] = frozenset()
 
     def going_on(self, stage: Stage, situation: Situation) -> Decision | None:
-        """The next command for what he has got hold of to move it aside; None when that is nothing, or done."""
-        node = situation.model.object(self._moving) if situation.model.held == self._moving else None
-        act = None if node is None else self._carrier.gone_on(node, situation)
+        """The next command for what he is moving aside; None when that is nothing, or it shuts him off no more."""
+        node, held = situation.model.object(self._moving), situation.model.held
+        if node is not None and held is None:
+            instead = self._first_moved(self._movable(self._stays, situation), stage, situation, node.name)
+            if instead is not None:
+                return instead
+        act = self._carrier.gone_on(node, situation) if node is not None and held == node.name else None
         if act is None or self._pursuer.noticed(situation.model, act.command):
             self._moving = ""
             return None
         return Decision(act.command, f"{act.why}; {stage}")
 
-    def cleared(self, decision: Decision, stage: Stage, situation: Situation) -> Decision:
-        """What is decided; rather than give up, to move aside what shuts him off.
+    def cleared(self, decision: Decision, goals: Sequence[Fact], stage: Stage, situation: Situation) -> Decision:
+        """What is decided towards some goals; rather than give up, to move aside what shuts him off.
 
-        While that stands there, that he cannot come further proves nothing; nor where it did not move, for it may be
-        wedged in between walls.
+        What the goals speak of stays. While something stands there, that he cannot come further proves nothing; nor
+        where it did not move, for it may be wedged in between walls.
         """
         if not decision.verdict:
             return decision
-        model, shut_off = situation.model, ""
-        stays = {situation.binding.get(str(term), "") for goal in stage.goals for term in goal.args}
-        movable = [n for n in model.objects if n.movable > 0 and n.confidence >= LIKELY and n.name not in stays]
-        for node, aside in obstacles(movable, situation):
-            instead = self._moved_aside(node, aside, stage, situation)
-            if instead is not None:
-                return instead
-            shut_off = node.name
-        if decision.verdict != "impossible":
-            return decision
-        wedged = [n for n in model.objects if n.movable == 0 and n.confidence >= SURELY]
-        shut_off = shut_off or next((node.name for node, _ in obstacles(wedged, situation)), "")
+        self._stays = frozenset(situation.binding.get(str(term), "") for goal in goals for term in goal.args)
+        instead = self._first_moved(self._movable(self._stays, situation), stage, situation)
+        if instead is not None or decision.verdict != "impossible":
+            return instead or decision
+        things = [node for node in situation.model.objects if node.confidence >= LIKELY]
+        shut_off = next((node.name for node, _ in obstacles(things, situation)), "")
         why = f"{decision.why}; {shut_off} shuts him off, and was not moved aside"
         return Decision(None, why, "limit") if shut_off else decision
+
+    def _movable(self, stays: frozenset[str], situation: Situation) -> list[Node]:
+        """What may be moved aside. stays : names of what is not."""
+        things = (node for node in situation.model.objects if node.movable > 0 and node.confidence >= LIKELY)
+        return [node for node in things if node.name not in stays]
+
+    def _first_moved(
+        self, things: Sequence[Node], stage: Stage, situation: Situation, name: str = ""
+    ) -> Decision | None:
+        """The next command to move one of some things aside that shut him off. name : of that one alone."""
+        for node, aside in obstacles(things, situation):
+            instead = self._moved_aside(node, aside, stage, situation) if name in ("", node.name) else None
+            if instead is not None:
+                self._moving = node.name
+                return instead
+        return None
 
     def _moved_aside(self, node: Node, aside: End, stage: Stage, situation: Situation) -> Decision | None:
         """The next command to move a thing aside, if it is one; None when none is known."""
@@ -151,10 +149,10 @@ class Clearer:
                 return look
         if node.polygon is None:
             return None
+        self._carrier.keep_to(node.name)
         advice = self._carrier.advise(node, {ASIDE: aside}, situation)
         if not isinstance(advice, Act):
             return self._pursuer.prepared(advice, stage, situation)
         if self._pursuer.noticed(situation.model, advice.command):
             return None
-        self._moving = node.name
         return Decision(advice.command, f"{node.name} shuts him off: {advice.why}; {stage}")

@@ -18,7 +18,7 @@ from kb.body import DIRECTIONS
 from kb.worldmodel import Node, Patch, WorldModel
 from planner.destinations import Situation
 from planner.haulage import Haul, swept_squares
-from planner.lying import in_view, lands_in_one
+from planner.lying import barred, in_view, lands_in_one
 from planner.screen import Squares
 
 Mask = NDArray[np.bool_]
@@ -159,7 +159,8 @@ def _longest_push(yard: Yard, shape: Any, place: Place, push: Translate) -> Tran
 
 def _room(course: Course, node: Node, situation: Situation) -> Mask:
     """(rows, columns): the squares over which a course may lead that was made before."""
-    return situation.screens.free(max(course.level, STILL)) | situation.model.mask(node.patch)
+    free = situation.screens.free(max(course.level, STILL)) | situation.model.mask(node.patch)
+    return free & ~barred(node, situation)
 
 
 def _led(course: Course, node: Node, free: Mask, situation: Situation) -> Any:

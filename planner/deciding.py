@@ -85,10 +85,10 @@ class Decider:
             if decision is None:
                 continue
             decision = self.transporter.freed(str(goal.args[0]), stage, situation) or decision
-            proved = decision.verdict == "impossible"  # whatever else is moved
-            return decision if proved else self._clearer.cleared(decision, stage, situation)
+            proved = decision.verdict == "impossible"  # whatever else is moved, and however deep in a wall it is
+            return decision if proved else self._clearer.cleared(decision, (goal,), stage, situation)
         decision = self._going(stage, situation, reconciled, track) if stage.own else None
-        return None if decision is None else self._clearer.cleared(decision, stage, situation)
+        return None if decision is None else self._clearer.cleared(decision, stage.own, stage, situation)
 
     def _going(
         self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[Place]

@@ -76,10 +76,14 @@ class Situation:
                 break
         return rooms, mask
 
-    def forbidden(self, *who: str) -> tuple[Door, ...]:
-        """The doors that some, "utak" and nodes, may not all go through by the constraints of the task."""
+    def forbidden(self, who: str) -> tuple[Door, ...]:
+        """The doors that "utak" or a node may not go through by the constraints of the task.
+
+        A thing that may not go through a door is kept from all that may be doors: which one is meant nothing tells.
+        """
         meant = {self.binding.get(str(goal.args[0]), str(goal.args[0])) for goal in constraints(self.task)}
-        return self.rooms.sure[:1] if meant.intersection(who) else ()
+        doors = self.rooms.sure[:1] if who == "utak" else tuple(door for door in self.rooms.doors if door.likely)
+        return doors if who in meant else ()
 
     def next_to(self, place: tuple[float, float], rooms: Rooms, least: int) -> Mask:
         """(rows, columns) what shares a door with the room of a point, if that is one with so many percent."""

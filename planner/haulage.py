@@ -24,7 +24,7 @@ from kb.worldmodel import Node, WorldModel
 from planner.aims import ASP
 from planner.destinations import Situation
 from planner.hoping import BEYOND, BOLD, framed, hoped_floor
-from planner.lying import Ends, barred, in_view, region_of
+from planner.lying import DEEPEST, LIKELY, SIDES, SURELY, Ends, barred, hidden_behind, in_view, region_of
 from planner.refusing import Refusal, refusal
 from planner.screen import UNSEEN, grown
 from planner.walking import is_open
@@ -142,8 +142,9 @@ class Hauler:
             verdicts.append(f"{fact}({name},{level},{aside})")
         self._hopeless = True
         told = refusal(request.node, plans, situation.model)
-        by_itself = situation.forbidden("utak") and not situation.forbidden(request.node.name)
-        return replace(told, proved=False) if by_itself else told  # it may go where he may not
+        own = situation.forbidden(request.node.name)
+        unsure = len(own) > 1 or (not own and situation.forbidden("utak"))  # which door; it may go where he may not
+        return replace(told, proved=False) if unsure else told
 
     def _bolder(self, request: Request, haul: Haul, situation: Situation) -> Haul:
         """What planner/asp/boldness.lp chooses of a way that was found and of those over what is hoped to be floor.
@@ -236,7 +237,8 @@ def _free(node: Node, situation: Situation, level: int, aside: str) -> Mask:
     """The squares that may be used for carrying an object: those of the level, its own, and those of movable things.
 
     What lies only about where it is believed to may cover what seems to be another thing right beside it, and what
-    cannot be moved may cover the squares at its rim in part: nothing is proved by those.
+    cannot be moved may cover the squares at its rim in part: nothing is proved by those. Nor by what may be a thing and
+    no piece of wall, or go on in what seems to be wall, in which it is wedged if it did not move.
     """
     model = situation.model
     own = model.mask(node.patch)
@@ -249,9 +251,13 @@ def _free(node: Node, situation: Situation, level: int, aside: str) -> Mask:
             if node.inexact and (grown(own, 1) & mask).any():
                 free |= mask
     if aside == "aside":
-        for other in model.objects:
-            if other.movable > 0 and other.confidence >= 95:
+        for other in (other for other in model.objects if other.name != node.name):
+            if other.movable > 0 and other.confidence >= SURELY:
                 free |= model.mask(other.patch)
+            if level == UNSEEN and other.confidence >= LIKELY:
+                hidden = np.any([hidden_behind(other, side, DEEPEST, model) for side in SIDES], axis=0)
+                if other.movable > 0 or hidden.any():
+                    free |= hidden | model.mask(other.patch)
     return free & ~barred(node, situation)
 
 

@@ -5,6 +5,7 @@ Shapes and goals of geometry.carrying are in the frame of the view's arrays.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,9 @@ import shapely
 from numpy.typing import NDArray
 
 from geometry.digital import squares
-from geometry.ends import End, met
-from kb.worldmodel import Node
+from geometry.ends import At, End, met
+from geometry.rigid import Pose
+from kb.worldmodel import Node, WorldModel
 from planner.destinations import Situation
 from planner.exploring import Lookout
 from planner.screen import grown
@@ -22,6 +24,10 @@ Mask = NDArray[np.bool_]
 Ends = Callable[[], Mapping[str, End]]  # by their names, worked out when asked
 Looks = Callable[[], tuple[Lookout, ...]]  # worked out when asked
 HAIR = 0.01  # squares that do not matter
+SURELY = 95  # percent: what is a thing with less may be a piece of wall, and is felt before it is taken
+LIKELY = 20  # percent: with less it is hardly one
+DEEPEST = 3  # squares by which a thing may go on in what seems to be wall
+SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))
 NOOK = 2  # squares about a thing that are no room to go
 TURNED = 2.0  # degrees within which a thing lies as it was meant to
 
@@ -95,9 +101,47 @@ def barred(node: Node, situation: Situation) -> Mask:
     He holds it wherever it goes through, so a door that is forbidden to either is to both.
     """
     columns, rows = situation.model.labels.shape[::-1]
-    necks = (shapely.LineString([door.a, door.b]).buffer(HAIR) for door in situation.forbidden("utak", node.name))
+    doors = (*situation.forbidden("utak"), *situation.forbidden(node.name))
+    necks = (shapely.LineString([door.a, door.b]).buffer(HAIR) for door in doors)
     mask: Mask = np.any([squares(neck, columns, rows) for neck in necks] or [np.zeros((rows, columns), bool)], axis=0)
     return mask & ~situation.model.mask(node.patch)
+
+
+def hidden_behind(node: Node, side: tuple[int, int], depth: int, model: WorldModel) -> Mask:
+    """(rows, columns): what seems to be wall straight behind a thing, of so many squares, and may be more of it.
+
+    What was moved was seen to end.
+    """
+    mask = model.mask(node.patch)
+    found, last = np.zeros_like(mask), mask
+    rows, columns = mask.shape
+    for _ in range(depth if not node.moved else 0):
+        wide = np.pad(last, 1)
+        last = wide[1 - side[1] :, 1 - side[0] :][:rows, :columns] & model.verge & ~mask
+        found |= last
+    return found
+
+
+def out_of_wall(node: Node, side: tuple[int, int], depth: int, situation: Situation) -> Pose | None:
+    """Straight away from what it may go on in, by so many squares and one more or as far as that is free, so that it is
+    seen whole; None where it cannot be moved so.
+    """
+    mask, (dx, dy) = situation.model.mask(node.patch), side
+    room = np.pad(situation.screens.free(0) | mask, depth + 1)
+    rows, columns = np.nonzero(np.pad(mask, depth + 1))
+    out = (step for step in range(1, depth + 2) if not room[rows - step * dy, columns - step * dx].all())
+    far = next(out, depth + 2) - 1
+    return Pose(-float(far * dx), -float(far * dy), 0.0) if far else None
+
+
+def drawn_out(node: Node, needed: Mask, situation: Situation) -> At | None:
+    """Where a thing shall lie first whose squares in what seems to be wall are needed; None for none such."""
+    for depth, side in product(range(DEEPEST, 0, -1), SIDES):
+        if (hidden_behind(node, side, depth, situation.model) & needed).any():
+            pose = out_of_wall(node, side, depth, situation)
+            if pose is not None:
+                return At(pose)
+    return None
 
 
 def can_leave(node: Node, situation: Situation) -> bool:

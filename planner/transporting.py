@@ -58,6 +58,8 @@ class Transporter:
             why = f"{stage} cannot be told: {lost} since {node.name} was taken"
             if lost and goal.name in FROM_THE_START:
                 return Decision(None, why, "limit")
+            if self.beginnings.left(x, node, situation) and situation.forbidden(node.name):
+                return Decision(None, f"{stage} holds, but {node.name} went through a door that it may not", "limit")
             return self._led_out(node, stage, situation) if stage.goes_on else None
         advice = self._advice(node, land, situation)
         if isinstance(advice, Refusal) and land.loose:

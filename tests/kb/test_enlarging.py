@@ -7,6 +7,7 @@ from shapely.affinity import translate
 from kb.accommodation import Memory
 from kb.body import Move, Push
 from kb.evidence import FREE, FULL
+from kb.knowledge import Knowledge
 from kb.loads import Load
 from tests.kb.eyes import Occupied, impression, world_of
 from tests.kb.test_relaying import around
@@ -65,3 +66,19 @@ def test_what_was_moved_before_is_no_larger_than_it_seemed() -> None:
     memory, _ = drawn(hall(DOOR), 1, 2.0)
     again = around(shapely.box(14, 10, 17, 15), hall(DOOR))
     assert memory.accommodate(Push(-2.0, 0.0), impression(again, (13, 12))).explanation.how == "predicted"
+
+
+def test_its_shape_is_told_anew() -> None:
+    """A brick that stuck out of a door as a square."""
+    knowledge, wide = Knowledge(), shapely.box(15, 10, 22, 15)
+    before, after = around(wide, hall(DOOR)), around(translate(wide, -3.0), hall(DOOR))
+    here = (14, 12)
+    knowledge.wake(impression(before, here, colour="g"))
+    felt = translate(shapely.box(15, 10, 20, 15), -here[0], -here[1])
+    knowledge.memory.grasp(Load("o1", felt, felt, shape={"square": 62, "brick": 30}))
+    model, accommodated = knowledge.perceive(Push(-3.0, 0.0), impression(after, (11, 12), colour="g"))
+    assert accommodated.explanation.how == "larger"
+    node = model.object("o1")
+    assert node is not None
+    assert node.shape["brick"] > 50
+    assert node.shape["square"] < 50

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 import shapely
+import shapely.affinity
 
 from kb.rooms import Rooms
 from planner.beginning import Beginnings
@@ -103,3 +104,14 @@ def test_who_was_lost_does_not_know_where_a_thing_began_that_he_took_before(befo
     assert not said("x", anew=False)
     assert said("x", anew=True) == lost
     assert not said("y", anew=True)
+
+
+def test_what_lies_in_another_room_has_left_its_own() -> None:
+    beginnings, before = Beginnings(), now(shaken=False, moved=False)
+    (node,) = before.model.objects
+    beginnings.at("x", node, before)
+    assert not beginnings.left("x", node, before)
+    there = replace(node, polygon=shapely.affinity.translate(node.polygon, 16.0))
+    assert beginnings.left("x", there, before)
+    here = replace(node, polygon=shapely.affinity.translate(node.polygon, 2.0))
+    assert not beginnings.left("x", here, before)
