@@ -18,6 +18,7 @@ from geometry import Screen
 from geometry.components import components
 from geometry.passages import Passage
 from kb.encodings import KB, solve
+from kb.protruding import VERGE
 from kb.regions import extents
 from kb.worldmodel import SMALLEST_WALL, WorldModel
 
@@ -165,7 +166,10 @@ def _doors(necks: Iterable[tuple[Passage, int]], rules: tuple[Path, ...]) -> lis
 
 
 class _Walls(NamedTuple):
-    """What is very likely one thing: (rows, columns) labels, 0 for none, and by label how long it is, in squares."""
+    """What is very likely one thing: (rows, columns) labels, 0 for none, and by label how long it is, in squares.
+
+    What was felt to be verge counts for as long as a wall is at least.
+    """
 
     labels: NDArray[np.int32]
     extents: NDArray[np.int64]
@@ -173,7 +177,13 @@ class _Walls(NamedTuple):
 
 def _walls(model: WorldModel) -> _Walls:
     found = components(model.view.seen & (model.view.probability >= LIKELY))
-    return _Walls(found.labels, extents(found.labels, found.number))
+    long = extents(found.labels, found.number)
+    height, width = found.labels.shape
+    for row, column in (model.view.locate(*square) for square, colour in model.felt.items() if colour == VERGE):
+        label = found.labels[row, column] if 0 <= row < height and 0 <= column < width else 0
+        if label:  # verge, however short it is
+            long[label] = max(long[label], SMALLEST_WALL)
+    return _Walls(found.labels, long)
 
 
 def _known(passage: Passage, model: WorldModel, verge: Mask, doubtful: Mask, walls: _Walls) -> int:

@@ -16,7 +16,7 @@ from planner.goals import Stage
 from planner.keeping import Kept, lattice_squares
 from planner.repeating import Circles
 from planner.screen import Squares
-from planner.searching import against_walls
+from planner.searching import against_walls, perhaps_islands
 from planner.walking import HURRY, STROLL, halting, next_move
 from planner.ways import Way, choose_way, ways
 
@@ -101,13 +101,13 @@ class Pursuer:
         return None if walk is None or walk.command is None else walk
 
     def felt(self, ask: Callable[[], Decision], stage: Stage, situation: Situation) -> Decision:
-        """What is decided; rather than give up, to feel what may be a thing that stands against a wall.
+        """What is decided; rather than give up, to feel what may be a thing that stands against a wall, or a wall.
 
         What was begun is gone on with: on the way there, too, something else may come to be worth a look.
         """
         decision = None if self._feeling else ask()
         if decision is None or decision.verdict:
-            aims = against_walls(situation)
+            aims = against_walls(situation) or perhaps_islands(situation)
             felt = [self.pursue(aims, stage, situation, lambda: "")] if aims else []
             self._feeling = any(not instead.verdict for instead in felt)
             return felt[0] if self._feeling else decision or ask()

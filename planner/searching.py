@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from kb.imagining import seen_in_part
 from kb.reconciliation import Reconciled
+from kb.rooms import rooms_of
 from kb.worldmodel import Node, WorldModel
 from planner import exploring
 from planner.aims import Aim
@@ -59,6 +60,19 @@ def against_walls(situation: Situation) -> list[Aim]:
     """What may be things that stand against a wall: where each can be felt."""
     looks = [exploring.against_the_wall(situation.screens, mask) for mask in situation.model.protruding]
     return [Aim("inspect", *look) for look in looks if len(look.squares)]
+
+
+def perhaps_islands(situation: Situation) -> list[Aim]:
+    """What stands free, and would make more doors were it a piece of wall: where each can be felt."""
+    model = situation.model
+    aims = []
+    for node in model.objects:
+        if node.colour is None and not node.moved:
+            rooms = rooms_of(model, situation.rules, model.verge | model.mask(node.patch))
+            if len(rooms.doors) > len(situation.rooms.doors):
+                look = exploring.inspection(situation.screens, node, touch=True, chance=1.0, arrive=False)
+                aims += [Aim("inspect", *look)] if len(look.squares) else []
+    return aims
 
 
 def _things(situation: Situation, reconciled: Reconciled, likely: Heat | None, arrive: bool) -> list[Candidate]:

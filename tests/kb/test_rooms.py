@@ -9,7 +9,9 @@ from kb.interpretation import interpret
 from kb.regions import map_regions
 from kb.rooms import rooms_of
 from kb.worldmodel import SPACE, WorldModel
+from planner.searching import perhaps_islands
 from tests.kb.drawings import seen_whole, unclear
+from tests.planner.situations import situation_of
 
 
 def two_rooms(door: int, wall: int, high: int = 14, wide: int = 12) -> list[str]:
@@ -227,3 +229,28 @@ def test_what_is_seen_of_a_doorway_alone_stays_a_part_of_its_own() -> None:
     for door in rooms.doors:
         assert np.isin(door.sides, rooms.labels).all()
     assert np.unique(rooms.labels).tolist() == list(range(rooms.labels.max() + 1))
+
+
+ISLAND = [  # two rooms, and a short piece of wall between two doors
+    "b" * 34,
+    *["b" + "." * 15 + "bb" + "." * 15 + "b"] * 2,
+    *["b" + "." * 32 + "b"] * 4,
+    *["b" + "." * 15 + "ww" + "." * 15 + "b"] * 5,
+    *["b" + "." * 32 + "b"] * 4,
+    *["b" + "." * 15 + "bb" + "." * 15 + "b"] * 2,
+    "b..U" + "." * 12 + "bb" + "." * 15 + "b",
+    "b" * 34,
+]
+
+
+@pytest.mark.parametrize("felt", [True, False])
+def test_a_short_piece_of_wall_that_was_felt_is_the_jamb_of_two_doors(felt: bool) -> None:
+    model = seen_whole(ISLAND)
+    (node,) = model.objects
+    beside = next(iter(node.patch.squares()))
+    model = replace(model, felt={beside: "b"} if felt else {}, objects=())
+    rooms = rooms_of(model, verge=model.verge | model.mask(node.patch))
+    assert [round(door.width) for door in rooms.doors] == [4, 4]
+    assert len(rooms.sure) == (2 if felt else 0)
+    assert [aim.kind for aim in perhaps_islands(situation_of(seen_whole(ISLAND)))] == ["inspect"]
+    assert not perhaps_islands(situation_of(seen_whole([row.replace("w", ".") for row in ISLAND])))
