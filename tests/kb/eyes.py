@@ -8,6 +8,7 @@ import numpy as np
 from kb.body import Impression
 
 Occupied = Callable[[int, int], bool]
+Colours = Callable[[int, int], str]
 ZONES = ((4, 1), (8, 2), (16, 4))
 AROUND = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))
 
@@ -21,6 +22,17 @@ def world_of(rows: list[str]) -> Occupied:
         return not inside or rows[high - 1 - j][i] not in ".U"
 
     return occupied
+
+
+def colours_of(rows: list[str]) -> Colours:
+    """The colours of a drawing: its letters, and that of the verge beyond it."""
+    high = len(rows)
+
+    def colour(i: int, j: int) -> str:
+        inside = 0 <= j < high and 0 <= i < len(rows[high - 1 - j])
+        return rows[high - 1 - j][i] if inside else "b"
+
+    return colour
 
 
 def utak_in(rows: list[str]) -> tuple[int, int]:
@@ -52,12 +64,16 @@ def retina(occupied: Occupied, square: tuple[int, int], heading: float = 0.0) ->
     return tuple(levels)
 
 
-def impression(occupied: Occupied, square: tuple[int, int], heading: float = 0.0, colour: str = "b") -> Impression:
-    """What is sensed there, everything being of one colour."""
+def impression(
+    occupied: Occupied, square: tuple[int, int], heading: float = 0.0, colour: str | Colours = "b"
+) -> Impression:
+    """What is sensed there, everything being of one colour, or of its own."""
     touch = []
     for east, north in AROUND:
         i, j = sampled(east, north, heading)
-        touch.append(colour if occupied(square[0] + i, square[1] + j) else None)
+        there = square[0] + i, square[1] + j
+        felt = colour if isinstance(colour, str) else colour(*there)
+        touch.append(felt if occupied(*there) else None)
     return Impression(retina(occupied, square, heading), tuple(touch))
 
 

@@ -21,7 +21,7 @@ from planner.deciding import Decider
 from planner.goals import constraints, stages
 from planner.screen import Screens
 from tests.kb.drawings import seen_whole
-from tests.kb.eyes import impression, utak_in, world_of
+from tests.kb.eyes import colours_of, impression, utak_in, world_of
 
 NOWHERE = Span(0, 0, 0)
 
@@ -35,7 +35,7 @@ class DrawnBody:
     bumps = False
 
     def __init__(self, rows: list[str], heading: int = 0) -> None:
-        self.occupied, self.heading = world_of(rows), heading
+        self.occupied, self.colours, self.heading = world_of(rows), colours_of(rows), heading
         i, j = utak_in(rows)
         self.place = np.array([i + 0.5, j + 0.5])
         self.track = [self.square]
@@ -46,7 +46,7 @@ class DrawnBody:
         return int(self.place[0]), int(self.place[1])
 
     def wake(self) -> Impression:
-        return impression(self.occupied, self.square, self.heading)
+        return impression(self.occupied, self.square, self.heading, self.colours)
 
     def act(self, command: Command) -> Impression:
         assert isinstance(command, Move)
@@ -59,7 +59,7 @@ class DrawnBody:
         self.place = self.place + way
         self.track.append(self.square)
         self.commands.append(command)
-        return impression(self.occupied, self.square, self.heading)
+        return impression(self.occupied, self.square, self.heading, self.colours)
 
 
 def term(text: str) -> Symbol:
@@ -326,7 +326,7 @@ def test_he_who_is_carried_off_does_his_task_all_the_same() -> None:
         robot.wake()
         robot.step()
         body.place = np.array([rng.integers(2, 9), rng.integers(1, 12)]) + 0.5  # somebody puts him down there
-        body.occupied = world_of(ROOMS)  # in another house
+        body.occupied, body.colours = world_of(ROOMS), colours_of(ROOMS)  # in another house
         body.bumps = True
         while not robot.finished:
             robot.step()
