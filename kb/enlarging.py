@@ -25,17 +25,17 @@ def larger(surprise: Surprise, load: Load, motion: Motion) -> Iterator[Explanati
     """That a thing in hand that never moved before went as commanded, and more of it than was seen: the least first."""
     if load.proven or not isinstance(motion, Translate) or not is_whole(load.polygon):
         return
-    evidence = surprise.evidence
+    evidence, seen = surprise.evidence, covered(load.polygon).squares()
+    others = [other for other in surprise.loads.values() if other.name != load.name]
     for depth in range(1, DEEPEST + 1):
         for side in SIDES:
             whole = _going_on(load, side, depth)
-            hidden = covered(whole.polygon).squares() - covered(load.polygon).squares()
+            hidden = covered(whole.polygon).squares() - seen
             if any(evidence.state[evidence.index(*square)] == FREE for square in hidden):
                 continue
             outcome = predicted(surprise.place, whole.polygon, motion)._replace(how="larger")
             patch, floor = patch_of_squares(hidden), deepcopy(evidence)
             floor.declare(floor.squares(patch.west, patch.south, patch.mask), FREE, len(surprise.looks) - 1)
-            others = [other for other in surprise.loads.values() if other.name != load.name]
             loads = [*others, whole.moved(outcome.polygon, whole.slack, commanded=True)]
             if not clashes(surprise.lattice, floor, loads, outcome.place, surprise.ranges):
                 yield Explanation("larger", outcome.place, surprise.lattice, 0, float(depth), outcome, larger=whole)

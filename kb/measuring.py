@@ -47,15 +47,17 @@ class Measurer:
         possible = open_ & ~full
         if not full.any() or possible.sum() > MOST_OPEN * full.sum():
             return Measured((), None, int(open_.sum()), int(settled.sum()))
-        fits, polygon = self._fit(full, possible)
-        placed = shapely.transform(polygon, lambda points: points + np.array([patch.west, patch.south]))
-        return Measured(fits, placed, int(open_.sum()), int(settled.sum()))
+        return self._fitted(patch, full, possible)._replace(open=int(open_.sum()), full=int(settled.sum()))
 
     def measure_whole(self, patch: Patch) -> Measured:
         """The fits of a patch of which all is known."""
-        fits, polygon = self._fit(patch.mask, np.zeros_like(patch.mask))
+        return self._fitted(patch, patch.mask, np.zeros_like(patch.mask))
+
+    def _fitted(self, patch: Patch, full: Mask, possible: Mask) -> Measured:
+        """The fits of the squares of a patch that are covered, or may be."""
+        fits, polygon = self._fit(full, possible)
         placed = shapely.transform(polygon, lambda points: points + np.array([patch.west, patch.south]))
-        return Measured(fits, placed, 0, int(patch.mask.sum()))
+        return Measured(fits, placed, int(possible.sum()), int(full.sum()))
 
     def _fit(self, full: Mask, possible: Mask) -> tuple[tuple[tuple[str, int], ...], Any]:
         key = (full.tobytes() + bytes(full.shape), possible.tobytes())

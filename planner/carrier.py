@@ -28,7 +28,7 @@ from planner.course import (
     stands,
 )
 from planner.destinations import Situation
-from planner.exploring import Lookout, inspection, sight_of
+from planner.exploring import Lookout, by_touch, inspection, sight_of
 from planner.failing import FailedHolds
 from planner.freeing import drawn_back
 from planner.haulage import Haul, Hauler, Request
@@ -259,7 +259,7 @@ class Carrier:
             unfelt = (
                 thing for thing in situation.model.objects if thing.name in haul.aside and thing.confidence < SURELY
             )
-            felt = (inspection(situation.screens, thing, touch=True, chance=1.0, arrive=False) for thing in unfelt)
+            felt = (by_touch(situation.screens, thing) for thing in unfelt)
             touch = next((look for look in felt if len(look.squares)), None)
             if touch is not None:
                 return See(touch)
@@ -268,7 +268,7 @@ class Carrier:
             if first is None:
                 unclear = (situation.model.object(name) for name in haul.aside)
                 looks = (
-                    inspection(situation.screens, o, touch=False, chance=1.0, arrive=False)
+                    inspection(situation.screens, o, chance=1.0, arrive=False)
                     for o in unclear
                     if o is not None and o.open
                 )

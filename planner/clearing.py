@@ -12,14 +12,15 @@ import numpy as np
 from geometry.carrying import At, Inside
 from geometry.ends import End
 from geometry.reach import UNREACHED
+from kb.enlarging import DEEPEST, SIDES
 from kb.facts import Fact
 from kb.worldmodel import Node, WorldModel
 from planner.aims import Aim
 from planner.carrier import Act, Carrier
 from planner.destinations import Situation
-from planner.exploring import inspection
+from planner.exploring import by_touch
 from planner.goals import Stage
-from planner.lying import DEEPEST, LIKELY, SIDES, SURELY, hidden_behind, leads_away, out_of_wall, region_of
+from planner.lying import LIKELY, SURELY, hidden_behind, leads_away, out_of_wall, region_of
 from planner.pursuing import Decision, Pursuer
 from planner.screen import UNSEEN, Mask, Screens
 from planner.verifying import Verifier
@@ -140,7 +141,7 @@ class Clearer:
     def _moved_aside(self, node: Node, aside: End, stage: Stage, situation: Situation) -> Decision | None:
         """The next command to move a thing aside, if it is one; None when none is known."""
         if node.confidence < SURELY:
-            touch = inspection(situation.screens, node, touch=True, chance=1.0, arrive=False)
+            touch = by_touch(situation.screens, node)
             look = self._pursuer.look(Aim("inspect", *touch), stage, situation)
             return None if look is None or look.command is None else look
         if node.polygon is None or node.vague:

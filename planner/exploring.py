@@ -150,16 +150,19 @@ def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:
     return [Lookout(squares, "what bounds the floor is not clear") for squares in _groups(near)]
 
 
-def inspection(screens: Screens, node: Node, touch: bool, chance: float, arrive: bool) -> Lookout:
-    """Floor from which an object is seen as well as can be, or felt.
+def by_touch(screens: Screens, node: Node) -> Lookout:
+    """Floor from which an object is felt."""
+    beside = grown(screens.model.mask(node.patch), 1)
+    return Lookout(np.flatnonzero(_new(screens, 0) & beside), f"the colour of {node.name} is not known")
+
+
+def inspection(screens: Screens, node: Node, chance: float, arrive: bool) -> Lookout:
+    """Floor from which an object is seen as well as can be.
 
     chance : that it is what is looked for. arrive : as for `close`.
     """
-    model = screens.model
-    mask = model.mask(node.patch)
-    if touch:
-        return Lookout(np.flatnonzero(_new(screens, 0) & grown(mask, 1)), f"the colour of {node.name} is not known")
-    return Lookout(close(screens, mask, chance, arrive), f"what {node.name} is is not clear")
+    squares = close(screens, screens.model.mask(node.patch), chance, arrive)
+    return Lookout(squares, f"what {node.name} is is not clear")
 
 
 def against_the_wall(screens: Screens, mask: Mask) -> Lookout:

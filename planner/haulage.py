@@ -18,13 +18,14 @@ from geometry.digital import squares, squares_after
 from geometry.ends import End, moved
 from geometry.rigid import Rotate, Translate
 from kb.encodings import solve
+from kb.enlarging import DEEPEST, SIDES
 from kb.lattice import AROUND
 from kb.loads import is_whole
 from kb.worldmodel import Node, WorldModel
 from planner.aims import ASP
 from planner.destinations import Situation
 from planner.hoping import BEYOND, BOLD, framed, hoped_floor
-from planner.lying import DEEPEST, LIKELY, SIDES, SURELY, Ends, barred, hidden_behind, in_view, region_of
+from planner.lying import LIKELY, SURELY, Ends, barred, hidden_behind, in_view, region_of
 from planner.refusing import Refusal, refusal
 from planner.screen import UNSEEN, grown
 from planner.walking import is_open

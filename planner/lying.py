@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from geometry.digital import squares
 from geometry.ends import At, End, met
 from geometry.rigid import Pose
+from kb.enlarging import DEEPEST, SIDES
 from kb.worldmodel import Node, WorldModel
 from planner.destinations import Situation
 from planner.exploring import Lookout
@@ -26,8 +27,6 @@ Looks = Callable[[], tuple[Lookout, ...]]  # worked out when asked
 HAIR = 0.01  # squares that do not matter
 SURELY = 95  # percent: what is a thing with less may be a piece of wall, and is felt before it is taken
 LIKELY = 20  # percent: with less it is hardly one
-DEEPEST = 3  # squares by which a thing may go on in what seems to be wall
-SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))
 NOOK = 2  # squares about a thing that are no room to go
 TURNED = 2.0  # degrees within which a thing lies as it was meant to
 

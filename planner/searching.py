@@ -70,7 +70,7 @@ def perhaps_islands(situation: Situation) -> list[Aim]:
         if node.colour is None and not node.moved:
             rooms = rooms_of(model, situation.rules, model.verge | model.mask(node.patch))
             if len(rooms.doors) > len(situation.rooms.doors):
-                look = exploring.inspection(situation.screens, node, touch=True, chance=1.0, arrive=False)
+                look = exploring.by_touch(situation.screens, node)
                 aims += [Aim("inspect", *look)] if len(look.squares) else []
     return aims
 
@@ -84,7 +84,7 @@ def _things(situation: Situation, reconciled: Reconciled, likely: Heat | None, a
         if node is None or x not in reconciled.hypothesised:
             continue
         chance = ANY_SHAPE if likely is None else _chance(node, likely, model)
-        look = exploring.inspection(screens, node, node.open == 0, chance, arrive)
+        look = exploring.inspection(screens, node, chance, arrive) if node.open else exploring.by_touch(screens, node)
         what = f"{look.what}: it may be {x}"
         squares = np.flatnonzero(model.mask(node.patch))
         found.append(Candidate(squares, Aim("inspect", look.squares, what, max(LEAST, round(100 * chance)))))

@@ -46,7 +46,7 @@ class Verifier:
         self._doubted.discard(node.name)
         if node.polygon is not None and not node.open:
             return None
-        look = exploring.inspection(situation.screens, node, touch=False, chance=1.0, arrive=False)
+        look = exploring.inspection(situation.screens, node, chance=1.0, arrive=False)
         if not len(look.squares):
             return None
         self._doubted.add(node.name)
