@@ -16,6 +16,7 @@ from kb.evidence import OPEN
 from kb.lattice import CENTRE
 from kb.loads import is_whole
 from kb.worldmodel import SPACE, Node, WorldModel
+from planner.approaching import TAKE, inspection
 from planner.course import (
     Course,
     Place,
@@ -28,7 +29,7 @@ from planner.course import (
     stands,
 )
 from planner.destinations import Situation
-from planner.exploring import Lookout, by_touch, inspection, sight_of
+from planner.exploring import Lookout, by_touch, sight_of
 from planner.failing import FailedHolds
 from planner.freeing import drawn_back
 from planner.haulage import Haul, Hauler, Request
@@ -268,9 +269,7 @@ class Carrier:
             if first is None:
                 unclear = (situation.model.object(name) for name in haul.aside)
                 looks = (
-                    inspection(situation.screens, o, chance=1.0, arrive=False)
-                    for o in unclear
-                    if o is not None and o.open
+                    inspection(situation.screens, o, chance=1.0, to=TAKE) for o in unclear if o is not None and o.open
                 )
                 look = next((look for look in looks if len(look.squares)), None)
                 if look is not None:

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -14,7 +14,9 @@ from geometry.components import components
 from geometry.ends import End, placed
 from geometry.reach import UNREACHED, reach
 from geometry.rigid import Pose
+from kb.facts import Fact, Symbol
 from kb.worldmodel import CLEAR, Node
+from planner.approaching import TAKE, Approach
 from planner.destinations import Situation, rooms_to_see, unknown_corner
 from planner.exploring import Lookout, short_of, sight_of
 from planner.lying import HAIR, Landing, Mask, can_leave, in_view, lands, lies_askew, region_of
@@ -55,6 +57,18 @@ def cornered(side: str, node: Node, situation: Situation) -> Landing:
     if not looks:
         return land
     return Landing({}, looks[0].what, looks, there=not shut_in, shut_in=shut_in)
+
+
+def approach(goals: Iterable[Fact], situation: Situation) -> Approach:
+    """How he goes up to what he shall carry to where some goals hold for it."""
+    for goal in goals:
+        where = goal.args[1]
+        if goal.name == "at" and isinstance(where, Symbol) and where.name == "corner":
+            side = str(where.args[0])
+            if side in situation.corners:
+                end = _into_corner(side, situation)
+                return TAKE._replace(corner=(end.sx, end.sy))
+    return TAKE
 
 
 def _looks_into_rooms(side: str, situation: Situation) -> tuple[Lookout, ...]:

@@ -17,6 +17,7 @@ from kb.rooms import NOTHING, Rooms, rooms_of
 from kb.task import Task
 from kb.worldmodel import WorldModel
 from planner.aims import Aim
+from planner.approaching import ARRIVE
 from planner.circling import pivot, ways_round, winding
 from planner.clearing import Clearer
 from planner.destinations import Situation, contains, destination
@@ -109,7 +110,7 @@ class Decider:
             if there or look is not None:
                 return look
         missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
-        aims = aims_towards(where, situation, reconciled, arrive=True)
+        aims = aims_towards(where, situation, reconciled, ARRIVE)
         return self.pursuer.felt(lambda: self.pursuer.pursue(aims, stage, situation, lambda: missing), stage, situation)
 
     def _doubt(self, stage: Stage, situation: Situation) -> Aim | None:

@@ -15,22 +15,17 @@ from geometry.reach import UNREACHED
 from kb.evidence import OPEN
 from kb.rooms import Door
 from kb.worldmodel import SPACE, Node
-from planner.screen import Screens, Squares, grown, marked
+from planner.screen import WALL_LIKE, Screens, Squares, grown, marked
 
 FURTHER = 7  # squares from which a thing lies within the middle zone of the eye
 JAMB = 8  # squares beside what may be a door within which its walls are looked at
 CLOSE = 3  # squares from which a thing lies within the fovea, whichever way it is seen
 APART = 2  # squares: a new look is first sought further than this from earlier ones
-WALL_LIKE = 0.85  # that a square is occupied which is taken for wall
 GAPPING = 2  # level of certainty (planner/screen.py) at which a way leads through a likely gap
 SHORT_OF = 5  # squares before a place from which what lies behind it comes into sight
 SMALLEST_ROOM = 6  # squares of floor that are worth a passage
 REACH = 14  # squares from the edge of what is seen at which most of it is seen anew
-PROMISING = 0.1  # a place at which a thing is this likely is worth a look
-LIKELY = 0.5  # what is looked for as likely as this is gone up to
 BARREN = 0.1  # of a square unseen beside the verge, how much less it promises than one beside the floor
-SETTING_OUT = 4.0  # squares of way that a look costs besides the way there
-DEAR_LOOK = 12.0  # the same for who does not want to stay, and counts commands rather than squares
 ALIKE = 0.9  # places worth as much as this of the best are as good
 HOMELY = 800  # squares of floor unseen among which one thing that is looked for is expected
 HALF = 0.5
@@ -52,8 +47,8 @@ class Lookout(NamedTuple):
 
 def frontiers(screens: Screens, apart: int) -> list[Lookout]:
     """Floor that can be reached and borders on squares never seen, one Lookout for each connected stretch."""
-    border = _new(screens, apart) & grown(~screens.model.view.seen, 1)
-    return [Lookout(squares, GOES_ON) for squares in _groups(_stretches(border))]
+    border = unlooked(screens, apart) & grown(~screens.model.view.seen, 1)
+    return [Lookout(squares, GOES_ON) for squares in groups(_stretches(border))]
 
 
 def gaps(screens: Screens) -> list[Lookout]:
@@ -65,76 +60,8 @@ def gaps(screens: Screens) -> list[Lookout]:
     edge = view.seen & grown(~view.seen, 1)
     border = edge & (screens.distances[GAPPING] != UNREACHED)
     surely = grown(edge & screens.floor, 1).ravel()
-    stretches = [squares for squares in _groups(_stretches(border)) if not surely[squares].any()]
+    stretches = [squares for squares in groups(_stretches(border)) if not surely[squares].any()]
     return [Lookout(squares, "there may be a gap") for squares in stretches]
-
-
-def sightings(screens: Screens, likely: NDArray[np.float64], what: str, arrive: bool) -> list[tuple[Squares, Lookout]]:
-    """Floor close to where something is likely that is looked for: the squares of each such place, and its Lookout.
-
-    likely : (rows, columns), how likely each square belongs to such a thing. arrive : as for `close`.
-    """
-    view = screens.model.view
-    spots = _groups(components(likely >= PROMISING).labels)
-    found = []
-    for spot in spots:
-        mask = marked(spot, likely.shape)
-        if not (view.state.ravel()[spot] == OPEN).any():
-            continue
-        chance = float(likely.ravel()[spot].max())
-        near = close(screens, mask, chance, arrive)
-        if len(near):
-            found.append((spot, Lookout(near, what, round(100 * chance))))
-    return found
-
-
-def close(screens: Screens, mask: Mask, chance: float, arrive: bool) -> Squares:
-    """Floor from which something is seen better than it was.
-
-    At first the floor at its sides, and of what he shall take at the sides of what surely belongs to it: for it may
-    well be there that he is wanted. arrive : to be beside it is all that is wanted, so there any place will do; and
-    what hardly is it is looked at from further away first, where most of it is told already. Else he goes where most of
-    it can be told.
-    """
-    beside = grown(mask, 1)
-    near = _at_sides(screens, mask, mask if arrive else mask & (screens.model.view.probability >= WALL_LIKE))
-    if (chance >= LIKELY or not arrive) and len(near) and not (beside & screens.looked_from).any():
-        return near if arrive else _telling(screens, near, mask, chance, arrive)
-    if arrive:
-        far = grown(mask, FURTHER)
-        near = np.flatnonzero(screens.floor & far)
-        if len(near) and not (far & screens.looked_from).any():
-            return near
-    about = grown(mask, CLOSE)
-    for apart in (APART, 0):
-        near = np.flatnonzero(_new(screens, apart) & about)
-        if len(near):
-            break
-    return _telling(screens, near, mask, chance, arrive)
-
-
-def _at_sides(screens: Screens, mask: Mask, surely: Mask) -> Squares:
-    """Floor at the sides of what surely belongs to a thing, or else of all that may."""
-    near = np.flatnonzero(screens.floor & edged(surely))
-    return near if len(near) else np.flatnonzero(screens.floor & edged(mask))
-
-
-def _telling(screens: Screens, near: Squares, mask: Mask, chance: float, arrive: bool) -> Squares:
-    """Of some floor the squares from which most of what is open of a thing is seen exactly, for the way there.
-
-    chance : that it is what is looked for, and that who is not beside it must set out once more to be. arrive : as for
-    `close`.
-    """
-    beside = grown(mask, 1)
-    open_ = beside & ~screens.model.told
-    if len(near) < 2 or not open_.any():
-        return near
-    seen = _sums(np.pad(open_, CLOSE).astype(np.float64), CLOSE).ravel()[near]
-    apart = ~beside.ravel()[near]
-    setting_out = SETTING_OUT if arrive else DEAR_LOOK
-    value = (seen + 1) / (screens.distances[0].ravel()[near] / 5 + setting_out * (1 + chance * apart))
-    best: Squares = near[value >= ALIKE * value.max()]
-    return best
 
 
 def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:
@@ -146,35 +73,26 @@ def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:
     open_ = view.seen & (view.state == OPEN) & (view.probability > SPACE) & grown(screens.floor, 1)
     if odd:
         open_ &= view.probability < WALL_LIKE
-    near = np.where(_new(screens, apart), _spread(_stretches(open_), CLOSE), 0)
-    return [Lookout(squares, "what bounds the floor is not clear") for squares in _groups(near)]
+    near = np.where(unlooked(screens, apart), _spread(_stretches(open_), CLOSE), 0)
+    return [Lookout(squares, "what bounds the floor is not clear") for squares in groups(near)]
 
 
 def by_touch(screens: Screens, node: Node) -> Lookout:
     """Floor from which an object is felt."""
     beside = grown(screens.model.mask(node.patch), 1)
-    return Lookout(np.flatnonzero(_new(screens, 0) & beside), f"the colour of {node.name} is not known")
-
-
-def inspection(screens: Screens, node: Node, chance: float, arrive: bool) -> Lookout:
-    """Floor from which an object is seen as well as can be.
-
-    chance : that it is what is looked for. arrive : as for `close`.
-    """
-    squares = close(screens, screens.model.mask(node.patch), chance, arrive)
-    return Lookout(squares, f"what {node.name} is is not clear")
+    return Lookout(np.flatnonzero(unlooked(screens, 0) & beside), f"the colour of {node.name} is not known")
 
 
 def against_the_wall(screens: Screens, mask: Mask) -> Lookout:
     """Floor from which it is felt whether something is part of a wall."""
-    beside = np.flatnonzero(_new(screens, 0) & edged(mask))
+    beside = np.flatnonzero(unlooked(screens, 0) & edged(mask))
     return Lookout(beside, "what may stand against the wall was not felt")
 
 
 def sight_of(screens: Screens, mask: NDArray[np.bool_], what: str) -> Lookout:
     """Floor close to some squares, from which they are seen as well as can be; none when all of it was looked from."""
     for reach, apart in ((CLOSE, APART), (CLOSE, 0), (FURTHER, APART)):
-        near = np.flatnonzero(_new(screens, apart) & grown(mask, reach))
+        near = np.flatnonzero(unlooked(screens, apart) & grown(mask, reach))
         if len(near):
             return Lookout(near, what)
     return Lookout(np.zeros(0, np.int64), what)
@@ -189,7 +107,7 @@ def close_to(screens: Screens, x: float, y: float) -> Squares:
 def short_of(screens: Screens, squares: Squares) -> Squares:
     """Floor from which it is seen what lies behind some squares: those that can be reached, or short of them."""
     mask = marked(squares, screens.floor.shape)
-    near = _new(screens, APART) & grown(mask, SHORT_OF)
+    near = unlooked(screens, APART) & grown(mask, SHORT_OF)
     return np.flatnonzero(near | (mask & screens.floor))
 
 
@@ -213,7 +131,7 @@ def rooms_beyond(screens: Screens) -> list[Lookout]:
     """Floor that is seen and cannot be reached yet: all floor is connected, so some passage must lead there."""
     apart = components(screens.model.space & ~screens.floor).labels
     what = "floor is seen beyond, so a passage must lead there"
-    return [Lookout(squares, what) for squares in _groups(apart) if len(squares) >= SMALLEST_ROOM]
+    return [Lookout(squares, what) for squares in groups(apart) if len(squares) >= SMALLEST_ROOM]
 
 
 def promised(screens: Screens, lookouts: list[Lookout]) -> list[Lookout]:
@@ -230,7 +148,7 @@ def best_views(screens: Screens, met: Mask, move: float, way: float) -> list[Loo
     They need not border on what was never seen: a long move along it often shows more than a short one up to it.
     met : (rows, columns), the squares that one move leads to. move, way : what a move, and a square of way, cost.
     """
-    some = np.flatnonzero(met & _new(screens, APART))
+    some = np.flatnonzero(met & unlooked(screens, APART))
     new = gain(screens).ravel()[some]
     if new.max(initial=0.0) < BARREN:
         return []
@@ -260,10 +178,10 @@ def gain(screens: Screens) -> NDArray[np.float64]:
     seen = np.pad(view.seen, REACH)
     beside_floor = _beside(np.pad(np.where(view.probability <= HALF, FLOOR, WALL), REACH), seen) == FLOOR
     worth = np.where(seen, 0.0, np.where(beside_floor, 1.0, BARREN))
-    return _sums(worth, REACH)
+    return sums(worth, REACH)
 
 
-def _sums(framed: NDArray[np.float64], reach: int) -> NDArray[np.float64]:
+def sums(framed: NDArray[np.float64], reach: int) -> NDArray[np.float64]:
     """(rows, columns): for each square the sum over all within so many rows and columns.
 
     framed : the values, with as many rows and columns more on each side.
@@ -287,7 +205,7 @@ def _beside(labels: NDArray[np.int64], seen: Mask) -> NDArray[np.int8]:
     return near
 
 
-def _new(screens: Screens, apart: int) -> NDArray[np.bool_]:
+def unlooked(screens: Screens, apart: int) -> NDArray[np.bool_]:
     """Floor that can be reached and from which nothing was looked at yet.
 
     A second look from the same square tells nothing new.
@@ -302,7 +220,7 @@ def _stretches(mask: Mask) -> NDArray[np.int32]:
     return labels
 
 
-def _groups(labels: NDArray[np.int32]) -> list[Squares]:
+def groups(labels: NDArray[np.int32]) -> list[Squares]:
     """The flat indices of each label but 0, by label."""
     flat = labels.ravel()
     squares = np.flatnonzero(flat)

@@ -32,7 +32,7 @@ class FewestMoves:
 
     def __init__(self, screens: Screens) -> None:
         self._screens = screens
-        self._reached: dict[int, Mask] = {}  # by how far a move leads at most
+        self._reached: dict[tuple[int, bool], Mask] = {}  # by how far a move leads at most, and whether up to a thing
         self._by_way: dict[tuple[str, bytes], Square | None] = {}
 
     def priced(self, aims: Sequence[Aim]) -> list[Aim]:
@@ -46,8 +46,7 @@ class FewestMoves:
         """
         here, near = self._screens.here, self._met(aim)
         if len(near):
-            far = self._far[near]
-            there: Square | None = self._square(int(near[far.argmin()]))
+            there: Square | None = self._square(int(near[self._screens.far(near).argmin()]))
         else:
             there = self._turning(aim)
         return None if there is None or there == here else Way((here, there), math.dist(here, there), 0.0, 0)
@@ -64,11 +63,11 @@ class FewestMoves:
             return aim
         near = self._met(aim)
         if len(near):
-            aim, far, moves = aim._replace(squares=near), float(self._far[near].min()) / 5, 1
+            aim, reached, moves = aim._replace(squares=near), self._screens.nearest(near) or reached, 1
         else:
             turning = reached.level == 0 and self._turning(aim) is not None
-            far, moves = reached.cost, 2 if turning else MANY_MOVES
-        return aim._replace(price=aim.price + MOVE * moves - (1 - WAY) * far)
+            moves = 2 if turning else MANY_MOVES
+        return aim._replace(price=aim.price + MOVE * moves - (1 - WAY) * reached.cost)
 
     def _met(self, aim: Aim) -> Squares:
         """The squares of an aim to which one move leads."""
@@ -77,10 +76,10 @@ class FewestMoves:
 
     def _first(self, kind: str) -> Mask:
         """(rows, columns): the squares to which one move leads, by the kind of its aim."""
-        most = HURRY.most(kind, self._screens.model)
-        if most not in self._reached:
-            self._reached[most] = one_move(self._screens, kind)
-        return self._reached[most]
+        key = HURRY.most(kind, self._screens.model), kind == "inspect"
+        if key not in self._reached:
+            self._reached[key] = one_move(self._screens, kind)
+        return self._reached[key]
 
     def _turning(self, aim: Aim) -> Square | None:
         """Where the first of two moves to an aim ends, if two will do: on a short way, and where he sees more."""
@@ -90,7 +89,7 @@ class FewestMoves:
         return self._by_way[key]
 
     def _found(self, aim: Aim) -> Square | None:
-        screens, ground = self._screens, HURRY.ground(self._screens)
+        screens, ground = self._screens, HURRY.ground(self._screens, aim.kind)
         sure = aim.squares[(self._far[aim.squares] >= 0) & ground.ravel()[aim.squares]]
         nearest = sure[np.argsort(self._far[sure], kind="stable")]
         some = nearest[np.unique(np.linspace(0, len(nearest) - 1, TRIED).astype(int))] if len(nearest) else nearest

@@ -118,14 +118,14 @@ class Pursuer:
         model, screens = situation.model, situation.screens
         reached = screens.nearest(aim.squares)
         assert reached is not None
-        straight = fewest.way(aim) if fewest is not None and reached.level == 0 else None
+        straight = None if fewest is None else fewest.way(aim)
         way = None if straight is None else self.choose([straight], situation)
         way = way or self._kept.rest(aim, reached.level, model, screens)
         way = way or self.choose(ways(screens, reached.level, aim.squares, self._paths), situation)
         if way is None:
             return Decision(None, f"{stage} cannot be attained: every way there is forbidden", "impossible")
         self.keep(way, model, aim.squares)
-        kind = aim.kind if reached.level == 0 else "pass"
+        kind = aim.kind if straight is not None or reached.level == 0 else "pass"
         move = next_move(screens, way.squares, kind, pace=STROLL if fewest is None else HURRY)
         return Decision(move, f"{aim.what}; {stage}")
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.components import edged
 from geometry.reach import UNREACHED, reach
 from kb.evidence import FREE, OPEN
 from kb.worldmodel import SPACE, Patch, WorldModel
@@ -21,7 +22,9 @@ Squares = NDArray[np.int64]  # flat indices
 LEVELS = (SPACE, 0.15, 0.3, 0.45)  # up to which probability of being occupied a square may be crossed
 UNSEEN = len(LEVELS)  # the level at which unseen squares may be crossed too
 PRICE = 6.0  # squares that each level of uncertainty costs
+APPROACHED = 1  # level of certainty of squares beside a thing over which he goes up to it
 TRUSTED = 0.04  # a square that is occupied with at most this probability may be run over
+WALL_LIKE = 0.85  # that a square is occupied which surely belongs to what stands there
 WARY = 0.3  # beside squares that are occupied with at least this probability a move is made only over settled ones
 
 
@@ -101,6 +104,21 @@ class Screens:
         """
         view = self.model.view
         return self.safe | (self.free(0) & (view.probability <= TRUSTED) & ~grown(~view.seen, 1))
+
+    @cached_property
+    def approached(self) -> Mask:
+        """The same for who goes up to a thing: also what may well be floor right beside things, for who is stopped
+        there stands where he wants to be.
+        """
+        view = self.model.view
+        things = view.seen & (view.probability >= WALL_LIKE) & ~self.model.verge
+        return self.believed | (self.free(APPROACHED) & edged(things))
+
+    def far(self, squares: Squares) -> NDArray[np.float64]:
+        """(squares,): the way to each of some squares; as far as they lie where none surely leads."""
+        ways = self.distances[0].ravel()[squares] / 5
+        rows, columns = np.divmod(squares, self.floor.shape[1])
+        return np.where(ways < 0, np.hypot(columns - self.here[0], rows - self.here[1]), ways)
 
 
 class Distances:

@@ -12,6 +12,7 @@ from kb.rooms import rooms_of
 from kb.worldmodel import Node, WorldModel
 from planner import exploring
 from planner.aims import Aim
+from planner.approaching import TAKE, Approach, inspection, sightings
 from planner.destinations import Destination, Situation
 from planner.fewest import MOVE, WAY
 from planner.screen import Screens, Squares, grown
@@ -33,11 +34,11 @@ class Candidate(NamedTuple):
 
 
 def aims_towards(
-    where: Sequence[Destination], situation: Situation, reconciled: Reconciled, arrive: bool = False
+    where: Sequence[Destination], situation: Situation, reconciled: Reconciled, to: Approach = TAKE
 ) -> list[Aim]:
     """What is worth doing: go there, when it is known where; else look, first where just the missing thing may be.
 
-    arrive : Utak himself is to be where the missing thing is.
+    to : what he goes up to the missing thing for.
     """
     screens = situation.screens
     missing = [d for d in where if d.missing]
@@ -47,13 +48,13 @@ def aims_towards(
             squares = np.intersect1d(squares, other.squares)
         return [Aim("attain", squares, "the way to the goal is known")]
     likely = _likely(situation, reconciled)
-    things = _things(situation, reconciled, likely, arrive)
+    things = _things(situation, reconciled, likely, to)
     aims = [Aim("explore", *look) for d in missing for look in d.lookouts]
     if any(_surely_reached(aim, screens) for aim in aims):
         return [*aims, *(thing.aim for thing in things)]
-    places = [] if likely is None else _places(screens, likely, arrive)
+    places = [] if likely is None else _places(screens, likely, to)
     aims += [candidate.aim for candidate in (*things, *places)]
-    return [*aims, *_beyond_all(screens, none_of([*things, *places]), arrive)]
+    return [*aims, *_beyond_all(screens, none_of([*things, *places]), to)]
 
 
 def against_walls(situation: Situation) -> list[Aim]:
@@ -75,8 +76,8 @@ def perhaps_islands(situation: Situation) -> list[Aim]:
     return aims
 
 
-def _things(situation: Situation, reconciled: Reconciled, likely: Heat | None, arrive: bool) -> list[Candidate]:
-    """The objects of the world model that may be what is looked for. likely, arrive : as for exploring.sightings."""
+def _things(situation: Situation, reconciled: Reconciled, likely: Heat | None, to: Approach) -> list[Candidate]:
+    """The objects of the world model that may be what is looked for. likely : as for approaching.sightings."""
     screens, model = situation.screens, situation.model
     found = []
     for x, name in reconciled.doubtful:
@@ -84,7 +85,7 @@ def _things(situation: Situation, reconciled: Reconciled, likely: Heat | None, a
         if node is None or x not in reconciled.hypothesised:
             continue
         chance = ANY_SHAPE if likely is None else _chance(node, likely, model)
-        look = exploring.inspection(screens, node, chance, arrive) if node.open else exploring.by_touch(screens, node)
+        look = inspection(screens, node, chance, to) if node.open else exploring.by_touch(screens, node)
         what = f"{look.what}: it may be {x}"
         squares = np.flatnonzero(model.mask(node.patch))
         found.append(Candidate(squares, Aim("inspect", look.squares, what, max(LEAST, round(100 * chance)))))
@@ -99,9 +100,9 @@ def _chance(node: Node, likely: Heat, model: WorldModel) -> float:
     return max(shown, float(seen_in_part(mask.sum()))) if cut else shown
 
 
-def _places(screens: Screens, likely: Heat, arrive: bool) -> list[Candidate]:
+def _places(screens: Screens, likely: Heat, to: Approach) -> list[Candidate]:
     """Where pictures of what is not settled show what is looked for."""
-    seen = exploring.sightings(screens, likely, "something may be meant there", arrive)
+    seen = sightings(screens, likely, "something may be meant there", to)
     return [Candidate(squares, Aim("inspect", *look)) for squares, look in seen]
 
 
@@ -115,14 +116,14 @@ def none_of(candidates: Sequence[Candidate]) -> float:
     return none
 
 
-def _beyond_all(screens: Screens, unseen: float, arrive: bool) -> list[Aim]:
+def _beyond_all(screens: Screens, unseen: float, to: Approach) -> list[Aim]:
     """Looks at what was never seen, and at what bounds the floor.
 
-    unseen : that what is missing was not seen yet. arrive : as for `aims_towards`. Who is to carry what he finds counts
+    unseen : that what is missing was not seen yet. to : as for `aims_towards`. Who is to carry what he finds counts
     moves: he looks from where most comes into sight, and must set out once more to what he sees from there.
     """
-    views = [] if arrive else exploring.best_views(screens, one_move(screens, "explore"), MOVE, WAY)
-    promise = unseen * (1.0 if arrive else FROM_AFAR)
+    views = exploring.best_views(screens, one_move(screens, "explore"), MOVE, WAY) if to.take else []
+    promise = unseen * (FROM_AFAR if to.take else 1.0)
     for apart in (exploring.APART, 0):
         frontiers = [*views, *exploring.promised(screens, exploring.frontiers(screens, apart))]
         explored = [Aim("explore", *look)._replace(chance=max(1, round(look.chance * promise))) for look in frontiers]

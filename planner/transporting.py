@@ -15,6 +15,7 @@ from kb.worldmodel import Node
 from planner.aims import Aim
 from planner.beginning import Beginnings
 from planner.carrier import Act, Advice, Carrier, Go, See
+from planner.cornering import approach
 from planner.destinations import Situation, nowhere
 from planner.goals import FROM_THE_START, Stage
 from planner.landing import landing
@@ -95,7 +96,8 @@ class Transporter:
         """The next command to find what a parameter means, or the verdict when nothing can be that."""
         fixed = dict(reconciled.unmovable).get(x)
         unseen = nowhere(f"{fixed} cannot be moved" if fixed else f"nothing seen so far is {x}")
-        aims = aims_towards([unseen], situation, reconciled)
+        goals = [goal for goal in stage.goals if str(goal.args[0]) == x]
+        aims = aims_towards([unseen], situation, reconciled, approach(goals, situation))
         # No proof that there is none: it may stand against a wall, and look like a piece of that; and who does not
         # know how the squares lie may have pushed at another thing.
         proved = fixed and situation.model.view.sure and is_settled(situation.model)

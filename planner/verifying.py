@@ -16,6 +16,7 @@ from kb.rooms import SURE, Door, jamb, rooms_of
 from kb.worldmodel import Node, WorldModel
 from planner import exploring
 from planner.aims import Aim
+from planner.approaching import TAKE, inspection
 from planner.destinations import Situation, contains, out_of_sight
 from planner.refusing import Refusal
 from planner.walking import is_open
@@ -46,7 +47,7 @@ class Verifier:
         self._doubted.discard(node.name)
         if node.polygon is not None and not node.open:
             return None
-        look = exploring.inspection(situation.screens, node, chance=1.0, arrive=False)
+        look = inspection(situation.screens, node, chance=1.0, to=TAKE)
         if not len(look.squares):
             return None
         self._doubted.add(node.name)

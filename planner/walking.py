@@ -55,9 +55,11 @@ class Pace(NamedTuple):
         """Rows and columns of a move now."""
         return min(self.longest[kind], self.unsure) if is_open(model) else self.longest[kind]
 
-    def ground(self, screens: Screens) -> NDArray[np.bool_]:
-        """(rows, columns): the squares over which a move leads."""
-        return screens.believed if self.bold else screens.safe
+    def ground(self, screens: Screens, kind: str) -> NDArray[np.bool_]:
+        """(rows, columns): the squares over which a move leads, by the kind of its aim."""
+        if not self.bold:
+            return screens.safe
+        return screens.approached if kind == "inspect" else screens.believed
 
 
 STROLL = Pace({"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}, 9, bold=False)
@@ -80,7 +82,7 @@ def next_move(
     about : a point (of the view's frame) about which the move must wind as the way does, when that matters.
     """
     here, most = path[0], pace.most(kind, screens.model)
-    ground, roomy = pace.ground(screens), None if pace.bold else _roomy(screens)
+    ground, roomy = pace.ground(screens, kind), None if pace.bold else _roomy(screens)
     there = path[1]
     for number in range(len(path) - 1, 1, -1):
         square = path[number]
@@ -92,9 +94,12 @@ def next_move(
     return move_to(screens.model, there, _aside(screens, there, kind if about is None else "attain"))
 
 
-def one_move(screens: Screens, kind: str) -> NDArray[np.bool_]:
-    """(rows, columns): the squares to which one straight move in a hurry leads from where Utak stands."""
-    return straight(HURRY.ground(screens), *screens.here, HURRY.most(kind, screens.model))
+def one_move(screens: Screens, kind: str, among: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
+    """(rows, columns): the squares to which one straight move in a hurry leads from where Utak stands.
+
+    among : the squares that are asked about; None for all.
+    """
+    return straight(HURRY.ground(screens, kind), *screens.here, HURRY.most(kind, screens.model), among)
 
 
 def _roomy(screens: Screens) -> NDArray[np.bool_] | None:
