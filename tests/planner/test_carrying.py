@@ -390,7 +390,7 @@ def test_what_lies_between_the_squares_is_brought_right_into_its_corner(part: fl
     ("seed", "kind", "how"),
     [
         (402016, "wide", "is taken along: a room is not seen that may go further"),
-        (370009, "loose", "is led out, to be taken otherwise"),
+        (370059, "loose", "is led out, to be taken otherwise"),
     ],
 )
 def test_who_is_shut_in_a_corner_leads_out_what_he_holds(seed: int, kind: str, how: str, tmp_path: Path) -> None:

@@ -350,8 +350,9 @@ def test_the_bold_go_right_up_to_what_is_not_settled_but_not_to_what_was_never_s
 @pytest.mark.parametrize("spread", [0.0, math.pi])
 def test_who_hurries_is_bold_and_who_strolls_is_not(spread: float) -> None:
     screens = Screens(replace(random_walk(3), likely_spread=spread))
-    assert (HURRY.ground(screens) == screens.believed).all()
-    assert (STROLL.ground(screens) == screens.safe).all()
+    for kind in STROLL.longest:
+        assert (HURRY.ground(screens, kind) == (screens.approached if kind == "inspect" else screens.believed)).all()
+        assert (STROLL.ground(screens, kind) == screens.safe).all()
     assert (screens.believed != screens.safe).any()
 
 
