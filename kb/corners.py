@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from kb.encodings import KB, solve
 from kb.evidence import FULL
+from kb.loads import covered
 from kb.regions import label_of
 from kb.worldmodel import WorldModel
 
@@ -30,17 +31,19 @@ class Corner(NamedTuple):
 
 def known_floor(model: WorldModel) -> NDArray[np.bool_]:
     """(rows, columns): the floor on which Utak stands, all other floor that is seen and large enough to be some, and
-    the floor under what he has moved: squares that were floor before it came there, or that it surely covers. Others
-    that it may cover may be wall.
+    the floor under what he has moved: squares that were floor before it came there, or that it surely covers by its
+    outline. Others that it may cover may be wall, also where they were seen to be occupied.
     """
     sizes = np.bincount(model.labels.ravel())
     large = (sizes >= SMALLEST)[model.labels]
     mask: NDArray[np.bool_] = model.floor | (model.space & large)
-    under = model.view.state == FULL
-    if model.beneath is not None:
-        under |= model.beneath
     for node in model.objects:
         if node.moved:
+            under = model.view.state == FULL
+            if node.polygon is not None:
+                under &= model.mask_within(covered(node.polygon))
+            if model.beneath is not None:
+                under |= model.beneath
             mask |= (model.labels == label_of(node.region)) & under
     return mask
 

@@ -186,7 +186,7 @@ class Carrier:
 
     def led_out(self, node: Node, situation: Situation) -> Act | None:
         """Lead what he holds to where it does not shut him in, to take it otherwise; None where that cannot be."""
-        push = out(node, situation) if self.pull and self._plans < MOST_PLANS else None
+        push = out(node, situation) if self.pull and not node.stuck and self._plans < MOST_PLANS else None
         if push is None:
             return None
         self.failed.blame(node, situation.model)

@@ -4,12 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
+import shapely.affinity
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.corners import SIDES, corners, known_floor
-from kb.evidence import OPEN
+from kb.evidence import FULL, OPEN
 from kb.worldmodel import Node, patch_of
+from planner.screen import grown
 from tests.kb.drawings import seen_whole
 from tests.kb.eyes import random_room
 
@@ -67,3 +70,22 @@ def test_what_was_moved_lies_on_floor_but_the_wall_that_it_may_reach_into_is_non
     loose = replace(moved, view=model.view._replace(state=state))
     assert corners(loose)["northeast"].square == (5, 3)
     assert corners(replace(loose, beneath=under))["northeast"].square == (6, 3)  # they were floor before it came there
+
+
+def test_a_wall_seen_where_a_moved_thing_may_reach_is_not_floor_under_it() -> None:
+    rows = ["bbbbbbbb", "b.....gb", "b.....gb", "b..U...b", "bbbbbbbb"]
+    model = seen_whole(rows)
+    drawn = np.array([list(row) for row in reversed(rows)])
+    under, label = drawn == "g", int(model.labels.max()) + 1
+    reach = under | ((drawn == "b") & grown(under, 1))  # by its play it may cover the wall about it, too
+    outline = shapely.box(6, 2, 7, 4)
+    west, south = model.view.west, model.view.south
+    outline = shapely.affinity.translate(outline, west, south)
+    thing = Node("o1", "object", 100, f"part{label}", patch_of(reach, model.view), 0, moved=True, polygon=outline)
+    labels = np.where(reach, label, model.labels).astype(np.int32)
+    moved = replace(model, labels=labels, objects=(thing,))
+    assert (moved.view.state[reach] == FULL).all()
+    assert corners(moved)["northeast"].square == (6, 3)
+    assert not (known_floor(moved) & (drawn == "b")).any()
+    askew = replace(moved, objects=(replace(thing, polygon=None),))
+    assert (known_floor(askew) & (drawn == "b")).any()  # what has no outline lies on all that it covers

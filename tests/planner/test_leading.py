@@ -188,6 +188,15 @@ def test_what_cannot_be_led_out_stays() -> None:
     assert out(node, situation) is None
 
 
+def test_what_did_not_move_is_not_led_out_again() -> None:
+    situation, node = in_a_nook([*NOOK, *["b" + "." * 14 + "b"] * 6, "b" * 16])
+    carrier = Carrier(pull=True)
+    led = carrier.led_out(node, situation)
+    assert led is not None
+    assert isinstance(led.command, Push)
+    assert carrier.led_out(replace(node, stuck=1), situation) is None
+
+
 def at_a_loss(situation: Situation, monkeypatch: pytest.MonkeyPatch) -> Decision:
     """What he does with something in hand who knows no way for it, and nothing to look at."""
     monkeypatch.setattr(Transporter, "_advice", lambda *_: Refusal(False, lambda: "it is not seen yet"))
