@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from geometry.components import components, edged
 from kb.evidence import OPEN
 from kb.worldmodel import Node
-from planner.exploring import ALIKE, APART, CLOSE, FURTHER, Lookout, gain, groups, sums, unlooked
-from planner.screen import WALL_LIKE, Screens, Squares, grown, marked
+from planner.exploring import ALIKE, APART, CLOSE, FURTHER, Lookout, groups, unlooked
+from planner.gaining import sums
+from planner.screen import WALL_LIKE, Screens, Squares, grown, marked, shifted
 from planner.walking import one_move
 
 PROMISING = 0.1  # a place at which a thing is this likely is worth a look
@@ -106,10 +107,7 @@ def _out_of_its_way(screens: Screens, surely: Mask, to: Approach) -> Mask:
     if to.corner is None:
         return sides
     east, north = to.corner
-    framed = np.pad(surely, 1)
-    rows, columns = surely.shape
-    beyond = framed[1:-1, 1 - east : 1 - east + columns] | framed[1 - north : 1 - north + rows, 1:-1]
-    free = sides & ~beyond
+    free = sides & ~(shifted(surely, east, 0) | shifted(surely, 0, north))
     return free if (screens.floor & free).any() else sides
 
 
@@ -124,7 +122,7 @@ def _telling(screens: Screens, near: Squares, mask: Mask, chance: float, to: App
         return near
     seen = sums(np.pad(open_, CLOSE).astype(np.float64), CLOSE).ravel()[near]
     if to.take:
-        seen = seen + ANEW * gain(screens).ravel()[near]
+        seen = seen + ANEW * screens.gain.ravel()[near]
     apart = ~beside.ravel()[near]
     setting_out = DEAR_LOOK if to.take else SETTING_OUT
     value = (seen + 1) / (screens.far(near) + setting_out * (1 + chance * apart))

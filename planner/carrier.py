@@ -5,7 +5,7 @@ where it says and while the squares that it needs are still believed free.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from geometry.carrying import Inside, Leg
@@ -257,13 +257,10 @@ class Carrier:
             again = not haul.proved and self.failed.forgiven(node)
             return self._planned(replace(asked, avoid=self.failed.of(node)), situation) if again else haul
         if haul.aside:
-            unfelt = (
-                thing for thing in situation.model.objects if thing.name in haul.aside and thing.confidence < SURELY
-            )
-            felt = (by_touch(situation.screens, thing) for thing in unfelt)
-            touch = next((look for look in felt if len(look.squares)), None)
+            things = (thing for thing in situation.model.objects if thing.name in haul.aside)
+            touch = _first(by_touch(situation.screens, thing) for thing in things if thing.confidence < SURELY)
             if touch is not None:
-                return See(touch)
+                return touch
             cleared = (self._clearing(other, haul, situation) for other in situation.model.objects)
             first = next((found for found in cleared if found is not None), None)
             if first is None:
@@ -271,9 +268,9 @@ class Carrier:
                 looks = (
                     inspection(situation.screens, o, chance=1.0, to=TAKE) for o in unclear if o is not None and o.open
                 )
-                look = next((look for look in looks if len(look.squares)), None)
+                look = _first(looks)
                 if look is not None:
-                    return See(look)
+                    return look
                 why = f"{haul.aside[0]} is in the way of {node.name}, and cannot be cleared"
                 return Refusal(False, lambda: why)
             node, haul = first
@@ -374,6 +371,11 @@ class Carrier:
             return None
         self._course, self._pushed = replace(begun, grasped=True, place=begun.legs[0].place), None
         return Act(Grasp(direction), f"{course.name} is taken to be carried to {course.target}")
+
+
+def _first(looks: Iterable[Lookout]) -> See | None:
+    """To see what the first of some looks shows for which there is a place."""
+    return next((See(look) for look in looks if len(look.squares)), None)
 
 
 def _price_of_a_turn(model: WorldModel) -> float:

@@ -15,6 +15,7 @@ from geometry.reach import UNREACHED
 from kb.evidence import OPEN
 from kb.rooms import Door
 from kb.worldmodel import SPACE, Node
+from planner.gaining import BARREN
 from planner.screen import WALL_LIKE, Screens, Squares, grown, marked
 
 FURTHER = 7  # squares from which a thing lies within the middle zone of the eye
@@ -24,13 +25,9 @@ APART = 2  # squares: a new look is first sought further than this from earlier 
 GAPPING = 2  # level of certainty (planner/screen.py) at which a way leads through a likely gap
 SHORT_OF = 5  # squares before a place from which what lies behind it comes into sight
 SMALLEST_ROOM = 6  # squares of floor that are worth a passage
-REACH = 14  # squares from the edge of what is seen at which most of it is seen anew
-BARREN = 0.1  # of a square unseen beside the verge, how much less it promises than one beside the floor
 ALIKE = 0.9  # places worth as much as this of the best are as good
 HOMELY = 800  # squares of floor unseen among which one thing that is looked for is expected
-HALF = 0.5
 GOES_ON = "the floor goes on unseen"
-FLOOR, WALL, NOTHING = 0, 1, 2  # what a square lies beside
 Mask = NDArray[np.bool_]
 
 
@@ -138,7 +135,7 @@ def promised(screens: Screens, lookouts: list[Lookout]) -> list[Lookout]:
     """Frontiers, each with how likely it is that what is looked for comes into sight at its nearest square."""
     if not lookouts:
         return []
-    new = gain(screens).ravel()
+    new = screens.gain.ravel()
     return [look._replace(chance=_chance(float(new[_nearest(screens, look.squares)]))) for look in lookouts]
 
 
@@ -149,7 +146,7 @@ def best_views(screens: Screens, met: Mask, move: float, way: float) -> list[Loo
     met : (rows, columns), the squares that one move leads to. move, way : what a move, and a square of way, cost.
     """
     some = np.flatnonzero(met & unlooked(screens, APART))
-    new = gain(screens).ravel()[some]
+    new = screens.gain.ravel()[some]
     if new.max(initial=0.0) < BARREN:
         return []
     far = screens.distances[0].ravel()[some] / 5
@@ -170,39 +167,6 @@ def _nearest(screens: Screens, squares: Squares) -> int:
         return int(squares[0])
     far = screens.distances[reached.level].ravel()[squares]
     return int(squares[np.where(far < 0, far.max() + 1, far).argmin()])
-
-
-def gain(screens: Screens) -> NDArray[np.float64]:
-    """(rows, columns): how many squares never seen come into sight there, each by what it promises."""
-    view = screens.model.view
-    seen = np.pad(view.seen, REACH)
-    beside_floor = _beside(np.pad(np.where(view.probability <= HALF, FLOOR, WALL), REACH), seen) == FLOOR
-    worth = np.where(seen, 0.0, np.where(beside_floor, 1.0, BARREN))
-    return sums(worth, REACH)
-
-
-def sums(framed: NDArray[np.float64], reach: int) -> NDArray[np.float64]:
-    """(rows, columns): for each square the sum over all within so many rows and columns.
-
-    framed : the values, with as many rows and columns more on each side.
-    """
-    sums = np.pad(framed, 1).cumsum(0).cumsum(1)[:-1, :-1]
-    side = 2 * reach + 1
-    answer: NDArray[np.float64] = sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]
-    return answer
-
-
-def _beside(labels: NDArray[np.int64], seen: Mask) -> NDArray[np.int8]:
-    """Of each square never seen the least label of the nearest seen ones, as far as REACH rows and columns."""
-    near = np.where(seen, labels, NOTHING).astype(np.int8)
-    for _ in range(REACH):
-        least = near.copy()
-        np.minimum(least[1:], near[:-1], out=least[1:])
-        np.minimum(least[:-1], near[1:], out=least[:-1])
-        np.minimum(least[:, 1:], near[:, :-1], out=least[:, 1:])
-        np.minimum(least[:, :-1], near[:, 1:], out=least[:, :-1])
-        near = np.where(near == NOTHING, least, near)
-    return near
 
 
 def unlooked(screens: Screens, apart: int) -> NDArray[np.bool_]:

@@ -7,14 +7,12 @@ into sight by that.
 
 import math
 from collections.abc import Sequence
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.straight import straight
 from planner.aims import Aim
-from planner.exploring import gain
 from planner.screen import Screens, Squares
 from planner.steps import Square
 from planner.walking import HURRY, one_move
@@ -100,16 +98,11 @@ class FewestMoves:
             rows, columns = np.nonzero(straight(ground, column, row, HURRY.longest[aim.kind], first))
             if len(rows):
                 lengths = np.hypot(rows - y, columns - x) + np.hypot(rows - row, columns - column)
-                lengths = lengths - SHOWN * self._gain[rows, columns]
+                lengths = lengths - SHOWN * screens.gain[rows, columns]
                 if lengths.min() < best:
                     best, k = lengths.min(), lengths.argmin()
                     found = (int(columns[k]), int(rows[k]))
         return found
-
-    @cached_property
-    def _gain(self) -> NDArray[np.float64]:
-        """(rows, columns): what comes into sight there that was never seen."""
-        return gain(self._screens)
 
     def _square(self, flat: int) -> Square:
         row, column = divmod(flat, self._screens.safe.shape[1])

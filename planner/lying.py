@@ -19,7 +19,7 @@ from kb.enlarging import DEEPEST, SIDES
 from kb.worldmodel import Node, WorldModel
 from planner.destinations import Situation
 from planner.exploring import Lookout
-from planner.screen import grown
+from planner.screen import grown, shifted
 
 Mask = NDArray[np.bool_]
 Ends = Callable[[], Mapping[str, End]]  # by their names, worked out when asked
@@ -113,10 +113,8 @@ def hidden_behind(node: Node, side: tuple[int, int], depth: int, model: WorldMod
     """
     mask = model.mask(node.patch)
     found, last = np.zeros_like(mask), mask
-    rows, columns = mask.shape
     for _ in range(depth if not node.moved else 0):
-        wide = np.pad(last, 1)
-        last = wide[1 - side[1] :, 1 - side[0] :][:rows, :columns] & model.verge & ~mask
+        last = shifted(last, *side) & model.verge & ~mask
         found |= last
     return found
 

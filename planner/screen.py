@@ -16,6 +16,7 @@ from geometry.components import edged
 from geometry.reach import UNREACHED, reach
 from kb.evidence import FREE, OPEN
 from kb.worldmodel import SPACE, Patch, WorldModel
+from planner.gaining import gain
 
 Mask = NDArray[np.bool_]
 Squares = NDArray[np.int64]  # flat indices
@@ -114,6 +115,11 @@ class Screens:
         things = view.seen & (view.probability >= WALL_LIKE) & ~self.model.verge
         return self.believed | (self.free(APPROACHED) & edged(things))
 
+    @cached_property
+    def gain(self) -> NDArray[np.float64]:
+        """(rows, columns): how many squares never seen come into sight there, each by what it promises."""
+        return gain(self.model.view)
+
     def far(self, squares: Squares) -> NDArray[np.float64]:
         """(squares,): the way to each of some squares; as far as they lie where none surely leads."""
         ways = self.distances[0].ravel()[squares] / 5
@@ -159,6 +165,13 @@ def marked(squares: Squares, shape: tuple[int, ...]) -> Mask:
     mask: Mask = np.zeros(shape, np.bool_)
     mask.flat[squares] = True
     return mask
+
+
+def shifted(mask: Mask, columns: int, rows: int) -> Mask:
+    """A mask further on by a column, a row, or one of each, or back by them: each 1, 0 or -1."""
+    high, wide = mask.shape
+    framed = np.pad(mask, 1)
+    return framed[1 - rows : 1 - rows + high, 1 - columns : 1 - columns + wide]
 
 
 def grown(mask: Mask, squares: int) -> Mask:

@@ -12,8 +12,9 @@ from kb.rooms import rooms_of
 from kb.task import Task
 from planner.aims import Aim
 from planner.deciding import Decider
-from planner.exploring import REACH, best_views
+from planner.exploring import best_views
 from planner.fewest import MANY_MOVES, MOVE, WAY, FewestMoves
+from planner.gaining import REACH
 from planner.screen import Screens
 from planner.steps import clear
 from planner.walking import one_move
