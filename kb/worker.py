@@ -35,7 +35,7 @@ class Worker:
         assert worker.stdin is not None
         line: bytes | None = b""
         with suppress(BrokenPipeError):
-            worker.stdin.write(json.dumps(request).encode("ascii") + b"\n")
+            worker.stdin.write(json.dumps(request, allow_nan=False).encode("ascii") + b"\n")
             worker.stdin.flush()
             line = _line(worker, seconds)
         if not line:

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from simulator import exits
 from simulator.commands.run import add_settings, settings_of
+from simulator.numbers import whole
+from simulator.printing import as_json
 
 if TYPE_CHECKING:
     from simulator.story import Story
@@ -16,7 +18,7 @@ def add(parts: Any) -> None:
     part = parts.add_parser("query", help="ask what Utak believes")
     part.add_argument("story", metavar="SCENARIO|EP.jsonl", help="a scenario folder, which is run, or an episode")
     part.add_argument("query", metavar="QUERY", help='such as "object(X), shape(X, square, C)"')
-    part.add_argument("--at", type=int, metavar="STEP", help="the step to ask at (default: the last; 0: on waking)")
+    part.add_argument("--at", type=_step, metavar="STEP", help="the step to ask at (default: the last; 0: on waking)")
     part.add_argument("--json", action="store_true", help="print the answer as one JSON object")
     add_settings(part)
     part.set_defaults(execute=execute)
@@ -37,10 +39,8 @@ def execute(options: argparse.Namespace) -> int:
         print(f"utak: {limit}", file=sys.stderr)
         return exits.LIMIT
     if options.json:
-        import json
-
         rows = [list(row) for row in answer.rows]
-        print(json.dumps({"step": step, "answer": answer.kind, "variables": list(answer.variables), "rows": rows}))
+        print(as_json({"step": step, "answer": answer.kind, "variables": list(answer.variables), "rows": rows}))
     else:
         print(answer)
     return exits.DONE
@@ -55,3 +55,7 @@ def _go_to(story: "Story", name: str, step: int | None) -> None:
     if step is not None and story.line["step"] != step:
         what = f"there is no step {step}: the last is {story.line['step']}"
         raise BadInputError([Problem(name, Span(1, 1, 1), what)])
+
+
+def _step(text: str) -> int:
+    return whole(text, 0, 1_000_000)

@@ -2,15 +2,16 @@
 
 import argparse
 import sys
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from simulator import exits
+from simulator.numbers import decimal, whole
+from simulator.printing import as_json
 
 if TYPE_CHECKING:
     from simulator.session import Result, Session
     from simulator.settings import Settings
 
-Amount = TypeVar("Amount", int, float)
 PATHS = ("skeleton", "visibility", "grid")
 
 
@@ -90,11 +91,9 @@ def _recorded(options: argparse.Namespace) -> dict[str, Any] | None:
     return found if isinstance(found, dict) else None
 
 
-def _print(result: "Result", as_json: bool) -> None:
-    import json
-
-    if as_json:
-        print(json.dumps({**result.line["result"], "unmet": list(result.unmet)}))
+def _print(result: "Result", json: bool) -> None:
+    if json:
+        print(as_json({**result.line["result"], "unmet": list(result.unmet)}))
         return
     truth = {None: "", True: ", achieved", False: ", not achieved"}[result.achieved]
     print(f"{result.verdict} in {result.steps} steps{truth}: {result.reason}")
@@ -131,18 +130,12 @@ def describe(action: dict[str, Any] | None) -> str:
 
 
 def _seed(text: str) -> int:
-    return _within(int(text), 0, 2**63 - 1)
+    return whole(text, 0, 2**63 - 1)
 
 
 def _steps(text: str) -> int:
-    return _within(int(text), 0, 1_000_000)
+    return whole(text, 0, 1_000_000)
 
 
 def _noise(text: str) -> float:
-    return _within(float(text), 0, 1)
-
-
-def _within(value: Amount, low: int, high: int) -> Amount:
-    if not low <= value <= high:
-        raise argparse.ArgumentTypeError(f"must be from {low} to {high}, not {value}")
-    return value
+    return decimal(text, 0, 1)
