@@ -5,28 +5,26 @@ its own alone. A query is the body of one rule; its answers are the values of th
 """
 
 import json
-import re
 import resource
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
 from typing import Any
 
 import clingo
-from clingo.ast import AST, ASTType, Sign, Transformer, parse_string
+from clingo.ast import AST, ASTType, parse_string
+
+from kb.clauses import Clause, ClauseError, clauses_of, global_variables
+from kb.inference import Bindings, bindings
+from kb.open_world import Beliefs, Row
+from kb.problems import did_you_mean
+from kb.uncertain import Value
+from kb.vocabulary import BELIEF
+from kb.wording import check_body, stated_names
 
 MEMORY = 1_500_000_000  # bytes of address space
 MOST_ROWS = 10_000
-CONFIDENT = {
-    ("kind", 3),
-    ("segment", 7),
-    ("shape", 3),
-    ("colour", 3),
-    ("movable", 2),
-}  # the last argument is a confidence
-UNSAFE = re.compile(r"'(\w+)' is unsafe")
-DERIVED = "object(N) :- kind(N, object, _)."
 HEAD = "q__ :- "
-LOCAL = ("BodyAggregateElement", "ConditionalLiteral")  # variables in these are their own
 
 Answer = dict[str, Any]
 
@@ -39,53 +37,56 @@ class QueryError(Exception):
         super().__init__(what)
 
 
-class _Reader(Transformer):
-    """Collects the global variables of a rule's body and its atoms as (name, arity)."""
+def answer(facts: Iterable[Sequence[int | str]], query: str) -> Answer:
+    """Return the answer to a query over facts: its kind, its variables, and the rows of their values.
 
-    def __init__(self) -> None:
-        self.variables: list[str] = []
-        self.atoms: list[tuple[str, int, int]] = []
-        self.local = 0
-
-    def visit(self, ast: AST, *args: Any, **kwargs: Any) -> AST:
-        """Visit a node, knowing whether its variables are local."""
-        local = str(ast.ast_type).rpartition(".")[2] in LOCAL
-        self.local += local
-        super().visit(ast, *args, **kwargs)
-        self.local -= local
-        return ast
-
-    def visit_Variable(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        if not self.local and node.name != "_" and node.name not in self.variables:
-            self.variables.append(node.name)
-        return node
-
-    def visit_SymbolicAtom(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        symbol = node.symbol
-        if symbol.ast_type == ASTType.Function:
-            at = symbol.location.begin.column - len(HEAD)
-            self.atoms.append((symbol.name, len(symbol.arguments), at))
-        self.visit_children(node)
-        return node
+    facts : of each the name and the arguments, integers or terms as text.
+    """
+    clauses = clauses_of(_rule(query))
+    beliefs = Beliefs(_facts(facts))
+    names = stated_names(beliefs.signatures())
+    for clause in clauses:
+        check_body(clause.body, {*BELIEF, *beliefs.signatures()}, names)
+    variables = list(dict.fromkeys(name for clause in clauses for name in global_variables(clause.body)))
+    rows: dict[Row, None] = {}
+    for clause in clauses:
+        rows |= dict.fromkeys(_row(found, variables, clause) for found in bindings(clause.body, {}, beliefs, False))
+    found = {"variables": variables, "rows": [], "more": False}
+    if rows:
+        told = sorted(([_value(value) for value in row] for row in rows), key=_order)
+        return (
+            found
+            | {"answer": "bindings" if variables else "yes", "rows": told[:MOST_ROWS] if variables else []}
+            | {"more": len(told) > MOST_ROWS}
+        )
+    perhaps = any(True for clause in clauses for _ in bindings(clause.body, {}, beliefs, True))
+    return found | {"answer": "don't know" if perhaps else "no"}
 
 
-def answer(facts: str, query: str, known: Iterable[tuple[str, int]]) -> Answer:
-    """Return the answer to a query over facts: its variables, the rows of their values, and whether it is open."""
-    rule = _rule(query)
-    reader = _Reader()
-    reader.visit_sequence(rule.body)
-    declared = {(name, arity) for name, arity in known}
-    if any(atom[:2] not in declared for atom in reader.atoms):
-        return {"atoms": reader.atoms, "variables": [], "rows": [], "more": False, "open": False}
-    program = [facts, DERIVED, *(f"#defined {name}/{arity}." for name, arity in sorted(declared))]
-    rows, more = _rows(program, reader.variables, query)
-    found = {"variables": reader.variables, "rows": rows, "more": more, "atoms": reader.atoms}
-    return found | {"open": not rows and _open(program, rule)}
+def _row(found: Bindings, variables: list[str], clause: Clause) -> Row:
+    missing = [name for name in variables if name not in found]
+    if missing:
+        raise ClauseError(f"nothing says what {missing[0]} can be: it must be in an atom that holds", clause.at)
+    return tuple(found[name] for name in variables)
 
 
-def _rule(query: str) -> Any:
+def _order(row: list[Any]) -> list[tuple[bool, Any]]:
+    return [(isinstance(value, str), value) for value in row]
+
+
+def _facts(entries: Iterable[Sequence[int | str]]) -> Iterator[tuple[str, Row]]:
+    for name, *arguments in entries:
+        yield str(name), tuple(term if isinstance(term, int) else _parsed(term) for term in arguments)
+
+
+@lru_cache(maxsize=65536)
+def _parsed(term: str) -> clingo.Symbol:
+    return clingo.parse_term(term)
+
+
+def _rule(query: str) -> AST:
     """The rule of which a query is the body; exactly one, or it is no query."""
-    parts: list[Any] = []
+    parts: list[AST] = []
     parse_string(f"{HEAD}{query}\n.", parts.append, logger=_raise, message_limit=20)
     if len(parts) != 2 or parts[1].ast_type != ASTType.Rule:
         raise QueryError("one query at a time, without a full stop in it")
@@ -94,35 +95,8 @@ def _rule(query: str) -> Any:
     return parts[1]
 
 
-def _rows(program: list[str], variables: list[str], body: str) -> tuple[list[list[Any]], bool]:
-    """The distinct values of the variables for which the body holds, and whether there are more of them."""
-    control = clingo.Control(["--warn=all"], logger=_raise, message_limit=20)
-    head = f"q__({','.join(variables)})" if variables else "q__"
-    control.add("base", [], "\n".join([*program, f"{head} :- {body}\n."]))
-    control.ground([("base", [])])
-    atoms = control.symbolic_atoms.by_signature("q__", len(variables))
-    rows = [[_value(term) for term in atom.symbol.arguments] for atom in atoms]
-    rows.sort(key=lambda row: [(isinstance(value, str), value) for value in row])
-    return rows[:MOST_ROWS], len(rows) > MOST_ROWS
-
-
-def _open(program: list[str], rule: Any) -> bool:
-    """Whether the query would hold if it asked for any confidence between 0 and 100 where it asks for a certain one."""
-    literals, changed = [], False
-    for number, literal in enumerate(rule.body):
-        text = str(literal)
-        if literal.ast_type == ASTType.Literal and literal.sign == Sign.NoSign:
-            symbol = getattr(literal.atom, "symbol", None)
-            if symbol is not None and (symbol.name, len(symbol.arguments)) in CONFIDENT:
-                terms = [*map(str, list(symbol.arguments)[:-1]), f"C__{number}"]
-                text = f"{symbol.name}({','.join(terms)}), 0 < C__{number} < 100"
-                changed = True
-        literals.append(text)
-    return changed and bool(_rows(program, [], "; ".join(literals))[0])
-
-
-def _value(term: clingo.Symbol) -> int | str:
-    return term.number if term.type == clingo.SymbolType.Number else str(term)
+def _value(term: Value) -> int | str:
+    return term if isinstance(term, int) else str(term)
 
 
 def solved(program: str, rules: str, seconds: float) -> Answer:
@@ -154,9 +128,6 @@ def solved(program: str, rules: str, seconds: float) -> Answer:
 
 def _raise(code: clingo.MessageCode, message: str) -> None:
     """Turn clingo's first message into an error; columns count from the start of the query."""
-    if unsafe := UNSAFE.search(message):
-        _messages.append(QueryError(f"nothing says what {unsafe[1]} can be: it must be in an atom that holds"))
-        return
     place, _, what = message.partition(": error: ")
     if not what:
         place, _, what = message.partition(": info: ")
@@ -174,15 +145,19 @@ def _respond(line: str) -> Answer:
         request = json.loads(line)
         if "rules" in request:
             return solved(request["program"], request["rules"], request["seconds"])
-        found = answer(request["facts"], request["query"], request["known"])
+        found = answer(request["facts"], request["query"])
     except QueryError as error:
-        return {"error": error.what, "at": error.at}
+        return {"error": error.what, "at": error.at, "hint": ""}
+    except ClauseError as error:
+        return {"error": error.what, "at": max(0, error.at[1] - len(HEAD)), "hint": error.hint}
+    except RecursionError:
+        return {"error": "it is nested too deep", "at": 0, "hint": ""}
     except MemoryError:
         return {"limit": "it needs too much memory"}
     except RuntimeError as error:
         _messages.append(QueryError(str(error)))
     if _messages:
-        return {"error": _messages[0].what, "at": _messages[0].at}
+        return {"error": _messages[0].what, "at": _messages[0].at, "hint": ""}
     return found
 
 
@@ -191,7 +166,8 @@ def main() -> None:
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     json.loads('{"a": [1.5, "b"]}')  # everything that is imported late is imported now
-    answer("p(1).", "p(X), not p(2)", [])
+    answer([["room", "r1"]], "room(X), not room(r2)")
+    did_you_mean("room", ["door"])
     resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))
     print("ready", flush=True)
     for line in sys.stdin:
