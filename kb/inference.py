@@ -303,6 +303,14 @@ class _Search:
                 tally.add(tuple(self.value(term, found) for term in element.terms), possible)
 
 
+def value_of(term: Term, given: Bindings, beliefs: Beliefs) -> Value:
+    """Return the value of a term of which all variables are bound; raises ClauseError where it has none."""
+    missing = [name for name in variables_of(term) if name not in given]
+    if missing:
+        raise ClauseError(f"nothing says what {missing[0]} can be: it must be in an atom that holds", term.at)
+    return _Search(beliefs, True, NONE).value(term, given)
+
+
 def confidences_read(body: Sequence[Literal], given_out: Any) -> frozenset[str]:
     """Return the variables whose values are given out or held against others: confidences in them are those of now."""
     found = set(variables_of(given_out))

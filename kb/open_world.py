@@ -43,7 +43,7 @@ class Beliefs:
     def derive(self, signature: Signature, row: Row, possible: bool) -> bool:
         """Add a row of a predicate that rules define; False when it is there already. possible : it only may hold."""
         rows = (self._perhaps if possible else self._rows).setdefault(signature, {})
-        if row in rows or (possible and self._covered(signature, row)):
+        if row in rows or (possible and (row in self._rows.get(signature, {}) or self._covered(signature, row))):
             return False
         rows[row] = None
         if not possible:

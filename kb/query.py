@@ -15,6 +15,7 @@ from kb.facts import Fact, Number
 from kb.integers import wide_integers
 from kb.problems import BadInputError, Problem, Span
 from kb.source import decode
+from kb.userrules import read_rules
 from kb.vocabulary import BELIEF
 from kb.worker import Worker
 
@@ -55,10 +56,14 @@ class Answer:
 
 
 class QueryEngine:
-    """Answers queries one after another; use it in a `with` statement, which ends its process."""
+    """Answers queries one after another; use it in a `with` statement, which ends its process.
 
-    def __init__(self, seconds: float = SECONDS) -> None:
+    rules : files with rules of a user; predicates that they define over what is believed can be asked for, too.
+    """
+
+    def __init__(self, seconds: float = SECONDS, rules: Sequence[str] = ()) -> None:
         self.seconds = seconds
+        self._rules = read_rules(rules).queried if rules else ()
         self._worker = Worker()
 
     def __enter__(self) -> "QueryEngine":
@@ -79,10 +84,16 @@ class QueryEngine:
         text = query.strip().removeprefix("?-").strip().removesuffix(".").strip()
         _check(text)
         world = parse_facts(decode("belief", "\n".join(facts).encode("utf-8")))
-        request = {"facts": [_entry(fact) for fact in world], "query": text}
+        request = {
+            "facts": [_entry(fact) for fact in world],
+            "query": text,
+            "rules": [one.written for one in self._rules],
+        }
         found = self._worker.exchange(request, self.seconds)
         if "limit" in found:
             raise QueryLimitError(f"the query was given up: {found['limit']}")
+        if "rule" in found:
+            raise BadInputError([self._rules[found["rule"]].problem(found["error"], hint=found["hint"])])
         if "error" in found:
             raise _problem(text, found["error"], found["at"], found["hint"])
         return Answer(found["answer"], tuple(found["variables"]), tuple(map(tuple, found["rows"])), found["more"])

@@ -15,9 +15,11 @@ import clingo
 from clingo.ast import AST, ASTType, parse_string
 
 from kb.clauses import Clause, ClauseError, clauses_of, global_variables
+from kb.deriving import derive
 from kb.inference import Bindings, bindings
 from kb.open_world import Beliefs, Row
 from kb.problems import did_you_mean
+from kb.ruling import read, solved
 from kb.uncertain import Value
 from kb.vocabulary import BELIEF
 from kb.wording import check_body, stated_names
@@ -29,6 +31,14 @@ HEAD = "q__ :- "
 Answer = dict[str, Any]
 
 
+class RuleError(Exception):
+    """A rule cannot be worked out; carries the ClauseError, whose line is the rule's number."""
+
+    def __init__(self, error: ClauseError) -> None:
+        self.error = error
+        super().__init__(error.what)
+
+
 class QueryError(Exception):
     """A query is not one: what, and at which of its characters (from 1, 0 when unknown)."""
 
@@ -37,16 +47,23 @@ class QueryError(Exception):
         super().__init__(what)
 
 
-def answer(facts: Iterable[Sequence[int | str]], query: str) -> Answer:
+def answer(facts: Iterable[Sequence[int | str]], query: str, rules: Sequence[str] = ()) -> Answer:
     """Return the answer to a query over facts: its kind, its variables, and the rows of their values.
 
-    facts : of each the name and the arguments, integers or terms as text.
+    facts : of each the name and the arguments, integers or terms as text. rules : plain rules of a user, which define
+    predicates that can be asked for, too.
     """
     clauses = clauses_of(_rule(query))
     beliefs = Beliefs(_facts(facts))
     names = stated_names(beliefs.signatures())
+    defining = _defining(rules)
+    defined = {clause.head.signature for clause in defining if clause.head is not None}
     for clause in clauses:
-        check_body(clause.body, {*BELIEF, *beliefs.signatures()}, names)
+        check_body(clause.body, {*BELIEF, *beliefs.signatures(), *defined}, names)
+    try:
+        derive(defining, beliefs)
+    except ClauseError as error:
+        raise RuleError(error) from None
     variables = list(dict.fromkeys(name for clause in clauses for name in global_variables(clause.body)))
     rows: dict[Row, None] = {}
     for clause in clauses:
@@ -61,6 +78,16 @@ def answer(facts: Iterable[Sequence[int | str]], query: str) -> Answer:
         )
     perhaps = any(True for clause in clauses for _ in bindings(clause.body, {}, beliefs, True))
     return found | {"answer": "don't know" if perhaps else "no"}
+
+
+def _defining(rules: Sequence[str]) -> list[Clause]:
+    """The clauses of rules; the line of each is its number among them, from 1."""
+    parts: list[AST] = []
+    parse_string("\n".join(rules), parts.append, logger=_raise, message_limit=20)
+    try:
+        return [clause for part in parts if part.ast_type == ASTType.Rule for clause in clauses_of(part)]
+    except ClauseError as error:
+        raise RuleError(error) from None
 
 
 def _row(found: Bindings, variables: list[str], clause: Clause) -> Row:
@@ -99,33 +126,6 @@ def _value(term: Value) -> int | str:
     return term if isinstance(term, int) else str(term)
 
 
-def solved(program: str, rules: str, seconds: float) -> Answer:
-    """The shown atoms of the best answer set of a program of ours with rules of a user: {"atoms": texts or None}.
-
-    Or {"error": clingo's first message}, whose lines are those of the rules.
-    """
-    messages: list[str] = []
-    control = clingo.Control([], logger=lambda _code, text: messages.append(text), message_limit=20)
-    try:
-        control.add("base", [], program)
-        control.add("base", [], rules)
-        control.ground([("base", [])])
-    except RuntimeError as error:
-        messages.append(str(error))
-    if messages:
-        return {"error": messages[0]}
-    best: list[list[str] | None] = [None]
-
-    def keep(model: clingo.Model) -> None:
-        best[0] = [str(atom) for atom in model.symbols(shown=True)]
-
-    with control.solve(on_model=keep, async_=True) as handle:
-        if not handle.wait(seconds):
-            handle.cancel()
-        handle.get()
-    return {"atoms": best[0]}
-
-
 def _raise(code: clingo.MessageCode, message: str) -> None:
     """Turn clingo's first message into an error; columns count from the start of the query."""
     place, _, what = message.partition(": error: ")
@@ -143,11 +143,15 @@ def _respond(line: str) -> Answer:
     _messages.clear()
     try:
         request = json.loads(line)
-        if "rules" in request:
-            return solved(request["program"], request["rules"], request["seconds"])
-        found = answer(request["facts"], request["query"])
+        if "read" in request:
+            return read(request["read"])
+        if "program" in request:
+            return solved(request["program"], request["rules"], request["heads"], request["conflicts"])
+        found = answer(request["facts"], request["query"], request["rules"])
     except QueryError as error:
         return {"error": error.what, "at": error.at, "hint": ""}
+    except RuleError as bad:
+        return {"error": bad.error.what, "rule": bad.error.at[0] - 1, "hint": bad.error.hint}
     except ClauseError as error:
         return {"error": error.what, "at": max(0, error.at[1] - len(HEAD)), "hint": error.hint}
     except RecursionError:

@@ -12,7 +12,8 @@ from simulator import exits
 def add(parts: Any) -> None:
     """Declare the subcommand."""
     part = parts.add_parser("check", help="check scenarios or single files of them")
-    part.add_argument("paths", nargs="+", metavar="FILE|FOLDER", help="a scenario, a folder of them, or a file of one")
+    what = "a scenario, a folder of them, a file of one, or a file of rules for --kb"
+    part.add_argument("paths", nargs="+", metavar="FILE|FOLDER", help=what)
     part.set_defaults(execute=execute)
 
 
@@ -49,9 +50,20 @@ def _check(path: Path) -> None:
     if check is None:
         if not path.exists():
             raise CannotOpenError(str(path), "no such file or folder")
-        hint = f"a scenario's files are {', '.join(sorted(_checks()))}"
-        raise BadInputError([Problem(str(path), Span(1, 1, 1), f"{path.name} is no file of a scenario", hint=hint)])
+        if path.suffix == ".lp":
+            check = _rules
+        else:
+            what = f"{path.name} is neither a file of a scenario nor one of rules"
+            hint = f"a scenario's files are {', '.join(sorted(_checks()))}; files of rules end in .lp"
+            raise BadInputError([Problem(str(path), Span(1, 1, 1), what, hint=hint)])
     check(path)
+
+
+def _rules(path: Path) -> None:
+    """Check a file of rules by itself, as --kb takes it."""
+    from kb.userrules import checked_rules
+
+    checked_rules([path])
 
 
 def _checks() -> dict[str, Callable[[Path], Any]]:

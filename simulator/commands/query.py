@@ -33,7 +33,7 @@ def execute(options: argparse.Namespace) -> int:
     _go_to(story, options.story, options.at)
     step = story.line["step"]
     try:
-        with QueryEngine() as engine:
+        with QueryEngine(rules=options.kb) as engine:
             answer = engine.ask(facts_of_line(story.line), options.query)
     except QueryLimitError as limit:
         print(f"utak: {limit}", file=sys.stderr)
