@@ -28,7 +28,7 @@ from kb.clauses import (
     variables_of,
 )
 from kb.open_world import Beliefs
-from kb.ordering import assigned, assignment, planned
+from kb.ordering import assigned, assignment, planned, unsafe
 from kb.tallying import Tally
 from kb.uncertain import TURNED, Truth, Unknown, Value, bounds, calculated, compare, narrowed, symbol
 
@@ -186,6 +186,8 @@ class _Search:
         if isinstance(term, Constant):
             return term.value
         if isinstance(term, Variable):
+            if term.name not in given:
+                raise unsafe(term.name, term.at)
             return given[term.name]
         if isinstance(term, Compound):
             parts = [self.value(part, given) for part in term.parts]
@@ -305,9 +307,6 @@ class _Search:
 
 def value_of(term: Term, given: Bindings, beliefs: Beliefs) -> Value:
     """Return the value of a term of which all variables are bound; raises ClauseError where it has none."""
-    missing = [name for name in variables_of(term) if name not in given]
-    if missing:
-        raise ClauseError(f"nothing says what {missing[0]} can be: it must be in an atom that holds", term.at)
     return _Search(beliefs, True, NONE).value(term, given)
 
 

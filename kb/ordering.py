@@ -37,14 +37,19 @@ def planned(body: Sequence[Literal], given: Iterable[str]) -> tuple[Literal, ...
         if not ready:
             literal = left[0]
             missing = sorted(name for one in left for name in _needs(one, own) - bound)
-            shown = next((name for name in missing if not name.startswith(("?", "."))), "_")
-            what = f"nothing says what {shown} can be: it must be in an atom that holds"
-            raise ClauseError(what, literal.at)
+            shown = next((name for name in missing if not name.startswith(("?", "."))), "?")
+            raise unsafe(shown, literal.at)
         chosen = max(ready, key=lambda literal: len(bound & set(_plain_names(literal))))
         left.remove(chosen)
         order.append(chosen)
         bound |= _binds(chosen, bound)
     return tuple(order)
+
+
+def unsafe(name: str, at: tuple[int, int]) -> ClauseError:
+    """Return the error that nothing binds a variable."""
+    shown = "_" if name.startswith(("?", ".")) else name
+    return ClauseError(f"nothing says what {shown} can be: it must be in an atom that holds", at)
 
 
 def _plain_names(literal: Literal) -> list[str]:
@@ -70,8 +75,8 @@ def _can_bind(literal: Literal, bound: set[str], own: set[str]) -> bool:
     if isinstance(literal, Atom):
         return literal.negations == 0 and all(_matchable(part, bound) for part in literal.parts)
     if isinstance(literal, Aggregate):
-        inner = (set(variables_of(tuple(literal.elements))) & own) <= bound
-        return inner and not literal.negated and assigned(literal.guards, bound) is not None
+        variable = assigned(literal.guards, bound)
+        return not literal.negated and variable is not None and _needs(literal, own) - {variable.name} <= bound
     return isinstance(literal, Comparison) and assignment(literal, bound) is not None
 
 

@@ -18,6 +18,7 @@ from kb.clauses import Clause, ClauseError, clauses_of, global_variables
 from kb.deriving import derive
 from kb.inference import Bindings, bindings
 from kb.open_world import Beliefs, Row
+from kb.ordering import unsafe
 from kb.problems import did_you_mean
 from kb.ruling import read, solved
 from kb.uncertain import Value
@@ -93,7 +94,7 @@ def _defining(rules: Sequence[str]) -> list[Clause]:
 def _row(found: Bindings, variables: list[str], clause: Clause) -> Row:
     missing = [name for name in variables if name not in found]
     if missing:
-        raise ClauseError(f"nothing says what {missing[0]} can be: it must be in an atom that holds", clause.at)
+        raise unsafe(missing[0], clause.at)
     return tuple(found[name] for name in variables)
 
 

@@ -83,6 +83,8 @@ BAD = {
     "X = -(-2147483648)": "a number beyond 32 bits",
     "offset(o1, E, N), X = E*E*E*E": "a number beyond 32 bits",
     "X = #sum{2147483647,a; 1,b}": "a number beyond 32 bits (-2147483648 to 2147483647), in #sum",
+    "C = #max{D : shape(o1, T, E)}": "nothing says what D can be",
+    "C = #max{D : shape(o1, T, D)} <= f(S)": "nothing says what C can be",
     "X = 5/0": "a division by zero",
     "X = o1+1": "operation undefined: o1 is no number",
     "-object(o1)": "query:1:1-1: error: classical negation is not known here",
