@@ -59,6 +59,14 @@ def cornered(side: str, node: Node, situation: Situation) -> Landing:
     return Landing({}, looks[0].what, looks, there=not shut_in, shut_in=shut_in)
 
 
+def may_move(goal: Fact, situation: Situation) -> bool:
+    """Return whether a goal is about a corner that rooms not seen yet may put elsewhere."""
+    where = goal.args[1]
+    if goal.name != "at" or not isinstance(where, Symbol) or where.name != "corner":
+        return False
+    return bool(rooms_to_see(str(where.args[0]), situation))
+
+
 def approach(goals: Iterable[Fact], situation: Situation) -> Approach:
     """How he goes up to what he shall carry to where some goals hold for it."""
     for goal in goals:
