@@ -17,7 +17,7 @@ WALL = "b" + "." * 11 + "bb" + "." * 11 + "b"
 OPEN = "b" + "." * 24 + "b"
 BEGUN = "b..U" + "." * 8 + "bb" + "." * 11 + "b"
 ONE_DOOR = ["b" * 26, *[WALL] * 4, BEGUN, *[OPEN] * 3, *[WALL] * 4, "b" * 26]
-TWO_DOORS = [row + row[12:] for row in ONE_DOOR]  # a third room beyond the second
+TWO_DOORS = [row[:-1] + ("." if row == OPEN else "b") + row[12:] for row in ONE_DOOR]  # and a third room
 NEVER = Task({}, (), facts_of("not_through(utak, d)."))
 
 

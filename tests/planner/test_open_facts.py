@@ -19,7 +19,7 @@ def felt(model: WorldModel, but: int = 0) -> WorldModel:
     """The same model with every wall beside the floor felt, but for so many squares."""
     rows, columns = np.nonzero(unfelt_walls(model))
     squares = sorted(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))
-    return replace(model, felt={square: "b" for square in squares[but:]})
+    return replace(model, felt=dict.fromkeys(squares[but:], "b"))
 
 
 def test_a_wall_that_was_never_felt_may_be_a_thing() -> None:
