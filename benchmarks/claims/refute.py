@@ -1,0 +1,60 @@
+"""Claims against the truth: a `done` that is not achieved, and an `impossible` to which a way is known.
+
+That a world's task can be done is known by its construction, or is found by a search that knows the true world: a
+program beside the judge (see benchmarks.judging), `countersearch.py SCENARIO --seconds S --plan`, which exits with 0
+when it has found a way, 1 when it has not, and 2 when it cannot tell what the goal means.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+from benchmarks.judging import judge_path
+
+ANSWERS = {0: "solvable", 1: "not found", 2: "unsupported"}
+
+
+class Countersearch(NamedTuple):
+    """What a search that knows the world says: solvable, not found, unsupported or absent; and the way, as printed."""
+
+    answer: str
+    way: str = ""
+
+
+class Claims(NamedTuple):
+    """Which claims of a run are false, and what refutes them."""
+
+    false_done: bool
+    false_impossible: bool
+    refutation: str
+
+
+def searched(folder: Path, seconds: int) -> Countersearch:
+    """Look for a way in the scenario of a folder, knowing its true world."""
+    judge = judge_path()
+    program = judge and judge.with_name("countersearch.py")
+    if program is None or not program.is_file():
+        return Countersearch("absent")
+    call = [sys.executable, str(program), str(folder), "--seconds", str(seconds), "--plan"]
+    try:
+        done = subprocess.run(call, capture_output=True, text=True, timeout=10 * seconds + 60)
+    except subprocess.TimeoutExpired:
+        return Countersearch("not found")
+    answer = ANSWERS.get(done.returncode, "unsupported")
+    return Countersearch(answer, done.stdout.strip() if answer == "solvable" else "")
+
+
+def refuted(
+    verdict: str, believed: bool, achieved: bool, unmet: list[str], possible: str, search: Countersearch
+) -> Claims:
+    """Hold a run's claims against what is true at its end and against what can be done."""
+    false_done = (believed or verdict == "done") and not achieved
+    solvable = possible == "yes" or search.answer == "solvable"
+    false_impossible = verdict == "impossible" and solvable
+    said = []
+    if false_done:
+        said.append("not so at the end: " + ("; ".join(unmet) or "it cannot be done"))
+    if false_impossible:
+        said.append("it can be done " + (f"so: {search.way}" if search.way else "by construction"))
+    return Claims(false_done, false_impossible, ". ".join(said))
