@@ -28,7 +28,7 @@ class Limits:
     noise: float = 0.0
     noise_seed: int = 0
     max_steps: int = 200
-    seconds: int = 240
+    seconds: int = 120
     megabytes: int = 6000
     search: int = 30
 
@@ -63,8 +63,10 @@ def run_world(asked: Asked, limits: Limits, folder: Path, keep: Path | None = No
     place = folder / asked.name.replace(":", "-")
     known = written(asked, place)
     ended = runner(place, limits)
-    cycles = _cycles(place)
-    told = _result(place)
+    cycles, told = _cycles(place), _result(place)
+    steps = told.get("steps", max(0, len(cycles) - 1))
+    if not told and ended == TIME:  # the command under way has taken what is left of the seconds, or longer
+        cycles.append(max(0.0, limits.seconds - sum(cycles)))
     verdict = told.get("verdict", ended)
     believed, achieved = bool(told.get("believed")), bool(told.get("achieved"))
     search = searched(place, limits.search) if verdict == "impossible" else Countersearch("")
@@ -81,7 +83,7 @@ def run_world(asked: Asked, limits: Limits, folder: Path, keep: Path | None = No
         reason=told.get("reason", ""),
         believed=believed,
         achieved=achieved,
-        commands=told.get("steps", max(0, len(cycles) - 1)),
+        commands=steps,
         cycles=cycles[1:],
         judged=_judged(place) if told else None,
         countersearch=search.answer,

@@ -128,6 +128,16 @@ def test_a_child_that_breaks_is_an_error(tmp_path: Path) -> None:
     assert run_child(tmp_path, Limits(megabytes=60)) == "error"
 
 
+def test_a_run_out_of_time_tells_how_long_its_last_command_took(tmp_path: Path) -> None:
+    def runner(place: Path, limits: Limits) -> str:
+        (place / child.CYCLES).write_text("1.0\n2.0\n")
+        (place / "stderr.txt").write_text("")
+        return "time"
+
+    row = run_world(ABLE, Limits(seconds=100), tmp_path, None, runner)
+    assert (row.verdict, row.commands, row.cycles, row.faulty) == ("time", 1, [2.0, 97.0], True)
+
+
 def test_results_are_gone_on_with(
     claiming: Callable[[Asked, str], Row], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
