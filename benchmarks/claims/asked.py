@@ -3,7 +3,10 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from shapely.geometry.base import BaseGeometry
+
 from benchmarks.odd.kinds import KINDS, odd_world
+from benchmarks.odd.tasks import NOWHERE
 from benchmarks.scenes import write
 from benchmarks.worlds import MAKERS, scenario
 
@@ -29,13 +32,14 @@ class Asked:
 class Known:
     """What is known of a world: its task in a word, what it is within its kind, whether it can be done, and why not.
 
-    possible : "yes", "no" or "unknown".
+    possible : "yes", "no" or "unknown". avoid : where the robot must never be, in squares of the table.
     """
 
     task: str
     variant: str
     possible: str
     why: str
+    avoid: BaseGeometry = NOWHERE
 
 
 def named(text: str) -> Asked:
@@ -70,4 +74,4 @@ def written(asked: Asked, folder: Path) -> Known:
         return Known(f"task {asked.task}", "", "yes" if own.possible else "no", own.texts.unable)
     odd = odd_world(asked.kind, asked.seed)
     write(odd, folder)
-    return Known(odd.task, odd.variant, odd.possible, odd.texts.unable)
+    return Known(odd.task, odd.variant, odd.possible, odd.texts.unable, odd.avoid)

@@ -5,10 +5,14 @@ program beside the judge (see benchmarks.judging), `countersearch.py SCENARIO --
 when it has found a way, 1 when it has not, and 2 when it cannot tell what the goal means.
 """
 
+import json
 import subprocess
 import sys
 from pathlib import Path
 from typing import NamedTuple
+
+from shapely import LineString
+from shapely.geometry.base import BaseGeometry
 
 from benchmarks.judging import judge_path
 
@@ -43,6 +47,15 @@ def searched(folder: Path, seconds: int) -> Countersearch:
         return Countersearch("not found")
     answer = ANSWERS.get(done.returncode, "unsupported")
     return Countersearch(answer, done.stdout.strip() if answer == "solvable" else "")
+
+
+def trespassed(episode: Path, avoid: BaseGeometry) -> bool:
+    """Return whether the robot was ever in a region by an episode: it moves straight from one place to the next."""
+    if avoid.is_empty:
+        return False
+    lines = [json.loads(line) for line in episode.read_text().splitlines()]
+    track = [line["utak"] for line in lines if "step" in line]
+    return bool(LineString([*track, track[-1]]).intersects(avoid))
 
 
 def refuted(

@@ -11,7 +11,7 @@ from typing import Any
 
 from benchmarks.claims import child
 from benchmarks.claims.asked import Asked, written
-from benchmarks.claims.refute import Countersearch, refuted, searched
+from benchmarks.claims.refute import Countersearch, refuted, searched, trespassed
 from benchmarks.claims.row import ERROR, TIME, Row
 from benchmarks.judging import ROOT, judge_path
 
@@ -69,8 +69,12 @@ def run_world(asked: Asked, limits: Limits, folder: Path, keep: Path | None = No
         cycles.append(max(0.0, limits.seconds - sum(cycles)))
     verdict = told.get("verdict", ended)
     believed, achieved = bool(told.get("believed")), bool(told.get("achieved"))
+    unmet = list(told.get("unmet", []))
+    if told and trespassed(place / child.EPISODE, known.avoid):
+        unmet.append("the robot was where the goal forbids it to be")
+        achieved = False
     search = searched(place, limits.search) if verdict == "impossible" else Countersearch("")
-    claims = refuted(verdict, believed, achieved, told.get("unmet", []), known.possible, search)
+    claims = refuted(verdict, believed, achieved, unmet, known.possible, search)
     row = Row(
         kind=asked.kind,
         seed=asked.seed,

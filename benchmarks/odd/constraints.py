@@ -17,6 +17,7 @@ from benchmarks.scenes import Task, Thing, wkt
 KIND = "constraint"
 X, DOOR = "object(x).\nshape(x, square).\n", "door(d).\n"
 NEXT, CARRIED = "in(utak, room(next)).\n", "in(x, room(next)).\n"
+MARGIN = 0.1  # squares: who goes so far beyond the middle of a door went through it
 OTHERS: dict[str, Polygon] = {"brick": box(0, 0, 6, 2), "l_shape": ell(6, 6, 2)}  # nothing that looks like a square
 
 
@@ -82,7 +83,9 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     scene = Scene(plan, home, tuple(things), utak, facing)
     expect = "fails.\n" if question.possible == tasks.NO else _expected(variant, scene)
     texts = Task(question.start, question.goal, expect, question.why)
-    return OddWorld(KIND, seed, variant, variant, plan, scene.things, utak, facing, texts, question.possible)
+    shut = question.doors == 1 and "not_through(utak, d)" in question.goal
+    avoid = plan.beyond(home).buffer(-MARGIN) if shut else tasks.NOWHERE
+    return OddWorld(KIND, seed, variant, variant, plan, scene.things, utak, facing, texts, question.possible, avoid)
 
 
 def _expected(variant: str, scene: Scene) -> str:

@@ -14,6 +14,7 @@ from benchmarks.odd.houses import COMPASS, House
 from benchmarks.placing import digital
 from benchmarks.scenes import Task, Thing, wkt, world_text
 
+NOWHERE = Polygon()
 YES, NO, UNKNOWN = "yes", "no", "unknown"
 AT_CORNER = 1.5  # squares: one in each axis, at any angle of the axes
 AT_THING = 1.05  # squares from the squares of a thing
@@ -38,7 +39,7 @@ class OddWorld:
     """An odd world with a task.
 
     possible : whether the task can be done, by construction: "yes", "no" or "unknown". why : says why it cannot.
-    variant : what within its kind this is a world of.
+    variant : what within its kind this is a world of. avoid : where the robot must never be, by the goal's constraints.
     """
 
     kind: str
@@ -51,6 +52,7 @@ class OddWorld:
     heading: int
     texts: Task
     possible: str
+    avoid: BaseGeometry = NOWHERE
 
     @property
     def name(self) -> str:

@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
+from shapely import Polygon, box
 
 from benchmarks.claims import __main__ as campaign
 from benchmarks.claims import child
 from benchmarks.claims.asked import Asked, all_kinds, named, worlds_of, written
-from benchmarks.claims.refute import Countersearch, refuted
+from benchmarks.claims.refute import Countersearch, refuted, trespassed
 from benchmarks.claims.report import report
 from benchmarks.claims.row import Row, percentile, read_rows
 from benchmarks.claims.run import Limits, run_child, run_world
@@ -121,6 +122,16 @@ def test_a_way_found_refutes_what_is_not_known_by_construction() -> None:
     assert "move 1 0" in refuted("impossible", False, False, [], "unknown", found).refutation
     assert not refuted("done", True, True, [], "yes", none).false_done
     assert "inside(t1)" in refuted("done", True, False, ["inside(t1)"], "yes", none).refutation
+
+
+def test_who_goes_where_a_constraint_forbids_has_not_done_it(tmp_path: Path) -> None:
+    episode = tmp_path / "episode.jsonl"
+    episode.write_text("".join(json.dumps({"step": n, "utak": [x, 1.0]}) + "\n" for n, x in enumerate((1.0, 9.0, 1.0))))
+    assert trespassed(episode, box(4, 0, 6, 2))
+    assert not trespassed(episode, box(4, 2, 6, 4)) and not trespassed(episode, Polygon())
+    shut = [odd_world("constraint", seed) for seed in range(13) if not odd_world("constraint", seed).avoid.is_empty]
+    assert {world.variant for world in shut} == {"walk_one_door", "walk_at_home", "carry_on_foot"}
+    assert not any(world.avoid.intersects(world.utak) for world in shut)
 
 
 def test_a_child_that_breaks_is_an_error(tmp_path: Path) -> None:
