@@ -16,6 +16,7 @@ from shapely.geometry.base import BaseGeometry
 
 from benchmarks.judging import judge_path
 
+SHORT = 80  # characters of an expectation that a page can hold
 ANSWERS = {0: "solvable", 1: "not found", 2: "unsupported"}
 
 
@@ -67,7 +68,12 @@ def refuted(
     false_impossible = verdict == "impossible" and solvable
     said = []
     if false_done:
-        said.append("not so at the end: " + ("; ".join(unmet) or "it cannot be done"))
+        said.append("not so at the end: " + ("; ".join(map(_short, unmet)) or "it cannot be done"))
     if false_impossible:
         said.append("it can be done " + (f"so: {search.way}" if search.way else "by construction"))
     return Claims(false_done, false_impossible, ". ".join(said))
+
+
+def _short(fact: str) -> str:
+    """Return a fact with no more than the first corners of its region."""
+    return fact if len(fact) <= SHORT else fact[:SHORT] + " ..."

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from shapely import Polygon
+
 from benchmarks.claims import child
 from benchmarks.claims.asked import Asked, written
 from benchmarks.claims.refute import Countersearch, refuted, searched, trespassed
@@ -69,7 +71,7 @@ def run_world(asked: Asked, limits: Limits, folder: Path, keep: Path | None = No
         cycles.append(max(0.0, limits.seconds - sum(cycles)))
     verdict = told.get("verdict", ended)
     believed, achieved = bool(told.get("believed")), bool(told.get("achieved"))
-    unmet = list(told.get("unmet", []))
+    unmet = [*told.get("unmet", []), *_misses(place, told)]
     if told and trespassed(place / child.EPISODE, known.avoid):
         unmet.append("the robot was where the goal forbids it to be")
         achieved = False
@@ -119,6 +121,19 @@ def _cycles(place: Path) -> list[float]:
 def _result(place: Path) -> dict[str, Any]:
     path = place / child.RESULT
     return dict(json.loads(path.read_text())) if path.exists() else {}
+
+
+def _misses(place: Path, told: dict[str, Any]) -> list[str]:
+    """Return, of a run that does not meet its expectations, where the robot and the things ended, in squares."""
+    if not told.get("unmet"):
+        return []
+    last = json.loads((place / child.EPISODE).read_text().splitlines()[-2])
+    things = [f"{name} about ({x:.2f}, {y:.2f})" for name, (x, y) in _middles(last["objects"]).items()]
+    return ["the robot ended at ({:.2f}, {:.2f})".format(*last["utak"]), *things]
+
+
+def _middles(objects: dict[str, list[list[float]]]) -> dict[str, tuple[float, float]]:
+    return {name: (Polygon(ring).centroid.x, Polygon(ring).centroid.y) for name, ring in sorted(objects.items())}
 
 
 def _last_line(place: Path) -> str:

@@ -85,6 +85,7 @@ def test_a_planted_false_done_is_found_counted_and_kept(
 ) -> None:
     row = claiming(asked, "done")
     assert row.false_done and not row.false_impossible and row.refutation
+    assert ("the robot ended at" in row.refutation) == (asked == ABLE)
     assert counted([row], "false done") == "1"
     kept = tmp_path / "kept" / asked.name.replace(":", "-")
     assert {"world.lp", "episode.jsonl", "row.json"} <= {path.name for path in kept.iterdir()}
