@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from shapely import LineString, box, union_all
+from shapely.affinity import translate
 from shapely.geometry.base import BaseGeometry
 
 from benchmarks.odd import constraints, openings, plugged, touching
@@ -17,6 +18,8 @@ from benchmarks.odd.kinds import KINDS, odd_world
 from benchmarks.odd.lying import own_square
 from benchmarks.odd.tasks import GOALS, NO, UNKNOWN, YES, OddWorld
 from benchmarks.scenes import write
+from geometry.motion import plan_motion
+from geometry.rigid import Pose
 from simulator.expectation import Snapshot, unmet
 from simulator.scenario import read_scenario
 
@@ -197,3 +200,23 @@ def test_a_necks_gap_and_clear_width() -> None:
 def test_unknown_kinds_are_refused() -> None:
     with pytest.raises(ValueError, match="kinds are off_grid"):
         odd_world("even", 0)
+
+
+@pytest.mark.parametrize("kind", ["off_grid", "slanted", "round"])
+def test_motions_of_the_thing_alone_agree_with_what_is_known_of_doors(kind: str) -> None:
+    for world in worlds_of(kind, 20):
+        if world.task not in ("carry_next", "carry_door", "both"):
+            continue
+        thing, plan = world.things[0].polygon, world.plan
+        middle = thing.centroid
+        home = min(range(2), key=lambda n: plan.rooms[n].distance(middle))
+        there = plan.rooms[1 - home].centroid
+        body = translate(thing, -middle.x, -middle.y)
+        motion = plan_motion(
+            body,
+            plan.verge,
+            Pose(middle.x, middle.y, 0),
+            Pose(there.x, there.y, 0),
+            bounds=(0, 0, plan.width, plan.height),
+        )
+        assert (motion.status, world.possible) in {("found", YES), ("impossible", NO), ("found", UNKNOWN)}, world.name
