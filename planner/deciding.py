@@ -24,6 +24,7 @@ from planner.clearing import Clearer
 from planner.decision import Decision
 from planner.destinations import Situation, contains, destination, no_way
 from planner.goals import BY_THE_WAY, FROM_THE_START, Stage, stages
+from planner.into_corner import IntoCorner, halted
 from planner.joint import opposite_corners
 from planner.open_facts import qualified, verdict_if_missing
 from planner.pursuing import Pursuer
@@ -59,6 +60,7 @@ class Decider:
         self.pursuer = Pursuer(self.paths)
         self.transporter = Transporter(self.pull, self.pursuer, self._verifier)
         self._clearer = Clearer(self.transporter.carrier, self.pursuer, self._verifier)
+        self._into_corner = IntoCorner()
         self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
@@ -116,7 +118,10 @@ class Decider:
         else:
             where = [destination(goal, situation) for goal in goals]
             there = all(not d.missing and contains(d.squares, situation.model) for d in where)
+            there = there or self._into_corner.pressing(stage, situation)
             look = self._made_sure(goals, there, stage, situation)
+            if look is None and there and (nearer := self._into_corner.next(stage, situation)) is not None:
+                return Decision(nearer, f"the walls of the corner may lie further away; {stage}")
             if there or look is not None:
                 return look
         if at_odds := opposite_corners(goals, situation):
@@ -126,7 +131,8 @@ class Decider:
         unseen = any(str(goal.args[1]) in reconciled.hypothesised for goal in goals)
         verdict = verdict_if_missing(situation.model) if unseen else "impossible"
         ask = partial(self.pursuer.pursue, aims, stage, situation, lambda: missing, verdict)
-        return self.pursuer.felt(ask, stage, situation)
+        decision = self.pursuer.felt(ask, stage, situation)
+        return replace(decision, command=halted(decision.command, stage, situation))
 
     def _doubt(self, stage: Stage, situation: Situation) -> Aim | None:
         """What to look at before a stage is held for attained."""

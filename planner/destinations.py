@@ -133,11 +133,18 @@ def nowhere(missing: str, lookouts: tuple[Lookout, ...] = ()) -> Destination:
     return Destination(np.zeros(0, np.int64), missing, lookouts)
 
 
+def corner_side(goal: Fact) -> str:
+    """Return the side of the corner that a goal is about, such as northeast; "" when it is about none."""
+    where = goal.args[1] if len(goal.args) > 1 else None
+    is_corner = goal.name == "at" and isinstance(where, Symbol) and where.name == "corner"
+    return str(where.args[0]) if is_corner and isinstance(where, Symbol) else ""
+
+
 def destination(goal: Fact, situation: Situation) -> Destination:
     """The squares on which a goal of place (at, in, beside, through with utak) holds."""
     where = goal.args[1]
-    if goal.name == "at" and isinstance(where, Symbol) and where.name == "corner":
-        return corner(str(where.args[0]), situation)
+    if side := corner_side(goal):
+        return corner(side, situation)
     if goal.name == "at" and str(where) == "start":
         return Destination(_within(situation.model, situation.model.lattice.woke, 1.0))
     if goal.name in ("at", "beside", "circled"):
