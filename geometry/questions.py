@@ -35,7 +35,7 @@ NO_BARS: Ints = np.zeros((0, 2), np.int32)
 def rehearse() -> None:
     """Compile the longest, the searches for routes, before there is a screen, for arrays of the types they meet."""
     ints, ends_of, none = np.zeros(1, np.int32), np.full((1, 4), -1, np.int32), np.full((1, 4), -1, np.int16)
-    chains = Chains(ints, ends_of, np.empty((0, 2), np.int32), ints, ints, ints[:0], np.empty(0))  # one node, no chain
+    chains = Chains(ints, ends_of, np.empty((0, 2), np.int32), ints, ints, ints[:0])  # one node, no chain
     runs = find_runs(none, 1)
     ground = Ground(none[0], np.zeros(1, np.uint8), 1, chains, runs, find_ways(none, chains, runs, False), False)
     ends = 0.0, 0.0, 0.0, 0.0
