@@ -115,8 +115,8 @@ class Obstacles:
         Returns
         -------
         Contact : fraction 1 when the whole motion is free. A body that touches at the start may slide along or leave
-            (fraction above 0) and may not go in (fraction 0). It ends at most 1e-7 squares deep, or 3e-7 where points of the contours lie
-            nearer to each other than 1e-7.
+            (fraction above 0) and may not go in (fraction 0). It ends at most 1e-7 squares deep, or 3e-7 where points
+            of the contours lie nearer to each other than that.
 
         Raises
         ------

@@ -209,9 +209,9 @@ class Questions:
             line = [start, goal]  # within one square
         line = [start, *line, goal]
         line = line[:1] + [q for p, q in pairwise(line) if p != q]
-        if len(line) == len(route.points):
-            return route
         points = np.array(line)
+        if np.array_equal(points, route.points):
+            return route
         points.flags.writeable = False
         return Route(points, length_of(points), route.clearance, route.signature, route.chains)
 
