@@ -15,7 +15,7 @@ from geometry.footing import keeps_clear
 from geometry.goals import word_of_cells
 from geometry.itinerary import OVERFLOW, Desk, Ground, ground_of, itineraries, new_desk
 from geometry.layer import Layer
-from geometry.lifting import lift
+from geometry.lifting import lift, new_trail, raise_trail
 from geometry.loops import Arc, cells_of_way, closed_ways
 from geometry.passages import Passage
 from geometry.polyline import crossings_of, join_words, word_of_line
@@ -41,6 +41,7 @@ def rehearse() -> None:
     ends = 0.0, 0.0, 0.0, 0.0
     itineraries.entry(ground, ends, 1, new_desk(1, 1, 1, 1, 8, NO_BARS))
     shortest_line.entry(runs, ends, *new_scout(8, runs))
+    raise_trail.entry(none[0], 1, new_trail(1))
 
 
 class Questions:

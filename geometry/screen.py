@@ -130,11 +130,14 @@ class Screen:
         goal : (x, y), or (rows, columns) array of bool, or set of squares (column, row)
             Of a set any square will do: a route ends where that makes it shortest.
         k : int
-            How many at most. Routes pass no junction of the pathgraph twice.
+            How many at most. Routes pass no junction of the pathgraph twice, but for the shortest of all, which for
+            a point and from 2 on comes first.
         radius : float
-            Of a round body about the point, in squares. It moves from centre to centre of its squares.
+            Of a round body about the point, in squares. It moves from centre to centre of squares that are at least
+            so far from all walls, and straight between its ends and the centres of theirs; there is no route where
+            it has no room for that.
         avoid : passages
-            Routes must not lead through these.
+            Routes must not lead through these: there are some exactly within each of ``parts(avoid)``.
         word : crossing numbers
             Only the route of this signature (which may wind as it likes), whatever k and avoid.
 
