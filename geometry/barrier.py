@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.bones import Ints, is_node
+from geometry.bones import Ints, find, is_node
 from geometry.distance import Bools
 from geometry.layer import Layer
-from geometry.lifting import chain_out
+from geometry.lifting import direction_of
 from geometry.parts import Labels, cut_floor
 from geometry.passages import Passage
 from geometry.skeleton import steepest, stride
@@ -58,7 +58,7 @@ def bar_at(layer: Layer, cell: int, other: int) -> tuple[int, int]:
     """Return the chain of a step of the skeleton, and the lower of the two positions on it."""
     states, width, chains = layer.state.reshape(-1), layer.square.shape[1], layer.chains
     if is_node(states[cell]) and is_node(states[other]):
-        return chain_out(chains, cell, other, width), 0
+        return int(chains.leave[find(chains.node, cell), direction_of(other - cell)]), 0
     inner = other if is_node(states[cell]) else cell
     anchor = locate(inner, states, width, chains.node, chains.leave, chains.start, chains.cells)
     first = int(chains.start[anchor.chain])

@@ -7,16 +7,17 @@ neighbour and on along the ring. A cell that is left as it was reached is a spur
 is a step of the skeleton, or of the steepest way up to it from an end.
 """
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from geometry.bones import Ints, is_node
+from geometry.bones import Ints, find, is_node
 from geometry.chains import Chains
 from geometry.compiled import bare
 from geometry.layer import Layer
-from geometry.skeleton import GROUPS, Heights, above, beside, higher_about, highest_of, stride
+from geometry.rope import Ends
+from geometry.runs import Runs
+from geometry.skeleton import GROUPS, Flags, Heights, above, beside, higher_about, highest_of
 from geometry.ways import locate
 
 FULL = -1
@@ -55,67 +56,106 @@ def new_trail(room: int) -> Trail:
     return Trail(cell, before, after, queue, np.zeros(room, np.int32), np.zeros(2, np.int32))
 
 
-def lift(layer: Layer, ends: tuple[float, float, float, float], word: Ints) -> Lifted:
+def lift(layer: Layer, ends: Ends, word: Ints, trail: Trail | None = None) -> tuple[Lifted, Trail]:
     """Return the one way over the skeleton, without turning back, of the class of a reduced word.
 
     Parameters
     ----------
     ends : x and y of the start, x and y of the goal, in squares, in squares where the body may be.
     word : signed portals from the start's run to the goal's.
+    trail : scratch, from a call before.
+
+    Returns
+    -------
+    The way, and the scratch that was used.
     """
-    cells = raised_cells(layer, np.array(cells_of_word(layer, ends, word), np.int32))
-    heights = layer.square.reshape(-1)
-    return Lifted(int(heights[cells].min()), chains_along(layer, cells.tolist()))
+    trail = trail or new_trail(4 * len(word) + 1024)
+    heights, states, width = layer.square.reshape(-1), layer.state.reshape(-1), layer.square.shape[1]
+    while (size := lift_word(heights, states, width, layer.chains, layer.runs, ends, word, trail)) == FULL:
+        trail = new_trail(4 * len(trail.cell))
+    lowest, *chains = trail.queue[:size].tolist()
+    return Lifted(lowest, tuple(chains)), trail
 
 
-def cells_of_word(layer: Layer, ends: tuple[float, float, float, float], word: Ints) -> list[int]:
+def cells_of_word(layer: Layer, ends: Ends, word: Ints) -> list[int]:
     """Return the cells of a way of a word, along each run to the nearest square of the next portal."""
-    runs, width = layer.runs, layer.square.shape[1]
-    row, column = int(ends[1]), int(ends[0])
-    cells = [(row + 1) * width + column + 1]
-    for symbol in word.tolist():
-        portal = abs(symbol) - 1
-        column = min(max(column, int(runs.left[portal])), int(runs.right[portal]))
-        walk_row(cells, (row + 1) * width + column + 1)
-        row += 1 if symbol > 0 else -1
-        cells.append((row + 1) * width + column + 1)
-    walk_row(cells, (row + 1) * width + int(ends[2]) + 1)
-    return cells
+    trail = new_trail(4 * len(word) + 1024)
+    while lay(layer.runs, ends, word, layer.square.shape[1], trail) == FULL:
+        trail = new_trail(4 * len(trail.cell))
+    cells = [int(trail.cell[0]), *trail.cell[2 : trail.tally[0]].tolist(), int(trail.cell[1])]
+    return cells if trail.after[0] != 1 or cells[0] != cells[-1] else cells[:1]
 
 
-def walk_row(cells: list[int], cell: int) -> None:
-    """Add the cells from the last one to another of its row."""
-    step = 1 if cell > cells[-1] else -1
-    cells.extend(range(cells[-1] + step, cell + step, step) if cell != cells[-1] else ())
+@bare
+def lift_word(
+    heights: Heights, states: Flags, width: int, chains: Chains, runs: Runs, ends: Ends, word: Ints, trail: Trail
+) -> int:
+    """Write the lowest square and the chains of a word's way over the skeleton to the trail's queue.
+
+    Returns how many numbers these are, or FULL when there is no room.
+    """
+    if lay(runs, ends, word, width, trail) == FULL or raise_trail(heights, width, trail) == FULL:
+        return FULL
+    cell, after, out = trail.cell, trail.after, trail.queue
+    link, last, size, lowest = 0, -1, 1, heights[cell[0]]
+    while link >= 0:
+        here = 0 + cell[link]
+        lowest = heights[here] if heights[here] < lowest else lowest
+        if states[here] != 0 and here != last:  # the steepest ways up to the skeleton are no part of it
+            if last >= 0 and is_node(0 + states[last]):
+                out[size] = chains.leave[find(chains.node, last), direction_of(here - last)]
+                size += 1
+            elif last >= 0 and size == 1:
+                out[1] = locate(last, states, width, chains.node, chains.leave, chains.start, chains.cells).chain
+                size = 2
+            last = here
+        link = 0 + after[link]
+    out[0] = lowest
+    return size
 
 
-def raised_cells(layer: Layer, cells: Ints) -> Ints:
-    """Return the cells of the way over the skeleton, its ends' steepest ways up included."""
-    heights, width, room = layer.square.reshape(-1), layer.square.shape[1], 4 * len(cells) + 256
-    while True:
-        trail = new_trail(room)
-        lay(trail, cells)
-        if raise_trail(heights, width, trail) != FULL:
-            break
-        room *= 4
-    out, link = [int(trail.cell[0])], int(trail.after[0]) if len(cells) > 1 else 1
-    while link != 1:
-        out.append(int(trail.cell[link]))
-        link = int(trail.after[link])
-    if trail.cell[1] != out[-1]:
-        out.append(int(trail.cell[1]))
-    return np.array(out, np.int32)
+@bare
+def direction_of(step: int) -> int:
+    """Return the direction of an index step between edge neighbours."""
+    if step == 1 or step == -1:
+        return 1 - step
+    return 1 if step > 0 else 3
 
 
-def lay(trail: Trail, cells: Ints) -> None:
-    """Make the links of a way, all of them waiting."""
-    count = max(len(cells), 2)
-    order = np.array([0, *range(2, count), 1], np.int32)
-    trail.cell[order[:-1]], trail.cell[1] = cells[: count - 1], cells[-1]
-    trail.after[order[:-1]], trail.before[order[1:]] = order[1:], order[:-1]
-    trail.before[0], trail.after[1] = GONE, GONE
-    trail.queue[:count], trail.waits[:count] = order, 1
-    trail.tally[:] = count, count
+@bare
+def lay(runs: Runs, ends: Ends, word: Ints, width: int, trail: Trail) -> int:
+    """Lay a way of a word, along each run to the nearest square of the next portal; FULL when there is no room."""
+    cell, before, after, queue, waits, tally = trail
+    left, right = runs.left, runs.right
+    row, column, last, new = int(ends[1]), int(ends[0]), 0, 2
+    cell[0] = (row + 1) * width + column + 1
+    for k in range(word.shape[0] + 1):
+        end = k == word.shape[0]
+        portal = 0 if end else abs(word[k]) - 1
+        target = int(ends[2]) if end else column
+        if not end:
+            target = left[portal] if column < left[portal] else right[portal] if column > right[portal] else column
+        if new + abs(target - column) + 32 > cell.shape[0]:
+            return FULL
+        while column != target or not end:
+            if column != target:
+                column += 1 if column < target else -1
+            else:
+                row += 1 if word[k] > 0 else -1
+                end = True
+            cell[new], before[new], after[last] = (row + 1) * width + column + 1, last, new
+            last = new
+            new += 1
+    if last > 0:  # the last link is the goal
+        new -= 1
+        cell[1], last = cell[last], before[last]
+    else:
+        cell[1] = cell[0]
+    before[1], after[last], before[0], after[1] = last, 1, GONE, GONE
+    for link in range(new):
+        queue[link], waits[link] = link, 1
+    tally[0], tally[1] = new, new
+    return new
 
 
 @bare
@@ -212,24 +252,3 @@ def wait(trail: Trail, link: int) -> None:
         trail.waits[link] = 1
         trail.queue[trail.tally[1]] = link
         trail.tally[1] += 1
-
-
-def chains_along(layer: Layer, cells: list[int]) -> tuple[int, ...]:
-    """Return the chains that a way over the skeleton walks, in order."""
-    states, width, chains = layer.state.reshape(-1), layer.square.shape[1], layer.chains
-    track = [cell for cell in cells if states[cell]]  # the steepest ways up to it are no part of the skeleton
-    found: list[int] = []
-    for k, (cell, other) in enumerate(pairwise(track)):
-        if is_node(states[cell]):
-            found.append(chain_out(chains, cell, other, width))
-        elif k == 0:
-            anchor = locate(cell, states, width, chains.node, chains.leave, chains.start, chains.cells)
-            found.append(anchor.chain)
-    return tuple(found)
-
-
-def chain_out(chains: Chains, cell: int, other: int, width: int) -> int:
-    """Return the chain that leaves a node to a cell beside it."""
-    node = int(np.searchsorted(chains.node, cell))
-    direction = next(k for k in range(4) if cell + stride(k, width) == other)
-    return int(chains.leave[node, direction])

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from itertools import pairwise
 from math import hypot, inf, nan
+from typing import cast
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from geometry.footing import keeps_clear
 from geometry.goals import word_of_cells
 from geometry.itinerary import OVERFLOW, Desk, Ground, ground_of, itineraries, new_desk
 from geometry.layer import Layer
-from geometry.lifting import lift, new_trail, raise_trail
+from geometry.lifting import Lifted, Trail, lift, lift_word, new_trail
 from geometry.loops import Arc, cells_of_way, closed_ways
 from geometry.passages import Passage
 from geometry.polyline import crossings_of, join_words, word_of_line
@@ -41,7 +42,7 @@ def rehearse() -> None:
     ends = 0.0, 0.0, 0.0, 0.0
     itineraries.entry(ground, ends, 1, new_desk(1, 1, 1, 1, 8, NO_BARS))
     shortest_line.entry(runs, ends, *new_scout(8, runs))
-    raise_trail.entry(none[0], 1, new_trail(1))
+    lift_word.entry(none[0], ground.states, 1, chains, runs, ends, ints, new_trail(1))
 
 
 class Questions:
@@ -57,6 +58,7 @@ class Questions:
         self._scout: Scout | None = None
         self._ground = ground_of(layer)
         self._solve: Callable[[Ground, Ends, int, Desk], int] | None = None
+        self._trail: Trail | None = None
         self._raised: tuple[tuple[Passage, ...], Barrier] | None = None
 
     def admits(self, point: XY) -> bool:
@@ -98,15 +100,15 @@ class Questions:
     def _with_shortest(self, routes: list[Route], start: XY, goal: XY, k: int) -> list[Route]:
         """The routes with the shortest of all before them, should none of them be of its class."""
         first = routes[0].length - CLOSE
-        if first <= hypot(goal[0] - start[0], goal[1] - start[1]) or self.measure(start, goal) >= first:
+        if first <= hypot(goal[0] - start[0], goal[1] - start[1]):
             return routes
-        best = self.shortest(start, goal)
-        return routes if best is None else [self.lifted(best), *routes][:k]
+        length = self.measure(start, goal)
+        return routes if length >= first else [self._scouted(length, (*start, *goal)), *routes][:k]
 
     def lifted(self, route: Route) -> Route:
         """The same route with what is known of its class over the skeleton."""
         ends = (*self.snap(route.points[0].tolist()), *self.snap(route.points[-1].tolist()))
-        found = lift(self.layer, ends, word_of_line(self.layer.runs, route.points.tolist()))
+        found = self._lift(ends, word_of_line(self.layer.runs, route.points.tolist()))
         return Route(route.points, route.length, 0.5 * found.lowest**0.5, route.signature, found.chains)
 
     def barrier(self, avoid: tuple[Passage, ...]) -> Barrier:
@@ -143,7 +145,7 @@ class Questions:
     def of_word(self, start: XY, goal: XY, word: Ints) -> Route:
         """The route of a reduced word."""
         ends = (*self.snap(start), *self.snap(goal))
-        found = lift(self.layer, ends, word)
+        found = self._lift(ends, word)
         route = tight_route(self.layer, ends, word, 0.5 * found.lowest**0.5, found.chains)
         return self.with_ends(route, start, goal)
 
@@ -161,12 +163,24 @@ class Questions:
     def shortest(self, start: XY, goal: XY) -> Route | None:
         """The shortest way of all, or None."""
         length = self.measure(start, goal)
-        if length == inf or self._scout is None:
-            return None
-        size, corners = self._scout.sizes.tolist()
-        points = self._scout.line[:corners].copy()
+        return None if length == inf else self._scouted(length, None)
+
+    def _scouted(self, length: float, ends: Ends | None) -> Route:
+        """The way left in the scout; with its way over the skeleton when its ends are told."""
+        scout = cast(Scout, self._scout)
+        size, corners = scout.sizes.tolist()
+        points, word = scout.line[:corners].copy(), scout.word[:size]
         points.flags.writeable = False
-        return Route(points, length, nan, crossings_of(self.layer.runs, self._scout.word[:size]), ())
+        clearance, chains = nan, cast(tuple[int, ...], ())
+        if ends is not None:
+            found = self._lift(ends, word)
+            clearance, chains = 0.5 * found.lowest**0.5, found.chains
+        return Route(points, length, clearance, crossings_of(self.layer.runs, word), chains)
+
+    def _lift(self, ends: Ends, word: Ints) -> Lifted:
+        """The way over the skeleton of a reduced word."""
+        found, self._trail = lift(self.layer, ends, word, self._trail)
+        return found
 
     def loops(self, start: XY, around: Bools, k: int) -> list[Route]:
         """Closed routes that wind once about blocked squares."""
