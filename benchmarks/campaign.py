@@ -11,6 +11,7 @@ The table goes to stdout, progress to stderr. docs/benchmarks-worlds.md explains
 import argparse
 import json
 import multiprocessing
+import os
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
@@ -102,6 +103,7 @@ def _run_all(worlds: list[tuple[int, int]], conditions: Conditions, folder: Path
     if jobs <= 1:
         yield from map(run, worlds)
         return
+    os.environ["PYTHONSAFEPATH"] = "1"  # the pool's processes get this one's path, and no other folder on it
     with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
         yield from pool.map(run, worlds)
 

@@ -1,20 +1,21 @@
 """The process in which queries are answered: it reads one JSON line a query and writes one JSON line an answer.
 
-Run by `kb.query`, which kills it when it takes too long. It has little memory, can open no file, and clingo's death is
-its own alone. A query is the body of one rule; its answers are the values of the variables in it.
+Run by `kb.worker`, which kills it when it takes too long. It has little memory, can open no file, and clingo's death
+is its own alone. A query is the body of one rule; its answers are the values of the variables in it.
 """
 
 import json
 import re
-import resource
-import sys
 from collections.abc import Iterable
 from typing import Any
 
 import clingo
 from clingo.ast import AST, ASTType, Sign, Transformer, parse_string
 
+from kb import machine
+
 MEMORY = 1_500_000_000  # bytes of address space
+PROCESSOR_TIME = 60  # seconds on one request: far more than anybody waits for, should nobody be there to end it
 MOST_ROWS = 10_000
 CONFIDENT = {
     ("kind", 3),
@@ -168,7 +169,7 @@ def _raise(code: clingo.MessageCode, message: str) -> None:
 _messages: list[QueryError] = []
 
 
-def _respond(line: str) -> Answer:
+def _respond(line: bytes) -> Answer:
     _messages.clear()
     try:
         request = json.loads(line)
@@ -187,14 +188,17 @@ def _respond(line: str) -> Answer:
 
 
 def main() -> None:
-    """Answer queries until the input ends."""
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    """Answer queries until the input ends, and end then at once."""
+    machine.end_with_parent()
+    machine.limit("AS", MEMORY)
+    machine.limit("CORE", 0)
     json.loads('{"a": [1.5, "b"]}')  # everything that is imported late is imported now
     answer("p(1).", "p(X), not p(2)", [])
-    resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))
+    requests = machine.lines_of_parent()
+    machine.limit("NOFILE", 3)
     print("ready", flush=True)
-    for line in sys.stdin:
+    for line in requests:
+        machine.limit_processor_time(PROCESSOR_TIME)
         print(json.dumps(_respond(line)), flush=True)
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+from kb.machine import READ
 from kb.problems import ENOUGH, BadInputError, CannotOpenError, Problem, Span
 
 LARGEST = 4_000_000  # bytes
@@ -63,7 +64,7 @@ def decode(file: str, raw: bytes) -> Source:
 def read_bytes(path: str, most: int) -> bytes:
     """Return the bytes of a regular file, one more than `most` at most; raises CannotOpenError."""
     try:
-        handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        handle = os.open(path, READ)
     except (OSError, ValueError) as error:
         raise CannotOpenError(path, getattr(error, "strerror", None) or str(error)) from None
     try:

@@ -1,7 +1,8 @@
 """An episode as it can be read step by step: one that runs now, or one that was recorded."""
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import shapely
 
@@ -33,36 +34,73 @@ class Story(Protocol):
         """The table at this step."""
 
 
-class Running:
-    """A run of the robot in a scenario; it wakes at once."""
+class Moment(NamedTuple):
+    """What is known of a run after one of its steps: its line, its end, where things lay and where Utak stood."""
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
-        self.result: Line | None = None
+    line: Line
+    result: Line | None
+    polygons: Mapping[str, Any]
+    utak: tuple[float, float]
+
+
+class Running:
+    """A run of the robot in a scenario; it wakes at once.
+
+    A step is whole or did not happen. One that was broken off, at whatever point, leaves a robot and a table that
+    nothing is known of; they are made anew by repeating the run up to the last whole step, which gives the same.
+
+    Parameters
+    ----------
+    begin : returns a fresh session of the same run.
+    """
+
+    def __init__(self, begin: Callable[[], Session]) -> None:
+        self._begin = begin
+        session = begin()
         session.wake()
-        self._close()
+        self._world = session.table.world
+        self._moment = _moment(session)
+        self._session: Session | None = session
 
     @property
     def line(self) -> Line:
         """The line of the last step."""
-        return self._session.line
+        return self._moment.line
+
+    @property
+    def result(self) -> Line | None:
+        """How it ended, once it has."""
+        return self._moment.result
 
     def advance(self) -> bool:
         """Let the robot act once."""
-        if self._session.finished:
+        if self.result is not None:
             return False
-        self._session.step()
-        self._close()
+        session = self._session or self._repeated()
+        self._session = None  # whatever breaks this off, the session is not gone on with
+        session.step()
+        self._moment = _moment(session)
+        self._session = session
         return True
 
     def picture(self) -> str:
         """The table now."""
-        table = self._session.table
-        return draw(table.world, table.polygons, table.utak)
+        return draw(self._world, self._moment.polygons, self._moment.utak)
 
-    def _close(self) -> None:
-        if self._session.finished:
-            self.result = self._session.end().line["result"]
+    def _repeated(self) -> Session:
+        """A session at the last whole step."""
+        session = self._begin()
+        session.wake()
+        while session.line["step"] != self.line["step"]:
+            session.step()
+        return session
+
+
+def _moment(session: Session) -> Moment:
+    """What is known after a step of a session; it is ended when the robot has come to a verdict."""
+    result = session.end().line["result"] if session.finished else None
+    table = session.table
+    return Moment(session.line, result, dict(table.polygons), table.utak)
 
 
 class Recorded:
@@ -107,7 +145,8 @@ def open_story(path: Path | str, settings: Settings) -> Story:
     Raises CannotOpenError or BadInputError.
     """
     if Path(path).is_dir():
-        return Running(Session(read_scenario(path), settings, make_robot, EpisodeLog(None)))
+        scenario = read_scenario(path)
+        return Running(lambda: Session(scenario, settings, make_robot, EpisodeLog(None)))
     episode = read_episode(path)
     if not episode.steps:
         raise BadInputError([Problem(str(path), Span(1, 1, 1), "the episode ends before its first step")])
