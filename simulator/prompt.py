@@ -3,13 +3,16 @@
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from kb.problems import BadInputError, CannotOpenError, did_you_mean
 from kb.query import VOCABULARY, QueryEngine, QueryLimitError
 from simulator.commands.run import describe
+from simulator.interrupts import deferred
 from simulator.story import Story, facts_of_line
+from simulator.terminal import StreamError, shown
 
 HELP = """\
 ?- QUERY.     ask what Utak believes: ?- object(X), shape(X, square, C).
@@ -58,7 +61,7 @@ class Prompt:
             self._say(str(problem))
         except KeyboardInterrupt:
             self._say("interrupted")
-        except BrokenPipeError:
+        except (BrokenPipeError, StreamError):
             raise
         except Exception as bug:  # the prompt must come back, whatever happens
             self._say(f"this is a bug of ours: {type(bug).__name__}: {str(bug)[:500]}")
@@ -85,15 +88,27 @@ class Prompt:
     def _go(self, count: int | None) -> None:
         """Go on by some steps, or to the end."""
         done = 0
-        while done != count and self._story.advance():
+        while done != count:
+            with deferred(self._tell_of_ctrl_c) as pressed:
+                moved = self._story.advance()
+            if not moved:
+                break
             done += 1
             line = self._story.line
-            self._say(f"step {line['step']}: {describe(line.get('action'))}: {line.get('why', '')}")
+            self._say(f"step {line['step']}: {describe(line.get('action'))}: {shown(str(line.get('why', '')), False)}")
+            if pressed:
+                self._say("interrupted")
+                return
         result: Any = self._story.result
         if result is not None:
-            self._say(f"{result['verdict']} after {result['steps']} steps: {result['reason']}")
+            reason = shown(str(result["reason"]), False)
+            self._say(f"{result['verdict']} after {result['steps']} steps: {reason}")
         elif done == 0:
             self._say("there are no more steps")
+
+    def _tell_of_ctrl_c(self) -> None:
+        with suppress(RuntimeError):  # something is being printed just now
+            self._say("the step comes to its end first; Ctrl-C once more breaks it off, and it did not happen")
 
     def _unknown(self, name: str) -> None:
         hint = did_you_mean(name, self._commands)
@@ -106,12 +121,22 @@ def _names(fact: str) -> set[str]:
 
 
 def lines_of(words: Sequence[str]) -> Iterator[str]:
-    """Yield the lines that are typed, with history and completion on a terminal, or that come through a pipe."""
+    """Yield the lines that are typed, with history and completion on a terminal, or that come through a pipe.
+
+    Raises StreamError when the standard input is closed or cannot be read.
+    """
+    if sys.stdin is None:
+        raise StreamError("the standard input is closed")
     if not sys.stdin.isatty():
-        for raw in sys.stdin.buffer:
-            yield raw.decode("utf-8", errors="replace")
+        try:
+            for raw in sys.stdin.buffer:
+                yield raw.decode("utf-8", errors="replace")
+        except OSError as error:
+            raise StreamError(f"the standard input cannot be read: {error.strerror}") from None
         return
     _prepare(words)
+    with suppress(AttributeError):
+        sys.stdin.reconfigure(errors="replace")  # type: ignore[union-attr]  # what is typed may be of another encoding
     while True:
         try:
             yield input("utak> ")
