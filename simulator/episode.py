@@ -13,8 +13,10 @@ from typing import Any, BinaryIO
 
 from kb.problems import BadInputError, CannotOpenError, Problem, Span
 from kb.source import read_bytes
+from simulator.outputs import is_episode, keep_first, opened
 
 VERSION = 1
+STANDARD_OUTPUT = "-"
 LARGEST = 2_000_000_000  # bytes
 
 Line = dict[str, Any]
@@ -76,31 +78,38 @@ def _none(path: str, number: int, what: str) -> BadInputError:
 
 
 class EpisodeLog:
-    """Writes an episode to a file, a line at a time.
+    """Writes an episode to a file, a line at a time; nobody else can write to it meanwhile.
 
     Parameters
     ----------
-    path : the file; None writes nowhere.
+    path : the file; `-` is the standard output; None writes nowhere.
     resume : go on from what the file holds already. The run is repeated from the start, and every line that the file
         holds must come out again byte for byte; a last line cut short is dropped.
+    force : overwrite a file that is no episode.
+
+    Raises CannotOpenError: when there is nothing to resume, or as `simulator.outputs.opened` does.
     """
 
-    def __init__(self, path: Path | str | None, resume: bool = False) -> None:
+    def __init__(self, path: Path | str | None, resume: bool = False, force: bool = False) -> None:
         self._path = path
         self._number = 0
         self._recorded: Sequence[bytes] = ()
         self._stream: BinaryIO | None = None
-        if path is None:
+        if path is None or path == STANDARD_OUTPUT:
             return
-        if resume and Path(path).exists():
-            self._recorded = complete_lines(path)
+        if resume and not Path(path).exists():
+            raise CannotOpenError(str(path), "there is no such episode to go on from")
+        self._stream = opened(path, is_episode, "episode", force)
         try:
-            self._stream = Path(path).open("r+b" if self._recorded else "wb")  # noqa: SIM115
-            if self._recorded:
-                self._stream.truncate(sum(map(len, self._recorded)))
-                self._stream.seek(0, 2)
-        except (OSError, ValueError) as error:
-            raise CannotOpenError(str(path), getattr(error, "strerror", None) or str(error)) from None
+            if resume:
+                self._recorded = complete_lines(path)
+            keep_first(self._stream, sum(map(len, self._recorded)))
+        except OSError as error:
+            self._stream.close()
+            raise CannotOpenError(str(path), error.strerror or str(error)) from None
+        except CannotOpenError:
+            self._stream.close()
+            raise
 
     def __enter__(self) -> "EpisodeLog":
         return self
@@ -112,15 +121,17 @@ class EpisodeLog:
 
     def write(self, line: Line) -> None:
         """Write one line at once; while resuming, check that it is the one recorded (BadInputError when not)."""
-        text = encode(line).encode("ascii")
+        text = encode(line)
         self._number += 1
         if self._number <= len(self._recorded):
-            if text != self._recorded[self._number - 1]:
+            if text.encode("ascii") != self._recorded[self._number - 1]:
                 what = "the run does not repeat this line: another scenario, other options or another version of utak"
                 raise _none(str(self._path), self._number, what)
         elif self._stream is not None:
             try:
-                self._stream.write(text)
+                self._stream.write(text.encode("ascii"))
                 self._stream.flush()
             except OSError as error:
                 raise CannotOpenError(str(self._path), f"it cannot be written: {error.strerror}") from None
+        elif self._path == STANDARD_OUTPUT:
+            print(text, end="", flush=True)

@@ -25,6 +25,7 @@ def add(parts: Any) -> None:
     part.add_argument("-k", type=_count, default=3, metavar="N", help="how many ways at most (default 3)")
     part.add_argument("--json", action="store_true", help="print one JSON object")
     part.add_argument("--svg", metavar="FILE", help="draw squares, skeleton, pathgraph and ways")
+    part.add_argument("--force", action="store_true", help="let --svg overwrite a file that is no picture")
     part.set_defaults(execute=execute)
 
 
@@ -40,12 +41,9 @@ def execute(options: argparse.Namespace) -> int:
         raise BadInputError([Problem(options.map, Span(1, 1, 1), str(error))]) from None
     if options.svg:
         from geometry.picture import draw
-        from kb.problems import CannotOpenError
+        from simulator.outputs import is_svg, write_whole
 
-        try:
-            Path(options.svg).write_text(draw(screen, routes))
-        except OSError as error:
-            raise CannotOpenError(options.svg, error.strerror or str(error)) from None
+        write_whole(options.svg, draw(screen, routes), is_svg, "SVG picture", options.force)
     _print(routes, options.json)
     return exits.DONE if routes else exits.NOT_REACHED
 
