@@ -4,6 +4,7 @@ import os
 import re
 import stat
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
@@ -77,10 +78,13 @@ def keep_first(stream: BinaryIO, size: int) -> None:
 
 def write_whole(path: Path | str, text: str, kind: Kind, name: str, force: bool = False) -> None:
     """Write a file, as `opened` allows it; raises CannotOpenError when it cannot be."""
-    with opened(path, kind, name, force) as stream:
-        try:
-            keep_first(stream, 0)
-            stream.write(text.encode("utf-8"))
-            stream.flush()
-        except OSError as error:
-            raise CannotOpenError(str(path), f"it cannot be written: {error.strerror}") from None
+    stream = opened(path, kind, name, force)
+    try:
+        keep_first(stream, 0)
+        stream.write(text.encode("utf-8"))
+        stream.flush()
+    except OSError as error:
+        raise CannotOpenError(str(path), f"it cannot be written: {error.strerror}") from None
+    finally:
+        with suppress(OSError):  # which was reported then
+            stream.close()

@@ -36,7 +36,8 @@ class Guarded:
     ----------
     stream : what is written to; None when the process was started without it.
     name : as messages call it.
-    vital : whether StreamError is raised when it cannot be written; otherwise `lost` tells, and the work goes on.
+    vital : whether StreamError is raised when it cannot be written; otherwise `lost` tells, and the work goes on. Who
+        closes a stream that is not vital does not want to hear of it: then nothing is lost.
     """
 
     def __init__(self, stream: Any, name: str, vital: bool) -> None:
@@ -46,6 +47,10 @@ class Guarded:
     def __getattr__(self, name: str) -> Any:
         """Everything but writing is the stream's own."""
         return getattr(self._stream, name)
+
+    def isatty(self) -> bool:
+        """Whether somebody looks on."""
+        return self._stream is not None and self._stream.isatty()
 
     def write(self, text: str) -> int:
         """Write a text; characters that the stream's encoding lacks are written out."""
@@ -65,7 +70,7 @@ class Guarded:
             self._attempt("flush")
 
     def _attempt(self, what: str, *arguments: str) -> None:
-        if self.lost:
+        if self.lost or (self._stream is None and not self._vital):
             return
         try:
             if self._stream is None:

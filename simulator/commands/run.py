@@ -5,6 +5,7 @@ import sys
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 from simulator import exits
+from simulator.terminal import shown
 
 if TYPE_CHECKING:
     from simulator.session import Result, Session
@@ -98,7 +99,7 @@ def _print(result: "Result", as_json: bool, stream: TextIO) -> None:
         print(json.dumps({**result.line["result"], "unmet": list(result.unmet)}), file=stream)
         return
     truth = {None: "", True: ", achieved", False: ", not achieved"}[result.achieved]
-    print(f"{result.verdict} in {result.steps} steps{truth}: {result.reason}", file=stream)
+    print(f"{result.verdict} in {result.steps} steps{truth}: {shown(result.reason, lines=False)}", file=stream)
     for expected in result.unmet:
         print(f"not met: {expected}", file=sys.stderr)
 
@@ -114,7 +115,8 @@ def _watcher(watch: bool) -> Any:
         line, table = session.line, session.table
         if watch:
             print(draw(table.world, table.polygons, table.utak), file=sys.stderr, end="")
-        print(f"step {line['step']}: {describe(line['action'])}: {line['why']}", file=sys.stderr)
+        why = shown(line["why"], lines=False)
+        print(f"step {line['step']}: {describe(line['action'])}: {why}", file=sys.stderr)
 
     return tell
 
