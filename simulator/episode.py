@@ -4,20 +4,23 @@ Every line is written and flushed before the next command is given, so that a ki
 """
 
 import json
+from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO
 
-from kb.problems import BadInputError, CannotOpenError, Problem, Span
+from kb.problems import ENOUGH, BadInputError, CannotOpenError, Problem, Span
 from kb.source import read_bytes
 from simulator.outputs import is_episode, keep_first, opened
+from simulator.wellformed import HEADER, RESULT, STEP, Where, column
 
 VERSION = 1
 STANDARD_OUTPUT = "-"
-LARGEST = 2_000_000_000  # bytes
+LARGEST = 500_000_000  # bytes
 
 Line = dict[str, Any]
 
@@ -44,37 +47,80 @@ def encode(line: Line) -> str:
 
 
 def read_episode(path: Path | str) -> Episode:
-    """Read an episode, whole or cut short; raises CannotOpenError, or BadInputError when it is none."""
-    rows = [_decoded(str(path), number, row) for number, row in enumerate(complete_lines(path), 1)]
+    """Read an episode, whole or cut short; raises CannotOpenError, or BadInputError when it is none or is damaged."""
+    name = str(path)
+    lines = complete_lines(path)
+    rows = [_decoded(name, number, row) for number, row in enumerate(lines, 1)]
     if not rows or rows[0].get("utak") != "episode":
-        raise _none(str(path), 1, "this is no episode: the first line is no header")
+        raise _none(name, 1, "this is no episode: the first line is no header")
     if rows[0].get("version") != VERSION:
-        raise _none(str(path), 1, f"an episode of version {rows[0].get('version')}; this utak reads version {VERSION}")
-    steps = [row for row in rows if "step" in row]
-    for number, row in enumerate(steps):
-        if row["step"] != number:
-            raise _none(str(path), number + 2, f"step {number} is missing")
-    results = [row["result"] for row in rows if isinstance(row.get("result"), dict)]
-    return Episode(rows[0], tuple(steps), results[-1] if results else None)
+        raise _none(name, 1, f"an episode of version {rows[0].get('version')}; this utak reads version {VERSION}")
+    result = rows.pop()["result"] if len(rows) > 1 and "result" in rows[-1] else None
+    for number, row in enumerate(rows[1:]):
+        if row.get("step") != number:
+            raise _none(name, number + 2, f"step {number} is missing")
+    problems: list[Problem] = []
+    for number, raw in enumerate(lines):
+        check = HEADER if number == 0 else STEP if number < len(rows) else RESULT
+        row = rows[number] if number < len(rows) else {"result": result}
+        problems += (_located(name, number + 1, raw, *complaint) for complaint in islice(check(row, ()), ENOUGH))
+        if problems:
+            raise BadInputError(problems)
+    return Episode(rows[0], tuple(rows[1:]), result)
 
 
 def complete_lines(path: Path | str) -> list[bytes]:
     """Return the lines of an episode that were written to their ends; a last line cut short is left out."""
-    return [row + b"\n" for row in read_bytes(str(path), LARGEST).split(b"\n")[:-1]]
+    whole = read_bytes(str(path), LARGEST)
+    if len(whole) > LARGEST:
+        raise _none(str(path), 1, f"the file is larger than {LARGEST} bytes")
+    return [row + b"\n" for row in whole.split(b"\n")[:-1]]
+
+
+class _StrangeError(ValueError):
+    """What no line of an episode has, though Python's reader of JSON takes it."""
 
 
 def _decoded(path: str, number: int, row: bytes) -> Line:
     try:
-        value = json.loads(row)
-    except (ValueError, RecursionError):
-        raise _none(path, number, "this line is no JSON: the episode is damaged") from None
+        value = _JSON.decode(row.decode("utf-8"))
+    except UnicodeDecodeError as error:
+        raise _none(path, number, "this line is no text: the episode is damaged", error.start + 1) from None
+    except json.JSONDecodeError as error:
+        raise _none(path, number, f"this line is no JSON: the episode is damaged: {error.msg}", error.colno) from None
+    except (ValueError, RecursionError) as error:
+        what = str(error) if isinstance(error, _StrangeError) else "a number too long or too many brackets"
+        raise _none(path, number, f"this line is no JSON: the episode is damaged: {what}") from None
     if not isinstance(value, dict):
         raise _none(path, number, "a line of an episode is a JSON object")
     return value
 
 
-def _none(path: str, number: int, what: str) -> BadInputError:
-    return BadInputError([Problem(path, Span(number, 1, 1), what)])
+def _pairs(pairs: list[tuple[str, Any]]) -> Line:
+    """An object, no key of which occurs twice."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        twice = next(key for key, count in Counter(key for key, _ in pairs).items() if count > 1)
+        raise _StrangeError(f"the key {twice[:40]} occurs twice")
+    return found
+
+
+def _constant(word: str) -> Any:
+    raise _StrangeError(f"{word} is no number")
+
+
+_JSON = json.JSONDecoder(object_pairs_hook=_pairs, parse_constant=_constant)
+
+
+def _none(path: str, number: int, what: str, column: int = 1) -> BadInputError:
+    return BadInputError([Problem(path, Span(number, column, column), what)])
+
+
+def _located(path: str, number: int, raw: bytes, where: Where, what: str) -> Problem:
+    """What is wrong with a value of a line, at the key that leads to it."""
+    at = column(raw.decode("utf-8"), where)
+    key = ".".join(where)[:80]
+    return Problem(path, Span(number, at, at), f"{key}: {what}: the episode is damaged" if key else what)
 
 
 class EpisodeLog:

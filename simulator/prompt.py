@@ -11,7 +11,7 @@ from kb.problems import BadInputError, CannotOpenError, did_you_mean
 from kb.query import VOCABULARY, QueryEngine, QueryLimitError
 from simulator.commands.run import describe
 from simulator.interrupts import deferred
-from simulator.story import Story, facts_of_line
+from simulator.story import Story
 from simulator.terminal import StreamError, shown
 
 HELP = """\
@@ -71,11 +71,11 @@ class Prompt:
         self._write(text)
 
     def _ask(self, rest: str) -> None:
-        self._say(str(self._engine.ask(facts_of_line(self._story.line), rest)))
+        self._say(str(self._engine.ask(self._story.facts, rest)))
 
     def _facts(self, rest: str) -> None:
         word = rest.removesuffix(".")
-        facts = [fact for fact in facts_of_line(self._story.line) if not word or word in _names(fact)]
+        facts = [fact for fact in self._story.facts if not word or word in _names(fact)]
         self._say("\n".join(facts) if facts else "none")
 
     def _step(self, rest: str) -> None:

@@ -6,7 +6,9 @@ from typing import Any, NamedTuple, Protocol
 
 import shapely
 
+from kb.factfile import parse_facts
 from kb.problems import BadInputError, Problem, Span
+from kb.source import decode
 from simulator.episode import Episode, EpisodeLog, Line, read_episode
 from simulator.picture import draw
 from simulator.record import recorded_world
@@ -29,6 +31,10 @@ class Story(Protocol):
 
     def advance(self) -> bool:
         """Go on by one step; False when there is none."""
+
+    @property
+    def facts(self) -> list[str]:
+        """The world model of this step as facts, which are well formed. Raises BadInputError."""
 
     def picture(self) -> str:
         """The table at this step."""
@@ -83,6 +89,11 @@ class Running:
         self._session = session
         return True
 
+    @property
+    def facts(self) -> list[str]:
+        """The world model after the last step."""
+        return facts_of_line(self.line)
+
     def picture(self) -> str:
         """The table now."""
         return draw(self._world, self._moment.polygons, self._moment.utak)
@@ -127,16 +138,28 @@ class Recorded:
         self._at += 1
         return True
 
+    @property
+    def facts(self) -> list[str]:
+        """The world model of this step, read as the facts of a file are."""
+        facts = facts_of_line(self.line)
+        try:
+            parse_facts(decode(self._name, "\n".join(facts).encode("utf-8")))
+        except BadInputError as bad:
+            first = bad.problems[0]
+            what = f"belief.facts, number {first.span.line}: {first.what}: the episode is damaged"
+            raise BadInputError([Problem(self._name, Span(self._at + 2, 1, 1), what)]) from None
+        return facts
+
     def picture(self) -> str:
         """The table at this step."""
         try:
             world = recorded_world(self._episode.header)
             polygons = {name: shapely.Polygon(ring) for name, ring in self.line["objects"].items()}
             x, y = self.line["utak"]
-        except (KeyError, IndexError, TypeError, ValueError, AttributeError):
-            what = f"step {self._at} does not record the table: the episode is damaged"
+            return draw(world, polygons, (x, y))
+        except (ValueError, shapely.errors.ShapelyError):  # a boundary that crosses itself, say
+            what = f"step {self._at} does not record a table that can be drawn: the episode is damaged"
             raise BadInputError([Problem(self._name, Span(self._at + 2, 1, 1), what)]) from None
-        return draw(world, polygons, (x, y))
 
 
 def open_story(path: Path | str, settings: Settings) -> Story:

@@ -25,14 +25,14 @@ def add(parts: Any) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Go to the step, ask, and print the answer."""
     from kb.query import QueryEngine, QueryLimitError
-    from simulator.story import facts_of_line, open_story
+    from simulator.story import open_story
 
     story = open_story(options.story, settings_of(options))
     _go_to(story, options.story, options.at)
     step = story.line["step"]
     try:
         with QueryEngine() as engine:
-            answer = engine.ask(facts_of_line(story.line), options.query)
+            answer = engine.ask(story.facts, options.query)
     except QueryLimitError as limit:
         print(f"utak: {limit}", file=sys.stderr)
         return exits.LIMIT

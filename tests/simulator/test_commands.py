@@ -104,10 +104,8 @@ def test_the_prompt_reads_an_episode_cut_short(
     assert repl(monkeypatch, "", str(path)) == 65
     bare = json.dumps({"utak": "episode", "version": 1}) + "\n" + json.dumps({"step": 0}) + "\n"
     path.write_text(bare)
-    assert repl(monkeypatch, "show\nfacts\nstep\n?- node(X).\n", str(path)) == 0
-    out = capsys.readouterr().out
-    assert f"{path}:2:1-1: error: step 0 does not record the table" in out
-    assert out.endswith("none\nthere are no more steps\nno\n")
+    assert repl(monkeypatch, "show\n", str(path)) == 65
+    assert f"{path}:1:1-1: error: the key options is missing" in capsys.readouterr().err
 
 
 class DoneRobot(scripted_robot.Robot):
