@@ -57,6 +57,7 @@ def _guarded(arguments: Sequence[str] | None, interrupts: _Interrupts) -> int:
     """Run, with streams to which all can be written, and return the exit code."""
     from kb.problems import BadInputError, CannotOpenError
     from simulator import exits
+    from simulator.outcome import bug_message
     from simulator.terminal import StreamError
 
     try:
@@ -79,12 +80,6 @@ def _guarded(arguments: Sequence[str] | None, interrupts: _Interrupts) -> int:
             raise
         return _say(exits.OUR_BUG, bug_message(bug))
     return code
-
-
-def bug_message(bug: Exception) -> str:
-    """Return what to say of an exception that nothing here expects."""
-    what = f"utak: this is a bug of ours: {type(bug).__name__}: {str(bug)[:500]}\n"
-    return what + "Please report it with the command and its files; UTAK_DEBUG=1 shows where."
 
 
 def _executed(arguments: Sequence[str] | None) -> int:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from simulator import exits
 from simulator.commands.run import add_settings, settings_of
+from simulator.untrusted import refuse_links
 
 if TYPE_CHECKING:
     from simulator.story import Story
@@ -27,6 +28,7 @@ def execute(options: argparse.Namespace) -> int:
     from kb.query import QueryEngine, QueryLimitError
     from simulator.story import open_story
 
+    refuse_links(options, options.story)
     story = open_story(options.story, settings_of(options))
     _go_to(story, options.story, options.at)
     step = story.line["step"]

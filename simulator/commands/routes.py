@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from kb.problems import BadInputError, Problem, Span
 from simulator import exits
+from simulator.untrusted import add_option, refuse_links
 
 if TYPE_CHECKING:
     from geometry.distance import Bools
@@ -25,6 +26,7 @@ def add(parts: Any) -> None:
     part.add_argument("-k", type=_count, default=3, metavar="N", help="how many ways at most (default 3)")
     part.add_argument("--json", action="store_true", help="print one JSON object")
     part.add_argument("--svg", metavar="FILE", help="draw squares, skeleton, pathgraph and ways")
+    add_option(part)
     part.add_argument("--force", action="store_true", help="let --svg overwrite a file that is no picture")
     part.set_defaults(execute=execute)
 
@@ -33,6 +35,7 @@ def execute(options: argparse.Namespace) -> int:
     """Find the ways, and print them."""
     from geometry.screen import Screen
 
+    refuse_links(options, options.map)
     free = _free(options.map)
     try:
         screen = Screen(free)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 from simulator import exits
 from simulator.terminal import shown
+from simulator.untrusted import add_option, refuse_links
 
 if TYPE_CHECKING:
     from simulator.session import Result, Session
@@ -40,6 +41,7 @@ def add_settings(part: argparse.ArgumentParser) -> None:
     )
     part.add_argument("--max-steps", type=_steps, metavar="N", help="give up after so many commands (default 200)")
     part.add_argument("--kb", action="append", metavar="FILE", default=[], help="a file of rules to add; repeatable")
+    add_option(part)
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -52,6 +54,7 @@ def execute(options: argparse.Namespace) -> int:
     if options.resume and options.log in (None, STANDARD_OUTPUT):
         print("utak run: --resume needs --log EP.jsonl", file=sys.stderr)
         return exits.USAGE
+    refuse_links(options, options.scenario)
     scenario = read_scenario(options.scenario)
     settings = settings_of(options, _recorded(options))
     with EpisodeLog(options.log, options.resume, options.force) as log:
