@@ -70,8 +70,11 @@ class _Reader(Transformer):
         return node
 
 
-def answer(facts: str, query: str, known: Iterable[tuple[str, int]]) -> Answer:
-    """Return the answer to a query over facts: its variables, the rows of their values, and whether it is open."""
+def answer(facts: str, query: str, known: Iterable[tuple[str, int]], most: int = MOST_ROWS) -> Answer:
+    """Return the answer to a query over facts: its variables, the rows of their values, and whether it is open.
+
+    most : how many rows are kept.
+    """
     rule = _rule(query)
     reader = _Reader()
     reader.visit_sequence(rule.body)
@@ -79,7 +82,7 @@ def answer(facts: str, query: str, known: Iterable[tuple[str, int]]) -> Answer:
     if any(atom[:2] not in declared for atom in reader.atoms):
         return {"atoms": reader.atoms, "variables": [], "rows": [], "more": False, "open": False}
     program = [facts, DERIVED, *(f"#defined {name}/{arity}." for name, arity in sorted(declared))]
-    rows, more = _rows(program, reader.variables, query)
+    rows, more = _rows(program, reader.variables, query, most)
     found = {"variables": reader.variables, "rows": rows, "more": more, "atoms": reader.atoms}
     return found | {"open": not rows and _open(program, rule)}
 
@@ -95,7 +98,7 @@ def _rule(query: str) -> Any:
     return parts[1]
 
 
-def _rows(program: list[str], variables: list[str], body: str) -> tuple[list[list[Any]], bool]:
+def _rows(program: list[str], variables: list[str], body: str, most: int = MOST_ROWS) -> tuple[list[list[Any]], bool]:
     """The distinct values of the variables for which the body holds, and whether there are more of them."""
     control = clingo.Control(["--warn=all"], logger=_raise, message_limit=20)
     head = f"q__({','.join(variables)})" if variables else "q__"
@@ -104,7 +107,7 @@ def _rows(program: list[str], variables: list[str], body: str) -> tuple[list[lis
     atoms = control.symbolic_atoms.by_signature("q__", len(variables))
     rows = [[_value(term) for term in atom.symbol.arguments] for atom in atoms]
     rows.sort(key=lambda row: [(isinstance(value, str), value) for value in row])
-    return rows[:MOST_ROWS], len(rows) > MOST_ROWS
+    return rows[:most], len(rows) > most
 
 
 def _open(program: list[str], rule: Any) -> bool:
@@ -175,7 +178,7 @@ def _respond(line: bytes) -> Answer:
         request = json.loads(line)
         if "rules" in request:
             return solved(request["program"], request["rules"], request["seconds"])
-        found = answer(request["facts"], request["query"], request["known"])
+        found = answer(request["facts"], request["query"], request["known"], request.get("most", MOST_ROWS))
     except QueryError as error:
         return {"error": error.what, "at": error.at}
     except MemoryError:

@@ -11,6 +11,7 @@ from kb.problems import BadInputError, CannotOpenError, did_you_mean
 from kb.query import VOCABULARY, QueryEngine, QueryLimitError
 from simulator.commands.run import describe
 from simulator.interrupts import deferred
+from simulator.naming import with_utak
 from simulator.story import Story
 from simulator.terminal import StreamError, shown
 
@@ -19,9 +20,13 @@ HELP = """\
 facts [WORD]  the world model as facts; with a word those that name it
 step [N]      go on by one step, or by N
 run           go on to the end
-show          the table as a picture
+show          the true table as a picture; what the robot believes of it are the facts
 help          this
-quit          leave (so does the end of the input)"""
+quit          leave (so does the end of the input)
+
+In facts, places and lengths are whole hundredths of a square, in the robot's frame: east and north from where it woke,
+north being the way it faced then. Confidences are percent. The robot is called utak in questions, and org in facts."""
+TRUTH = "the true table, which the robot may believe to be otherwise:"
 
 
 class Prompt:
@@ -35,7 +40,7 @@ class Prompt:
             "facts": self._facts,
             "help": lambda rest: self._say(HELP),
             "run": lambda rest: self._go(None),
-            "show": lambda rest: self._say(self._story.picture().rstrip("\n")),
+            "show": lambda rest: self._say(f"{TRUTH}\n{self._story.picture()}".rstrip("\n")),
             "step": self._step,
         }
 
@@ -71,7 +76,7 @@ class Prompt:
         self._write(text)
 
     def _ask(self, rest: str) -> None:
-        self._say(str(self._engine.ask(self._story.facts, rest)))
+        self._say(str(self._engine.ask(self._story.facts, with_utak(rest))))
 
     def _facts(self, rest: str) -> None:
         word = rest.removesuffix(".")

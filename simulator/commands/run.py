@@ -27,7 +27,11 @@ def add(parts: Any) -> None:
     part.add_argument("--resume", action="store_true", help="go on from the episode that --log names")
     part.add_argument("--force", action="store_true", help="let --log overwrite a file that is no episode")
     part.add_argument("--json", action="store_true", help="print the result as one JSON object")
-    part.add_argument("--watch", action="store_true", help="draw the table on stderr after every step")
+    part.add_argument(
+        "--watch",
+        action="store_true",
+        help="draw the true table, which the robot does not see, on stderr after every step",
+    )
     part.set_defaults(execute=execute)
 
 
@@ -117,6 +121,7 @@ def _watcher(watch: bool) -> Any:
 
         line, table = session.line, session.table
         if watch:
+            print("the true table, which the robot may believe to be otherwise:", file=sys.stderr)
             print(draw(table.world, table.polygons, table.utak), file=sys.stderr, end="")
         why = shown(line["why"], lines=False)
         print(f"step {line['step']}: {describe(line['action'])}: {why}", file=sys.stderr)
