@@ -193,7 +193,7 @@ class _Progress:
         if self.began is None or now - self._told < OFTEN or not (sys.stderr and sys.stderr.isatty()):
             return
         self._told = now
-        print(f"utak: {self.made} kernels compiled in {now - self.began:.0f} s ...", file=sys.stderr, flush=True)
+        print(f"utak: kernels compiled so far: {self.made}, in {now - self.began:.0f} s", file=sys.stderr, flush=True)
 
     def begin(self) -> None:
         """It is told of from now on."""
