@@ -7,9 +7,12 @@ stand on Python's path. As a program, `python -I utak_command.py PLACES MODULE A
 
 import os
 import sys
-from collections.abc import Sequence
-from importlib.machinery import ModuleSpec, PathFinder
-from types import ModuleType
+
+TYPE_CHECKING = False  # typing's own is not imported: until main begins, Ctrl-C shows where Python was
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from importlib.machinery import ModuleSpec
+    from types import ModuleType
 
 HOME = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120 (pathlib takes a third of the time to start)
 OURS = frozenset({"geometry", "kb", "planner", "simulator", "benchmarks"})
@@ -20,13 +23,19 @@ class Beside:
     """Finds our packages beside this file; of all other modules it knows nothing."""
 
     @staticmethod
-    def find_spec(name: str, path: Sequence[str] | None = None, target: ModuleType | None = None) -> ModuleSpec | None:
+    def find_spec(
+        name: str, path: "Sequence[str] | None" = None, target: "ModuleType | None" = None
+    ) -> "ModuleSpec | None":
         """Return where one of our packages is; None for everything else, which Python then finds as it always does."""
+        from importlib.machinery import PathFinder  # loaded by find_ours_here: nothing is looked for to get it
+
         return PathFinder.find_spec(name, [HOME], target) if name in OURS else None
 
 
 def find_ours_here() -> None:
     """Make every later import of one of our packages take the one beside this file."""
+    import importlib.machinery  # noqa: F401 (which is looked for in the usual way)
+
     if not any(getattr(finder, "__qualname__", "") == Beside.__qualname__ for finder in sys.meta_path):
         sys.meta_path.insert(0, Beside)
 
@@ -44,11 +53,17 @@ def _places() -> str:
     return os.pathsep.join(sorted({os.path.dirname(os.path.dirname(origin)) for origin in origins}))  # noqa: PTH120
 
 
-def main() -> int:
-    """Run `utak` with the arguments of this process and return its exit code."""
+def exit_at_ctrl_c() -> None:
+    """End at once when Ctrl-C is pressed: nothing has begun yet. A background job, for which it is ignored, goes on."""
     import signal
 
-    signal.signal(signal.SIGINT, lambda *_: os._exit(130))  # nothing has begun that could be left half done
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, lambda *_: os._exit(130))
+
+
+def main() -> int:
+    """Run `utak` with the arguments of this process and return its exit code."""
+    exit_at_ctrl_c()
     find_ours_here()
     from simulator.cli import main as run
 
@@ -57,6 +72,7 @@ def main() -> int:
 
 def run_module(places: str, module: str, *arguments: str) -> None:
     """Run one of our modules as a program. places : where to look for what is not found otherwise."""
+    from importlib.machinery import PathFinder
     from runpy import run_module as run
 
     find_ours_here()

@@ -5,20 +5,24 @@ import sys
 from collections.abc import Sequence
 from types import FrameType
 
-from utak_command import find_ours_here
+from utak_command import exit_at_ctrl_c, find_ours_here
+
+SOON = 0.01  # seconds after which what Python ignores is over
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run `utak` with arguments (those of the process by default) and return its exit code."""
     interrupts = _Interrupts()
     if arguments is None:
-        interrupts.take()
+        exit_at_ctrl_c()
     try:
         find_ours_here()
+        from simulator import outcome, parsing  # noqa: F401 (all that is imported before anything is done)
         from simulator.terminal import fill_gaps, guarded
 
         if arguments is None:
             fill_gaps()
+            interrupts.take()
         with guarded() as (_, err):
             code = _guarded(arguments, interrupts)
             err.flush()
@@ -41,6 +45,7 @@ class _Interrupts:
 
         if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
             signal.signal(signal.SIGINT, self._note)
+            sys.unraisablehook = self._again
 
     def ignore(self) -> None:
         """Nothing is left to interrupt."""
@@ -48,9 +53,25 @@ class _Interrupts:
 
         signal.signal(signal.SIGINT, signal.SIG_IGN)
 
+    def _again(self, lost: "sys.UnraisableHookArgs") -> None:
+        """Interrupt once more, when it happened where Python ignores every exception, as at the end of an import."""
+        if issubclass(lost.exc_type, KeyboardInterrupt):
+            from threading import Timer
+
+            Timer(SOON, signal_again).start()
+        else:
+            sys.__unraisablehook__(lost)
+
     def _note(self, number: int, frame: FrameType | None) -> None:
         self.seen = True
         raise KeyboardInterrupt
+
+
+def signal_again() -> None:
+    """Let the main thread be interrupted."""
+    import _thread
+
+    _thread.interrupt_main()
 
 
 def _guarded(arguments: Sequence[str] | None, interrupts: _Interrupts) -> int:
