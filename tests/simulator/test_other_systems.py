@@ -55,7 +55,6 @@ sys.exit(main(sys.argv[1:]))
 def test_the_commands_work(system: str, tmp_path: Path) -> None:
     folder, log = str(write_scene(tmp_path / "s", 1)), str(tmp_path / "ep.jsonl")
     for command, code in (
-        (["check", folder], 0),
         (["show", folder], 0),
         (["run", folder, "--log", log, "--max-steps", "3"], 75),
         (["run", folder, "--log", log, "--resume"], 75),

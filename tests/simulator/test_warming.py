@@ -38,6 +38,7 @@ def test_the_other_process_does_what_it_is_told(monkeypatch) -> None:
 def test_the_first_run_says_what_it_does(monkeypatch) -> None:
     told, done = [], []
     monkeypatch.setattr(warming, "cold", list)
+    monkeypatch.setattr(warming, "beside", lambda *_: [sys.executable, "-I", "-c", ""])
     monkeypatch.setattr(warming, "tell", lambda: told.append(True))
     monkeypatch.setattr(warming, "compile_for", done.extend)
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
@@ -55,6 +56,7 @@ def test_bytecode_is_kept_where_python_keeps_none(monkeypatch, tmp_path) -> None
     (tmp_path / "broken.py").write_text("ANSWER =\n")
     monkeypatch.setattr(warming, "PACKAGES", [tmp_path, tmp_path / "absent"])
     monkeypatch.setattr(warming, "cold", list)
+    monkeypatch.setattr(warming, "beside", lambda *_: [sys.executable, "-I", "-c", ""])
     monkeypatch.setattr(warming, "tell", lambda: None)
     monkeypatch.setattr(warming, "compile_for", lambda _: None)
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
