@@ -11,7 +11,10 @@ SOON = 0.01  # seconds after which what Python ignores is over
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run `utak` with arguments (those of the process by default) and return its exit code."""
+    """Run `utak` with arguments and return its exit code.
+
+    Without any, those of the process are taken, and Ctrl-C and the standard streams with them: it is to end then.
+    """
     interrupts = _Interrupts()
     if arguments is None:
         exit_at_ctrl_c()
