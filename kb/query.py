@@ -23,6 +23,7 @@ from kb.worker import Worker
 
 SECONDS = 5.0  # after which a query is given up
 LONGEST = 10_000  # characters of a query
+MOST_ROWS = 10_000  # of an answer, unless more are asked for
 VOCABULARY = (
     ("node", 1), ("kind", 3), ("child", 2), ("offset", 3), ("rect", 5), ("segment", 7), ("shape", 3), ("colour", 3),
     ("movable", 2), ("held", 1), ("room", 1), ("door", 1), ("connects", 3), ("width", 2), ("in", 2), ("corner", 3),
@@ -58,7 +59,7 @@ class Answer:
         cells = [list(self.variables), *([str(value) for value in row] for row in self.rows)]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
         lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in cells]
-        return "\n".join([*lines, "..."] if self.more else lines)
+        return "\n".join([*lines, f"... and more than these {len(self.rows)} rows"] if self.more else lines)
 
 
 class QueryEngine:
@@ -78,8 +79,8 @@ class QueryEngine:
         """End the process."""
         self._worker.close()
 
-    def ask(self, facts: Sequence[str], query: str) -> Answer:
-        """Answer a query over facts such as `kind(o1,object,95).`
+    def ask(self, facts: Sequence[str], query: str, most: int = MOST_ROWS) -> Answer:
+        """Answer a query over facts such as `kind(o1,object,95).`, with so many rows at most.
 
         Raises BadInputError when it is no query or one of the facts is none, QueryLimitError when it takes too long.
         """
@@ -87,7 +88,12 @@ class QueryEngine:
         _check(text)
         world = parse_facts(decode("belief", "\n".join(facts).encode("utf-8")))
         known = {*VOCABULARY, *(fact.signature for fact in world)}
-        request = {"facts": "\n".join(f"{fact}." for fact in world), "query": text, "known": sorted(known)}
+        request = {
+            "facts": "\n".join(f"{fact}." for fact in world),
+            "query": text,
+            "known": sorted(known),
+            "most": most,
+        }
         found = self._worker.exchange(request, self.seconds)
         if "limit" in found:
             raise QueryLimitError(f"the query was given up: {found['limit']}")

@@ -1,20 +1,21 @@
 """The process in which queries are answered: it reads one JSON line a query and writes one JSON line an answer.
 
-Run by `kb.query`, which kills it when it takes too long. It has little memory, can open no file, and clingo's death is
-its own alone. A query is the body of one rule; its answers are the values of the variables in it.
+Run by `kb.worker`, which kills it when it takes too long. It has little memory, can open no file, and clingo's death
+is its own alone. A query is the body of one rule; its answers are the values of the variables in it.
 """
 
 import json
 import re
-import resource
-import sys
 from collections.abc import Iterable
 from typing import Any
 
 import clingo
 from clingo.ast import AST, ASTType, Sign, Transformer, parse_string
 
+from kb import machine
+
 MEMORY = 1_500_000_000  # bytes of address space
+PROCESSOR_TIME = 60  # seconds on one request: far more than anybody waits for, should nobody be there to end it
 MOST_ROWS = 10_000
 CONFIDENT = {
     ("kind", 3),
@@ -69,8 +70,11 @@ class _Reader(Transformer):
         return node
 
 
-def answer(facts: str, query: str, known: Iterable[tuple[str, int]]) -> Answer:
-    """Return the answer to a query over facts: its variables, the rows of their values, and whether it is open."""
+def answer(facts: str, query: str, known: Iterable[tuple[str, int]], most: int = MOST_ROWS) -> Answer:
+    """Return the answer to a query over facts: its variables, the rows of their values, and whether it is open.
+
+    most : how many rows are kept.
+    """
     rule = _rule(query)
     reader = _Reader()
     reader.visit_sequence(rule.body)
@@ -78,7 +82,7 @@ def answer(facts: str, query: str, known: Iterable[tuple[str, int]]) -> Answer:
     if any(atom[:2] not in declared for atom in reader.atoms):
         return {"atoms": reader.atoms, "variables": [], "rows": [], "more": False, "open": False}
     program = [facts, DERIVED, *(f"#defined {name}/{arity}." for name, arity in sorted(declared))]
-    rows, more = _rows(program, reader.variables, query)
+    rows, more = _rows(program, reader.variables, query, most)
     found = {"variables": reader.variables, "rows": rows, "more": more, "atoms": reader.atoms}
     return found | {"open": not rows and _open(program, rule)}
 
@@ -94,7 +98,7 @@ def _rule(query: str) -> Any:
     return parts[1]
 
 
-def _rows(program: list[str], variables: list[str], body: str) -> tuple[list[list[Any]], bool]:
+def _rows(program: list[str], variables: list[str], body: str, most: int = MOST_ROWS) -> tuple[list[list[Any]], bool]:
     """The distinct values of the variables for which the body holds, and whether there are more of them."""
     control = clingo.Control(["--warn=all"], logger=_raise, message_limit=20)
     head = f"q__({','.join(variables)})" if variables else "q__"
@@ -103,7 +107,7 @@ def _rows(program: list[str], variables: list[str], body: str) -> tuple[list[lis
     atoms = control.symbolic_atoms.by_signature("q__", len(variables))
     rows = [[_value(term) for term in atom.symbol.arguments] for atom in atoms]
     rows.sort(key=lambda row: [(isinstance(value, str), value) for value in row])
-    return rows[:MOST_ROWS], len(rows) > MOST_ROWS
+    return rows[:most], len(rows) > most
 
 
 def _open(program: list[str], rule: Any) -> bool:
@@ -168,13 +172,13 @@ def _raise(code: clingo.MessageCode, message: str) -> None:
 _messages: list[QueryError] = []
 
 
-def _respond(line: str) -> Answer:
+def _respond(line: bytes) -> Answer:
     _messages.clear()
     try:
         request = json.loads(line)
         if "rules" in request:
             return solved(request["program"], request["rules"], request["seconds"])
-        found = answer(request["facts"], request["query"], request["known"])
+        found = answer(request["facts"], request["query"], request["known"], request.get("most", MOST_ROWS))
     except QueryError as error:
         return {"error": error.what, "at": error.at}
     except MemoryError:
@@ -187,14 +191,17 @@ def _respond(line: str) -> Answer:
 
 
 def main() -> None:
-    """Answer queries until the input ends."""
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    """Answer queries until the input ends, and end then at once."""
+    machine.end_with_parent()
+    machine.limit("AS", MEMORY)
+    machine.limit("CORE", 0)
     json.loads('{"a": [1.5, "b"]}')  # everything that is imported late is imported now
     answer("p(1).", "p(X), not p(2)", [])
-    resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))
+    requests = machine.lines_of_parent()
+    machine.limit("NOFILE", 3)
     print("ready", flush=True)
-    for line in sys.stdin:
+    for line in requests:
+        machine.limit_processor_time(PROCESSOR_TIME)
         print(json.dumps(_respond(line)), flush=True)
 
 
