@@ -14,8 +14,8 @@ from kb.factfile import parse_facts
 from kb.facts import Fact, Number
 from kb.integers import wide_integers
 from kb.problems import BadInputError, Problem, Span
+from kb.rulebook import Statement
 from kb.source import decode
-from kb.userrules import read_rules
 from kb.vocabulary import BELIEF
 from kb.worker import Worker
 
@@ -64,7 +64,11 @@ class QueryEngine:
 
     def __init__(self, seconds: float = SECONDS, rules: Sequence[str] = ()) -> None:
         self.seconds = seconds
-        self._rules = read_rules(rules).queried if rules else ()
+        self._rules: Sequence[Statement] = ()
+        if rules:
+            from kb.userrules import read_rules  # only who has rules of his own waits for it
+
+            self._rules = read_rules(rules).queried
         self._worker = Worker()
 
     def __enter__(self) -> "QueryEngine":

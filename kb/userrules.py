@@ -14,7 +14,7 @@ from typing import Any
 
 import clingo
 
-from kb.factfile import facts_of
+from kb.factfile import DEEPEST, facts_of
 from kb.facts import Fact
 from kb.integers import wide_integers
 from kb.interfaces import REACHED, Signature
@@ -69,7 +69,7 @@ def _rulebook(sources: tuple[Source, ...]) -> Rulebook:
 
 
 def _statements(source: Source) -> list[Statement]:
-    problems = [*wide_integers(source), *_included(source)]
+    problems = [*wide_integers(source), *_not_taken(source)]
     if problems:
         raise BadInputError(problems)
     found = _worker().exchange({"read": source.text}, SECONDS)
@@ -84,10 +84,16 @@ def _statements(source: Source) -> list[Statement]:
     return [statement_of(source, entry) for entry in found["statements"]]
 
 
-def _included(source: Source) -> Iterator[Problem]:
+def _not_taken(source: Source) -> Iterator[Problem]:
+    """What clingo must not see: other files, and brackets so deep that it would break down."""
+    depth = 0
     for token in tokens(source, []):
         if token.text == "#include":
             yield source.problem(token.span, "#include is not allowed", "give each file with a --kb of its own")
+        depth += (token.text == "(") - (token.text == ")")
+        if depth > DEEPEST:
+            yield source.problem(token.span, f"brackets are nested more than {DEEPEST} deep")
+            return
 
 
 def solve_apart(ours: Sequence[Path], users: Sequence[Path], facts: Sequence[str]) -> list[clingo.Symbol] | None:

@@ -147,7 +147,7 @@ def known(draw: random.Random, facts: list[str], plain_only: bool = False) -> st
 seeds = st.integers(0, 10**9).map(random.Random)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(seeds)
 def test_where_all_is_known_answers_are_those_of_clingo(engine: QueryEngine, draw: random.Random) -> None:
     facts = world(draw, (0, 100))
@@ -180,7 +180,7 @@ def more_known(draw: random.Random, facts: list[str], turn_out: bool) -> list[st
     return later
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(seeds)
 def test_what_is_certain_stays_so_when_more_is_known(engine: QueryEngine, draw: random.Random) -> None:
     facts = world(draw, (0, 2, 60, 99, 100))
@@ -194,7 +194,7 @@ def test_what_is_certain_stays_so_when_more_is_known(engine: QueryEngine, draw: 
         assert set(found.rows) <= rows, (text, later)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(seeds)
 def test_no_stays_no_however_confidences_turn_out(engine: QueryEngine, draw: random.Random) -> None:
     facts = world(draw, (0, 2, 60, 99, 100))
@@ -234,6 +234,7 @@ ANSWERS: dict[str, tuple[str, str]] = {  # where part of the table is unseen, an
     "held(X)": (NO, NO),
     "held(o9)": (NO, NO),
     "shape(X, square, C), C > 100": (NO, NO),
+    "shape(X, brick, C), C > 99": (UNSURE, UNSURE),
     "shape(X, disc, C), C > 99": (UNSURE, UNSURE),
     "shape(X, l_shape, C), C > 50, C < 30": (NO, NO),
     "shape(o3, S, C), C > 80, C < 90": (UNSURE, UNSURE),

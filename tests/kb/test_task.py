@@ -4,7 +4,7 @@ from pathlib import Path
 
 import clingo
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.factfile import facts_of
@@ -119,6 +119,7 @@ def test_the_problems_of_both_files_come_together(tmp_path: Path) -> None:
     assert "goal.lp:1:1-16: error: unknown predicate att/2" in text
 
 
+@settings(deadline=None)
 @given(st.from_regex(r"\A(_{0,2}[a-z][A-Za-z0-9_']{0,4}|not)\Z"))
 def test_what_names_a_parameter_is_a_name_to_clingo(name: str) -> None:
     try:

@@ -2,7 +2,7 @@
 
 import pytest
 import shapely
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.wkt import WktError, parse_wkt
@@ -70,6 +70,7 @@ def test_bad_text_is_refused_where_it_goes_wrong(text: str) -> None:
     assert what in caught.value.what
 
 
+@settings(deadline=None)
 @given(st.text(alphabet="POLYGNIT ()0123456789.,-+eE\n", max_size=60))
 def test_any_text_is_a_shape_or_refused(text: str) -> None:
     try:
@@ -82,6 +83,7 @@ PIECES = "POINT|LINESTRING|POLYGON|MULTIPOLYGON|EMPTY|Z|(|)|((|))|,| |  |0|1|4|1
 words = st.sampled_from([*PIECES.split("|"), "inf", "0 0", "4 0", "4 4", "0 4", "0 0, 4 0, 4 4, 0 0"])
 
 
+@settings(deadline=None)
 @given(
     st.lists(words, max_size=12).map("".join)
     | st.sampled_from(GOOD).flatmap(

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 import scripted_robot
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_scenes import write_scene
 
@@ -32,6 +32,7 @@ WIDE = st.integers(2**31, 2**80) | st.integers(-(2**80), -(2**31) - 1)
 NARROW = st.integers(-(2**31), 2**31 - 1)
 
 
+@settings(max_examples=60, deadline=None)
 @given(WIDE)
 def test_no_integer_beyond_32_bits_enters(engine: QueryEngine, number: int) -> None:
     for text in (f"offset(o1, {number}, 50)", f"X = {number}", f"#count{{X : node(X)}} < {number}", f"X = 1..{number}"):
@@ -43,6 +44,7 @@ def test_no_integer_beyond_32_bits_enters(engine: QueryEngine, number: int) -> N
         facts_of(f"p(f({number})).")
 
 
+@settings(max_examples=60, deadline=None)
 @given(NARROW)
 def test_every_integer_of_32_bits_enters_as_it_is(engine: QueryEngine, number: int) -> None:
     assert engine.ask([f"offset(o1,{number},50)."], "offset(o1, X, _)").rows == ((number,),)
@@ -86,6 +88,7 @@ def test_numbers_on_the_command_line(text: str, capsys: pytest.CaptureFixture[st
     assert cli.main(["routes", "x", f"--from=1,1,{text}", "--to=1,1"]) == 2
 
 
+@settings(max_examples=60, deadline=None)
 @given(st.integers(10**7, 10**40))
 def test_numbers_of_shapes_and_maps_are_bounded(number: int) -> None:
     with pytest.raises(WktError, match="beyond 1000000 squares"):
