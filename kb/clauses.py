@@ -256,11 +256,11 @@ class _Translator:
             self._intervals.append(Comparison(variable, (("=", interval),), False, at))
             return variable
         if node.ast_type == ASTType.UnaryOperation:
-            if node.argument.ast_type == ASTType.SymbolicTerm and str(node.argument) == str(
-                LOW
-            ):  # as clingo reads 2147483648, which stands behind a minus alone
-                return Constant(LOW, at)
-            return Operation(UNARY[node.operator_type], (self._term(node.argument),), at)
+            inner, sign = self._term(node.argument), UNARY[node.operator_type]
+            plain = sign == "-" and node.argument.ast_type == ASTType.SymbolicTerm
+            if plain and isinstance(inner, Constant) and isinstance(inner.value, int):
+                return Constant(inner.value if inner.value == LOW else -inner.value, at)  # LOW: 2147483648, wrapped
+            return Operation(sign, (inner,), at)
         if node.ast_type == ASTType.BinaryOperation:
             return Operation(BINARY[node.operator_type], (self._term(node.left), self._term(node.right)), at)
         if node.ast_type == ASTType.Function and not node.external:
