@@ -11,12 +11,14 @@ The table goes to stdout, progress to stderr. docs/benchmarks-worlds.md explains
 import argparse
 import json
 import multiprocessing
+import os
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import ExitStack
 from functools import partial
+from io import TextIOWrapper
 from itertools import product
 from pathlib import Path
 from typing import TextIO
@@ -29,6 +31,7 @@ from benchmarks.judging import judge_path
 from benchmarks.tally import faults, narrowness, table, verdicts
 from benchmarks.trial import Conditions, Trial, run_trial
 from benchmarks.worlds import add_kinds, scenario, seeds
+from simulator.outputs import is_rows, opened
 from simulator.session import Session
 
 
@@ -55,7 +58,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         else:
             numbers = seeds(given.seed, given.count, given.unable)
             worlds = _unclean(given.again) if given.again else list(product(given.task, numbers))
-            output = stack.enter_context(given.output.open("w")) if given.output else None
+            output = stack.enter_context(_results(given.output)) if given.output else None
             trials = list(_reported(_run_all(worlds, conditions, folder, given.jobs), len(worlds), output))
     print(table(trials), verdicts(trials), narrowness(trials), faults(trials), sep="\n", end="")
     return 0 if all(trial.clean for trial in trials) else 1
@@ -82,6 +85,13 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _results(path: Path) -> TextIO:
+    """A file for results; one that holds anything else is not overwritten."""
+    stream = opened(path, is_rows, "file of results")
+    stream.truncate()
+    return TextIOWrapper(stream, encoding="ascii")
+
+
 def _numbers(text: str) -> list[int]:
     return [int(part) for part in text.split(",")]
 
@@ -102,6 +112,7 @@ def _run_all(worlds: list[tuple[int, int]], conditions: Conditions, folder: Path
     if jobs <= 1:
         yield from map(run, worlds)
         return
+    os.environ["PYTHONSAFEPATH"] = "1"  # the pool's processes get this one's path, and no other folder on it
     with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
         yield from pool.map(run, worlds)
 

@@ -1,4 +1,4 @@
-"""The independent judge of episodes, where it is at hand: $UTAK_JUDGE, or ../shared/judge/judge.py by the checkout."""
+"""The independent judge of episodes, where it is at hand: $UTAK_JUDGE, or shared/judge/judge.py above the checkout."""
 
 import contextlib
 import importlib.util
@@ -14,8 +14,8 @@ ROOT = Path(__file__).resolve().parent.parent
 def judge_path() -> Path | None:
     """Where the judge is, or None."""
     named = os.environ.get("UTAK_JUDGE")
-    path = Path(named) if named else ROOT.parent / "shared" / "judge" / "judge.py"
-    return path if path.is_file() else None
+    paths = [Path(named)] if named else [above / "shared" / "judge" / "judge.py" for above in ROOT.parents]
+    return next((path for path in paths if path.is_file()), None)
 
 
 @cache

@@ -1,8 +1,9 @@
 """A scenario as a frozen value, with the truth about it, and its four files."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 import shapely
@@ -65,22 +66,47 @@ class Scenario:
     @property
     def world(self) -> str:
         """The text of world.lp."""
-        lines = [
-            f"table({self.plan.width}, {self.plan.height}).",
-            f'verge("{wkt(self.plan.verge)}").',
-            f'utak("{wkt(self.utak)}", {self.heading}).',
-        ]
-        for thing in self.things:
-            kind = "fixed" if thing.fixed else "object"
-            lines.append(f'{kind}({thing.name}, {thing.colour}, "{wkt(thing.polygon)}").')
-        return "\n".join(lines) + "\n"
+        return world_text(self.plan, self.utak, self.heading, self.things)
 
 
 # Makes a world of (random numbers, seed, whether the task cannot be done); None when the things find no place.
 Maker = Callable[[np.random.Generator, int, bool], Scenario | None]
 
 
-def write(scenario: Scenario, folder: Path) -> Path:
+class Laid(Protocol):
+    """A floor on a table of width x height squares."""
+
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    @property
+    def verge(self) -> BaseGeometry: ...
+
+
+class Told(Protocol):
+    """A world with a task, whatever made it."""
+
+    @property
+    def world(self) -> str: ...
+    @property
+    def texts(self) -> Task: ...
+
+
+def world_text(plan: Laid, utak: Point, heading: int, things: Iterable[Thing]) -> str:
+    """Return the text of world.lp."""
+    lines = [
+        f"table({plan.width}, {plan.height}).",
+        f'verge("{wkt(plan.verge)}").',
+        f'utak("{wkt(utak)}", {heading}).',
+    ]
+    for thing in things:
+        kind = "fixed" if thing.fixed else "object"
+        lines.append(f'{kind}({thing.name}, {thing.colour}, "{wkt(thing.polygon)}").')
+    return "\n".join(lines) + "\n"
+
+
+def write(scenario: Told, folder: Path) -> Path:
     """Write the four files of a scenario into a folder, made when it is not there; gives the folder."""
     folder.mkdir(parents=True, exist_ok=True)
     texts = scenario.texts

@@ -26,6 +26,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from utak_command import beside
+
 KINDS = ("corner", "square", "brick", "l_shape", "pose")
 STAGES = ("start", "import", "read", "model", "decide", "thinking", "all", "cpu", "thought")
 BAR, MOST_ROUNDS = 0.8, 5  # seconds; rounds
@@ -66,7 +68,7 @@ def _timed(kind: str, seed: int, loops: bool, folder: Path) -> dict[str, Any]:
     world = six_room_world(kind, seed, loops)
     place = write(world, folder / f"{kind}-{seed}")
     (place / "truth.pickle").write_bytes(pickle.dumps(world))
-    command = [sys.executable, "-m", "benchmarks.sixrooms_child", str(place), repr(time.perf_counter())]
+    command = beside("benchmarks.sixrooms_child", str(place), repr(time.perf_counter()))
     done = subprocess.run(command, check=True, capture_output=True, text=True)
     row: dict[str, Any] = json.loads(done.stdout)
     row["thinking"] = row["read"] + row["model"] + row["decide"]

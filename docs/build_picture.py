@@ -14,6 +14,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from simulator.outputs import is_svg, write_whole
+
 ZONES = ((4, 1), (8, 2), (16, 4))
 SCALE = 8  # pixels a square
 GAP = 16
@@ -131,4 +133,5 @@ if __name__ == "__main__":
     parser.add_argument("episode", type=Path)
     parser.add_argument("-o", "--output", type=Path, default=Path(__file__).with_name("run.svg"))
     options = parser.parse_args()
-    options.output.write_text(picture([json.loads(line) for line in options.episode.read_text().splitlines()]))
+    drawn = picture([json.loads(line) for line in options.episode.read_text().splitlines()])
+    write_whole(options.output, drawn, is_svg, "SVG picture")

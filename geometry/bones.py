@@ -19,7 +19,7 @@ from geometry.skeleton import HALT, LINKS, SADDLE, Flags, Heights, States, Words
 
 Ints = NDArray[np.int32]
 Floats = NDArray[np.float64]
-CHORD = 4  # a chain's length is measured by chords of so many steps, since a staircase is no longer than its slope
+LOOK = 4  # steps of a walk after which it looks whether there is room for as many notes more
 AHEAD = 1 << 14  # words of states: twice as many fit into a processor's own cache beside what a walk needs
 
 
@@ -32,8 +32,8 @@ class Bones(NamedTuple):
     """(m, 2) first and last end of each chain: 4 node + direction of leaving (east, north, west, south); ascending."""
     neck: Ints
     """(m,) each chain's lowest cell in the order of skeleton.py."""
-    length: Floats
-    """(m,) length in squares."""
+    steps: Ints
+    """(m,) how many steps from square to square it takes from end to end."""
 
 
 def contract(square: Squares, state: States, words: Words) -> Bones:
@@ -44,11 +44,11 @@ def contract(square: Squares, state: States, words: Words) -> Bones:
     while True:
         nodes, ends, links = count(eights, base, since)
         node, port = np.empty(nodes + 1, np.int32), np.empty((ends // 2, 2), np.int32)
-        neck, length = np.empty(ends // 2, np.int32), np.empty(ends // 2, np.float64)
+        neck, steps = np.empty(ends // 2, np.int32), np.empty(ends // 2, np.int32)
         seen = np.zeros(nodes, np.uint8)
-        if pace_all(heights, states, eights, width, base, since, node, port, neck, length, seen, notes) == links:
-            return Bones(node[:nodes], port, neck, length)
-        del node, port, neck, length, seen  # their memory is wanted again
+        if pace_all(heights, states, eights, width, base, since, node, port, neck, steps, seen, notes) == links:
+            return Bones(node[:nodes], port, neck, steps)
+        del node, port, neck, steps, seen  # their memory is wanted again
         halt_rings(heights, states, width, words)
 
 
@@ -98,7 +98,7 @@ def pace_all(
     node: Ints,
     port: Ints,
     neck: Ints,
-    length: Floats,
+    steps: Ints,
     seen: States,
     notes: Notes,
 ) -> int:
@@ -115,12 +115,12 @@ def pace_all(
             ends = int(states[cell]) & LINKS & ~int(seen[n])
             while ends != 0:
                 direction = first_way(ends)
-                last, back, length[chain], steps, noted = pace(cell, direction, heights, states, width, notes[0], noted)
+                last, back, steps[chain], noted = pace(cell, direction, heights, states, width, notes[0], noted)
                 other = number(last, words, base, since)
                 seen[n] |= 1 << direction
                 seen[other] |= 1 << back
                 port[chain, 0], port[chain, 1] = 4 * n + direction, 4 * other + back
-                walked += steps
+                walked += steps[chain]
                 chain += 1
                 if noted > notes.shape[1] >> 1 or chain == neck.shape[0]:
                     settle(notes[0], notes[1], noted, heights, settled, neck)
@@ -133,20 +133,18 @@ def pace_all(
 @bare
 def pace(
     cell: int, direction: int, heights: Heights, states: Flags, width: int, notes: Ints, noted: int
-) -> tuple[int, int, float, int, int]:
+) -> tuple[int, int, int, int]:
     """Walk one chain.
 
-    Returns its last cell, the direction back from there, its length, the number of steps, and that of notes: its ends
-    and saddles, one of which is its lowest cell, are added to the ``noted`` ones.
+    Returns its last cell, the direction back from there, the number of steps, and that of notes: its ends and saddles,
+    one of which is its lowest cell, are added to the ``noted`` ones.
     """
-    run, rise, steps, length, first = 0, 0, 0, 0.0, noted
+    steps, first = 0, noted
     notes[noted] = ~cell
     noted += 1
     way = 1 << direction
     while True:
         east, north = (way & 1) - (way >> 2 & 1), (way >> 1 & 1) - (way >> 3)
-        run += east
-        rise += north
         cell += east + north * width
         steps += 1
         here = int(states[cell])
@@ -154,14 +152,11 @@ def pace(
         notes[noted] = cell  # stands if it may be the lowest
         noted += int(end | (here & SADDLE != 0))
         back = way >> 2 | (way & 3) << 2
-        if end or steps % CHORD == 0:
-            length += np.sqrt(float(run * run + rise * rise))
-            run, rise = 0, 0
-            if noted + CHORD >= notes.shape[0]:
-                notes[first] = ~lowest_of(notes, first, noted, heights)
-                noted = first + 1
+        if (end or steps % LOOK == 0) and noted + LOOK >= notes.shape[0]:
+            notes[first] = ~lowest_of(notes, first, noted, heights)
+            noted = first + 1
         if end:
-            return cell, (back >> 1) - (back >> 3), length, steps, noted
+            return cell, (back >> 1) - (back >> 3), steps, noted
         way = here & LINKS ^ back
 
 

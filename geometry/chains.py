@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.bones import Bones, Floats, Ints, is_node, onward
+from geometry.bones import Bones, Ints, onward
 from geometry.compiled import bare
 from geometry.skeleton import Flags, States, stride
 
@@ -24,32 +24,17 @@ class Chains(NamedTuple):
     """Cells of all chains, end nodes included."""
     neck: Ints
     """(m,) index into ``cells`` of each chain's lowest cell in the order of skeleton.py."""
-    length: Floats
-    """(m,) length in squares."""
 
 
 def find_chains(bones: Bones, state: States) -> Chains:
     """Walk all chains."""
-    states, width, size = state.reshape(-1), state.shape[1], len(bones.length)
+    states, width, size = state.reshape(-1), state.shape[1], len(bones.steps)
     start = np.zeros(size + 1, np.int32)
-    pace_out(states, width, bones.node, bones.port, start)
+    np.cumsum(bones.steps + 1, out=start[1:])
     cells, neck = np.empty(start[-1], np.int32), np.empty(size, np.int32)
     leave = np.full((len(bones.node), 4), -1, np.int32)
     fill(states, width, bones.node, bones.port, bones.neck, start, cells, neck, leave)
-    return Chains(bones.node, leave, bones.port >> 2, start, cells, neck, bones.length)
-
-
-@bare
-def pace_out(states: Flags, width: int, node: Ints, port: Ints, start: Ints) -> None:
-    """Fill ``start``."""
-    for chain in range(port.shape[0]):
-        cell, direction, steps = node[port[chain, 0] >> 2] + 0, port[chain, 0] & 3, 2
-        cell += stride(direction, width)
-        while not is_node(states[cell]):
-            direction = onward(states[cell], direction ^ 2)
-            cell += stride(direction, width)
-            steps += 1
-        start[chain + 1] = start[chain] + steps
+    return Chains(bones.node, leave, bones.port >> 2, start, cells, neck)
 
 
 @bare

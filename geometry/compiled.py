@@ -6,6 +6,7 @@ numba is imported when the first kernel is called, never at import. A kernel is 
 
 import importlib
 import sys
+import time
 from collections.abc import Callable
 from functools import cache
 from threading import Timer
@@ -15,6 +16,7 @@ from typing import Any, Generic, ParamSpec, TypeVar, cast
 P = ParamSpec("P")
 R = TypeVar("R")
 PATIENCE = 1.0  # seconds of compiling before the user is told
+OFTEN = 5.0  # seconds between two lines that tell how far it is
 
 
 class Kernel(Generic[P, R]):
@@ -88,8 +90,10 @@ def _dispatcher(function: Callable[P, R], counting: bool) -> Callable[P, R]:
     try:
         machine = numba.njit(cache=True, **options)(function)
     except RuntimeError:  # no directory to keep the cache in: compile anew in each process
+        _progress.kept = False
         machine = numba.njit(**options)(function)
     if hasattr(machine, "overloads"):
+        _progress.machines.append(machine)
         _load_lightly(machine)
         _compile_wide(machine)
         _compile_linked(machine, cast(FunctionType, function).__globals__)
@@ -154,6 +158,7 @@ def _compile_linked(machine: Any, names: dict[str, Any]) -> None:
             return compile_it(*args)
         finally:
             notice.cancel()
+            _progress.step()
 
     compiler.compile = compile_telling
 
@@ -171,7 +176,43 @@ def _compile(machine: Any, args: tuple[Any, ...]) -> None:
         machine.compile(tuple(machine.typeof_pyval(value) for value in args))
 
 
+class _Progress:
+    """What this process has compiled, told on a terminal every few seconds."""
+
+    def __init__(self) -> None:
+        self.machines: list[Any] = []
+        self.kept = True  # is there a directory to keep kernels in?
+        self.made = 0
+        self.began: float | None = None
+        self._told = 0.0
+
+    def step(self) -> None:
+        """One more is compiled."""
+        self.made += 1
+        now = time.monotonic()
+        if self.began is None or now - self._told < OFTEN or not (sys.stderr and sys.stderr.isatty()):
+            return
+        self._told = now
+        print(f"utak: kernels compiled so far: {self.made}, in {now - self.began:.0f} s", file=sys.stderr, flush=True)
+
+    def begin(self) -> None:
+        """It is told of from now on."""
+        self.began = self._told = time.monotonic()
+
+
+_progress = _Progress()
+
+
+def ready() -> tuple[int, bool]:
+    """Return how many kernels this process can call, compiled or loaded, and whether they are kept for the next one."""
+    return sum(bool(machine.overloads) for machine in _progress.machines), _progress.kept
+
+
 @cache
 def tell() -> None:
     """Say it once in a process."""
-    print("utak: compiling geometry kernels (once per installation) ...", file=sys.stderr, flush=True)
+    once = "once per installation"
+    if not _progress.kept:
+        once = "they cannot be kept for the next run: set NUMBA_CACHE_DIR to a folder that can be written"
+    print(f"utak: compiling geometry kernels ({once}) ...", file=sys.stderr, flush=True)
+    _progress.begin()

@@ -25,7 +25,7 @@ from geometry.rigid import Motion, Translate
 Floats = npt.NDArray[np.float64]
 SKIN = 1e-8  # squares: a body may be this deep in an obstacle before a motion further in is stopped
 CHUNK = 4  # edges that are looked at or left alone together
-SHORT = 1e-7  # squares: shorter edges are dropped
+SHORT = 1e-7  # squares: points of a contour nearer to the one before are left out, for the skin would turn them over
 
 
 class Contact(NamedTuple):
@@ -115,7 +115,8 @@ class Obstacles:
         Returns
         -------
         Contact : fraction 1 when the whole motion is free. A body that touches at the start may slide along or leave
-            (fraction above 0) and may not go in (fraction 0). It ends at most 1e-7 squares deep.
+            (fraction above 0) and may not go in (fraction 0). It ends at most 1e-7 squares deep, or 3e-7 where points
+            of the contours lie nearer to each other than that.
 
         Raises
         ------
@@ -187,10 +188,23 @@ def boundary_edges(shape: Any) -> Floats:
 
 
 def _ring_edges(points: Floats) -> Floats:
-    """The edges of one open ring (n, 2), without points that repeat the one before."""
+    """The edges of one open ring (n, 2) through points none of which is within SHORT of the one before."""
     step = np.hypot(*(points - np.roll(points, 1, axis=0)).T)
-    points = points[step > SHORT]
-    return np.hstack([points, np.roll(points, -1, axis=0)])
+    if not (step > SHORT).all():
+        points = _spaced(points)
+    return np.hstack([points, np.roll(points, -1, axis=0)]) if len(points) > 1 else np.empty((0, 4))
+
+
+def _spaced(points: Floats) -> Floats:
+    """The points of an open ring without those within SHORT of the last one kept: the ring moves by no more."""
+    line = points.tolist()
+    kept = line[:1]
+    for point in line[1:]:
+        if math.dist(point, kept[-1]) > SHORT:
+            kept.append(point)
+    while len(kept) > 1 and math.dist(kept[0], kept[-1]) <= SHORT:
+        kept.pop()
+    return np.array(kept)
 
 
 def with_normals(edges: Floats) -> Floats:

@@ -1,8 +1,8 @@
 """Goals that are sets of squares: a route may end anywhere in the set, and classes do not tell apart where.
 
-Each connected part of the set has a representative, its square of greatest clearance. Routes to it are cut where
-they enter the part, and their class is the word up to there and on to the representative over squares of the part.
-The end then moves from square to square of the part as long as that shortens the route.
+Each connected part of the set has a representative, its square of greatest clearance. Routes to it end where they
+first enter the set, and the end then moves from square to square as long as that shortens the route. Routes whose ends
+can be moved into each other within the set are of one class. The nearest square of all is found by itself.
 """
 
 from itertools import pairwise
@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.bones import Floats, Ints
+from geometry.bones import Ints
 from geometry.distance import Bools, Squares
 from geometry.parts import Labels, number_parts
 from geometry.runs import Runs, symbol_between
@@ -21,12 +21,27 @@ XY = tuple[float, float]
 
 
 class Region(NamedTuple):
-    """One connected part of a goal set, in padded cells."""
+    """One connected part of a goal set, in padded cells.
+
+    A part may go round walls, and the end of a route may as well. So the part is folded: its rows of squares are
+    vertices, and what leads through one portal to the same run is one vertex. Read backwards from its end, the word of
+    a route is taken back as far as it runs within the part; what is left, and the vertex where that ends, name the
+    class (Stallings 1983).
+    """
 
     cell: int
-    """Its representative."""
-    parent: dict[int, int]
-    """The next cell towards the representative, for every cell of the part but that."""
+    """Its representative, the cell of greatest clearance."""
+    vertex: dict[int, int]
+    """The vertex of each of its cells."""
+    step: dict[tuple[int, int], int]
+    """By vertex and signed portal, the vertex beyond."""
+
+    def class_of(self, word: Ints, cell: int) -> tuple[int, ...]:
+        """Return a name for the class of a reduced word to one of the cells, whose end may be moved in the part."""
+        symbols, here = word.tolist(), self.vertex[cell]
+        while symbols and (here, -symbols[-1]) in self.step:
+            here = self.step[here, -symbols.pop()]
+        return (here, *symbols)
 
 
 def checked_goal(goal: ArrayLike | set[tuple[int, int]], shape: tuple[int, int]) -> Bools | None:
@@ -54,65 +69,76 @@ def checked_goal(goal: ArrayLike | set[tuple[int, int]], shape: tuple[int, int])
     raise ValueError(f"goal must be a point (x, y), a bool array of shape {shape} or a set of squares (column, row)")
 
 
-def regions(square: Squares, level: int, goal: Bools) -> list[Region]:
-    """The connected parts of a goal set where a body may be."""
+def regions(square: Squares, level: int, runs: Runs, goal: Bools) -> list[Region]:
+    """Return the connected parts of a goal set where a body may be."""
     inside = np.zeros(square.shape, np.bool_)
     inside[1:-1, 1:-1] = goal & (square[1:-1, 1:-1] >= level)
     label = np.zeros(square.shape, np.int32)
     shut = np.zeros((2, *square.shape), np.bool_)
     count = number_parts(inside, shut, label, np.empty(square.size, np.int32))
-    return [region(square, label, number) for number in range(1, count + 1)]
+    return [region(square, runs, label, number) for number in range(1, count + 1)]
 
 
-def region(square: Squares, label: Labels, number: int) -> Region:
-    """One part, with its way from every cell to the representative."""
+def region(square: Squares, runs: Runs, label: Labels, number: int) -> Region:
+    """Return one part."""
+    width = square.shape[1]
     cells = np.flatnonzero(label == number)
     heights = square.reshape(-1)[cells]
     best = int(cells[len(heights) - 1 - int(np.argmax(heights[::-1]))])
-    inside, width = set(cells.tolist()), square.shape[1]
-    parent: dict[int, int] = {}
-    queue = [best]
-    for cell in queue:
-        for other in (cell + 1, cell + width, cell - 1, cell - width):
-            if other in inside and other not in parent and other != best:
-                parent[other] = cell
-                queue.append(other)
-    return Region(best, parent)
+    rows = np.cumsum(np.diff(cells, prepend=cells[0] - 2) != 1)
+    row_of = dict(zip(cells.tolist(), rows.tolist(), strict=True))
+    edges: dict[tuple[int, int, int], None] = {}
+    for cell, row in row_of.items():
+        above = row_of.get(cell + width)
+        if above is not None:
+            symbol = symbol_between(runs.row, runs.up, runs.left, cell, cell + width, width)
+            edges[row, int(symbol), above] = None
+            edges[above, -int(symbol), row] = None
+    vertex, step = folded(list(edges), int(rows[-1]) + 1)
+    return Region(best, {cell: vertex[row] for cell, row in row_of.items()}, step)
 
 
-def way_in(place: Region, cell: int) -> list[int]:
-    """The cells from one of a part to its representative."""
-    cells = [cell]
-    while cell != place.cell:
-        cell = place.parent[cell]
-        cells.append(cell)
-    return cells
+def folded(edges: list[tuple[int, int, int]], count: int) -> tuple[list[int], dict[tuple[int, int], int]]:
+    """Return the vertex that stands for each, and the steps, when two steps of one name never lead apart."""
+    vertex = list(range(count))
+
+    def standing_for(v: int) -> int:
+        while vertex[v] != v:
+            vertex[v] = vertex[vertex[v]]
+            v = vertex[v]
+        return v
+
+    step: dict[tuple[int, int], int] = {}
+    again = True
+    while again:
+        again = False
+        step.clear()
+        for one, symbol, other in edges:
+            here, there = standing_for(one), standing_for(other)
+            known = standing_for(step.setdefault((here, symbol), there))
+            if known != there:
+                vertex[max(known, there)] = min(known, there)
+                again = True
+    return [standing_for(v) for v in range(count)], step
+
+
+def edge_cells(square: Squares, level: int, goal: Bools, start: int) -> list[int]:
+    """Return the cells of a goal set one of which is the nearest: where a way comes in from outside, or starts.
+
+    A way to the centre of another cell comes over a cell of the set whose centre is as near to where it goes on.
+    """
+    inside, free = np.pad(goal, 1), square >= level
+    outside = free & ~inside
+    edge = outside.copy()
+    edge[1:] |= outside[:-1]
+    edge[:-1] |= outside[1:]
+    edge[:, 1:] |= outside[:, :-1]
+    edge[:, :-1] |= outside[:, 1:]
+    edge.reshape(-1)[start] = True
+    return [int(cell) for cell in np.flatnonzero(edge & inside & free)]
 
 
 def word_of_cells(runs: Runs, cells: list[int], width: int) -> Ints:
     """The portals crossed from cell to cell, not reduced."""
     symbols = [symbol_between(runs.row, runs.up, runs.left, a, b, width) for a, b in pairwise(cells)]
     return np.array([s for s in symbols if s], np.int32)
-
-
-def entry(points: Floats, inside: Bools) -> tuple[Floats, tuple[int, int]]:
-    """A polyline up to the first square of the set that it enters, and that square's (column, row)."""
-    for k, (p, q) in enumerate(pairwise(points)):
-        for t in crossings_of_lines(p, q):
-            x, y = p + t * (q - p)
-            i, j = int(np.floor(x)), int(np.floor(y))
-            if 0 <= i < inside.shape[1] and 0 <= j < inside.shape[0] and inside[j, i]:
-                return np.vstack([points[: k + 1], [[x, y]]]), (i, j)
-    i, j = (int(v) for v in points[-1])
-    return points, (i, j)
-
-
-def crossings_of_lines(p: Floats, q: Floats) -> list[float]:
-    """Parameters inside each square that the segment from p to q passes."""
-    cuts = {0.0, 1.0}
-    for a, b in zip(p.tolist(), q.tolist(), strict=True):
-        low, high = sorted((a, b))
-        for line in range(int(np.floor(low)) + 1, int(np.ceil(high))):
-            cuts.add((line - a) / (b - a))
-    ordered = sorted(cuts)
-    return [0.5 * (s + t) for s, t in pairwise(ordered)]

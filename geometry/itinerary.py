@@ -62,7 +62,6 @@ def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars:
         np.zeros(4),
         np.zeros(chains, np.uint8),
         bars,
-        np.zeros(nodes, np.bool_),
     )
     answered = wanted if wanted > 1 else len(BOWS)
     answers = Answers(
@@ -178,7 +177,7 @@ def bow(line: Floats, ends: Ends, share: float) -> None:
 @bare
 def pose(query: Query, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, length: Floats) -> None:
     """Set the query's five arcs."""
-    joint, cost, bars, closed = query.joint, query.cost, query.bars, query.closed
+    joint, cost, bars = query.joint, query.cost, query.bars
     for k in range(2):
         anchor = goal if k else start
         for j in range(2):
@@ -188,7 +187,7 @@ def pose(query: Query, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, le
                 cost[2 * k + j] = part(bars, starts, length, anchor.chain, anchor.position, end)
             else:
                 joint[2 * k + j] = anchor.node if j == 0 else -1
-                cost[2 * k + j] = 0.0 if j == 0 and not closed[anchor.node] else np.inf
+                cost[2 * k + j] = 0.0 if j == 0 else np.inf
     cost[4] = np.inf
     if start.cell == goal.cell:
         for k in range(4):
@@ -202,10 +201,10 @@ def pose(query: Query, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, le
 
 @bare
 def part(bars: Ints, starts: Ints, length: Floats, chain: int, begin: int, end: int) -> float:
-    """The length of a part of a chain, in proportion to its cells; infinite when it passes a barred place."""
+    """The length of a part of a chain, in proportion to its cells; infinite when it takes a barred step."""
     low, high = (begin, end) if begin < end else (end, begin)
     for k in range(bars.shape[0]):
-        if bars[k, 0] == chain and low <= bars[k, 1] <= high:
+        if bars[k, 0] == chain and low <= bars[k, 1] < high:
             return np.inf
     return float(length[chain] * (high - low) / (starts[chain + 1] - starts[chain] - 1))
 

@@ -1,6 +1,6 @@
 """A layer: everything known of the free space of a body of one radius."""
 
-from math import ceil, inf, isqrt
+from math import ceil, inf
 from numbers import Real
 from typing import NamedTuple
 
@@ -13,6 +13,9 @@ from geometry.runs import Runs, find_runs
 from geometry.skeleton import States, Words
 from geometry.sweep import grow_all
 from geometry.ways import Ways, find_ways
+
+ROUNDING = 1e-12  # of a squared radius: a clearance that was told, squared again, is the level that it came from
+HIGHEST = 2**31 - 1  # above any square
 
 
 class Layer(NamedTuple):
@@ -50,10 +53,11 @@ def find_layer(square: Squares, level: int, body: bool, state: States, chains: C
 
 
 def level_of(radius: float) -> int:
-    """The least ``square`` of a cell where the centre of a body of that radius may be.
+    """Return the least ``square`` of a cell where the centre of a body of that radius may be.
 
-    Between the centres of two neighbouring squares a corner may stand half a square off both, nearer than to either.
-    Where that would bring the body below its radius the next level is taken, so that a body never touches.
+    The centres of squares decide for all places between them: seen from one coordinate, the distance to a blocked
+    square only grows, only falls or is 0 between two neighbouring centres, for walls stand on whole numbers. So on the
+    segment between two centres, and in the square between four, one of these centres is the nearest to every wall.
 
     Raises
     ------
@@ -62,6 +66,5 @@ def level_of(radius: float) -> int:
     """
     if not (isinstance(radius, Real) and 0.0 <= radius < inf):
         raise ValueError(f"radius must be a finite number and not negative, but is {radius!r}")
-    level = max(1, ceil(4.0 * radius * radius - 1e-9))
-    odd = isqrt(level - 1)
-    return level + 1 if odd % 2 == 1 and odd * odd == level - 1 else level
+    reach = 4.0 * float(radius) ** 2 * (1.0 - ROUNDING)
+    return max(1, ceil(reach)) if reach < HIGHEST else HIGHEST

@@ -164,7 +164,9 @@ def plan_motion(
 
     Raises
     ------
-    ValueError : when the body has no area, a number is not finite, or a coordinate is beyond ten million squares.
+    ValueError : when the body has no area, a number is not finite, or a coordinate is beyond ten million squares; and
+        when the body is smaller than the smallest cell, a quarter of the resolution, in a passage that the disc about
+        it does not fit through and the disc within it does: that no cell can tell.
     """
     for name, pose in (("start", start), ("goal", goal)):
         if isinstance(pose, Pose):
@@ -181,6 +183,8 @@ def plan_motion(
     if status == "limit" and cells > FIRST:
         problem = Problem(mover, floor, start, goal, AGAIN * resolution, cells)
         status, motions = problem.solve()
+    if status == "limit" and problem.small:
+        status, motions = problem.by_discs()
     poses = [start] if status == "found" else []
     for motion in motions:
         poses.append(motion.pose(poses[-1]))

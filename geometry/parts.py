@@ -19,16 +19,30 @@ def find_parts(square: Squares, state: NDArray[np.uint8], passages: Iterable[Pas
 
     A part cut off between a wall and a neck, without any of the skeleton, belongs to the part across that neck.
     """
+    return cut_floor(square, 1, state, passages)[0][1:-1, 1:-1]
+
+
+def cut_floor(
+    square: Squares, level: int, state: NDArray[np.uint8], passages: Iterable[Passage]
+) -> tuple[Labels, Bools]:
+    """Return the parts of the cells of at least that level, and the steps between cells that are cut.
+
+    Returns
+    -------
+    label : (rows + 2, columns + 2) int, as ``find_parts`` numbers them.
+    shut : (2, rows + 2, columns + 2) bool, the steps from each cell to the east (0) and to the north (1). Two cells
+        have one label exactly when steps that are not shut lead from one to the other.
+    """
     shut = np.zeros((2, *square.shape), np.bool_)
     for passage in passages:
         cut(shut, passage)
     label = np.zeros(square.shape, np.int32)
-    count = number_parts(square > 0, shut, label, np.empty(square.size, np.int32))
+    count = number_parts(square >= level, shut, label, np.empty(square.size, np.int32))
     joined = np.arange(count + 1, dtype=np.int32)
     if count > 1:
         join_slivers(shut, label, np.bincount(label[state > 0], minlength=count + 1).astype(np.int32), joined)
     _, compact = np.unique(joined, return_inverse=True)
-    return compact.astype(np.int32)[label[1:-1, 1:-1]]
+    return compact.astype(np.int32)[label], shut
 
 
 def cut(shut: Bools, passage: Passage) -> None:
@@ -111,7 +125,7 @@ def number_parts(free: Bools, shut: Bools, label: Labels, stack: Ints) -> int:
 
 @bare
 def join_slivers(shut: Bools, label: Labels, bones: Ints, joined: Ints) -> None:
-    """Join each part without skeleton to the first part with some across a neck."""
+    """Join each part without skeleton to the first part with some across a neck, by opening that step."""
     rows, width = label.shape
     for i in range(1, rows - 1):
         for j in range(1, width - 1):
@@ -122,6 +136,6 @@ def join_slivers(shut: Bools, label: Labels, bones: Ints, joined: Ints) -> None:
                 if a == 0 or b == 0:
                     continue
                 if bones[a] == 0 and bones[b] > 0 and joined[a] == a:
-                    joined[a] = b
+                    joined[a], shut[k, i, j] = b, False
                 elif bones[b] == 0 and bones[a] > 0 and joined[b] == b:
-                    joined[b] = a
+                    joined[b], shut[k, i, j] = a, False

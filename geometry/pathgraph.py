@@ -16,7 +16,9 @@ def networkx_graph(square: Squares, chains: Chains) -> "networkx.MultiGraph[int]
     """Junctions and ends as nodes, chains as edges.
 
     Nodes are numbered from 0 and carry ``x``, ``y`` and ``clearance``; an edge's key is the number of its chain, and it
-    carries ``length``, ``clearance`` (the least along it), ``neck`` (where that is) and ``points`` (n, 2), in squares.
+    carries ``points`` (n, 2), the centres of its squares from end to end, ``length``, that of the line through them,
+    ``clearance`` (the least along it) and ``neck`` (where that is), in squares. A chain goes from square to square over
+    their edges, so the length is a whole number, and no shorter than the shortest way of its class between its ends.
     """
     import networkx
 
@@ -34,7 +36,7 @@ def networkx_graph(square: Squares, chains: Chains) -> "networkx.MultiGraph[int]
             a,
             b,
             key=chain,
-            length=float(chains.length[chain]),
+            length=float(start[chain + 1] - start[chain] - 1),
             clearance=least[chain],
             neck=tuple(necks[chain]),
             points=points[start[chain] : start[chain + 1]],

@@ -35,6 +35,9 @@ def word_of_line(runs: Runs, points: Sequence[Sequence[float]]) -> Ints:
             else:
                 symbols.append(symbol)
             p = here
+    last = symbol_into_square(runs, run, row, line[-1])
+    if last:
+        symbols = symbols[:-1] if symbols and symbols[-1] == -last else [*symbols, last]
     return np.array(symbols, np.int32)
 
 
@@ -45,6 +48,31 @@ def first_run(runs: Runs, point: XY) -> tuple[int, int]:
     if runs.row[row] == runs.row[row + 1] or not runs.low[run] <= point[0] <= runs.high[run] + 1:
         raise ValueError(f"the line starts in a blocked square, at {point}")
     return run, row
+
+
+def symbol_into_square(runs: Runs, run: int, row: int, point: XY) -> int:
+    """Return the portal from the run in which a line ends to that of its last point's square, 0 if they are the same.
+
+    A point on a line between two rows belongs to the upper one, from whichever side the line comes: words between the
+    same ends must end in the same run. In a blocked square, with a wall above, the line ends where it is.
+
+    Raises
+    ------
+    ValueError
+        When the last point is a corner between two blocked squares and the line comes from the wrong side.
+    """
+    column, line = int(point[0]), min(int(point[1]), len(runs.row) - 2)
+    if runs.row[line] == runs.row[line + 1]:
+        return 0
+    own = int(run_at(runs.row, runs.low, line, column))
+    if own == run or not runs.low[own] <= column <= runs.high[own]:
+        return 0
+    for sign, bounds, beyond in ((1, runs.up, runs.upper), (-1, runs.down, runs.lower)):
+        for portal in range(bounds[run], bounds[run + 1]):
+            touches = runs.left[portal] - SLACK <= point[0] <= runs.right[portal] + 1 + SLACK
+            if line == row + sign and beyond[portal] == own and touches:
+                return sign * (portal + 1)
+    raise ValueError(f"the line leaves free space at {point}")
 
 
 def leave_point(runs: Runs, run: int, row: int, p: XY, q: XY) -> XY | None:

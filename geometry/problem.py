@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,10 @@ import shapely
 
 from geometry.cells import Tree, new_tree
 from geometry.chain import SETTLED, Hunt, new_hunt
+from geometry.discs import cannot_pass, way_of_disc
 from geometry.floor import Floor
 from geometry.follow import new_way
-from geometry.hop import BLOCKED, hop, new_scene
+from geometry.hop import BLOCKED, Scene, hop, new_scene
 from geometry.mover import centre_pose
 from geometry.pursuit import FOUND, MORE, next_chain, pursue
 from geometry.rigid import Motion, Pose
@@ -22,6 +24,7 @@ from geometry.shorten import loosened, motions_along, shorten
 from geometry.sound import sound
 
 Floats = npt.NDArray[np.float64]
+FEW = 20  # cells: a body fewer across is decided by its discs where the cells leave it open
 ROUNDS = 64  # at a stretch: between two, the user may interrupt
 
 
@@ -57,6 +60,8 @@ class Problem:
         if not 0.0 < self.least < math.inf or cells < 1:
             raise ValueError("the resolution must be positive and finite, and there must be a cell at least")
         self.end, self.region, self.goals = self._goal(goal)
+        self.told = self.start, self.end  # the search may begin and end a little off, where there is more room
+        self.within = goal.polygon if isinstance(goal, Inside) else None
         reach = float(np.hypot(*mover.reference))
         corner, side = floor.bounds[:2] - reach, floor.side + 2 * reach
         self.tree: Tree = new_tree(corner[0], corner[1], side * (1 + 1e-9), mover.radius, self.least, cells)
@@ -81,7 +86,7 @@ class Problem:
 
     def solve(self) -> tuple[str, tuple[Motion, ...]]:
         """Search and split until there is an answer: the status of a Plan, and its motions."""
-        scene = new_scene(self.mover, self.ground, self.floor.surface)
+        scene = self._scene()
         straight = np.array([self.start, self.end]) if len(self.end) else None
         if straight is not None and hop(scene, *straight) != BLOCKED:
             self.track = straight
@@ -102,6 +107,60 @@ class Problem:
         self.rounds += 1
         lost = lost or next_chain(self.tree, scene, self.region, self.hunt, way, self.rounds, True) > 0
         return "limit" if lost else "impossible", ()
+
+    @property
+    def small(self) -> bool:
+        """Whether the body is so few cells across that they tell little of it."""
+        return 2.0 * self.mover.radius < FEW * self.least
+
+    def by_discs(self) -> tuple[str, tuple[Motion, ...]]:
+        """Decide what cells left open by the discs within and about the body: the status, and the motions.
+
+        Raises
+        ------
+        ValueError : when that decides nothing either and the body is smaller than a cell.
+        """
+        reach, eye = float(np.hypot(*self.mover.reference)), math.hypot(*self.mover.probes[0, :2].tolist())
+        outward = np.array([-1.0, -1.0, 1.0, 1.0])
+        goal = shapely.Point(self._eye(self.told[1])) if len(self.end) else self.within
+        obstacles = shapely.union_all(self.floor.polygons)
+        inner = float(self.mover.probes[0, 2])
+        if cannot_pass(obstacles, inner, self.floor.bounds + (reach + eye) * outward, self._eye(self.told[0]), goal):
+            return "impossible", ()
+        poses = self._way_by_disc(obstacles, self.floor.bounds - reach * outward) if len(self.end) else None
+        if poses is not None:
+            self.track = poses
+            return "found", motions_along(self._scene(), poses)
+        if 2.0 * self.mover.radius < self.least:
+            raise ValueError(
+                f"the body is {2.0 * self.mover.radius:g} squares across, and the smallest cells {self.least:g}: "
+                "ask with a finer resolution or within narrower bounds"
+            )
+        return "limit", ()
+
+    def _way_by_disc(self, obstacles: Any, bounds: Floats) -> Floats | None:
+        """Poses from start to goal by way of where the enclosing disc fits, each hop free; None when not found so."""
+        if bounds[2] <= bounds[0] or bounds[3] <= bounds[1]:
+            return None
+        start, end = ((float(pose[0]), float(pose[1])) for pose in (self.start, self.end))
+        way = way_of_disc(obstacles, self.mover.radius, bounds, start, end)
+        if way is None:
+            return None
+        turned = [(x, y, float(self.start[2])) for x, y in way]
+        poses = np.array([self.told[0], *turned, self.end, self.told[1]])
+        scene = self._scene()
+        return None if any(hop(scene, a, b) == BLOCKED for a, b in pairwise(poses)) else poses
+
+    def _scene(self) -> Scene:
+        """The body among the obstacles, for exact first contact."""
+        return new_scene(self.mover, self.ground, self.floor.surface)
+
+    def _eye(self, pose: Floats) -> tuple[float, float]:
+        """Where the middle of the greatest inscribed disc is at a pose."""
+        x, y, angle = pose.tolist()
+        px, py = self.mover.probes[0, :2].tolist()
+        c, s = math.cos(angle), math.sin(angle)
+        return x + c * px - s * py, y + s * px + c * py
 
     def reached(self) -> Floats:
         """Where the middle of the body's greatest inscribed disc got to: (n, 2), the start first.

@@ -22,7 +22,7 @@ class Route:
     """In squares."""
     clearance: float
     """The radius of the largest body that can go this way, over the skeleton, from square to square; nan when the way
-    over the skeleton is not known (from ``shortest`` and, on screens with very many ways, from ``routes``)."""
+    over the skeleton is not known (from ``shortest`` alone)."""
     signature: tuple[int, ...]
     """Signed crossing numbers of the portals crossed (see runs.py); empty for the class without any."""
     chains: tuple[int, ...]

@@ -1,7 +1,6 @@
 """A screen: free and blocked squares, and what a point or a round body can do among them."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from functools import cached_property
 from numbers import Integral
 from typing import TYPE_CHECKING
@@ -9,12 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geometry.areas import routes_to_area
 from geometry.bones import Bones, Ints, contract
 from geometry.chains import Chains, find_chains
 from geometry.change import change_squares
 from geometry.distance import Bools, type_of_squares
 from geometry.goals import checked_goal
-from geometry.layer import find_bones, find_layer, level_of, new_state
+from geometry.layer import Layer, find_bones, find_layer, level_of, new_state
 from geometry.parts import Labels, find_parts
 from geometry.passages import Passage, find_passages
 from geometry.polyline import word_of_line
@@ -23,7 +23,7 @@ from geometry.recycling import Tenant, take_buffers
 from geometry.route import Route
 from geometry.skeleton import States, Words
 from geometry.sweep import survey
-from geometry.tightening import tight_route, word_of_crossings
+from geometry.tightening import word_of_crossings
 
 if TYPE_CHECKING:
     import networkx
@@ -62,7 +62,8 @@ class Screen:
         self._rent(type_of_squares(grid))
         self._skeletons: dict[int, tuple[States, Words, Bones]] = {1: self._survey(grid)}
         self._chains: dict[int, Chains] = {}
-        self._questions: dict[tuple[int, bool], Questions] = {}
+        self._layers: dict[tuple[int, bool], Layer] = {}
+        self._questions: dict[float, Questions] = {}
 
     def changed(self, rows: ArrayLike, columns: ArrayLike, values: ArrayLike) -> "Screen":
         """Set some squares free (True) or blocked (False), in place, much faster than a new screen; returns itself.
@@ -79,7 +80,7 @@ class Screen:
         state, words, old = self._skeletons[1]
         bones = change_squares(self._square, state, old, *where)
         self._skeletons = {1: self._survey_changed(*where) if bones is None else (state, words, bones)}
-        self._chains, self._questions = {}, {}
+        self._chains, self._layers, self._questions = {}, {}, {}
         for name in ("clearance", "skeleton", "pathgraph"):
             self.__dict__.pop(name, None)
         return self
@@ -129,11 +130,14 @@ class Screen:
         goal : (x, y), or (rows, columns) array of bool, or set of squares (column, row)
             Of a set any square will do: a route ends where that makes it shortest.
         k : int
-            How many at most. Routes pass no junction of the pathgraph twice.
+            How many at most. Routes pass no junction of the pathgraph twice, but for the shortest of all, which for
+            a point and from 2 on comes first.
         radius : float
-            Of a round body about the point, in squares. It moves from centre to centre of its squares.
+            Of a round body about the point, in squares. It moves from centre to centre of squares that are at least
+            so far from all walls, and straight between its ends and the centres of theirs; there is no route where
+            it has no room for that.
         avoid : passages
-            Routes must not lead through these.
+            Routes must not lead through these: there are some exactly within each of ``parts(avoid)``.
         word : crossing numbers
             Only the route of this signature (which may wind as it likes), whatever k and avoid.
 
@@ -151,7 +155,7 @@ class Screen:
         else:
             area = checked_goal(goal, self.shape)
             if area is not None:
-                return questions.to_area(begin, area, k, tuple(avoid))
+                return routes_to_area(questions, begin, area, k, tuple(avoid))
             end = self._checked(np.asarray(goal, np.float64).tolist(), "goal")
         if not (questions.admits(begin) and questions.admits(end)):
             return []
@@ -195,11 +199,10 @@ class Screen:
         ValueError
             When the route leaves free space.
         """
-        layer = self._ask(radius).layer
-        word = word_of_line(layer.runs, route.points.tolist())
-        (x, y), (u, v) = route.points[0].tolist(), route.points[-1].tolist()
-        tight = tight_route(layer, (x, y, u, v), word, route.clearance, route.chains)
-        return replace(tight, points=tight.points)
+        questions = self._ask(radius)
+        word = word_of_line(questions.layer.runs, route.points.tolist())
+        start, goal = (self._checked(route.points[k].tolist(), "the route's end") for k in (0, -1))
+        return questions.of_word(start, goal, word)
 
     def passages(self, pinch: float = 0.0) -> list[Passage]:
         """All necks of free space (see passages.py), in the order of their squares.
@@ -263,12 +266,13 @@ class Screen:
 
     def _ask(self, radius: float) -> Questions:
         """What answers questions for a body of that radius."""
-        key = level_of(radius), radius > 0.0
-        found = self._questions.get(key)
+        found = self._questions.get(radius)
         if found is None:
-            state, chains = self._skeleton_at(key[0])[0], self._chains_at(key[0])
-            found = Questions(find_layer(self._square, key[0], key[1], state, chains), key[0])
-            self._questions[key] = found
+            key = level_of(radius), radius > 0.0
+            if key not in self._layers:
+                state, chains = self._skeleton_at(key[0])[0], self._chains_at(key[0])
+                self._layers[key] = find_layer(self._square, key[0], key[1], state, chains)
+            found = self._questions[radius] = Questions(self._layers[key], key[0], radius)
         return found
 
 

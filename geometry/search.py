@@ -9,7 +9,6 @@ a chain they share.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geometry.bones import Floats, Ints
 from geometry.compiled import bare
@@ -17,7 +16,6 @@ from geometry.heap import pop, push
 from geometry.skeleton import States
 from geometry.ways import Ways
 
-Bools = NDArray[np.bool_]
 EAGER = 1.05  # times the bound, where arcs are made dearer anyway: a third of the time on random squares, as good ways
 
 
@@ -35,9 +33,7 @@ class Query(NamedTuple):
     shut: States
     """(m,) not 0 for chains that may not be walked from end to end: bit 0 by wish, bit 1 because an end splits them."""
     bars: Ints
-    """(b, 2) chain and position of the places that may not be passed."""
-    closed: Bools
-    """(n,) nodes that may not be entered."""
+    """(b, 2) chain and position of the steps that may not be taken: each from that position to the next one."""
 
 
 class Search(NamedTuple):
@@ -92,7 +88,7 @@ def seek(ways: Ways, query: Query, search: Search, origin: int) -> bool:
     """
     arc, head, step, place, sight = ways.arc, ways.head, ways.step, ways.place, ways.sight
     joint, extra, line, goal = query.joint, query.cost, query.line, query.sight
-    shut, closed = query.shut, query.closed
+    shut = query.shut
     best, came, seen, barred, sealed = search.best, search.came, search.seen, search.barred, search.sealed
     ahead, key, spot = search.ahead, search.key, search.node
     n, arcs, stamp, exact = head.shape[0], 2 * shut.shape[0], search.stamp[0], search.stamp[1] != 0
@@ -124,8 +120,6 @@ def seek(ways: Ways, query: Query, search: Search, origin: int) -> bool:
                 cost *= 1.0 + abs((place[to, 0] - line[0]) * line[2] + (place[to, 1] - line[1]) * line[3])
             total = best[node] + cost
             if total == np.inf or barred[to] == stamp or (seen[to] == stamp and best[to] <= total):
-                continue
-            if to < n and closed[to]:
                 continue
             best[to], came[to], seen[to] = total, code, stamp
             rest = 0.0
@@ -162,13 +156,13 @@ def survey(ways: Ways, query: Query, search: Search, limit: float) -> None:
     Nodes that no way up to the limit can pass are left out.
     """
     arc, head, step, sight = ways.arc, ways.head, ways.step, ways.sight
-    joint, cost, ends, shut, closed = query.joint, query.cost, query.sight, query.shut, query.closed
+    joint, cost, ends, shut = query.joint, query.cost, query.sight, query.shut
     ahead, key, spot = search.ahead, search.key, search.node
     n, size = head.shape[0], 0
     for k in range(n + 2):
         ahead[k] = np.inf
     for k in range(2, 4):
-        if cost[k] < np.inf and cost[k] < ahead[joint[k]] and not closed[joint[k]]:
+        if cost[k] < np.inf and cost[k] < ahead[joint[k]]:
             ahead[joint[k]] = cost[k]
             size = push(key, spot, size, cost[k], 0 + joint[k])
     while size > 0:
@@ -178,7 +172,7 @@ def survey(ways: Ways, query: Query, search: Search, limit: float) -> None:
             continue
         for slot in range(4):
             other = 0 + head[node, slot]
-            if other < 0 or shut[arc[node, slot] >> 1] or closed[other]:
+            if other < 0 or shut[arc[node, slot] >> 1]:
                 continue
             total = done + step[node, slot]
             if total < ahead[other] and total + bound(sight, ends, 1, other) <= limit:

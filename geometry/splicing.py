@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.bones import Bones, Floats, Ints, find, pace
+from geometry.bones import Bones, Ints, find, pace
 from geometry.compiled import bare
 from geometry.necks import lowest_of, new_notes
 from geometry.skeleton import Flags, Heights
@@ -58,9 +58,9 @@ def splice_chains(
     """Walk new chains from the seeds, and merge them with those that stay."""
     old, (node, low, high, number, shift) = len(bones.port), splice
     first, last = (bisect_left(bones.port[:, 0], 4 * n) for n in (low, high))
-    stretch = bones.port[first:last], bones.neck[first:last], bones.length[first:last]
+    stretch = bones.port[first:last], bones.neck[first:last], bones.steps[first:last]
     room = last - first + len(seeds)
-    fresh = np.empty((room, 2), np.int32), np.empty(room, np.int32), np.empty(room)
+    fresh = np.empty((room, 2), np.int32), np.empty(room, np.int32), np.empty(room, np.int32)
     notes = new_notes(len(heights))[0]
     found = merge_chains(
         heights,
@@ -80,16 +80,16 @@ def splice_chains(
     )
     moved = found - (last - first)
     size = old + moved
-    port, neck, length = with_room(bones.port, size), with_room(bones.neck, size), with_room(bones.length, size)
+    port, neck, steps = with_room(bones.port, size), with_room(bones.neck, size), with_room(bones.steps, size)
     if moved:
         ends = port.reshape(-1)  # along one axis numpy needs no copy to move what overlaps
         ends[2 * (last + moved) : 2 * size] = ends[2 * last : 2 * old]
-        neck[last + moved : size], length[last + moved : size] = neck[last:old], length[last:old]
+        neck[last + moved : size], steps[last + moved : size] = neck[last:old], steps[last:old]
     if shift:
         port[last + moved : size] += 4 * shift
     here = slice(first, first + found)
-    port[here], neck[here], length[here] = (part[:found] for part in fresh)
-    return Bones(node, port[:size], neck[:size], length[:size])
+    port[here], neck[here], steps[here] = (part[:found] for part in fresh)
+    return Bones(node, port[:size], neck[:size], steps[:size])
 
 
 def with_room(array: Array, size: int) -> Array:
@@ -119,7 +119,7 @@ def merge_chains(
     ahead: Ints,
     old_port: Ints,
     old_neck: Ints,
-    old_length: Floats,
+    old_steps: Ints,
     open_ends: Flags,
     low: int,
     high: int,
@@ -129,7 +129,7 @@ def merge_chains(
     node: Ints,
     port: Ints,
     neck: Ints,
-    length: Floats,
+    steps: Ints,
     notes: Ints,
 ) -> int:
     """The chains kept of a stretch and the new ones, in order; returns how many. Those ``ahead`` only learn what their
@@ -146,10 +146,10 @@ def merge_chains(
                 continue
             first, last = renamed(a, low, high, number, shift), renamed(b, low, high, number, shift)
         while k < seeds.shape[0] and seeds[k] < first:
-            end, back, long, _, noted = pace(node[seeds[k] >> 2], seeds[k] & 3, heights, states, width, notes, 0)
+            end, back, long, noted = pace(node[seeds[k] >> 2], seeds[k] & 3, heights, states, width, notes, 0)
             other = 4 * find(node, end) + back
             if seeds[k] < other:
-                port[size, 0], port[size, 1], neck[size], length[size] = (
+                port[size, 0], port[size, 1], neck[size], steps[size] = (
                     seeds[k],
                     other,
                     lowest_of(notes, 0, noted, heights),
@@ -159,6 +159,6 @@ def merge_chains(
             k += 1
         if chain < old_port.shape[0]:
             port[size, 0], port[size, 1] = first, last
-            neck[size], length[size] = old_neck[chain], old_length[chain]
+            neck[size], steps[size] = old_neck[chain], old_steps[chain]
             size += 1
     return size

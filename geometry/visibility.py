@@ -46,12 +46,28 @@ def visibility_way(free: Bools, start: XY, goal: XY) -> Floats | None:
         steps = np.hypot(*(points - points[at]).T)
         nearer = ~closed & (best[at] + steps < best)
         for other in np.flatnonzero(nearer).tolist():
-            if line_open(padded, points[at, 0], points[at, 1], points[other, 0], points[other, 1]):
+            if leaves_own_square(padded, points, at, other) and line_open(padded, *points[at], *points[other]):
                 best[other] = best[at] + steps[other]
                 came[other] = at
                 ahead = float(np.hypot(*(points[other] - points[last])))
                 heappush(heap, (float(best[other]) + ahead, other))
     return None
+
+
+def leaves_own_square(padded: Bools, points: Floats, at: int, other: int) -> bool:
+    """Return whether a line between two points keeps, at start or goal, to the side of the pinch on which they are.
+
+    A point where two blocked squares touch at a corner belongs, as all points, to the square north-east of it. The
+    corners between start and goal are no pinches.
+    """
+    last = len(points) - 1
+    for end, far in ((at, other), (other, at)):
+        x, y = points[end].tolist()
+        if end in (0, last) and y == int(y) and pinched(padded, x, int(y)) and x == int(x):
+            u, v = points[far].tolist()
+            if u < x or v < y:
+                return False
+    return True
 
 
 def trail(points: Floats, came: np.ndarray[tuple[int], np.dtype[np.int64]], at: int) -> Floats:

@@ -58,7 +58,7 @@ def find_ways(square: Squares, chains: Chains, runs: Runs, body: bool) -> Ways:
     """Prepare routing on a pathgraph."""
     width = square.shape[1]
     symbol = np.zeros(chains.cells.shape[0], np.int32)
-    length = np.empty(chains.length.shape[0])
+    length = np.empty(chains.ends.shape[0])
     longest = int(np.diff(chains.start).max(initial=1))
     words, spelt = np.empty(len(symbol) + 1, np.int32), np.zeros(len(length) + 1, np.int32)
     line, rope = np.empty((4 * longest + 8, 2)), new_rope(2 * longest)

@@ -6,6 +6,7 @@ the possible way alone; `not A` is certain when A is not possible, and possible 
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import product
 from typing import Any
 
 import clingo
@@ -247,7 +248,9 @@ class _Search:
     def pair(self, sign: str, left: Term, right: Term, given: Bindings) -> Truth:
         """Whether an order holds; between intervals, whether it does for some of their numbers."""
         names = self.beliefs.names
-        truths = {compare(sign, a, b, names) for a in self.values(left, given) for b in self.values(right, given)}
+        firsts, seconds = self.values(left, given), self.values(right, given)
+        pairs = product(_telling(firsts, seconds), _telling(seconds, firsts))
+        truths = {compare(sign, a, b, names) for a, b in pairs}
         return True if True in truths else None if None in truths else False
 
     def narrowed(self, literal: Comparison, given: Bindings) -> Bindings:
@@ -323,6 +326,24 @@ def confidences_read(body: Sequence[Literal], given_out: Any) -> frozenset[str]:
 def plain(value: clingo.Symbol) -> Value:
     """Return a value of clingo's as it is held here: numbers are integers."""
     return value.number if value.type == clingo.SymbolType.Number else value
+
+
+def _telling(values: Iterable[Value], others: Iterable[Value]) -> Iterable[Value]:
+    """Of the numbers of an interval those that decide how it compares: its ends, and those of the others within it."""
+    if not isinstance(values, range) or not values:
+        return values
+    if isinstance(others, range):
+        edges: list[int] = [others[0], others[-1]] if others else []
+    else:
+        edges = [edge for other in others for edge in _edges(other)]
+    return sorted({values[0], values[-1], *(edge for edge in edges if edge in values)})
+
+
+def _edges(value: Value) -> list[int]:
+    """A number, or the bounds of one that is not known."""
+    if isinstance(value, Unknown):
+        return [edge for edge in (value.low, value.high) if edge is not None]
+    return [value] if isinstance(value, int) else []
 
 
 def _is_interval(term: Term) -> bool:

@@ -21,6 +21,7 @@ from kb.worker import Worker
 
 SECONDS = 5.0  # after which a query is given up
 LONGEST = 10_000  # characters of a query
+MOST_ROWS = 10_000  # of an answer, unless more are asked for
 VOCABULARY = tuple(BELIEF)
 
 
@@ -52,7 +53,7 @@ class Answer:
         cells = [list(self.variables), *([str(value) for value in row] for row in self.rows)]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
         lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in cells]
-        return "\n".join([*lines, "..."] if self.more else lines)
+        return "\n".join([*lines, f"... and more than these {len(self.rows)} rows"] if self.more else lines)
 
 
 class QueryEngine:
@@ -80,8 +81,8 @@ class QueryEngine:
         """End the process."""
         self._worker.close()
 
-    def ask(self, facts: Sequence[str], query: str) -> Answer:
-        """Answer a query over facts such as `kind(o1,object,95).`
+    def ask(self, facts: Sequence[str], query: str, most: int = MOST_ROWS) -> Answer:
+        """Answer a query over facts such as `kind(o1,object,95).`, with so many rows at most.
 
         Raises BadInputError when it is no query or one of the facts is none, QueryLimitError when it takes too long.
         """
@@ -92,6 +93,7 @@ class QueryEngine:
             "facts": [_entry(fact) for fact in world],
             "query": text,
             "rules": [one.written for one in self._rules],
+            "most": most,
         }
         found = self._worker.exchange(request, self.seconds)
         if "limit" in found:

@@ -1,12 +1,10 @@
 """The process in which queries are answered: it reads one JSON line a query and writes one JSON line an answer.
 
-Run by `kb.query`, which kills it when it takes too long. It has little memory, can open no file, and clingo's death is
-its own alone. A query is the body of one rule; its answers are the values of the variables in it.
+Run by `kb.worker`, which kills it when it takes too long. It has little memory, can open no file, and clingo's death
+is its own alone. A query is the body of one rule; its answers are the values of the variables in it.
 """
 
 import json
-import resource
-import sys
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from typing import Any
@@ -14,6 +12,7 @@ from typing import Any
 import clingo
 from clingo.ast import AST, ASTType, parse_string
 
+from kb import machine
 from kb.clauses import Clause, ClauseError, clauses_of, global_variables
 from kb.deriving import derive
 from kb.inference import Bindings, bindings
@@ -26,6 +25,7 @@ from kb.vocabulary import BELIEF
 from kb.wording import check_body, stated_names
 
 MEMORY = 1_500_000_000  # bytes of address space
+PROCESSOR_TIME = 60  # seconds on one request: far more than anybody waits for, should nobody be there to end it
 MOST_ROWS = 10_000
 HEAD = "q__ :- "
 
@@ -48,11 +48,13 @@ class QueryError(Exception):
         super().__init__(what)
 
 
-def answer(facts: Iterable[Sequence[int | str]], query: str, rules: Sequence[str] = ()) -> Answer:
+def answer(
+    facts: Iterable[Sequence[int | str]], query: str, rules: Sequence[str] = (), most: int = MOST_ROWS
+) -> Answer:
     """Return the answer to a query over facts: its kind, its variables, and the rows of their values.
 
     facts : of each the name and the arguments, integers or terms as text. rules : plain rules of a user, which define
-    predicates that can be asked for, too.
+    predicates that can be asked for, too. most : how many rows are kept.
     """
     clauses = clauses_of(_rule(query))
     beliefs = Beliefs(_facts(facts))
@@ -74,8 +76,8 @@ def answer(facts: Iterable[Sequence[int | str]], query: str, rules: Sequence[str
         told = sorted(([_value(value) for value in row] for row in rows), key=_order)
         return (
             found
-            | {"answer": "bindings" if variables else "yes", "rows": told[:MOST_ROWS] if variables else []}
-            | {"more": len(told) > MOST_ROWS}
+            | {"answer": "bindings" if variables else "yes", "rows": told[:most] if variables else []}
+            | {"more": len(told) > most}
         )
     perhaps = any(True for clause in clauses for _ in bindings(clause.body, {}, beliefs, True))
     return found | {"answer": "don't know" if perhaps else "no"}
@@ -140,7 +142,7 @@ def _raise(code: clingo.MessageCode, message: str) -> None:
 _messages: list[QueryError] = []
 
 
-def _respond(line: str) -> Answer:
+def _respond(line: bytes) -> Answer:
     _messages.clear()
     try:
         request = json.loads(line)
@@ -148,7 +150,7 @@ def _respond(line: str) -> Answer:
             return read(request["read"])
         if "program" in request:
             return solved(request["program"], request["rules"], request["heads"], request["conflicts"])
-        found = answer(request["facts"], request["query"], request["rules"])
+        found = answer(request["facts"], request["query"], request["rules"], request.get("most", MOST_ROWS))
     except QueryError as error:
         return {"error": error.what, "at": error.at, "hint": ""}
     except RuleError as bad:
@@ -167,15 +169,18 @@ def _respond(line: str) -> Answer:
 
 
 def main() -> None:
-    """Answer queries until the input ends."""
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    """Answer queries until the input ends, and end then at once."""
+    machine.end_with_parent()
+    machine.limit("AS", MEMORY)
+    machine.limit("CORE", 0)
     json.loads('{"a": [1.5, "b"]}')  # everything that is imported late is imported now
     answer([["room", "r1"]], "room(X), not room(r2)")
     did_you_mean("room", ["door"])
-    resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))
+    requests = machine.lines_of_parent()
+    machine.limit("NOFILE", 3)
     print("ready", flush=True)
-    for line in sys.stdin:
+    for line in requests:
+        machine.limit_processor_time(PROCESSOR_TIME)
         print(json.dumps(_respond(line)), flush=True)
 
 

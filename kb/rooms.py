@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from geometry import Screen
 from geometry.components import components
 from geometry.passages import Passage
+from geometry.winding import crossings
 from kb.encodings import KB, solve
 from kb.protruding import VERGE
 from kb.regions import extents
@@ -304,3 +305,19 @@ def _depth(jambs: list[Floats], ahead: Floats, verge: Mask) -> float:
             break
         depth += STEP
     return depth
+
+
+def crosses(points: Floats, door: Door) -> int:
+    """Return how often a line crosses the neck of a door, there and back counted as none.
+
+    points : (n, 2) in the frame of the view's arrays, as for `went_through`.
+    """
+    a, along = np.array(door.a), np.subtract(door.b, door.a)
+    turned = np.column_stack([(points - a) @ along, (points - a) @ np.array([-along[1], along[0]])])
+    whole = float(along @ along)
+    return abs(crossings(turned, (0.0, 0.0)) - crossings(turned, (whole, 0.0)))
+
+
+def went_through(track: Floats, door: Door) -> bool:
+    """Return whether a track was ever on the other side of a door than it began."""
+    return any(crosses(track[: end + 1], door) for end in range(1, len(track)))

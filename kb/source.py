@@ -6,20 +6,27 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+from kb.machine import READ
 from kb.problems import ENOUGH, BadInputError, CannotOpenError, Problem, Span
 
 LARGEST = 4_000_000  # bytes
 WIDE = {b"\xff\xfe": "UTF-16", b"\xfe\xff": "UTF-16", b"\xef\xbb\xbf": "a UTF-8 byte order mark"}
 QUOTES = "\u2018\u2019\u201a\u201b\u201c\u201d\u201e\u201f"
+HIDDEN = "not as it must be; it is a link out of its folder, so nothing of its text is shown"
 SPACES = "\u00a0\u2002\u2003\u2009\u200b\u202f\u3000"
 
 
 @dataclass(frozen=True)
 class Source:
-    """A file's name as the user gave it, and its text (ASCII)."""
+    """A file's name as the user gave it, and its text (ASCII).
+
+    `foreign` is set where the name is a link out of its folder: then nothing of the text is shown, for whoever made the
+    link may not be whoever may read the file.
+    """
 
     file: str
     text: str = field(repr=False)
+    foreign: bool = False
 
     @cached_property
     def lines(self) -> list[str]:
@@ -28,6 +35,8 @@ class Source:
 
     def problem(self, span: Span, what: str, hint: str = "") -> Problem:
         """Return what is wrong at `span`, with the line it stands on."""
+        if self.foreign:
+            return Problem(self.file, span, HIDDEN, hint="check the file that it leads to, or copy it into the folder")
         source = self.lines[span.line - 1] if span.line <= len(self.lines) else ""
         return Problem(self.file, span, what, source, hint)
 
@@ -42,10 +51,17 @@ def read_source(path: Path | str) -> Source:
     Raises CannotOpenError for a file that is absent, unreadable or no regular file (a FIFO or a device is not waited
     for), and BadInputError for one that is too big or holds anything but printable ASCII, tabs and line ends.
     """
-    return decode(str(path), read_bytes(str(path), LARGEST))
+    return decode(str(path), read_bytes(str(path), LARGEST), leads_out(path))
 
 
-def decode(file: str, raw: bytes) -> Source:
+def leads_out(path: Path | str, folder: Path | str | None = None) -> bool:
+    """Return whether a file lies, all links followed, outside of a folder: by default of that in which it is named."""
+    named = os.path.abspath(path)  # noqa: PTH100 (a link in the folder's own name is not followed yet)
+    home = os.path.realpath(folder if folder is not None else os.path.dirname(named))  # noqa: PTH120
+    return not os.path.realpath(named).startswith(os.path.join(home, ""))  # noqa: PTH118
+
+
+def decode(file: str, raw: bytes, foreign: bool = False) -> Source:
     """Return the text of `raw`, which must be ASCII; raises BadInputError that says what else is there."""
     if len(raw) > LARGEST:
         raise BadInputError([Problem(file, Span(1, 1, 1), f"the file is larger than {LARGEST} bytes")])
@@ -53,7 +69,7 @@ def decode(file: str, raw: bytes) -> Source:
         if raw.startswith(mark):
             hint = "save the file as plain ASCII (or UTF-8 without byte order mark)"
             raise BadInputError([Problem(file, Span(1, 1, 1), f"the file begins with {name}", hint=hint)])
-    source = Source(file, raw.decode("utf-8", errors="surrogateescape"))
+    source = Source(file, raw.decode("utf-8", errors="surrogateescape"), foreign)
     problems = _strangers(source)
     if problems:
         raise BadInputError(problems)
@@ -63,7 +79,7 @@ def decode(file: str, raw: bytes) -> Source:
 def read_bytes(path: str, most: int) -> bytes:
     """Return the bytes of a regular file, one more than `most` at most; raises CannotOpenError."""
     try:
-        handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        handle = os.open(path, READ)
     except (OSError, ValueError) as error:
         raise CannotOpenError(path, getattr(error, "strerror", None) or str(error)) from None
     try:

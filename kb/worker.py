@@ -1,14 +1,19 @@
-"""A process beside ours in which clingo reads what users wrote (kb.query_worker): it can be killed, and dies alone."""
+"""A process beside ours in which clingo reads what users wrote (kb.query_worker): it can be killed, and dies alone.
+
+It is isolated: nothing in the working directory or on PYTHONPATH is executed. It ends when this process ends.
+"""
 
 import json
-import os
-import select
+import queue
 import subprocess
-import sys
-import time
+import threading
 from contextlib import suppress
-from pathlib import Path
-from typing import Any
+from typing import IO, Any
+
+from utak_command import beside
+
+START = 30.0  # seconds in which a worker must be ready
+Lines = queue.SimpleQueue[bytes]
 
 
 class Worker:
@@ -16,65 +21,84 @@ class Worker:
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
+        self._lines: Lines = queue.SimpleQueue()
 
     def close(self) -> None:
         """End the process."""
         worker, self._process = self._process, None
-        if worker is None:
-            return
-        worker.kill()
-        worker.wait()
-        for stream in (worker.stdin, worker.stdout):
-            if stream is not None:
-                with suppress(OSError):  # what it has not read is lost
-                    stream.close()
+        if worker is not None:
+            _end(worker)
 
     def exchange(self, request: dict[str, Any], seconds: float) -> dict[str, Any]:
-        """What the worker answers; {"limit": why} when it does not within so many seconds."""
-        worker = self._process = self._process or _started()
-        assert worker.stdin is not None
+        """What the worker answers; {"limit": why} when it does not within so many seconds.
+
+        One that is interrupted while it works is ended, for its answer would be taken for that of the next request.
+        """
+        if self._process is None:
+            self._process, self._lines = _started()
+        worker, self._process = self._process, None
         line: bytes | None = b""
-        with suppress(BrokenPipeError):
-            worker.stdin.write(json.dumps(request, allow_nan=False).encode("ascii") + b"\n")
-            worker.stdin.flush()
-            line = _line(worker, seconds)
+        try:
+            assert worker.stdin is not None
+            with suppress(OSError):  # it has ended
+                worker.stdin.write(json.dumps(request, allow_nan=False).encode("ascii") + b"\n")
+                worker.stdin.flush()
+                line = _line(self._lines, seconds)
+        except BaseException:
+            _end(worker)
+            raise
         if not line:
-            self.close()
+            _end(worker)
             late = f"it took more than {seconds:g} seconds"
             return {"limit": late if line is None else "it ended the process that works on it"}
+        self._process = worker
         found: dict[str, Any] = json.loads(line)
         return found
 
 
-def _started() -> "subprocess.Popen[bytes]":
-    """A fresh worker, ready."""
-    home = str(Path(__file__).resolve().parent.parent)
-    path = os.pathsep.join(filter(None, [home, os.environ.get("PYTHONPATH")]))
-    command = [sys.executable, "-m", "kb.query_worker"]
+def _started() -> "tuple[subprocess.Popen[bytes], Lines]":
+    """A fresh worker, ready, and the lines that it writes."""
     worker = subprocess.Popen(
-        command,
+        beside("kb.query_worker"),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
-        env=os.environ | {"PYTHONPATH": path},
         start_new_session=True,  # Ctrl-C is for the prompt, which ends the worker itself
+        creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # the same on Windows
     )
-    if _line(worker, 30.0) != b"ready\n":
-        worker.kill()
-        raise RuntimeError("the process beside ours does not start")
-    return worker
+    lines: Lines = queue.SimpleQueue()
+    try:
+        threading.Thread(target=_collect, args=(worker.stdout, lines), daemon=True).start()
+        if (_line(lines, START) or b"").rstrip() != b"ready":
+            raise RuntimeError("the process beside ours does not start")
+    except BaseException:
+        _end(worker)
+        raise
+    return worker, lines
 
 
-def _line(worker: "subprocess.Popen[bytes]", seconds: float) -> bytes | None:
-    """The next line that a worker writes; empty when it ends, None when it does not write one in time."""
-    assert worker.stdout is not None
-    handle, found, end = worker.stdout.fileno(), b"", time.monotonic() + seconds
-    while not found.endswith(b"\n"):
-        ready, _, _ = select.select([handle], [], [], max(0.0, end - time.monotonic()))
-        if not ready:
-            return None
-        piece = os.read(handle, 1 << 20)
-        if not piece:
-            return b""
-        found += piece
-    return found
+def _collect(stream: IO[bytes], lines: Lines) -> None:
+    """Put the lines of a stream into a queue, and an empty one at its end."""
+    with suppress(OSError, ValueError):
+        for line in stream:
+            lines.put(line)
+    lines.put(b"")
+    with suppress(OSError):
+        stream.close()
+
+
+def _line(lines: Lines, seconds: float) -> bytes | None:
+    """The next line; empty when they have ended, None when it does not come in time."""
+    try:
+        return lines.get(timeout=max(0.0, seconds))
+    except queue.Empty:
+        return None
+
+
+def _end(worker: "subprocess.Popen[bytes]") -> None:
+    """End a process, and forget what it has not read."""
+    worker.kill()
+    worker.wait()
+    if worker.stdin is not None:
+        with suppress(OSError):
+            worker.stdin.close()

@@ -17,11 +17,12 @@ from kb.facts import Fact
 from kb.worldmodel import Node, WorldModel
 from planner.aims import Aim
 from planner.carrier import Act, Carrier
+from planner.decision import Decision
 from planner.destinations import Situation
 from planner.exploring import by_touch
 from planner.goals import Stage
 from planner.lying import LIKELY, SURELY, hidden_behind, leads_away, out_of_wall, region_of
-from planner.pursuing import Decision, Pursuer
+from planner.pursuing import Pursuer
 from planner.screen import UNSEEN, Mask, Screens
 from planner.verifying import Verifier
 from planner.ways import Way, ways

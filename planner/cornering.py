@@ -14,10 +14,10 @@ from geometry.components import components
 from geometry.ends import End, placed
 from geometry.reach import UNREACHED, reach
 from geometry.rigid import Pose
-from kb.facts import Fact, Symbol
+from kb.facts import Fact
 from kb.worldmodel import CLEAR, Node
 from planner.approaching import TAKE, Approach
-from planner.destinations import Situation, rooms_to_see, unknown_corner
+from planner.destinations import Situation, corner_side, rooms_to_see, unknown_corner
 from planner.exploring import Lookout, short_of, sight_of
 from planner.lying import HAIR, Landing, Mask, can_leave, in_view, lands, lies_askew, region_of
 from planner.screen import grown
@@ -59,15 +59,19 @@ def cornered(side: str, node: Node, situation: Situation) -> Landing:
     return Landing({}, looks[0].what, looks, there=not shut_in, shut_in=shut_in)
 
 
+def may_move(goal: Fact, situation: Situation) -> bool:
+    """Return whether a goal is about a corner that rooms not seen yet may put elsewhere."""
+    side = corner_side(goal)
+    return bool(side and rooms_to_see(side, situation))
+
+
 def approach(goals: Iterable[Fact], situation: Situation) -> Approach:
     """How he goes up to what he shall carry to where some goals hold for it."""
     for goal in goals:
-        where = goal.args[1]
-        if goal.name == "at" and isinstance(where, Symbol) and where.name == "corner":
-            side = str(where.args[0])
-            if side in situation.corners:
-                end = _into_corner(side, situation)
-                return TAKE._replace(corner=(end.sx, end.sy))
+        side = corner_side(goal)
+        if side in situation.corners:
+            end = _into_corner(side, situation)
+            return TAKE._replace(corner=(end.sx, end.sy))
     return TAKE
 
 

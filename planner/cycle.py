@@ -13,7 +13,7 @@ from kb.explanation import Accommodated
 from kb.knowledge import Knowledge
 from kb.task import Task
 from planner.deciding import Decider
-from planner.pursuing import Decision
+from planner.decision import Decision
 
 
 @dataclass(frozen=True)

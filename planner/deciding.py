@@ -5,6 +5,7 @@ What must be carried planner.transporting brings there; where Utak himself must 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,9 +21,13 @@ from planner.aims import Aim
 from planner.approaching import ARRIVE
 from planner.circling import pivot, ways_round, winding
 from planner.clearing import Clearer
-from planner.destinations import Situation, contains, destination
+from planner.decision import Decision
+from planner.destinations import Situation, contains, destination, no_way
 from planner.goals import BY_THE_WAY, FROM_THE_START, Stage, stages
-from planner.pursuing import Decision, Pursuer
+from planner.into_corner import IntoCorner, halted
+from planner.joint import opposite_corners
+from planner.open_facts import qualified, verdict_if_missing
+from planner.pursuing import Pursuer
 from planner.screen import Screens, ways_to_objects
 from planner.searching import aims_towards
 from planner.transporting import Transporter
@@ -55,6 +60,7 @@ class Decider:
         self.pursuer = Pursuer(self.paths)
         self.transporter = Transporter(self.pull, self.pursuer, self._verifier)
         self._clearer = Clearer(self.transporter.carrier, self.pursuer, self._verifier)
+        self._into_corner = IntoCorner()
         self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
@@ -65,7 +71,8 @@ class Decider:
         self.corners = corners(model, self.rules)
         if model.lost and model.held is not None:
             return Decision(Release(), f"{model.held} is let go, for nothing looks as it should")
-        situation = Situation(model, screens, self.bound, self.rooms, self.corners, self.task, self.rules)
+        places = tuple((float(x), float(y)) for x, y in track)
+        situation = Situation(model, screens, self.bound, self.rooms, self.corners, self.task, self.rules, places)
         while self.attained < len(self.stages):
             stage = self.stages[self.attained]
             decision = self._clearer.going_on(stage, situation)
@@ -73,14 +80,19 @@ class Decider:
             decision = decision or self.pursuer.look(self._doubt(stage, situation), stage, situation)
             if decision is not None:
                 unproved = model.anew and model.shaken and decision.verdict == "impossible"
-                return replace(decision, verdict="limit") if unproved else decision
+                return replace(decision, verdict="limit") if unproved else qualified(decision, model)
             self.attained += 1
+        if situation.forbidden("utak") and not situation.avoided:
+            return Decision(None, "what the task asks for holds, but every door that is sure was gone through", "limit")
         return Decision(None, " and ".join(map(str, self.stages)) + " holds", "done")
 
     def _towards(
         self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[Place]
     ) -> Decision | None:
         """The next command towards a stage, the verdict when it cannot be attained, or None when it is."""
+        at_odds = self.transporter.at_odds(stage, situation)
+        if at_odds is not None:
+            return at_odds
         for goal in stage.carried:
             decision = self.transporter.towards(goal, stage, situation, reconciled)
             if decision is None:
@@ -106,12 +118,21 @@ class Decider:
         else:
             where = [destination(goal, situation) for goal in goals]
             there = all(not d.missing and contains(d.squares, situation.model) for d in where)
+            there = there or self._into_corner.pressing(stage, situation)
             look = self._made_sure(goals, there, stage, situation)
+            if look is None and there and (nearer := self._into_corner.next(stage, situation)) is not None:
+                return Decision(nearer, f"the walls of the corner may lie further away; {stage}")
             if there or look is not None:
                 return look
-        missing = "; ".join(d.missing for d in where if d.missing) or "no way leads there"
+        if at_odds := opposite_corners(goals, situation):
+            return Decision(None, f"{stage} cannot be attained: {at_odds}", "impossible", unless=None)
+        missing = "; ".join(d.missing for d in where if d.missing) or no_way(where)
         aims = aims_towards(where, situation, reconciled, ARRIVE)
-        return self.pursuer.felt(lambda: self.pursuer.pursue(aims, stage, situation, lambda: missing), stage, situation)
+        unseen = any(str(goal.args[1]) in reconciled.hypothesised for goal in goals)
+        verdict = verdict_if_missing(situation.model) if unseen else "impossible"
+        ask = partial(self.pursuer.pursue, aims, stage, situation, lambda: missing, verdict)
+        decision = self.pursuer.felt(ask, stage, situation)
+        return replace(decision, command=halted(decision.command, stage, situation))
 
     def _doubt(self, stage: Stage, situation: Situation) -> Aim | None:
         """What to look at before a stage is held for attained."""

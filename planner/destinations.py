@@ -1,7 +1,7 @@
 """What a goal means on the screen: the squares on which it holds for Utak, or what is missing to tell."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from geometry.components import edged
 from kb.corners import Corner
 from kb.facts import Fact, Symbol, Term
-from kb.rooms import LIKELY_DOOR, SURE, Door, Rooms, rooms_of
+from kb.rooms import LIKELY_DOOR, SURE, Door, Rooms, rooms_of, went_through
 from kb.task import Task
 from kb.worldmodel import Patch, WorldModel
 from planner.exploring import APART, Lookout, frontiers, gaps, jambs, promised, rooms_beyond, short_of, sight_of
@@ -36,7 +36,11 @@ RAYS = 192  # places along a line of sight at which it may meet the verge
 
 @dataclass(frozen=True)
 class Situation:
-    """What the meaning of a goal depends on. binding: parameter -> node; corners: side -> corner of the known floor."""
+    """What the meaning of a goal depends on.
+
+    binding : parameter -> node. corners : side -> corner of the known floor. track : where Utak has been, points of
+    the lattice.
+    """
 
     model: WorldModel
     screens: Screens
@@ -45,6 +49,7 @@ class Situation:
     corners: Mapping[str, Corner]
     task: Task
     rules: tuple[Path, ...] = ()
+    track: tuple[tuple[float, float], ...] = ()
 
     @cached_property
     def supposed(self) -> Rooms:
@@ -80,10 +85,20 @@ class Situation:
         """The doors that "utak" or a node may not go through by the constraints of the task.
 
         A thing that may not go through a door is kept from all that may be doors: which one is meant nothing tells.
+        Utak is kept from one door that he has not gone through; while none is sure, from all that may be one.
         """
         meant = {self.binding.get(str(goal.args[0]), str(goal.args[0])) for goal in constraints(self.task)}
-        doors = self.rooms.sure[:1] if who == "utak" else tuple(door for door in self.rooms.doors if door.likely)
-        return doors if who in meant else ()
+        if who not in meant:
+            return ()
+        likely = tuple(door for door in self.rooms.doors if door.likely)
+        return self.avoided[:1] or likely if who == "utak" else likely
+
+    @cached_property
+    def avoided(self) -> tuple[Door, ...]:
+        """The sure doors that Utak has not gone through."""
+        west, south = self.model.view.west, self.model.view.south
+        track = np.array(self.track).reshape(-1, 2) - (west, south)
+        return tuple(door for door in self.rooms.sure if not went_through(track, door))
 
     def next_to(self, place: tuple[float, float], rooms: Rooms, least: int) -> Mask:
         """(rows, columns) what shares a door with the room of a point, if that is one with so many percent."""
@@ -107,16 +122,29 @@ class Destination:
     lookouts: tuple[Lookout, ...] = ()
 
 
+def no_way(where: Sequence[Destination]) -> str:
+    """Return why nothing is left when it is known where each of some goals holds, in words."""
+    both = [set(d.squares.tolist()) for d in where]
+    return "no way leads there" if set.intersection(*both) else "there is no place where all of it holds at once"
+
+
 def nowhere(missing: str, lookouts: tuple[Lookout, ...] = ()) -> Destination:
     """It is not known yet where."""
     return Destination(np.zeros(0, np.int64), missing, lookouts)
 
 
+def corner_side(goal: Fact) -> str:
+    """Return the side of the corner that a goal is about, such as northeast; "" when it is about none."""
+    where = goal.args[1] if len(goal.args) > 1 else None
+    is_corner = goal.name == "at" and isinstance(where, Symbol) and where.name == "corner"
+    return str(where.args[0]) if is_corner and isinstance(where, Symbol) else ""
+
+
 def destination(goal: Fact, situation: Situation) -> Destination:
     """The squares on which a goal of place (at, in, beside, through with utak) holds."""
     where = goal.args[1]
-    if goal.name == "at" and isinstance(where, Symbol) and where.name == "corner":
-        return corner(str(where.args[0]), situation)
+    if side := corner_side(goal):
+        return corner(side, situation)
     if goal.name == "at" and str(where) == "start":
         return Destination(_within(situation.model, situation.model.lattice.woke, 1.0))
     if goal.name in ("at", "beside", "circled"):

@@ -9,11 +9,11 @@ from functools import partial
 
 from geometry.carrying import InCorner, Inside
 from geometry.ends import End, moved
-from kb.facts import Fact, Symbol
+from kb.facts import Fact
 from kb.rooms import Rooms
 from kb.worldmodel import Node
 from planner.cornering import cornered
-from planner.destinations import Situation, doorsteps, numbers, out_of_sight
+from planner.destinations import Situation, corner_side, doorsteps, numbers, out_of_sight
 from planner.hoping import BEYOND, spread
 from planner.lying import Landing, Mask, in_view, lands_in_one, region_of
 from planner.nearing import around_start, beside, posed
@@ -41,8 +41,8 @@ def _well_in(end: End) -> End:
 
 def _landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
     where = goal.args[1]
-    if goal.name == "at" and isinstance(where, Symbol) and where.name == "corner":
-        return cornered(str(where.args[0]), node, situation)
+    if side := corner_side(goal):
+        return cornered(side, node, situation)
     if goal.name == "at" and str(where) == "start":
         return around_start(node, situation)
     if goal.name in ("at", "beside"):

@@ -4,12 +4,13 @@ A way is kept while it holds: its aim is still wanted, and the squares ahead are
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from kb.body import Command, Release
 from kb.worldmodel import WorldModel
 from planner.aims import Aim, choose
 from planner.carrier import Advice, Go, See
+from planner.decision import Decision
 from planner.destinations import Situation
 from planner.fewest import FewestMoves
 from planner.goals import Stage
@@ -19,15 +20,6 @@ from planner.screen import Squares
 from planner.searching import against_walls, perhaps_islands
 from planner.walking import HURRY, STROLL, halting, next_move
 from planner.ways import Way, choose_way, ways
-
-
-@dataclass(frozen=True)
-class Decision:
-    """The next command and why; or no command, and the verdict."""
-
-    command: Command | None
-    why: str
-    verdict: str = ""
 
 
 class Pursuer:
@@ -139,4 +131,5 @@ class Pursuer:
             return None
         before = frozenset(self._kept.path(situation.model))
         forbidden = frozenset(door.name for door in situation.forbidden("utak"))
-        return choose_way(offered, situation.screens, before, situation.rooms.sure, forbidden)
+        doors = [door for door in situation.rooms.doors if door.likely]
+        return choose_way(offered, situation.screens, before, doors, forbidden)

@@ -7,6 +7,7 @@ from geometry.carrying import Carrying
 from kb.loads import is_whole
 from kb.worldmodel import Node, WorldModel
 from planner.lying import lies_askew
+from planner.open_facts import told, width_open
 
 Place = tuple[float, float]
 
@@ -16,12 +17,14 @@ class Refusal:
     """No way was found.
 
     proved : there is none, whatever the unseen holds. reason : in words; neck : the middle of the passage that is too
-    narrow, in the view's frame, if it is for want of one. Both are worked out when asked.
+    narrow, in the view's frame, if it is for want of one; unless : the open fact by which it may be wide enough, in
+    words, "" for none. All three are worked out when asked.
     """
 
     proved: bool
     reason: Callable[[], str]
     neck: Callable[[], Place | None] = lambda: None
+    unless: Callable[[], str] = lambda: ""
 
 
 def refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel) -> Refusal:
@@ -43,13 +46,19 @@ def refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel
         passage = closest.passage
         if passage is None:
             return f"{node.name} cannot be carried there"
-        east, north = model.place_to_utak(*passage.place)
-        where = f"{passage.width:.2f} squares wide at POINT ({east:.1f} {north:.1f})"
+        where = f"{passage.width:.2f} squares wide at {told(passage.place, model)}"
         if _hopeless(closest):
             return f"{node.name} cannot be carried there: even were the passage, {where}, as wide as it, it could not"
         return f"the passage for {node.name}, {where}, is too narrow by {closest.missing:.2f} squares"
 
-    return Refusal(True, reason, neck)
+    def unless() -> str:
+        closest = nearest_to_done(plans)
+        passage = closest.passage
+        if passage is None or _hopeless(closest):
+            return ""
+        return width_open(passage.width, closest.missing, passage.sides, told(passage.place, model))
+
+    return Refusal(True, reason, neck, unless)
 
 
 def _doubt(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel) -> str:

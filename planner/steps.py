@@ -75,7 +75,7 @@ def squares_along(free: Mask, points: Sequence[Sequence[float]]) -> list[Square]
     touched = {
         (column, row)
         for a, b in pairwise(points)
-        for column, row in _touched(a, b)
+        for column, row in squares_met(a, b)
         if 0 <= row < rows and 0 <= column < columns and free[row, column]
     } | {start, goal}
     before = {start: start}
@@ -94,8 +94,8 @@ def squares_along(free: Mask, points: Sequence[Sequence[float]]) -> list[Square]
     return path[::-1]
 
 
-def _touched(a: Sequence[float], b: Sequence[float]) -> set[Square]:
-    """The squares that a segment meets, those included whose edge or corner it only touches."""
+def squares_met(a: Sequence[float], b: Sequence[float]) -> set[Square]:
+    """Return the squares (column, row) that a segment meets, also those whose edge or corner it only touches."""
     cuts = {0.0, 1.0}
     for p, q in zip(a, b, strict=True):
         if p != q:

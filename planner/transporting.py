@@ -15,17 +15,20 @@ from kb.worldmodel import Node
 from planner.aims import Aim
 from planner.beginning import Beginnings
 from planner.carrier import Act, Advice, Carrier, Go, See
-from planner.cornering import approach
+from planner.cornering import approach, may_move
+from planner.decision import Decision
 from planner.destinations import Situation, nowhere
 from planner.goals import FROM_THE_START, Stage
+from planner.joint import conflict
 from planner.landing import landing
 from planner.lying import Landing, can_leave, in_view, lands_in_one
-from planner.pursuing import Decision, Pursuer
+from planner.open_facts import verdict_if_missing
+from planner.pursuing import Pursuer
 from planner.refusing import Refusal
 from planner.searching import aims_towards
 from planner.sizing import Sizer, least_outline
 from planner.verifying import Verifier, before_taking, more_of
-from planner.walking import is_open, is_settled
+from planner.walking import is_open
 
 SIZE = "size"  # the target of a push that only tells how large a thing is
 MISSED = 2  # plans that miss before where they should lead to is looked at
@@ -86,6 +89,22 @@ class Transporter:
         decision = self._missing(advice, node, land, aims, stage, situation)
         return self._proved(advice, decision, node, land, stage, situation)
 
+    def at_odds(self, stage: Stage, situation: Situation) -> Decision | None:
+        """Return the verdict when two goals of a stage cannot hold for one thing at once; None otherwise."""
+        for x in sorted({str(goal.args[0]) for goal in stage.carried}):
+            goals = [goal for goal in stage.carried if str(goal.args[0]) == x]
+            node = situation.model.object(situation.binding.get(x, ""))
+            if len(goals) < 2 or node is None or node.polygon is None or any(may_move(g, situation) for g in goals):
+                continue
+            began = self.beginnings.at(x, node, situation)
+            lands = [landing(goal, node, began, situation) for goal in goals]
+            found = conflict(lands, in_view(node.polygon, situation))
+            if found is not None:
+                one, other = (goals[number] for number in found)
+                why = f"{one} and {other} cannot hold at once: their places are too far apart"
+                return Decision(None, why, "impossible")
+        return None
+
     def freed(self, x: str, stage: Stage, situation: Situation) -> Decision | None:
         """The push by which what he holds no longer shuts him in, when he wants something else than that, x."""
         held = situation.model.held
@@ -98,12 +117,12 @@ class Transporter:
         unseen = nowhere(f"{fixed} cannot be moved" if fixed else f"nothing seen so far is {x}")
         goals = [goal for goal in stage.goals if str(goal.args[0]) == x]
         aims = aims_towards([unseen], situation, reconciled, approach(goals, situation))
-        # No proof that there is none: it may stand against a wall, and look like a piece of that; and who does not
-        # know how the squares lie may have pushed at another thing.
-        proved = fixed and situation.model.view.sure and is_settled(situation.model)
-        verdict = "impossible" if proved else "limit"
+        verdict = verdict_if_missing(situation.model, bool(fixed))
         ask = partial(self.pursuer.pursue, aims, stage, situation, lambda: unseen.missing, verdict)
         decision = self.pursuer.felt(ask, stage, situation)
+        if fixed and decision.verdict:
+            unless = f"{fixed} is more than one thing, or moves another way than it was pushed"
+            decision = replace(decision, unless=unless)
         like = [name for parameter, name in reconciled.measurable if parameter == x and decision.verdict]
         seen = (thing for thing in situation.model.objects if thing.name in like)
         gauged = (self._gauged(thing, stage, situation) for thing in seen)
@@ -176,14 +195,16 @@ class Transporter:
         narrow = self.verifier.narrow_again(refused, situation)
         if narrow is not None:
             return self.pursuer.pursue([narrow], stage, situation, refused.reason)
-        return self._sized(node, must_reach or land.ends, stage, situation) or decision
+        ends = must_reach or land.ends
+        instead = self._sized(node, ends, stage, situation) if ends else None
+        return instead or replace(decision, unless=refused.unless(), near=refused.neck())
 
     def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
         """What to do to carry something to where its goal holds; while that is not known, to near it."""
         looked = len(situation.model.looked_from)
         if land.lookouts and (looked == self._looked or (land.ends and self.carrier.missed >= MISSED)):
             self.carrier.missed, self._looked = 0, looked
-            return Refusal(False, lambda: land.missing)
+            return Refusal(not situation.model.shaken, lambda: land.missing)
         if land.ends:
             return self.carrier.advise(node, land.ends, situation, land.hoped)
         going_on = self.carrier.gone_on(node, situation)
@@ -194,7 +215,7 @@ class Transporter:
             if isinstance(advice, Act | Go):
                 return advice
         self._looked = looked
-        return Refusal(not self.carrier.begun, lambda: land.missing)
+        return Refusal(not situation.model.shaken, lambda: land.missing)
 
     def _taken_along(
         self, node: Node, stage: Stage, situation: Situation, aim: Aim, fetched: bool = False

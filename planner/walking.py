@@ -124,6 +124,11 @@ def move_to(model: WorldModel, square: Square, aside: tuple[float, float]) -> Mo
     return _straight_to((x, y), model)
 
 
+def move_by(model: WorldModel, dx: float, dy: float) -> Move:
+    """Return the move from where Utak believes himself by so many squares along the axes of the lattice."""
+    return _straight_to((model.place[0] + dx, model.place[1] + dy), model)
+
+
 def _straight_to(place: tuple[float, float], model: WorldModel) -> Move:
     """The move to a place (of the lattice)."""
     here = on_line(model.place)

@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from geometry import Screen
 from geometry.grid import grid_way
 from geometry.visibility import visibility_way
-from geometry.winding import crossings
 from kb.encodings import solve
-from kb.rooms import Door
+from kb.rooms import Door, crosses
 from planner.aims import ASP
 from planner.screen import Screens
 from planner.steps import Square, squares_along
@@ -110,14 +109,6 @@ def leads_through(way: Way, door: Door) -> bool:
     """Does a way cross the neck of a door, and not come back?"""
     points = np.array(way.squares) + 0.5
     return bool(crosses(points, door) % 2)
-
-
-def crosses(points: NDArray[np.float64], door: Door) -> int:
-    """How often a polyline crosses the neck of a door."""
-    a, along = np.array(door.a), np.subtract(door.b, door.a)
-    turned = np.column_stack([(points - a) @ along, (points - a) @ np.array([-along[1], along[0]])])
-    whole = float(along @ along)
-    return abs(crossings(turned, (0.0, 0.0)) - crossings(turned, (whole, 0.0)))
 
 
 def _centre(square: Square) -> tuple[float, float]:

@@ -34,6 +34,9 @@ def read_expectations(path: Path | str, world: World | None) -> tuple[Fact, ...]
     source = read_source(path)
     facts = parse_facts(source)
     problems = check_facts(source, facts, EXPECT)
+    if not facts:
+        hint = "such as within(50). or fails.; without expected facts leave the file out"
+        problems = [source.problem(source.start(), "nothing is expected: expect.lp is empty", hint)]
     if world is not None and not problems:
         problems = list(_unknown_names(source, facts, world))
     if problems:

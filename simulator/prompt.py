@@ -3,22 +3,30 @@
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from kb.problems import BadInputError, CannotOpenError, did_you_mean
 from kb.query import VOCABULARY, QueryEngine, QueryLimitError
 from simulator.commands.run import describe
-from simulator.story import Story, facts_of_line
+from simulator.interrupts import deferred
+from simulator.naming import with_utak
+from simulator.story import Story
+from simulator.terminal import StreamError, shown
 
 HELP = """\
 ?- QUERY.     ask what Utak believes: ?- object(X), shape(X, square, C).
 facts [WORD]  the world model as facts; with a word those that name it
 step [N]      go on by one step, or by N
 run           go on to the end
-show          the table as a picture
+show          the true table as a picture; what the robot believes of it are the facts
 help          this
-quit          leave (so does the end of the input)"""
+quit          leave (so does the end of the input)
+
+In facts, places and lengths are whole hundredths of a square, in the robot's frame: east and north from where it woke,
+north being the way it faced then. Confidences are percent. The robot is called utak in questions, and org in facts."""
+TRUTH = "the true table, which the robot may believe to be otherwise:"
 
 
 class Prompt:
@@ -32,7 +40,7 @@ class Prompt:
             "facts": self._facts,
             "help": lambda rest: self._say(HELP),
             "run": lambda rest: self._go(None),
-            "show": lambda rest: self._say(self._story.picture().rstrip("\n")),
+            "show": lambda rest: self._say(f"{TRUTH}\n{self._story.picture()}".rstrip("\n")),
             "step": self._step,
         }
 
@@ -58,7 +66,7 @@ class Prompt:
             self._say(str(problem))
         except KeyboardInterrupt:
             self._say("interrupted")
-        except BrokenPipeError:
+        except (BrokenPipeError, StreamError):
             raise
         except Exception as bug:  # the prompt must come back, whatever happens
             self._say(f"this is a bug of ours: {type(bug).__name__}: {str(bug)[:500]}")
@@ -68,11 +76,11 @@ class Prompt:
         self._write(text)
 
     def _ask(self, rest: str) -> None:
-        self._say(str(self._engine.ask(facts_of_line(self._story.line), rest)))
+        self._say(str(self._engine.ask(self._story.facts, with_utak(rest))))
 
     def _facts(self, rest: str) -> None:
         word = rest.removesuffix(".")
-        facts = [fact for fact in facts_of_line(self._story.line) if not word or word in _names(fact)]
+        facts = [fact for fact in self._story.facts if not word or word in _names(fact)]
         self._say("\n".join(facts) if facts else "none")
 
     def _step(self, rest: str) -> None:
@@ -85,15 +93,27 @@ class Prompt:
     def _go(self, count: int | None) -> None:
         """Go on by some steps, or to the end."""
         done = 0
-        while done != count and self._story.advance():
+        while done != count:
+            with deferred(self._tell_of_ctrl_c) as pressed:
+                moved = self._story.advance()
+            if not moved:
+                break
             done += 1
             line = self._story.line
-            self._say(f"step {line['step']}: {describe(line.get('action'))}: {line.get('why', '')}")
+            self._say(f"step {line['step']}: {describe(line.get('action'))}: {shown(str(line.get('why', '')), False)}")
+            if pressed:
+                self._say("interrupted")
+                return
         result: Any = self._story.result
         if result is not None:
-            self._say(f"{result['verdict']} after {result['steps']} steps: {result['reason']}")
+            reason = shown(str(result["reason"]), False)
+            self._say(f"{result['verdict']} after {result['steps']} steps: {reason}")
         elif done == 0:
             self._say("there are no more steps")
+
+    def _tell_of_ctrl_c(self) -> None:
+        with suppress(RuntimeError):  # something is being printed just now
+            self._say("the step comes to its end first; Ctrl-C once more breaks it off, and it did not happen")
 
     def _unknown(self, name: str) -> None:
         hint = did_you_mean(name, self._commands)
@@ -106,12 +126,22 @@ def _names(fact: str) -> set[str]:
 
 
 def lines_of(words: Sequence[str]) -> Iterator[str]:
-    """Yield the lines that are typed, with history and completion on a terminal, or that come through a pipe."""
+    """Yield the lines that are typed, with history and completion on a terminal, or that come through a pipe.
+
+    Raises StreamError when the standard input is closed or cannot be read.
+    """
+    if sys.stdin is None:
+        raise StreamError("the standard input is closed")
     if not sys.stdin.isatty():
-        for raw in sys.stdin.buffer:
-            yield raw.decode("utf-8", errors="replace")
+        try:
+            for raw in sys.stdin.buffer:
+                yield raw.decode("utf-8", errors="replace")
+        except OSError as error:
+            raise StreamError(f"the standard input cannot be read: {error.strerror}") from None
         return
     _prepare(words)
+    with suppress(AttributeError):
+        sys.stdin.reconfigure(errors="replace")  # type: ignore[union-attr]  # what is typed may be of another encoding
     while True:
         try:
             yield input("utak> ")

@@ -13,7 +13,7 @@ def make_robot(body: Body, task: Task, settings: Settings) -> Robot:
     from planner.cycle import Options
     from planner.cycle import Robot as Mind
 
-    warm(carrying=any(stage.carried for stage in stages(task)))
+    warm(carrying=any(stage.carried for stage in stages(task)), paths=settings.paths)
     options = Options(
         paths=settings.paths, kb_files=settings.kb_files, max_steps=settings.max_steps, pull=settings.pull
     )

@@ -1,11 +1,14 @@
 """An episode as it can be read step by step: one that runs now, or one that was recorded."""
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import shapely
 
+from kb.factfile import parse_facts
 from kb.problems import BadInputError, Problem, Span
+from kb.source import decode
 from simulator.episode import Episode, EpisodeLog, Line, read_episode
 from simulator.picture import draw
 from simulator.record import recorded_world
@@ -29,40 +32,86 @@ class Story(Protocol):
     def advance(self) -> bool:
         """Go on by one step; False when there is none."""
 
+    @property
+    def facts(self) -> list[str]:
+        """The world model of this step as facts, which are well formed. Raises BadInputError."""
+
     def picture(self) -> str:
         """The table at this step."""
 
 
-class Running:
-    """A run of the robot in a scenario; it wakes at once."""
+class Moment(NamedTuple):
+    """What is known of a run after one of its steps: its line, its end, where things lay and where Utak stood."""
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
-        self.result: Line | None = None
+    line: Line
+    result: Line | None
+    polygons: Mapping[str, Any]
+    utak: tuple[float, float]
+
+
+class Running:
+    """A run of the robot in a scenario; it wakes at once.
+
+    A step is whole or did not happen. One that was broken off, at whatever point, leaves a robot and a table that
+    nothing is known of; they are made anew by repeating the run up to the last whole step, which gives the same.
+
+    Parameters
+    ----------
+    begin : returns a fresh session of the same run.
+    """
+
+    def __init__(self, begin: Callable[[], Session]) -> None:
+        self._begin = begin
+        session = begin()
         session.wake()
-        self._close()
+        self._world = session.table.world
+        self._moment = _moment(session)
+        self._session: Session | None = session
 
     @property
     def line(self) -> Line:
         """The line of the last step."""
-        return self._session.line
+        return self._moment.line
+
+    @property
+    def result(self) -> Line | None:
+        """How it ended, once it has."""
+        return self._moment.result
 
     def advance(self) -> bool:
         """Let the robot act once."""
-        if self._session.finished:
+        if self.result is not None:
             return False
-        self._session.step()
-        self._close()
+        session = self._session or self._repeated()
+        self._session = None  # whatever breaks this off, the session is not gone on with
+        session.step()
+        self._moment = _moment(session)
+        self._session = session
         return True
+
+    @property
+    def facts(self) -> list[str]:
+        """The world model after the last step."""
+        return facts_of_line(self.line)
 
     def picture(self) -> str:
         """The table now."""
-        table = self._session.table
-        return draw(table.world, table.polygons, table.utak)
+        return draw(self._world, self._moment.polygons, self._moment.utak)
 
-    def _close(self) -> None:
-        if self._session.finished:
-            self.result = self._session.end().line["result"]
+    def _repeated(self) -> Session:
+        """A session at the last whole step."""
+        session = self._begin()
+        session.wake()
+        while session.line["step"] != self.line["step"]:
+            session.step()
+        return session
+
+
+def _moment(session: Session) -> Moment:
+    """What is known after a step of a session; it is ended when the robot has come to a verdict."""
+    result = session.end().line["result"] if session.finished else None
+    table = session.table
+    return Moment(session.line, result, dict(table.polygons), table.utak)
 
 
 class Recorded:
@@ -89,16 +138,28 @@ class Recorded:
         self._at += 1
         return True
 
+    @property
+    def facts(self) -> list[str]:
+        """The world model of this step, read as the facts of a file are."""
+        facts = facts_of_line(self.line)
+        try:
+            parse_facts(decode(self._name, "\n".join(facts).encode("utf-8")))
+        except BadInputError as bad:
+            first = bad.problems[0]
+            what = f"belief.facts, number {first.span.line}: {first.what}: the episode is damaged"
+            raise BadInputError([Problem(self._name, Span(self._at + 2, 1, 1), what)]) from None
+        return facts
+
     def picture(self) -> str:
         """The table at this step."""
         try:
             world = recorded_world(self._episode.header)
             polygons = {name: shapely.Polygon(ring) for name, ring in self.line["objects"].items()}
             x, y = self.line["utak"]
-        except (KeyError, IndexError, TypeError, ValueError, AttributeError):
-            what = f"step {self._at} does not record the table: the episode is damaged"
+            return draw(world, polygons, (x, y))
+        except (ValueError, shapely.errors.ShapelyError):  # a boundary that crosses itself, say
+            what = f"step {self._at} does not record a table that can be drawn: the episode is damaged"
             raise BadInputError([Problem(self._name, Span(self._at + 2, 1, 1), what)]) from None
-        return draw(world, polygons, (x, y))
 
 
 def open_story(path: Path | str, settings: Settings) -> Story:
@@ -107,7 +168,8 @@ def open_story(path: Path | str, settings: Settings) -> Story:
     Raises CannotOpenError or BadInputError.
     """
     if Path(path).is_dir():
-        return Running(Session(read_scenario(path), settings, make_robot, EpisodeLog(None)))
+        scenario = read_scenario(path)
+        return Running(lambda: Session(scenario, settings, make_robot, EpisodeLog(None)))
     episode = read_episode(path)
     if not episode.steps:
         raise BadInputError([Problem(str(path), Span(1, 1, 1), "the episode ends before its first step")])

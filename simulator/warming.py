@@ -9,39 +9,81 @@ import gc
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+import threading
+from collections.abc import Callable, Collection, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import geometry
 from geometry.compiled import tell
+from kb.machine import end_with_parent, lines_of_parent
+from utak_command import beside
 
 PACKAGES = [Path(geometry.__file__).parent.with_name(name) for name in ("geometry", "kb", "planner", "simulator")]
-INDEX = "itinerary.itineraries-*.nbi"  # numba's index of the kernel that takes longest
 
 
-def warm(carrying: bool) -> None:
+def warm(carrying: bool, paths: str = "skeleton") -> None:
     """Compile the kernels that a robot needs, if they are not in the cache; say so on stderr.
 
-    carrying : whether anything is to be carried.
+    carrying : whether anything is to be carried. paths : the path-finder, as `--paths` names it.
     """
-    if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0" or not cold():
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
+        return
+    missing = cold([search, *([carry] if carrying else []), *([sightlines] if paths == "visibility" else [])])
+    if not missing:
         return
     tell()
-    mine, others = HALVES[carrying]
-    command = [sys.executable, "-m", "simulator.warming", *(use.__name__ for use in others)]
-    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL):
+    mine, others = HALVES[carrying] if search in missing else ((), ())
+    _compile_beside([*mine, *(use for use in missing if use not in (*mine, *others))], others)
+
+
+def warm_all() -> None:
+    """Compile the kernels for everything, in two processes; those that are in the cache are loaded."""
+    mine, others = HALVES[True]
+    _compile_beside((*mine, move), (*others, sightlines, change))
+
+
+def _compile_beside(mine: Sequence[Callable[[], None]], others: Sequence[Callable[[], None]]) -> None:
+    """Compile for some uses here and for others in a process beside this one, which ends when this one does."""
+    if not others:
         compile_for(mine)
-        if sys.dont_write_bytecode:
-            compile_modules()
+        return
+    command = beside("simulator.warming", *(use.__name__ for use in others))
+    quiet = subprocess.DEVNULL
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=quiet, stderr=quiet) as other:
+        try:
+            compile_for(mine)
+            if sys.dont_write_bytecode:
+                compile_modules()
+            other.wait()
+        except BaseException:
+            other.kill()
+            raise
 
 
-def cold() -> bool:
-    """Is there no compiled kernel in the cache of this installation?"""
-    elsewhere = os.environ.get("NUMBA_CACHE_DIR")
-    places = (
-        [Path(elsewhere)] if elsewhere else [Path(geometry.__file__).parent / "__pycache__", Path.home() / ".cache"]
-    )
-    return not any(place.is_dir() and next(place.rglob(INDEX), None) for place in places)
+def cold(uses: Collection[Callable[[], None]]) -> list[Callable[[], None]]:
+    """Return the uses whose kernels are not in the cache of this installation."""
+    places = [place for place in _caches() if place.is_dir()]
+    return [use for use in uses if not any(next(place.rglob(f"{INDEX[use]}-*.nbi"), None) for place in places)]
+
+
+def kept() -> int:
+    """Return how many of our kernels are in the cache."""
+    names = {path.stem for path in Path(geometry.__file__).parent.glob("*.py")}
+    found = {path.name.split("-")[0] for place in _caches() if place.is_dir() for path in place.rglob("*.nbi")}
+    return sum(name.split(".")[0] in names for name in found)
+
+
+def _caches() -> list[Path]:
+    """Where numba keeps compiled kernels: the first of these that it can write to."""
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    if given:
+        return [Path(given)]
+    found = [Path(geometry.__file__).parent / "__pycache__"]
+    users = [os.environ.get(name) for name in ("XDG_CACHE_HOME", "LOCALAPPDATA")]
+    with suppress(RuntimeError):  # a user without a home
+        users += [str(Path.home() / ".cache"), str(Path.home() / "Library" / "Caches")]
+    return found + [Path(folder) / "numba" for folder in users if folder]
 
 
 def compile_modules() -> None:
@@ -88,6 +130,38 @@ def see() -> None:
     one = np.ones(1, np.int16)
     counts = Counts(np.zeros((1, 1), np.int32), np.ones((1, 1), np.int16), one, one)
     blobs(pictures(drawn, counts, full[None], 1, 1)[0], drawn)
+
+
+def sightlines() -> None:
+    """Look along straight lines, as `--paths visibility` does."""
+    import numpy as np
+
+    from geometry.visibility import visibility_way
+
+    free = np.ones((5, 5), np.bool_)
+    free[2, 2] = False
+    visibility_way(free, (0.5, 2.5), (4.5, 2.5))
+
+
+def change() -> None:
+    """Change a screen, and keep ways away from a place."""
+    import numpy as np
+
+    free = np.ones((9, 12), np.bool_)
+    free[4, 3:9] = False
+    screen = geometry.Screen(free).changed([4, 0, 1], [6, 5, 5], [True, False, False])
+    screen.routes((0.5, 4.5), (11.5, 4.5), k=4)
+    screen.shortest((0.5, 4.5), (11.5, 4.5))
+
+
+def move() -> None:
+    """Move a shape past another at any angle."""
+    import shapely
+
+    from geometry.motion import plan_motion
+    from geometry.rigid import Pose
+
+    plan_motion(shapely.box(0, 0, 3, 1), [shapely.box(4, -3, 5, 1.5)], Pose(0.0, 0.0, 0.0), Pose(6.0, 0.0, 90.0))
 
 
 def tell_shapes() -> None:
@@ -140,10 +214,17 @@ HALVES: dict[bool, tuple[tuple[Callable[[], None], ...], ...]] = {
 }
 
 
+INDEX = {search: "itinerary.itineraries", carry: "hauling.haul", sightlines: "visibility.line_open"}
+"""A kernel of each use by whose index in numba's cache the use is known to have been compiled: the longest."""
+
+
 def main(names: Sequence[str]) -> None:
     """Compile for the uses of these names: the work of the other process."""
-    compile_for([use for half in HALVES[True] for use in half if use.__name__ in names])
+    uses = {use.__name__: use for use in (*(use for half in HALVES[True] for use in half), sightlines, change)}
+    compile_for([uses[name] for name in names])
 
 
 if __name__ == "__main__":
+    end_with_parent()
+    threading.Thread(target=next, args=(lines_of_parent(),), daemon=True).start()
     main(sys.argv[1:])

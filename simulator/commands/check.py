@@ -1,12 +1,17 @@
 """`utak check`: are the files of a scenario as they must be?"""
 
 import argparse
+import sys
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from kb.problems import BadInputError, CannotOpenError, Problem, Span
 from simulator import exits
+from simulator.untrusted import add_option, refuse_links
+
+TOLD = {exits.DONE: "ok", exits.BAD_INPUT: "bad", exits.CANNOT_OPEN: "cannot be opened", exits.OUR_BUG: "a bug of ours"}
 
 
 def add(parts: Any) -> None:
@@ -14,21 +19,23 @@ def add(parts: Any) -> None:
     part = parts.add_parser("check", help="check scenarios or single files of them")
     what = "a scenario, a folder of them, a file of one, or a file of rules for --kb"
     part.add_argument("paths", nargs="+", metavar="FILE|FOLDER", help=what)
+    add_option(part)
     part.set_defaults(execute=execute)
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Check every path; all problems are reported together."""
-    problems: list[Problem] = []
-    for path in [part for given in options.paths for part in _parts(Path(given))]:
-        try:
-            _check(path)
+    """Check every path, whatever is wrong with another; the exit code is that of the worst."""
+    from simulator.outcome import attempt
+
+    codes = []
+    for root, path in [(Path(given), part) for given in options.paths for part in _parts(Path(given))]:
+        codes.append(attempt(_check, path, root, options))
+        if codes[-1] == exits.DONE:
             print(f"{path}: ok")
-        except BadInputError as bad:
-            problems += bad.problems
-    if problems:
-        raise BadInputError(problems)
-    return exits.DONE
+    if len(codes) > 1:
+        counts = Counter(codes)
+        print(", ".join(f"{counts[code]} {told}" for code, told in TOLD.items() if counts[code]), file=sys.stderr)
+    return exits.worst(codes)
 
 
 def _parts(path: Path) -> list[Path]:
@@ -39,13 +46,14 @@ def _parts(path: Path) -> list[Path]:
     return sorted({goal.parent for goal in path.rglob("goal.lp")}) or [path]
 
 
-def _check(path: Path) -> None:
+def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
     """Check a scenario folder or one file; what a file must hold is known by its name."""
     from simulator.scenario import read_scenario
 
+    refuse_links(options, path, root)
     if path.is_dir():
         read_scenario(path)
-        return
+        return exits.DONE
     check = _checks().get(path.name)
     if check is None:
         if not path.exists():
@@ -57,6 +65,7 @@ def _check(path: Path) -> None:
             hint = f"a scenario's files are {', '.join(sorted(_checks()))}; files of rules end in .lp"
             raise BadInputError([Problem(str(path), Span(1, 1, 1), what, hint=hint)])
     check(path)
+    return exits.DONE
 
 
 def _rules(path: Path) -> None:

@@ -6,11 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 from simulator import exits
 from simulator.commands.run import add_settings, settings_of
+from simulator.naming import with_utak
 from simulator.numbers import whole
 from simulator.printing import as_json
+from simulator.untrusted import refuse_links
 
 if TYPE_CHECKING:
     from simulator.story import Story
+
+MOST = 1_000_000  # rows
 
 
 def add(parts: Any) -> None:
@@ -20,30 +24,36 @@ def add(parts: Any) -> None:
     part.add_argument("query", metavar="QUERY", help='such as "object(X), shape(X, square, C)"')
     part.add_argument("--at", type=_step, metavar="STEP", help="the step to ask at (default: the last; 0: on waking)")
     part.add_argument("--json", action="store_true", help="print the answer as one JSON object")
+    part.add_argument("--limit", type=_limit, metavar="N", help="print so many rows at most (default 10000)")
     add_settings(part)
     part.set_defaults(execute=execute)
 
 
 def execute(options: argparse.Namespace) -> int:
     """Go to the step, ask, and print the answer."""
-    from kb.query import QueryEngine, QueryLimitError
-    from simulator.story import facts_of_line, open_story
+    from kb.query import MOST_ROWS, QueryEngine, QueryLimitError
+    from simulator.story import open_story
 
+    refuse_links(options, options.story)
     story = open_story(options.story, settings_of(options))
     _go_to(story, options.story, options.at)
     step = story.line["step"]
     try:
         with QueryEngine(rules=options.kb) as engine:
-            answer = engine.ask(facts_of_line(story.line), options.query)
+            answer = engine.ask(story.facts, with_utak(options.query), options.limit or MOST_ROWS)
     except QueryLimitError as limit:
         print(f"utak: {limit}", file=sys.stderr)
         return exits.LIMIT
     if options.json:
-        rows = [list(row) for row in answer.rows]
-        print(as_json({"step": step, "answer": answer.kind, "variables": list(answer.variables), "rows": rows}))
+        told = {"step": step, "answer": answer.kind, "variables": list(answer.variables)}
+        print(as_json({**told, "rows": [list(row) for row in answer.rows], "more": answer.more}))
     else:
         print(answer)
     return exits.DONE
+
+
+def _limit(text: str) -> int:
+    return whole(text, 1, MOST)
 
 
 def _go_to(story: "Story", name: str, step: int | None) -> None:

@@ -5,6 +5,7 @@ from typing import Any
 
 from simulator import exits
 from simulator.commands.run import add_settings, settings_of
+from simulator.untrusted import refuse_links
 
 
 def add(parts: Any) -> None:
@@ -21,6 +22,7 @@ def execute(options: argparse.Namespace) -> int:
     from simulator.prompt import Prompt, lines_of
     from simulator.story import open_story
 
+    refuse_links(options, options.story)
     story = open_story(options.story, settings_of(options))
     with QueryEngine(rules=options.kb) as engine:
         prompt = Prompt(story, engine)

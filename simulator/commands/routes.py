@@ -9,6 +9,7 @@ from kb.problems import BadInputError, Problem, Span
 from simulator import exits
 from simulator.numbers import decimal, whole
 from simulator.printing import as_json
+from simulator.untrusted import add_option, refuse_links
 
 if TYPE_CHECKING:
     from geometry.distance import Bools
@@ -17,17 +18,33 @@ if TYPE_CHECKING:
 LARGEST = 200_000_000  # bytes of a map
 MOST = 1000
 FURTHEST = 1e6  # squares: no point lies further out
+CONVENTION = (
+    "Points are in squares, with fractions. With --origin bottom, the default, (0, 0) is the south-west corner, x goes "
+    "east and y north, as in scenarios. With --origin top, (0, 0) is the north-west corner, x goes east and y SOUTH, "
+    "as in .scen files of the Moving AI benchmarks; a line of those names squares by whole numbers, and the middle of "
+    "their square A, B is the point A+0.5,B+0.5. The ways are printed with the same origin."
+)
 
 
 def add(parts: Any) -> None:
     """Declare the subcommand."""
-    part = parts.add_parser("routes", help="find distinct ways on a Moving AI map or a scenario's table")
+    part = parts.add_parser(
+        "routes",
+        help="find distinct ways on a Moving AI map or a scenario's table",
+        description="Find topologically distinct ways between two points of a map or of a scenario's table.",
+        epilog=CONVENTION,
+    )
     part.add_argument("map", metavar="MAP|SCENARIO", help="a .map file, or a scenario folder")
     part.add_argument("--from", dest="start", type=_point, required=True, metavar="X,Y", help="where the ways begin")
     part.add_argument("--to", dest="goal", type=_point, required=True, metavar="X,Y", help="where they end")
+    part.add_argument(
+        "--origin", choices=("bottom", "top"), default="bottom", help="the corner from which points count (see below)"
+    )
     part.add_argument("-k", type=_count, default=3, metavar="N", help="how many ways at most (default 3)")
     part.add_argument("--json", action="store_true", help="print one JSON object")
     part.add_argument("--svg", metavar="FILE", help="draw squares, skeleton, pathgraph and ways")
+    add_option(part)
+    part.add_argument("--force", action="store_true", help="let --svg overwrite a file that is no picture")
     part.set_defaults(execute=execute)
 
 
@@ -35,21 +52,23 @@ def execute(options: argparse.Namespace) -> int:
     """Find the ways, and print them."""
     from geometry.screen import Screen
 
+    refuse_links(options, options.map)
     free = _free(options.map)
+    top = len(free) if options.origin == "top" else None
+    start, goal = (_turned(point, top) for point in (options.start, options.goal))
     try:
         screen = Screen(free)
-        routes = screen.routes(options.start, options.goal, k=options.k)
+        routes = screen.routes(start, goal, k=options.k)
     except ValueError as error:
-        raise BadInputError([Problem(options.map, Span(1, 1, 1), str(error))]) from None
+        hint = "" if top is None else "y is counted from the bottom here"
+        raise BadInputError([Problem(options.map, Span(1, 1, 1), str(error), hint=hint)]) from None
     if options.svg:
-        from geometry.picture import draw
-        from kb.problems import CannotOpenError
+        from geometry.picture import draw, place
+        from simulator.outputs import is_svg, write_whole
 
-        try:
-            Path(options.svg).write_text(draw(screen, routes))
-        except OSError as error:
-            raise CannotOpenError(options.svg, error.strerror or str(error)) from None
-    _print(routes, options.json)
+        picture = draw(screen, routes, ends=(start, goal), words=lambda point: place(_turned(point, top)))
+        write_whole(options.svg, picture, is_svg, "SVG picture", options.force)
+    _print(routes, options.json, top)
     return exits.DONE if routes else exits.NOT_REACHED
 
 
@@ -81,23 +100,32 @@ def _free_of_scenario(name: str) -> "Bools":
     return ~blocked
 
 
-def _print(routes: "list[Route]", json: bool) -> None:
+def _turned(point: tuple[float, float], top: int | None) -> tuple[float, float]:
+    """A point counted from the bottom as one from the top, or the other way round. top : rows; None for as it is."""
+    return point if top is None else (point[0], top - point[1])
+
+
+def _print(routes: "list[Route]", json: bool, top: int | None) -> None:
     if json:
-        print(as_json({"routes": [_entry(route) for route in routes]}))
+        print(as_json({"routes": [_entry(route, top) for route in routes]}))
         return
     if not routes:
         print("there is no way", file=sys.stderr)
     for number, route in enumerate(routes, 1):
-        points = " ".join(f"({x:g}, {y:g})" for x, y in route.points.tolist())
+        points = " ".join(f"({x:g}, {y:g})" for x, y in _points(route, top))
         print(f"{number}: length {route.length:.3f}, clearance {route.clearance:g}: {points}")
 
 
-def _entry(route: "Route") -> dict[str, Any]:
+def _points(route: "Route", top: int | None) -> list[list[float]]:
+    return [list(_turned((x, y), top)) for x, y in route.points.tolist()]
+
+
+def _entry(route: "Route", top: int | None) -> dict[str, Any]:
     return {
         "length": float(route.length),
         "clearance": float(route.clearance),
         "signature": [int(part) for part in route.signature],
-        "points": route.points.tolist(),
+        "points": _points(route, top),
     }
 
 

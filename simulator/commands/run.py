@@ -2,11 +2,13 @@
 
 import argparse
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 from simulator import exits
 from simulator.numbers import decimal, whole
 from simulator.printing import as_json
+from simulator.terminal import shown
+from simulator.untrusted import add_option, refuse_links
 
 if TYPE_CHECKING:
     from simulator.session import Result, Session
@@ -20,10 +22,17 @@ def add(parts: Any) -> None:
     part = parts.add_parser("run", help="run the robot on a scenario")
     part.add_argument("scenario", metavar="SCENARIO", help="a scenario folder")
     add_settings(part)
-    part.add_argument("--log", metavar="EP.jsonl", help="write the episode to this file as it happens")
+    part.add_argument(
+        "--log", metavar="EP.jsonl", help="write the episode to this file as it happens; - is the standard output"
+    )
     part.add_argument("--resume", action="store_true", help="go on from the episode that --log names")
+    part.add_argument("--force", action="store_true", help="let --log overwrite a file that is no episode")
     part.add_argument("--json", action="store_true", help="print the result as one JSON object")
-    part.add_argument("--watch", action="store_true", help="draw the table on stderr after every step")
+    part.add_argument(
+        "--watch",
+        action="store_true",
+        help="draw the true table, which the robot does not see, on stderr after every step",
+    )
     part.set_defaults(execute=execute)
 
 
@@ -37,24 +46,26 @@ def add_settings(part: argparse.ArgumentParser) -> None:
     )
     part.add_argument("--max-steps", type=_steps, metavar="N", help="give up after so many commands (default 200)")
     part.add_argument("--kb", action="append", metavar="FILE", default=[], help="a file of rules to add; repeatable")
+    add_option(part)
 
 
 def execute(options: argparse.Namespace) -> int:
     """Run, and print the result."""
-    from simulator.episode import EpisodeLog
+    from simulator.episode import STANDARD_OUTPUT, EpisodeLog
     from simulator.robots import make_robot
     from simulator.scenario import read_scenario
     from simulator.session import Session
 
-    if options.resume and options.log is None:
+    if options.resume and options.log in (None, STANDARD_OUTPUT):
         print("utak run: --resume needs --log EP.jsonl", file=sys.stderr)
         return exits.USAGE
+    refuse_links(options, options.scenario)
     scenario = read_scenario(options.scenario)
     settings = settings_of(options, _recorded(options))
-    with EpisodeLog(options.log, options.resume) as log:
+    with EpisodeLog(options.log, options.resume, options.force) as log:
         session = Session(scenario, settings, make_robot, log)
         result = session.run(_watcher(options.watch))
-    _print(result, options.json)
+    _print(result, options.json, sys.stderr if options.log == STANDARD_OUTPUT else sys.stdout)
     return exit_code(result)
 
 
@@ -83,20 +94,18 @@ def _recorded(options: argparse.Namespace) -> dict[str, Any] | None:
 
     from simulator.episode import complete_lines, read_episode
 
-    if not options.resume:
-        return None
-    if not Path(options.log).exists() or not complete_lines(options.log):
+    if not options.resume or not Path(options.log).exists() or not complete_lines(options.log):
         return None
     found = read_episode(options.log).header.get("options")
     return found if isinstance(found, dict) else None
 
 
-def _print(result: "Result", json: bool) -> None:
+def _print(result: "Result", json: bool, stream: TextIO) -> None:
     if json:
-        print(as_json({**result.line["result"], "unmet": list(result.unmet)}))
+        print(as_json({**result.line["result"], "unmet": list(result.unmet)}), file=stream)
         return
     truth = {None: "", True: ", achieved", False: ", not achieved"}[result.achieved]
-    print(f"{result.verdict} in {result.steps} steps{truth}: {result.reason}")
+    print(f"{result.verdict} in {result.steps} steps{truth}: {shown(result.reason, lines=False)}", file=stream)
     for expected in result.unmet:
         print(f"not met: {expected}", file=sys.stderr)
 
@@ -111,8 +120,10 @@ def _watcher(watch: bool) -> Any:
 
         line, table = session.line, session.table
         if watch:
+            print("the true table, which the robot may believe to be otherwise:", file=sys.stderr)
             print(draw(table.world, table.polygons, table.utak), file=sys.stderr, end="")
-        print(f"step {line['step']}: {describe(line['action'])}: {line['why']}", file=sys.stderr)
+        why = shown(line["why"], lines=False)
+        print(f"step {line['step']}: {describe(line['action'])}: {why}", file=sys.stderr)
 
     return tell
 

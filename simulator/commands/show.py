@@ -6,12 +6,14 @@ from pathlib import Path
 from typing import Any
 
 from simulator import exits
+from simulator.untrusted import add_option, refuse_links
 
 
 def add(parts: Any) -> None:
     """Declare the subcommand."""
     part = parts.add_parser("show", help="print a scenario's world as a picture (the form of world.txt)")
     part.add_argument("scenario", metavar="SCENARIO", help="a scenario folder")
+    add_option(part)
     part.set_defaults(execute=execute)
 
 
@@ -20,6 +22,7 @@ def execute(options: argparse.Namespace) -> int:
     from simulator.picture import draw
     from simulator.scenario import read_any_world
 
+    refuse_links(options, options.scenario)
     world = read_any_world(Path(options.scenario))
     sys.stdout.write(draw(world))
     if world.heading:

@@ -2,11 +2,25 @@
 
 import argparse
 import sys
-from typing import Any
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from kb.problems import BadInputError
 from simulator import exits
 from simulator.commands.run import add_settings, settings_of
+from simulator.terminal import shown
+from simulator.untrusted import refuse_links
+
+if TYPE_CHECKING:
+    from simulator.settings import Settings
+
+WORDS = {
+    exits.DONE: ("ok", "passed"),
+    exits.NOT_REACHED: ("FAILED", "failed"),
+    exits.BAD_INPUT: ("BAD", "bad"),
+    exits.CANNOT_OPEN: ("ABSENT", "cannot be opened"),
+    exits.OUR_BUG: ("BUG", "ended by a bug of ours"),
+}
 
 
 def add(parts: Any) -> None:
@@ -18,22 +32,40 @@ def add(parts: Any) -> None:
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Run every scenario, print one line each, and say how many passed."""
-    from simulator.trial import run_trial, scenarios_in
+    """Run every scenario, print one line each, and say how many passed; the exit code is that of the worst."""
+    from simulator.outcome import attempt
 
     settings = settings_of(options)
-    folders = [scenario for folder in options.folders for scenario in scenarios_in(folder)]
-    passed, bad = 0, False
-    for folder in folders:
-        try:
-            trial = run_trial(folder, settings)
-            word, message = "ok" if trial.passed else "FAILED", trial.message
-            passed += trial.passed
-        except BadInputError as problem:
-            word, message, bad = "BAD", "its files are not as they must be", True
-            print(problem, file=sys.stderr)
-        print(f"{word} {folder}: {message}", flush=True)
-    print(f"{passed} of {len(folders)} passed", file=sys.stderr)
-    if bad:
-        return exits.BAD_INPUT
-    return exits.DONE if passed == len(folders) else exits.NOT_REACHED
+    found: list[tuple[Path, Path]] = []
+    codes = []
+    for folder in options.folders:
+        absent = attempt(_look_into, Path(folder), found)
+        codes += [absent] if absent else []
+    for root, scenario in found:
+        code = attempt(_tried, root, scenario, settings, options)
+        codes.append(code)
+        if code not in (exits.DONE, exits.NOT_REACHED):
+            print(f"{WORDS[code][0]} {scenario}: see above", flush=True)
+    counts = Counter(codes)
+    others = "".join(f", {counts[code]} {WORDS[code][1]}" for code in WORDS if code != exits.DONE and counts[code])
+    print(f"{counts[exits.DONE]} of {len(codes)} passed{others}", file=sys.stderr)
+    return exits.worst(codes)
+
+
+def _look_into(folder: Path, found: list[tuple[Path, Path]]) -> int:
+    """Find the scenarios in a folder."""
+    from simulator.trial import scenarios_in
+
+    found += ((folder, scenario) for scenario in scenarios_in(folder))
+    return exits.DONE
+
+
+def _tried(root: Path, folder: Path, settings: "Settings", options: argparse.Namespace) -> int:
+    """Run one scenario and print how it went."""
+    from simulator.trial import run_trial
+
+    refuse_links(options, folder, root)
+    trial = run_trial(folder, settings)
+    code = exits.DONE if trial.passed else exits.NOT_REACHED
+    print(f"{WORDS[code][0]} {folder}: {shown(trial.message, lines=False)}", flush=True)
+    return code

@@ -1,20 +1,18 @@
 """The contracted skeleton against plain walks, one cell at a time, and words of states against single cells."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from geometry import Screen, eights, necks
-from geometry.bones import AHEAD, CHORD, is_node
+from geometry.bones import AHEAD, is_node
 from geometry.skeleton import HALT
 from tests.geometry import lookalikes, oracles
 
 
 def plain_walks(screen):
-    """Nodes, and (first end, last end, lowest cell, length) of all chains, from the links of single cells."""
+    """Nodes, and (first end, last end, lowest cell, steps) of all chains, from the links of single cells."""
     state, heights = screen._skeleton_at(1)[0], screen._square.ravel()
     width = state.shape[1]
     ways = {c: [d for d in range(4) if here >> d & 1] for c, here in enumerate(state.ravel().tolist()) if here}
@@ -27,7 +25,7 @@ def plain_walks(screen):
             first, last = 4 * numbers[cell] + direction, 4 * numbers[cells[-1]] + back
             if first < last:
                 lowest = min(cells, key=lambda c: (heights[c], c))
-                chains.append((first, last, lowest, plain_length(cells, width)))
+                chains.append((first, last, lowest, len(cells) - 1))
     return nodes, chains
 
 
@@ -41,21 +39,11 @@ def plain_walk(cell, direction, ways, numbers, width):
         (direction,) = (d for d in ways[cells[-1]] if d != direction ^ 2)
 
 
-def plain_length(cells, width):
-    """The sum of the chords of a chain."""
-    joints = cells[:-1:CHORD] + cells[-1:]
-    places = [divmod(cell, width) for cell in joints]
-    length = 0.0
-    for (i, j), (k, m) in pairwise(places):
-        length += float(np.sqrt(float((k - i) ** 2 + (m - j) ** 2)))
-    return length
-
-
 def assert_same(screen):
     bones = screen._skeleton_at(1)[2]
     nodes, chains = plain_walks(screen)
     assert bones.node.tolist() == nodes
-    assert [*zip(*bones.port.T.tolist(), bones.neck.tolist(), bones.length.tolist(), strict=True)] == chains
+    assert [*zip(*bones.port.T.tolist(), bones.neck.tolist(), bones.steps.tolist(), strict=True)] == chains
 
 
 @settings(max_examples=200, deadline=None)

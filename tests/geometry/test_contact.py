@@ -240,3 +240,21 @@ def test_the_same_without_numba() -> None:
 def test_importing_contact_leaves_numba_alone() -> None:
     code = "import sys, geometry.contact; sys.exit('numba' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+@pytest.mark.parametrize("motion", [Translate(0, -5), Rotate(2, (50, 0))], ids=["push", "turn"])
+@pytest.mark.parametrize("bump_on", ["body", "obstacle"])
+def test_a_contour_told_by_points_however_near_is_met_where_it_is(bump_on: str, motion: Motion) -> None:
+    """An arc of 1e-3 squares in 20,000 points on a straight side: each step is shorter than any corner."""
+    radius = 1e-3 / math.pi
+    arc = [(radius * math.cos(t), radius * math.sin(t)) for t in np.linspace(0, math.pi, 20_000)]
+    bumpy, plain = shapely.Polygon([(-1, 0), (-1, -1), (1, -1), (1, 0), *arc]), box(-1, -1, 1, 0)
+    above, below = (bumpy, plain) if bump_on == "body" else (plain, bumpy)
+    end = Rotate(180, (0, 0)).carry(above)  # face to face: moved back, then on, it meets the bump alone
+    start = motion.part(-0.5).carry(Translate(0, radius).carry(end))
+    contact = Obstacles([below]).first_contact(Body(start), motion)
+    at = motion.part(contact.fraction).carry(start)
+    assert contact.obstacle == 0
+    assert contact.fraction == pytest.approx(0.5, abs=1e-3)
+    assert at.distance(below) < 1e-6
+    assert at.intersection(shapely.buffer(below, -1e-6, join_style="mitre")).area == 0.0

@@ -7,6 +7,7 @@ import pytest
 import shapely
 from shapely import affinity, box
 
+from geometry.contact import Body, Obstacles
 from geometry.floor import Floor
 from geometry.motion import Inside, Plan, plan_motion
 from geometry.rigid import Pose, Rotate
@@ -223,3 +224,28 @@ def test_what_is_found_has_no_missing_width() -> None:
     plan = plan_motion(BRICK, two_rooms(3.0), Pose(5, 6, 90), Pose(19, 7, 30))
     assert plan.passage is None and not plan.opens
     assert math.isnan(plan.missing)
+
+
+def slotted(door: float) -> list[shapely.Geometry]:
+    """A room of 20 x 20 with a wall across, and a door in it."""
+    room = shapely.box(0, 0, 20, 20).difference(shapely.box(1, 1, 19, 19))
+    return [room, shapely.box(10, 1, 11, 10 - door / 2), shapely.box(10, 10 + door / 2, 11, 19)]
+
+
+@pytest.mark.parametrize("size", [1e-3, 1e-4, 1e-5])
+@pytest.mark.parametrize(("times", "status"), [(0.0, "impossible"), (0.9, "impossible"), (1.5, "found"), (40, "found")])
+def test_a_body_however_small_is_decided_where_its_discs_decide(size: float, times: float, status: str) -> None:
+    body = shapely.box(-size / 2, -size / 2, size / 2, size / 2)
+    plan = plan_motion(body, slotted(times * size), Pose(3, 3, 0), Pose(17, 3, 90), cells=4000)
+    assert plan.status == status
+    at = Pose(3, 3, 0)
+    for motion in plan.motions:
+        assert Obstacles(slotted(times * size)).first_contact(Body(at.place(body)), motion).fraction == 1.0
+        at = motion.pose(at)
+    assert status != "found" or (at.x, at.y, at.degrees) == pytest.approx((17, 3, 90), abs=1e-9)
+
+
+def test_a_body_too_small_for_cells_in_a_tight_passage_is_refused() -> None:
+    body = shapely.box(-5e-5, -5e-5, 5e-5, 5e-5)
+    with pytest.raises(ValueError, match="smallest cells"):
+        plan_motion(body, slotted(1.1e-4), Pose(3, 3, 0), Pose(17, 3, 90), cells=4000)

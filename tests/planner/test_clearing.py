@@ -16,10 +16,11 @@ from kb.factfile import facts_of
 from kb.worldmodel import Node, Patch
 from planner.carrier import Carrier
 from planner.clearing import Clearer, Obstacle, obstacles
+from planner.decision import Decision
 from planner.destinations import Situation
 from planner.goals import Stage
 from planner.lying import drawn_out, hidden_behind, in_view
-from planner.pursuing import Decision, Pursuer
+from planner.pursuing import Pursuer
 from planner.verifying import Verifier
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of

@@ -164,7 +164,7 @@ def test_around_the_corner_is_out_of_sight() -> None:
     seen = [not body.occupied(*(int(v) for v in start + part * (end - start))) for part in np.linspace(0, 1, 500)]
     assert not all(seen)
     plain, _ = run(EMPTY, Task({}, (), (goal("around", "utak", term("corner")),)))
-    assert plain.verdict.verdict == "impossible"
+    assert plain.verdict.verdict == "possible_if"  # its walls were never felt
 
 
 def test_go_to_the_square() -> None:
@@ -298,7 +298,7 @@ def test_the_destination_of_a_thing_is_beside_it() -> None:
 def _situation(kind, model, binding):  # type: ignore[no-untyped-def]
     """A situation, with whatever fields it has."""
     known = {"model": model, "screens": Screens(model), "binding": binding, "rooms": rooms_of(model)}
-    known |= {"corners": corners(model), "task": SQUARE, "rules": ()}
+    known |= {"corners": corners(model), "task": SQUARE, "rules": (), "track": ()}
     return kind(**{name: known[name] for name in kind.__dataclass_fields__})
 
 
@@ -336,13 +336,14 @@ def test_he_who_is_carried_off_does_his_task_all_the_same() -> None:
 
 @pytest.mark.parametrize(
     ("anew", "shaken", "verdict"),
-    [(False, True, "impossible"), (True, False, "impossible"), (True, True, "limit")],
+    [(False, False, "possible_if"), (True, False, "possible_if"), (False, True, "limit"), (True, True, "limit")],
 )
-def test_who_began_anew_proves_nothing_if_looks_contradict_each_other_again(
+def test_nothing_is_proved_of_what_was_not_seen_while_looks_contradict_each_other(
     anew: bool, shaken: bool, verdict: str
 ) -> None:
     model = seen_whole(EMPTY)
     found = Decider(SQUARE).decide(model, [model.place])
-    assert (found.command, found.verdict) == (None, "impossible")
+    assert (found.command, found.verdict) == (None, "possible_if")
     after = Decider(SQUARE).decide(replace(model, anew=anew, shaken=shaken), [model.place])
-    assert (after.command, after.verdict, after.why) == (None, verdict, found.why)
+    assert (after.command, after.verdict) == (None, verdict)
+    assert found.why.startswith(after.why.partition(";")[0])

@@ -11,7 +11,8 @@ from kb.loads import Load
 from kb.rooms import rooms_of
 from kb.worldmodel import WorldModel
 from planner.cycle import Options, Robot
-from planner.deciding import Decider, Decision
+from planner.deciding import Decider
+from planner.decision import Decision
 from tests.planner.test_cycle import EMPTY, SQUARE, DrawnBody
 
 

@@ -22,12 +22,12 @@ from planner.aims import Aim
 from planner.carrier import Act, Carrier, See
 from planner.course import Course
 from planner.deciding import Decider
+from planner.decision import Decision
 from planner.destinations import Situation
 from planner.exploring import Lookout
 from planner.goals import Stage
 from planner.leading import NEARBY, by_way, lead, near, out
 from planner.lying import Landing, in_view
-from planner.pursuing import Decision
 from planner.refusing import Refusal
 from planner.screen import Squares
 from planner.transporting import Transporter

@@ -39,7 +39,50 @@ def test_query_asks_a_run_at_a_step(scene: Path, capsys: pytest.CaptureFixture[s
         "answer": "bindings",
         "variables": ["R", "N"],
         "rows": [["r1", 0]],
+        "more": False,
     }
+
+
+def test_rows_that_are_left_out_are_told_of(
+    scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asking = ["query", str(scene), "unseen(R, N), X = 1..12000", "--at", "0"]
+    for more, rows in (([], 10_000), (["--limit", "7"], 7), (["--limit", "12000"], 12_000)):
+        assert cli.main([*asking, "--json", *more]) == 0
+        found = json.loads(capsys.readouterr().out)
+        assert len(found["rows"]) == rows
+        assert found["more"] == (rows < 12_000)
+    assert cli.main([*asking, "--limit", "3"]) == 0
+    assert capsys.readouterr().out.endswith("\n... and more than these 3 rows\n")
+    for bad in ("0", "-1", "x", "1000001"):
+        assert cli.main([*asking, "--limit", bad]) == 2
+    assert repl(monkeypatch, "?- unseen(R, N), X = 1..12000.\n", str(scene)) == 0
+    assert capsys.readouterr().out.endswith("\n... and more than these 10000 rows\n")
+
+
+def test_the_robot_may_be_called_utak(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    facts = ["node(org).", "offset(org,100,200).", "node(o1)."]
+    monkeypatch.setattr("simulator.story.facts_of_line", lambda line: facts)
+    scene = ROOT / "examples" / "go_northeast"
+    for query, said in {
+        "offset(utak, E, N)": "E    N\n100  200\n",
+        "offset(org, E, N)": "E    N\n100  200\n",
+        "node(utak)": "yes\n",
+        'X = "utak"': 'X\n"utak"\n',
+    }.items():
+        assert cli.main(["query", str(scene), query, "--at", "0"]) == 0
+        assert capsys.readouterr().out == said
+
+
+def test_a_picture_of_the_truth_says_that_it_is(
+    scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert repl(monkeypatch, "show\nhelp\n", str(scene)) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("the true table, which the robot may believe to be otherwise:\nbbb")
+    assert "hundredths of a square" in out
+    assert cli.main(["run", str(scene), "--watch", "--max-steps", "1"]) == 75
+    assert capsys.readouterr().err.count("the true table") == 2
 
 
 def test_query_asks_an_episode(scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -104,10 +147,8 @@ def test_the_prompt_reads_an_episode_cut_short(
     assert repl(monkeypatch, "", str(path)) == 65
     bare = json.dumps({"utak": "episode", "version": 1}) + "\n" + json.dumps({"step": 0}) + "\n"
     path.write_text(bare)
-    assert repl(monkeypatch, "show\nfacts\nstep\n?- node(X).\n", str(path)) == 0
-    out = capsys.readouterr().out
-    assert f"{path}:2:1-1: error: step 0 does not record the table" in out
-    assert out.endswith("none\nthere are no more steps\nno\n")
+    assert repl(monkeypatch, "show\n", str(path)) == 65
+    assert f"{path}:1:1-1: error: the key options is missing" in capsys.readouterr().err
 
 
 class DoneRobot(scripted_robot.Robot):

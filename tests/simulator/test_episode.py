@@ -101,7 +101,7 @@ def test_a_killed_run_leaves_a_readable_episode_and_resumes(tmp_path: Path) -> N
 
 def test_resuming_something_else_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, options = tmp_path / "ep.jsonl", ["--log", str(tmp_path / "ep.jsonl"), "--resume"]
-    main(["run", str(write_scene(tmp_path / "one", 1)), *options])
+    main(["run", str(write_scene(tmp_path / "one", 1)), *options[:2]])
     before = path.read_bytes()
     other = str(write_scene(tmp_path / "other", 2))
     assert main(["run", other, *options]) == 65

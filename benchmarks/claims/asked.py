@@ -1,0 +1,77 @@
+"""Which worlds a campaign asks for, by kind, task and seed, and what is known of them by construction."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from shapely.geometry.base import BaseGeometry
+
+from benchmarks.odd.kinds import KINDS, odd_world
+from benchmarks.odd.tasks import NOWHERE
+from benchmarks.scenes import write
+from benchmarks.worlds import MAKERS, scenario
+
+OWN = "own_"  # before the names of the kinds of benchmarks.worlds
+OWN_ASKED = ("plain", "wide")  # those that --own runs
+
+
+@dataclass(frozen=True, order=True)
+class Asked:
+    """A world: an odd kind with task 0, or "own_" and a kind of benchmarks.worlds with its task from 1 to 9."""
+
+    kind: str
+    seed: int
+    task: int = 0
+
+    @property
+    def name(self) -> str:
+        """The world's name in tables, as it can be given to --only."""
+        return f"{self.kind}:{self.task}:{self.seed}" if self.task else f"{self.kind}:{self.seed}"
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known of a world: its task in a word, what it is within its kind, whether it can be done, and why not.
+
+    possible : "yes", "no" or "unknown". avoid : where the robot must never be, in squares of the table.
+    """
+
+    task: str
+    variant: str
+    possible: str
+    why: str
+    avoid: BaseGeometry = NOWHERE
+
+
+def named(text: str) -> Asked:
+    """Return the world of a name. Raises ValueError when it is none."""
+    kind, *numbers = text.split(":")
+    if kind not in all_kinds() or len(numbers) != 1 + kind.startswith(OWN):
+        raise ValueError(f"no world is called {text}: say KIND:SEED or own_KIND:TASK:SEED")
+    *task, seed = (int(number) for number in numbers)
+    return Asked(kind, seed, *task)
+
+
+def all_kinds() -> list[str]:
+    """Return the names of all kinds: the odd ones, then those of benchmarks.worlds."""
+    return [*KINDS, *(OWN + kind for kind in MAKERS)]
+
+
+def worlds_of(kinds: list[str], seed: int, count: int) -> list[Asked]:
+    """Return so many worlds of each kind (and of each task of the own kinds) from a seed on, the kinds in turn."""
+    asked = []
+    for number in range(seed, seed + count):
+        for kind in kinds:
+            tasks = sorted(MAKERS[kind.removeprefix(OWN)]) if kind.startswith(OWN) else [0]
+            asked += [Asked(kind, number, task) for task in tasks]
+    return asked
+
+
+def written(asked: Asked, folder: Path) -> Known:
+    """Write the scenario of a world into a folder and return what is known of it."""
+    if asked.kind.startswith(OWN):
+        own = scenario(asked.task, asked.seed, asked.kind.removeprefix(OWN))
+        write(own, folder)
+        return Known(f"task {asked.task}", "", "yes" if own.possible else "no", own.texts.unable)
+    odd = odd_world(asked.kind, asked.seed)
+    write(odd, folder)
+    return Known(odd.task, odd.variant, odd.possible, odd.texts.unable, odd.avoid)

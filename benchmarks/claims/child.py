@@ -1,0 +1,64 @@
+"""One run of the robot, within limits of processor time and memory: python -m benchmarks.claims.child FOLDER ...
+
+Writes FOLDER/episode.jsonl, FOLDER/cycles.txt (processor seconds of waking and of each command, a line each, as they
+come: a run that is killed leaves them) and FOLDER/result.json.
+"""
+
+import argparse
+import json
+import resource
+from pathlib import Path
+
+EPISODE, CYCLES, RESULT = "episode.jsonl", "cycles.txt", "result.json"
+
+
+def main() -> None:
+    """Limit this process, run, and write what came of it."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.claims.child")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--noise", type=float, default=0.0)
+    parser.add_argument("--noise-seed", type=int, default=0)
+    parser.add_argument("--max-steps", type=int, default=200)
+    parser.add_argument("--seconds", type=int, default=0, help="of the processor; 0: no limit")
+    parser.add_argument("--megabytes", type=int, default=0, help="of address space; 0: no limit")
+    given = parser.parse_args()
+    if given.seconds:
+        resource.setrlimit(resource.RLIMIT_CPU, (given.seconds, given.seconds + 5))
+    if given.megabytes:
+        resource.setrlimit(resource.RLIMIT_AS, (given.megabytes << 20,) * 2)
+    run(given.folder, given.noise, given.noise_seed, given.max_steps)
+
+
+def run(folder: Path, noise: float, noise_seed: int, max_steps: int) -> None:
+    """Run the robot in the scenario of a folder and write the three files."""
+    from benchmarks.stopwatch import TimedBody, TimedRobot
+    from kb.body import Body
+    from kb.task import Task
+    from simulator.episode import EpisodeLog
+    from simulator.robots import make_robot
+    from simulator.scenario import read_scenario
+    from simulator.session import Session
+    from simulator.settings import Settings
+
+    robots: list[TimedRobot] = []
+
+    def make(body: Body, told: Task, settings: Settings) -> TimedRobot:
+        timed = TimedBody(body)
+        robots.append(TimedRobot(make_robot(timed, told, settings), timed))
+        return robots[0]
+
+    settings = Settings(seed=noise_seed, noise=noise, max_steps=max_steps)
+    with EpisodeLog(folder / EPISODE) as log, (folder / CYCLES).open("w") as cycles:
+
+        def noted(session: Session) -> None:
+            cycles.write(f"{robots[0].cycles[-1].processor:.3f}\n")
+            cycles.flush()
+
+        result = Session(read_scenario(folder), settings, make, log).run(noted)
+    names = ("believed", "achieved", "verdict", "reason", "steps", "unmet")
+    told = {name: getattr(result, name) for name in names}
+    (folder / RESULT).write_text(json.dumps(told) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,345 @@
+"""Routes on random small floors beside exact answers.
+
+    python -m benchmarks.floors --count 10000 [--seed 1] [--only words,shortest,sets,bodies,avoid,images,chains]
+
+Each floor is asked everything once, from a place of its own; what differs from brute force (benchmarks/exact.py) is
+printed with the floor's number, and the number of disagreements is the exit code's reason: 1 unless it is 0.
+"""
+
+import argparse
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from benchmarks.exact import Exact, clearances, labels
+from geometry import Route, Screen
+from geometry.visibility import visibility_way
+
+Bools = NDArray[np.bool_]
+XY = tuple[float, float]
+NEAR = 1e-9  # squares by which lengths may differ for rounding
+RADII = [0.3, 0.5, 0.55, 0.6, 0.7071, 0.75, 1.0, 1.2, 1.5, 1.55, 1.5811, 2.0, 2.52, 2.5495, 3.0]
+
+
+def random_floor(rng: np.random.Generator) -> Bools:
+    """A floor of at most 12 x 12 with at least two free squares: noise, rooms, a corridor aslant, or a maze."""
+    while True:
+        rows, columns = (int(v) for v in rng.integers(2, 13, 2))
+        free = MAKERS[int(rng.integers(len(MAKERS)))](rng, rows, columns)
+        if free.sum() >= 2:
+            return free
+
+
+def noise(rng: np.random.Generator, rows: int, columns: int) -> Bools:
+    """Squares blocked at random."""
+    return rng.random((rows, columns)) >= rng.choice([0.05, 0.15, 0.3, 0.45, 0.6])
+
+
+def rooms(rng: np.random.Generator, rows: int, columns: int) -> Bools:
+    """Walls across the floor, each with a gap or two."""
+    free = np.ones((rows, columns), np.bool_)
+    for axis, size in ((0, rows), (1, columns)):
+        for at in rng.choice(size, min(size, int(rng.integers(0, 3))), replace=False):
+            wall = free if axis == 0 else free.T
+            wall[at] = False
+            for _ in range(int(rng.integers(1, 3))):
+                first = int(rng.integers(wall.shape[1]))
+                wall[at, first : first + int(rng.integers(1, 3))] = True
+    return free
+
+
+def aslant(rng: np.random.Generator, rows: int, columns: int) -> Bools:
+    """A corridor across the grid, with some squares blocked."""
+    i, j = np.indices((rows, columns))
+    steep = rng.choice([-1.0, -0.5, 0.5, 1.0, 2.0])
+    free: Bools = np.abs(i - rows / 2 - steep * (j - columns / 2)) <= rng.integers(1, 6)
+    return free & (rng.random((rows, columns)) >= rng.choice([0.0, 0.05]))
+
+
+def maze(rng: np.random.Generator, rows: int, columns: int) -> Bools:
+    """Pillars at even places with a wall from each to one side."""
+    free = np.ones((rows, columns), np.bool_)
+    for i in range(1, rows - 1, 2):
+        for j in range(1, columns - 1, 2):
+            a, b = ((0, 1), (1, 0), (0, -1), (-1, 0))[int(rng.integers(4))]
+            free[i, j] = free[i + a, j + b] = False
+    return free
+
+
+MAKERS = [noise, noise, rooms, aslant, maze]
+
+
+def random_point(rng: np.random.Generator, free: Bools) -> XY:
+    """A point in a free square: its centre, or a quarter off, or on its southern or western edge."""
+    squares = np.argwhere(free)
+    row, column = squares[int(rng.integers(len(squares)))].tolist()
+    x, y = rng.choice([0.0, 0.25, 0.5, 0.5, 0.75], 2).tolist()
+    return column + x, row + y
+
+
+class Case:
+    """A floor with a start and a goal. ``rng`` chooses the rest."""
+
+    def __init__(self, seed: int, number: int) -> None:
+        self.rng = np.random.default_rng([seed, number])
+        self.free = random_floor(self.rng)
+        self.exact, self.screen = Exact(self.free), Screen(self.free)
+        self.start, self.goal = random_point(self.rng, self.free), random_point(self.rng, self.free)
+
+    def walk(self) -> NDArray[np.float64] | None:
+        """A line from start to goal over the centres of edge neighbours, at random; None when it does not get there."""
+        here, there = ((int(p[0]), int(p[1])) for p in (self.start, self.goal))
+        line: list[XY] = [self.start]
+        for _ in range(400):
+            line.append((here[0] + 0.5, here[1] + 0.5))
+            if here == there:
+                return np.array([*line, self.goal])
+            steps = [(here[0] + a, here[1] + b) for a, b in ((1, 0), (0, 1), (-1, 0), (0, -1))]
+            open_steps = [p for p in steps if self.exact.padded[p[1] + 1, p[0] + 1]]
+            if not open_steps:
+                return None
+            here = open_steps[int(self.rng.integers(len(open_steps)))]
+        return None
+
+
+def words(case: Case) -> Iterator[str]:
+    """Signatures tell classes apart, and lines of one class have one signature, however they run."""
+    routes = case.screen.routes(case.start, case.goal, k=6)
+    lines = [route.points for route in routes]
+    for route in routes:
+        if case.screen.tighten(route).signature != route.signature:
+            yield "a route that is tightened has another signature"
+        (named,) = case.screen.routes(case.start, case.goal, word=route.signature)
+        if abs(named.length - route.length) > NEAR or abs(named.clearance - route.clearance) > NEAR:
+            yield f"the route of a signature is {named.length} long, clearance {named.clearance}, not as the route"
+    signatures = [route.signature for route in routes]
+    walk = case.walk()
+    if walk is not None:
+        tight = case.screen.tighten(Route(walk, 0.0, 0.0, (), ()))
+        if case.exact.word(tight.points) != case.exact.word(walk):
+            yield "tightening changes the class"
+        if not case.exact.is_free(tight.points):
+            yield "a tightened line leaves free space"
+        lines.append(walk)
+        signatures.append(tight.signature)
+    classes = [case.exact.word(line) for line in lines]
+    for k, (one, signature) in enumerate(zip(classes, signatures, strict=True)):
+        for other, another in zip(classes[:k], signatures[:k], strict=True):
+            if (one == other) != (signature == another):
+                yield f"classes {one} and {other} have the signatures {signature} and {another}"
+    if len(set(signatures[: len(routes)])) < len(routes):
+        yield "two routes are of one class"
+
+
+def shortest(case: Case) -> Iterator[str]:
+    """The shortest way of all is exact and comes first; routes are free, as long as told, and of known clearance."""
+    least = float(case.exact.distances(case.start, [case.goal])[0])
+    best = case.screen.shortest(case.start, case.goal)
+    if (least == np.inf) != (best is None) or (best is not None and abs(best.length - least) > NEAR):
+        yield f"shortest says {best and best.length}, not {least}"
+    seen = visibility_way(case.free, case.start, case.goal)
+    long = np.inf if seen is None else float(np.hypot(*np.diff(seen, axis=0).T).sum())
+    if abs(long - least) > NEAR and long != least:
+        yield f"the visibility graph says {long}, not {least}"
+    for k in (1, 2, 3, 5):
+        routes = case.screen.routes(case.start, case.goal, k=k)
+        if bool(routes) != (least < np.inf):
+            yield f"k = {k}: {len(routes)} routes"
+        if routes and k > 1 and abs(routes[0].length - least) > NEAR:
+            yield f"k = {k}: the first is {routes[0].length} long, not {least}"
+        for route in routes:
+            yield from faults(case, route, case.start, case.goal)
+
+
+def faults(case: Case, route: Route, start: XY, goal: XY) -> Iterator[str]:
+    """What is wrong with a point's route."""
+    if not case.exact.is_free(route.points):
+        yield f"a route leaves free space: {route.points.tolist()}"
+    if tuple(route.points[0]) != start or tuple(route.points[-1]) != goal:
+        yield "a route has other ends"
+    if abs(route.length - float(np.hypot(*np.diff(route.points, axis=0).T).sum())) > NEAR:
+        yield "a route is not as long as told"
+    if not 0.0 < route.clearance < np.inf:
+        yield f"a route's clearance is {route.clearance}"
+
+
+def sets(case: Case) -> Iterator[str]:
+    """A route to a set of squares ends at the nearest; blocked squares in it count for nothing."""
+    goal = case.rng.random(case.free.shape) < case.rng.choice([0.05, 0.2, 0.5, 0.9])
+    if case.rng.random() < 0.3:
+        i, j = (int(v) for v in case.rng.integers(0, case.free.shape))
+        goal[i : i + 4, j : j + 4] = True
+    centres = [(j + 0.5, i + 0.5) for i, j in np.argwhere(goal & case.free).tolist()]
+    least = float(case.exact.distances(case.start, centres).min(initial=np.inf)) if centres else np.inf
+    for k in (1, 3):
+        routes = case.screen.routes(case.start, goal, k=k)
+        if bool(routes) != (least < np.inf) or (routes and abs(routes[0].length - least) > NEAR):
+            yield f"k = {k}: the nearest of a set is {routes and routes[0].length} away, not {least}"
+        for route in routes:
+            end = (float(route.points[-1][0]), float(route.points[-1][1]))
+            if end not in centres:
+                yield "a route does not end in the set"
+            yield from faults(case, route, case.start, end)
+    without = case.screen.routes(case.start, goal & case.free, k=3)
+    squares = {(int(j), int(i)) for i, j in np.argwhere(goal)}
+    for other in (without, case.screen.routes(case.start, squares, k=3)):
+        if [r.points.tolist() for r in other] != [r.points.tolist() for r in routes]:
+            yield "blocked squares in a set make a difference"
+
+
+def bodies(case: Case) -> Iterator[str]:
+    """A body moves over the squares whose centres have room for it, and keeps its distance everywhere."""
+    radius = float(case.rng.choice(RADII))
+    room = clearances(case.free) >= radius - 1e-12
+    graph, number = case.screen.pathgraph_for(radius), labels(room, corners=False)
+    parts = number_of_parts(graph)
+    cycles = graph.number_of_edges() - graph.number_of_nodes() + parts
+    holes = int(labels(np.pad(~room, 1, constant_values=True), corners=True).max()) - 1
+    if (parts, cycles) != (int(number.max()), holes):
+        yield f"radius {radius}: {parts} components and {cycles} cycles, not {number.max()} and {holes}"
+    walls = shapely.union_all([shapely.box(j, i, j + 1, i + 1) for i, j in np.argwhere(~case.exact.padded) - 1])
+    start, goal = ((float(int(p[0])) + 0.5, float(int(p[1])) + 0.5) for p in (case.start, case.goal))
+    a, b = (int(number[int(p[1]), int(p[0])]) for p in (start, goal))
+    for k in (1, 3):
+        routes = case.screen.routes(start, goal, k=k, radius=radius)
+        if bool(routes) != (a == b > 0):
+            yield f"radius {radius}: {len(routes)} routes between parts {a} and {b}"
+    if len({route.signature for route in routes}) < len(routes):
+        yield f"radius {radius}: two routes are of one class"
+    askew = case.screen.routes(case.start, case.goal, k=2, radius=radius)
+    if askew and not routes:
+        yield f"radius {radius}: routes from askew alone"
+    for route in [*routes, *askew]:
+        line = shapely.LineString(route.points) if len(route.points) > 1 else shapely.Point(route.points[0])
+        if line.distance(walls) < radius - NEAR or not radius - NEAR <= route.clearance < np.inf:
+            yield f"radius {radius}: a route comes as near as {line.distance(walls)}, clearance {route.clearance}"
+        if abs(route.length - line.length) > NEAR:
+            yield f"radius {radius}: a route is not as long as told"
+    for point in (case.start, start):
+        for route in case.screen.routes(point, point, k=1, radius=radius):
+            if route.length != 0.0:
+                yield f"radius {radius}: {route.length} from a point to itself"
+
+
+def number_of_parts(graph: object) -> int:
+    """The number of connected components of a pathgraph."""
+    import networkx
+
+    return int(networkx.number_connected_components(graph))
+
+
+def avoid(case: Case) -> Iterator[str]:
+    """Routes that avoid passages exist exactly within the parts into which these cut the floor."""
+    passages = case.screen.passages()
+    if not passages:
+        return
+    cuts = [[passages[int(case.rng.integers(len(passages)))]] for _ in range(3)]
+    cuts.append([passages[k] for k in np.flatnonzero(case.rng.random(len(passages)) < 0.4).tolist()])
+    squares = np.argwhere(case.free).tolist()
+    for chosen in cuts:
+        part = case.screen.parts(chosen)
+        for _ in range(4):
+            (i, j), (m, n) = (squares[int(k)] for k in case.rng.integers(0, len(squares), 2))
+            for k in (1, 3):
+                start, goal = (j + 0.5, i + 0.5), (n + 0.5, m + 0.5)
+                routes = case.screen.routes(start, goal, k=k, avoid=chosen)
+                if bool(routes) != (part[i, j] == part[m, n]):
+                    yield f"k = {k}: {len(routes)} routes between parts {part[i, j]} and {part[m, n]}"
+                for route in routes:
+                    yield from faults(case, route, start, goal)
+                if len({route.signature for route in routes}) < len(routes):
+                    yield "two routes are of one class"
+
+
+def images(case: Case) -> Iterator[str]:
+    """What is told of a floor holds of its mirror image and its quarter turn."""
+    rows, columns = case.free.shape
+    squares = np.argwhere(case.free)
+    (i, j), (m, n) = (squares[int(k)].tolist() for k in case.rng.integers(0, len(squares), 2))
+    radius = float(case.rng.choice([0.0, 0.6, 1.2]))
+    goal = case.rng.random(case.free.shape) < 0.2
+
+    def mirrored(x: float, y: float) -> XY:
+        return columns - x, y
+
+    def turned(x: float, y: float) -> XY:
+        return rows - y, x
+
+    start, end = (j + 0.5, i + 0.5), (n + 0.5, m + 0.5)
+    told = answers(case.screen, start, end, goal, radius)
+    for image, place in ((np.fliplr, mirrored), (lambda a: np.fliplr(a.T), turned)):
+        again = answers(Screen(image(case.free)), place(*start), place(*end), image(goal), radius)
+        if not np.allclose(told, again, rtol=0, atol=NEAR):
+            yield f"{told} on the floor and {again} on its image"
+
+
+def answers(screen: Screen, start: XY, end: XY, goal: Bools, radius: float) -> list[float]:
+    """What does not depend on how a floor lies: the shortest length, that to a set, routes of a body."""
+    first = screen.routes(start, end, k=3)
+    nearest = screen.routes(start, goal, k=2)
+    body = screen.routes(start, end, k=1, radius=radius)
+    graph = screen.pathgraph_for(radius)
+    return [
+        first[0].length if first else -1.0,
+        nearest[0].length if nearest else -1.0,
+        float(len(body)),
+        float(graph.number_of_edges() - graph.number_of_nodes()),
+    ]
+
+
+def chains(case: Case) -> Iterator[str]:
+    """A pathgraph's edge is as long as its points say, and no shorter than the shortest way of its class."""
+    for _, _, edge in case.screen.pathgraph.edges(data=True):
+        points = edge["points"]
+        long = float(np.hypot(*np.diff(points, axis=0).T).sum())
+        if abs(edge["length"] - long) > NEAR:
+            yield f"an edge is told {edge['length']} long, its points say {long}"
+        if not case.exact.is_free(points):
+            yield "an edge leaves free space"
+        if case.screen.tighten(Route(points, 0.0, 0.0, (), ())).length > edge["length"] + NEAR:
+            yield "an edge is shorter than the shortest way of its class"
+        lowest = min(case.screen.clearance[int(y), int(x)] for x, y in points)
+        if edge["clearance"] != lowest:
+            yield f"an edge's clearance is told {edge['clearance']}, it is {lowest}"
+        if any(abs(p - q).sum() != 1.0 for p, q in pairwise(points)):
+            yield "an edge jumps"
+
+
+CHECKS: dict[str, Callable[[Case], Iterator[str]]] = {
+    check.__name__: check for check in (words, shortest, sets, bodies, avoid, images, chains)
+}
+
+
+def disagreements(check: str, seed: int, number: int) -> list[str]:
+    """What a floor's answers have wrong in one respect; the same for the same numbers."""
+    return list(CHECKS[check](Case(seed, number)))
+
+
+def main() -> int:
+    """Ask the floors and print what is wrong; 1 when anything is."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=10000, help="floors")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--first", type=int, default=0, help="the number of the first floor")
+    parser.add_argument("--only", default=",".join(CHECKS), help="checks, with commas between")
+    options = parser.parse_args()
+    wrong: Counter[str] = Counter()
+    begun = time.process_time()
+    for number in range(options.first, options.first + options.count):
+        for check in options.only.split(","):
+            for what in disagreements(check, options.seed, number):
+                print(f"floor {number}, {check}: {what}", flush=True)
+                wrong[check] += 1
+    print(f"{options.count} floors, {sum(wrong.values())} disagreements", end=" ")
+    print(dict(wrong) if wrong else "", f"({time.process_time() - begun:.0f} s of the processor)")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,114 @@
+"""What is printed: made harmless in one place, whoever prints it, and told of when it could not be written."""
+
+import os
+import re
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+# Control characters but the line end, marks that turn the direction of text, line separators, undecoded bytes.
+HARMFUL = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ud800-\udfff]")
+
+
+class StreamError(Exception):
+    """A standard stream is closed, full or cannot be read; the message names it."""
+
+
+def shown(text: str, lines: bool = True) -> str:
+    r"""Return a text with all that a terminal would obey written out, in the form that JSON has for it.
+
+    Parameters
+    ----------
+    lines : keep line ends. What comes from a file and belongs on one line is shown without them.
+
+    >>> shown("red \x1b[31m")
+    'red \\u001b[31m'
+    """
+    clean = HARMFUL.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
+    return clean if lines else clean.replace("\n", "\\n")
+
+
+class Guarded:
+    """A text stream to which nothing harmful is written.
+
+    Parameters
+    ----------
+    stream : what is written to; None when the process was started without it.
+    name : as messages call it.
+    vital : whether StreamError is raised when it cannot be written; otherwise `lost` tells, and the work goes on. Who
+        closes a stream that is not vital does not want to hear of it: then nothing is lost.
+    """
+
+    def __init__(self, stream: Any, name: str, vital: bool) -> None:
+        self._stream, self._name, self._vital = stream, name, vital
+        self.lost = ""
+
+    def __getattr__(self, name: str) -> Any:
+        """Everything but writing is the stream's own."""
+        return getattr(self._stream, name)
+
+    def isatty(self) -> bool:
+        """Whether somebody looks on."""
+        return self._stream is not None and self._stream.isatty()
+
+    def write(self, text: str) -> int:
+        """Write a text; characters that the stream's encoding lacks are written out."""
+        clean = shown(text)
+        encoding = getattr(self._stream, "encoding", None) or "utf-8"
+        self._attempt("write", clean.encode(encoding, "backslashreplace").decode(encoding))
+        return len(text)
+
+    def writelines(self, lines: Iterator[str]) -> None:
+        """Write some texts."""
+        for line in lines:
+            self.write(line)
+
+    def flush(self) -> None:
+        """Hand on what was written."""
+        if self._stream is not None:
+            self._attempt("flush")
+
+    def _attempt(self, what: str, *arguments: str) -> None:
+        if self.lost or (self._stream is None and not self._vital):
+            return
+        try:
+            if self._stream is None:
+                raise OSError(0, "it is closed")
+            getattr(self._stream, what)(*arguments)
+        except BrokenPipeError:
+            self._abandon("its reader went away")
+            if self._vital:
+                raise
+        except (OSError, ValueError) as error:
+            self._abandon(getattr(error, "strerror", None) or str(error))
+            if self._vital:
+                raise StreamError(f"{self._name} cannot be written: {self.lost}") from None
+
+    def _abandon(self, why: str) -> None:
+        """Let what is still to be written go nowhere, so that nothing complains when the process ends."""
+        self.lost = why
+        with suppress(OSError, ValueError, AttributeError):
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, self._stream.fileno())
+            os.close(nowhere)
+
+
+@contextmanager
+def guarded() -> Iterator[tuple[Guarded, Guarded]]:
+    """Guard the standard output and the standard error for a while; gives both."""
+    before = sys.stdout, sys.stderr
+    out, err = Guarded(sys.stdout, "the standard output", True), Guarded(sys.stderr, "the standard error", False)
+    sys.stdout, sys.stderr = out, err
+    try:
+        yield out, err
+    finally:
+        sys.stdout, sys.stderr = before
+
+
+def fill_gaps() -> None:
+    """Open the standard streams that are closed to nowhere: else the next file opened would get the number of one."""
+    with suppress(OSError):
+        while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
+            pass
+        os.close(handle)

@@ -1,0 +1,191 @@
+"""No file of a user's is executed as a module, whatever is called what, and processes beside ours end with ours."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+import utak_command
+from utak_command import beside
+
+ROOT = Path(__file__).resolve().parents[1]
+UTAK = [
+    sys.executable,
+    "-c",
+    f"import sys; sys.path[0] = {str(ROOT)!r}; from utak_command import main; sys.exit(main())",
+]
+BAIT = (
+    "json", "clingo", "resource", "numpy", "shapely", "numba", "networkx", "queue", "threading", "ctypes", "select",
+    "subprocess", "runpy", "sitecustomize", "usercustomize", "readline", "cffi", "llvmlite", "difflib", "fcntl",
+)  # fmt: skip
+PACKAGES = ("kb", "planner", "geometry", "simulator")
+WORLD = "bbbbbbbb\nb......b\nb.gg...b\nb.gg.U.b\nb......b\nbbbbbbbb\n"
+FILES = {
+    "world.txt": WORLD,
+    "start.lp": "object(x).\n",
+    "goal.lp": "at(utak, x).\n",
+    "expect.lp": "within(50).\n",
+    "rules.lp": "kind(R, verge, 60) :- region(R, nonzero, _), extent(R, N), N > 2000.\n",
+}
+COMMANDS = {
+    "run": ["run", ".", "--kb", "rules.lp", "--max-steps", "1"],
+    "test": ["test", ".", "--max-steps", "1"],
+    "check": ["check", "."],
+    "show": ["show", "."],
+    "new": ["new", "fresh"],
+    "query": ["query", ".", "object(X)", "--at", "0"],
+    "repl": ["repl", "."],
+    "routes": ["routes", ".", "--from", "1.5,1.5", "--to", "6.5,4.5", "--svg", "out.svg"],
+    "warming": [],
+}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A scenario in whose folder lie modules that write down that they were executed."""
+    place = tmp_path / "here"
+    for name in PACKAGES:
+        (place / name).mkdir(parents=True)
+        (place / name / "__init__.py").write_text(executed(tmp_path))
+    for name in BAIT:
+        (place / f"{name}.py").write_text(executed(tmp_path))
+    for name, text in FILES.items():
+        (place / name).write_text(text)
+    return place
+
+
+def executed(place: Path) -> str:
+    """A module that writes its name into a file, and works no further."""
+    return f"open({str(place / 'executed')!r}, 'a').write(__name__ + '\\n')\nraise SystemExit(99)\n"
+
+
+def cold_cache(place: Path) -> dict[str, str]:
+    """Settings under which kernels would be compiled by a process beside ours, which must not be waited for."""
+    return {"NUMBA_CACHE_DIR": str(place / "cache")}
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_nothing_in_the_working_directory_is_executed(command: str, folder: Path) -> None:
+    arguments = UTAK + COMMANDS[command] if command != "warming" else beside("simulator.warming")
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    environment["PYTHONSTARTUP"] = str(folder / "json.py")
+    done = subprocess.run(
+        arguments, cwd=folder, env=environment, input=b"?- object(X).\n", capture_output=True, check=False
+    )
+    assert not (folder.parent / "executed").exists(), (folder.parent / "executed").read_text()
+    assert done.returncode in (0, 1, 75), done.stderr.decode()
+
+
+def test_a_package_of_the_users_on_the_path_does_no_harm(folder: Path) -> None:
+    for name in BAIT:
+        (folder / f"{name}.py").unlink()
+    environment = os.environ | {"PYTHONPATH": str(folder)}
+    command = [*UTAK, *COMMANDS["run"]]
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, check=False)
+    assert not (folder.parent / "executed").exists(), (folder.parent / "executed").read_text()
+    assert done.returncode in (0, 75), done.stderr.decode()
+
+
+def test_no_process_is_started_but_beside() -> None:
+    """Whoever starts Python by `-m` or `-c` takes the working directory for a place of modules."""
+    for package in (*PACKAGES, "benchmarks"):
+        for path in sorted((ROOT / package).rglob("*.py")):
+            text = path.read_text()
+            assert not re.search(r"sys\.executable,\s*(\"-[mc]|'-[mc])", text), path
+            assert package == "benchmarks" or "sys.executable" not in text, path
+            assert not ("multiprocessing" in text and "PYTHONSAFEPATH" not in text), path
+
+
+ENDLESS = "X = 1..100000000, Y = 1..100000000"
+
+
+def workers(of: int) -> list[int]:
+    """The processes that a process has started."""
+    found = Path(f"/proc/{of}/task/{of}/children")
+    return [int(word) for word in found.read_text().split()] if found.exists() else []
+
+
+def runs(process: int) -> bool:
+    """Whether a process is there and no zombie."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def episode(place: Path) -> Path:
+    """An episode of one step."""
+    path = place / "ep.jsonl"
+    done = subprocess.run([*UTAK, "run", ".", "--max-steps", "0", "--log", str(path)], cwd=place, capture_output=True)
+    assert done.returncode == 75, done.stderr
+    return path
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs /proc")
+def test_a_worker_ends_with_whoever_asks(tmp_path: Path) -> None:
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text)
+    path = episode(tmp_path)
+    for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGHUP):
+        asking = subprocess.Popen([*UTAK, "query", str(path), ENDLESS], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        until = time.monotonic() + 20
+        while not workers(asking.pid) and time.monotonic() < until:
+            time.sleep(0.02)
+        time.sleep(0.3)
+        [worker] = workers(asking.pid)
+        asking.send_signal(number)
+        asking.communicate()
+        until = time.monotonic() + 1.0
+        while runs(worker) and time.monotonic() < until:
+            time.sleep(0.02)
+        left = runs(worker)
+        with suppress(ProcessLookupError):
+            os.kill(worker, signal.SIGKILL)
+        assert not left, number
+
+
+@pytest.mark.parametrize("module", ["kb.query_worker", "simulator.warming"])
+def test_a_process_beside_ends_with_its_input_also_while_it_works(module: str, tmp_path: Path) -> None:
+    """Where no signal tells of the parent's end, the end of the input does."""
+    names = ["search", "carry"] if module == "simulator.warming" else []
+    environment = os.environ | cold_cache(tmp_path)
+    pipe = subprocess.PIPE
+    with subprocess.Popen(beside(module, *names), stdin=pipe, stdout=pipe, stderr=pipe, env=environment) as worker:
+        assert worker.stdin is not None
+        assert worker.stdout is not None
+        if not names:
+            assert worker.stdout.readline() == b"ready\n"
+            request = {"facts": [], "query": ENDLESS, "rules": []}
+            worker.stdin.write(json.dumps(request).encode() + b"\n")
+            worker.stdin.flush()
+        time.sleep(0.3)
+        assert worker.poll() is None
+        worker.stdin.close()
+        try:
+            worker.wait(5.0)
+        finally:
+            worker.kill()
+
+
+@pytest.mark.filterwarnings("ignore:'kb.facts' found in sys.modules")
+def test_what_is_installed_for_one_user_alone_is_found_by_a_process_beside(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Isolated Python looks at no user's folder: where the packages of others are is handed on."""
+    (tmp_path / "of_the_user.py").write_text("")
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    monkeypatch.setattr(sys, "argv", list(sys.argv))
+    utak_command.run_module(str(tmp_path), "kb.facts")
+    assert str(tmp_path) not in sys.path
+    monkeypatch.setattr(utak_command, "OTHERS", ("of_the_user",))
+    utak_command.run_module(str(tmp_path), "kb.facts")
+    assert find_spec("of_the_user") is not None
+    assert str(ROOT) not in beside("kb.query_worker")[3].split(os.pathsep)
