@@ -205,7 +205,7 @@ def part(bars: Ints, starts: Ints, length: Floats, chain: int, begin: int, end: 
     """The length of a part of a chain, in proportion to its cells; infinite when it passes a barred place."""
     low, high = (begin, end) if begin < end else (end, begin)
     for k in range(bars.shape[0]):
-        if bars[k, 0] == chain and low <= bars[k, 1] <= high:
+        if bars[k, 0] == chain and low <= bars[k, 1] < high:
             return np.inf
     return float(length[chain] * (high - low) / (starts[chain + 1] - starts[chain] - 1))
 

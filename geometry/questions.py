@@ -7,18 +7,17 @@ import numpy as np
 
 from geometry.anyangle import FULL, NONE, Scout, new_scout, shortest_line
 from geometry.bones import Ints
-from geometry.chains import Chains
+from geometry.chains import Chains, crossings
 from geometry.distance import Bools
 from geometry.goals import Region, entry, regions, way_in, word_of_cells
 from geometry.itinerary import OVERFLOW, Desk, Ground, ground_of, itineraries, new_desk
 from geometry.layer import Layer
 from geometry.loops import Arc, cells_of_way, closed_ways
-from geometry.passages import Passage, leads_through, on_chain
+from geometry.passages import Passage
 from geometry.polyline import crossings_of, join_words, word_of_line
 from geometry.rope import Ends
 from geometry.route import Route, read_answers
 from geometry.runs import find_runs
-from geometry.skeleton import SADDLE
 from geometry.tightening import tight_route
 from geometry.ways import ascend, find_ways, locate
 
@@ -188,18 +187,9 @@ class Questions:
 
     def _forbid(self, desk: Desk, avoid: tuple[Passage, ...]) -> Desk:
         """The desk with the chains through some passages shut."""
-        chains, state = self.layer.chains, self.layer.state
-        bars: list[tuple[int, int]] = []
-        for passage in avoid:
-            cell, side = self._cell(passage.place), self._cell(passage.towards)
-            saddle = state.reshape(-1)[cell] & SADDLE
-            where = on_chain(chains, cell, side, state) if saddle else leads_through(chains, cell, side, state)
-            if where is None:
-                continue  # too narrow for this body anyway
-            desk.query.shut[where[0]] |= 1
-            bars.append(where)
-        bar = np.array(bars, np.int32).reshape(-1, 2)
-        return desk._replace(query=desk.query._replace(bars=bar))
+        bars = np.concatenate([crossings(self.layer.chains, self._width, *passage.mouths[0]) for passage in avoid])
+        desk.query.shut[bars[:, 0]] |= 1
+        return desk._replace(query=desk.query._replace(bars=bars))
 
     def _desk(self, wanted: int, room: int) -> Desk:
         """Scratch for that many routes, with at least that much room for words."""
