@@ -27,8 +27,13 @@ def find_parts(free: Bools, passages: Iterable[Passage]) -> Labels:
         bar_centres(floor, *mouth)
     label = np.zeros(floor.shape, np.int32)
     count = number_parts(floor, shut, label, np.empty(floor.size, np.int32))
-    inner = {label[row + 1, column + 1] for passage in some for column, row in passage.between}
-    outer = {label[int(y) + 1, int(x) + 1] for passage in some for x, y in passage.gates}
+    rows, columns = free.shape  # passages of a larger floor may reach beyond
+    squares = [(column, row) for passage in some for column, row in passage.between]
+    gates = [(int(np.floor(x)), int(np.floor(y))) for passage in some for x, y in passage.gates]
+    inner, outer = (
+        {int(label[row + 1, column + 1]) for column, row in those if 0 <= column < columns and 0 <= row < rows}
+        for those in (squares, gates)
+    )
     kept = np.ones(count + 1, np.int32)
     kept[[0, *sorted(inner - outer)]] = 0
     numbers = np.cumsum(kept, dtype=np.int32) * kept

@@ -68,12 +68,15 @@ class Door:
 class Opening(NamedTuple):
     """A neck that is no door, for the floor is not twice as wide on both sides; in the frame of the view's arrays.
 
-    a, b : its ends, on the walls. beyond : how wide the floor is on the narrower side, in squares.
+    a, b : its ends, on the walls. least : how wide the floor is on the narrower side, in squares. narrow, wide : the
+    centres of squares just beyond it on that side, and on the other.
     """
 
     a: tuple[float, float]
     b: tuple[float, float]
-    beyond: float
+    least: float
+    narrow: tuple[float, float]
+    wide: tuple[float, float]
 
     @property
     def width(self) -> float:
@@ -160,8 +163,14 @@ def _judged(found: list[Neck], rules: tuple[Path, ...]) -> tuple[list[tuple[Neck
     answer = (solve([KB / "rooms.lp", *rules], facts) if facts else None) or ()
     chosen = {a.arguments[0].number: a.arguments[1].number for a in answer if a.match("door", 2)}
     nearest = [known[a.arguments[0].number] for a in answer if a.match("opening", 1)]
-    opening = Opening(*nearest[0].line, 2 * min(nearest[0].passage.sides)) if nearest else None
+    opening = _opening(nearest[0]) if nearest else None
     return [(known[number], confidence) for number, confidence in sorted(chosen.items())], opening
+
+
+def _opening(neck: Neck) -> Opening:
+    """A neck that is no door, as it is told."""
+    (least, narrow), (_, wide) = sorted(zip(neck.passage.sides, neck.passage.gates, strict=True))
+    return Opening(*neck.line, 2 * least, narrow, wide)
 
 
 def _first(number: int, start: int) -> NDArray[np.int32]:

@@ -13,7 +13,7 @@ from geometry.carrying import InCorner, Inside
 from geometry.components import components
 from geometry.ends import End, placed
 from geometry.reach import UNREACHED, reach
-from geometry.rigid import Pose
+from geometry.rigid import Pose, Translate
 from kb.facts import Fact, Symbol
 from kb.worldmodel import CLEAR, Node
 from planner.approaching import TAKE, Approach
@@ -25,6 +25,7 @@ from planner.screen import grown
 IN_SIGHT = 6  # squares from a corner within which it is seen well
 FLUSH = 0.1  # squares between an object and walls that it touches
 LEANING = 1.25  # squares that what lies askew in a corner may reach further from its walls than it is long
+WALL = 1.0  # squares: so deep in the squares in which it was seen a wall may lie
 PRESS = 0.25  # squares that a thing is pressed on into a corner: it shows, then, how far in its sides lie
 ABOUT = 0.5  # squares from its walls at which an object is brought to a corner that is settled
 RATHER = 0.4  # that a square is occupied which is rather floor than not
@@ -119,7 +120,8 @@ def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Landing:
             return Landing({side: close}, holds=lands(close, shape), loose={side: end})
         goals = [_pressed(end), replace(close, press=ABOUT), replace(end, slack=FLUSH, press=1.0)]
         goal = next((one for one in goals if not lands(one, shape)), goals[-1])
-        return Landing({side: goal}, holds=_surely(end, node, shape) or lands(goals[-1], shape))
+        holds = _surely(end, node, shape) or lands(goals[-1], shape)
+        return Landing({side: goal}, holds=holds, presses=_presses(end, shape) if holds else ())
     x0, y0, x1, y1 = placed(shape, Pose(0.0, 0.0, -node.turned % 90.0)).bounds
     near, far = sorted((x1 - x0, y1 - y0))
     flat = replace(close if node.inexact else end, within=(near + LEANING, far + LEANING))
@@ -132,12 +134,29 @@ def _pressed(end: InCorner) -> InCorner:
     return replace(end, slack=end.slack - PRESS, press=PRESS)
 
 
-def _surely(end: InCorner, node: Node, shape: Any) -> bool:
-    """Does an object lie in a corner, however far in its sides lie?"""
+def _presses(end: InCorner, shape: Any) -> tuple[Translate, ...]:
+    """Pushes towards the walls of a corner that something does not seem to touch, as far as these may be away.
+
+    A wall lies anywhere in the squares in which it was seen. What lies right beside these is within a square of it,
+    wherever it is; with a part of a square free in between it may not be.
+    """
+    x, y = end.gaps(shape.bounds)
+    pushes = (x, Translate(end.sx * (x + WALL), 0.0)), (y, Translate(0.0, end.sy * (y + WALL)))
+    return tuple(push for gap, push in pushes if gap > FLUSH)
+
+
+def _further_in(end: InCorner, node: Node) -> tuple[float, float]:
+    """By how much the sides of a thing towards the walls of a corner may lie further in than is believed."""
     west, east, south, north = node.short
-    gaps = end.gaps(shape.bounds)
-    further = east if end.sx > 0 else west, north if end.sy > 0 else south
-    return lands(end, shape) and all(gap + far <= end.slack + HAIR for gap, far in zip(gaps, further, strict=True))
+    return east if end.sx > 0 else west, north if end.sy > 0 else south
+
+
+def _surely(end: InCorner, node: Node, shape: Any) -> bool:
+    """Does an object lie in a corner, however far in its sides lie? Where walls lie deeper in their squares than these
+    begin, it may lie in these, too.
+    """
+    gaps, further = end.gaps(shape.bounds), _further_in(end, node)
+    return all(gap >= -WALL and gap + far <= end.slack + HAIR for gap, far in zip(gaps, further, strict=True))
 
 
 def _into_corner(side: str, situation: Situation) -> InCorner:

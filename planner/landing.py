@@ -13,7 +13,7 @@ from kb.facts import Fact, Symbol
 from kb.rooms import Rooms
 from kb.worldmodel import Node
 from planner.cornering import cornered
-from planner.destinations import Situation, doorsteps, numbers, out_of_sight
+from planner.destinations import Situation, doorsteps, no_next_room, numbers, out_of_sight
 from planner.hoping import BEYOND, spread
 from planner.lying import Landing, Mask, in_view, lands_in_one, region_of
 from planner.nearing import around_start, beside, posed
@@ -73,7 +73,7 @@ def _next_room(began: Place, node: Node, situation: Situation) -> Landing:
         if looks and _lies_in(ends, node, situation):
             return Landing({}, looks[0].what, looks, there=True)
         return Landing(ends, hoped=partial(_insides, rooms, beyond, situation))
-    missing, lookouts = "no next room is seen yet", doorsteps(situation)
+    missing, lookouts = no_next_room(situation), doorsteps(situation)
     likely_rooms = situation.likely_beyond(began)
     likely = _insides(*likely_rooms)
     if _lies_in(likely, node, situation):
