@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.carrying import InCorner, Inside
+from geometry.carrying import Between, InCorner, Inside
 from geometry.components import components
 from geometry.ends import End, placed
 from geometry.reach import UNREACHED, reach
@@ -26,6 +26,7 @@ IN_SIGHT = 6  # squares from a corner within which it is seen well
 FLUSH = 0.1  # squares between an object and walls that it touches
 LEANING = 1.25  # squares that what lies askew in a corner may reach further from its walls than it is long
 WALL = 1.0  # squares: so deep in the squares in which it was seen a wall may lie
+STAIR = math.sqrt(2)  # squares: as far behind its stairs a wall that lies askew may be
 PRESS = 0.25  # squares that a thing is pressed on into a corner: it shows, then, how far in its sides lie
 ABOUT = 0.5  # squares from its walls at which an object is brought to a corner that is settled
 RATHER = 0.4  # that a square is occupied which is rather floor than not
@@ -97,6 +98,9 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
     unclear = around & ~model.told
     shape = in_view(node.polygon, situation)
     hoped = partial(_further, side, side, situation)
+    between = _between_walls(side, situation)
+    if between is not None and not (unclear & (view.probability < 1 - CLEAR)).any():
+        return _aslant(side, between, shape)
     if not unclear.any():
         return replace(_flat(side, end, node, shape), hoped=hoped)
     near = replace(end, slack=FLUSH if view.sure else ABOUT)
@@ -127,6 +131,23 @@ def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Landing:
     flat = replace(close if node.inexact else end, within=(near + LEANING, far + LEANING))
     loose = {} if lands(flat, shape) else {side: close}
     return Landing({side: replace(flat, slack=ABOUT)}, holds=lands(flat, shape), loose=loose)
+
+
+def _between_walls(side: str, situation: Situation) -> Between | None:
+    """In the furthest corner of the known floor, where that is formed by walls that lie askew to the squares."""
+    corner = situation.corners[side]
+    return None if corner.walls is None else Between(*corner.point, corner.walls)
+
+
+def _aslant(side: str, end: Between, shape: Any) -> Landing:
+    """Between walls that lie askew to the squares, at any angle: brought near to both, and then pressed on into there.
+
+    They are seen as stairs, and lie somewhere behind these: only what is stopped tells where.
+    """
+    one, two = end.gaps(shape)
+    press = Translate(*end.move((max(one, 0.0) + STAIR, max(two, 0.0) + STAIR)))
+    holds = lands(end, shape)
+    return Landing({side: end}, holds=holds, presses=(press,) if holds else ())
 
 
 def _pressed(end: InCorner) -> InCorner:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-from geometry.carrying import InCorner, Inside
+from geometry.carrying import Between, InCorner, Inside
 from geometry.ends import End, moved
 from kb.facts import Fact, Symbol
 from kb.rooms import Rooms
@@ -27,7 +27,7 @@ def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landi
     found = _landing(goal, node, began, situation)
     if not situation.model.view.sure:
         found = replace(found, ends={name: _well_in(end) for name, end in found.ends.items()})
-    in_corner = any(isinstance(end, InCorner) for end in found.ends.values())  # of which it is told already
+    in_corner = any(isinstance(end, InCorner | Between) for end in found.ends.values())  # of which it is told already
     return replace(found, holds=found.holds or (not in_corner and _lies_in(found.ends, node, situation)))
 
 

@@ -32,6 +32,13 @@ table(29, 14).
 verge("POLYGON ((0 0, 0 14, 29 14, 29 0, 0 0), (17 9, 17 13, 1 13, 1 1, 17 1, 17 4, 19 4, 19 1, 28 1, 28 13, 19 13, 19 9, 17 9))").
 utak("POINT (5.5 9.5)", 0).
 """  # noqa: E501
+SLANTED_CORNER = """\
+table(42, 28).
+verge("POLYGON ((0 0, 0 28, 42 28, 42 0, 0 0), (21.961 6.296, 21.396 8.402, 23.087 8.855, 23.651 6.749, 39.695 11.048, 35.769 25.701, 19.725 21.402, 21.456 14.94, 19.766 14.487, 18.034 20.949, 2 16.653, 5.926 2, 21.961 6.296))").
+utak("POINT (23.5 13.5)", 180).
+object(t1, c, "POLYGON ((29.4375 17.6794, 26.4598 17.3138, 26.0942 20.2915, 29.0719 20.6571, 29.4375 17.6794))").
+object(d0, a, "POLYGON ((16.6898 9.9078, 15.4862 8.3105, 12.2916 10.7178, 9.8844 7.5232, 8.2871 8.7269, 11.898 13.5187, 16.6898 9.9078))").
+"""  # noqa: E501
 IN_THE_NEXT_ROOM = "in(utak, room(next)).\n"
 
 
@@ -121,3 +128,10 @@ def test_a_thing_in_a_corner_is_within_a_square_of_its_walls_wherever_in_their_s
     )
     assert result["verdict"] == "done"
     assert max(gaps) <= 1.0
+
+
+def test_a_thing_is_brought_between_slanted_walls_into_their_corner(tmp_path: Path) -> None:
+    goal = "at(x, corner(northeast)).\n"
+    last, result = episode(tmp_path, SLANTED_CORNER, "object(x). shape(x, square).\n", goal)
+    assert result["verdict"] == "done"
+    assert shapely.Polygon(last["objects"]["t1"]).distance(shapely.Point(5.926, 2.0)) <= 2.0
