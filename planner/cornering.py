@@ -27,6 +27,7 @@ FLUSH = 0.1  # squares between an object and walls that it touches
 LEANING = 1.25  # squares that what lies askew in a corner may reach further from its walls than it is long
 WALL = 1.0  # squares: so deep in the squares in which it was seen a wall may lie
 STAIR = math.sqrt(2)  # squares: as far behind its stairs a wall that lies askew may be
+LEAN = 0.4  # squares by which it goes away from the other wall meanwhile, which would hold it else
 PRESS = 0.25  # squares that a thing is pressed on into a corner: it shows, then, how far in its sides lie
 ABOUT = 0.5  # squares from its walls at which an object is brought to a corner that is settled
 RATHER = 0.4  # that a square is occupied which is rather floor than not
@@ -125,7 +126,7 @@ def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Landing:
         goals = [_pressed(end), replace(close, press=ABOUT), replace(end, slack=FLUSH, press=1.0)]
         goal = next((one for one in goals if not lands(one, shape)), goals[-1])
         holds = _surely(end, node, shape) or lands(goals[-1], shape)
-        return Landing({side: goal}, holds=holds, presses=_presses(end, shape) if holds else ())
+        return Landing({side: goal}, holds=holds, presses=_presses(end, shape) if holds else {})
     x0, y0, x1, y1 = placed(shape, Pose(0.0, 0.0, -node.turned % 90.0)).bounds
     near, far = sorted((x1 - x0, y1 - y0))
     flat = replace(close if node.inexact else end, within=(near + LEANING, far + LEANING))
@@ -145,9 +146,14 @@ def _aslant(side: str, end: Between, shape: Any) -> Landing:
     They are seen as stairs, and lie somewhere behind these: only what is stopped tells where.
     """
     one, two = end.gaps(shape)
-    press = Translate(*end.move((max(one, 0.0) + STAIR, max(two, 0.0) + STAIR)))
+    ways = {
+        "into": (max(one, 0.0) + STAIR, max(two, 0.0) + STAIR),
+        "one": (one + STAIR, -LEAN),
+        "two": (-LEAN, two + STAIR),
+    }
     holds = lands(end, shape)
-    return Landing({side: end}, holds=holds, presses=(press,) if holds else ())
+    presses = {name: Translate(*end.move(way)) for name, way in ways.items() if holds}
+    return Landing({side: end}, holds=holds, presses=presses)
 
 
 def _pressed(end: InCorner) -> InCorner:
@@ -155,15 +161,15 @@ def _pressed(end: InCorner) -> InCorner:
     return replace(end, slack=end.slack - PRESS, press=PRESS)
 
 
-def _presses(end: InCorner, shape: Any) -> tuple[Translate, ...]:
+def _presses(end: InCorner, shape: Any) -> Mapping[str, Translate]:
     """Pushes towards the walls of a corner that something does not seem to touch, as far as these may be away.
 
     A wall lies anywhere in the squares in which it was seen. What lies right beside these is within a square of it,
     wherever it is; with a part of a square free in between it may not be.
     """
     x, y = end.gaps(shape.bounds)
-    pushes = (x, Translate(end.sx * (x + WALL), 0.0)), (y, Translate(0.0, end.sy * (y + WALL)))
-    return tuple(push for gap, push in pushes if gap > FLUSH)
+    pushes = {"across": (x, Translate(end.sx * (x + WALL), 0.0)), "up": (y, Translate(0.0, end.sy * (y + WALL)))}
+    return {name: push for name, (gap, push) in pushes.items() if gap > FLUSH}
 
 
 def _further_in(end: InCorner, node: Node) -> tuple[float, float]:

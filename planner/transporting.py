@@ -217,10 +217,9 @@ class Transporter:
 
     def _pressed_on(self, node: Node, land: Landing, stage: Stage, situation: Situation) -> Decision | None:
         """The push by which what he holds comes to touch a wall that may be further away; None when it touches all."""
-        for push in land.presses if situation.model.held == node.name else ():
-            way = node.name, (push.dx > 0) - (push.dx < 0), (push.dy > 0) - (push.dy < 0)
-            if way not in self._pressed:
-                self._pressed.add(way)
+        for name, push in land.presses.items() if situation.model.held == node.name else ():
+            if (node.name, name) not in self._pressed:
+                self._pressed.add((node.name, name))
                 why = f"{node.name} is pressed against the wall, to be sure that it is there"
                 act = Act(Push(*situation.model.lattice.to_utak(push.dx, push.dy)), why, push)
                 self.carrier.depart(act)

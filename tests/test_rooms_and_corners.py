@@ -48,7 +48,7 @@ def episode(tmp_path: Path, world: str, start: str, goal: str) -> tuple[dict[str
     (tmp_path / "start.lp").write_text(start)
     (tmp_path / "goal.lp").write_text(goal)
     log = tmp_path / "episode.jsonl"
-    assert main(["run", str(tmp_path), "--log", str(log)]) in (0, 1)
+    assert main(["run", str(tmp_path), "--log", str(log)]) in (0, 1, 75)
     *_, last, result = map(json.loads, log.read_text().splitlines())
     return last, result["result"]
 
