@@ -40,9 +40,7 @@ class Transporter:
         self.beginnings = Beginnings()
         self.sizer = Sizer()
         self._looked = 0  # squares he had looked from when he went to see where it must end, until it is one more
-        self._pressed: set[tuple[str, int, int]] = (
-            set()
-        )  # what he has pressed against which wall since he pushed it there
+        self._pressed: set[tuple[str, str]] = set()  # things and their presses, since one was pushed otherwise
         self._led_along = False  # has he taken along what shut him in, to look?
 
     def towards(self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciled) -> Decision | None:
