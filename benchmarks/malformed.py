@@ -1,10 +1,11 @@
-"""Malformed scenario files: each must be accepted or refused with file:line:col, without a traceback or a hang.
+"""Malformed texts: each must be accepted or refused with file:line:col, without a traceback or a hang.
 
-    python -m benchmarks.malformed [N] [--seed S]
+    python -m benchmarks.malformed [N] [--seed S] [--what scenarios|queries|rules|maps]
 
-Writes N (default 10,000) scenarios to a temporary folder, one at a time: good ones whose bytes, words, numbers, lines
-or files were spoilt. What is accepted is also simulated for a moment. Prints a table, and exits 1 when anything else
-came out than a scenario or a proper refusal.
+Spoils N (default 10,000) good texts in their bytes, words, numbers, lines or files, one at a time, and reads them:
+scenarios, of which those that are accepted are also simulated for a moment; queries; files of rules, which are tried
+out; or Moving AI maps. Prints a table, and exits 1 when anything else came out than what was asked for or a proper
+refusal.
 """
 
 import argparse
@@ -21,7 +22,11 @@ from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
 
-from kb.problems import BadInputError, CannotOpenError
+from geometry.movingai import MapError, parse_map
+from kb.encodings import KB, solve
+from kb.problems import BadInputError, CannotOpenError, Problem, Span
+from kb.query import QueryEngine, QueryLimitError
+from kb.userrules import checked_rules
 from simulator.scenario import read_scenario
 from simulator.tabletop import Tabletop
 
@@ -43,8 +48,31 @@ GOOD = {
     "goal.lp": 'first(at(utak, x)). then(circled(utak, x)).\nnot_through(utak, d). pose(x, "POINT (3 4)", -90).\n',
     "expect.lp": 'near(utak, "POLYGON ((4 4, 7 4, 7 7, 4 4))", 2).\nunmoved(t1). within(40). circles(utak, t1).\n',
 }
+FACTS = [
+    "room(r1).", "unseen(r1,9).", "node(o1).", "kind(o1,object,95).", "shape(o1,square,80).", "offset(o1,250,-50).",
+    "in(o1,r1).", "colour(o1,g,99).", "corner(northeast,900,900).", "held(o1).", "rect(o1,0,0,300,300).",
+]  # fmt: skip
+QUERIES = (
+    "object(X), shape(X, square, C), C > 50, not held(X)", "#count{X : object(X), in(X, r1)} >= 2", "X = 1..9, Y = X*7",
+    "offset(o1, E, N), D = E*E + N*N", "kind(X, (object; verge), C)", "in(X, r1) : object(X)", "1 { object(X) } 3",
+    "rect(X, W, S, E, N), |E-W| < 400, not corner(_, E, N)", "C = #max{D,T : shape(o1, T, D)}, shape(o1, S, C)",
+)  # fmt: skip
+RULES = """\
+% What is wide, and what is rather verge.
+#const most = 40.
+wide(X) :- rect(X, W, S, E, N), E-W > 10*most.
+kind(R, verge, C/2) :- region(R, zero, C), C > most, not odd_one(R).
+odd_one(R) :- region(R, _, C), C \\ 2 = 1. odd_one(x).
+:- kind(R, object, 100), #count{Q : region(Q, _, _)} > 50.
+:~ kind(R, verge, C). [C@2, R]
+{ mine(R) : region(R, zero, _) } 1.
+#show mine/1.
+"""
+MAP = "type octile\nheight 4\nwidth 5\nmap\n@@@@@\n@..T@\n@.SW@\n@@@@@\n"
 PICTURE = "bbbbbbbb\nb..gg..b\nb.....cb\nb.U..ccb\nb......b\nbbbbbbbb\n"
 WORDS = (
+    "2147483648", "-2147483648", "65536*65536", "X*X", "C+1", "not ", "-object(o1)", "#count{X : object(X)}", "1..",
+    "#sum{C,X : shape(X,_,C)}", "banana", "_", "choose(1)", "#true", "@f(1)", "&diff{a}", "|", "**", "#inf", "{", "}",
     '"', "'", "(", ")", "((", "))", ".", "..", ",", ";", ":-", "%", "%*", "*%", "#include", '#include "/etc/passwd".',
     "#script (python)", "#const n=1.", "@f()", "X", "_", "-", "--1", "99999999999999999999", "-2147483649", "1e999",
     "nan", "inf", "1.5", "0x10", "\\", "\x00", "\x1b[31m", "\r", "\t", "\ufeff", "\u201c", "\u201d", "\u00a0",
@@ -173,19 +201,29 @@ def _hung(number: int, frame: FrameType | None) -> None:
 
 
 def outcome(folder: Path) -> str:
-    """Return `accepted`, `refused`, `cannot open`, or a fault that begins with an exclamation mark."""
+    """Return how reading a scenario came out, as `came_out` does."""
+    return came_out(lambda: _simulated(folder))
+
+
+def _simulated(folder: Path) -> None:
+    table = Tabletop(read_scenario(folder).world)
+    table.look()
+    table.move(3.0, -40.0)
+
+
+def came_out(read: Callable[[], object]) -> str:
+    """Return `accepted`, `refused`, `given up`, `cannot open`, or a fault that begins with an exclamation mark."""
     signal.signal(signal.SIGALRM, _hung)
     signal.setitimer(signal.ITIMER_REAL, PATIENCE)
     try:
-        scenario = read_scenario(folder)
-        table = Tabletop(scenario.world)
-        table.look()
-        table.move(3.0, -40.0)
+        read()
     except BadInputError as bad:
-        faulty = [str(problem) for problem in bad.problems if not REFUSAL.match(str(problem))]
+        faulty = [str(p) for p in bad.problems if not REFUSAL.match(str(p)) or "ended the process" in p.what]
         return f"! a refusal without place: {faulty[0]}" if faulty or not bad.problems else "refused"
     except CannotOpenError:
         return "cannot open"
+    except QueryLimitError as limit:
+        return f"! {limit}" if "ended the process" in str(limit) else "given up"
     except _HungError:
         return "! hung"
     except Exception as error:
@@ -210,14 +248,71 @@ def campaign(count: int, seed: int, keep: Path) -> Counter[str]:
     return outcomes
 
 
+def queries(count: int, seed: int) -> Counter[str]:
+    """Return how many of `count` spoilt queries came out how."""
+    outcomes: Counter[str] = Counter()
+    with QueryEngine(seconds=5.0) as engine:
+        for number in range(count):
+            draw = random.Random(f"{seed}-{number}")
+            text = spoil(draw, draw.choice(QUERIES)).decode("utf-8", errors="surrogateescape")
+            _count(outcomes, came_out(lambda text=text: engine.ask(FACTS, text)), text)  # type: ignore[misc]
+    return outcomes
+
+
+def rules(count: int, seed: int, keep: Path) -> Counter[str]:
+    """Return how many of `count` spoilt files of rules came out how, by themselves and beside our encodings."""
+    outcomes: Counter[str] = Counter()
+    for number in range(count):
+        draw = random.Random(f"{seed}-{number}")
+        raw, path = spoil(draw, RULES), keep / f"{seed}-{number}.lp"
+        path.write_bytes(raw)
+
+        def tried(path: Path = path) -> None:
+            checked_rules([path])
+            solve([KB / "interpretation.lp", path], ["region(a,zero,90)", "region(c,nonzero,80)", "extent(c,3)"])
+
+        _count(outcomes, came_out(tried), repr(raw))
+        path.unlink()
+    return outcomes
+
+
+def maps(count: int, seed: int) -> Counter[str]:
+    """Return how many of `count` spoilt maps came out how."""
+    outcomes: Counter[str] = Counter()
+    for number in range(count):
+        raw = spoil(random.Random(f"{seed}-{number}"), MAP)
+
+        def read(raw: bytes = raw) -> None:
+            try:
+                parse_map(raw)
+            except MapError as error:
+                span = Span(error.line, error.column, error.end)
+                raise BadInputError([Problem("map", span, error.what)]) from None
+
+        _count(outcomes, came_out(read), repr(raw))
+    return outcomes
+
+
+def _count(outcomes: Counter[str], result: str, text: str) -> None:
+    outcomes[result] += 1
+    if result.startswith("!"):
+        print(f"{result}: {text!r}", file=sys.stderr)
+
+
 def main() -> int:
     """Run the campaign that the command line asks for."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.malformed", description=__doc__)
     parser.add_argument("count", type=int, nargs="?", default=10_000)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--what", choices=("scenarios", "queries", "rules", "maps"), default="scenarios")
     options = parser.parse_args()
-    start = time.monotonic()
-    outcomes = campaign(options.count, options.seed, Path(tempfile.mkdtemp(prefix="malformed-")))
+    start, keep = time.monotonic(), Path(tempfile.mkdtemp(prefix="malformed-"))
+    outcomes = {
+        "scenarios": lambda: campaign(options.count, options.seed, keep),
+        "queries": lambda: queries(options.count, options.seed),
+        "rules": lambda: rules(options.count, options.seed, keep),
+        "maps": lambda: maps(options.count, options.seed),
+    }[options.what]()
     for result, number in outcomes.most_common():
         print(f"{number:8d}  {result}")
     print(f"{time.monotonic() - start:8.1f}  seconds")

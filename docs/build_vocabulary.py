@@ -110,6 +110,39 @@ def files_section() -> str:
     return "\n".join(lines) + "\n"
 
 
+def questions_section() -> str:
+    """What of the world model is open, and how its arguments are spelt."""
+    sys.path.insert(0, str(ROOT))
+    from kb.vocabulary import BELIEF, Open
+
+    words = {
+        Open.NEVER: "nothing: it is known completely",
+        Open.UNSEEN: "things not seen yet",
+        Open.UNTOLD: "things not seen yet, and things of which it says nothing",
+    }
+    lines = ["## What may hold besides what is believed", ""]
+    lines += ["Questions are answered by this table (kb/vocabulary.py; docs/files.md says how).", ""]
+    lines += ["| predicate | more of it may hold of | its confidence |", "|---|---|---|"]
+    for (name, arity), declared in BELIEF.items():
+        but = f", but for {', '.join(sorted(declared.settled))}" if declared.settled else ""
+        turns = "between 0 and 100 it may turn out otherwise" if declared.confident else ""
+        lines.append(f"| `{name}/{arity}` | {words[declared.open]}{but} | {turns} |")
+    return "\n".join(lines) + "\n"
+
+
+def rules_section() -> str:
+    """What stands in the arguments of the predicates that rules of users may derive."""
+    sys.path.insert(0, str(ROOT))
+    from kb.interfaces import REACHED, READ_ONLY
+
+    lines = ["## What rules of users may derive", ""]
+    lines += ["The encodings that rules of `--kb` reach, and what stands in the arguments (kb/interfaces.py).", ""]
+    for name, interface in REACHED.items():
+        forms = [_form(p, [s.name for s in slots]) for (p, n), slots in interface.items() if (p, n) not in READ_ONLY]
+        lines.append(f"- **{name}.lp**: " + ", ".join(f"`{form}`" for form in forms))
+    return "\n".join(lines) + "\n"
+
+
 def _form(predicate: str, slots: Sequence[object]) -> str:
     inner = ", ".join(str(getattr(slot, "name", slot)) for slot in slots)
     return f"{predicate}({inner})" if inner else predicate
@@ -117,7 +150,8 @@ def _form(predicate: str, slots: Sequence[object]) -> str:
 
 def page() -> str:
     """The whole page."""
-    return "\n".join([HEAD, *(section(path) for path in encodings()), files_section()])
+    sections = [*(section(path) for path in encodings()), questions_section(), rules_section(), files_section()]
+    return "\n".join([HEAD, *sections])
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

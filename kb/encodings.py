@@ -41,8 +41,10 @@ def _answer(files: tuple[Path, ...], facts: tuple[str, ...], seconds: float) -> 
     if users:
         from kb.userrules import solve_apart  # only who has rules of his own waits for it
 
-        found = solve_apart([path for path in files if path not in users], users, facts)
-        return None if found is None else tuple(sorted(found, key=str))
+        files = tuple(path for path in files if path not in users)
+        found = solve_apart(files, users, facts)
+        if found is not None:
+            return tuple(sorted(found, key=str))
     messages: list[str] = []
     control = clingo.Control(["--stats=0"], logger=lambda _code, text: messages.append(text), message_limit=20)
     try:

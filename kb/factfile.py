@@ -7,6 +7,7 @@ in silence).
     fact  = name [ "(" term { "," term } ")" ] "."
     term  = ["-"] digits | '"' characters '"' | name [ "(" term { "," term } ")" ]
 
+A name is any word of letters, digits, `_` and `'` that begins with a small letter (after any `_`), except `not`.
 Strings know the escapes `\"`, `\\` and `\n`; comments run from `%` to the end of the line, or from `%*` to `*%`, which
 nest.
 """
@@ -22,6 +23,7 @@ from kb.tokens import Token, tokens
 DEEPEST = 64  # how far terms may be nested
 BITS = range(-(2**31), 2**31)
 MOST_FACTS = 100_000
+KEYWORDS = frozenset({"not"})  # names that the grammar of answer set programs keeps for itself
 ESCAPE = re.compile(r"\\.")
 ESCAPES = {"\\n": "\n", '\\"': '"', "\\\\": "\\"}
 
@@ -126,6 +128,9 @@ class _Reader:
 
     def symbol(self, depth: int) -> Symbol:
         name = self.take()
+        if name.text in KEYWORDS and (depth or self.peek.kind not in ("name", "variable")):
+            what = f"{name.text} is a word of the language and cannot name anything"
+            raise self.refuse(name, what, "take another name")
         if self.peek.text != "(":
             return Symbol(name.text, (), name.span)
         self.take()

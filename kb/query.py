@@ -1,34 +1,28 @@
 """Questions to the world model: the body of a rule, answered over its facts in a process that can be killed.
 
-A query without variables is answered yes, no or don't know; one with variables by the rows of their values, or, when
-there is none, by no or don't know. Beside the facts there is `object(N)`, which stands for `kind(N, object, C)`.
-
-The answer is *don't know* when nothing makes the query hold and
-
-- some confidence in it would do if it could be any between 0 and 100 (`shape(o1,square,100)`, believed with 80), or
-- part of the world is unseen (`unseen(R, N)` with N above 0) and the query asks for things that may be there: it has
-  variables, or names something that no fact names.
+A query without variables is answered yes, no or don't know; one with variables by the rows of their values that hold
+for certain, or, when there is none, by no or don't know. Beside the facts there is `object(N)`, which stands for
+`kind(N, object, C)`. What is certain, what may be and what is not: kb.inference, over the table `BELIEF` of
+kb.vocabulary; docs/files.md describes it.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Any
 
 from kb.factfile import parse_facts
-from kb.facts import Fact, Number, Symbol
-from kb.problems import BadInputError, Problem, Span, did_you_mean
+from kb.facts import Fact, Number
+from kb.integers import wide_integers
+from kb.problems import BadInputError, Problem, Span
+from kb.rulebook import Statement
 from kb.source import decode
+from kb.vocabulary import BELIEF
 from kb.worker import Worker
 
 SECONDS = 5.0  # after which a query is given up
 LONGEST = 10_000  # characters of a query
 MOST_ROWS = 10_000  # of an answer, unless more are asked for
-VOCABULARY = (
-    ("node", 1), ("kind", 3), ("child", 2), ("offset", 3), ("rect", 5), ("segment", 7), ("shape", 3), ("colour", 3),
-    ("movable", 2), ("held", 1), ("room", 1), ("door", 1), ("connects", 3), ("width", 2), ("in", 2), ("corner", 3),
-    ("adjacent", 2), ("unseen", 2), ("object", 1),
-)  # fmt: skip
+VOCABULARY = tuple(BELIEF)
 
 
 class QueryLimitError(Exception):
@@ -63,10 +57,18 @@ class Answer:
 
 
 class QueryEngine:
-    """Answers queries one after another; use it in a `with` statement, which ends its process."""
+    """Answers queries one after another; use it in a `with` statement, which ends its process.
 
-    def __init__(self, seconds: float = SECONDS) -> None:
+    rules : files with rules of a user; predicates that they define over what is believed can be asked for, too.
+    """
+
+    def __init__(self, seconds: float = SECONDS, rules: Sequence[str] = ()) -> None:
         self.seconds = seconds
+        self._rules: Sequence[Statement] = ()
+        if rules:
+            from kb.userrules import read_rules  # only who has rules of his own waits for it
+
+            self._rules = read_rules(rules).queried
         self._worker = Worker()
 
     def __enter__(self) -> "QueryEngine":
@@ -87,18 +89,25 @@ class QueryEngine:
         text = query.strip().removeprefix("?-").strip().removesuffix(".").strip()
         _check(text)
         world = parse_facts(decode("belief", "\n".join(facts).encode("utf-8")))
-        known = {*VOCABULARY, *(fact.signature for fact in world)}
         request = {
-            "facts": "\n".join(f"{fact}." for fact in world),
+            "facts": [_entry(fact) for fact in world],
             "query": text,
-            "known": sorted(known),
+            "rules": [one.written for one in self._rules],
             "most": most,
         }
         found = self._worker.exchange(request, self.seconds)
         if "limit" in found:
             raise QueryLimitError(f"the query was given up: {found['limit']}")
-        _check_atoms(text, found, known)
-        return _answer(found, world, text)
+        if "rule" in found:
+            raise BadInputError([self._rules[found["rule"]].problem(found["error"], hint=found["hint"])])
+        if "error" in found:
+            raise _problem(text, found["error"], found["at"], found["hint"])
+        return Answer(found["answer"], tuple(found["variables"]), tuple(map(tuple, found["rows"])), found["more"])
+
+
+def _entry(fact: Fact) -> list[int | str]:
+    """A fact as the worker takes it: its name and its arguments, integers or terms as text."""
+    return [fact.name, *(term.value if isinstance(term, Number) else str(term) for term in fact.args)]
 
 
 def _problem(text: str, what: str, at: int = 0, hint: str = "") -> BadInputError:
@@ -115,41 +124,6 @@ def _check(text: str) -> None:
         raise _problem(text[:100], f"a query has at most {LONGEST} characters")
     if "\n" in text or "%" in text:
         raise _problem(text, "a query is one line without comments")
-    decode("query", text.encode("utf-8", errors="surrogateescape"))
-
-
-def _check_atoms(text: str, found: dict[str, Any], known: set[tuple[str, int]]) -> None:
-    """Whether the query is well formed and asks for predicates that exist."""
-    if "error" in found:
-        raise _problem(text, found["error"], found["at"])
-    for name, arity, at in found["atoms"]:
-        if (name, arity) in known:
-            continue
-        forms = sorted(f"{other}/{n}" for other, n in known if other == name)
-        hint = f"there is {', '.join(forms)}" if forms else did_you_mean(name, {other for other, _ in known})
-        raise _problem(text, f"unknown predicate {name}/{arity}", at, hint)
-
-
-def _answer(found: dict[str, Any], world: Sequence[Fact], text: str) -> Answer:
-    variables, rows = tuple(found["variables"]), tuple(tuple(row) for row in found["rows"])
-    if rows:
-        return Answer("bindings", variables, rows, found["more"]) if variables else Answer("yes")
-    unsure = found["open"] or (_unseen(world) and (bool(variables) or _names_news(text, world)))
-    return Answer("don't know" if unsure else "no", variables)
-
-
-def _unseen(world: Sequence[Fact]) -> bool:
-    """Whether part of the world is unseen."""
-    counts = [fact.args[1] for fact in world if fact.signature == ("unseen", 2)]
-    return any(isinstance(count, Number) and count.value > 0 for count in counts)
-
-
-def _names_news(text: str, world: Sequence[Fact]) -> bool:
-    """Whether a query without variables names something that no fact names as its first argument."""
-    named = {str(fact.args[0]) for fact in world if fact.args}
-    try:
-        atoms = parse_facts(decode("query", f"q({text}).".encode()))[0].args
-    except BadInputError:
-        return False  # aggregates, comparisons, negations: they ask about what is there
-    firsts = [atom.args[0] for atom in atoms if isinstance(atom, Symbol) and atom.args]
-    return any(str(term) not in named for term in firsts)
+    problems = list(wide_integers(decode("query", text.encode("utf-8", errors="surrogateescape"))))
+    if problems:
+        raise BadInputError(problems)

@@ -5,31 +5,39 @@ is its own alone. A query is the body of one rule; its answers are the values of
 """
 
 import json
-import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
 from typing import Any
 
 import clingo
-from clingo.ast import AST, ASTType, Sign, Transformer, parse_string
+from clingo.ast import AST, ASTType, parse_string
 
 from kb import machine
+from kb.clauses import Clause, ClauseError, clauses_of, global_variables
+from kb.deriving import derive
+from kb.inference import Bindings, bindings
+from kb.open_world import Beliefs, Row
+from kb.ordering import unsafe
+from kb.problems import did_you_mean
+from kb.ruling import read, solved
+from kb.uncertain import Value
+from kb.vocabulary import BELIEF
+from kb.wording import check_body, stated_names
 
 MEMORY = 1_500_000_000  # bytes of address space
 PROCESSOR_TIME = 60  # seconds on one request: far more than anybody waits for, should nobody be there to end it
 MOST_ROWS = 10_000
-CONFIDENT = {
-    ("kind", 3),
-    ("segment", 7),
-    ("shape", 3),
-    ("colour", 3),
-    ("movable", 2),
-}  # the last argument is a confidence
-UNSAFE = re.compile(r"'(\w+)' is unsafe")
-DERIVED = "object(N) :- kind(N, object, _)."
 HEAD = "q__ :- "
-LOCAL = ("BodyAggregateElement", "ConditionalLiteral")  # variables in these are their own
 
 Answer = dict[str, Any]
+
+
+class RuleError(Exception):
+    """A rule cannot be worked out; carries the ClauseError, whose line is the rule's number."""
+
+    def __init__(self, error: ClauseError) -> None:
+        self.error = error
+        super().__init__(error.what)
 
 
 class QueryError(Exception):
@@ -40,56 +48,75 @@ class QueryError(Exception):
         super().__init__(what)
 
 
-class _Reader(Transformer):
-    """Collects the global variables of a rule's body and its atoms as (name, arity)."""
+def answer(
+    facts: Iterable[Sequence[int | str]], query: str, rules: Sequence[str] = (), most: int = MOST_ROWS
+) -> Answer:
+    """Return the answer to a query over facts: its kind, its variables, and the rows of their values.
 
-    def __init__(self) -> None:
-        self.variables: list[str] = []
-        self.atoms: list[tuple[str, int, int]] = []
-        self.local = 0
-
-    def visit(self, ast: AST, *args: Any, **kwargs: Any) -> AST:
-        """Visit a node, knowing whether its variables are local."""
-        local = str(ast.ast_type).rpartition(".")[2] in LOCAL
-        self.local += local
-        super().visit(ast, *args, **kwargs)
-        self.local -= local
-        return ast
-
-    def visit_Variable(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        if not self.local and node.name != "_" and node.name not in self.variables:
-            self.variables.append(node.name)
-        return node
-
-    def visit_SymbolicAtom(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        symbol = node.symbol
-        if symbol.ast_type == ASTType.Function:
-            at = symbol.location.begin.column - len(HEAD)
-            self.atoms.append((symbol.name, len(symbol.arguments), at))
-        self.visit_children(node)
-        return node
-
-
-def answer(facts: str, query: str, known: Iterable[tuple[str, int]], most: int = MOST_ROWS) -> Answer:
-    """Return the answer to a query over facts: its variables, the rows of their values, and whether it is open.
-
-    most : how many rows are kept.
+    facts : of each the name and the arguments, integers or terms as text. rules : plain rules of a user, which define
+    predicates that can be asked for, too. most : how many rows are kept.
     """
-    rule = _rule(query)
-    reader = _Reader()
-    reader.visit_sequence(rule.body)
-    declared = {(name, arity) for name, arity in known}
-    if any(atom[:2] not in declared for atom in reader.atoms):
-        return {"atoms": reader.atoms, "variables": [], "rows": [], "more": False, "open": False}
-    program = [facts, DERIVED, *(f"#defined {name}/{arity}." for name, arity in sorted(declared))]
-    rows, more = _rows(program, reader.variables, query, most)
-    found = {"variables": reader.variables, "rows": rows, "more": more, "atoms": reader.atoms}
-    return found | {"open": not rows and _open(program, rule)}
+    clauses = clauses_of(_rule(query))
+    beliefs = Beliefs(_facts(facts))
+    names = stated_names(beliefs.signatures())
+    defining = _defining(rules)
+    defined = {clause.head.signature for clause in defining if clause.head is not None}
+    for clause in clauses:
+        check_body(clause.body, {*BELIEF, *beliefs.signatures(), *defined}, names)
+    try:
+        derive(defining, beliefs)
+    except ClauseError as error:
+        raise RuleError(error) from None
+    variables = list(dict.fromkeys(name for clause in clauses for name in global_variables(clause.body)))
+    rows: dict[Row, None] = {}
+    for clause in clauses:
+        rows |= dict.fromkeys(_row(found, variables, clause) for found in bindings(clause.body, {}, beliefs, False))
+    found = {"variables": variables, "rows": [], "more": False}
+    if rows:
+        told = sorted(([_value(value) for value in row] for row in rows), key=_order)
+        return (
+            found
+            | {"answer": "bindings" if variables else "yes", "rows": told[:most] if variables else []}
+            | {"more": len(told) > most}
+        )
+    perhaps = any(True for clause in clauses for _ in bindings(clause.body, {}, beliefs, True))
+    return found | {"answer": "don't know" if perhaps else "no"}
 
 
-def _rule(query: str) -> Any:
+def _defining(rules: Sequence[str]) -> list[Clause]:
+    """The clauses of rules; the line of each is its number among them, from 1."""
+    parts: list[AST] = []
+    parse_string("\n".join(rules), parts.append, logger=_raise, message_limit=20)
+    try:
+        return [clause for part in parts if part.ast_type == ASTType.Rule for clause in clauses_of(part)]
+    except ClauseError as error:
+        raise RuleError(error) from None
+
+
+def _row(found: Bindings, variables: list[str], clause: Clause) -> Row:
+    missing = [name for name in variables if name not in found]
+    if missing:
+        raise unsafe(missing[0], clause.at)
+    return tuple(found[name] for name in variables)
+
+
+def _order(row: list[Any]) -> list[tuple[bool, Any]]:
+    return [(isinstance(value, str), value) for value in row]
+
+
+def _facts(entries: Iterable[Sequence[int | str]]) -> Iterator[tuple[str, Row]]:
+    for name, *arguments in entries:
+        yield str(name), tuple(term if isinstance(term, int) else _parsed(term) for term in arguments)
+
+
+@lru_cache(maxsize=65536)
+def _parsed(term: str) -> clingo.Symbol:
+    return clingo.parse_term(term)
+
+
+def _rule(query: str) -> AST:
     """The rule of which a query is the body; exactly one, or it is no query."""
-    parts: list[Any] = []
+    parts: list[AST] = []
     parse_string(f"{HEAD}{query}\n.", parts.append, logger=_raise, message_limit=20)
     if len(parts) != 2 or parts[1].ast_type != ASTType.Rule:
         raise QueryError("one query at a time, without a full stop in it")
@@ -98,69 +125,12 @@ def _rule(query: str) -> Any:
     return parts[1]
 
 
-def _rows(program: list[str], variables: list[str], body: str, most: int = MOST_ROWS) -> tuple[list[list[Any]], bool]:
-    """The distinct values of the variables for which the body holds, and whether there are more of them."""
-    control = clingo.Control(["--warn=all"], logger=_raise, message_limit=20)
-    head = f"q__({','.join(variables)})" if variables else "q__"
-    control.add("base", [], "\n".join([*program, f"{head} :- {body}\n."]))
-    control.ground([("base", [])])
-    atoms = control.symbolic_atoms.by_signature("q__", len(variables))
-    rows = [[_value(term) for term in atom.symbol.arguments] for atom in atoms]
-    rows.sort(key=lambda row: [(isinstance(value, str), value) for value in row])
-    return rows[:most], len(rows) > most
-
-
-def _open(program: list[str], rule: Any) -> bool:
-    """Whether the query would hold if it asked for any confidence between 0 and 100 where it asks for a certain one."""
-    literals, changed = [], False
-    for number, literal in enumerate(rule.body):
-        text = str(literal)
-        if literal.ast_type == ASTType.Literal and literal.sign == Sign.NoSign:
-            symbol = getattr(literal.atom, "symbol", None)
-            if symbol is not None and (symbol.name, len(symbol.arguments)) in CONFIDENT:
-                terms = [*map(str, list(symbol.arguments)[:-1]), f"C__{number}"]
-                text = f"{symbol.name}({','.join(terms)}), 0 < C__{number} < 100"
-                changed = True
-        literals.append(text)
-    return changed and bool(_rows(program, [], "; ".join(literals))[0])
-
-
-def _value(term: clingo.Symbol) -> int | str:
-    return term.number if term.type == clingo.SymbolType.Number else str(term)
-
-
-def solved(program: str, rules: str, seconds: float) -> Answer:
-    """The shown atoms of the best answer set of a program of ours with rules of a user: {"atoms": texts or None}.
-
-    Or {"error": clingo's first message}, whose lines are those of the rules.
-    """
-    messages: list[str] = []
-    control = clingo.Control([], logger=lambda _code, text: messages.append(text), message_limit=20)
-    try:
-        control.add("base", [], program)
-        control.add("base", [], rules)
-        control.ground([("base", [])])
-    except RuntimeError as error:
-        messages.append(str(error))
-    if messages:
-        return {"error": messages[0]}
-    best: list[list[str] | None] = [None]
-
-    def keep(model: clingo.Model) -> None:
-        best[0] = [str(atom) for atom in model.symbols(shown=True)]
-
-    with control.solve(on_model=keep, async_=True) as handle:
-        if not handle.wait(seconds):
-            handle.cancel()
-        handle.get()
-    return {"atoms": best[0]}
+def _value(term: Value) -> int | str:
+    return term if isinstance(term, int) else str(term)
 
 
 def _raise(code: clingo.MessageCode, message: str) -> None:
     """Turn clingo's first message into an error; columns count from the start of the query."""
-    if unsafe := UNSAFE.search(message):
-        _messages.append(QueryError(f"nothing says what {unsafe[1]} can be: it must be in an atom that holds"))
-        return
     place, _, what = message.partition(": error: ")
     if not what:
         place, _, what = message.partition(": info: ")
@@ -176,17 +146,25 @@ def _respond(line: bytes) -> Answer:
     _messages.clear()
     try:
         request = json.loads(line)
-        if "rules" in request:
-            return solved(request["program"], request["rules"], request["seconds"])
-        found = answer(request["facts"], request["query"], request["known"], request.get("most", MOST_ROWS))
+        if "read" in request:
+            return read(request["read"])
+        if "program" in request:
+            return solved(request["program"], request["rules"], request["heads"], request["conflicts"])
+        found = answer(request["facts"], request["query"], request["rules"], request.get("most", MOST_ROWS))
     except QueryError as error:
-        return {"error": error.what, "at": error.at}
+        return {"error": error.what, "at": error.at, "hint": ""}
+    except RuleError as bad:
+        return {"error": bad.error.what, "rule": bad.error.at[0] - 1, "hint": bad.error.hint}
+    except ClauseError as error:
+        return {"error": error.what, "at": max(0, error.at[1] - len(HEAD)), "hint": error.hint}
+    except RecursionError:
+        return {"error": "it is nested too deep", "at": 0, "hint": ""}
     except MemoryError:
         return {"limit": "it needs too much memory"}
     except RuntimeError as error:
         _messages.append(QueryError(str(error)))
     if _messages:
-        return {"error": _messages[0].what, "at": _messages[0].at}
+        return {"error": _messages[0].what, "at": _messages[0].at, "hint": ""}
     return found
 
 
@@ -196,7 +174,8 @@ def main() -> None:
     machine.limit("AS", MEMORY)
     machine.limit("CORE", 0)
     json.loads('{"a": [1.5, "b"]}')  # everything that is imported late is imported now
-    answer("p(1).", "p(X), not p(2)", [])
+    answer([["room", "r1"]], "room(X), not room(r2)")
+    did_you_mean("room", ["door"])
     requests = machine.lines_of_parent()
     machine.limit("NOFILE", 3)
     print("ready", flush=True)

@@ -14,7 +14,7 @@ from kb.worldmodel import Node, WorldModel
 class Reconciled(NamedTuple):
     """What the task's objects are in the world model.
 
-    binding : parameter -> node. hypothesised : parameters that nothing seen so far can be.
+    binding : parameter -> node. hypothesised : parameters of goals that nothing seen so far can be.
     doubtful : (parameter, node) pairs that a closer look decides. contradicted : (parameter, node, property).
     unmovable : (parameter, node) pairs that agree, but what is to be carried cannot be moved.
     measurable : (parameter, node) pairs that may agree when it is told better how large the node is.
@@ -62,6 +62,8 @@ def _task_facts(task: Task) -> Iterable[str]:
     for name, parameter in task.parameters.items():
         if parameter.kind == "object":
             yield f"wanted({name})"
+            if name in task.named:
+                yield f"named({name})"
     for claim in task.claims:
         x, value = claim.fact.args
         assert isinstance(x, Symbol)

@@ -1,5 +1,6 @@
 """What may stand as an argument of a fact: small checks of one term, each with its own complaint and hint."""
 
+import re
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
@@ -16,10 +17,14 @@ class Complaint(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """One place among a fact's arguments: how the vocabulary names it, and the check of what stands there."""
+    """One place among a fact's arguments: how the vocabulary names it, and the check of what stands there.
+
+    limits : the least and the greatest number that may stand there; None where no number does.
+    """
 
     name: str
     check: Callable[[Term], Complaint | None]
+    limits: tuple[int, int] | None = None
 
 
 def short(term: Term) -> str:
@@ -38,7 +43,7 @@ def whole(name: str, low: int, high: int) -> Slot:
             return Complaint(term.span, f"{name} must be from {low} to {high}, not {term.value}")
         return None
 
-    return Slot(name, check)
+    return Slot(name, check, (low, high))
 
 
 def word(name: str, known: Iterable[str]) -> Slot:
@@ -65,6 +70,18 @@ def _colour(term: Term) -> Complaint | None:
     if isinstance(term, Symbol) and not term.args and len(term.name) == 1 and term.name.isalpha():
         return None
     return Complaint(term.span, f"a colour is a single lower-case letter, not {short(term)}")
+
+
+def named(name: str, pattern: str, such_as: str) -> Slot:
+    """A name of the robot's own making, such as o1. pattern : of such names, as a regular expression."""
+    form = re.compile(pattern)
+
+    def check(term: Term) -> Complaint | None:
+        if isinstance(term, Symbol) and not term.args and form.fullmatch(term.name):
+            return None
+        return Complaint(term.span, f"unknown {name} {short(term)}", f"such as {such_as}")
+
+    return Slot(name, check)
 
 
 def shape_text(name: str, *kinds: str) -> Slot:

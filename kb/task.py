@@ -59,6 +59,12 @@ class Task:
     claims: tuple[Claim, ...]
     goals: tuple[Fact, ...]
 
+    @property
+    def named(self) -> frozenset[str]:
+        """The parameters that the goals name."""
+        words = {str(term) for goal in self.goals for term in _plain(goal).args}
+        return frozenset(words & set(self.parameters))
+
     def claims_of(self, name: str) -> tuple[Claim, ...]:
         """Return what is claimed of one parameter."""
         return tuple(claim for claim in self.claims if claim.fact.args[0] == Symbol(name, (), Span(0, 0, 0)))
@@ -125,9 +131,12 @@ def _checked(source: Source | None, vocabulary: Vocabulary, problems: list[Probl
 
 
 def _repeated(source: Source, facts: tuple[Fact, ...]) -> list[Problem]:
+    """Facts that are stated twice; a step of a sequence may come again, for it is another step."""
     seen: dict[Fact, int] = {}
     problems = []
     for fact in facts:
+        if fact.name == "then":
+            continue
         if fact in seen:
             problems.append(source.problem(fact.span, f"stated twice: {fact}", f"first on line {seen[fact]}"))
         seen.setdefault(fact, fact.span.line)

@@ -1,10 +1,12 @@
 """The declared vocabulary of each kind of fact file, and the check of facts against it (docs/files.md)."""
 
 from collections.abc import Iterable, Mapping
+from enum import StrEnum
+from typing import NamedTuple
 
 from kb.facts import Fact, Symbol, Term
 from kb.problems import Problem, did_you_mean
-from kb.slots import COLOUR, NAME, Complaint, Slot, shape_text, short, whole, word
+from kb.slots import COLOUR, NAME, Complaint, Slot, named, shape_text, short, whole, word
 from kb.source import Source
 
 Vocabulary = Mapping[str, tuple[Slot, ...]]
@@ -83,6 +85,64 @@ ATTAINED: Vocabulary = {
     "not_through": (NAME, NAME),
 }
 GOAL: Vocabulary = {**ATTAINED, "first": (_fact_of("a goal", ATTAINED),), "then": (_fact_of("a goal", ATTAINED),)}
+
+
+class Open(StrEnum):
+    """Of what more of a predicate may hold than is believed."""
+
+    NEVER = "never"
+    """Of nothing: the robot knows all of it."""
+    UNSEEN = "unseen"
+    """Of what was not seen yet, as long as a part of the table is unseen."""
+    UNTOLD = "untold"
+    """Of that, and of things of which nothing is believed that this predicate says."""
+
+
+class Declared(NamedTuple):
+    """A predicate of the world model.
+
+    slots : its arguments. open : of what more of it may hold. subject : which argument it speaks of, from 0.
+    confident : its last argument is a confidence; one between 0 and 100 may turn out to be any other.
+    settled : subjects of which all is believed that ever will be.
+    """
+
+    slots: tuple[Slot, ...]
+    open: Open
+    subject: int = 0
+    confident: bool = False
+    settled: frozenset[str] = frozenset()
+
+
+THING = named("thing", "org|floor|verge|o[0-9]+", "o1, floor, verge, or org, which is Utak")
+ROOM = named("room", "r[0-9]+", "r1")
+DOOR = named("door", "d[0-9]+", "d1")
+CONFIDENCE = whole("a confidence", 0, 100)
+LENGTH = whole("a length in hundredths of squares", -(2**31), 2**31 - 1)
+COUNT = whole("a count", 0, 2**31 - 1)
+KIND = word("kind", ("utak", "floor", "verge", "object"))
+NO_THINGS = frozenset({"org", "floor", "verge"})
+# The predicates of kb/asp/belief.lp, and object/1.
+BELIEF: Mapping[tuple[str, int], Declared] = {
+    ("node", 1): Declared((THING,), Open.UNSEEN),
+    ("object", 1): Declared((THING,), Open.UNSEEN),
+    ("kind", 3): Declared((THING, KIND, CONFIDENCE), Open.UNSEEN, confident=True),
+    ("child", 2): Declared((THING, THING), Open.UNSEEN, subject=1),
+    ("offset", 3): Declared((THING, LENGTH, LENGTH), Open.UNSEEN),
+    ("held", 1): Declared((THING,), Open.NEVER),
+    ("rect", 5): Declared((THING, LENGTH, LENGTH, LENGTH, LENGTH), Open.UNSEEN),
+    ("segment", 7): Declared((THING, COUNT, LENGTH, LENGTH, LENGTH, LENGTH, CONFIDENCE), Open.UNSEEN, confident=True),
+    ("shape", 3): Declared((THING, word("shape", SHAPES), CONFIDENCE), Open.UNTOLD, 0, True, NO_THINGS),
+    ("colour", 3): Declared((THING, COLOUR, CONFIDENCE), Open.UNTOLD, 0, True, NO_THINGS),
+    ("movable", 2): Declared((THING, CONFIDENCE), Open.UNTOLD, 0, True, NO_THINGS),
+    ("adjacent", 2): Declared((THING, THING), Open.UNTOLD, settled=frozenset({"org"})),
+    ("room", 1): Declared((ROOM,), Open.UNSEEN),
+    ("door", 1): Declared((DOOR,), Open.UNSEEN),
+    ("connects", 3): Declared((DOOR, ROOM, ROOM), Open.UNSEEN),
+    ("width", 2): Declared((DOOR, LENGTH), Open.UNSEEN),
+    ("in", 2): Declared((THING, ROOM), Open.UNSEEN),
+    ("corner", 3): Declared((word("corner", CORNERS), LENGTH, LENGTH), Open.NEVER),
+    ("unseen", 2): Declared((ROOM, COUNT), Open.NEVER),
+}
 
 
 def check_facts(source: Source, facts: Iterable[Fact], vocabulary: Vocabulary) -> list[Problem]:

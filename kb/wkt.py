@@ -4,6 +4,10 @@ shape   = "POINT" "(" point ")" | "LINESTRING" line | "POLYGON" polygon | "MULTI
 polygon = "(" line { "," line } ")"       the outer ring, then the holes; a ring ends where it begins
 line    = "(" point { "," point } ")"
 point   = number number                   x and y in squares
+number  = [ "+" | "-" ] ( digits [ "." [ digits ] ] | "." digits ) [ ( "e" | "E" ) [ "+" | "-" ] digits ]
+
+Words are parted by blanks, brackets and commas, by nothing else: `10.5.5` and `8-5` are one word each, and no number.
+Nothing but blanks may follow the last bracket.
 """
 
 import re
@@ -11,8 +15,8 @@ from typing import Any, NamedTuple
 
 import shapely
 
-NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-WORD = re.compile(rf"\s*([A-Za-z]+|{NUMBER}|.)?", re.DOTALL)
+NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+WORD = re.compile(r"[(),]|[^\s(),]+")
 KINDS = ("POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")
 FURTHEST = 1e6  # squares: no coordinate is greater
 
@@ -75,7 +79,7 @@ class _Reader:
 
     def __init__(self, text: str) -> None:
         self.text = text
-        self.tokens = [_Token(m.group(1), m.start(1)) for m in WORD.finditer(text) if m.group(1)]
+        self.tokens = [_Token(m.group(), m.start()) for m in WORD.finditer(text)]
         self.tokens.append(_Token("", len(text)))
         self.next = 0
 
@@ -92,7 +96,7 @@ class _Reader:
 
     def expect(self, marks: str) -> str:
         token = self.take()
-        if not token.text or token.text not in marks:
+        if token.text not in tuple(marks):
             wanted = " or ".join(repr(mark) for mark in marks)
             raise WktError(token.at, f"{wanted} was expected, {token.text[:20] or 'the end'!r} found")
         return token.text
@@ -104,7 +108,7 @@ class _Reader:
 
     def number(self) -> float:
         token = self.take()
-        if not re.fullmatch(NUMBER, token.text):
+        if not NUMBER.fullmatch(token.text):
             raise WktError(token.at, f"a number was expected, {token.text[:20] or 'the end'!r} found")
         value = float(token.text)
         if not abs(value) <= FURTHEST:
@@ -113,6 +117,13 @@ class _Reader:
 
     def point(self) -> Point:
         return self.number(), self.number()
+
+    def single(self) -> Point:
+        """`( point )`: one point alone."""
+        self.expect("(")
+        point = self.point()
+        self.expect(")")
+        return point
 
     def several(self, part: Any) -> list[Any]:
         """`( part , part ... )`."""
@@ -140,7 +151,7 @@ class _Reader:
 
 
 _BUILD: dict[str, Any] = {
-    "POINT": lambda reader: shapely.Point(reader.several(reader.point)[0]),
+    "POINT": lambda reader: shapely.Point(reader.single()),
     "LINESTRING": lambda reader: shapely.LineString(reader.line()),
     "POLYGON": lambda reader: reader.polygon(),
     "MULTIPOLYGON": lambda reader: shapely.MultiPolygon(reader.several(reader.polygon)),

@@ -41,7 +41,7 @@ class Worker:
         try:
             assert worker.stdin is not None
             with suppress(OSError):  # it has ended
-                worker.stdin.write(json.dumps(request).encode("ascii") + b"\n")
+                worker.stdin.write(json.dumps(request, allow_nan=False).encode("ascii") + b"\n")
                 worker.stdin.flush()
                 line = _line(self._lines, seconds)
         except BaseException:

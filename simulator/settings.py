@@ -1,9 +1,6 @@
 """The options of a run that decide what happens in it."""
 
 from dataclasses import dataclass
-from pathlib import Path
-
-from kb.source import read_source
 
 
 @dataclass(frozen=True)
@@ -19,7 +16,9 @@ class Settings:
 
 
 def kb_files_named(paths: list[str]) -> tuple[str, ...]:
-    """Return the rule files of --kb, each read once to make sure that it can be."""
-    for path in paths:
-        read_source(Path(path))
+    """Return the rule files of --kb, read and checked together once; raises CannotOpenError or BadInputError."""
+    if paths:
+        from kb.userrules import checked_rules  # only who has rules of his own waits for it
+
+        checked_rules(paths)
     return tuple(paths)

@@ -18,6 +18,8 @@ from simulator.contents import VERGE_COLOUR, Thing, World
 COMMON = 1e-9  # squares^2: a smaller common area is mere touching
 SMALLEST = 1e-4  # squares^2: a smaller thing is a slip of the pen
 RESERVED = ("utak", "verge")
+SLIT = 1e-6  # squares: the physics does not tell apart what is closer, so a narrower gap between shapes is no floor
+NEAR = 1e-4  # squares: so far may the floor seem from a point of its rim where the corners of slits are cut off
 
 
 class _Stated(NamedTuple):
@@ -161,7 +163,22 @@ def _bad_place(
     span = utak.args[0].span
     if not (0 <= here.x <= width and 0 <= here.y <= height):
         yield source.problem(span, f"Utak stands off the table, at ({here.x:g}, {here.y:g})")
-    for one in stated:
-        if one.shape.contains(here):
-            name = "the verge" if one.fact.name == "verge" else str(one.fact.args[0])
-            yield source.problem(span, f"Utak stands inside {name}, at ({here.x:g}, {here.y:g})")
+        return
+    inside = [one for one in stated if one.shape.contains(here)]
+    for one in inside:
+        name = "the verge" if one.fact.name == "verge" else str(one.fact.args[0])
+        yield source.problem(span, f"Utak stands inside {name}, at ({here.x:g}, {here.y:g})")
+    if not inside and not touches_floor(here, [one.shape for one in stated], width, height):
+        what = f"Utak stands where no floor is, at ({here.x:g}, {here.y:g})"
+        yield source.problem(span, what, "the robot stands on floor, or on its edge")
+
+
+def touches_floor(here: Any, shapes: Sequence[Any], width: int, height: int) -> bool:
+    """Whether a point lies on the floor or on its edge; a gap narrower than SLIT between shapes is none.
+
+    Only what is within a square of the point counts, so that it costs little on a large table.
+    """
+    about = shapely.box(0, 0, width, height).intersection(shapely.box(*here.buffer(1.0).bounds))
+    floor = about.difference(shapely.union_all([shape.intersection(about) for shape in shapes]))
+    wide = floor.buffer(-SLIT / 2, join_style="mitre")
+    return not wide.is_empty and bool(wide.distance(here) <= NEAR)

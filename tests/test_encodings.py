@@ -56,9 +56,10 @@ def test_a_wrong_arity_and_a_syntax_error_are_errors(tmp_path: Path, rule: str) 
         solve([interpretation, rules], ["region(a,zero,100)"])
 
 
-def test_a_rule_that_contradicts_leaves_no_answer(tmp_path: Path) -> None:
+def test_a_rule_that_contradicts_is_an_error_of_its_file(tmp_path: Path) -> None:
     rules = tmp_path / "rules.lp"
     rules.write_text(":- kind(_, floor, _).\n")
     interpretation = next(e for e in ENCODINGS if e.stem == "interpretation")
-    assert solve([interpretation, rules], ["region(a,zero,100)", "extent(a,3)"]) is None
+    with pytest.raises(BadInputError, match=r"rules\.lp:1:1-1: error: this rule contradicts"):
+        solve([interpretation, rules], ["region(a,zero,100)", "extent(a,3)"])
     assert solve([interpretation], ["region(a,zero,100)", "extent(a,3)"])

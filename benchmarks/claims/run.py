@@ -16,6 +16,7 @@ from benchmarks.claims.asked import Asked, written
 from benchmarks.claims.refute import Countersearch, refuted, searched, trespassed
 from benchmarks.claims.row import ERROR, TIME, Row
 from benchmarks.judging import ROOT, judge_path
+from utak_command import beside
 
 WALL = 6  # times the processor seconds that a run may take by the clock: other programs may be at work as well
 JUDGING = 300  # seconds
@@ -44,8 +45,8 @@ def run_child(place: Path, limits: Limits) -> str:
         "--seconds": limits.seconds,
         "--megabytes": limits.megabytes,
     }
-    call = [sys.executable, "-m", "benchmarks.claims.child", str(place.resolve())]
-    call += [part for name, value in options.items() for part in (name, str(value))]
+    given = [part for name, value in options.items() for part in (name, str(value))]
+    call = beside("benchmarks.claims.child", str(place.resolve()), *given)
     with (place / ERRORS).open("w") as errors:
         try:
             done = subprocess.run(call, cwd=ROOT, stdout=errors, stderr=errors, timeout=WALL * limits.seconds or None)

@@ -17,7 +17,8 @@ TOLD = {exits.DONE: "ok", exits.BAD_INPUT: "bad", exits.CANNOT_OPEN: "cannot be 
 def add(parts: Any) -> None:
     """Declare the subcommand."""
     part = parts.add_parser("check", help="check scenarios or single files of them")
-    part.add_argument("paths", nargs="+", metavar="FILE|FOLDER", help="a scenario, a folder of them, or a file of one")
+    what = "a scenario, a folder of them, a file of one, or a file of rules for --kb"
+    part.add_argument("paths", nargs="+", metavar="FILE|FOLDER", help=what)
     add_option(part)
     part.set_defaults(execute=execute)
 
@@ -57,10 +58,21 @@ def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
     if check is None:
         if not path.exists():
             raise CannotOpenError(str(path), "no such file or folder")
-        hint = f"a scenario's files are {', '.join(sorted(_checks()))}"
-        raise BadInputError([Problem(str(path), Span(1, 1, 1), f"{path.name} is no file of a scenario", hint=hint)])
+        if path.suffix == ".lp":
+            check = _rules
+        else:
+            what = f"{path.name} is neither a file of a scenario nor one of rules"
+            hint = f"a scenario's files are {', '.join(sorted(_checks()))}; files of rules end in .lp"
+            raise BadInputError([Problem(str(path), Span(1, 1, 1), what, hint=hint)])
     check(path)
     return exits.DONE
+
+
+def _rules(path: Path) -> None:
+    """Check a file of rules by itself, as --kb takes it."""
+    from kb.userrules import checked_rules
+
+    checked_rules([path])
 
 
 def _checks() -> dict[str, Callable[[Path], Any]]:

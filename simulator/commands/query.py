@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 from simulator import exits
 from simulator.commands.run import add_settings, settings_of
 from simulator.naming import with_utak
+from simulator.numbers import whole
+from simulator.printing import as_json
 from simulator.untrusted import refuse_links
 
 if TYPE_CHECKING:
@@ -20,7 +22,7 @@ def add(parts: Any) -> None:
     part = parts.add_parser("query", help="ask what Utak believes")
     part.add_argument("story", metavar="SCENARIO|EP.jsonl", help="a scenario folder, which is run, or an episode")
     part.add_argument("query", metavar="QUERY", help='such as "object(X), shape(X, square, C)"')
-    part.add_argument("--at", type=int, metavar="STEP", help="the step to ask at (default: the last; 0: on waking)")
+    part.add_argument("--at", type=_step, metavar="STEP", help="the step to ask at (default: the last; 0: on waking)")
     part.add_argument("--json", action="store_true", help="print the answer as one JSON object")
     part.add_argument("--limit", type=_limit, metavar="N", help="print so many rows at most (default 10000)")
     add_settings(part)
@@ -37,25 +39,21 @@ def execute(options: argparse.Namespace) -> int:
     _go_to(story, options.story, options.at)
     step = story.line["step"]
     try:
-        with QueryEngine() as engine:
+        with QueryEngine(rules=options.kb) as engine:
             answer = engine.ask(story.facts, with_utak(options.query), options.limit or MOST_ROWS)
     except QueryLimitError as limit:
         print(f"utak: {limit}", file=sys.stderr)
         return exits.LIMIT
     if options.json:
-        import json
-
         told = {"step": step, "answer": answer.kind, "variables": list(answer.variables)}
-        print(json.dumps({**told, "rows": [list(row) for row in answer.rows], "more": answer.more}))
+        print(as_json({**told, "rows": [list(row) for row in answer.rows], "more": answer.more}))
     else:
         print(answer)
     return exits.DONE
 
 
 def _limit(text: str) -> int:
-    if not 1 <= int(text) <= MOST:
-        raise argparse.ArgumentTypeError(f"must be from 1 to {MOST}, not {text}")
-    return int(text)
+    return whole(text, 1, MOST)
 
 
 def _go_to(story: "Story", name: str, step: int | None) -> None:
@@ -67,3 +65,7 @@ def _go_to(story: "Story", name: str, step: int | None) -> None:
     if step is not None and story.line["step"] != step:
         what = f"there is no step {step}: the last is {story.line['step']}"
         raise BadInputError([Problem(name, Span(1, 1, 1), what)])
+
+
+def _step(text: str) -> int:
+    return whole(text, 0, 1_000_000)

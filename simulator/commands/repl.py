@@ -24,7 +24,7 @@ def execute(options: argparse.Namespace) -> int:
 
     refuse_links(options, options.story)
     story = open_story(options.story, settings_of(options))
-    with QueryEngine() as engine:
+    with QueryEngine(rules=options.kb) as engine:
         prompt = Prompt(story, engine)
         for line in lines_of(prompt.words()):
             if not prompt.obey(line):

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from kb.problems import BadInputError, Problem, Span
 from simulator import exits
+from simulator.numbers import decimal, whole
+from simulator.printing import as_json
 from simulator.untrusted import add_option, refuse_links
 
 if TYPE_CHECKING:
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
 
 LARGEST = 200_000_000  # bytes of a map
 MOST = 1000
+FURTHEST = 1e6  # squares: no point lies further out
 CONVENTION = (
     "Points are in squares, with fractions. With --origin bottom, the default, (0, 0) is the south-west corner, x goes "
     "east and y north, as in scenarios. With --origin top, (0, 0) is the north-west corner, x goes east and y SOUTH, "
@@ -71,19 +74,19 @@ def execute(options: argparse.Namespace) -> int:
 
 def _free(name: str) -> "Bools":
     """Where one may be: on a map as it says, in a scenario wherever nothing stands."""
-    from geometry.movingai import read_map
+    from geometry.movingai import MapError, parse_map
     from kb.source import read_bytes
 
     if Path(name).is_dir():
         return _free_of_scenario(name)
-    read_bytes(name, LARGEST)  # which refuses what is no regular file
+    raw = read_bytes(name, LARGEST)
+    if len(raw) > LARGEST:
+        raise BadInputError([Problem(name, Span(1, 1, 1), f"the map is larger than {LARGEST} bytes")])
     try:
-        return read_map(name)
-    except ValueError as error:
-        place, _, what = str(error).partition(": error: ")
-        line = place.rpartition(":")[2]
-        number = int(line) if line.isdigit() else 1
-        raise BadInputError([Problem(name, Span(number, 1, 1), what or str(error))]) from None
+        return parse_map(raw)
+    except MapError as error:
+        line = raw.split(b"\n")[error.line - 1].decode("latin-1").rstrip("\r")
+        raise BadInputError([Problem(name, Span(error.line, error.column, error.end), error.what, line)]) from None
 
 
 def _free_of_scenario(name: str) -> "Bools":
@@ -102,11 +105,9 @@ def _turned(point: tuple[float, float], top: int | None) -> tuple[float, float]:
     return point if top is None else (point[0], top - point[1])
 
 
-def _print(routes: "list[Route]", as_json: bool, top: int | None) -> None:
-    if as_json:
-        import json
-
-        print(json.dumps({"routes": [_entry(route, top) for route in routes]}))
+def _print(routes: "list[Route]", json: bool, top: int | None) -> None:
+    if json:
+        print(as_json({"routes": [_entry(route, top) for route in routes]}))
         return
     if not routes:
         print("there is no way", file=sys.stderr)
@@ -129,13 +130,12 @@ def _entry(route: "Route", top: int | None) -> dict[str, Any]:
 
 
 def _point(text: str) -> tuple[float, float]:
-    x, y = (float(part) for part in text.split(","))
-    if not (abs(x) <= 1e6 and abs(y) <= 1e6):
-        raise argparse.ArgumentTypeError(f"{text} is no point")
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise argparse.ArgumentTypeError(f"{text!r} is no point: write X,Y")
+    x, y = (decimal(part, -FURTHEST, FURTHEST) for part in parts)
     return x, y
 
 
 def _count(text: str) -> int:
-    if not 1 <= int(text) <= MOST:
-        raise argparse.ArgumentTypeError(f"must be from 1 to {MOST}, not {text}")
-    return int(text)
+    return whole(text, 1, MOST)

@@ -2,9 +2,11 @@
 
 import argparse
 import sys
-from typing import TYPE_CHECKING, Any, TextIO, TypeVar
+from typing import TYPE_CHECKING, Any, TextIO
 
 from simulator import exits
+from simulator.numbers import decimal, whole
+from simulator.printing import as_json
 from simulator.terminal import shown
 from simulator.untrusted import add_option, refuse_links
 
@@ -12,7 +14,6 @@ if TYPE_CHECKING:
     from simulator.session import Result, Session
     from simulator.settings import Settings
 
-Amount = TypeVar("Amount", int, float)
 PATHS = ("skeleton", "visibility", "grid")
 
 
@@ -99,11 +100,9 @@ def _recorded(options: argparse.Namespace) -> dict[str, Any] | None:
     return found if isinstance(found, dict) else None
 
 
-def _print(result: "Result", as_json: bool, stream: TextIO) -> None:
-    import json
-
-    if as_json:
-        print(json.dumps({**result.line["result"], "unmet": list(result.unmet)}), file=stream)
+def _print(result: "Result", json: bool, stream: TextIO) -> None:
+    if json:
+        print(as_json({**result.line["result"], "unmet": list(result.unmet)}), file=stream)
         return
     truth = {None: "", True: ", achieved", False: ", not achieved"}[result.achieved]
     print(f"{result.verdict} in {result.steps} steps{truth}: {shown(result.reason, lines=False)}", file=stream)
@@ -142,18 +141,12 @@ def describe(action: dict[str, Any] | None) -> str:
 
 
 def _seed(text: str) -> int:
-    return _within(int(text), 0, 2**63 - 1)
+    return whole(text, 0, 2**63 - 1)
 
 
 def _steps(text: str) -> int:
-    return _within(int(text), 0, 1_000_000)
+    return whole(text, 0, 1_000_000)
 
 
 def _noise(text: str) -> float:
-    return _within(float(text), 0, 1)
-
-
-def _within(value: Amount, low: int, high: int) -> Amount:
-    if not low <= value <= high:
-        raise argparse.ArgumentTypeError(f"must be from {low} to {high}, not {value}")
-    return value
+    return decimal(text, 0, 1)

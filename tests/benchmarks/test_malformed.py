@@ -14,6 +14,27 @@ def test_five_hundred_spoilt_scenarios(tmp_path: Path) -> None:
     assert outcomes["refused"] > 200
 
 
+def test_spoilt_queries() -> None:
+    outcomes = malformed.queries(400, 7)
+    assert [result for result in outcomes if result.startswith("!")] == []
+    assert outcomes["accepted"] > 25
+    assert outcomes["refused"] > 200
+
+
+def test_spoilt_rules(tmp_path: Path) -> None:
+    outcomes = malformed.rules(120, 7, tmp_path)
+    assert [result for result in outcomes if result.startswith("!")] == []
+    assert outcomes["accepted"] > 5
+    assert outcomes["refused"] > 60
+
+
+def test_spoilt_maps() -> None:
+    outcomes = malformed.maps(1000, 7)
+    assert [result for result in outcomes if result.startswith("!")] == []
+    assert outcomes["accepted"] > 20
+    assert outcomes["refused"] > 500
+
+
 def test_the_campaign_sees_faults(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def forever(folder: Path) -> None:
         while True:
@@ -24,3 +45,5 @@ def test_the_campaign_sees_faults(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert malformed.outcome(tmp_path) == "! hung"
     monkeypatch.setattr(malformed, "read_scenario", lambda folder: 1 // 0)
     assert malformed.outcome(tmp_path).startswith("! ZeroDivisionError")
+    monkeypatch.setattr(malformed, "parse_map", lambda raw: 1 // 0)
+    assert list(malformed.maps(1, 0)) == ["! ZeroDivisionError: integer division or modulo by zero"]

@@ -1,5 +1,6 @@
 """Questions to the world model: bindings, yes, no, don't know; and a worker that no query can hang or kill for good."""
 
+import operator
 import time
 from collections.abc import Iterator
 from contextlib import suppress
@@ -71,6 +72,33 @@ def test_what_is_unseen_leaves_doubts(engine: QueryEngine, query: str) -> None:
 
 
 BAD = {
+    "offset(o1, 4294967546, 50)": "query:1:12-21: error: a number beyond 32 bits",
+    "X = 3000000000": "query:1:5-14: error: a number beyond 32 bits",
+    "X = 0x80000000": "query:1:5-14: error: a number beyond 32 bits",
+    "X = 5-2147483648": "query:1:7-16: error: a number beyond 32 bits",
+    "X = 2147483647+1": "query:1:5-5: error: a number beyond 32 bits (-2147483648 to 2147483647), in 2147483647 + 1",
+    "X = 65536*65536": "in 65536 * 65536",
+    "X = 2**31": "in 2 ** 31",
+    "X = 3**999999999": "in 3 ** 999999999",
+    "X = -(-2147483648)": "a number beyond 32 bits",
+    "offset(o1, E, N), X = E*E*E*E": "a number beyond 32 bits",
+    "X = #sum{2147483647,a; 1,b}": "a number beyond 32 bits (-2147483648 to 2147483647), in #sum",
+    "C = #max{D : shape(o1, T, E)}": "nothing says what D can be",
+    "C = #max{D : shape(o1, T, D)} <= f(S)": "nothing says what C can be",
+    "X = 5/0": "a division by zero",
+    "X = o1+1": "operation undefined: o1 is no number",
+    "-object(o1)": "query:1:1-1: error: classical negation is not known here",
+    "not -object(o1)": "classical negation is not known here",
+    "&diff{a} > 3": "theory atoms are not known here",
+    "kind(o2, banana, C)": "unknown constant banana, which is no kind",
+    "kind(o2, objekt, C)": "did you mean object?",
+    "kind(o2, K, C), K = banana": "unknown constant banana, which is no kind",
+    "shape(o1, sqare, C)": "did you mean square?",
+    "shape(banana, square, C)": "unknown constant banana, which is no thing",
+    "shape(o1, square, high)": "a confidence must be an integer, not high",
+    "shape(o1, square, 101)": "a confidence must be from 0 to 100, not 101",
+    "corner(north, E, N)": "unknown constant north, which is no corner",
+    "X = " + "-" * 5000 + "1": "it is nested too deep",
     "": "the query is empty",
     "shpe(X, Y, Z)": "did you mean shape?",
     "shape(X, square)": "there is shape/3",
@@ -85,6 +113,50 @@ BAD = {
     "object(X) % and\nmore": "one line",
     "a" * 20_000: "at most 10000 characters",
 }
+
+
+NUMBERS = {
+    "X = -2147483648": -2147483648,
+    "X = 2147483647": 2147483647,
+    "X = 65536*(-32768)": -2147483648,
+    "X = 0x7fffffff": 2147483647,
+    "X = -7/2": -3,
+    "X = 7\\-2": 1,
+    "X = 2**-1": 0,
+    "X = (-1)**999999999": -1,
+    "X = 5^3": 6,
+    "X = ~5": -6,
+    "X = |3-5|": 2,
+    "offset(o1, X+200, N)": 1000,
+    "offset(o1, 3*X, N)": 400,
+    "offset(o1, E, -X), X > 0": 300,
+    "X = #sum{2147483647,a; 1,b; -1,c}": 2147483647,
+}
+
+
+@pytest.mark.parametrize("query", NUMBERS)
+def test_numbers_are_those_of_arithmetic(engine: QueryEngine, query: str) -> None:
+    answer = engine.ask(FACTS, query)
+    assert [row[answer.variables.index("X")] for row in answer.rows] == [NUMBERS[query]]
+
+
+numbers = st.sampled_from([0, 1, -1, 2, 7, 46340, 46341, 65536, 2**31 - 1, -(2**31), 2**31, 2**32, 10**20])
+signs = st.sampled_from(["+", "-", "*"])
+PYTHON = {"+": operator.add, "-": operator.sub, "*": operator.mul}
+
+
+@settings(max_examples=100, deadline=None)
+@given(numbers, signs, numbers, signs, numbers)
+def test_every_result_is_exact_or_refused(engine: QueryEngine, a: int, p: str, b: int, q: str, c: int) -> None:
+    first = PYTHON[p](a, b)
+    last = PYTHON[q](first, c)
+    small = all(-(2**31) <= value < 2**31 for value in (a, b, c, first, last))
+    text = f"X = (({a}) {p} ({b})) {q} ({c})"
+    if small:
+        assert engine.ask([], text).rows == ((last,),)
+        return
+    with pytest.raises(BadInputError, match="beyond 32 bits"):
+        engine.ask([], text)
 
 
 @pytest.mark.parametrize("query", BAD)

@@ -22,11 +22,11 @@ def symbol(name: str, *args: str) -> Symbol:
     return Symbol(name, tuple(Symbol(arg, (), NOWHERE) for arg in args), NOWHERE)
 
 
-def task(claims: dict[str, list[tuple[str, str, int]]]) -> Task:
-    """Object parameters, each with its claims (property, value, confidence)."""
+def task(claims: dict[str, list[tuple[str, str, int]]], named: str | None = None) -> Task:
+    """Object parameters, each with its claims (property, value, confidence). named : those of goals; None for all."""
     parameters = {x: Parameter(x, "object", NOWHERE) for x in claims}
     told = tuple(Claim(symbol(p, x, v), c) for x, said in claims.items() for p, v, c in said)
-    return Task(parameters, told, ())
+    return Task(parameters, told, tuple(symbol("at", "utak", x) for x in (claims if named is None else named)))
 
 
 def node(name: str, shape: dict[str, int], colour: str | None = None, open_: int = 0, confidence: int = 95) -> Node:
@@ -71,6 +71,23 @@ def test_laws_of_binding(wanted: Task, things: tuple[Node, ...], data: st.DataOb
             value = str(said.fact.args[1])
             has = thing.shape.get(value, 0) if said.fact.name == "shape" else 99 * (thing.colour == value)
             assert max(has, 100 - said.confidence) >= 50
+
+
+@settings(max_examples=60, deadline=None)
+@given(tasks, tasks, nodes, st.data())
+def test_what_no_goal_names_takes_nothing_away(
+    wanted: Task, more: Task, things: tuple[Node, ...], data: st.DataObject
+) -> None:
+    model = replace(MODEL, objects=things)
+    far = {thing.name: float(data.draw(st.integers(0, 40))) for thing in things}
+    besides = {f"{x}0": replace(parameter, name=f"{x}0") for x, parameter in more.parameters.items()}
+    claims = [Claim(symbol(c.fact.name, f"{c.fact.args[0]}0", str(c.fact.args[1])), c.confidence) for c in more.claims]
+    larger = Task({**wanted.parameters, **besides}, (*wanted.claims, *claims), wanted.goals)
+    alone, beside = (reconcile(t, model, far, {}) for t in (wanted, larger))
+    assert beside.hypothesised == alone.hypothesised
+    assert {x for x in beside.binding if x in wanted.parameters} == set(alone.binding)
+    one, other = (sum(far[r.binding[x]] for x in wanted.parameters if x in r.binding) for r in (alone, beside))
+    assert one == other
 
 
 @settings(max_examples=60, deadline=None)

@@ -2,8 +2,12 @@
 
 from pathlib import Path
 
+import clingo
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
+from kb.factfile import facts_of
 from kb.problems import BadInputError
 from kb.task import Task, read_task
 
@@ -54,7 +58,22 @@ def test_every_goal_of_the_design_is_read(goal: str, tmp_path: Path) -> None:
     assert len(task(tmp_path, START, goal).goals) == 1
 
 
+def test_a_step_may_come_again(tmp_path: Path) -> None:
+    told = task(tmp_path, "", "first(at(utak, start)). then(at(utak, corner(northeast))). then(at(utak, start)).")
+    assert [str(g) for g in told.goals][0::2] == ["first(at(utak,start))", "then(at(utak,start))"]
+    again = "first(at(utak, start)). then(at(utak, corner(northeast))). then(at(utak, start)). then(at(utak, start))."
+    assert len(task(tmp_path, "", again).goals) == 4
+
+
+def test_goals_name_parameters(tmp_path: Path) -> None:
+    assert task(tmp_path, START, "first(at(utak, x)). then(through(y, d)).").named == {"x", "y", "d"}
+
+
 BAD = {
+    ("object(not). shape(not, square).", "at(utak, not)."): "not is a word of the language and cannot name anything",
+    ("", "at(utak, start). at(utak, start)."): "stated twice",
+    ("door(d).", "at(utak, start). not_through(utak, d). not_through(utak, d)."): "stated twice",
+    ("", "first(at(utak, start)). first(at(utak, start))."): "must come before",
     ("", "at(utak, x)."): "x is not introduced in start.lp",
     ("object(box).", "at(utak, bok)."): "did you mean box?",
     ("object(x). shape(x, sqare).", "at(utak, x)."): "did you mean square?",
@@ -98,3 +117,13 @@ def test_the_problems_of_both_files_come_together(tmp_path: Path) -> None:
     text = refused(tmp_path, "objekt(x).", "att(utak, start).")
     assert "start.lp:1:1-9: error: unknown predicate objekt/1" in text
     assert "goal.lp:1:1-16: error: unknown predicate att/2" in text
+
+
+@settings(deadline=None)
+@given(st.from_regex(r"\A(_{0,2}[a-z][A-Za-z0-9_']{0,4}|not)\Z"))
+def test_what_names_a_parameter_is_a_name_to_clingo(name: str) -> None:
+    try:
+        facts_of(f"object({name}).")
+    except BadInputError:
+        return
+    assert str(clingo.parse_term(f"wanted({name})")) == f"wanted({name})"

@@ -252,4 +252,4 @@ def test_routes_on_a_map(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert cli.main(["routes", str(tmp_path / "no.map"), "--from", "0,0", "--to", "1,1"]) == 66
     err = capsys.readouterr().err
     assert "lies in a blocked square" in err
-    assert f"{path}:6:1-1: error: unknown square '?'" in err
+    assert f"{path}:6:2-2: error: unknown square '?'" in err

@@ -69,7 +69,7 @@ def test_the_commands_work(system: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("system", SYSTEMS)
 def test_a_worker_answers_without_limits(system: str) -> None:
     code = "from kb.query_worker import main; main()"
-    request = '{"program": "node(o1).", "rules": "", "seconds": 2}\n'
+    request = '{"facts": [["node", "o1"]], "query": "node(X)", "rules": []}\n'
     modules, names = SYSTEMS[system]
     before = HIDDEN.format(modules=modules, names=names, root=str(ROOT), more=MORE[system])
     pipe = subprocess.PIPE
@@ -79,7 +79,7 @@ def test_a_worker_answers_without_limits(system: str) -> None:
         assert worker.stdout.readline() == "ready\n"
         worker.stdin.write(request)
         worker.stdin.flush()
-        assert '["node(o1)"]' in worker.stdout.readline()
+        assert '"rows": [["o1"]]' in worker.stdout.readline()
         worker.stdin.close()
         assert worker.wait(5) == 0
 

@@ -13,7 +13,7 @@ from kb.problems import BadInputError, CannotOpenError
 from simulator.contents import World
 from simulator.picture import draw, read_picture
 from simulator.scenario import read_any_world
-from simulator.worldfile import read_world
+from simulator.worldfile import read_world, touches_floor
 
 TABLE = "table(10, 8).\n"
 VERGE = 'verge("POLYGON ((0 0, 10 0, 10 8, 0 8, 0 0), (1 1, 9 1, 9 7, 1 7, 1 1))").\n'
@@ -40,6 +40,46 @@ def test_a_world_is_what_its_facts_say(tmp_path: Path) -> None:
 def test_touching_is_no_overlap(tmp_path: Path) -> None:
     assert len(world(tmp_path, TABLE, VERGE, UTAK, box("a", 4, 4), box("c", 6, 4), box("d", 7, 1)).movable) == 3
     assert world(tmp_path, TABLE, VERGE, 'utak("POINT (1 1)", 0).').utak == (1.0, 1.0)
+
+
+SEAM = box("a", 4, 4) + box("c", 6, 4)
+STANDS = {
+    "in the open": ("", 2.5, 2.5, True),
+    "in a corner of the floor": ("", 1, 1, True),
+    "on the verge's edge": ("", 1, 3, True),
+    "where two things meet the floor": (SEAM, 6, 4, True),
+    "where two things meet at their corners": (box("a", 4, 4) + box("c", 6, 2), 6, 4, True),
+    "in a gap that is wide enough to tell": (box("a", 4, 4) + box("c", 6.00001, 4), 6, 5, True),
+    "on the table's rim": ("", 0, 3, False),
+    "on the table's corner": ("", 10, 8, False),
+    "on a seam": (SEAM, 6, 5, False),
+    "on a seam with the verge": (box("a", 1, 4), 1, 5, False),
+    "in a slit of no width": (box("a", 4, 4) + box("c", 6.0000000001, 4), 6, 5, False),
+    "between four things": (SEAM + box("d", 4, 2) + box("e", 6, 2), 6, 4, False),
+}
+
+
+@pytest.mark.parametrize("case", STANDS)
+def test_utak_stands_on_floor_or_on_its_edge(case: str, tmp_path: Path) -> None:
+    things, x, y, stands = STANDS[case]
+    facts = (TABLE, VERGE, f'utak("POINT ({x} {y})", 0).\n', things)
+    if stands:
+        assert world(tmp_path, *facts).utak == (x, y)
+        return
+    with pytest.raises(BadInputError, match="Utak stands where no floor is"):
+        world(tmp_path, *facts)
+
+
+squares = st.lists(st.integers(0, 5), min_size=36, max_size=36)
+
+
+@settings(deadline=None, max_examples=60)
+@given(squares, st.integers(0, 12), st.integers(0, 12))
+def test_on_half_squares_utak_stands_where_a_square_of_floor_is(kinds: list[int], x: int, y: int) -> None:
+    free = {(n % 6, n // 6) for n, kind in enumerate(kinds) if kind}
+    shapes = [shapely.box(i, j, i + 1, j + 1) for i in range(6) for j in range(6) if (i, j) not in free]
+    near = {(i, j) for i in ((x - 1) // 2, x // 2) for j in ((y - 1) // 2, y // 2)}
+    assert touches_floor(shapely.Point(x / 2, y / 2), shapes, 6, 6) == bool(near & free)
 
 
 BAD = {
