@@ -23,6 +23,7 @@ from geometry.visibility import visibility_way
 
 Bools = NDArray[np.bool_]
 XY = tuple[float, float]
+DIAGONAL = 0.7075  # squares: half of a square's, and what the polygons that stand for circles lack
 NEAR = 1e-9  # squares by which lengths may differ for rounding
 RADII = [0.3, 0.5, 0.55, 0.6, 0.7071, 0.75, 1.0, 1.2, 1.5, 1.55, 1.5811, 2.0, 2.52, 2.5495, 3.0]
 
@@ -194,7 +195,10 @@ def sets(case: Case) -> Iterator[str]:
 
 
 def bodies(case: Case) -> Iterator[str]:
-    """A body moves over the squares whose centres have room for it, and keeps its distance everywhere."""
+    """A body moves over the squares whose centres have room for it, and keeps its distance everywhere.
+
+    Where a disc larger by half a square's diagonal can go, it finds a way.
+    """
     radius = float(case.rng.choice(RADII))
     room = clearances(case.free) >= radius - 1e-12
     graph, number = case.screen.pathgraph_for(radius), labels(room, corners=False)
@@ -212,6 +216,10 @@ def bodies(case: Case) -> Iterator[str]:
             yield f"radius {radius}: {len(routes)} routes between parts {a} and {b}"
     if len({route.signature for route in routes}) < len(routes):
         yield f"radius {radius}: two routes are of one class"
+    ample = shapely.box(0, 0, *case.free.shape[::-1]).difference(walls.buffer(radius + DIAGONAL, quad_segs=64))
+    for part in shapely.get_parts(ample):
+        if part.covers(shapely.Point(start)) and part.covers(shapely.Point(goal)) and not routes:
+            yield f"radius {radius}: no routes where there is room for a disc of {radius + DIAGONAL}"
     askew = case.screen.routes(case.start, case.goal, k=2, radius=radius)
     if askew and not routes:
         yield f"radius {radius}: routes from askew alone"

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from geometry.ends import At, InCorner, Inside
+from geometry.ends import At, Between, InCorner, Inside
 from geometry.errand import Errand
 from geometry.motion import Plan, plan_motion
 from geometry.rigid import Pose
@@ -22,6 +22,8 @@ def move_alone(errand: Errand) -> Plan:
         there: Pose | Inside = Pose(middle.x + goal.pose.x, middle.y + goal.pose.y, goal.pose.degrees)
     elif isinstance(goal, InCorner):
         there = Inside(_about(goal, errand))
+    elif isinstance(goal, Between):
+        there = Inside(_near_both(goal, errand))
     elif isinstance(goal, Inside):
         there = goal
     else:
@@ -42,3 +44,10 @@ def _about(goal: InCorner, errand: Errand) -> Any:
     parts = shapely.get_parts(errand.yard.floor_polygon.intersection(back(reach, reach)))
     fitting = [part for part in parts if part.area > 0.0 and all(part.intersects(end) for end in ends)]
     return shapely.MultiPolygon(fitting)
+
+
+def _near_both(goal: Between, errand: Errand) -> Any:
+    """The floor near two walls in which a body must lie to be within so many squares of both."""
+    reach = 2.0 * shapely.minimum_bounding_radius(errand.shape) + goal.slack
+    parts = shapely.get_parts(errand.yard.floor_polygon.intersection(goal.about(reach)))
+    return shapely.MultiPolygon([p for p in parts if p.area > 0.0 and max(goal.gaps(p)) <= goal.slack])

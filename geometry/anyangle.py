@@ -78,9 +78,14 @@ def new_scout(room: int, runs: Runs) -> Scout:
 
 
 @bare
-def shortest_line(runs: Runs, ends: Ends, nodes: Nodes, word: Ints, rope: Rope, line: Floats, sizes: Ints) -> float:
-    """The length of the shortest way; its numbers of symbols and corners go to ``sizes``, NONE or FULL to the first."""
-    size = shortest_word(runs, ends, nodes, word)
+def shortest_line(
+    runs: Runs, ends: Ends, limit: float, nodes: Nodes, word: Ints, rope: Rope, line: Floats, sizes: Ints
+) -> float:
+    """The length of the shortest way; its numbers of symbols and corners go to ``sizes``, NONE or FULL to the first.
+
+    None is found that is as long as the limit, unless start and goal are in one run.
+    """
+    size = shortest_word(runs, ends, limit, nodes, word)
     if size == word.shape[0] or 4 * size + 8 > rope.x.shape[0]:
         size = FULL
     sizes[0] = size
@@ -91,7 +96,7 @@ def shortest_line(runs: Runs, ends: Ends, nodes: Nodes, word: Ints, rope: Rope, 
 
 
 @bare
-def shortest_word(runs: Runs, ends: Ends, nodes: Nodes, word: Ints) -> int:
+def shortest_word(runs: Runs, ends: Ends, limit: float, nodes: Nodes, word: Ints) -> int:
     """Write the reduced word of the shortest way; returns its size, NONE when there is no way, FULL without room."""
     rows, lows, up, down, line = runs.row, runs.low, runs.up, runs.down, runs.line
     left, right, lower, upper = runs.left, runs.right, runs.lower, runs.upper
@@ -103,7 +108,7 @@ def shortest_word(runs: Runs, ends: Ends, nodes: Nodes, word: Ints) -> int:
     tally[MADE], tally[WAITING], tally[STAMP] = 0, 0, tally[STAMP] + 1
     mark_inwards(exits, lower, upper, goal, enter, tally[STAMP])
     depart(up, down, left, right, line, ends, start, span, link, tally)
-    node = enqueue(left, right, line, ends, span, link, key, heap, best, seen, tally, 0)
+    node = enqueue(left, right, line, ends, limit, span, link, key, heap, best, seen, tally, 0)
     while node >= 0 or tally[WAITING] > 0:
         made = tally[MADE]
         if made + 4 * rows.shape[0] >= key.shape[0]:
@@ -120,7 +125,7 @@ def shortest_word(runs: Runs, ends: Ends, nodes: Nodes, word: Ints) -> int:
         if run == goal:
             arrive(left, right, line, ends, span, link, tally, node)
         spread(up, down, left, right, line, lower, upper, exits, enter, ends, span, link, best, seen, tally, node, run)
-        node = enqueue(left, right, line, ends, span, link, key, heap, best, seen, tally, made)
+        node = enqueue(left, right, line, ends, limit, span, link, key, heap, best, seen, tally, made)
     return NONE
 
 
@@ -274,6 +279,7 @@ def enqueue(
     right: Ints,
     line: Ints,
     ends: Ends,
+    limit: float,
     span: Floats,
     link: Ints,
     key: Floats,
@@ -283,7 +289,8 @@ def enqueue(
     tally: Ints,
     first: int,
 ) -> int:
-    """Put the nodes from ``first`` on the heap, but for bends and where a shorter way to the root is known.
+    """Put the nodes from ``first`` on the heap, but for bends, those beyond the limit, and those whose root has a
+    shorter way.
 
     Returns the best of them, off the heap, if it is to be taken next, as in open space it nearly always is; else NONE.
     """
@@ -302,6 +309,8 @@ def enqueue(
             cross = x + (ends[2] - x) * near / (near + far) if near + far > 0.0 else ends[2]
             cross = west if cross < west else east if cross > east else cross
             total += reach(cross - x, near) + reach(ends[2] - cross, far)
+        if total >= limit:
+            continue
         if total >= least:
             size = push(key, heap, size, total, node)
             continue

@@ -65,7 +65,7 @@ class Area:
             if away >= least - CLOSE:
                 break
             routes = [] if exact else ask.to_point(self.start, centres[cell], 2, self.avoid)
-            length = ask.measure(self.start, centres[cell]) if exact else routes[0].length if routes else inf
+            length = ask.measure(self.start, centres[cell], least) if exact else routes[0].length if routes else inf
             if length < least - CLOSE:
                 least, best, found = length, cell, routes[0] if routes else None
         if best < 0:

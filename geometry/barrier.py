@@ -33,8 +33,9 @@ class Barrier(NamedTuple):
     """(b, 2) chain and position of the pathgraph's steps that are cut (see search.py)."""
 
     def parted(self, one: int, other: int) -> bool:
-        """Return whether two cells lie in different parts."""
-        return bool(self.label.reshape(-1)[one] != self.label.reshape(-1)[other])
+        """Return whether two cells lie in different parts, or one of them on a cut."""
+        label = self.label.reshape(-1)
+        return bool(one != other and (label[one] != label[other] or not label[one]))
 
     def is_shut(self, cell: int, other: int) -> bool:
         """Return whether the step between edge neighbours is cut."""
@@ -44,7 +45,7 @@ class Barrier(NamedTuple):
 
 def raise_barrier(layer: Layer, level: int, passages: Iterable[Passage]) -> Barrier:
     """Cut the floor of a layer along the necks of passages."""
-    label, shut = cut_floor(layer.square, level, layer.state, passages)
+    label, shut = cut_floor(layer.square >= level, passages)
     width, states = layer.square.shape[1], layer.state.reshape(-1)
     bars = []
     for direction, row, column in np.argwhere(shut).tolist():

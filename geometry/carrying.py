@@ -21,7 +21,7 @@ from geometry.aligning import carry_straightened
 from geometry.alone import move_alone
 from geometry.bottleneck import Neck
 from geometry.contact import boundary_edges
-from geometry.ends import At, End, InCorner, Inside, Roomy, met
+from geometry.ends import At, Between, End, InCorner, Inside, Roomy, met
 from geometry.errand import Errand
 from geometry.held import carry_freed, carry_held
 from geometry.legs import Leg, Point, commands, shifted, verified
@@ -33,8 +33,9 @@ from geometry.squarewise import carry_squarewise
 from geometry.stencil import Mask
 from geometry.yard import Yard
 
+LEAST_ANGLE = 0.1  # the sine of that at which two walls of a corner meet
 DEAREST_TURN = 2.5  # commands: with what a tight one costs besides, still below geometry.buckets.RING
-__all__ = ["At", "Carrying", "InCorner", "Inside", "Leg", "Pose", "plan_carrying"]
+__all__ = ["At", "Between", "Carrying", "InCorner", "Inside", "Leg", "Pose", "plan_carrying"]
 
 
 @dataclass(frozen=True)
@@ -124,7 +125,7 @@ def plan_carrying(
     free : (rows, columns) bool, row 0 in the south: squares that nothing but the body may cover. All else, and all
         outside the array, is wall for the body and for Utak.
     utak : (x, y) where he stands.
-    goal : At(pose), Inside(polygons) or InCorner(x, y, sx, sy).
+    goal : At(pose), Inside(polygons), InCorner(x, y, sx, sy) or Between(x, y, walls).
     margin : squares of clearance that pushes and turns of the body should keep from walls; kept where that is possible
         without going far out of the way.
     pull : False: every push must have a component from Utak towards the body's centroid.
@@ -211,8 +212,12 @@ def _check_goal(goal: End) -> None:
             raise ValueError("a corner's sx and sy must be 1 or -1, its slack and press not negative")
         if not goal.within[0] <= goal.within[1]:
             raise ValueError("the lesser and the greater way within a corner must be told in this order")
+    elif isinstance(goal, Between):
+        check([goal.x, goal.y, goal.slack, *goal.walls[0], *goal.walls[1]], "the goal")
+        if goal.slack < 0.0 or abs(float(np.linalg.det(np.array(goal.walls)))) < LEAST_ANGLE:
+            raise ValueError("two walls must meet at an angle, and the slack must not be negative")
     elif not isinstance(goal, Inside | Roomy):
-        raise ValueError(f"the goal must be At, Inside or InCorner, not {goal!r}")
+        raise ValueError(f"the goal must be At, Inside, InCorner or Between, not {goal!r}")
 
 
 def _told(errand: Errand, legs: Sequence[Leg] | None) -> Carrying | None:

@@ -14,7 +14,7 @@ from geometry.problem import Inside
 from geometry.rigid import Pose, turned
 from geometry.stencil import DIRECTIONS, Stencil, quarter
 
-__all__ = ["At", "End", "InCorner", "Inside"]
+__all__ = ["At", "Between", "End", "InCorner", "Inside"]
 
 Extent = TypeVar("Extent", float, npt.NDArray[np.float64])
 
@@ -63,6 +63,39 @@ class InCorner:
 
 
 @dataclass(frozen=True)
+class Between:
+    """A goal: the shape within `slack` squares of two straight walls that meet in a corner at any angle.
+
+    x, y : the corner, in squares. walls : the unit normals of its walls, outward. The shape may lie beyond them: where
+    just they are is told by what stops it.
+    """
+
+    x: float
+    y: float
+    walls: tuple[tuple[float, float], tuple[float, float]]
+    slack: float = 1.0
+
+    def gaps(self, shape: Any) -> tuple[float, float]:
+        """How far a shape is from the two walls; negative beyond them."""
+        points = shapely.get_coordinates(shape)
+        one, two = (float(np.dot(n, (self.x, self.y)) - (points @ np.array(n)).max()) for n in self.walls)
+        return one, two
+
+    def move(self, gaps: tuple[float, float]) -> tuple[float, float]:
+        """The translation that brings a shape nearer to the walls by so much each."""
+        dx, dy = np.linalg.solve(np.array(self.walls), np.array(gaps)).tolist()
+        return dx, dy
+
+    def about(self, reach: float) -> Any:
+        """The area no further from both walls than so many squares, and up to as far beyond them."""
+        ends = [
+            self.move((-far, -wide))
+            for far, wide in ((-reach, -reach), (-reach, reach), (reach, reach), (reach, -reach))
+        ]
+        return shapely.Polygon([(self.x + dx, self.y + dy) for dx, dy in ends])
+
+
+@dataclass(frozen=True)
 class Roomy:
     """A goal on the way to others: two free squares all round, so that Utak can take the shape wherever he likes.
 
@@ -72,7 +105,7 @@ class Roomy:
     near: tuple[float, float] | None = None
 
 
-End = At | Inside | InCorner | Roomy
+End = At | Inside | InCorner | Between | Roomy
 
 
 def met(goal: End, shape: Any, now: Any) -> bool:
@@ -81,6 +114,8 @@ def met(goal: End, shape: Any, now: Any) -> bool:
         return any(part.buffer(CLOSE).covers(now) for part in shapely.get_parts(goal.polygon))
     if isinstance(goal, InCorner):
         return bool(goal.admits(now.bounds))
+    if isinstance(goal, Between):
+        return max(goal.gaps(now)) <= goal.slack + CLOSE
     if isinstance(goal, Roomy):
         return False
     return bool(shapely.hausdorff_distance(placed(shape, goal.pose), now) <= CLOSE)
@@ -96,7 +131,7 @@ def moved(goal: End, dx: float, dy: float) -> End:
     """A goal, so much further east and north, for a shape that is moved as far."""
     if isinstance(goal, Inside):
         return Inside(shapely.transform(goal.polygon, lambda p: p + np.array([dx, dy])))
-    if isinstance(goal, InCorner):
+    if isinstance(goal, InCorner | Between):
         return replace(goal, x=goal.x + dx, y=goal.y + dy)
     if isinstance(goal, Roomy) and goal.near is not None:
         return Roomy((goal.near[0] + dx, goal.near[1] + dy))
@@ -112,6 +147,8 @@ def prices(goal: End, shape: Any, body: Stencil, board: Board, grid: Grid) -> Co
         return _beside(goal.pose, shape, body, grid)
     if isinstance(goal, Inside):
         found = [_inside(goal, quarter(body.lying, k), board, grid) for k in range(4)]
+    elif isinstance(goal, Between):
+        found = [_between(goal, shape, body, k, grid) for k in range(4)]
     elif isinstance(goal, Roomy):
         found = [_roomy(goal, quarter(body.lying, k), board, grid) for k in range(4)]
     else:
@@ -151,6 +188,15 @@ def _cornered(goal: InCorner, shape: Any, body: Stencil, k: int, grid: Grid) -> 
     bounds = x0 + dx, y0 + dy, x1 + dx, y1 + dy
     gap, most = np.maximum(*goal.gaps(bounds)), replace(goal, slack=goal.slack + goal.press)
     return np.where(most.admits(bounds), np.where(gap <= goal.slack / 2 + CLOSE, 0, UNEASY), -1).astype(np.int32)
+
+
+def _between(goal: Between, shape: Any, body: Stencil, k: int, grid: Grid) -> Costs:
+    """The prices of one quarter: dear where a gap to a wall is more than half of what is allowed."""
+    gaps = goal.gaps(lying_at(shape, body, k, body.home))
+    row, column = np.divmod(np.arange((grid.rows + 2 * grid.pad) * grid.stride), grid.stride)
+    dx, dy = column - grid.pad - body.home[0], row - grid.pad - body.home[1]
+    gap = np.maximum(*(gap - x * dx - y * dy for gap, (x, y) in zip(gaps, goal.walls, strict=True)))
+    return np.where(gap <= goal.slack + CLOSE, np.where(gap <= goal.slack / 2, 0, UNEASY), -1).astype(np.int32)
 
 
 def lying_at(shape: Any, body: Stencil, k: int, place: tuple[int, int]) -> Any:

@@ -17,7 +17,7 @@ import shapely
 
 from geometry.aligning import carry_straightened
 from geometry.alone import move_alone
-from geometry.ends import At, InCorner, Inside, Roomy, placed
+from geometry.ends import At, Between, InCorner, Inside, Roomy, placed
 from geometry.errand import Errand
 from geometry.fewest import askew, fewest_motions, slant
 from geometry.holds import Hold, holds_about, promise
@@ -35,6 +35,7 @@ HOLDS = 6  # asked at most
 SHORT = 9  # motions that are few enough
 ENOUGH = 3  # holds that will do, of which the best is taken
 EACH, LEAST, CELLS = 12_000, 1_000, 40_000  # cells looked at for each of them at most and at least, and for all
+MOST_TURNS = 5  # that lay a body along a wall are tried
 AWAY = 0.1  # squares: how far from the walls of a corner a body is put
 
 
@@ -84,6 +85,8 @@ def ends_of(errand: Errand) -> list[Pose | Inside]:
         return [Pose(middle.x + goal.pose.x, middle.y + goal.pose.y, goal.pose.degrees)]
     if isinstance(goal, Roomy):
         return []
+    if isinstance(goal, Between):
+        return [_along(goal, errand.shape, degrees) for degrees in _flush(goal, errand.shape)]
     over = askew(errand.shape) if math.isfinite(goal.within[0]) else 0.0
     return [_cornered(goal, errand.shape, degrees - over) for degrees in (0.0, 90.0, -90.0, 180.0)]
 
@@ -94,6 +97,27 @@ def _cornered(goal: InCorner, shape: Any, degrees: float) -> Pose:
     away = min(AWAY, goal.slack / 2)
     dx = goal.x - goal.sx * away - (x1 if goal.sx > 0 else x0)
     dy = goal.y - goal.sy * away - (y1 if goal.sy > 0 else y0)
+    return Pose(shape.centroid.x + dx, shape.centroid.y + dy, degrees)
+
+
+def _flush(goal: Between, shape: Any) -> list[float]:
+    """By how much to turn a shape for one of its sides to lie along a wall, the least first; as it lies before that."""
+    ring = np.array(shapely.convex_hull(shape).exterior.coords)
+    sides = np.degrees(np.arctan2(*np.diff(ring, axis=0).T[::-1]))
+    turns = {
+        round((float(np.degrees(np.arctan2(x, -y)) - side) + 180.0 * n) % 360.0 - 180.0, 6)
+        for x, y in goal.walls
+        for side in sides
+        for n in (0, 1)
+    }
+    return [0.0, *sorted(turns, key=lambda turn: (abs(turn), turn))[:MOST_TURNS]]
+
+
+def _along(goal: Between, shape: Any, degrees: float) -> Pose:
+    """The pose of the centroid in which a shape, so turned, lies near two walls."""
+    one, two = goal.gaps(placed(shape, Pose(0.0, 0.0, degrees)))
+    away = max(goal.slack - AWAY, goal.slack / 2)  # walls at an angle are seen as stairs, which reach before them
+    dx, dy = goal.move((one - away, two - away))
     return Pose(shape.centroid.x + dx, shape.centroid.y + dy, degrees)
 
 

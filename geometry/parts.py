@@ -1,4 +1,4 @@
-"""Parts of the floor: what remains connected when free space is cut along the necks of some passages."""
+"""Parts of the floor: what remains connected when free space is cut along the mouths of some passages."""
 
 from collections.abc import Iterable
 
@@ -7,59 +7,76 @@ from numpy.typing import NDArray
 
 from geometry.bones import Ints
 from geometry.compiled import bare, compiled
-from geometry.distance import Bools, Squares
+from geometry.distance import Bools
 from geometry.passages import Passage
 
 Labels = NDArray[np.int32]
 Points = NDArray[np.float64]
 
 
-def find_parts(square: Squares, state: NDArray[np.uint8], passages: Iterable[Passage]) -> Labels:
-    """(rows, columns) int: 0 blocked, else the number of the part, from 1 in the order of the parts' first squares.
+def find_parts(free: Bools, passages: Iterable[Passage]) -> Labels:
+    """(rows, columns) int: the number of the part, from 1 in the order of the parts' first squares.
 
-    A part cut off between a wall and a neck, without any of the skeleton, belongs to the part across that neck.
+    0 on blocked squares, on those whose centres lie on a mouth, and on the floor between two mouths of a passage, with
+    all that can be reached from there alone; unless another passage leads there.
     """
-    return cut_floor(square, 1, state, passages)[0][1:-1, 1:-1]
+    some = list(passages)
+    label = cut_floor(np.pad(free, 1), some)[0]
+    rows, columns = free.shape  # passages of a larger floor may reach beyond
+    squares = [(column, row) for passage in some for column, row in passage.between]
+    gates = [(int(np.floor(x)), int(np.floor(y))) for passage in some for x, y in passage.gates]
+    inner, outer = (
+        {int(label[row + 1, column + 1]) for column, row in those if 0 <= column < columns and 0 <= row < rows}
+        for those in (squares, gates)
+    )
+    kept = np.ones(int(label.max()) + 1, np.int32)
+    kept[[0, *sorted(inner - outer)]] = 0
+    numbers = np.cumsum(kept, dtype=np.int32) * kept
+    answer: Labels = numbers[label[1:-1, 1:-1]]
+    return answer
 
 
-def cut_floor(
-    square: Squares, level: int, state: NDArray[np.uint8], passages: Iterable[Passage]
-) -> tuple[Labels, Bools]:
-    """Return the parts of the cells of at least that level, and the steps between cells that are cut.
+def cut_floor(floor: Bools, passages: Iterable[Passage]) -> tuple[Labels, Bools]:
+    """Return the pieces of a framed floor that is cut along all mouths of passages, and the steps that are cut.
+
+    Parameters
+    ----------
+    floor : (rows + 2, columns + 2) bool, with a frame that is not floor.
 
     Returns
     -------
-    label : (rows + 2, columns + 2) int, as ``find_parts`` numbers them.
+    label : (rows + 2, columns + 2) int, the number of the piece, from 1; 0 off the floor and on squares whose centres
+        lie on a mouth.
     shut : (2, rows + 2, columns + 2) bool, the steps from each cell to the east (0) and to the north (1). Two cells
         have one label exactly when steps that are not shut lead from one to the other.
     """
-    shut = np.zeros((2, *square.shape), np.bool_)
-    for passage in passages:
-        cut(shut, passage)
-    label = np.zeros(square.shape, np.int32)
-    count = number_parts(square >= level, shut, label, np.empty(square.size, np.int32))
-    joined = np.arange(count + 1, dtype=np.int32)
-    if count > 1:
-        join_slivers(shut, label, np.bincount(label[state > 0], minlength=count + 1).astype(np.int32), joined)
-    _, compact = np.unique(joined, return_inverse=True)
-    return compact.astype(np.int32)[label], shut
+    shut, whole = np.zeros((2, *floor.shape), np.bool_), floor.copy()
+    for mouth in dict.fromkeys(mouth for passage in passages for mouth in passage.mouths):
+        mark_crossed(shut, np.array(mouth))
+        bar_centres(whole, *mouth)
+    barred = floor & ~whole
+    shut[:, barred] = True
+    shut[0, :, :-1] |= barred[:, 1:]
+    shut[1, :-1] |= barred[1:]
+    label = np.zeros(floor.shape, np.int32)
+    number_parts(whole, shut, label, np.empty(floor.size, np.int32))
+    return label, shut
 
 
-def cut(shut: Bools, passage: Passage) -> None:
-    """Mark the steps to the east (0) and to the north (1) that cross a passage's neck.
-
-    The cut runs a little off its squares' centres.
-    """
-    (x, y), (u, v) = passage.place, passage.towards
-    aside = 1e-4 * (u - x) - 3e-5 * (v - y), 1e-4 * (v - y) + 3e-5 * (u - x)
-    mark_crossed(shut, np.array(passage.cut) + aside)
+def bar_centres(floor: Bools, a: tuple[float, float], b: tuple[float, float]) -> None:
+    """Block the squares of a framed floor whose centres lie on a line between corners of squares."""
+    (ax, ay), (bx, by) = a, b
+    west, south, east, north = (int(v) for v in (min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
+    rows, columns = np.mgrid[south:north, west:east]
+    on = (bx - ax) * (rows + 0.5 - ay) == (by - ay) * (columns + 0.5 - ax)
+    floor[rows[on] + 1, columns[on] + 1] = False
 
 
 @compiled
 def mark_crossed(shut: Bools, line: Points) -> None:
     """Mark the steps between centres of squares that a line crosses an odd number of times.
 
-    line : (n, 2) points (x, y), each in a square next to that of the one before.
+    line : (n, 2) points (x, y).
     """
     low_x = high_x = line[0, 0]
     low_y = high_y = line[0, 1]
@@ -121,21 +138,3 @@ def number_parts(free: Bools, shut: Bools, label: Labels, stack: Ints) -> int:
                     stack[size] = other
                     size += 1
     return count
-
-
-@bare
-def join_slivers(shut: Bools, label: Labels, bones: Ints, joined: Ints) -> None:
-    """Join each part without skeleton to the first part with some across a neck, by opening that step."""
-    rows, width = label.shape
-    for i in range(1, rows - 1):
-        for j in range(1, width - 1):
-            for k in range(2):
-                if not shut[k, i, j]:
-                    continue
-                a, b = label[i, j], label[i + k, j + 1 - k]
-                if a == 0 or b == 0:
-                    continue
-                if bones[a] == 0 and bones[b] > 0 and joined[a] == a:
-                    joined[a], shut[k, i, j] = b, False
-                elif bones[b] == 0 and bones[a] > 0 and joined[b] == b:
-                    joined[b], shut[k, i, j] = a, False

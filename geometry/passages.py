@@ -1,400 +1,266 @@
-"""Passages: the necks of free space, each with the walls that form it and how wide the floor is on either side.
+"""Passages: the necks of the floor, each with the walls that form it and how wide the floor is on either side.
 
-# Strategy: every saddle of the clearance is a neck. Taken from the widest down, each joins the parts of the floor
-that are wider than it; the greatest clearance of the part on either side is what the neck is compared with. So
-between two wide parts exactly one place counts as the neck, however long and bumpy the way between them: the
-narrowest, ties broken by index.
+# Strategy: cut along all necks (see walls.py), the floor falls apart. From the widest down they are opened again, all
+of one width at once: so it is a matter of shape alone, and of no order of squares, what the floor is like on both
+sides of a neck before any that is as narrow. Where that is not wide enough on one side, the floor goes on there through
+necks just as narrow, or ends. Necks that hang together so are one doorway: a wall of some depth, a passage with a bend
+or a niche. What it leads to are its mouths: the outermost of its necks, behind which the floor is wide.
 """
 
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from itertools import groupby
 from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geometry.bones import Ints
-from geometry.chains import Chains
-from geometry.compiled import bare, compiled
-from geometry.distance import Squares
-from geometry.runs import root
-from geometry.skeleton import (
-    GROUPS,
-    LINKS,
-    SADDLE,
-    SUMMIT,
-    States,
-    above,
-    beside,
-    higher_about,
-    highest_of,
-    steepest,
-    stride,
-)
-from geometry.ways import locate
+from geometry.compiled import compiled
+from geometry.distance import Bools
+from geometry.walls import Longs, Walls
 
 XY = tuple[float, float]
-Bools = NDArray[np.bool_]
-PLATEAU = 64  # cells as high as a saddle that are looked at
-ROOMY = 1.5  # squares of clearance from which on a saddle may be moved along its wall
-TIE = 1e-9  # squares by which a neck must be narrower to be another one
-OFF_CENTRE = 0.75  # squares by which a clearance may differ between a square's centre and elsewhere in it
+Segment = tuple[XY, XY]
+DOOR = 2.0  # times as wide as a door the floor is at least on both sides of it: the definition
+HAIR = 1e-6
+TIE = 1e-9  # by which squared widths may differ for rounding
 
 
 class Passage(NamedTuple):
-    """A neck of free space; all measures in squares."""
+    """A neck of the floor, or a doorway of several just as narrow; all measures in squares."""
 
-    place: XY
-    """The centre of the saddle's square."""
-    clearance: float
-    """There."""
     width: float
-    """The length of the neck: from wall to wall."""
-    a: XY
-    """One end of the neck, on the edge or corner of a blocked square."""
-    b: XY
-    """The other end."""
+    """From wall to wall at its narrowest."""
     sides: tuple[float, float]
-    """The greatest clearance on either side, before any neck that is narrower (also between squares' centres)."""
-    cut: tuple[XY, ...]
-    """Centres of squares from wall to wall over ``place``: where the floor is cut."""
-    towards: XY
-    """The centre of the square beside ``place`` on the way to the first side; the cut runs between the two."""
-    chain: int
-    """The chain of the pathgraph that leads through."""
-    position: int
-    """Where on it."""
+    """The greatest clearance on either side, before any neck that is narrower."""
+    mouths: tuple[Segment, Segment]
+    """Where it opens to either side: straight lines on the floor, from wall to wall. The same line twice where it
+    has no depth. Of each first the end on the left of who goes from the first side to the second."""
+    gates: tuple[XY, XY]
+    """The centres of free squares just beyond the mouths."""
+    between: tuple[tuple[int, int], ...]
+    """The squares (column, row) whose centres lie between the mouths, or on them."""
 
     @property
-    def gates(self) -> tuple[XY, XY]:
-        """The centres of two neighbouring free squares on either side of the cut, in the order of ``sides``."""
-        return self.towards, self.place
+    def a(self) -> XY:
+        """Its end on the left, halfway between the mouths."""
+        return _halfway(self.mouths[0][0], self.mouths[1][0])
 
-    def shifted(self, columns: float, rows: float) -> "Passage":
+    @property
+    def b(self) -> XY:
+        """Its end on the right, halfway between the mouths."""
+        return _halfway(self.mouths[0][1], self.mouths[1][1])
+
+    @property
+    def place(self) -> XY:
+        """The middle between both ends."""
+        return _halfway(self.a, self.b)
+
+    def shifted(self, columns: int, rows: int) -> "Passage":
         """The same passage where the origin lies so many squares further west and south."""
 
         def there(point: XY) -> XY:
             return point[0] + columns, point[1] + rows
 
-        place, a, b, towards = map(there, (self.place, self.a, self.b, self.towards))
-        return self._replace(place=place, a=a, b=b, cut=tuple(map(there, self.cut)), towards=towards)
+        (a, b), (c, d) = self.mouths
+        mouths = (there(a), there(b)), (there(c), there(d))
+        between = tuple((column + columns, row + rows) for column, row in self.between)
+        return self._replace(mouths=mouths, gates=(there(self.gates[0]), there(self.gates[1])), between=between)
 
 
-def find_passages(square: Squares, state: States, chains: Chains, pinch: float = 0.0) -> list[Passage]:
-    """All passages, in the order of their saddles' squares; or those alone that are pinched.
+def _halfway(one: XY, other: XY) -> XY:
+    return (one[0] + other[0]) / 2, (one[1] + other[1]) / 2
 
-    pinch : how many times as wide as the neck the floor must be on both sides of it.
+
+class _Mouth(NamedTuple):
+    """An end of a doorway: a neck, on which side of it the floor is wide, the squared width of that floor, and the
+    triangles that make it up."""
+
+    edge: int
+    side: int
+    room: float
+    floor: tuple[int, ...]
+
+
+class _Doorway(NamedTuple):
+    """Two mouths, and the squares between them."""
+
+    one: _Mouth
+    two: _Mouth
+    between: tuple[tuple[int, int], ...]
+
+
+def find_passages(walls: Walls, pinch: float = DOOR) -> list[Passage]:
+    """All passages, by place.
+
+    pinch : how many times as wide as the neck the floor must be on both sides of it, more than 1.
     """
-    saddles = np.flatnonzero(state.reshape(-1) & SADDLE).astype(np.int32)
-    if not len(saddles):
-        return []
-    groups, first, peaks = compare_sides(square, state, saddles)
-    chosen = np.flatnonzero(may_be_pinched(square.reshape(-1), saddles, groups, peaks, pinch))
-    finer = {peak: finest(square, peak) for peak in np.unique(peaks[chosen]).tolist()}
-    found = []
-    for k in chosen.tolist():
-        count = int(groups[k])
-        for g in range(1 if count == 2 else count):
-            sides = [finer[peak] for peak in peaks[k, :count].tolist()]
-            found.append(describe(square, state, chains, int(saddles[k]), first[k, :count], sides, g))
-    return [passage for passage in found if pinch * passage.width <= 2 * min(passage.sides)]
+    floor = _Floor(walls)
+    found: list[_Doorway] = []
+    for edges in _by_width(walls):
+        least = pinch**2 * int(walls.length[edges[0]]) - TIE
+        if least <= floor.widest:
+            for mouths, inner in _clusters(walls, floor, edges, least):
+                between = _squares_of(walls, [t for node in inner for t in floor.members[node]])
+                found += _doorways(walls, mouths, between)
+        for edge in edges:
+            floor.join(*walls.sides[edge].tolist())
+    taken = {square for doorway in found for square in doorway.between}
+    passages = [_passage(walls, doorway, taken) for doorway in found]
+    return sorted(passages, key=lambda passage: (passage.place[::-1], passage.width, passage.mouths))
 
 
-def may_be_pinched(heights: Squares, saddles: Ints, count: Ints, peaks: Ints, pinch: float) -> Bools:
-    """(n,): saddles that may be pinched, by what their squares' centres tell of necks and floor."""
-    neck = np.sqrt(heights[saddles], dtype=np.float64) - 2 * OFF_CENTRE
-    sides = np.sqrt(np.where(np.arange(4) < count[:, None], heights[peaks], 0), dtype=np.float64) + 2 * OFF_CENTRE
-    answer: Bools = pinch * neck <= np.sort(sides, axis=1)[:, -2]
-    return answer
+class _Floor:
+    """The parts of the floor between necks that are still shut: triangles, joined step by step."""
+
+    def __init__(self, walls: Walls) -> None:
+        number = len(walls.triangles)
+        self._parent = list(range(number))
+        self.members = [[k] for k in range(number)]
+        self.room: list[float] = walls.room.tolist()
+        """By part, the squared width of the floor in it."""
+        self.widest = max(self.room)
+        for one, other in walls.sides[~walls.neck].tolist():
+            self.join(one, other)
+
+    def of(self, triangle: int) -> int:
+        """The part in which a triangle lies."""
+        parent = self._parent
+        while parent[triangle] != triangle:
+            parent[triangle] = triangle = parent[parent[triangle]]
+        return triangle
+
+    def join(self, one: int, other: int) -> None:
+        """Join the parts of two triangles."""
+        a, b = self.of(one), self.of(other)
+        if a == b:
+            return
+        if len(self.members[a]) < len(self.members[b]):
+            a, b = b, a
+        self._parent[b] = a
+        self.members[a] += self.members[b]
+        self.members[b] = []
+        self.room[a] = max(self.room[a], self.room[b])
 
 
-def describe(
-    square: Squares, state: States, chains: Chains, saddle: int, first: Ints, sides: list[float], g: int
-) -> Passage:
-    """The passage between one side of a saddle and the rest."""
-    width = square.shape[1]
-    others = [k for k in range(len(first)) if k != g]
-    other = max(others, key=lambda k: (sides[k], -k))
-    chain, position = on_chain(chains, saddle, int(first[g]), state)
-    towards = int(first[g])
-    neck, roomy = neck_at(square, saddle, towards), clearance_of(square, saddle) >= ROOMY
-    for cell, step, back, onward in plateau(square, saddle).tolist() if len(first) == 2 else ():
-        ahead = apart_squares(step, int(first[g]), width) < apart_squares(step, int(first[other]), width)
-        beyond = onward if ahead else back
-        nearby, on = neck_at(square, cell, beyond, strictly=True), leads_through(chains, cell, beyond, state)
-        narrower = nearby.width < min(neck.width, sides[g], sides[other]) - TIE
-        if on is not None and narrower and nearby.straight and roomy:
-            neck, saddle, towards, (chain, position) = nearby, cell, beyond, on
+def _by_width(walls: Walls) -> Iterator[list[int]]:
+    """The necks in groups of one width, the widest first."""
+    necks = np.flatnonzero(walls.neck)
+    order = necks[np.argsort(-walls.length[necks], kind="stable")].tolist()
+    for _, group in groupby(order, key=lambda edge: int(walls.length[edge])):
+        yield list(group)
+
+
+def _clusters(walls: Walls, floor: _Floor, edges: list[int], least: float) -> Iterator[tuple[list[_Mouth], set[int]]]:
+    """Necks of one width that hang together through floor that is not so wide: their mouths, and that floor."""
+    ends = {edge: [floor.of(triangle) for triangle in walls.sides[edge].tolist()] for edge in edges}
+    meeting: dict[int, list[int]] = defaultdict(list)
+    for edge in edges:
+        for node in set(ends[edge]):
+            if floor.room[node] < least:
+                meeting[node].append(edge)
+    left = dict.fromkeys(edges)
+    while left:
+        todo, inner, mouths = [next(iter(left))], set(), []
+        del left[todo[0]]
+        while todo:
+            edge = todo.pop()
+            for side, node in enumerate(ends[edge]):
+                if floor.room[node] >= least:
+                    mouths.append((edge, side, node))
+                else:
+                    inner.add(node)
+                for other in meeting[node] if node in inner else ():
+                    if other in left:
+                        del left[other]
+                        todo.append(other)
+        if len(mouths) > 1:
+            yield [_Mouth(e, side, floor.room[node], tuple(floor.members[node])) for e, side, node in mouths], inner
+
+
+def _doorways(walls: Walls, mouths: list[_Mouth], between: tuple[tuple[int, int], ...]) -> Iterator[_Doorway]:
+    """The doorway of two mouths; or one of no depth in each, where they are more.
+
+    Where three or more meet, what lies between them is floor like other floor.
+    """
+    if len(mouths) == 2:
+        one, two = mouths
+        yield _Doorway(one, two, between if one.edge != two.edge else _squares_on(walls, one.edge))
+        return
+    for mouth in mouths:
+        room = max(other.room for other in mouths if other is not mouth)
+        inner = _Mouth(mouth.edge, 1 - mouth.side, room, (int(walls.sides[mouth.edge, 1 - mouth.side]),))
+        yield _Doorway(mouth, inner, _squares_on(walls, mouth.edge))
+
+
+def _passage(walls: Walls, doorway: _Doorway, taken: set[tuple[int, int]]) -> Passage:
+    """The passage of a doorway. taken : the squares (column, row) between the mouths of any."""
+    ways = [(_gate(walls, mouth, taken), mouth) for mouth in (doorway.one, doorway.two)]
+    (here, one), (there, two) = sorted(ways, key=lambda way: way[0][::-1])
     return Passage(
-        centre(saddle, width),
-        clearance_of(square, saddle),
-        neck.width,
-        neck.a,
-        neck.b,
-        (sides[g], sides[other]),
-        tuple(centre(cell, width) for cell in neck.cells),
-        centre(towards, width),
-        chain,
-        position,
+        sqrt(float(walls.length[one.edge])),
+        (sqrt(one.room) / 2, sqrt(two.room) / 2),
+        (_ends(walls, one), _ends(walls, two)[::-1]),
+        (here, there),
+        doorway.between,
     )
 
 
-class Neck(NamedTuple):
-    """The ends of a neck, from wall to wall, and the padded cells between them."""
-
-    a: XY
-    b: XY
-    cells: tuple[int, ...]
-
-    @property
-    def straight(self) -> bool:
-        """Does it run along a row or a column?"""
-        return self.a[0] == self.b[0] or self.a[1] == self.b[1]
-
-    @property
-    def width(self) -> float:
-        """From end to end."""
-        return float(np.hypot(self.b[0] - self.a[0], self.b[1] - self.a[1]))
+def _ends(walls: Walls, mouth: _Mouth) -> Segment:
+    """The ends of a mouth, on the left and right of who comes in by it."""
+    p, q = walls.corners[walls.edges[mouth.edge]].tolist()
+    x, y = walls.opposite(mouth.edge, mouth.side).tolist()
+    leftward = (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) > 0
+    left, right = (q, p) if leftward else (p, q)
+    return (float(left[0]), float(left[1])), (float(right[0]), float(right[1]))
 
 
-def neck_at(square: Squares, saddle: int, side: int, strictly: bool = False) -> Neck:
-    """The neck at a cell, across the way to a cell beside it. strictly : no cell as high as it is on its slopes."""
-    left, right = slopes(square, saddle, side, strictly)
-    ax, ay, bx, by = neck_ends(square, saddle, int(left[-1]), int(right[-1]))
-    return Neck((ax, ay), (bx, by), (*left[::-1].tolist(), saddle, *right.tolist()))
+def _gate(walls: Walls, mouth: _Mouth, taken: set[tuple[int, int]]) -> XY:
+    """The centre of the square beyond a mouth that is nearest to its middle, in the floor to which it opens."""
+    (ax, ay), (bx, by) = _ends(walls, mouth)
+    x, y = (ax + bx) / 2, (ay + by) / 2
+    found = [
+        ((column + 0.5 - x) ** 2 + (row + 0.5 - y) ** 2, row, column)
+        for column, row in _squares_of(walls, mouth.floor)
+        if (bx - ax) * (row + 0.5 - ay) - (by - ay) * (column + 0.5 - ax) < 0 and (column, row) not in taken
+    ]
+    if not found:  # in so small a piece of floor no centre lies: the square that begins at the middle
+        return np.floor(x + HAIR * (by - ay)) + 0.5, np.floor(y - HAIR * (bx - ax)) + 0.5
+    _, row, column = min(found)
+    return column + 0.5, row + 0.5
 
 
-def apart_squares(one: int, other: int, width: int) -> int:
-    """The squared distance between the centres of two cells."""
-    return (one // width - other // width) ** 2 + (one % width - other % width) ** 2
+def _squares_of(walls: Walls, triangles: Iterable[int]) -> tuple[tuple[int, int], ...]:
+    """The squares whose centres lie in some triangles, or on their edges."""
+    return _centres(walls.corners[walls.triangles[list(triangles)]])
 
 
-@compiled
-def plateau(square: Squares, saddle: int) -> Ints:
-    """Cells as high as a saddle and joined to it, with lower floor on both sides: rows (cell, step, back, onward).
-
-    Along a straight wall the clearance does not change: any cell may be the saddle, but the neck is at such a one.
-    step : the first cell of the way there. back, onward : the cells beside it on that way and beyond it.
-    """
-    width = square.shape[1]
-    heights = square.reshape(-1)
-    queue = np.empty((PLATEAU, 3), np.int32)  # cell, step, back
-    found = np.empty((PLATEAU, 4), np.int32)
-    queue[0, 0], queue[0, 1], queue[0, 2] = saddle, -1, -1
-    first, last, count = 0, 1, 0
-    while first < last:
-        cell, step, back = queue[first]
-        first += 1
-        onward, changes = -1, 0
-        for k in range(8):
-            here, before = heights[cell + beside(k, width)], heights[cell + beside(k + 7, width)]
-            changes += (here < heights[saddle]) != (before < heights[saddle])
-        for k in range(0, 8, 2):
-            other = cell + beside(k, width)
-            if heights[other] < heights[saddle]:
-                continue
-            if other != back and other + back != 2 * cell:
-                onward = onward if onward >= 0 else other
-            elif other != back:
-                onward = other
-            known = other == saddle
-            for n in range(last):
-                known |= queue[n, 0] == other
-            if heights[other] == heights[saddle] and not known and last < PLATEAU:
-                queue[last, 0], queue[last, 1], queue[last, 2] = other, other if step < 0 else step, cell
-                last += 1
-        if cell != saddle and changes >= 4 and onward >= 0:
-            found[count, 0], found[count, 1], found[count, 2], found[count, 3] = cell, step, back, onward
-            count += 1
-    return found[:count]
+def _squares_on(walls: Walls, edge: int) -> tuple[tuple[int, int], ...]:
+    """The squares whose centres lie on an edge."""
+    return _centres(walls.corners[walls.edges[edge][[0, 1, 1]]][None])
 
 
-def on_chain(chains: Chains, saddle: int, side: int, state: States) -> tuple[int, int]:
-    """The chain that leads from a saddle to one side, and the saddle's position on it."""
-    width, tracks = state.shape[1], (chains.node, chains.leave, chains.start, chains.cells)
-    anchor = locate(saddle, state.reshape(-1), width, *tracks)
-    if anchor.node < 0:
-        return anchor.chain, anchor.position
-    for chain in sorted(set(chains.leave[anchor.node].tolist()) - {-1}):
-        cells = chains.cells[chains.start[chain] : chains.start[chain + 1]]
-        if (cells[0], cells[1]) == (saddle, side):
-            return chain, 0
-        if (cells[-1], cells[-2]) == (saddle, side):
-            return chain, len(cells) - 1
-    raise AssertionError("a saddle that is a node has a chain into each of its sides")
-
-
-def leads_through(chains: Chains, cell: int, side: int, state: States) -> tuple[int, int] | None:
-    """The chain that leads from a cell to one beside it, and the cell's position on it; None when none does."""
-    if not state.reshape(-1)[cell] & LINKS:
-        return None
-    anchor = locate(cell, state.reshape(-1), state.shape[1], chains.node, chains.leave, chains.start, chains.cells)
-    if anchor.node >= 0:
-        return None
-    first, last = chains.start[anchor.chain], chains.start[anchor.chain + 1] - 1
-    about = [chains.cells[first + n] for n in (anchor.position - 1, anchor.position + 1) if 0 <= n <= last - first]
-    return (anchor.chain, anchor.position) if side in about else None
-
-
-def compare_sides(square: Squares, state: States, saddles: Ints) -> tuple[Ints, Ints, Ints]:
-    """Per saddle: its number of sides, their first cells, and the summit of each side's part."""
-    heights = square.reshape(-1)
-    count = np.zeros(len(saddles), np.int32)
-    first, summit, peaks = (np.zeros((len(saddles), 4), np.int32) for _ in range(3))
-    find_sides(square, state, saddles, count, first, summit)
-    summits = np.flatnonzero(state.reshape(-1) & SUMMIT).astype(np.int32)
-    parent = np.arange(len(summits), dtype=np.int32)
-    highest = summits.copy()
-    order = np.lexsort((-saddles, -heights[saddles])).astype(np.int32)
-    merge_sides(order, count, np.searchsorted(summits, summit).astype(np.int32), parent, highest, heights, peaks)
-    return count, first, peaks
-
-
-@bare
-def find_sides(square: Squares, state: States, saddles: Ints, count: Ints, first: Ints, summit: Ints) -> None:
-    """The highest neighbour in each group of higher ones, and the summit reached from it."""
-    width = square.shape[1]
-    heights, states = square.reshape(-1), state.reshape(-1)
-    for k in range(saddles.shape[0]):
-        saddle, found = 0 + saddles[k], 0
-        rest = int(GROUPS[higher_about(saddle, heights, width)])
-        while rest != 0:
-            best = saddle + stride(highest_of(saddle, rest & LINKS, heights, width), width)
-            first[k, found] = best
-            while not states[best] & SUMMIT:
-                best = steepest(best, heights, width)
-            summit[k, found] = best
-            found, rest = found + 1, rest >> 4
-        count[k] = found
-
-
-@bare
-def merge_sides(
-    order: Ints, count: Ints, summit: Ints, parent: Ints, highest: Ints, heights: Squares, peaks: Ints
-) -> None:
-    """Take the saddles in order; note the summits of the parts they join, then join them."""
-    for saddle in order:
-        for g in range(count[saddle]):
-            peaks[saddle, g] = highest[root(parent, summit[saddle, g])]
-        for g in range(1, count[saddle]):
-            a, b = root(parent, summit[saddle, 0]), root(parent, summit[saddle, g])
-            if above(highest[max(a, b)], highest[min(a, b)], heights):
-                highest[min(a, b)] = highest[max(a, b)]
-            parent[max(a, b)] = min(a, b)
-
-
-@bare
-def finest(square: Squares, cell: int) -> float:
-    """The greatest clearance at a cell's centre, corners and edges' middles."""
-    rows, width = square.shape
-    i, j = cell // width, cell % width
-    reach = int(np.sqrt(float(square[i, j]))) // 2 + 2
-    best = 0.0
-    for dy in range(-1, 2):
-        for dx in range(-1, 2):
-            least = np.inf
-            for y in range(max(i - reach, 0), min(i + reach + 1, rows)):
-                for x in range(max(j - reach, 0), min(j + reach + 1, width)):
-                    if square[y, x] == 0:
-                        rise, run = max(abs(y - i - 0.5 * dy) - 0.5, 0.0), max(abs(x - j - 0.5 * dx) - 0.5, 0.0)
-                        least = min(least, rise * rise + run * run)
-            best = max(best, np.sqrt(least) if least < np.inf else 0.0)
-    return best
+def _centres(triangles: Longs) -> tuple[tuple[int, int], ...]:
+    """The squares (column, row) whose centres lie in triangles (n, 3, 2), or on their edges; by row."""
+    if not len(triangles):
+        return ()
+    (west, south), (east, north) = triangles.min(axis=(0, 1)).tolist(), triangles.max(axis=(0, 1)).tolist()
+    mask = np.zeros((north - south, east - west), np.bool_)
+    mark_centres(2 * (triangles - np.array([west, south])), mask)
+    rows, columns = np.nonzero(mask)
+    return tuple(zip((columns + west).tolist(), (rows + south).tolist(), strict=True))
 
 
 @compiled
-def slopes(square: Squares, saddle: int, side: int, strictly: bool) -> tuple[Ints, Ints]:
-    """The steepest ways down to the walls, left and right of the way to a side; strictly: over no cell as high."""
-    width = square.shape[1]
-    heights = square.reshape(-1)
-    k = 0
-    while saddle + beside(k, width) != side:
-        k += 1
-    return descend(heights, saddle, k, 1, width, strictly), descend(heights, saddle, k, 7, width, strictly)
-
-
-def neck_ends(square: Squares, saddle: int, one: int, two: int) -> tuple[float, float, float, float]:
-    """The ends of a neck: the nearest points of its walls, or those nearest the saddle if it does not lie between."""
-    width = square.shape[1]
-    i, j = saddle // width, saddle % width
-    if (one // width - i) * (two // width - i) + (one % width - j) * (two % width - j) < 0:
-        return nearest_points(*neck_walls(square, saddle, one, two), width)
-    return (*nearest_points(one, saddle, width)[:2], *nearest_points(two, saddle, width)[:2])
-
-
-@bare
-def neck_walls(square: Squares, saddle: int, one: int, two: int) -> tuple[int, int]:
-    """The blocked squares nearest to each other across a saddle, starting from the feet of its slopes."""
-    for _ in range(4):
-        nearer = across(square, saddle, one, two)
-        back = across(square, saddle, nearer, one)
-        if nearer == two and back == one:
-            break
-        one, two = back, nearer
-    return one, two
-
-
-@compiled
-def descend(heights: Squares, saddle: int, k: int, turn: int, width: int, strictly: bool) -> Ints:
-    """The cells of the steepest way down to a wall from the first lower neighbour, turning from the k-th one way."""
-    k += turn
-    while above(saddle + beside(k, width), saddle, heights) or (
-        strictly and heights[saddle + beside(k, width)] == heights[saddle]
-    ):
-        k += turn
-    cells = [saddle + beside(k, width)]
-    while heights[cells[-1]] > 0:
-        best = cells[-1]
-        for j in range(8):
-            other = cells[-1] + beside(j, width)
-            if heights[other] < heights[best]:
-                best = other
-        cells.append(best)
-    return np.array(cells, np.int32)
-
-
-@bare
-def across(square: Squares, saddle: int, wall: int, before: int) -> int:
-    """The blocked square nearest to ``wall`` on the other side of the saddle; ``before`` if none is nearer."""
-    rows, width = square.shape
-    i, j = saddle // width, saddle % width
-    u, v = wall // width - i, wall % width - j
-    best, least = before, apart(before // width - i - u, before % width - j - v)
-    reach = int(np.sqrt(float(least))) + 2
-    for y in range(max(i + u - reach, 0), min(i + u + reach + 1, rows)):
-        for x in range(max(j + v - reach, 0), min(j + v + reach + 1, width)):
-            if square[y, x] == 0 and (y - i) * u + (x - j) * v < 0:
-                gap = apart(y - i - u, x - j - v)
-                if gap < least:
-                    best, least = y * width + x, gap
-    return best
-
-
-@bare
-def apart(rise: int, run: int) -> int:
-    """The squared distance between two squares at that offset."""
-    y, x = max(abs(rise) - 1, 0), max(abs(run) - 1, 0)
-    return y * y + x * x
-
-
-def nearest_points(wall: int, other: int, width: int) -> tuple[float, float, float, float]:
-    """The nearest points of two squares; in the middle where they face each other."""
-    ay, by = nearest_on_axis(wall // width - 1, other // width - 1)
-    ax, bx = nearest_on_axis(wall % width - 1, other % width - 1)
-    return ax, ay, bx, by
-
-
-def nearest_on_axis(a: int, b: int) -> tuple[float, float]:
-    """The nearest points of the unit intervals at a and b."""
-    if a == b:
-        return a + 0.5, a + 0.5
-    return (a + 1.0, float(b)) if a < b else (float(a), b + 1.0)
-
-
-def centre(cell: int, width: int) -> XY:
-    """The centre of a padded cell."""
-    return cell % width - 0.5, cell // width - 0.5
-
-
-def clearance_of(square: Squares, cell: int) -> float:
-    """The clearance at a padded cell."""
-    return 0.5 * sqrt(float(square.reshape(-1)[cell]))
+def mark_centres(triangles: Longs, mask: Bools) -> None:
+    """Mark the squares whose centres lie in triangles (n, 3, 2), in half squares, or on their edges."""
+    for n in range(triangles.shape[0]):
+        (ax, ay), (bx, by), (cx, cy) = triangles[n, 0], triangles[n, 1], triangles[n, 2]
+        for row in range(min(ay, by, cy) // 2, max(ay, by, cy) // 2):
+            for column in range(min(ax, bx, cx) // 2, max(ax, bx, cx) // 2):
+                x, y = 2 * column + 1, 2 * row + 1
+                one = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
+                two = (cx - bx) * (y - by) - (cy - by) * (x - bx)
+                three = (ax - cx) * (y - cy) - (ay - cy) * (x - cx)
+                left = one >= 0 and two >= 0 and three >= 0
+                mask[row, column] |= left or (one <= 0 and two <= 0 and three <= 0)

@@ -41,7 +41,7 @@ def rehearse() -> None:
     ground = Ground(none[0], np.zeros(1, np.uint8), 1, chains, runs, find_ways(none, chains, runs, False), False)
     ends = 0.0, 0.0, 0.0, 0.0
     itineraries.entry(ground, ends, 1, new_desk(1, 1, 1, 1, 8, NO_BARS))
-    shortest_line.entry(runs, ends, *new_scout(8, runs))
+    shortest_line.entry(runs, ends, inf, *new_scout(8, runs))
     lift_word.entry(none[0], ground.states, 1, chains, runs, ends, ints, new_trail(1))
 
 
@@ -102,7 +102,7 @@ class Questions:
         first = routes[0].length - CLOSE
         if first <= hypot(goal[0] - start[0], goal[1] - start[1]):
             return routes
-        length = self.measure(start, goal)
+        length = self.measure(start, goal, first)
         return routes if length >= first else [self._scouted(length, (*start, *goal)), *routes][:k]
 
     def lifted(self, route: Route) -> Route:
@@ -149,15 +149,15 @@ class Questions:
         route = tight_route(self.layer, ends, word, 0.5 * found.lowest**0.5, found.chains)
         return self.with_ends(route, start, goal)
 
-    def measure(self, start: XY, goal: XY) -> float:
-        """The length of the shortest way of all; infinite when there is none. The way is left in the scout."""
+    def measure(self, start: XY, goal: XY, limit: float = inf) -> float:
+        """The length of the shortest way of all, which is left in the scout; infinite when none is below the limit."""
         runs = self.layer.runs
         if self._scout is None:
             self._scout = new_scout(1 << 14, runs)
-        length = shortest_line(runs, (*start, *goal), *self._scout)
+        length = shortest_line(runs, (*start, *goal), limit, *self._scout)
         while self._scout.sizes[0] == FULL:
             self._scout = new_scout(4 * len(self._scout.nodes.key), runs)
-            length = shortest_line(runs, (*start, *goal), *self._scout)
+            length = shortest_line(runs, (*start, *goal), limit, *self._scout)
         return inf if self._scout.sizes[0] == NONE else float(length)
 
     def shortest(self, start: XY, goal: XY) -> Route | None:

@@ -15,8 +15,9 @@ from geometry.change import change_squares
 from geometry.distance import Bools, type_of_squares
 from geometry.goals import checked_goal
 from geometry.layer import Layer, find_bones, find_layer, level_of, new_state
+from geometry.narrows import narrow_squares
 from geometry.parts import Labels, find_parts
-from geometry.passages import Passage, find_passages
+from geometry.passages import DOOR, Passage, find_passages
 from geometry.polyline import word_of_line
 from geometry.questions import Questions
 from geometry.recycling import Tenant, take_buffers
@@ -24,6 +25,7 @@ from geometry.route import Route
 from geometry.skeleton import States, Words
 from geometry.sweep import survey
 from geometry.tightening import word_of_crossings
+from geometry.walls import Walls, find_walls
 
 if TYPE_CHECKING:
     import networkx
@@ -81,7 +83,7 @@ class Screen:
         bones = change_squares(self._square, state, old, *where)
         self._skeletons = {1: self._survey_changed(*where) if bones is None else (state, words, bones)}
         self._chains, self._layers, self._questions = {}, {}, {}
-        for name in ("clearance", "skeleton", "pathgraph"):
+        for name in ("clearance", "skeleton", "pathgraph", "_walls"):
             self.__dict__.pop(name, None)
         return self
 
@@ -204,16 +206,31 @@ class Screen:
         start, goal = (self._checked(route.points[k].tolist(), "the route's end") for k in (0, -1))
         return questions.of_word(start, goal, word)
 
-    def passages(self, pinch: float = 0.0) -> list[Passage]:
-        """All necks of free space (see passages.py), in the order of their squares.
+    def passages(self, pinch: float = DOOR) -> list[Passage]:
+        """The necks of free space, by place (see passages.py).
 
         pinch : only those on both sides of which the floor is at least so many times as wide.
         """
-        return find_passages(self._square, self._skeleton_at(1)[0], self._chains_at(1), pinch)
+        return find_passages(self._walls, pinch)
+
+    def narrows(self, passage: Passage, spare: float) -> set[tuple[int, int]]:
+        """The squares (column, row) about a passage where lines from wall to wall are at most so much longer than it.
+
+        spare : in squares (see narrows.py).
+        """
+        return narrow_squares(self._walls, passage, spare)
+
+    @cached_property
+    def _walls(self) -> Walls:
+        """The floor between the corners of its walls."""
+        return find_walls(self.free)
 
     def parts(self, passages: Iterable[Passage]) -> Labels:
-        """(rows, columns) int: 0 blocked, else the number of the part of the floor, cut along the passages' necks."""
-        return find_parts(self._square, self._skeleton_at(1)[0], passages)
+        """(rows, columns) int: the number of the part of the floor, cut along the passages' mouths, or 0.
+
+        0 on blocked squares, on those whose centres lie on a mouth, and between two mouths (see parts.py).
+        """
+        return find_parts(self.free, passages)
 
     def _checked(self, point: Point, name: str) -> tuple[float, float]:
         """A point in a free square."""

@@ -17,16 +17,22 @@ from kb.loads import covered
 from kb.regions import label_of
 from kb.worldmodel import WorldModel
 
+ALONG = 8.0  # squares of a wall that tell how it lies: where it leaves its row within that, it lies askew
+LEAST_ANGLE = 0.5  # the sine of that between the walls of a corner: they are no one wall
 SMALLEST = 6  # squares of floor that are worth a corner
 HUNDREDTHS = 100
 SIDES = ("northeast", "northwest", "southeast", "southwest")
 
 
 class Corner(NamedTuple):
-    """A convex corner: its point (x, y) in the frame of the view, and the square (column, row) of floor that has it."""
+    """A convex corner: its point (x, y) in the frame of the view, and the square (column, row) of floor that has it.
+
+    walls : the outward unit normals of the walls that form it, where these lie askew to the squares; else None.
+    """
 
     point: tuple[float, float]
     square: tuple[int, int]
+    walls: tuple[tuple[float, float], tuple[float, float]] | None = None
 
 
 def known_floor(model: WorldModel) -> NDArray[np.bool_]:
@@ -69,5 +75,24 @@ def _convex(floor: NDArray[np.bool_]) -> list[Corner]:
         for height in (row, row + 1):
             owner[west, height] = (west, row)
             owner[east + 1, height] = (east, row)
-    hull = shapely.convex_hull(shapely.multipoints(sorted(owner)))
-    return [Corner((x, y), owner[round(x), round(y)]) for x, y in sorted(set(hull.exterior.coords))]
+    ring = shapely.convex_hull(shapely.multipoints(sorted(owner))).exterior
+    points = sorted(set(ring.coords))
+    return [Corner((x, y), owner[round(x), round(y)], _walls(ring, (x, y))) for x, y in points]
+
+
+def _walls(
+    ring: shapely.LinearRing, point: tuple[float, float]
+) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """The outward normals of the walls that meet in a corner of a convex ring; None where both lie along the squares.
+
+    A wall is followed as far as ALONG. One that leaves a row of squares within that lies askew.
+    """
+    along, length = ring.project(shapely.Point(point)), ring.length
+    ends = [ring.interpolate((along + way * min(ALONG, length / 8)) % length) for way in (-1, 1)]
+    steps = np.array([(end.x - point[0], end.y - point[1]) for end in ends])
+    if (np.abs(steps).min(axis=1) < 1.0).all():
+        return None
+    turn = 1 if ring.is_ccw else -1
+    (ax, ay), (bx, by) = steps / np.hypot(*steps.T)[:, None]
+    normals = (-turn * ay, turn * ax), (turn * by, -turn * bx)
+    return normals if abs(normals[0][0] * normals[1][1] - normals[0][1] * normals[1][0]) > LEAST_ANGLE else None

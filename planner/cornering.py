@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from geometry.carrying import InCorner, Inside
+from geometry.carrying import Between, InCorner, Inside
 from geometry.components import components
 from geometry.ends import End, placed
 from geometry.reach import UNREACHED, reach
-from geometry.rigid import Pose
+from geometry.rigid import Pose, Translate
 from kb.facts import Fact
 from kb.worldmodel import CLEAR, Node
 from planner.approaching import TAKE, Approach
@@ -25,6 +25,9 @@ from planner.screen import grown
 IN_SIGHT = 6  # squares from a corner within which it is seen well
 FLUSH = 0.1  # squares between an object and walls that it touches
 LEANING = 1.25  # squares that what lies askew in a corner may reach further from its walls than it is long
+WALL = 1.0  # squares: so deep in the squares in which it was seen a wall may lie
+STAIR = math.sqrt(2)  # squares: as far behind its stairs a wall that lies askew may be
+LEAN = 0.4  # squares by which it goes away from the other wall meanwhile, which would hold it else
 PRESS = 0.25  # squares that a thing is pressed on into a corner: it shows, then, how far in its sides lie
 ABOUT = 0.5  # squares from its walls at which an object is brought to a corner that is settled
 RATHER = 0.4  # that a square is occupied which is rather floor than not
@@ -100,6 +103,9 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
     unclear = around & ~model.told
     shape = in_view(node.polygon, situation)
     hoped = partial(_further, side, side, situation)
+    between = _between_walls(side, situation)
+    if between is not None and not (unclear & (view.probability < 1 - CLEAR)).any():
+        return _aslant(side, between, shape)
     if not unclear.any():
         return replace(_flat(side, end, node, shape), hoped=hoped)
     near = replace(end, slack=FLUSH if view.sure else ABOUT)
@@ -123,7 +129,8 @@ def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Landing:
             return Landing({side: close}, holds=lands(close, shape), loose={side: end})
         goals = [_pressed(end), replace(close, press=ABOUT), replace(end, slack=FLUSH, press=1.0)]
         goal = next((one for one in goals if not lands(one, shape)), goals[-1])
-        return Landing({side: goal}, holds=_surely(end, node, shape) or lands(goals[-1], shape))
+        holds = _surely(end, node, shape) or lands(goals[-1], shape)
+        return Landing({side: goal}, holds=holds, presses=_presses(end, shape) if holds else {})
     x0, y0, x1, y1 = placed(shape, Pose(0.0, 0.0, -node.turned % 90.0)).bounds
     near, far = sorted((x1 - x0, y1 - y0))
     flat = replace(close if node.inexact else end, within=(near + LEANING, far + LEANING))
@@ -131,17 +138,56 @@ def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Landing:
     return Landing({side: replace(flat, slack=ABOUT)}, holds=lands(flat, shape), loose=loose)
 
 
+def _between_walls(side: str, situation: Situation) -> Between | None:
+    """In the furthest corner of the known floor, where that is formed by walls that lie askew to the squares."""
+    corner = situation.corners[side]
+    return None if corner.walls is None else Between(*corner.point, corner.walls)
+
+
+def _aslant(side: str, end: Between, shape: Any) -> Landing:
+    """Between walls that lie askew to the squares, at any angle: brought near to both, and then pressed on into there.
+
+    They are seen as stairs, and lie somewhere behind these: only what is stopped tells where.
+    """
+    one, two = end.gaps(shape)
+    ways = {
+        "into": (max(one, 0.0) + STAIR, max(two, 0.0) + STAIR),
+        "one": (one + STAIR, -LEAN),
+        "two": (-LEAN, two + STAIR),
+    }
+    holds = lands(end, shape)
+    presses = {name: Translate(*end.move(way)) for name, way in ways.items() if holds}
+    return Landing({side: end}, holds=holds, presses=presses)
+
+
 def _pressed(end: InCorner) -> InCorner:
     """The same corner, for a thing that is pressed on into it where whole squares leave one free."""
     return replace(end, slack=end.slack - PRESS, press=PRESS)
 
 
-def _surely(end: InCorner, node: Node, shape: Any) -> bool:
-    """Does an object lie in a corner, however far in its sides lie?"""
+def _presses(end: InCorner, shape: Any) -> Mapping[str, Translate]:
+    """Pushes towards the walls of a corner that something does not seem to touch, as far as these may be away.
+
+    A wall lies anywhere in the squares in which it was seen. What lies right beside these is within a square of it,
+    wherever it is; with a part of a square free in between it may not be.
+    """
+    x, y = end.gaps(shape.bounds)
+    pushes = {"across": (x, Translate(end.sx * (x + WALL), 0.0)), "up": (y, Translate(0.0, end.sy * (y + WALL)))}
+    return {name: push for name, (gap, push) in pushes.items() if gap > FLUSH}
+
+
+def _further_in(end: InCorner, node: Node) -> tuple[float, float]:
+    """By how much the sides of a thing towards the walls of a corner may lie further in than is believed."""
     west, east, south, north = node.short
-    gaps = end.gaps(shape.bounds)
-    further = east if end.sx > 0 else west, north if end.sy > 0 else south
-    return lands(end, shape) and all(gap + far <= end.slack + HAIR for gap, far in zip(gaps, further, strict=True))
+    return east if end.sx > 0 else west, north if end.sy > 0 else south
+
+
+def _surely(end: InCorner, node: Node, shape: Any) -> bool:
+    """Does an object lie in a corner, however far in its sides lie? Where walls lie deeper in their squares than these
+    begin, it may lie in these, too.
+    """
+    gaps, further = end.gaps(shape.bounds), _further_in(end, node)
+    return all(gap >= -WALL and gap + far <= end.slack + HAIR for gap, far in zip(gaps, further, strict=True))
 
 
 def _into_corner(side: str, situation: Situation) -> InCorner:

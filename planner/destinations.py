@@ -301,9 +301,25 @@ def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
     squares = np.flatnonzero(beyond & situation.screens.floor)
     if len(squares):
         return Destination(squares)
-    what = "no door is seen yet" if not situation.rooms.sure else "no next room is seen yet that can be reached"
+    what = no_next_room(situation)
     likely = _likely_rooms(situation)
     return nowhere(what, (*likely, *doorsteps(situation, tried=bool(likely))))
+
+
+def no_next_room(situation: Situation) -> str:
+    """Why no next room is known, in words: no door is, and what comes nearest to be one; or none can be reached."""
+    model, opening = situation.model, situation.rooms.opening
+    if situation.rooms.sure:
+        return "no next room is seen yet that can be reached"
+    if opening is None:
+        return "no door is seen yet"
+    woke = model.lattice.woke[0] - model.view.west, model.lattice.woke[1] - model.view.south
+    where = "behind" if math.dist(woke, opening.narrow) > math.dist(woke, opening.wide) else "before"
+    east, north = model.place_to_utak(*opening.place)
+    return (
+        f"no door is seen yet: the opening {opening.width:.1f} squares wide at POINT ({east:.1f} {north:.1f}) is none, "
+        f"for the floor {where} it is nowhere wider than {opening.least:.1f}, less than twice as wide"
+    )
 
 
 def _likely_rooms(situation: Situation) -> list[Lookout]:

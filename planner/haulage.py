@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from geometry.carrying import At, Carrying, InCorner, Inside, plan_carrying
+from geometry.carrying import At, Between, Carrying, InCorner, Inside, plan_carrying
 from geometry.digital import squares, squares_after
 from geometry.ends import End, moved
 from geometry.rigid import Rotate, Translate
@@ -156,7 +156,7 @@ class Hauler:
         if haul.level == BOLD:
             return replace(haul, hopes=not haul.askew)
         least = FEWEST if request.held else FEWEST + 1
-        further = isinstance(request.hoped().get(haul.target), InCorner)
+        further = isinstance(request.hoped().get(haul.target), InCorner | Between)
         if haul.level or haul.aside or (haul.plan.commands <= least and not further):
             return haul
         hauls = [haul, *self._hoped(request, situation)]
@@ -266,7 +266,7 @@ def _way(end: End, shape: Any) -> float:
     """The least way to a target as the crow flies, in squares."""
     if isinstance(end, At):
         return math.hypot(end.pose.x, end.pose.y)
-    if isinstance(end, InCorner):
+    if isinstance(end, InCorner | Between):
         return float(shape.distance(shapely.Point(end.x, end.y)))
     return float(shape.distance(end.polygon)) if isinstance(end, Inside) else 0.0
 

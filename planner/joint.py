@@ -7,7 +7,7 @@ from typing import Any
 
 import shapely
 
-from geometry.ends import At, End, InCorner, Inside, Roomy, placed
+from geometry.ends import At, Between, End, InCorner, Inside, Roomy, placed
 from kb.facts import Fact
 from planner.destinations import Situation
 from planner.lying import Landing
@@ -65,7 +65,10 @@ def confines(end: End, shape: Any) -> Any:
         return placed(shape, end.pose).buffer(ROUNDING)
     if isinstance(end, Roomy):
         raise ValueError("a place on the way is no goal of a task")
-    return _in_corner(end, 2 * shapely.minimum_bounding_radius(shape))
+    longest = 2 * shapely.minimum_bounding_radius(shape)
+    if isinstance(end, Between):
+        return end.about(longest + end.slack)
+    return _in_corner(end, longest)
 
 
 def _in_corner(end: InCorner, longest: float) -> Any:

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-from geometry.carrying import InCorner, Inside
+from geometry.carrying import Between, InCorner, Inside
 from geometry.ends import End, moved
 from kb.facts import Fact
 from kb.rooms import Rooms
 from kb.worldmodel import Node
 from planner.cornering import cornered
-from planner.destinations import Situation, corner_side, doorsteps, numbers, out_of_sight
+from planner.destinations import Situation, corner_side, doorsteps, no_next_room, numbers, out_of_sight
 from planner.hoping import BEYOND, spread
 from planner.lying import Landing, Mask, in_view, lands_in_one, region_of
 from planner.nearing import around_start, beside, posed
@@ -27,7 +27,7 @@ def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landi
     found = _landing(goal, node, began, situation)
     if not situation.model.view.sure:
         found = replace(found, ends={name: _well_in(end) for name, end in found.ends.items()})
-    in_corner = any(isinstance(end, InCorner) for end in found.ends.values())  # of which it is told already
+    in_corner = any(isinstance(end, InCorner | Between) for end in found.ends.values())  # of which it is told already
     return replace(found, holds=found.holds or (not in_corner and _lies_in(found.ends, node, situation)))
 
 
@@ -73,7 +73,7 @@ def _next_room(began: Place, node: Node, situation: Situation) -> Landing:
         if looks and _lies_in(ends, node, situation):
             return Landing({}, looks[0].what, looks, there=True)
         return Landing(ends, hoped=partial(_insides, rooms, beyond, situation))
-    missing, lookouts = "no next room is seen yet", doorsteps(situation)
+    missing, lookouts = no_next_room(situation), doorsteps(situation)
     likely_rooms = situation.likely_beyond(began)
     likely = _insides(*likely_rooms)
     if _lies_in(likely, node, situation):

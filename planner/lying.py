@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from geometry.digital import squares
 from geometry.ends import At, End, met
-from geometry.rigid import Pose
+from geometry.rigid import Pose, Translate
 from kb.enlarging import DEEPEST, SIDES
 from kb.worldmodel import Node, WorldModel
 from planner.destinations import Situation
@@ -45,6 +45,8 @@ class Landing:
     loose : where it may lie if it cannot be brought to any of the ends.
     must_reach : what it must come to lie on wherever it must end, while that is not known: squares that were not seen,
     and those of the one end that may be it. Worked out when asked.
+    presses : pushes, by their names, by which it comes to touch walls that may lie further away than is believed; after
+    them a goal that holds by what is believed holds surely.
     some : it may end elsewhere, too: that it can be brought to none of the ends proves nothing.
     hoped : the ends, if the floor goes on as it is hoped to (planner.hoping); worked out when asked.
     by_the_way : what must be seen before it holds, where it does not yet: to come back for that takes longer. Likewise.
@@ -61,6 +63,7 @@ class Landing:
     must_reach: Ends = dict
     hoped: Ends = dict
     by_the_way: Looks = tuple
+    presses: Mapping[str, Translate] = field(default_factory=dict)
     some: bool = False
 
 

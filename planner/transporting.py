@@ -43,6 +43,7 @@ class Transporter:
         self.beginnings = Beginnings()
         self.sizer = Sizer()
         self._looked = 0  # squares he had looked from when he went to see where it must end, until it is one more
+        self._pressed: set[tuple[str, str]] = set()  # things and their presses, since one was pushed otherwise
         self._led_along = False  # has he taken along what shut him in, to look?
 
     def towards(self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciled) -> Decision | None:
@@ -64,7 +65,8 @@ class Transporter:
                 return Decision(None, why, "limit")
             if self.beginnings.left(x, node, situation) and situation.forbidden(node.name):
                 return Decision(None, f"{stage} holds, but {node.name} went through a door that it may not", "limit")
-            return self._led_out(node, stage, situation) if stage.goes_on else None
+            press = self._pressed_on(node, land, stage, situation)
+            return press or (self._led_out(node, stage, situation) if stage.goes_on else None)
         advice = self._advice(node, land, situation)
         if isinstance(advice, Refusal) and land.loose:
             if lands_in_one(land.loose, in_view(node.polygon, situation)):
@@ -154,6 +156,8 @@ class Transporter:
             look = self.pursuer.look(before_taking(node, self.carrier.turns, situation), stage, situation)
             if look is not None:
                 return look
+        if isinstance(advice.command, Push | Turn):
+            self._pressed.clear()
         return Decision(advice.command, f"{advice.why}; {stage}")
 
     def _missing(
@@ -229,6 +233,17 @@ class Transporter:
             walk = self.pursuer.go(replace(advice, why=f"{node.name} is taken along: {aim.what}"), stage, situation)
             return None if walk.command is None else walk
         return self._led(advice, aim.what, stage, situation)
+
+    def _pressed_on(self, node: Node, land: Landing, stage: Stage, situation: Situation) -> Decision | None:
+        """The push by which what he holds comes to touch a wall that may be further away; None when it touches all."""
+        for name, push in land.presses.items() if situation.model.held == node.name else ():
+            if (node.name, name) not in self._pressed:
+                self._pressed.add((node.name, name))
+                why = f"{node.name} is pressed against the wall, to be sure that it is there"
+                act = Act(Push(*situation.model.lattice.to_utak(push.dx, push.dy)), why, push)
+                self.carrier.depart(act)
+                return Decision(act.command, f"{act.why}; {stage}")
+        return None
 
     def _led_out(self, node: Node, stage: Stage, situation: Situation, shut_in: bool = False) -> Decision | None:
         """The push by which what he holds no longer shuts him in, to take it otherwise; None when it does not, or where

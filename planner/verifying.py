@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.components import edged
-from kb.rooms import SURE, Door, jamb, rooms_of
+from kb.necks import jamb
+from kb.rooms import SURE, Door, rooms_of
 from kb.worldmodel import Node, WorldModel
 from planner import exploring
 from planner.aims import Aim

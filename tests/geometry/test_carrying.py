@@ -11,7 +11,7 @@ from shapely import affinity, box
 
 from benchmarks.errands import faults, free_squares, goal_of
 from benchmarks.worlds import scenario
-from geometry.carrying import At, Carrying, InCorner, Inside, Pose, plan_carrying
+from geometry.carrying import At, Between, Carrying, InCorner, Inside, Pose, plan_carrying
 from geometry.ends import Roomy, met, moved
 from geometry.rigid import Rotate, Translate
 from tests.geometry.replay import replay, walls_of
@@ -392,3 +392,19 @@ def test_a_goal_is_moved_and_back(goal: InCorner | At | Roomy) -> None:
     for end in ends:
         there = affinity.translate(end, 7, -3)
         assert met(goal, shape, end) == met(away, affinity.translate(shape, 7, -3), there)
+
+
+@pytest.mark.parametrize("degrees", [10, 25, 45, 70])
+def test_a_body_is_brought_between_walls_at_any_angle(degrees: float) -> None:
+    """Seen as squares they are stairs; the body ends near both lines, behind which the true walls lie."""
+    room = affinity.translate(affinity.rotate(box(0, 0, 18, 14), degrees, origin=(9, 7)), 4, 6)
+    columns, rows = np.meshgrid(np.arange(28), np.arange(28))
+    free = shapely.covers(room, shapely.box(columns, rows, columns + 1, rows + 1))
+    turn = math.radians(degrees)
+    walls = (-math.cos(turn), -math.sin(turn)), (math.sin(turn), -math.cos(turn))
+    (x, y), *_ = sorted(room.exterior.coords, key=lambda p: -sum(n[0] * p[0] + n[1] * p[1] for n in walls))
+    square, utak = box(12, 12, 14, 14), (11.5, 12.5)
+    goal = Between(x, y, walls, slack=2.0)
+    plan = plan_carrying(square, free, utak, goal)
+    assert plan.status == "found"
+    assert max(goal.gaps(replay(plan, square, free, utak))) <= 2.0 + 1e-6

@@ -128,7 +128,7 @@ def test_a_picture_shows_squares_skeleton_pathgraph_and_routes():
     free[3, 3:6] = False
     screen = Screen(free)
     routes = screen.routes((1.5, 3.5), (7.5, 3.5))
-    tree = ElementTree.fromstring(draw(screen, routes, screen.passages()))
+    tree = ElementTree.fromstring(draw(screen, routes, screen.passages(1.1)))
     classes = [element.get("class") for element in tree.iter()]
     assert classes.count("route") == len(routes) == 2
     assert classes.count("chain") == screen.pathgraph.number_of_edges()

@@ -189,7 +189,7 @@ def test_what_may_be_an_object_makes_no_door_of_supposed_rooms() -> None:
     model = seen_whole(["?" * len(row) if n < 5 else row for n, row in enumerate(stub)])
     may_be_object = model.verge & ~model.walls
     assert set(np.argwhere(may_be_object)[:, 1].tolist()) == {20, 21}
-    assert [door.a for door in rooms_of(model).doors] == [(16.0, 6.0)]
+    assert [{door.a, door.b} for door in rooms_of(model).doors] == [{(16.0, 6.0), (20.0, 9.0)}]
     assert not rooms_of(model, verge=model.walls).doors
 
 

@@ -18,7 +18,7 @@ from kb.problems import BadInputError
 from kb.query import QueryEngine
 from kb.userrules import checked_rules
 from kb.wkt import WktError, parse_wkt
-from simulator import cli
+from simulator import cli, parsing
 from simulator.printing import as_json
 
 
@@ -109,7 +109,7 @@ def strictly(text: str) -> object:
 
 def printing_commands() -> set[str]:
     """The subcommands that have --json."""
-    (parts,) = (a for a in cli.parser()._actions if isinstance(a, argparse._SubParsersAction))
+    (parts,) = (a for a in parsing.parser()._actions if isinstance(a, argparse._SubParsersAction))
     return {name for name, part in parts.choices.items() if "--json" in part._option_string_actions}
 
 
