@@ -6,7 +6,6 @@ the things laid on it anew. Which are tried is for kb.doubting and kb.pivoting.
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from copy import deepcopy
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -219,7 +218,7 @@ class Surprise:
         """What is settled together with the look, if it was received at a place, with the loads where they lie."""
         x, y = (math.floor(v) for v in place)
         samples, counts = discounted(self.lattice.samples(), self.ranges, x, y, loads)
-        evidence = deepcopy(self.evidence)
+        evidence = self.evidence.copy()
         evidence.look(samples, counts, x, y, len(self.looks))
         return evidence
 
