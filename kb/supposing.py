@@ -22,7 +22,7 @@ from kb.heading import Disc, Hypothesis, Look, cells, fallen, search
 from kb.lattice import Lattice
 from kb.loads import Load, discounted
 from kb.picturing import Pictures
-from kb.relaying import Relaid, relaid, shifted
+from kb.relaying import Prefixes, Relaid, relaid, shifted
 from kb.suspecting import Hindrances
 
 Place = tuple[float, float]
@@ -116,6 +116,11 @@ class Surprise:
             reach = float(np.hypot(*corners.T).max()) + BESIDE
             discs |= {Disc(middle, reach) for middle in middles}
         return sorted(discs)
+
+    @cached_property
+    def prefixes(self) -> Prefixes:
+        """The first of the looks, on the lattice that is believed."""
+        return Prefixes(self.lattice, self.looks, self.loads)
 
     # -- trying a lattice ------------------------------------------------------------------------
 

@@ -128,8 +128,10 @@ def walk() -> None:
     import shapely
 
     from geometry.contact import Body, Obstacles
+    from geometry.digital import squares
     from geometry.rigid import Translate
 
+    squares(shapely.box(0, 0, 1, 1), 1, 1)
     Obstacles([shapely.box(10, 0, 11, 5)]).first_contact(Body(None, [(4.0, 1.0)]), Translate(8.0, 0.0))
 
 
