@@ -2,10 +2,12 @@
 
 Kernels over the arrays of kb.evidence. state: (squares,) int8, OPEN, FREE or FULL, settled_by: (squares,) int16, both
 flat. A field is a row of `where` (n, m) int32, flat squares, each of them once, with its `weight` (n, m) int16, 0 for
-padding, and the least and the greatest count, `low` and `high` (n,) int16.
+padding, and the least and the greatest count, `low` and `high` (n,) int16. `fresh` (n,) bool marks the fields that are
+not compared yet with all others since they came in, or since one of their squares was settled.
 
 # Strategy: every rule looks at all fields with what is settled so far, then all that it found is settled at once; so
-# the order of the fields does not matter. Fields that share squares are found by lists of the fields on every square.
+# the order of the fields does not matter. Fields that share squares are found by lists of the fields on every square;
+two neither of which is fresh have told all that they tell together.
 """
 
 import numpy as np
@@ -66,15 +68,28 @@ def misfits(
 
 @compiled
 def settle(
-    state: States, settled_by: Numbers, where: Squares, weight: Numbers, low: Numbers, high: Numbers, number: int
+    state: States,
+    settled_by: Numbers,
+    where: Squares,
+    weight: Numbers,
+    low: Numbers,
+    high: Numbers,
+    fresh: NDArray[np.bool_],
+    number: int,
 ) -> None:
     """Settle all that the counts settle, as impression `number`, in the arrays themselves."""
-    marks = np.zeros(where.size, np.int8)
+    marks, news = np.zeros(where.size, np.int8), np.zeros(len(state), np.bool_)
     for _ in range(ROUNDS):
         changed = False
-        while _single(state, settled_by, where, weight, low, high, marks, number):
+        while _single(state, settled_by, where, weight, low, high, marks, news, number):
             changed = True
-        if not changed and not _pairs(state, settled_by, where, weight, low, high, number):
+        if changed:
+            continue
+        for i in range(where.shape[0]):
+            for k in range(where.shape[1]):
+                fresh[i] = fresh[i] or (weight[i, k] > 0 and news[where[i, k]])
+        news[:] = False
+        if not _pairs(state, settled_by, where, weight, low, high, fresh, news, number):
             return
 
 
@@ -87,6 +102,7 @@ def _single(
     low: Numbers,
     high: Numbers,
     marks: States,
+    news: NDArray[np.bool_],
     number: int,
 ) -> bool:
     """Fields that can take no more occupied squares leave their others free, and those that need them all fill them."""
@@ -118,14 +134,26 @@ def _single(
                 if marks[i * most + k] == value:
                     state[where[i, k]] = value
                     settled_by[where[i, k]] = number
+                    news[where[i, k]] = True
     return True
 
 
 @compiled
 def _pairs(
-    state: States, settled_by: Numbers, where: Squares, weight: Numbers, low: Numbers, high: Numbers, number: int
+    state: States,
+    settled_by: Numbers,
+    where: Squares,
+    weight: Numbers,
+    low: Numbers,
+    high: Numbers,
+    fresh: NDArray[np.bool_],
+    news: NDArray[np.bool_],
+    number: int,
 ) -> bool:
-    """Settle what two fields do not share, from the difference of their counts: fields of single squares alone."""
+    """Settle what two fields do not share, from the difference of their counts: fields of single squares alone.
+
+    No field is fresh after that; the squares that are settled are marked in `news` (squares,).
+    """
     fields, most = where.shape
     room, least, greatest = np.zeros(fields, np.int64), np.zeros(fields, np.int64), np.zeros(fields, np.int64)
     entries = 0
@@ -142,7 +170,9 @@ def _pairs(
         if heaviest != 1:
             room[i] = 0
         entries += room[i]
-    first, on = _fields_on(state, where, weight, room, entries)
+    every = np.ones(fields, np.bool_)
+    first, on = _fields_on(state, where, weight, room, every, entries)
+    first_fresh, on_fresh = _fields_on(state, where, weight, room, fresh, entries)
     shared, within = np.zeros(fields, np.int64), np.full(len(state), -1, np.int64)
     met, free, filled = np.empty(fields, np.int64), np.zeros(len(state), np.bool_), np.zeros(len(state), np.bool_)
     changed = False
@@ -150,11 +180,12 @@ def _pairs(
         if room[a] == 0:
             continue
         many = 0
+        begin, those = (first, on) if fresh[a] else (first_fresh, on_fresh)
         for k in range(most):
             square = where[a, k]
             if weight[a, k] > 0 and state[square] == OPEN:
-                for at in range(first[square], first[square + 1]):
-                    b = on[at]
+                for at in range(begin[square], begin[square + 1]):
+                    b = those[at]
                     if shared[b] == 0:
                         met[many] = b
                         many += 1
@@ -178,28 +209,32 @@ def _pairs(
                     free[square] = free[square] or none
                     filled[square] = filled[square] or all_
                     changed = True
+    fresh[:] = False
     if not changed:
         return False
     for square in range(len(state)):
         if free[square] or filled[square]:
             state[square] = FREE if free[square] else FULL
             settled_by[square] = number
+            news[square] = True
     return True
 
 
 @compiled
-def _fields_on(state: States, where: Squares, weight: Numbers, room: Ints, entries: int) -> tuple[Ints, Ints]:
-    """The fields with room on every open square: those on square s are on[first[s]:first[s + 1]], in their order."""
+def _fields_on(
+    state: States, where: Squares, weight: Numbers, room: Ints, chosen: NDArray[np.bool_], entries: int
+) -> tuple[Ints, Ints]:
+    """The chosen fields with room on every open square: those on square s are on[first[s]:first[s + 1]]."""
     first, on = np.zeros(len(state) + 2, np.int64), np.empty(entries, np.int64)
     for i in range(where.shape[0]):
-        if room[i] > 0:
+        if chosen[i] and room[i] > 0:
             for k in range(where.shape[1]):
                 if weight[i, k] > 0 and state[where[i, k]] == OPEN:
                     first[where[i, k] + 2] += 1
     for square in range(len(state)):
         first[square + 2] += first[square + 1]
     for i in range(where.shape[0]):
-        if room[i] > 0:
+        if chosen[i] and room[i] > 0:
             for k in range(where.shape[1]):
                 square = where[i, k]
                 if weight[i, k] > 0 and state[square] == OPEN:

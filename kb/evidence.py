@@ -100,6 +100,7 @@ class Evidence:
         self._weight = np.zeros((0, MOST), np.int16)
         self._low = np.zeros(0, np.int16)
         self._high = np.zeros(0, np.int16)
+        self._fresh = np.zeros(0, np.bool_)
         self.overruled = 0
         self._looks: set[Told] = set()  # after which nothing was withdrawn
 
@@ -112,7 +113,7 @@ class Evidence:
         """The same, to be told more."""
         other = copy(self)
         other.state, other.seen = self.state.copy(), self.seen.copy()
-        other.settled_by, other._looks = self.settled_by.copy(), self._looks.copy()
+        other.settled_by, other._looks, other._fresh = self.settled_by.copy(), self._looks.copy(), self._fresh.copy()
         return other
 
     def view(self, places: Iterable[tuple[float, float]] = (), margin: int = 2) -> MapView:
@@ -193,7 +194,8 @@ class Evidence:
         self._weight = np.concatenate([self._weight, samples.weight])
         self._low = np.concatenate([self._low, np.maximum(ranges[:, 0] - samples.slack, 0)])
         self._high = np.concatenate([self._high, ranges[:, 1]])
-        settle(self.state.ravel(), self.settled_by.ravel(), *self._fields, number)
+        self._fresh = np.concatenate([self._fresh, np.ones(len(where), np.bool_)])
+        settle(self.state.ravel(), self.settled_by.ravel(), *self._fields, self._fresh, number)
         self._keep(self._informative())
         self._odds = self._odds.after(Fields(self.state.copy().ravel(), *self._fields))
         self._looks.add(seen_here)
@@ -217,6 +219,7 @@ class Evidence:
         row, column = self.index(x, y)
         if self.state[row, column] == OPEN:
             self.state[row, column], self.settled_by[row, column] = FREE, number
+            self._fresh[:] = True  # for what the fields that cover it tell now
         self.seen[row, column] = True
 
     def declare(self, mask: Mask, value: int, number: int) -> None:
@@ -259,7 +262,7 @@ class Evidence:
 
     def _keep(self, rows: Mask) -> None:
         self._where, self._weight = self._where[rows], self._weight[rows]
-        self._low, self._high = self._low[rows], self._high[rows]
+        self._low, self._high, self._fresh = self._low[rows], self._high[rows], self._fresh[rows]
 
     # -- room to grow ----------------------------------------------------------------------------
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.contradicting import contradicting
 from kb.lattice import CENTRE, Lattice
 
 Box = tuple[float, float, float, float]  # west, south, east, north
@@ -133,39 +134,10 @@ def contradictions(lattice: Lattice, looks: Sequence[Look], unsettled: Sequence[
     those on an unsettled part of the table with nothing.
     """
     samples = lattice.samples()
-    places = [lattice.place_from_utak(*look.place) for look in looks]
-    corners = np.floor(np.array(places)).astype(int)
-    low = corners.min(0) - 24
-    width, height = (corners.max(0) - low + 25).tolist()
-    free, full = np.zeros(width * height, bool), np.zeros(width * height, bool)
-    under = []
-    for look, (x, y) in zip(looks, corners - low, strict=True):
-        where = (samples.rows + y) * width + samples.columns + x
-        used, weight = samples.weight > 0, samples.weight.sum(1)
-        full[where[(look.ranges[:, 0] - samples.slack >= weight)[:, None] & used]] = True
-        free[where[(look.ranges[:, 1] == 0)[:, None] & used]] = True
-        under.append(where)
-    if unsettled:
-        apart = ~_within(unsettled, lattice, low, height, width)
-        free, full = free & apart, full & apart
-    wrong = int((free & full).sum())
-    for look, where in zip(looks, under, strict=True):
-        surely = (samples.weight * full[where]).sum(1)
-        possibly = samples.weight.sum(1) - (samples.weight * (free & ~full)[where]).sum(1)
-        wrong += int(((surely > look.ranges[:, 1]) | (possibly < look.ranges[:, 0] - samples.slack)).sum())
-    return wrong
-
-
-def _within(
-    discs: Sequence[Disc], lattice: Lattice, low: NDArray[np.int64], height: int, width: int
-) -> NDArray[np.bool_]:
-    """(height * width,): the squares, from `low` on, whose middles lie on one of the discs."""
-    rows, columns = np.mgrid[:height, :width] + 0.5
-    found = np.zeros((height, width), np.bool_)
-    for disc in discs:
-        x, y = lattice.place_from_utak(*disc.middle)
-        found |= np.hypot(columns + low[0] - x, rows + low[1] - y) <= disc.reach
-    return found.ravel()
+    corners = np.floor([lattice.place_from_utak(*look.place) for look in looks]).astype(np.int64)
+    ranges = np.stack([look.ranges for look in looks])
+    apart = [(*lattice.place_from_utak(*disc.middle), disc.reach) for disc in unsettled]
+    return contradicting(*samples, corners, ranges, np.array(apart, np.float64).reshape(-1, 3))
 
 
 def standing(

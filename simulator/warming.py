@@ -99,7 +99,7 @@ def tell_counts() -> None:
 
     where, one = np.zeros((1, 2), np.int32), np.ones(1, np.int16)
     fields = where, np.array([[1, 0]], np.int16), one, one
-    settle(np.full(1, -1, np.int8), np.full(1, -1, np.int16), *fields, 0)
+    settle(np.full(1, -1, np.int8), np.full(1, -1, np.int16), *fields, np.ones(1, np.bool_), 0)
     misfits(np.ones(1, np.int8), *fields, np.zeros(1, np.bool_))
     residue(np.ones(1, np.int8), *fields)
 
