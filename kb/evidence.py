@@ -165,9 +165,14 @@ class Evidence:
         misfits(self.state.ravel(), self._under(samples, x, y), samples.weight, low, ranges[:, 1].copy(), wrong)
         return wrong
 
-    def clashes(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> int:
-        """How many fields, of this look and of those before, cannot be right if it was received on square (x, y)."""
+    def clashes(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, whether: bool = False) -> int:
+        """How many fields, of this look and of those before, cannot be right if it was received on square (x, y).
+
+        whether : those before are not looked at if some of this look cannot.
+        """
         new = int(self.misfits(samples, ranges, x, y).sum())
+        if new and whether:
+            return new
         where = self._under(samples, x, y)
         told = (samples.weight.sum(1) == 1) & (samples.slack == 0) & ((ranges[:, 0] > 0) | (ranges[:, 1] <= 0))
         left = samples.weight[told].argmax(1)  # of a field of several squares all others may lie under loads

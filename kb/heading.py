@@ -134,10 +134,9 @@ def contradictions(lattice: Lattice, looks: Sequence[Look], unsettled: Sequence[
     those on an unsettled part of the table with nothing.
     """
     samples = lattice.samples()
-    corners = np.floor([lattice.place_from_utak(*look.place) for look in looks]).astype(np.int64)
     ranges = np.stack([look.ranges for look in looks])
     apart = [(*lattice.place_from_utak(*disc.middle), disc.reach) for disc in unsettled]
-    return contradicting(*samples, corners, ranges, np.array(apart, np.float64).reshape(-1, 3))
+    return contradicting(*samples, fallen(lattice, looks), ranges, np.array(apart, np.float64).reshape(-1, 3))
 
 
 def standing(
@@ -176,7 +175,9 @@ def anywhere(angles: Iterable[int]) -> tuple[Hypothesis, ...]:
 
 def fallen(lattice: Lattice, looks: Sequence[Look]) -> NDArray[np.int64]:
     """(looks, 2): the squares of the lattice on which looks were received."""
-    return np.floor([lattice.place_from_utak(*look.place) for look in looks]).astype(np.int64)
+    east, north = np.array([look.place for look in looks]).reshape(-1, 2).T
+    squares: NDArray[np.int64] = np.floor(np.stack(lattice.places_from_utak(east, north), 1)).astype(np.int64)
+    return squares
 
 
 def within(lattice: Lattice, looks: Sequence[Look]) -> Box:

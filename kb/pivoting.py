@@ -7,6 +7,7 @@ was stopped tells of two things at once, of how far it went and of what it was a
 import itertools
 import math
 from collections.abc import Sequence
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from kb.hauling import length_of, part_way
 from kb.heading import Box, Hypothesis, cells, exactly, points
 from kb.lattice import Lattice
 from kb.supposing import Place, Supposed, Surprise
+from kb.suspecting import near
 
 COARSE = 0.5  # squares that a thing goes in parts of a turn that are tried first
 CUTS = 4  # parts of either side of his square that are tried first
@@ -57,7 +59,7 @@ def pivoted(surprise: Surprise, simple: bool) -> Supposed | None:
     """
     where = _points(surprise)
     far = math.hypot(*cells(where)) / 2
-    tried = (surprise.tried(point.lattice, (point,), far=far) for point in where)
+    tried = (surprise.tried(point.lattice, (point,), far=far, whether=True) for point in where)
     fitting = [one for one in tried if not one.misfits]
     if not fitting and not (simple and len(surprise.hypotheses) == 1):
         fitting = _halted(surprise, _room(where))
@@ -94,7 +96,7 @@ def _ended(surprise: Surprise, part: Part, length: float) -> Supposed:
     lattice = Lattice(surprise.lattice.angle, part.woke)
     place, polygon, motion = surprise.begun(lattice)
     outcome = part_way(place, polygon, motion, sum(part.turn) / 2)
-    return surprise.judged(lattice, (exactly(lattice),), outcome, _slack(part, length), part.far)
+    return surprise.judged(lattice, (exactly(lattice),), outcome, _slack(part, length), part.far, whether=True)
 
 
 def _stoppable(surprise: Surprise, fitting: Sequence[tuple[Part, Supposed]], length: float) -> list[Supposed]:
@@ -102,13 +104,13 @@ def _stoppable(surprise: Surprise, fitting: Sequence[tuple[Part, Supposed]], len
 
     All, when nothing is known that may have stopped any.
     """
-    stopped = []
+    stopped, stops = [], cache(lambda lattice: surprise.hindrances.stops(*surprise.begun(lattice)))
     for part, one in fitting:
         place, polygon, motion = surprise.begun(one.lattice)
-        stop = surprise.hindrances.near(place, polygon, motion, sum(part.turn) / 2)
+        stop = near(stops(one.lattice), place, polygon, motion, sum(part.turn) / 2)
         if stop is not None:
             there = part_way(place, polygon, motion, stop.part, stop.against)
-            judged = surprise.judged(one.lattice, one.hypotheses, there, _slack(part, length), part.far)
+            judged = surprise.judged(one.lattice, one.hypotheses, there, _slack(part, length), part.far, whether=True)
             if not judged.misfits:
                 stopped.append((stop.chance, judged))
     best = max((chance for chance, _ in stopped), default=0.0)

@@ -124,7 +124,9 @@ def _otherwise(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
         ahead = way.ahead(end, under.evidence, _stood(under, anew.looks, motion, lattice))
         if ahead == FREE:
             continue
-        supposed = replace(anew, evidence=under.evidence, loads=under.loads).tried(lattice, surprise.hypotheses)
+        supposed = replace(anew, evidence=under.evidence, loads=under.loads).tried(
+            lattice, surprise.hypotheses, whether=True
+        )
         if not supposed.misfits:
             yield Recalled(Retold(exactly(lattice), correction, ahead == FULL, 0), supposed)
 
@@ -141,7 +143,7 @@ def _elsewhere(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
         under = relaid(surprise.lattice, surprise.lattice, anew.looks, anew.loads.values(), first)
         anew = replace(anew, evidence=under.evidence, loads=under.loads)
         for lattice in candidates(left, surprise.lattice)[:FEW]:
-            supposed = anew.tried(lattice, left)
+            supposed = anew.tried(lattice, left, whether=True)
             if supposed.misfits:
                 continue
             under = anew.laid(lattice)

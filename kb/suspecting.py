@@ -50,13 +50,13 @@ class Hindrances:
         self, evidence: Evidence, place: Place, polygon: Any, motion: Motion, pictures: Pictures | None = None
     ) -> None:
         known, self._squares = (_there(evidence, place, polygon, motion, state) for state in (FULL, OPEN))
-        self.walls = Obstacles([box_of(square) for square in known])
+        self.walls = _obstacles(tuple(known))
         self._outlook = Outlook(evidence, pictures)
 
     @cached_property
     def _open(self) -> list[tuple[Square, Obstacles]]:
         """Each open square as an obstacle of its own."""
-        return [(square, _obstacle(square)) for square in self._squares]
+        return [(square, _obstacles((square,))) for square in self._squares]
 
     def stops(self, place: Place, polygon: Any, motion: Motion) -> list[Stop]:
         """Where the motion may have been stopped, in its order, and what speaks for each.
@@ -81,11 +81,12 @@ class Hindrances:
         """What the stops would have led to, the likeliest first."""
         return led_to(self.stops(place, polygon, motion), place, polygon, motion)
 
-    def near(self, place: Place, polygon: Any, motion: Motion, part: float) -> Stop | None:
-        """The likeliest stop about where a motion seems to have ended; None when there is nothing near."""
-        far = NEARLY / length_of(place, polygon, motion)
-        about = [stop for stop in self.stops(place, polygon, motion) if abs(stop.part - part) < far]
-        return max(about, key=lambda stop: stop.chance, default=None)
+
+def near(stops: Iterable[Stop], place: Place, polygon: Any, motion: Motion, part: float) -> Stop | None:
+    """The likeliest of some stops about where a motion seems to have ended; None when there is nothing near."""
+    far = NEARLY / length_of(place, polygon, motion)
+    about = [stop for stop in stops if abs(stop.part - part) < far]
+    return max(about, key=lambda stop: stop.chance, default=None)
 
 
 def led_to(stops: Iterable[Stop], place: Place, polygon: Any, motion: Motion) -> list[Outcome]:
@@ -135,10 +136,10 @@ def _reachable(squares: Sequence[Square], place: Place, polygon: Any, motion: Mo
     return list(map(bool, reached))
 
 
-@lru_cache(maxsize=4096)
-def _obstacle(square: Square) -> Obstacles:
-    """A square of the lattice as an obstacle."""
-    return Obstacles([box_of(square)])
+@lru_cache(maxsize=512)
+def _obstacles(squares: tuple[Square, ...]) -> Obstacles:
+    """Squares of the lattice as obstacles; kept, for one lattice after another asks for the same ones."""
+    return Obstacles([box_of(square) for square in squares])
 
 
 def _there(evidence: Evidence, place: Place, polygon: Any, motion: Motion, state: int) -> list[Square]:
