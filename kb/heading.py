@@ -133,10 +133,21 @@ def contradictions(lattice: Lattice, looks: Sequence[Look], unsettled: Sequence[
     Squares under fields that are quite full or quite empty are compared with each other, and other fields with them;
     those on an unsettled part of the table with nothing.
     """
-    samples = lattice.samples()
-    ranges = np.stack([look.ranges for look in looks])
+    return clashing(lattice, fallen(lattice, looks), stacked(looks), unsettled)
+
+
+def stacked(looks: Sequence[Look]) -> NDArray[np.int16]:
+    """(looks, 160, 2): the count ranges of some looks."""
+    return np.stack([look.ranges for look in looks])
+
+
+def clashing(
+    lattice: Lattice, squares: NDArray[np.int64], ranges: NDArray[np.int16], unsettled: Sequence[Disc] = ()
+) -> int:
+    """The same of looks with these count ranges, (looks, 160, 2), that were received on these squares, (looks, 2)."""
     apart = [(*lattice.place_from_utak(*disc.middle), disc.reach) for disc in unsettled]
-    return contradicting(*samples, fallen(lattice, looks), ranges, np.array(apart, np.float64).reshape(-1, 3))
+    discs = np.array(apart, np.float64).reshape(-1, 3)
+    return contradicting(*lattice.samples(), np.ascontiguousarray(squares), np.ascontiguousarray(ranges), discs)
 
 
 def standing(
@@ -175,8 +186,13 @@ def anywhere(angles: Iterable[int]) -> tuple[Hypothesis, ...]:
 
 def fallen(lattice: Lattice, looks: Sequence[Look]) -> NDArray[np.int64]:
     """(looks, 2): the squares of the lattice on which looks were received."""
-    east, north = np.array([look.place for look in looks]).reshape(-1, 2).T
-    squares: NDArray[np.int64] = np.floor(np.stack(lattice.places_from_utak(east, north), 1)).astype(np.int64)
+    return squares_of(lattice, np.array([look.place for look in looks]).reshape(-1, 2))
+
+
+def squares_of(lattice: Lattice, places: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(n, 2): the squares of the lattice in which places (n, 2) of his own frame lie."""
+    x, y = lattice.places_from_utak(places[:, 0], places[:, 1])
+    squares: NDArray[np.int64] = np.floor(np.stack((x, y), 1)).astype(np.int64)
     return squares
 
 

@@ -21,6 +21,8 @@ from kb.suspecting import near
 
 COARSE = 0.5  # squares that a thing goes in parts of a turn that are tried first
 CUTS = 4  # parts of either side of his square that are tried first
+EIGHTS = (2, 2, 2)  # into which a part is cut
+MOST_PARTS = 2048  # that are tried at once: about a second of work
 FINER = 2  # times that parts are cut in half
 UNLIKELIER = 10  # times that what may have stopped a thing is less likely than what is likeliest, at most
 Span = tuple[float, float]
@@ -75,7 +77,8 @@ def _points(surprise: Surprise) -> tuple[Hypothesis, ...]:
 def _halted(surprise: Surprise, room: Box) -> list[Supposed]:
     """What fits, if a turn of what is in his hand ended early; nothing, if there was none.
 
-    Parts of his square, and of the turn, are cut smaller as long as nothing contradicts them.
+    Parts of his square, and of the turn, are cut smaller as long as nothing contradicts them, and they are not too
+    many; larger ones leave more room for where the thing lies.
     """
     if surprise.degrees == 0.0:
         return []
@@ -83,8 +86,10 @@ def _halted(surprise: Surprise, room: Box) -> list[Supposed]:
     length, (west, south, east, north) = length_of(place, polygon, motion), room
     parts = Part((0.0, 1.0), (west, east), (south, north)).cut(math.ceil(length / COARSE), CUTS, CUTS)
     for number in range(FINER + 1):
+        if number and len(parts) * math.prod(EIGHTS) > MOST_PARTS:
+            break
         if number:
-            parts = [cut for part in parts for cut in part.cut(2, 2, 2)]
+            parts = [cut for part in parts for cut in part.cut(*EIGHTS)]
         tried = [(part, _ended(surprise, part, length)) for part in parts]
         fitting = [(part, one) for part, one in tried if not one.misfits]
         parts = [part for part, _ in fitting]

@@ -12,9 +12,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from geometry.rigid import Translate
 from kb.evidence import FREE, FULL, OPEN, Evidence
-from kb.heading import MEMORY, Disc, Hypothesis, Laid, Look, contradictions, fallen
+from kb.heading import MEMORY, Disc, Hypothesis, Laid, Look, clashing, fallen, squares_of, stacked
 from kb.lattice import Lattice
 from kb.loads import Load, Square
 from kb.relaying import Prefixes, Relaid, Replay, relaid
@@ -229,17 +232,24 @@ def _otherwise(motion: Moved, hypothesis: Hypothesis, looks: Sequence[Look], beg
     lattice, number = hypothesis.lattice, motion.number
     believed, walk = looks[number].place, Walk(motion, lattice, looks)
     judged: dict[bytes, Relaid | None] = {}
+    ranges, places = stacked(looks), np.array([look.place for look in looks])
     for end in walk.ends:
         shift = end.place[0] - believed[0], end.place[1] - believed[1]
         if math.hypot(*shift) < HAIR:  # as is believed
             continue
         correction = Correction(number, shift)
-        *before, newest = correction.looks(looks)
-        for place in _seen_from(newest.place, lattice) if number < len(looks) - 1 else [newest.place]:
-            there = [*before, newest._replace(place=place)]
-            key = fallen(lattice, there).tobytes()
+        newest = correction.place(looks[-1].place)
+        there = places.copy()
+        there[number:] += shift
+        for place in _seen_from(newest, lattice) if number < len(looks) - 1 else [newest]:
+            there[-1] = place
+            squares = squares_of(lattice, there)
+            key = squares.tobytes()
             if key not in judged:
-                judged[key] = agreed(lattice, there, begun=lambda: begun.of(number))
+                judged[key] = None
+                if _agree(lattice, squares, ranges):
+                    *before, last = correction.looks(looks)
+                    judged[key] = relaid(lattice, lattice, [*before, last._replace(place=place)], (), begun.of(number))
             under = judged[key]
             if under is not None and (ahead := walk.ahead(end, under.evidence)) != FREE:
                 yield Retold(hypothesis, correction, ahead == FULL, under.misfits, place)
@@ -281,12 +291,24 @@ def agreed(
 
     unsettled : where looks need not agree. recent : how many of them are compared. begun : the first, taken in already.
     """
-    compared = looks[-recent:]
-    apart = len(compared) // FEW
-    if apart > 1 and contradictions(lattice, compared[::-apart], unsettled):  # the newest one among them
+    if not _agree(lattice, fallen(lattice, looks), stacked(looks), unsettled, recent):
         return None
-    stands = not contradictions(lattice, compared, unsettled)
-    return relaid(lattice, lattice, looks, loads, begun and begun()) if stands else None
+    return relaid(lattice, lattice, looks, loads, begun and begun())
+
+
+def _agree(
+    lattice: Lattice,
+    squares: NDArray[np.int64],
+    ranges: NDArray[np.int16],
+    unsettled: Sequence[Disc] = (),
+    recent: int = MEMORY + 1,
+) -> bool:
+    """Does none of the last looks contradict another? squares, ranges : of all looks, as for kb.heading.clashing."""
+    squares, ranges = squares[-recent:], ranges[-recent:]
+    apart = len(squares) // FEW
+    if apart > 1 and clashing(lattice, squares[::-apart], ranges[::-apart], unsettled):  # the newest one among them
+        return False
+    return not clashing(lattice, squares, ranges, unsettled)
 
 
 class End(NamedTuple):
