@@ -19,6 +19,7 @@ from geometry.distance import Bools
 PASSABLE = ".GS"
 KNOWN = PASSABLE + "@OTW"
 HEAD = ("type", "height", "width")
+NO_HEAD = "this is no line of a head ('type W', 'height N', 'width N'), and 'map' is missing before it"
 DIGITS = 9  # of a number in the head, at most: no file has room for more rows or squares in one
 WORD = re.compile(r"[^ \t]+")
 
@@ -45,9 +46,12 @@ class Trip(NamedTuple):
 def read_map(path: str | Path) -> Bools:
     """(rows, columns) bool: where one may be.
 
-    Raises MapError when the file is no such map, and OSError when it cannot be read.
+    Raises ValueError when the file is no such map; the message has file and line. OSError when it cannot be read.
     """
-    return parse_map(Path(path).read_bytes())
+    try:
+        return parse_map(Path(path).read_bytes())
+    except MapError as error:
+        raise ValueError(f"{path}:{error.line}: error: {error.what}") from None
 
 
 def parse_map(raw: bytes) -> Bools:
@@ -85,7 +89,7 @@ def _head(lines: list[str]) -> tuple[int, int, int]:
             return number, found["height"], found["width"]
         if not words or words[0].group() not in HEAD:
             at = words[0].start() + 1 if words else 1
-            raise MapError(number, at, "a line 'type W', 'height N', 'width N' or 'map' was expected", len(line))
+            raise MapError(number, at, NO_HEAD, len(line))
         name = words[0].group()
         if name in found:
             raise MapError(number, words[0].start() + 1, f"{name} is given twice", words[0].end())

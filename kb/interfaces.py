@@ -61,6 +61,7 @@ REACHED: Mapping[str, Interface] = {
     "rooms": {
         ("neck", 5): (NECK, AMOUNT, AMOUNT, AMOUNT, CONFIDENCE),
         ("door", 2): (NECK, CONFIDENCE),
+        ("opening", 1): (NECK,),
     },
     "corners": {
         ("convex", 3): (CONVEX, LENGTH, LENGTH),

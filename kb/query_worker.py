@@ -16,6 +16,7 @@ from kb import machine
 from kb.clauses import Clause, ClauseError, clauses_of, global_variables
 from kb.deriving import derive
 from kb.inference import Bindings, bindings
+from kb.naming import with_org
 from kb.open_world import Beliefs, Row
 from kb.ordering import unsafe
 from kb.problems import did_you_mean
@@ -56,7 +57,7 @@ def answer(
     facts : of each the name and the arguments, integers or terms as text. rules : plain rules of a user, which define
     predicates that can be asked for, too. most : how many rows are kept.
     """
-    clauses = clauses_of(_rule(query))
+    clauses = [with_org(clause) for clause in clauses_of(_rule(query))]
     beliefs = Beliefs(_facts(facts))
     names = stated_names(beliefs.signatures())
     defining = _defining(rules)

@@ -11,7 +11,6 @@ from kb.problems import BadInputError, CannotOpenError, did_you_mean
 from kb.query import VOCABULARY, QueryEngine, QueryLimitError
 from simulator.commands.run import describe
 from simulator.interrupts import deferred
-from simulator.naming import with_utak
 from simulator.story import Story
 from simulator.terminal import StreamError, shown
 
@@ -76,7 +75,7 @@ class Prompt:
         self._write(text)
 
     def _ask(self, rest: str) -> None:
-        self._say(str(self._engine.ask(self._story.facts, with_utak(rest))))
+        self._say(str(self._engine.ask(self._story.facts, rest)))
 
     def _facts(self, rest: str) -> None:
         word = rest.removesuffix(".")

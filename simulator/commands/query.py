@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 from simulator import exits
 from simulator.commands.run import add_settings, settings_of
-from simulator.naming import with_utak
 from simulator.numbers import whole
 from simulator.printing import as_json
 from simulator.untrusted import refuse_links
@@ -40,7 +39,7 @@ def execute(options: argparse.Namespace) -> int:
     step = story.line["step"]
     try:
         with QueryEngine(rules=options.kb) as engine:
-            answer = engine.ask(story.facts, with_utak(options.query), options.limit or MOST_ROWS)
+            answer = engine.ask(story.facts, options.query, options.limit or MOST_ROWS)
     except QueryLimitError as limit:
         print(f"utak: {limit}", file=sys.stderr)
         return exits.LIMIT

@@ -30,9 +30,9 @@ REFUSED = {
     "two numbers": (GOOD.replace("height 5", "height 5 5"), (2, 10), "one word was expected after height, not 2"),
     "height twice": (GOOD.replace("type octile", "height 5"), (2, 1), "height is given twice"),
     "no width": (GOOD.replace("width 6\n", ""), (3, 1), "'width N' is missing"),
-    "no map": (GOOD.replace("map\n", ""), (4, 1), "'map' was expected"),
-    "a blank line in the head": (GOOD.replace("map\n", "\nmap\n"), (4, 1), "'map' was expected"),
-    "nothing at all": ("", (1, 1), "'map' was expected"),
+    "no map": (GOOD.replace("map\n", ""), (4, 1), "'map' is missing"),
+    "a blank line in the head": (GOOD.replace("map\n", "\nmap\n"), (4, 1), "'map' is missing"),
+    "nothing at all": ("", (1, 1), "'map' is missing"),
     "a head alone": ("height 5\nwidth 6", (2, 1), "'map' is missing"),
     "surplus rows": (GOOD + "@@@@@@\n", (10, 1), "the map has more than 5 rows"),
     "surplus rows after a blank one": (GOOD + "\n@@@@@@\n", (11, 1), "the map has more than 5 rows"),
@@ -43,7 +43,7 @@ REFUSED = {
     "a blank amid a row": (GOOD.replace("@.TW.@", "@. W.@"), (7, 3), "unknown square ' '"),
     "a form feed": (GOOD.replace("@.TW.@", "@.\fW.@"), (7, 3), "unknown square"),
     "an unknown square": (GOOD.replace("@.TW.@", "@.TX.@"), (7, 4), "unknown square 'X'"),
-    "a byte order mark": ("\ufeff" + GOOD, (1, 1), "was expected"),
+    "a byte order mark": ("\ufeff" + GOOD, (1, 1), "no line of a head"),
 }
 
 

@@ -71,6 +71,38 @@ def test_what_is_unseen_leaves_doubts(engine: QueryEngine, query: str) -> None:
     assert engine.ask([*FACTS, "unseen(r1,0)."], query).kind != "don't know"
 
 
+UTAK = ["node(org).", "kind(org,utak,100).", "in(org,r1).", "kind(o1,object,90)."]
+CALLED = {
+    "in(utak, R)": (("r1",),),
+    "in(X, r1), X = utak": (("org",),),
+    "X = utak, node(X)": (("org",),),
+    'X = "utak"': (('"utak"',),),
+    "kind(utak, K, C)": (("utak", 100),),
+    "kind(X, utak, C)": (("org", 100),),
+    "kind(X, K, C), K != utak": (("o1", "object", 90),),
+    "N = #count{X : kind(X, K, C), K = utak, X = utak}": ((1,),),
+}
+
+
+@pytest.mark.parametrize("query", CALLED)
+def test_the_robot_is_called_utak_where_no_kind_stands(engine: QueryEngine, query: str) -> None:
+    assert engine.ask(UTAK, query).rows == CALLED[query]
+
+
+MISCALLED = {
+    "node(utak), nod(utak)": "query:1:13-13: error: unknown predicate nod/1",
+    "colour(utak, 3, X)": "query:1:14-14: error: a colour is a single lower-case letter, not 3",
+    "utak(X)": "query:1:1-1: error: unknown predicate utak/1",
+}
+
+
+@pytest.mark.parametrize("query", MISCALLED)
+def test_errors_stand_where_the_user_wrote_them(engine: QueryEngine, query: str) -> None:
+    with pytest.raises(BadInputError) as caught:
+        engine.ask(UTAK, query)
+    assert str(caught.value).startswith(MISCALLED[query]) and f"\n  {query}\n" in str(caught.value)
+
+
 BAD = {
     "offset(o1, 4294967546, 50)": "query:1:12-21: error: a number beyond 32 bits",
     "X = 3000000000": "query:1:5-14: error: a number beyond 32 bits",
