@@ -7,6 +7,7 @@
 # grid line add nothing beyond it, as the definition wants.
 """
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -14,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
+from geometry.compiled import compiled
 from geometry.rigid import Motion
 
 Floats = npt.NDArray[np.float64]
@@ -71,21 +73,9 @@ def areas(shape: Any, width: int, height: int) -> Floats:
 
 def _areas(edges: Floats, width: int, height: int) -> Floats:
     """The area to the left of closed rings of edges, (n, 4), in every square."""
-    sums = np.zeros((height, width + 1))
-    pieces = _cut(edges, height)
-    x0, y0, x1, y1 = pieces[:, 0], pieces[:, 1], pieces[:, 2], pieces[:, 3]
-    row = np.floor((y0 + y1) / 2).astype(np.intp)
-    middle = (x0 + x1) / 2
-    column = np.floor(middle).astype(np.intp)
-    seen = (row >= 0) & (row < height) & (column < width)
-    row, column, middle, rise = row[seen], column[seen], middle[seen], (y0 - y1)[seen]
-    share = np.where(column < 0, 1.0, 1.0 - (middle - column))
-    column = np.maximum(column, 0)
-    flat = row * (width + 1) + column
-    size = sums.size
-    own = np.bincount(flat, rise * share, size) + np.bincount(flat + 1, rise * (1.0 - share), size)
-    sums += own.reshape(sums.shape)
-    return np.cumsum(sums, axis=1)[:, :width]
+    sums = np.zeros((2, height, width + 2))
+    _accumulate(edges, sums)
+    return np.cumsum(sums[0] + sums[1], axis=1)[:, :width]
 
 
 def _edges(shape: Any) -> Floats:
@@ -99,33 +89,49 @@ def _edges(shape: Any) -> Floats:
     return np.concatenate([np.hstack([ring[:-1], ring[1:]]) for ring in rings])
 
 
-def _cut(edges: Floats, height: int) -> Floats:
-    """Cut edges at every grid line: first at the rows of the table, then at all columns."""
-    rising = edges[edges[:, 1] != edges[:, 3]]
-    reach = np.clip(rising[:, [1, 3]], -1, height + 1)
-    rising = rising[(reach[:, 0] > 0) | (reach[:, 1] > 0)]
-    return _cut_along(_cut_along(rising, 1), 0)
+@compiled
+def _accumulate(edges: Floats, sums: Floats) -> None:
+    """Add up what every edge covers in its own squares (sums[0]) and hands on to the next ones (sums[1]), row by row.
+
+    Each edge is cut at all grid lines that lie strictly between its ends; sums is (2, rows, columns + 2).
+    """
+    height, width = sums.shape[1], sums.shape[2] - 2
+    for n in range(len(edges)):
+        x0, y0, x1, y1 = edges[n, 0], edges[n, 1], edges[n, 2], edges[n, 3]
+        if y0 == y1 or max(y0, y1) <= 0 or min(y0, y1) >= height:
+            continue
+        rows = max(math.ceil(max(y0, y1)) - math.floor(min(y0, y1)) - 1, 0)
+        for i in range(rows + 1):
+            ax, ay = _cut_at(x0, y0, x1, y1, y0, y1, i, rows)
+            bx, by = _cut_at(x0, y0, x1, y1, y0, y1, i + 1, rows)
+            row = math.floor((ay + by) / 2)
+            if row < 0 or row >= height:
+                continue
+            columns = 0 if ax == bx else max(math.ceil(max(ax, bx)) - math.floor(min(ax, bx)) - 1, 0)
+            for k in range(columns + 1):
+                cx, cy = _cut_at(ax, ay, bx, by, ax, bx, k, columns)
+                dx, dy = _cut_at(ax, ay, bx, by, ax, bx, k + 1, columns)
+                middle = (cx + dx) / 2
+                column = math.floor(middle)
+                if column < width:
+                    share = 1.0 if column < 0 else 1.0 - (middle - column)
+                    column = max(column, 0)
+                    sums[0, row, column] += (cy - dy) * share
+                    sums[1, row, column + 1] += (cy - dy) * (1.0 - share)
 
 
-def _cut_along(edges: Floats, axis: int) -> Floats:
-    """Cut every edge at the whole values of one coordinate that lie strictly between its ends."""
-    start, stop = edges[:, axis], edges[:, axis + 2]
-    low, high = np.minimum(start, stop), np.maximum(start, stop)
-    first = np.floor(low) + 1
-    count = np.maximum(np.ceil(high) - first, 0).astype(np.intp)  # grid lines inside
-    parts = count + 1
-    edge = np.repeat(np.arange(len(edges)), parts)
-    nth = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
-    lines = np.where(stop > start, 0.0, 1.0)[edge]
-    k = np.where(lines == 0.0, first[edge] + nth - 1, first[edge] + count[edge] - nth)
-    span = (stop - start)[edge]
-    step = np.where(lines == 0.0, 1.0, -1.0)
-    before = np.divide(k - start[edge], span, out=np.zeros(len(edge)), where=nth > 0)
-    after = np.divide(k + step - start[edge], span, out=np.ones(len(edge)), where=nth < count[edge])
-    return np.hstack([_point(edges, edge, before), _point(edges, edge, after)])
+@compiled
+def _cut_at(
+    x0: float, y0: float, x1: float, y1: float, start: float, stop: float, number: int, lines: int
+) -> tuple[float, float]:
+    """Where an edge is cut for the `number`th time, in its order, of so many grid lines that it crosses; its ends, too.
 
-
-def _point(edges: Floats, edge: npt.NDArray[np.intp], t: Floats) -> Floats:
-    """The points at parameters t on the given edges, ends exact."""
-    here, there = edges[edge, :2], edges[edge, 2:]
-    return np.where(t[:, None] == 1.0, there, here + t[:, None] * (there - here))
+    start, stop : the coordinate at its ends that grows or falls from line to line.
+    """
+    if number == 0:
+        return x0, y0
+    if number > lines:
+        return x1, y1
+    line = math.floor(start) + number if stop > start else math.ceil(start) - number
+    part = (line - start) / (stop - start)
+    return x0 + part * (x1 - x0), y0 + part * (y1 - y0)

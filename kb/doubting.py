@@ -48,7 +48,7 @@ def _otherwise_turned(surprise: Surprise) -> Supposed | None:
     angle = surprise.lattice.angle
     others = [other for other in surprise.hypotheses if other.is_centred and other.angle != angle]
     left = search(surprise.recent, others, surprise.unsettled)
-    tried = (surprise.tried(lattice, left) for lattice in candidates(left, surprise.lattice)[:FEW])
+    tried = (surprise.tried(lattice, left, whether=True) for lattice in candidates(left, surprise.lattice)[:FEW])
     return next((one for one in tried if not one.misfits), None)
 
 
@@ -109,7 +109,7 @@ def _cut_short(surprise: Surprise, few: int) -> Supposed | None:
         return None
     lattices = candidates(surprise.before, surprise.lattice)[:few]
     for cut_short in (False, True):
-        tried = [surprise.tried(lattice, surprise.before, cut_short=cut_short) for lattice in lattices]
+        tried = [surprise.tried(lattice, surprise.before, cut_short=cut_short, whether=True) for lattice in lattices]
         fitting = sorted((one for one in tried if not one.misfits), key=lambda one: one.lattice.angle)
         if fitting:
             return fitting[(len(fitting) - 1) // 2]
@@ -158,6 +158,6 @@ def _halts(surprise: Surprise, lattice: Lattice) -> Iterator[tuple[Supposed, flo
     for stop in likeliest(hindrances.stops(place, polygon, motion)):
         end = part_way(place, polygon, motion, stop.part, stop.against)
         for view in views(end.place):
-            supposed = surprise.judged(lattice, held, end._replace(place=view))
+            supposed = surprise.judged(lattice, held, end._replace(place=view), whether=True)
             if not supposed.misfits:
                 yield supposed, stop.chance

@@ -5,7 +5,6 @@ shows how far it went on: floor is seen where wall seemed to be.
 """
 
 from collections.abc import Iterator
-from copy import deepcopy
 from dataclasses import replace
 
 import shapely
@@ -34,7 +33,7 @@ def larger(surprise: Surprise, load: Load, motion: Motion) -> Iterator[Explanati
             if any(evidence.state[evidence.index(*square)] == FREE for square in hidden):
                 continue
             outcome = predicted(surprise.place, whole.polygon, motion)._replace(how="larger")
-            patch, floor = patch_of_squares(hidden), deepcopy(evidence)
+            patch, floor = patch_of_squares(hidden), evidence.copy()
             floor.declare(floor.squares(patch.west, patch.south, patch.mask), FREE, len(surprise.looks) - 1)
             loads = [*others, whole.moved(outcome.polygon, whole.slack, commanded=True)]
             if not clashes(surprise.lattice, floor, loads, outcome.place, surprise.ranges):

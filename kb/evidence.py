@@ -18,18 +18,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.settling import FREE, FULL, OPEN, misfits, residue, settle
 from geometry.sketch import Counts
 from kb.lattice import MOST, Samples
+from kb.odds import Fields, Forgotten, Grown, Logits, Odds
 
-OPEN, FREE, FULL = -1, 0, 1
+__all__ = ["FREE", "FULL", "OPEN"]
 SIGHT = 24  # squares that can be seen from a place, at any angle
 MARGIN = 40  # squares by which the map grows beyond what is needed
-FITTING_ROUNDS = 6
-STRAY = 0.05  # occupied squares expected under a field that shows level 0 and yet may hide one
-LARGEST_LOGIT = 6.0
 
 Squares = NDArray[np.int32]
-Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 Told = tuple[int | bytes, ...]
 
@@ -85,8 +83,6 @@ class Evidence:
     ----------
     state : (rows, columns) int8
         OPEN (-1), FREE (0) or FULL (1): what the counts settle.
-    logit : (rows, columns) float32
-        Log odds that an open square is occupied; 0 where nothing was seen.
     seen : (rows, columns) bool
         Squares that were ever under the retina.
     settled_by : (rows, columns) int16
@@ -97,15 +93,28 @@ class Evidence:
         self.west = self.south = -MARGIN
         shape = (2 * MARGIN, 2 * MARGIN)
         self.state = np.full(shape, OPEN, np.int8)
-        self.logit = np.zeros(shape, np.float32)
+        self._odds = Odds(np.zeros(shape, np.float32))
         self.seen = np.zeros(shape, np.bool_)
         self.settled_by = np.full(shape, -1, np.int16)
         self._where = np.zeros((0, MOST), np.int32)
         self._weight = np.zeros((0, MOST), np.int16)
         self._low = np.zeros(0, np.int16)
         self._high = np.zeros(0, np.int16)
+        self._fresh = np.zeros(0, np.bool_)
         self.overruled = 0
         self._looks: set[Told] = set()  # after which nothing was withdrawn
+
+    @property
+    def logit(self) -> Logits:
+        """(rows, columns): log odds that an open square is occupied; 0 where nothing was seen."""
+        return self._odds.logit
+
+    def copy(self) -> "Evidence":
+        """The same, to be told more."""
+        other = copy(self)
+        other.state, other.seen = self.state.copy(), self.seen.copy()
+        other.settled_by, other._looks, other._fresh = self.settled_by.copy(), self._looks.copy(), self._fresh.copy()
+        return other
 
     def view(self, places: Iterable[tuple[float, float]] = (), margin: int = 2) -> MapView:
         """The part of the map that was seen, and what lies in sight of some places, with `margin` squares around it."""
@@ -152,25 +161,24 @@ class Evidence:
         Fields that cannot show what they show if Utak stands on square (x, y) and all that is settled is right.
         """
         self.make_room(x, y)
-        where, weight = self._under(samples, x, y), samples.weight
-        state = self.state.ravel()[where]
-        full = np.where(state == FULL, weight, 0).sum(1)
-        possible = full + np.where(state == OPEN, weight, 0).sum(1)
-        impossible: Mask = (full > ranges[:, 1]) | (possible < ranges[:, 0] - samples.slack)
-        return impossible
+        low, wrong = ranges[:, 0] - samples.slack, np.zeros(len(ranges), np.bool_)
+        misfits(self.state.ravel(), self._under(samples, x, y), samples.weight, low, ranges[:, 1].copy(), wrong)
+        return wrong
 
-    def clashes(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> int:
-        """How many fields, of this look and of those before, cannot be right if it was received on square (x, y)."""
+    def clashes(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, whether: bool = False) -> int:
+        """How many fields, of this look and of those before, cannot be right if it was received on square (x, y).
+
+        whether : those before are not looked at if some of this look cannot.
+        """
         new = int(self.misfits(samples, ranges, x, y).sum())
+        if new and whether:
+            return new
         where = self._under(samples, x, y)
         told = (samples.weight.sum(1) == 1) & (samples.slack == 0) & ((ranges[:, 0] > 0) | (ranges[:, 1] <= 0))
         left = samples.weight[told].argmax(1)  # of a field of several squares all others may lie under loads
         state = self.state.ravel().copy()
         state[where[told, left]] = np.where(ranges[told, 0] > 0, FULL, FREE)
-        under = state[self._where]
-        full = np.where(under == FULL, self._weight, 0).sum(1)
-        possible = full + np.where(under == OPEN, self._weight, 0).sum(1)
-        return new + int(((full > self._high) | (possible < self._low)).sum())
+        return new + misfits(state, *self._fields, np.zeros(len(self._low), np.bool_))
 
     def look(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, number: int) -> None:
         """Take in one impression, received on square (x, y), as impression `number`.
@@ -191,8 +199,10 @@ class Evidence:
         self._weight = np.concatenate([self._weight, samples.weight])
         self._low = np.concatenate([self._low, np.maximum(ranges[:, 0] - samples.slack, 0)])
         self._high = np.concatenate([self._high, ranges[:, 1]])
-        self._settle(number)
-        self._fit()
+        self._fresh = np.concatenate([self._fresh, np.ones(len(where), np.bool_)])
+        settle(self.state.ravel(), self.settled_by.ravel(), *self._fields, self._fresh, number)
+        self._keep(self._informative())
+        self._odds = self._odds.after(Fields(self.state.copy().ravel(), *self._fields))
         self._looks.add(seen_here)
 
     def withdraw(self, squares: Squares) -> None:
@@ -201,7 +211,7 @@ class Evidence:
         doubtful = np.zeros(self.state.size, np.bool_)
         doubtful[squares] = True
         self.state.ravel()[squares] = OPEN
-        self.logit.ravel()[squares] = 0.0
+        self._odds = self._odds.after(Forgotten(squares))
         self.settled_by.ravel()[squares] = -1
         touched = doubtful[self._where] & (self._weight > 0)
         self._keep(np.logical_not(np.logical_or.reduce(touched, axis=1)))
@@ -214,6 +224,7 @@ class Evidence:
         row, column = self.index(x, y)
         if self.state[row, column] == OPEN:
             self.state[row, column], self.settled_by[row, column] = FREE, number
+            self._fresh[:] = True  # for what the fields that cover it tell now
         self.seen[row, column] = True
 
     def declare(self, mask: Mask, value: int, number: int) -> None:
@@ -245,83 +256,18 @@ class Evidence:
                 other.state[row, column] = FREE
         return other
 
-    def _settle(self, number: int) -> None:
-        for _ in range(20):
-            changed = self._settle_single(number)
-            if not changed and not self._settle_pairs(number):
-                break
-        self._keep(self._informative())
-
-    def _residue(self) -> tuple[Mask, NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-        """Of every field: its open entries, their weight, and the least and greatest count left for them."""
-        state = self.state.ravel()[self._where]
-        full = np.where(state == FULL, self._weight, 0).sum(1)
-        open_ = (state == OPEN) & (self._weight > 0)
-        weight = np.where(open_, self._weight, 0).sum(1)
-        return open_, weight, np.maximum(self._low - full, 0), np.minimum(self._high - full, weight)
-
-    def _settle_single(self, number: int) -> bool:
-        changed = False
-        while True:
-            open_, weight, low, high = self._residue()
-            free = open_ & (self._weight > high[:, None])
-            full = open_ & (self._weight > (weight - low)[:, None]) & ~free
-            if not self._assign(self._where[free], self._where[full], number):
-                return changed
-            changed = True
-
-    def _settle_pairs(self, number: int) -> bool:
-        """Settle what two fields do not share, from the difference of their counts."""
-        open_, weight, low, high = self._residue()
-        plain = (weight > 0) & (np.where(open_, self._weight, 0).max(1, initial=0) == 1)
-        a, b, shared = _overlaps(self._where, open_ & plain[:, None])
-        size, other = weight[a] - shared, weight[b] - shared
-        least = low[a] - np.minimum(high[b], shared)
-        most = high[a] - np.maximum(low[b] - other, 0)
-        empty = self._differences(open_, a, b, (size > 0) & (most <= 0))
-        filled = self._differences(open_, a, b, (size > 0) & (least >= size))
-        return self._assign(empty, np.setdiff1d(filled, empty), number)
-
-    def _differences(self, open_: Mask, a: Indices, b: Indices, chosen: Mask) -> Squares:
-        """The open squares of each chosen field a that the field b beside it lacks."""
-        found = [np.zeros(0, np.int32)]
-        for one, two in zip(a[chosen], b[chosen], strict=True):
-            found.append(np.setdiff1d(self._where[one][open_[one]], self._where[two][open_[two]]))
-        return np.unique(np.concatenate(found))
-
-    def _assign(self, free: Squares, full: Squares, number: int) -> bool:
-        for squares, value in ((free, FREE), (full, FULL)):
-            self.state.ravel()[squares] = value
-            self.settled_by.ravel()[squares] = number
-        return bool(len(free) or len(full))
-
-    def _fit(self) -> None:
-        """Iterative proportional fitting of the open squares' odds to the fields' mean counts."""
-        open_, weight, low, high = self._residue()
-        if not open_.any():
-            return
-        where, entry = self._where[open_], np.nonzero(open_)[0]
-        squares, column = np.unique(where, return_inverse=True)
-        times = np.maximum(np.bincount(column, minlength=len(squares)), 1)
-        logit = self.logit.ravel()[squares].astype(np.float64)
-        middle = 0.5 * (low + high).astype(np.float64)
-        middle = np.where((self._low == 0) & (self._high == 1), np.minimum(middle, STRAY), middle)
-        target = _logit(middle[entry] / np.maximum(weight, 1)[entry])
-        share = self._weight[open_] / np.maximum(weight, 1)[entry]
-        for _ in range(FITTING_ROUNDS):
-            p = 1.0 / (1.0 + np.exp(-logit))
-            mean = np.bincount(entry, p[column] * share, minlength=len(weight)).astype(np.float64)[entry]
-            logit += np.bincount(column, target - _logit(mean), minlength=len(squares)) / times
-            np.clip(logit, -LARGEST_LOGIT, LARGEST_LOGIT, out=logit)
-        self.logit.ravel()[squares] = logit
+    @property
+    def _fields(self) -> tuple[Squares, NDArray[np.int16], NDArray[np.int16], NDArray[np.int16]]:
+        """All fields that still tell something, as the kernels take them."""
+        return self._where, self._weight, self._low, self._high
 
     def _informative(self) -> Mask:
-        _, weight, low, high = self._residue()
+        _, weight, low, high = residue(self.state.ravel(), *self._fields)
         return (weight > 0) & ((low > 0) | (high < weight))
 
     def _keep(self, rows: Mask) -> None:
         self._where, self._weight = self._where[rows], self._weight[rows]
-        self._low, self._high = self._low[rows], self._high[rows]
+        self._low, self._high, self._fresh = self._low[rows], self._high[rows], self._fresh[rows]
 
     # -- room to grow ----------------------------------------------------------------------------
 
@@ -344,26 +290,11 @@ class Evidence:
         rows, columns = np.divmod(self._where, self.state.shape[1])
         widths = ((south, north), (west, east))
         self.state = np.pad(self.state, widths, constant_values=OPEN)
-        self.logit = np.pad(self.logit, widths)
+        self._odds = self._odds.after(Grown(widths))
         self.seen = np.pad(self.seen, widths)
         self.settled_by = np.pad(self.settled_by, widths, constant_values=-1)
         self.south, self.west = self.south - south, self.west - west
         self._where = ((rows + south) * self.state.shape[1] + columns + west).astype(np.int32)
-
-
-def _overlaps(where: Squares, open_: Mask) -> tuple[Indices, Indices, Indices]:
-    """Pairs of fields (a, b) that share open squares, both ways round, and how many they share."""
-    field, entry = np.nonzero(open_)
-    square = where[field, entry]
-    order = np.argsort(square, kind="stable")
-    field, square = field[order], square[order]
-    first = np.searchsorted(square, square, side="left")
-    count = np.searchsorted(square, square, side="right") - first
-    one = np.repeat(field, count)
-    within = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
-    two = field[np.repeat(first, count) + within]
-    pairs, shared = np.unique(one[one != two] * len(where) + two[one != two], return_counts=True)
-    return *np.divmod(pairs, max(len(where), 1)), shared
 
 
 def _fill_gaps(probability: NDArray[np.float32], seen: Mask) -> None:
@@ -378,9 +309,3 @@ def _fill_gaps(probability: NDArray[np.float32], seen: Mask) -> None:
     gaps = ~seen & (count >= 3)
     probability[gaps] = total[gaps] / count[gaps]
     seen |= gaps
-
-
-def _logit(p: NDArray[np.float64]) -> NDArray[np.float64]:
-    p = np.clip(p, 0.002, 0.998)
-    answer: NDArray[np.float64] = np.log(p / (1 - p))
-    return answer

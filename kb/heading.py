@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.contradicting import contradicting
 from kb.lattice import CENTRE, Lattice
 
 Box = tuple[float, float, float, float]  # west, south, east, north
@@ -132,40 +133,21 @@ def contradictions(lattice: Lattice, looks: Sequence[Look], unsettled: Sequence[
     Squares under fields that are quite full or quite empty are compared with each other, and other fields with them;
     those on an unsettled part of the table with nothing.
     """
-    samples = lattice.samples()
-    places = [lattice.place_from_utak(*look.place) for look in looks]
-    corners = np.floor(np.array(places)).astype(int)
-    low = corners.min(0) - 24
-    width, height = (corners.max(0) - low + 25).tolist()
-    free, full = np.zeros(width * height, bool), np.zeros(width * height, bool)
-    under = []
-    for look, (x, y) in zip(looks, corners - low, strict=True):
-        where = (samples.rows + y) * width + samples.columns + x
-        used, weight = samples.weight > 0, samples.weight.sum(1)
-        full[where[(look.ranges[:, 0] - samples.slack >= weight)[:, None] & used]] = True
-        free[where[(look.ranges[:, 1] == 0)[:, None] & used]] = True
-        under.append(where)
-    if unsettled:
-        apart = ~_within(unsettled, lattice, low, height, width)
-        free, full = free & apart, full & apart
-    wrong = int((free & full).sum())
-    for look, where in zip(looks, under, strict=True):
-        surely = (samples.weight * full[where]).sum(1)
-        possibly = samples.weight.sum(1) - (samples.weight * (free & ~full)[where]).sum(1)
-        wrong += int(((surely > look.ranges[:, 1]) | (possibly < look.ranges[:, 0] - samples.slack)).sum())
-    return wrong
+    return clashing(lattice, fallen(lattice, looks), stacked(looks), unsettled)
 
 
-def _within(
-    discs: Sequence[Disc], lattice: Lattice, low: NDArray[np.int64], height: int, width: int
-) -> NDArray[np.bool_]:
-    """(height * width,): the squares, from `low` on, whose middles lie on one of the discs."""
-    rows, columns = np.mgrid[:height, :width] + 0.5
-    found = np.zeros((height, width), np.bool_)
-    for disc in discs:
-        x, y = lattice.place_from_utak(*disc.middle)
-        found |= np.hypot(columns + low[0] - x, rows + low[1] - y) <= disc.reach
-    return found.ravel()
+def stacked(looks: Sequence[Look]) -> NDArray[np.int16]:
+    """(looks, 160, 2): the count ranges of some looks."""
+    return np.stack([look.ranges for look in looks])
+
+
+def clashing(
+    lattice: Lattice, squares: NDArray[np.int64], ranges: NDArray[np.int16], unsettled: Sequence[Disc] = ()
+) -> int:
+    """The same of looks with these count ranges, (looks, 160, 2), that were received on these squares, (looks, 2)."""
+    apart = [(*lattice.place_from_utak(*disc.middle), disc.reach) for disc in unsettled]
+    discs = np.array(apart, np.float64).reshape(-1, 3)
+    return contradicting(*lattice.samples(), np.ascontiguousarray(squares), np.ascontiguousarray(ranges), discs)
 
 
 def standing(
@@ -204,7 +186,14 @@ def anywhere(angles: Iterable[int]) -> tuple[Hypothesis, ...]:
 
 def fallen(lattice: Lattice, looks: Sequence[Look]) -> NDArray[np.int64]:
     """(looks, 2): the squares of the lattice on which looks were received."""
-    return np.floor([lattice.place_from_utak(*look.place) for look in looks]).astype(np.int64)
+    return squares_of(lattice, np.array([look.place for look in looks]).reshape(-1, 2))
+
+
+def squares_of(lattice: Lattice, places: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(n, 2): the squares of the lattice in which places (n, 2) of his own frame lie."""
+    x, y = lattice.places_from_utak(places[:, 0], places[:, 1])
+    squares: NDArray[np.int64] = np.floor(np.stack((x, y), 1)).astype(np.int64)
+    return squares
 
 
 def within(lattice: Lattice, looks: Sequence[Look]) -> Box:

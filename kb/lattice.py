@@ -14,7 +14,7 @@ in that square it lies he cannot feel; the centre is assumed as long as nothing 
 import math
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,8 @@ from numpy.typing import NDArray
 from kb.body import DIRECTIONS
 from kb.retina import FIELDS, OWN
 
+Floats = NDArray[np.float64]
+Coordinate = TypeVar("Coordinate", float, NDArray[np.float64])
 CENTRE = (0.5, 0.5)
 TIE = 1e-9  # an offset that falls this near to the middle between two squares may be sampled from either
 MOST = 16  # squares under the largest field
@@ -68,6 +70,11 @@ class Lattice:
         x, y = self.to_lattice(east, north)
         return x + self.woke[0], y + self.woke[1]
 
+    def places_from_utak(self, east: Floats, north: Floats) -> tuple[Floats, Floats]:
+        """Points of Utak's frame as points of the lattice."""
+        x, y = turned(east, north, self.angle)
+        return x + self.woke[0], y + self.woke[1]
+
     def beside(self, direction: str) -> tuple[int, int] | None:
         """The adjacent square, as (columns, rows), in one of the eight directions of Utak's frame.
 
@@ -96,8 +103,8 @@ def _nearest(offset: float) -> list[int]:
     return sorted({math.ceil(offset - 0.5 - TIE), math.floor(offset + 0.5 + TIE)})
 
 
-def turned(x: float, y: float, degrees: float) -> tuple[float, float]:
-    """A vector turned counter-clockwise; exact for quarter turns."""
+def turned(x: Coordinate, y: Coordinate, degrees: float) -> tuple[Coordinate, Coordinate]:
+    """A vector, or vectors, turned counter-clockwise; exact for quarter turns."""
     if degrees % 90 == 0:
         for _ in range(int(degrees // 90) % 4):
             x, y = -y, x

@@ -16,6 +16,7 @@ import shapely
 from numpy.typing import NDArray
 
 from geometry.digital import squares
+from geometry.uncovering import uncover
 from kb.insets import NONE, Insets, Sides, further, moved_in, told, turned, within_play
 from kb.lattice import Samples
 from kb.worldmodel import Patch
@@ -252,22 +253,9 @@ def discounted(
     ranges : (160, 2) least and greatest counts. A greatest count below 0 means that a load cannot be where it is
     believed to be.
     """
-    left = ranges.copy()
-    weight = samples.weight
+    left, weight = ranges.copy(), samples.weight.copy()
     for load in loads:
-        sure = _under(load.sure, samples, x, y) & (weight > 0)
-        possible = _under(load.possible, samples, x, y) & (weight > 0)
-        left[:, 0] -= np.where(possible, weight, 0).sum(1, dtype=np.int16)
-        left[:, 1] -= np.where(sure, weight, 0).sum(1, dtype=np.int16)
-        weight = np.where(possible, np.int16(0), weight)
+        possible, sure = load.possible, load.sure
+        here = x - possible.west, y - possible.south, x - sure.west, y - sure.south
+        uncover(samples.columns, samples.rows, weight, left, possible.mask, sure.mask, *here)
     return samples._replace(weight=weight), left
-
-
-def _under(patch: Patch, samples: Samples, x: int, y: int) -> Mask:
-    """(160, 16): which samples of a look from (x, y) fall on the squares of a patch."""
-    rows, columns = samples.rows + (y - patch.south), samples.columns + (x - patch.west)
-    height, width = patch.mask.shape
-    inside = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
-    found: Mask = np.zeros(rows.shape, np.bool_)
-    found[inside] = patch.mask[rows[inside], columns[inside]]
-    return found

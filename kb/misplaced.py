@@ -7,12 +7,13 @@ he looks at later, depends on where in his square he began.
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 
 from kb.explanation import Explanation, told_again
 from kb.heading import ELSEWHERE, Look, exactly, fallen
 from kb.lattice import CENTRE, Lattice
 from kb.plainness import Drawn, Sketch, plainness
-from kb.relaying import relaid
+from kb.relaying import Prefixes, relaid
 from kb.stops import Moved, Retold, retold
 
 LAST = 3  # motions one of which may have been stopped where nobody thought so
@@ -39,8 +40,9 @@ def misplaced(motions: Sequence[Moved], held: Lattice, looks: Sequence[Look]) ->
     """
     places = tuple(exactly(lattice) for lattice in lattices(held))
     alike: dict[tuple[int, bytes], list[Retold]] = {}
+    begun = cache(lambda lattice: Prefixes(lattice, looks, {}))
     for motion in motions[-LAST:]:
-        for told in retold(motion._replace(hypotheses=places), held, looks):
+        for told in retold(motion._replace(hypotheses=places), held, looks, begun):
             if not told.misfits:
                 key = motion.number, fallen(told.hypothesis.lattice, _received(told, looks)).tobytes()
                 alike.setdefault(key, []).append(told)

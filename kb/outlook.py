@@ -25,9 +25,15 @@ class Outlook:
     def __init__(self, evidence: Evidence, pictures: Pictures | None = None) -> None:
         self._evidence = evidence
         self._pictures = pictures
+        self._known: dict[Square, Floats] = {}
 
     def occupied(self, square: Square) -> Floats:
         """(m,): how likely a square is occupied, by each of the pictures; by counts as one."""
+        if square not in self._known:
+            self._known[square] = self._asked(square)
+        return self._known[square]
+
+    def _asked(self, square: Square) -> Floats:
         self._evidence.make_room(*square)
         index = self._evidence.index(*square)
         state = self._evidence.state[index]

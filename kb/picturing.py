@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from geometry.components import Components, boxes, components
 from geometry.sketch import DRAWN, FREE, FULL, UNSEEN, Counts, costs, pictures
-from kb.evidence import OPEN, STRAY, MapView
+from kb.evidence import OPEN, MapView
+from kb.odds import STRAY
 
 PICTURES = 12
 DRAWINGS = 2  # for each of them

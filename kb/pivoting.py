@@ -7,6 +7,7 @@ was stopped tells of two things at once, of how far it went and of what it was a
 import itertools
 import math
 from collections.abc import Sequence
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -16,9 +17,12 @@ from kb.hauling import length_of, part_way
 from kb.heading import Box, Hypothesis, cells, exactly, points
 from kb.lattice import Lattice
 from kb.supposing import Place, Supposed, Surprise
+from kb.suspecting import near
 
 COARSE = 0.5  # squares that a thing goes in parts of a turn that are tried first
 CUTS = 4  # parts of either side of his square that are tried first
+EIGHTS = (2, 2, 2)  # into which a part is cut
+MOST_PARTS = 2048  # that are tried at once: about a second of work
 FINER = 2  # times that parts are cut in half
 UNLIKELIER = 10  # times that what may have stopped a thing is less likely than what is likeliest, at most
 Span = tuple[float, float]
@@ -57,7 +61,7 @@ def pivoted(surprise: Surprise, simple: bool) -> Supposed | None:
     """
     where = _points(surprise)
     far = math.hypot(*cells(where)) / 2
-    tried = (surprise.tried(point.lattice, (point,), far=far) for point in where)
+    tried = (surprise.tried(point.lattice, (point,), far=far, whether=True) for point in where)
     fitting = [one for one in tried if not one.misfits]
     if not fitting and not (simple and len(surprise.hypotheses) == 1):
         fitting = _halted(surprise, _room(where))
@@ -73,7 +77,8 @@ def _points(surprise: Surprise) -> tuple[Hypothesis, ...]:
 def _halted(surprise: Surprise, room: Box) -> list[Supposed]:
     """What fits, if a turn of what is in his hand ended early; nothing, if there was none.
 
-    Parts of his square, and of the turn, are cut smaller as long as nothing contradicts them.
+    Parts of his square, and of the turn, are cut smaller as long as nothing contradicts them, and they are not too
+    many; larger ones leave more room for where the thing lies.
     """
     if surprise.degrees == 0.0:
         return []
@@ -81,8 +86,10 @@ def _halted(surprise: Surprise, room: Box) -> list[Supposed]:
     length, (west, south, east, north) = length_of(place, polygon, motion), room
     parts = Part((0.0, 1.0), (west, east), (south, north)).cut(math.ceil(length / COARSE), CUTS, CUTS)
     for number in range(FINER + 1):
+        if number and len(parts) * math.prod(EIGHTS) > MOST_PARTS:
+            break
         if number:
-            parts = [cut for part in parts for cut in part.cut(2, 2, 2)]
+            parts = [cut for part in parts for cut in part.cut(*EIGHTS)]
         tried = [(part, _ended(surprise, part, length)) for part in parts]
         fitting = [(part, one) for part, one in tried if not one.misfits]
         parts = [part for part, _ in fitting]
@@ -94,7 +101,7 @@ def _ended(surprise: Surprise, part: Part, length: float) -> Supposed:
     lattice = Lattice(surprise.lattice.angle, part.woke)
     place, polygon, motion = surprise.begun(lattice)
     outcome = part_way(place, polygon, motion, sum(part.turn) / 2)
-    return surprise.judged(lattice, (exactly(lattice),), outcome, _slack(part, length), part.far)
+    return surprise.judged(lattice, (exactly(lattice),), outcome, _slack(part, length), part.far, whether=True)
 
 
 def _stoppable(surprise: Surprise, fitting: Sequence[tuple[Part, Supposed]], length: float) -> list[Supposed]:
@@ -102,13 +109,13 @@ def _stoppable(surprise: Surprise, fitting: Sequence[tuple[Part, Supposed]], len
 
     All, when nothing is known that may have stopped any.
     """
-    stopped = []
+    stopped, stops = [], cache(lambda lattice: surprise.hindrances.stops(*surprise.begun(lattice)))
     for part, one in fitting:
         place, polygon, motion = surprise.begun(one.lattice)
-        stop = surprise.hindrances.near(place, polygon, motion, sum(part.turn) / 2)
+        stop = near(stops(one.lattice), place, polygon, motion, sum(part.turn) / 2)
         if stop is not None:
             there = part_way(place, polygon, motion, stop.part, stop.against)
-            judged = surprise.judged(one.lattice, one.hypotheses, there, _slack(part, length), part.far)
+            judged = surprise.judged(one.lattice, one.hypotheses, there, _slack(part, length), part.far, whether=True)
             if not judged.misfits:
                 stopped.append((stop.chance, judged))
     best = max((chance for chance, _ in stopped), default=0.0)

@@ -8,6 +8,7 @@ import itertools
 import math
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 from geometry.contact import Body, Obstacles
@@ -45,7 +46,7 @@ class Haul:
         self._place = lattice.place_from_utak(*looks[-1].place)
         self._polygon = lain(loads[motion.load], was, lattice).polygon
         self._motion = Translate(*lattice.to_lattice(*motion.shift))
-        before = relaid(lattice, lattice, looks, loads.values()).evidence
+        before = relaid(lattice, lattice, looks, loads.values(), surprise.prefixes.of(motion.number)).evidence
         stops = self._hindrances(before).stops(self._place, self._polygon, self._motion)
         parts = dict.fromkeys((*(stop.part for stop in sorted(stops, key=lambda stop: -stop.chance)), 1.0))
         halts = [(part, view) for part in parts for view in views(self._after(part))]
@@ -115,14 +116,17 @@ def _otherwise(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
             continue
         anew, correction = _corrected(surprise, motion, end)
         if shift not in judged:
-            judged[shift] = agreed(lattice, anew.looks, anew.loads.values(), anew.unsettled)
+            first = partial(surprise.prefixes.of, motion.number)
+            judged[shift] = agreed(lattice, anew.looks, anew.loads.values(), anew.unsettled, begun=first)
         under = judged[shift]
         if under is None or under.misfits:
             continue
         ahead = way.ahead(end, under.evidence, _stood(under, anew.looks, motion, lattice))
         if ahead == FREE:
             continue
-        supposed = replace(anew, evidence=under.evidence, loads=under.loads).tried(lattice, surprise.hypotheses)
+        supposed = replace(anew, evidence=under.evidence, loads=under.loads).tried(
+            lattice, surprise.hypotheses, whether=True
+        )
         if not supposed.misfits:
             yield Recalled(Retold(exactly(lattice), correction, ahead == FULL, 0), supposed)
 
@@ -135,14 +139,16 @@ def _elsewhere(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
         left = search(anew.recent, anywhere_in_it, anew.unsettled)
         if not left:
             continue
-        under = relaid(surprise.lattice, surprise.lattice, anew.looks, anew.loads.values())
+        first = surprise.prefixes.of(motion.number)
+        under = relaid(surprise.lattice, surprise.lattice, anew.looks, anew.loads.values(), first)
         anew = replace(anew, evidence=under.evidence, loads=under.loads)
         for lattice in candidates(left, surprise.lattice)[:FEW]:
-            supposed = anew.tried(lattice, left)
+            supposed = anew.tried(lattice, left, whether=True)
             if supposed.misfits:
                 continue
             under = anew.laid(lattice)
-            way = Haul(motion, replace(anew, lattice=lattice, evidence=under.evidence, loads=under.loads))
+            there = replace(anew, lattice=lattice, evidence=under.evidence, loads=under.loads)
+            way = Haul(motion, there)
             ahead = way.ahead(end, under.evidence, _stood(under, anew.looks, motion, lattice))
             if ahead != FREE:
                 yield Recalled(Retold(exactly(lattice), correction, ahead == FULL, 0), supposed)

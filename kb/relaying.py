@@ -7,6 +7,7 @@ lattice turns out to lie otherwise, things are laid anew where he took them, and
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from copy import copy
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -26,6 +27,7 @@ from kb.worldmodel import Patch
 ASKEW = 8.0  # degrees from one lattice to another from where on an outline that was measured on the one is not right
 UNTOLD = 0.25  # of the squares of a thing, so many may be open when it is measured anew
 REACH = 6  # squares that a thing may reach further than it was believed to
+EVERY = 16  # looks after which what they say is kept, to go on from there
 STEPS = sorted(((x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)), key=lambda step: (math.hypot(*step), step))
 
 
@@ -45,33 +47,86 @@ def laid(load: Load, lattice: Lattice) -> Laid:
     return Laid(load.name, _middle(load.polygon, lattice), load.turned, load.slack, _middle(load.first, lattice))
 
 
-def relaid(new: Lattice, old: Lattice, looks: Sequence[Look], loads: Iterable[Load]) -> Relaid:
+class Replay:
+    """Looks laid on a lattice one after the other, as far as some of them.
+
+    new, old : that lattice, and the one on which the loads lie. number : how many looks are taken in.
+    """
+
+    def __init__(self, new: Lattice, old: Lattice) -> None:
+        self.new, self.old, self.number = new, old, 0
+        self._evidence, self._misfits = Evidence(), 0
+        self._taken: dict[str, Load] = {}  # as they lay when they were first held, on the new lattice
+
+    def copy(self) -> "Replay":
+        """The same, to go on with."""
+        other = copy(self)
+        other._evidence, other._taken = self._evidence.copy(), dict(self._taken)
+        return other
+
+    def go_on(self, looks: Sequence[Look], loads: Mapping[str, Load], to: int) -> "Replay":
+        """Take in the looks before that number; what was taken in already must be the first of them."""
+        for number in range(self.number, to):
+            self._take([load for load in loads.values() if load.since == number], number)
+            look = looks[number]
+            moved = [(self._taken[was.name], was) for was in look.moved if was.name in self._taken]
+            there = [_carried(taken, loads[was.name], was, self.new) for taken, was in moved]
+            x, y = (math.floor(v) for v in self.new.place_from_utak(*look.place))
+            freed = discounted(self.new.samples(), look.ranges, x, y, there)
+            self._misfits += self._evidence.clashes(*freed, x, y)
+            self._evidence.look(*freed, x, y, number)
+            if number == 0:
+                self._evidence.stand(x, y, 0)
+        self.number = to
+        return self
+
+    def end(self, looks: Sequence[Look], loads: Mapping[str, Load]) -> Relaid:
+        """What all looks say in the end. It cannot be gone on with."""
+        self.go_on(looks, loads, len(looks))
+        self._take([load for load in loads.values() if load.since >= len(looks)], len(looks))
+        now = {name: _carried(self._taken[name], load, laid(load, self.old), self.new) for name, load in loads.items()}
+        return Relaid(self._evidence, now, self._misfits)
+
+    def _take(self, taken: Iterable[Load], number: int) -> None:
+        """Take out of the map what was first held before look `number`."""
+        for load in taken:
+            lay = self._taken[load.name] = _taken(load, self.new, self.old, self._evidence)
+            patch = lay.possible
+            self._evidence.make_room(patch.west, patch.south)
+            squares = self._evidence.squares(patch.west, patch.south, patch.mask)
+            self._evidence.declare(squares, FREE, number - 1)
+
+
+def relaid(
+    new: Lattice, old: Lattice, looks: Sequence[Look], loads: Iterable[Load], begun: Replay | None = None
+) -> Relaid:
     """All that was seen, and where the loads are, if the lattice lies otherwise.
 
-    old : the lattice on which the loads lie.
+    old : the lattice on which the loads lie. begun : the first of the looks, taken in already, with loads taken as
+    these were.
     """
-    evidence, misfits, samples = Evidence(), 0, new.samples()
-    taken: dict[str, Load] = {}  # as they lay when they were first held, on the new lattice
-    known = {load.name: load for load in loads}
-    for number in range(len(looks) + 1):
-        for load in known.values():
-            if min(load.since, len(looks)) == number:
-                taken[load.name] = _taken(load, new, old, evidence)
-                patch = taken[load.name].possible
-                evidence.make_room(patch.west, patch.south)
-                evidence.declare(evidence.squares(patch.west, patch.south, patch.mask), FREE, number - 1)
-        if number == len(looks):
-            break
-        look = looks[number]
-        there = [_carried(taken[was.name], known[was.name], was, new) for was in look.moved if was.name in taken]
-        x, y = (math.floor(v) for v in new.place_from_utak(*look.place))
-        freed = discounted(samples, look.ranges, x, y, there)
-        misfits += evidence.clashes(*freed, x, y)
-        evidence.look(*freed, x, y, number)
-        if number == 0:
-            evidence.stand(x, y, 0)
-    now = {name: _carried(taken[name], load, laid(load, old), new) for name, load in known.items()}
-    return Relaid(evidence, now, misfits)
+    replay = Replay(new, old) if begun is None else begun.copy()
+    return replay.end(looks, {load.name: load for load in loads})
+
+
+class Prefixes:
+    """The first looks laid on a lattice, each taken in once, of however many of them that is asked.
+
+    loads : as they lie on that lattice.
+    """
+
+    def __init__(self, lattice: Lattice, looks: Sequence[Look], loads: Mapping[str, Load]) -> None:
+        self._looks, self._loads = looks, loads
+        self._known = {0: Replay(lattice, lattice)}
+
+    def of(self, number: int) -> Replay:
+        """The first `number` looks, to be copied."""
+        if number not in self._known:
+            near = max(n for n in self._known if n < number)
+            replay = self._known[near].copy()
+            for stop in (*range(near + 1 + EVERY - (near + 1) % EVERY, number, EVERY), number):
+                self._known[stop] = replay.go_on(self._looks, self._loads, stop).copy()
+        return self._known[number]
 
 
 def shifted(load: Load, new: Lattice, old: Lattice) -> Load:

@@ -8,16 +8,19 @@ one may tell: so motions are remembered, and told again when looks contradict ea
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from geometry.rigid import Translate
 from kb.evidence import FREE, FULL, OPEN, Evidence
-from kb.heading import MEMORY, Disc, Hypothesis, Laid, Look, contradictions, fallen
+from kb.heading import MEMORY, Disc, Hypothesis, Laid, Look, clashing, fallen, squares_of, stacked
 from kb.lattice import Lattice
 from kb.loads import Load, Square
-from kb.relaying import Relaid, relaid
+from kb.relaying import Prefixes, Relaid, Replay, relaid
 
 Place = tuple[float, float]
 MOST = 90  # hypotheses on which a motion is told again: as many as there are angles
@@ -195,19 +198,22 @@ def next_square(place: Place, towards: Place) -> tuple[int, int]:
     return math.floor(ahead[0]), math.floor(ahead[1])
 
 
-def retold(motion: Moved, held: Lattice, looks: Sequence[Look]) -> Iterator[Retold]:
+def retold(
+    motion: Moved, held: Lattice, looks: Sequence[Look], laid: Callable[[Lattice], Prefixes] | None = None
+) -> Iterator[Retold]:
     """What else may have come of a motion, and how the lattice lies then, so that no look contradicts another.
 
     held : the lattice that is believed. looks : all, where they are believed to have been received, the newest where it
-    was commanded. What is believed already is not among it, nor that the newest motion was stopped by what is not
-    known, on the lattice held.
+    was commanded. laid : the first of them on a lattice. What is believed already is not among it, nor that the newest
+    motion was stopped by what is not known, on the lattice held.
 
     Until he was stopped he came over no square that is occupied, and into none that is free; rather before one that is
     occupied than before one of which it is open.
     """
     newest = motion.number == len(looks) - 1
     for hypothesis in _likeliest(motion.hypotheses):
-        found = list(_otherwise(motion, hypothesis, looks))
+        begun = Prefixes(hypothesis.lattice, looks, {}) if laid is None else laid(hypothesis.lattice)
+        found = list(_otherwise(motion, hypothesis, looks, begun))
         surest = any(one.known for one in found)
         if surest or not (newest and hypothesis.lattice == held):
             yield from (one for one in found if one.known == surest)
@@ -221,22 +227,29 @@ def _likeliest(hypotheses: tuple[Hypothesis, ...]) -> tuple[Hypothesis, ...]:
     return tuple(hypotheses[number] for number in sorted(likely))
 
 
-def _otherwise(motion: Moved, hypothesis: Hypothesis, looks: Sequence[Look]) -> Iterator[Retold]:
+def _otherwise(motion: Moved, hypothesis: Hypothesis, looks: Sequence[Look], begun: Prefixes) -> Iterator[Retold]:
     """What else may have come of one motion on one lattice."""
     lattice, number = hypothesis.lattice, motion.number
     believed, walk = looks[number].place, Walk(motion, lattice, looks)
     judged: dict[bytes, Relaid | None] = {}
+    ranges, places = stacked(looks), np.array([look.place for look in looks])
     for end in walk.ends:
         shift = end.place[0] - believed[0], end.place[1] - believed[1]
         if math.hypot(*shift) < HAIR:  # as is believed
             continue
         correction = Correction(number, shift)
-        *before, newest = correction.looks(looks)
-        for place in _seen_from(newest.place, lattice) if number < len(looks) - 1 else [newest.place]:
-            there = [*before, newest._replace(place=place)]
-            key = fallen(lattice, there).tobytes()
+        newest = correction.place(looks[-1].place)
+        there = places.copy()
+        there[number:] += shift
+        for place in _seen_from(newest, lattice) if number < len(looks) - 1 else [newest]:
+            there[-1] = place
+            squares = squares_of(lattice, there)
+            key = squares.tobytes()
             if key not in judged:
-                judged[key] = agreed(lattice, there)
+                judged[key] = None
+                if _agree(lattice, squares, ranges):
+                    *before, last = correction.looks(looks)
+                    judged[key] = relaid(lattice, lattice, [*before, last._replace(place=place)], (), begun.of(number))
             under = judged[key]
             if under is not None and (ahead := walk.ahead(end, under.evidence)) != FREE:
                 yield Retold(hypothesis, correction, ahead == FULL, under.misfits, place)
@@ -272,17 +285,30 @@ def agreed(
     loads: Iterable[Load] = (),
     unsettled: Sequence[Disc] = (),
     recent: int = MEMORY + 1,
+    begun: Callable[[], Replay] | None = None,
 ) -> Relaid | None:
     """What all looks say on the lattice on which the loads lie; None when two of the last contradict each other.
 
-    unsettled : where looks need not agree. recent : how many of them are compared.
+    unsettled : where looks need not agree. recent : how many of them are compared. begun : the first, taken in already.
     """
-    compared = looks[-recent:]
-    apart = len(compared) // FEW
-    if apart > 1 and contradictions(lattice, compared[::-apart], unsettled):  # the newest one among them
+    if not _agree(lattice, fallen(lattice, looks), stacked(looks), unsettled, recent):
         return None
-    stands = not contradictions(lattice, compared, unsettled)
-    return relaid(lattice, lattice, looks, loads) if stands else None
+    return relaid(lattice, lattice, looks, loads, begun and begun())
+
+
+def _agree(
+    lattice: Lattice,
+    squares: NDArray[np.int64],
+    ranges: NDArray[np.int16],
+    unsettled: Sequence[Disc] = (),
+    recent: int = MEMORY + 1,
+) -> bool:
+    """Does none of the last looks contradict another? squares, ranges : of all looks, as for kb.heading.clashing."""
+    squares, ranges = squares[-recent:], ranges[-recent:]
+    apart = len(squares) // FEW
+    if apart > 1 and clashing(lattice, squares[::-apart], ranges[::-apart], unsettled):  # the newest one among them
+        return False
+    return not clashing(lattice, squares, ranges, unsettled)
 
 
 class End(NamedTuple):

@@ -6,7 +6,6 @@ the things laid on it anew. Which are tried is for kb.doubting and kb.pivoting.
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from copy import deepcopy
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -23,7 +22,7 @@ from kb.heading import Disc, Hypothesis, Look, cells, fallen, search
 from kb.lattice import Lattice
 from kb.loads import Load, discounted
 from kb.picturing import Pictures
-from kb.relaying import Relaid, relaid, shifted
+from kb.relaying import Prefixes, Relaid, relaid, shifted
 from kb.suspecting import Hindrances
 
 Place = tuple[float, float]
@@ -118,6 +117,11 @@ class Surprise:
             discs |= {Disc(middle, reach) for middle in middles}
         return sorted(discs)
 
+    @cached_property
+    def prefixes(self) -> Prefixes:
+        """The first of the looks, on the lattice that is believed."""
+        return Prefixes(self.lattice, self.looks, self.loads)
+
     # -- trying a lattice ------------------------------------------------------------------------
 
     def tried(
@@ -127,19 +131,21 @@ class Surprise:
         searched: bool = False,
         cut_short: bool = False,
         far: float = 0.0,
+        whether: bool = False,
     ) -> Supposed:
         """What contradicts a lattice.
 
         cut_short : the motion may have ended early, for whatever reason. far : squares from where he woke, at most.
+        whether : as for `judged`.
         """
         if self.moving is None:  # it went as said
             place = lattice.place_from_utak(*self.own)
-            misfits = self._misfits(lattice, self.laid(lattice).loads.values(), place, far)
+            misfits = self._misfits(lattice, self.laid(lattice).loads.values(), place, far, whether)
             return Supposed(lattice, hypotheses, place, None, misfits, searched)
         tried = []
         for outcome in self._outcomes(lattice, cut_short):
             slack = STRIDE / 2 if cut_short and outcome.how != "predicted" else 0.0
-            tried.append(self.judged(lattice, hypotheses, outcome, slack, far, searched))
+            tried.append(self.judged(lattice, hypotheses, outcome, slack, far, searched, whether))
             if not tried[-1].misfits:
                 break
         return min(tried, key=lambda one: one.misfits)
@@ -152,23 +158,27 @@ class Surprise:
         slack: float = 0.0,
         far: float = 0.0,
         searched: bool = False,
+        whether: bool = False,
     ) -> Supposed:
         """What contradicts a lattice, and an outcome of the motion of what was in his hand.
 
-        slack : squares by which it may have ended elsewhere. far : squares from where he woke, at most.
+        slack : squares by which it may have ended elsewhere. far : squares from where he woke, at most. whether : it is
+        asked only whether anything contradicts; misfits may then be too few, though not 0.
         """
         assert self.moving is not None
         held, loads = self.moving[0], self.laid(lattice).loads
         slack, commanded = max(loads[held].slack, slack), outcome.as_commanded
         moved = loads[held].moved(outcome.polygon, slack, outcome.degrees, commanded)
-        misfits = self._misfits(lattice, {**loads, held: moved}.values(), outcome.place, far)
+        misfits = self._misfits(lattice, {**loads, held: moved}.values(), outcome.place, far, whether)
         return Supposed(lattice, hypotheses, outcome.place, outcome, misfits, searched)
 
-    def _misfits(self, lattice: Lattice, loads: Iterable[Load], place: Place, far: float) -> int:
+    def _misfits(self, lattice: Lattice, loads: Iterable[Load], place: Place, far: float, whether: bool = False) -> int:
         """How many fields contradict a lattice, of this look, with the loads where they lie then, and of all others."""
         under = self.laid(lattice)
+        if whether and under.misfits:
+            return under.misfits
         lying = [load.woken(far) if far else load for load in loads]
-        return under.misfits + clashes(lattice, under.evidence, lying, place, self.ranges)
+        return under.misfits + clashes(lattice, under.evidence, lying, place, self.ranges, whether)
 
     def begun(self, lattice: Lattice) -> tuple[Place, Any, Motion]:
         """Where he stood before the motion, and what was in his hand, if the lattice lies so; and the motion."""
@@ -219,7 +229,7 @@ class Surprise:
         """What is settled together with the look, if it was received at a place, with the loads where they lie."""
         x, y = (math.floor(v) for v in place)
         samples, counts = discounted(self.lattice.samples(), self.ranges, x, y, loads)
-        evidence = deepcopy(self.evidence)
+        evidence = self.evidence.copy()
         evidence.look(samples, counts, x, y, len(self.looks))
         return evidence
 
@@ -265,7 +275,12 @@ def as_motion(command: Push | Turn, lattice: Lattice, place: Place) -> Motion:
     return Translate(*lattice.to_lattice(command.east, command.north))
 
 
-def clashes(lattice: Lattice, evidence: Evidence, loads: Iterable[Load], place: Place, ranges: Ranges) -> int:
-    """How many fields cannot be right if a look was received at a place, with the loads where they lie."""
+def clashes(
+    lattice: Lattice, evidence: Evidence, loads: Iterable[Load], place: Place, ranges: Ranges, whether: bool = False
+) -> int:
+    """How many fields cannot be right if a look was received at a place, with the loads where they lie.
+
+    whether : it is asked only whether there are any; too few may be told then, though not 0.
+    """
     x, y = math.floor(place[0]), math.floor(place[1])
-    return evidence.clashes(*discounted(lattice.samples(), ranges, x, y, loads), x, y)
+    return evidence.clashes(*discounted(lattice.samples(), ranges, x, y, loads), x, y, whether)

@@ -2,9 +2,9 @@
 
 import itertools
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,6 +23,7 @@ Place = tuple[float, float]
 ALIKE = 1.0  # log odds by which the likeliest squares may differ
 NEARLY = 0.25  # squares by which the place at which it was stopped may be told wrongly
 TOGETHER = 1e-6  # parts of a motion by which squares that are met at once may differ
+HAIR = 1e-3  # squares by which what is surely not met must be further away
 ROOM = 3  # squares about a motion in which something may stop it
 NOTHING: frozenset[Square] = frozenset()
 
@@ -49,13 +50,13 @@ class Hindrances:
         self, evidence: Evidence, place: Place, polygon: Any, motion: Motion, pictures: Pictures | None = None
     ) -> None:
         known, self._squares = (_there(evidence, place, polygon, motion, state) for state in (FULL, OPEN))
-        self.walls = Obstacles([box_of(square) for square in known])
+        self.walls = _obstacles(tuple(known))
         self._outlook = Outlook(evidence, pictures)
 
     @cached_property
     def _open(self) -> list[tuple[Square, Obstacles]]:
         """Each open square as an obstacle of its own."""
-        return [(square, Obstacles([box_of(square)])) for square in self._squares]
+        return [(square, _obstacles((square,))) for square in self._squares]
 
     def stops(self, place: Place, polygon: Any, motion: Motion) -> list[Stop]:
         """Where the motion may have been stopped, in its order, and what speaks for each.
@@ -64,7 +65,9 @@ class Hindrances:
         """
         body = Body(polygon, [place])
         end = self.walls.first_contact(body, motion).fraction
-        met = ((obstacle.first_contact(body, motion).fraction, square) for square, obstacle in self._open)
+        near = _reachable(self._squares, place, polygon, motion)
+        open_ = ((square, obstacle) for (square, obstacle), reached in zip(self._open, near, strict=True) if reached)
+        met = ((obstacle.first_contact(body, motion).fraction, square) for square, obstacle in open_)
         ordered = sorted(m for m in met if m[0] < end)
         together = [[*group] for _, group in itertools.groupby(ordered, lambda m: round(m[0] / TOGETHER))]
         chances = self._outlook.met([[square for _, square in group] for group in together])
@@ -78,11 +81,12 @@ class Hindrances:
         """What the stops would have led to, the likeliest first."""
         return led_to(self.stops(place, polygon, motion), place, polygon, motion)
 
-    def near(self, place: Place, polygon: Any, motion: Motion, part: float) -> Stop | None:
-        """The likeliest stop about where a motion seems to have ended; None when there is nothing near."""
-        far = NEARLY / length_of(place, polygon, motion)
-        about = [stop for stop in self.stops(place, polygon, motion) if abs(stop.part - part) < far]
-        return max(about, key=lambda stop: stop.chance, default=None)
+
+def near(stops: Iterable[Stop], place: Place, polygon: Any, motion: Motion, part: float) -> Stop | None:
+    """The likeliest of some stops about where a motion seems to have ended; None when there is nothing near."""
+    far = NEARLY / length_of(place, polygon, motion)
+    about = [stop for stop in stops if abs(stop.part - part) < far]
+    return max(about, key=lambda stop: stop.chance, default=None)
 
 
 def led_to(stops: Iterable[Stop], place: Place, polygon: Any, motion: Motion) -> list[Outcome]:
@@ -117,6 +121,25 @@ def suspects(
 def _likeliest(odds: Mapping[Square, float]) -> frozenset[Square]:
     """Of squares with the log odds that they are occupied the likeliest."""
     return frozenset(square for square, odd in odds.items() if odd >= max(odds.values()) - ALIKE)
+
+
+def _reachable(squares: Sequence[Square], place: Place, polygon: Any, motion: Motion) -> list[bool]:
+    """Which squares a thing and Utak may meet on a motion; the others they surely do not."""
+    corners, low = np.array([*shapely.get_coordinates(polygon), place]), np.array(squares, np.float64).reshape(-1, 2)
+    if isinstance(motion, Rotate):  # all stays as far from him as it was
+        far = np.hypot(*(corners - np.array(motion.about)).T).max() + HAIR
+        nearest = np.clip(np.array(motion.about), low, low + 1.0) - np.array(motion.about)
+        reached = np.hypot(*nearest.T) <= far
+    else:
+        ends = np.concatenate([corners, motion.points(corners)])
+        reached = ((low <= ends.max(0) + HAIR) & (low + 1.0 >= ends.min(0) - HAIR)).all(1)
+    return list(map(bool, reached))
+
+
+@lru_cache(maxsize=512)
+def _obstacles(squares: tuple[Square, ...]) -> Obstacles:
+    """Squares of the lattice as obstacles; kept, for one lattice after another asks for the same ones."""
+    return Obstacles([box_of(square) for square in squares])
 
 
 def _there(evidence: Evidence, place: Place, polygon: Any, motion: Motion, state: int) -> list[Square]:

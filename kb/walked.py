@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +16,11 @@ from kb.judging import CONTRADICTED, MOST_SEARCHES, Judging, Place
 from kb.lattice import Lattice
 from kb.misplaced import misplaced
 from kb.plainness import weighed
-from kb.relaying import relaid
+from kb.relaying import Prefixes, relaid
 from kb.stops import Moved, Retold, around, retold, retold_both, views
 
 MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one is believed
+KEPT = 16  # lattices on which the first looks are kept laid, for other motions
 NONE_FITS = 10**6  # misfits of no lattice at all
 SETTLED = math.radians(5)  # by which angles may differ while that hardly is why looks contradict
 
@@ -37,7 +38,9 @@ class Walked(Judging):
         halted = self._halted_walk(command, ranges) if stops and command is not None else []
         if halted and not whole_first(halted) and not first.misfits:
             first = first._replace(misfits=CONTRADICTED)
-        told = cache(lambda motion: tuple(retold(motion, self.lattice, [*self.looks, look])))
+        looks = [*self.looks, look]
+        begun = lru_cache(KEPT)(lambda lattice: Prefixes(lattice, looks, {}))
+        told = cache(lambda motion: tuple(retold(motion, self.lattice, looks, begun)))
         stopped = [motion for motion in self.earlier if motion.stopped]
         if first.misfits and not self.loads and any(not one.misfits for motion in stopped for one in told(motion)):
             turned = self._stopped(look, map(told, stopped))

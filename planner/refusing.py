@@ -75,6 +75,9 @@ def _doubt(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel)
         return "it did not move where there seemed to be room"
     if lies_askew(node):  # and what is wall beside it is not known well either
         return "it was turned askew"
+    # Who began anew forgot what he had moved. What lies askew he may have turned himself, against walls, too.
+    if model.anew and node.polygon is not None and not is_whole(node.polygon):
+        return "it lies askew, and may have been turned before all was forgotten"
     # He has brought it there. When no wider passage would let it go on, it rather is elsewhere.
     amid_squares = node.moved and not is_whole(node.polygon)
     return "it was stopped on its way there" if amid_squares and _hopeless(nearest_to_done(plans)) else ""

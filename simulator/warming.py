@@ -130,6 +130,20 @@ def see() -> None:
     one = np.ones(1, np.int16)
     counts = Counts(np.zeros((1, 1), np.int32), np.ones((1, 1), np.int16), one, one)
     blobs(pictures(drawn, counts, full[None], 1, 1)[0], drawn)
+    tell_counts()
+
+
+def tell_counts() -> None:
+    """Settle what counts settle."""
+    import numpy as np
+
+    from geometry.settling import misfits, residue, settle
+
+    where, one = np.zeros((1, 2), np.int32), np.ones(1, np.int16)
+    fields = where, np.array([[1, 0]], np.int16), one, one
+    settle(np.full(1, -1, np.int8), np.full(1, -1, np.int16), *fields, np.ones(1, np.bool_), 0)
+    misfits(np.ones(1, np.int8), *fields, np.zeros(1, np.bool_))
+    residue(np.ones(1, np.int8), *fields)
 
 
 def sightlines() -> None:
@@ -188,8 +202,10 @@ def walk() -> None:
     import shapely
 
     from geometry.contact import Body, Obstacles
+    from geometry.digital import squares
     from geometry.rigid import Translate
 
+    squares(shapely.box(0, 0, 1, 1), 1, 1)
     Obstacles([shapely.box(10, 0, 11, 5)]).first_contact(Body(None, [(4.0, 1.0)]), Translate(8.0, 0.0))
 
 

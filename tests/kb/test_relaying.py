@@ -11,7 +11,7 @@ from shapely.affinity import rotate, translate
 from kb.heading import Laid, Look
 from kb.lattice import CENTRE, Lattice
 from kb.loads import Load, whole
-from kb.relaying import laid, relaid, shifted
+from kb.relaying import Prefixes, laid, relaid, shifted
 from kb.retina import count_ranges
 from tests.kb.eyes import Occupied, retina, world_of
 
@@ -147,3 +147,18 @@ def _turned(vector: tuple[float, float], degrees: float) -> tuple[float, float]:
 def _felt(thing: shapely.Polygon, woke: tuple[float, float], heading: float) -> shapely.Polygon:
     """A thing of the table on a lattice along his own axes, where he woke amid square (0, 0)."""
     return translate(rotate(translate(thing, -woke[0], -woke[1]), -heading, origin=(0, 0)), 0.5, 0.5)
+
+
+@pytest.mark.parametrize("number", [1, 3, 20])
+def test_looks_that_are_taken_in_already_need_not_be_taken_in_again(number: int) -> None:
+    start, thing = (9.5, 9.5), translate(ELL, 11, 8)
+    looks, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
+    number = min(number, len(looks))
+    loads = {"o1": load}
+    at_once, first = relaid(new, new, looks, [load]), Prefixes(new, looks, loads)
+    for _ in range(2):  # what is begun with stays as it is
+        found = relaid(new, new, looks, [load], first.of(number))
+        assert (found.evidence.state == at_once.evidence.state).all()
+        assert (found.evidence.logit == at_once.evidence.logit).all()
+        assert found.misfits == at_once.misfits
+        assert found.loads["o1"].polygon.equals(at_once.loads["o1"].polygon)

@@ -11,7 +11,7 @@ from shapely.affinity import rotate, translate
 
 from geometry.rigid import Motion, Rotate, Translate
 from kb.evidence import FREE, FULL, OPEN, Evidence
-from kb.suspecting import Hindrances
+from kb.suspecting import Hindrances, near
 
 ELL = shapely.Polygon([(1, 0), (6, 0), (6, 2), (3, 2), (3, 5), (1, 5)])
 UTAK = (0.5, 1.5)
@@ -102,10 +102,10 @@ def test_what_stops_nearby_is_known_by_the_place() -> None:
     motion = Translate(6.0, 0.0)
     hindrances = Hindrances(evidence_of({(8, 0): -2.0, (9, 1): 2.0}, []), UTAK, ELL, motion)
     for part, square in ((2 / 6, (8, 0)), (2.2 / 6, (8, 0)), (2.8 / 6, (9, 1))):
-        near = hindrances.near(UTAK, ELL, motion, part)
-        assert near is not None
-        assert near.against == {square}
-    assert hindrances.near(UTAK, ELL, motion, 2.5 / 6) is None
+        stop = near(hindrances.stops(UTAK, ELL, motion), UTAK, ELL, motion, part)
+        assert stop is not None
+        assert stop.against == {square}
+    assert near(hindrances.stops(UTAK, ELL, motion), UTAK, ELL, motion, 2.5 / 6) is None
     assert Hindrances(evidence_of({}, []), UTAK, ELL, motion).stops(UTAK, ELL, motion) == []
 
 

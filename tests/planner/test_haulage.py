@@ -7,6 +7,7 @@ from typing import cast
 
 import pytest
 import shapely
+import shapely.affinity
 
 from geometry.bottleneck import Neck
 from geometry.carrying import Carrying, Inside
@@ -100,6 +101,19 @@ def test_what_was_stopped_amid_squares_and_no_wider_passage_would_let_on_proves_
     answer = refusal(node, [(2, plan)], seen_whole(PARTED))
     assert answer.proved == proved
     assert ("stopped on its way" in answer.reason()) != proved
+
+
+@pytest.mark.parametrize(("anew", "askew", "proved"), [(False, 20.0, True), (True, 20.0, False), (True, 0.0, True)])
+def test_what_lies_askew_proves_nothing_once_all_was_forgotten(anew: bool, askew: float, proved: bool) -> None:
+    model = replace(seen_whole(PARTED), anew=anew)
+    (node,) = model.objects
+    shape = shapely.affinity.rotate(shapely.box(4, 5, 8, 9), askew)
+    west, south = model.view.west, model.view.south
+    node = replace(node, polygon=shapely.affinity.translate(shape, west, south), moved=False)
+    answer = Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}), situation_of(model))
+    assert isinstance(answer, Refusal)
+    assert answer.proved == proved
+    assert ("forgotten" in answer.reason()) != proved
 
 
 @pytest.mark.parametrize("dubious", [False, True])

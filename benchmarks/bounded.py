@@ -1,0 +1,260 @@
+"""How long a single command takes at most: scenarios under noise, each command timed by the processor's clock.
+
+    python -m benchmarks.bounded [SCENARIO ...] [--noise 0,0.02,0.05] [--seeds 1,2,3,4,5] [--judge] [-o rows.jsonl]
+    python -m benchmarks.bounded --campaign 5,6,7 --count 10 --noise 0,0.02      (random worlds, see benchmarks.worlds)
+
+Scenarios are folders; all of examples/ when none is named. Each run goes in a process of its own that ends when its
+processor time is used up, so that one that runs away does not hold up the others; what it did until then is told.
+"""
+
+import argparse
+import json
+import multiprocessing
+import resource
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import product
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from benchmarks.judging import findings
+from benchmarks.scenes import write
+from benchmarks.stopwatch import TimedBody, TimedRobot
+from benchmarks.worlds import scenario
+from kb.body import Body
+from kb.task import Task
+from simulator.episode import EpisodeLog
+from simulator.expectation import should_fail
+from simulator.robots import make_robot
+from simulator.scenario import read_scenario
+from simulator.session import Session
+from simulator.settings import Settings
+from simulator.trial import scenarios_in
+
+EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
+WARMING = ("go_round_square", "push_l_tight_door", "push_square_corner")  # together they call every kernel
+BOUND = 2.0  # processor seconds that no command may take
+LISTED = 10  # of the longest commands are listed
+
+
+class Run(NamedTuple):
+    """One run to be made: a scenario's folder, the noise, its seed, most commands, and whether it is judged."""
+
+    folder: Path
+    noise: float
+    seed: int
+    max_steps: int
+    judged: bool
+
+
+class Row(NamedTuple):
+    """What came of a run.
+
+    seconds : of the processor, of waking and of each command. actions : what was commanded, None on waking.
+    verdict : `ended` when its process ended before the robot did. false : is what is claimed refuted by the truth?
+    """
+
+    name: str
+    noise: float
+    seed: int
+    verdict: str
+    achieved: bool | None
+    false: bool
+    seconds: list[float]
+    actions: list[Any]
+    reason: str = ""
+    judged: list[str] | None = None
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run all that is asked for and print what came of it; 0 when no command took too long and no claim was false."""
+    given = _parser().parse_args(arguments)
+    with tempfile.TemporaryDirectory(prefix="utak-bounded-") as scratch:
+        folders = list(_worlds(given, Path(scratch))) if given.campaign else _folders(given.scenarios)
+        runs = [Run(*which, given.max_steps, given.judge) for which in product(folders, given.noise, given.seeds)]
+        runs = list(dict.fromkeys(run if run.noise else run._replace(seed=given.seeds[0]) for run in runs))
+        warm()
+        rows = list(_told((bounded(run, given.seconds) for run in runs), given.output))
+    print("\n".join(report(rows)))
+    return int(any(row.false or max(row.seconds, default=0.0) > BOUND for row in rows))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.bounded", description="Time each command.")
+    parser.add_argument("scenarios", nargs="*", type=Path, help="folders (all of examples/)")
+    parser.add_argument("--noise", type=_floats, default=[0.0, 0.02, 0.05], help="with commas between (0,0.02,0.05)")
+    parser.add_argument("--seeds", type=_integers, default=[1, 2, 3, 4, 5], help="with commas between (1,2,3,4,5)")
+    parser.add_argument("--campaign", type=_integers, help="random worlds of these tasks instead of scenarios")
+    parser.add_argument("--count", type=int, default=10, help="worlds a task (%(default)s)")
+    parser.add_argument("--first", type=int, default=0, help="the first world's seed (%(default)s)")
+    parser.add_argument("--kind", default="wide", help="of the worlds (%(default)s)")
+    parser.add_argument("--seconds", type=int, default=120, help="most processor seconds a run (%(default)s)")
+    parser.add_argument("--max-steps", type=int, default=200, help="most commands a run (%(default)s)")
+    parser.add_argument("--judge", action="store_true", help="have episodes without noise judged, if a judge is there")
+    parser.add_argument("-o", "--output", type=Path, help="a JSON line for each run")
+    return parser
+
+
+def _floats(text: str) -> list[float]:
+    return [float(part) for part in text.split(",")]
+
+
+def _integers(text: str) -> list[int]:
+    return [int(part) for part in text.split(",")]
+
+
+def _folders(named: Sequence[Path]) -> list[Path]:
+    return [folder for place in named or [EXAMPLES] for folder in scenarios_in(place)]
+
+
+def _worlds(given: argparse.Namespace, scratch: Path) -> Iterator[Path]:
+    for task, seed in product(given.campaign, range(given.first, given.first + given.count)):
+        world = scenario(task, seed, given.kind)
+        yield write(world, scratch / world.name)
+
+
+def warm() -> None:
+    """Compile or load the kernels, which the runs then find in the process that they are forked from."""
+    for name in WARMING:
+        run_here(Run(EXAMPLES / name, 0.0, 1, 40, False), lambda _: None)
+
+
+def bounded(run: Run, seconds: int) -> Row:
+    """A run in a process of its own, which ends after so many seconds of the processor."""
+    context = multiprocessing.get_context("fork")
+    ours, theirs = context.Pipe(duplex=False)
+    process = context.Process(target=_child, args=(run, seconds, theirs))
+    process.start()
+    theirs.close()
+    told = list(_received(ours))
+    process.join()
+    last = told.pop() if told and isinstance(told[-1], dict) else {"verdict": "ended"}
+    if last["verdict"] == "ended":  # what is left went into the command that was not done
+        told.append((seconds - sum(second for second, _ in told), "not done"))
+    return Row(
+        run.folder.name,
+        run.noise,
+        run.seed,
+        last["verdict"],
+        last.get("achieved"),
+        bool(last.get("false")),
+        [second for second, _ in told],
+        [action for _, action in told],
+        last.get("reason", ""),
+        last.get("judged"),
+    )
+
+
+def _received(pipe: Connection) -> Iterator[Any]:
+    while True:
+        try:
+            yield pipe.recv()
+        except EOFError:
+            return
+
+
+def _child(run: Run, seconds: int, pipe: Connection) -> None:
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+    try:
+        run_here(run, pipe.send)
+    except Exception as error:  # a crash is a result, too
+        pipe.send({"verdict": "crash", "reason": f"{type(error).__name__}: {error}"})
+
+
+def run_here(run: Run, tell: Any) -> None:
+    """Make a run, telling (seconds, action) of each command as it is done, and in the end what came of it."""
+    robots: list[TimedRobot] = []
+
+    def make(body: Body, task: Task, settings: Settings) -> TimedRobot:
+        timed = TimedBody(body)
+        robots.append(TimedRobot(make_robot(timed, task, settings), timed))
+        return robots[0]
+
+    with tempfile.TemporaryDirectory(prefix="utak-run-") as place:
+        episode = Path(place) / "episode.jsonl"
+        settings = Settings(run.seed, run.noise, "skeleton", run.max_steps)
+        with EpisodeLog(episode) as log:
+            session = Session(read_scenario(run.folder), settings, make, log)
+            result = session.run(lambda at: tell((robots[0].cycles[-1].processor, at.line.get("action"))))
+        wanted = should_fail(session.scenario.expectations or ())
+        false = (result.believed and result.achieved is False) or (result.verdict == "impossible" and not wanted)
+        judged = findings(run.folder, episode) if run.judged and not run.noise else None
+    tell(
+        {
+            "verdict": result.verdict,
+            "achieved": result.achieved,
+            "false": false,
+            "reason": result.reason,
+            "judged": judged,
+        }
+    )
+
+
+def _told(rows: Iterable[Row], output: Path | None) -> Iterator[Row]:
+    """The rows as they come, each told on stderr and written to the output."""
+    if output is not None:
+        output.write_text("")
+    for row in rows:
+        print(_line(row), file=sys.stderr, flush=True)
+        if output is not None:
+            with output.open("a") as file:
+                file.write(json.dumps(row._asdict()) + "\n")
+        yield row
+
+
+def _line(row: Row) -> str:
+    worst, high = max(row.seconds, default=0.0), percentile(row.seconds)
+    marks = " FALSE" * row.false + " LONG" * (worst > BOUND) + " JUDGE" * bool(row.judged)
+    told = f"{row.name:28} {row.noise:<5} {row.seed:3} {row.verdict:12} {row.achieved!s:6}"
+    return f"{told} {len(row.seconds) - 1:4} commands, longest {worst:6.2f} s, 95% {high:5.2f} s{marks}"
+
+
+def percentile(seconds: Sequence[float]) -> float:
+    """The 95th percentile, 0 of none."""
+    return float(np.percentile(seconds, 95)) if seconds else 0.0
+
+
+def report(rows: Sequence[Row]) -> Iterator[str]:
+    """Lines: a table of scenario and noise, worst first, then the longest commands, false claims, and totals."""
+    yield f"{'scenario':28} noise  longest   95%    all s  verdicts"
+    groups: dict[tuple[str, float], list[Row]] = {}
+    for row in rows:
+        groups.setdefault((row.name, row.noise), []).append(row)
+    for (name, noise), group in sorted(groups.items(), key=lambda item: -_worst(item[1])):
+        seconds = [second for row in group for second in row.seconds]
+        verdicts = " ".join(f"{row.verdict}{'!' * row.false}{'(not)' * (row.achieved is False)}" for row in group)
+        yield f"{name:28} {noise:<5} {_worst(group):8.2f} {percentile(seconds):6.2f} {sum(seconds):7.1f}  {verdicts}"
+    commands = [(s, row, number) for row in rows for number, s in enumerate(row.seconds)]
+    yield "the longest commands:"
+    for second, row, number in sorted(commands, key=lambda one: -one[0])[:LISTED]:
+        run = f"{row.name} --noise {row.noise} --seed {row.seed}"
+        yield f"  {second:6.2f} s  {run}, step {number}: {row.actions[number]}"
+    for row in rows:
+        if row.false or row.judged or row.verdict == "crash":
+            yield f"{row.name} --noise {row.noise} --seed {row.seed}: {row.verdict}: {row.reason} {row.judged or ''}"
+    yield from _totals(rows)
+
+
+def _totals(rows: Sequence[Row]) -> Iterator[str]:
+    for noise in sorted({row.noise for row in rows}):
+        group = [row for row in rows if row.noise == noise]
+        seconds = [second for row in group for second in row.seconds]
+        long = sum(second > BOUND for second in seconds)
+        yield (
+            f"noise {noise}: {len(group)} runs, {sum(row.verdict == 'done' for row in group)} done, "
+            f"{sum(row.false for row in group)} false claims, {len(seconds)} commands, {long} over {BOUND} s, "
+            f"longest {max(seconds, default=0.0):.2f} s, 95% {percentile(seconds):.2f} s, "
+            f"{sum(row.verdict == 'ended' for row in group)} ended"
+        )
+
+
+def _worst(group: Iterable[Row]) -> float:
+    return max((second for row in group for second in row.seconds), default=0.0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
