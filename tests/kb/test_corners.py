@@ -33,7 +33,7 @@ def test_a_corner_is_the_furthest_point_of_the_known_floor(seed: int) -> None:
     for side, (dx, dy) in SIGNS.items():
         r, c = np.nonzero(floor)
         best = max(float((dx * (c + a) + dy * (r + b)).max()) for a in (0, 1) for b in (0, 1))
-        (x, y), (column, row) = found[side]
+        (x, y), (column, row) = found[side].point, found[side].square
         assert dx * x + dy * y == best
         assert floor[row, column]
         assert x - column in (0, 1)
