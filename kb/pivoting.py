@@ -99,6 +99,9 @@ def _halted(surprise: Surprise, room: Box) -> list[Supposed]:
 def _ended(surprise: Surprise, part: Part, length: float) -> Supposed:
     """What contradicts that he woke in a part of his square, and that a turn ended in a part of it."""
     lattice = Lattice(surprise.lattice.angle, part.woke)
+    refused = surprise.refused(lattice, (exactly(lattice),))
+    if refused is not None:
+        return refused
     place, polygon, motion = surprise.begun(lattice)
     outcome = part_way(place, polygon, motion, sum(part.turn) / 2)
     return surprise.judged(lattice, (exactly(lattice),), outcome, _slack(part, length), part.far, whether=True)
