@@ -122,7 +122,7 @@ class Pursuer:
         return Decision(move, f"{aim.what}; {stage}")
 
     def _rest(self, aim: Aim, level: int, situation: Situation) -> Way | None:
-        """What is left of the way that he is on, if it leads to an aim, and through no door that is forbidden by now."""
+        """Return what is left of the way that he is on, if it leads to an aim and through no forbidden door."""
         rest = self._kept.rest(aim, level, situation.model, situation.screens)
         return self.choose([rest], situation) if rest is not None and situation.forbidden("utak") else rest
 
