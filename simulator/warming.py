@@ -232,7 +232,9 @@ def carry() -> None:
     from geometry.rigid import Rotate
 
     body = Body(shapely.box(1, 1, 3, 3), [(4.0, 1.0)])
-    Obstacles([shapely.box(10, 0, 11, 5)]).first_contact(body, Rotate(30.0, (4.0, 1.0)))
+    wall = Obstacles([shapely.box(10, 0, 11, 5)])
+    wall.first_contact(body, Rotate(30.0, (4.0, 1.0)))
+    wall.pushes(body, np.array([[1.0, 0.0]]))
     free = np.ones((6, 16), np.bool_)
     plan_carrying(shapely.box(3, 2, 5, 3), free, (1.5, 1.5), Inside(shapely.box(10, 0, 16, 6)))
 
