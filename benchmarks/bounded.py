@@ -34,9 +34,15 @@ from simulator.scenario import read_scenario
 from simulator.session import Session
 from simulator.settings import Settings
 from simulator.trial import scenarios_in
+from simulator.warming import warm_all
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
-WARMING = ("go_round_square", "push_l_tight_door", "push_square_corner")  # together they call every kernel
+WARMING = (
+    "go_round_square",
+    "push_l_tight_door",
+    "push_square_corner",
+    "push_brick_regrasp",
+)  # these call every kernel
 BOUND = 2.0  # processor seconds that no command may take
 LISTED = 10  # of the longest commands are listed
 
@@ -119,8 +125,9 @@ def _worlds(given: argparse.Namespace, scratch: Path) -> Iterator[Path]:
 
 def warm() -> None:
     """Compile or load the kernels, which the runs then find in the process that they are forked from."""
-    for name in WARMING:
-        run_here(Run(EXAMPLES / name, 0.0, 1, 40, False), lambda _: None)
+    warm_all()
+    for name, noise in product(WARMING, (0.0, 0.02)):
+        run_here(Run(EXAMPLES / name, noise, 1, 20, False), lambda _: None)
 
 
 def bounded(run: Run, seconds: int) -> Row:

@@ -150,10 +150,10 @@ def halted_elsewhere(surprise: Surprise) -> list[HaltedElsewhere]:
 
 def _halts(surprise: Surprise, lattice: Lattice) -> Iterator[tuple[Supposed, float]]:
     """How a push may have been stopped on a lattice on which nothing contradicts then, with how likely that was."""
-    under = surprise.laid(lattice)
-    place, polygon, motion = surprise.begun(lattice)
+    under = surprise.laid(lattice, whether=True)
     if under.misfits:
         return
+    place, polygon, motion = surprise.begun(lattice)
     held, hindrances = (exactly(lattice),), Hindrances(under.evidence, place, polygon, motion)
     for stop in likeliest(hindrances.stops(place, polygon, motion)):
         end = part_way(place, polygon, motion, stop.part, stop.against)

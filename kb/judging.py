@@ -15,8 +15,8 @@ from kb.holding import Holding
 from kb.loads import Load, borne_out
 from kb.plainness import UNTRIED
 from kb.recalling import Recalled, recalled, recalled_elsewhere
-from kb.relaying import relaid
-from kb.supposing import Surprise, clashes, laid_on
+from kb.relaying import Layings, relaid
+from kb.supposing import Surprise, clashes
 
 MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are blamed for what contradicts
 HOPELESS = 18  # times that nothing else explained it better before nothing more is tried that takes as long
@@ -174,7 +174,7 @@ class Judging(Holding):
         if chosen.retold is not None or len(loads) < len(self.loads):
             under = relaid(chosen.lattice, self.lattice, self.looks, loads.values())
         else:
-            under = laid_on(chosen.lattice, self.lattice, self.evidence, self.looks, loads)
+            under = Layings(self.lattice, self.evidence, self.looks, loads).on(chosen.lattice)
         if under.evidence is not self.evidence:
             self.barred, self.suspected, self.pictures = set(), set(), None
         self.lattice, self.evidence, self.loads = chosen.lattice, under.evidence, dict(under.loads)

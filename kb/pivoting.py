@@ -22,7 +22,9 @@ from kb.suspecting import near
 COARSE = 0.5  # squares that a thing goes in parts of a turn that are tried first
 CUTS = 4  # parts of either side of his square that are tried first
 EIGHTS = (2, 2, 2)  # into which a part is cut
-MOST_PARTS = 2048  # that are tried at once: about a second of work
+MOST_PARTS = 2048
+# Parts that are held against a look in one go. It bounds the work of a command by a count: each costs one comparison
+# of a look with the map. Nothing is given up where there are more: the larger parts stay, which are less exact.
 FINER = 2  # times that parts are cut in half
 UNLIKELIER = 10  # times that what may have stopped a thing is less likely than what is likeliest, at most
 Span = tuple[float, float]
@@ -99,6 +101,9 @@ def _halted(surprise: Surprise, room: Box) -> list[Supposed]:
 def _ended(surprise: Surprise, part: Part, length: float) -> Supposed:
     """What contradicts that he woke in a part of his square, and that a turn ended in a part of it."""
     lattice = Lattice(surprise.lattice.angle, part.woke)
+    refused = surprise.refused(lattice, (exactly(lattice),))
+    if refused is not None:
+        return refused
     place, polygon, motion = surprise.begun(lattice)
     outcome = part_way(place, polygon, motion, sum(part.turn) / 2)
     return surprise.judged(lattice, (exactly(lattice),), outcome, _slack(part, length), part.far, whether=True)

@@ -8,7 +8,6 @@ import itertools
 import math
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import replace
-from functools import partial
 from typing import NamedTuple
 
 from geometry.contact import Body, Obstacles
@@ -107,7 +106,9 @@ def _held_then(motion: Moved, surprise: Surprise) -> bool:
 def _otherwise(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
     """What else may have come of one motion."""
     looks, lattice = surprise.looks, surprise.lattice
-    believed = looks[motion.number].place
+    believed, first = looks[motion.number].place, surprise.prefixes.of(motion.number)
+    if first.contradicted:  # whatever came of the motion
+        return
     way = Walk(motion, lattice, looks) if motion.load is None else Haul(motion, surprise)
     judged: dict[Place, Relaid | None] = {}  # by the shift
     for end in way.ends:
@@ -116,7 +117,6 @@ def _otherwise(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
             continue
         anew, correction = _corrected(surprise, motion, end)
         if shift not in judged:
-            first = partial(surprise.prefixes.of, motion.number)
             judged[shift] = agreed(lattice, anew.looks, anew.loads.values(), anew.unsettled, begun=first)
         under = judged[shift]
         if under is None or under.misfits:

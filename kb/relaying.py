@@ -18,7 +18,7 @@ from geometry.components import components, edged
 from geometry.rigid import Rotate, Translate
 from geometry.template import fit_shapes
 from kb.evidence import FREE, FULL, OPEN, Evidence
-from kb.heading import Laid, Look
+from kb.heading import Laid, Look, fallen
 from kb.insets import Insets
 from kb.lattice import Lattice
 from kb.loads import Load, covered, discounted, is_whole, whole
@@ -34,12 +34,14 @@ STEPS = sorted(((x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)), key=lambda step
 class Relaid(NamedTuple):
     """What all looks say on a lattice.
 
-    loads : as they lie after the last look, by name. misfits : fields that contradict it.
+    loads : as they lie after the last look, by name. misfits : fields that contradict it. cut : were looks left out,
+    as the first of them were contradicted? Then the loads are left out, too, and misfits may be too few, though not 0.
     """
 
     evidence: Evidence
     loads: Mapping[str, Load]
     misfits: int
+    cut: bool = False
 
 
 def laid(load: Load, lattice: Lattice) -> Laid:
@@ -64,9 +66,14 @@ class Replay:
         other._evidence, other._taken = self._evidence.copy(), dict(self._taken)
         return other
 
-    def go_on(self, looks: Sequence[Look], loads: Mapping[str, Load], to: int) -> "Replay":
-        """Take in the looks before that number; what was taken in already must be the first of them."""
+    def go_on(self, looks: Sequence[Look], loads: Mapping[str, Load], to: int, whether: bool = False) -> "Replay":
+        """Take in the looks before that number; what was taken in already must be the first of them.
+
+        whether : it is asked only whether anything contradicts: then no looks are taken in after the first that do.
+        """
         for number in range(self.number, to):
+            if whether and self._misfits:
+                break
             self._take([load for load in loads.values() if load.since == number], number)
             look = looks[number]
             moved = [(self._taken[was.name], was) for was in look.moved if was.name in self._taken]
@@ -77,12 +84,19 @@ class Replay:
             self._evidence.look(*freed, x, y, number)
             if number == 0:
                 self._evidence.stand(x, y, 0)
-        self.number = to
+            self.number = number + 1
         return self
 
-    def end(self, looks: Sequence[Look], loads: Mapping[str, Load]) -> Relaid:
-        """What all looks say in the end. It cannot be gone on with."""
-        self.go_on(looks, loads, len(looks))
+    @property
+    def contradicted(self) -> bool:
+        """Does anything contradict the lattice, of the looks that were taken in?"""
+        return self._misfits > 0
+
+    def end(self, looks: Sequence[Look], loads: Mapping[str, Load], whether: bool = False) -> Relaid:
+        """What all looks say in the end. It cannot be gone on with. whether : as for `go_on`."""
+        self.go_on(looks, loads, len(looks), whether)
+        if whether and self._misfits:
+            return Relaid(self._evidence, {}, self._misfits, cut=True)
         self._take([load for load in loads.values() if load.since >= len(looks)], len(looks))
         now = {name: _carried(self._taken[name], load, laid(load, self.old), self.new) for name, load in loads.items()}
         return Relaid(self._evidence, now, self._misfits)
@@ -98,15 +112,55 @@ class Replay:
 
 
 def relaid(
-    new: Lattice, old: Lattice, looks: Sequence[Look], loads: Iterable[Load], begun: Replay | None = None
+    new: Lattice,
+    old: Lattice,
+    looks: Sequence[Look],
+    loads: Iterable[Load],
+    begun: Replay | None = None,
+    whether: bool = False,
 ) -> Relaid:
     """All that was seen, and where the loads are, if the lattice lies otherwise.
 
     old : the lattice on which the loads lie. begun : the first of the looks, taken in already, with loads taken as
-    these were.
+    these were. whether : it is asked only whether anything contradicts; if so, what is told is cut.
     """
     replay = Replay(new, old) if begun is None else begun.copy()
-    return replay.end(looks, {load.name: load for load in loads})
+    return replay.end(looks, {load.name: load for load in loads}, whether)
+
+
+class Layings:
+    """What all looks say on any lattice.
+
+    Lattices on which every look falls on the same squares are told the same: all is laid on the first of them that is
+    asked for, and on the others things are only shifted.
+    lattice, evidence, loads : as they are believed.
+    """
+
+    def __init__(self, lattice: Lattice, evidence: Evidence, looks: Sequence[Look], loads: Mapping[str, Load]) -> None:
+        self._lattice, self._looks, self._loads = lattice, looks, loads
+        believed = Relaid(evidence, loads, 0)
+        self._known: dict[tuple[int, bytes], tuple[Lattice | None, Relaid]] = {self._fallen(lattice): (None, believed)}
+        self._on: dict[Lattice, Relaid] = {}
+
+    def on(self, lattice: Lattice, whether: bool = False) -> Relaid:
+        """What they say on a lattice. whether : as for `relaid`."""
+        if lattice not in self._on or (self._on[lattice].cut and not whether):
+            self._on[lattice] = self._laid(lattice, whether)
+        return self._on[lattice]
+
+    def _laid(self, lattice: Lattice, whether: bool) -> Relaid:
+        fallen_ = self._fallen(lattice)
+        if fallen_ not in self._known or (self._known[fallen_][1].cut and not whether):
+            found = relaid(lattice, self._lattice, self._looks, self._loads.values(), whether=whether)
+            self._known[fallen_] = lattice, found
+        first, under = self._known[fallen_]
+        if lattice == first or under.cut:
+            return under
+        loads = {name: shifted(load, lattice, first or self._lattice) for name, load in under.loads.items()}
+        return under._replace(loads=loads)
+
+    def _fallen(self, lattice: Lattice) -> tuple[int, bytes]:
+        return lattice.angle, fallen(lattice, self._looks).tobytes()
 
 
 class Prefixes:

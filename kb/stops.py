@@ -266,7 +266,7 @@ def retold_both(motion: Moved, newest: Moved, hypothesis: Hypothesis, looks: Seq
     for end in walk.ends[:-1]:
         correction = Correction(motion.number, (end.place[0] - believed[0], end.place[1] - believed[1]))
         there = correction.looks(before)
-        so_far = agreed(lattice, there, recent=MEMORY)
+        so_far = agreed(lattice, there, recent=MEMORY, whether=False)
         if so_far is None or walk.ahead(end, so_far.evidence) == FREE:
             continue
         onward = Walk(newest, lattice, [*there, looks[-1]])
@@ -285,15 +285,17 @@ def agreed(
     loads: Iterable[Load] = (),
     unsettled: Sequence[Disc] = (),
     recent: int = MEMORY + 1,
-    begun: Callable[[], Replay] | None = None,
+    begun: Replay | None = None,
+    whether: bool = True,
 ) -> Relaid | None:
     """What all looks say on the lattice on which the loads lie; None when two of the last contradict each other.
 
     unsettled : where looks need not agree. recent : how many of them are compared. begun : the first, taken in already.
+    whether : as for kb.relaying.relaid.
     """
     if not _agree(lattice, fallen(lattice, looks), stacked(looks), unsettled, recent):
         return None
-    return relaid(lattice, lattice, looks, loads, begun and begun())
+    return relaid(lattice, lattice, looks, loads, begun, whether)
 
 
 def _agree(

@@ -18,11 +18,11 @@ from geometry.rigid import Motion, Rotate, Translate
 from kb.body import Command, Move, Push, Turn
 from kb.evidence import Evidence
 from kb.hauling import STRIDE, Outcome, arrested, otherwise, predicted
-from kb.heading import Disc, Hypothesis, Look, cells, fallen, search
+from kb.heading import Disc, Hypothesis, Look, cells, search
 from kb.lattice import Lattice
 from kb.loads import Load, discounted
 from kb.picturing import Pictures
-from kb.relaying import Prefixes, Relaid, relaid, shifted
+from kb.relaying import Layings, Prefixes, Relaid
 from kb.suspecting import Hindrances
 
 Place = tuple[float, float]
@@ -138,6 +138,8 @@ class Surprise:
         cut_short : the motion may have ended early, for whatever reason. far : squares from where he woke, at most.
         whether : as for `judged`.
         """
+        if whether and (refused := self.refused(lattice, hypotheses)) is not None:
+            return refused._replace(searched=searched)
         if self.moving is None:  # it went as said
             place = lattice.place_from_utak(*self.own)
             misfits = self._misfits(lattice, self.laid(lattice).loads.values(), place, far, whether)
@@ -149,6 +151,12 @@ class Surprise:
             if not tried[-1].misfits:
                 break
         return min(tried, key=lambda one: one.misfits)
+
+    def refused(self, lattice: Lattice, hypotheses: tuple[Hypothesis, ...]) -> Supposed | None:
+        """That earlier looks contradict a lattice, whatever came of the motion; None when none does."""
+        misfits = self.laid(lattice, whether=True).misfits
+        place = lattice.place_from_utak(*self.own)
+        return Supposed(lattice, hypotheses, place, None, misfits, False) if misfits else None
 
     def judged(
         self,
@@ -187,15 +195,13 @@ class Surprise:
         place = lattice.place_from_utak(*self.lattice.place_to_utak(*self.place))
         return place, self.laid(lattice).loads[held].polygon, as_motion(command, lattice, place)
 
-    def laid(self, lattice: Lattice) -> Relaid:
-        """What all looks say on a lattice; worked out once for each."""
-        if lattice not in self._known:
-            self._known[lattice] = laid_on(lattice, self.lattice, self.evidence, self.looks, self.loads)
-        return self._known[lattice]
+    def laid(self, lattice: Lattice, whether: bool = False) -> Relaid:
+        """What all looks say on a lattice. whether : as for kb.relaying.relaid."""
+        return self._layings.on(lattice, whether)
 
     @cached_property
-    def _known(self) -> dict[Lattice, Relaid]:
-        return {}
+    def _layings(self) -> Layings:
+        return Layings(self.lattice, self.evidence, self.looks, self.loads)
 
     def _outcomes(self, lattice: Lattice, cut_short: bool) -> Iterator[Outcome]:
         """The motion, as far as what is known to stand in the way lets it go; and as it was commanded."""
@@ -248,24 +254,14 @@ def agreeing(
     lattice, place, evidence, loads : as they are believed, the motion before the look included.
     """
     own, far = lattice.place_to_utak(*place), math.hypot(*cells(hypotheses)) / 2
-    agree = []
+    agree, layings = [], Layings(lattice, evidence, looks, loads)
     for hypothesis in hypotheses:
         other = hypothesis.lattice
-        under = laid_on(other, lattice, evidence, looks, loads)
+        under = layings.on(other)
         lying = [load.woken(far) for load in under.loads.values()]
         if not clashes(other, under.evidence, lying, other.place_from_utak(*own), ranges):
             agree.append(hypothesis)
     return tuple(agree or hypotheses)
-
-
-def laid_on(new: Lattice, old: Lattice, evidence: Evidence, looks: Sequence[Look], loads: Mapping[str, Load]) -> Relaid:
-    """What all looks say, and where the loads are, on another lattice.
-
-    old, evidence : what is believed. Where every look falls on the same squares all that stands says the same.
-    """
-    if new.angle == old.angle and (fallen(new, looks) == fallen(old, looks)).all():
-        return Relaid(evidence, {name: shifted(load, new, old) for name, load in loads.items()}, 0)
-    return relaid(new, old, looks, loads.values())
 
 
 def as_motion(command: Push | Turn, lattice: Lattice, place: Place) -> Motion:

@@ -130,7 +130,7 @@ def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Landing:
         goals = [_pressed(end), replace(close, press=ABOUT), replace(end, slack=FLUSH, press=1.0)]
         goal = next((one for one in goals if not lands(one, shape)), goals[-1])
         holds = _surely(end, node, shape) or lands(goals[-1], shape)
-        return Landing({side: goal}, holds=holds, presses=_presses(end, shape) if holds else {})
+        return Landing({side: goal}, holds=holds, presses=_presses(end, node, shape) if holds else {})
     x0, y0, x1, y1 = placed(shape, Pose(0.0, 0.0, -node.turned % 90.0)).bounds
     near, far = sorted((x1 - x0, y1 - y0))
     flat = replace(close if node.inexact else end, within=(near + LEANING, far + LEANING))
@@ -165,13 +165,14 @@ def _pressed(end: InCorner) -> InCorner:
     return replace(end, slack=end.slack - PRESS, press=PRESS)
 
 
-def _presses(end: InCorner, shape: Any) -> Mapping[str, Translate]:
-    """Pushes towards the walls of a corner that something does not seem to touch, as far as these may be away.
+def _presses(end: InCorner, node: Node, shape: Any) -> Mapping[str, Translate]:
+    """Pushes towards the walls of a corner that something may not touch, as far as these may be away.
 
-    A wall lies anywhere in the squares in which it was seen. What lies right beside these is within a square of it,
-    wherever it is; with a part of a square free in between it may not be.
+    A wall lies anywhere in the squares in which it was seen, and a side that is not told lies anywhere in its own. What
+    lies right beside these squares is within a square of the wall wherever that is, if its side is told; with a part
+    of a square free in between, by what is seen or by what is not, it may not be.
     """
-    x, y = end.gaps(shape.bounds)
+    x, y = (gap + far for gap, far in zip(end.gaps(shape.bounds), _further_in(end, node), strict=True))
     pushes = {"across": (x, Translate(end.sx * (x + WALL), 0.0)), "up": (y, Translate(0.0, end.sy * (y + WALL)))}
     return {name: push for name, (gap, push) in pushes.items() if gap > FLUSH}
 

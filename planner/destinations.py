@@ -85,13 +85,15 @@ class Situation:
         """The doors that "utak" or a node may not go through by the constraints of the task.
 
         A thing that may not go through a door is kept from all that may be doors: which one is meant nothing tells.
-        Utak is kept from one door that he has not gone through; while none is sure, from all that may be one.
+        Utak is kept from one door that he has not gone through; while none is sure, from all that may be one, however
+        unlikely: once he has gone through it nothing makes up for that.
         """
         meant = {self.binding.get(str(goal.args[0]), str(goal.args[0])) for goal in constraints(self.task)}
         if who not in meant:
             return ()
-        likely = tuple(door for door in self.rooms.doors if door.likely)
-        return self.avoided[:1] or likely if who == "utak" else likely
+        if who == "utak":
+            return self.avoided[:1] or self.rooms.doors
+        return tuple(door for door in self.rooms.doors if door.likely)
 
     @cached_property
     def avoided(self) -> tuple[Door, ...]:

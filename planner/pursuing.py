@@ -112,7 +112,7 @@ class Pursuer:
         assert reached is not None
         straight = None if fewest is None else fewest.way(aim)
         way = None if straight is None else self.choose([straight], situation)
-        way = way or self._kept.rest(aim, reached.level, model, screens)
+        way = way or self._rest(aim, reached.level, situation)
         way = way or self.choose(ways(screens, reached.level, aim.squares, self._paths), situation)
         if way is None:
             return Decision(None, f"{stage} cannot be attained: every way there is forbidden", "impossible")
@@ -120,6 +120,11 @@ class Pursuer:
         kind = aim.kind if straight is not None or reached.level == 0 else "pass"
         move = next_move(screens, way.squares, kind, pace=STROLL if fewest is None else HURRY)
         return Decision(move, f"{aim.what}; {stage}")
+
+    def _rest(self, aim: Aim, level: int, situation: Situation) -> Way | None:
+        """Return what is left of the way that he is on, if it leads to an aim and through no forbidden door."""
+        rest = self._kept.rest(aim, level, situation.model, situation.screens)
+        return self.choose([rest], situation) if rest is not None and situation.forbidden("utak") else rest
 
     def keep(self, way: Way, model: WorldModel, towards: Squares | None = None) -> None:
         """Remember the way that he is on. towards : flat indices of the squares aimed at; None when none is."""
@@ -131,5 +136,4 @@ class Pursuer:
             return None
         before = frozenset(self._kept.path(situation.model))
         forbidden = frozenset(door.name for door in situation.forbidden("utak"))
-        doors = [door for door in situation.rooms.doors if door.likely]
-        return choose_way(offered, situation.screens, before, doors, forbidden)
+        return choose_way(offered, situation.screens, before, situation.rooms.doors, forbidden)

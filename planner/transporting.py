@@ -23,6 +23,7 @@ from planner.joint import conflict
 from planner.landing import landing
 from planner.lying import Landing, can_leave, in_view, lands_in_one
 from planner.open_facts import verdict_if_missing
+from planner.pressing import Presser
 from planner.pursuing import Pursuer
 from planner.refusing import Refusal
 from planner.searching import aims_towards
@@ -43,7 +44,7 @@ class Transporter:
         self.beginnings = Beginnings()
         self.sizer = Sizer()
         self._looked = 0  # squares he had looked from when he went to see where it must end, until it is one more
-        self._pressed: set[tuple[str, str]] = set()  # things and their presses, since one was pushed otherwise
+        self.presser = Presser()
         self._led_along = False  # has he taken along what shut him in, to look?
 
     def towards(self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciled) -> Decision | None:
@@ -52,6 +53,8 @@ class Transporter:
         node = situation.model.object(situation.binding.get(x, ""))
         if node is None:
             return self._found(x, stage, situation, reconciled)
+        if node.polygon is not None and self.presser.is_pressed(goal, node, situation):
+            return self._pressed_on(node, stage, situation)
         look = self._clear(node, stage, situation)
         if look is not None:
             return look
@@ -65,8 +68,8 @@ class Transporter:
                 return Decision(None, why, "limit")
             if self.beginnings.left(x, node, situation) and situation.forbidden(node.name):
                 return Decision(None, f"{stage} holds, but {node.name} went through a door that it may not", "limit")
-            press = self._pressed_on(node, land, stage, situation)
-            return press or (self._led_out(node, stage, situation) if stage.goes_on else None)
+            self.presser.begin(goal, node, land, situation)
+            return self._pressed_on(node, stage, situation)
         advice = self._advice(node, land, situation)
         if isinstance(advice, Refusal) and land.loose:
             if lands_in_one(land.loose, in_view(node.polygon, situation)):
@@ -157,7 +160,7 @@ class Transporter:
             if look is not None:
                 return look
         if isinstance(advice.command, Push | Turn):
-            self._pressed.clear()
+            self.presser.forget()
         return Decision(advice.command, f"{advice.why}; {stage}")
 
     def _missing(
@@ -234,16 +237,15 @@ class Transporter:
             return None if walk.command is None else walk
         return self._led(advice, aim.what, stage, situation)
 
-    def _pressed_on(self, node: Node, land: Landing, stage: Stage, situation: Situation) -> Decision | None:
-        """The push by which what he holds comes to touch a wall that may be further away; None when it touches all."""
-        for name, push in land.presses.items() if situation.model.held == node.name else ():
-            if (node.name, name) not in self._pressed:
-                self._pressed.add((node.name, name))
-                why = f"{node.name} is pressed against the wall, to be sure that it is there"
-                act = Act(Push(*situation.model.lattice.to_utak(push.dx, push.dy)), why, push)
-                self.carrier.depart(act)
-                return Decision(act.command, f"{act.why}; {stage}")
-        return None
+    def _pressed_on(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
+        """The next push by which what he holds comes to touch a wall that may be further away, or what is left to do
+        when it touches all; None when that is nothing.
+        """
+        act = self.presser.next(node, situation.model)
+        if act is None:
+            return self._led_out(node, stage, situation) if stage.goes_on else None
+        self.carrier.depart(act)
+        return Decision(act.command, f"{act.why}; {stage}")
 
     def _led_out(self, node: Node, stage: Stage, situation: Situation, shut_in: bool = False) -> Decision | None:
         """The push by which what he holds no longer shuts him in, to take it otherwise; None when it does not, or where
@@ -252,6 +254,7 @@ class Transporter:
         out = self.carrier.led_out(node, situation) if shut_in or not can_leave(node, situation) else None
         if out is None:
             return None
+        self.presser.forget()
         self.carrier.depart(out)
         return Decision(out.command, f"{out.why}; {stage}")
 

@@ -137,13 +137,19 @@ def tell_counts() -> None:
     """Settle what counts settle."""
     import numpy as np
 
+    from geometry.contradicting import contradicting
     from geometry.settling import misfits, residue, settle
+    from geometry.uncovering import uncover
 
     where, one = np.zeros((1, 2), np.int32), np.ones(1, np.int16)
     fields = where, np.array([[1, 0]], np.int16), one, one
     settle(np.full(1, -1, np.int8), np.full(1, -1, np.int16), *fields, np.ones(1, np.bool_), 0)
     misfits(np.ones(1, np.int8), *fields, np.zeros(1, np.bool_))
     residue(np.ones(1, np.int8), *fields)
+    field, ranges, mask = np.zeros((1, 1), np.int32), np.zeros((1, 1, 2), np.int16), np.ones((1, 1), np.bool_)
+    weight = np.ones((1, 1), np.int16)
+    contradicting(field, field, weight, one, np.zeros((1, 2), np.int64), ranges, np.zeros((0, 3)))
+    uncover(field, field, weight, ranges[0], mask, mask, 0, 0, 0, 0)
 
 
 def sightlines() -> None:
@@ -198,13 +204,20 @@ def survey() -> None:
 
 
 def walk() -> None:
-    """Run against something."""
+    """Run against something, go straight, and go round something."""
+    import numpy as np
     import shapely
 
     from geometry.contact import Body, Obstacles
     from geometry.digital import squares
     from geometry.rigid import Translate
+    from geometry.straight import straight
+    from geometry.winding import winding_way
 
+    free = np.ones((3, 3), np.bool_)
+    free[1, 1] = False
+    straight(free, 0, 0, 2)
+    winding_way(free, (0, 0), (0, 0), (1.5, 1.5), 1)
     squares(shapely.box(0, 0, 1, 1), 1, 1)
     Obstacles([shapely.box(10, 0, 11, 5)]).first_contact(Body(None, [(4.0, 1.0)]), Translate(8.0, 0.0))
 
@@ -219,7 +232,9 @@ def carry() -> None:
     from geometry.rigid import Rotate
 
     body = Body(shapely.box(1, 1, 3, 3), [(4.0, 1.0)])
-    Obstacles([shapely.box(10, 0, 11, 5)]).first_contact(body, Rotate(30.0, (4.0, 1.0)))
+    wall = Obstacles([shapely.box(10, 0, 11, 5)])
+    wall.first_contact(body, Rotate(30.0, (4.0, 1.0)))
+    wall.pushes(body, np.array([[1.0, 0.0]]))
     free = np.ones((6, 16), np.bool_)
     plan_carrying(shapely.box(3, 2, 5, 3), free, (1.5, 1.5), Inside(shapely.box(10, 0, 16, 6)))
 

@@ -16,8 +16,10 @@ from benchmarks.claims.asked import Asked, written
 from benchmarks.claims.refute import Countersearch, refuted, searched, trespassed
 from benchmarks.claims.row import ERROR, TIME, Row
 from benchmarks.judging import ROOT, judge_path
+from simulator.warming import warm_all
 from utak_command import beside
 
+WARMING = (5, 9)  # tasks: walking, and carrying
 WALL = 6  # times the processor seconds that a run may take by the clock: other programs may be at work as well
 JUDGING = 300  # seconds
 ERRORS = "stderr.txt"
@@ -107,11 +109,13 @@ def run_world(asked: Asked, limits: Limits, folder: Path, keep: Path | None = No
 
 
 def warm_up(folder: Path) -> None:
-    """Run one world without limits, so that kernels are compiled and cached before any clock runs."""
-    place = folder / "warming-up"
-    written(Asked("own_plain", 0, 5), place)
-    run_child(place, Limits(max_steps=6, seconds=0, megabytes=0))
-    shutil.rmtree(place)
+    """Compile kernels and run some worlds without limits, so that all are in the cache before any clock runs."""
+    warm_all()
+    for task in WARMING:
+        place = folder / f"warming-up-{task}"
+        written(Asked("own_wide", 0, task), place)
+        run_child(place, Limits(max_steps=20, seconds=0, megabytes=0))
+        shutil.rmtree(place)
 
 
 def _cycles(place: Path) -> list[float]:

@@ -84,8 +84,8 @@ def test_what_no_goal_names_takes_nothing_away(
     claims = [Claim(symbol(c.fact.name, f"{c.fact.args[0]}0", str(c.fact.args[1])), c.confidence) for c in more.claims]
     larger = Task({**wanted.parameters, **besides}, (*wanted.claims, *claims), wanted.goals)
     alone, beside = (reconcile(t, model, far, {}) for t in (wanted, larger))
-    assert len(beside.hypothesised) == len(alone.hypothesised)  # which of equals is bound is open
-    assert len([x for x in beside.binding if x in wanted.parameters]) == len(alone.binding)
+    assert beside.hypothesised == alone.hypothesised
+    assert {x for x in beside.binding if x in wanted.parameters} == set(alone.binding)
     one, other = (sum(far[r.binding[x]] for x in wanted.parameters if x in r.binding) for r in (alone, beside))
     assert one == other
 

@@ -11,7 +11,7 @@ from shapely.affinity import rotate, translate
 from kb.heading import Laid, Look
 from kb.lattice import CENTRE, Lattice
 from kb.loads import Load, whole
-from kb.relaying import Prefixes, laid, relaid, shifted
+from kb.relaying import Layings, Prefixes, laid, relaid, shifted
 from kb.retina import count_ranges
 from tests.kb.eyes import Occupied, retina, world_of
 
@@ -162,3 +162,43 @@ def test_looks_that_are_taken_in_already_need_not_be_taken_in_again(number: int)
         assert (found.evidence.logit == at_once.evidence.logit).all()
         assert found.misfits == at_once.misfits
         assert found.loads["o1"].polygon.equals(at_once.loads["o1"].polygon)
+
+
+def test_who_asks_whether_looks_contradict_is_told_so_at_the_first_that_does() -> None:
+    start, thing = (9.5, 9.5), translate(ELL, 11, 8)
+    looks, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
+    empty = looks[0].ranges * 0
+    contradicted = [looks[0], looks[0]._replace(ranges=empty, moved=()), *looks[1:]]
+    in_full = relaid(new, new, contradicted, [load])
+    cut = relaid(new, new, contradicted, [load], whether=True)
+    assert 0 < cut.misfits <= in_full.misfits
+    assert (cut.cut, in_full.cut) == (True, False)
+    agreeing, at_once = relaid(new, new, looks, [load], whether=True), relaid(new, new, looks, [load])
+    assert not agreeing.misfits and not agreeing.cut
+    assert (agreeing.evidence.state == at_once.evidence.state).all()
+
+
+@pytest.mark.parametrize("aside", [0.3, -0.3])
+def test_lattices_on_which_looks_fall_alike_are_told_the_same(aside: float) -> None:
+    start, thing = (9.5, 9.5), translate(ELL, 11, 8)
+    looks, load, believed, _ = carried(thing, _felt(thing, start, 0), start, 0)
+    looks = [look._replace(place=(look.place[0] + 0.1, look.place[1])) for look in looks]
+    evidence = relaid(believed, believed, looks, [load]).evidence
+    layings = Layings(believed, evidence, looks, {"o1": load})
+    one, other = (Lattice(3, (CENTRE[0] + part, CENTRE[1])) for part in (aside, aside * 1.01))
+    assert layings.on(believed).evidence is evidence
+    found = layings.on(one)
+    assert found.evidence is not evidence
+    assert layings.on(other).evidence is found.evidence
+    assert (found.evidence.state == relaid(one, believed, looks, [load]).evidence.state).all()
+
+
+def test_what_was_cut_is_laid_in_full_when_more_is_asked() -> None:
+    start, thing = (9.5, 9.5), translate(ELL, 11, 8)
+    looks, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
+    contradicted = [looks[0], looks[0]._replace(ranges=looks[0].ranges * 0, moved=()), *looks[1:]]
+    layings = Layings(new, relaid(new, new, contradicted, [load]).evidence, contradicted, {"o1": load})
+    askew = Lattice(5)
+    assert layings.on(askew, whether=True).cut
+    assert layings.on(askew).loads.keys() == {"o1"}
+    assert not layings.on(askew, whether=True).cut

@@ -1,6 +1,7 @@
 """Doors that the task forbids: which one is meant, and whether it was gone through."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from kb.task import Task
 from planner.destinations import Situation
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
+from tests.planner.test_carrying import run, scene
 from tests.planner.test_landing import facts_of
 
 DOOR = Door("d1", (5.0, 2.0), (5.0, 5.0), (1, 2), 99)
@@ -58,7 +60,7 @@ def test_one_door_is_meant_and_others_may_be_used() -> None:
 
 def test_while_no_door_is_sure_none_may_be_used() -> None:
     assert names(situation(TWO_DOORS, 40).forbidden("utak")) == ["d1", "d2"]
-    assert names(situation(TWO_DOORS, 10).forbidden("utak")) == []  # those are hardly doors
+    assert names(situation(TWO_DOORS, 10).forbidden("utak")) == ["d1", "d2"]  # however unlikely
 
 
 def test_the_door_that_was_gone_through_is_not_the_one_that_is_meant() -> None:
@@ -75,3 +77,34 @@ def test_the_door_that_was_gone_through_is_not_the_one_that_is_meant() -> None:
 
 def test_who_is_not_forbidden_a_door_may_use_it() -> None:
     assert replace(situation(ONE_DOOR, 99), task=Task({}, (), ())).forbidden("utak") == ()
+
+
+def two_rooms(door: tuple[int, int], mirrored: bool) -> str:
+    """A world of two rooms one above the other and a door between them, from one x to another; or its mirror image."""
+    across = [
+        (23, 21),
+        (door[1], 21),
+        (door[1], 23),
+        (23, 23),
+        (23, 43),
+        (2, 43),
+        (2, 23),
+        (door[0], 23),
+        (door[0], 21),
+    ]
+    ring = [*across, (2, 21), (2, 2), (23, 2)]
+    utak = (14.5, 29.5)
+    if mirrored:
+        ring, utak = [(25 - x, y) for x, y in ring], (25 - utak[0], utak[1])
+    hole = ", ".join(f"{x} {y}" for x, y in [*ring, ring[0]])
+    verge = f'verge("POLYGON ((0 0, 25 0, 25 45, 0 45, 0 0), ({hole}))").'
+    return f'table(25, 45).\n{verge}\nutak("POINT ({utak[0]} {utak[1]})", 270).\n'
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("door", [(5, 10), (8, 11), (16, 20)])
+def test_the_only_door_is_never_gone_through(door: tuple[int, int], mirrored: bool, tmp_path: Path) -> None:
+    goals = "in(utak, room(next)). not_through(utak, d)."
+    found = run(scene(tmp_path, two_rooms(door, mirrored), "door(d).", goals))
+    assert found.result.verdict == "possible_if" and "forbidden" in found.result.reason
+    assert found.session.table.utak[1] > 22.0

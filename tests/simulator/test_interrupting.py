@@ -26,6 +26,14 @@ from simulator.story import Story, open_story
 ROOT = Path(__file__).resolve().parents[2]
 
 
+@pytest.fixture(autouse=True)
+def ctrl_c_interrupts() -> Iterator[None]:
+    """Ctrl-C interrupts, also where the tests run in the background of a shell that shields them from it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.fixture
 def scripted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every run is the scripted robot's."""
@@ -174,8 +182,8 @@ def test_ctrl_c_soon_after_the_start_is_no_traceback(tmp_path: Path) -> None:
     """From the first line of ours on; what Python says before that is not ours."""
     folder = write_scene(tmp_path / "s", 1)
     code = (
-        "import sys, os; sys.argv = ['utak', 'run', sys.argv[1]]; print(flush=True); "
-        f"sys.path.insert(0, {str(ROOT)!r}); from utak_command import main; sys.exit(main())"
+        f"import sys, os; sys.argv = ['utak', 'run', sys.argv[1]]; sys.path.insert(0, {str(ROOT)!r}); "
+        "from utak_command import main; print(flush=True); sys.exit(main())"
     )
     for milliseconds in (15, 40, 80, 150, 300):
         command = [sys.executable, "-c", code, str(folder)]
