@@ -16,6 +16,7 @@ READ = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) 
 WRITE = os.O_RDWR | os.O_CREAT | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
 PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of Linux's prctl
 KILL = 9
+PIECE = 65536  # bytes that are read at once, as many as a pipe holds
 
 
 def _optional(name: str) -> ModuleType | None:
@@ -91,9 +92,13 @@ def lines_of_parent() -> Iterator[bytes]:
     lines: queue.SimpleQueue[bytes] = queue.SimpleQueue()
 
     def watch() -> None:
-        with suppress(OSError, ValueError):
-            for line in sys.stdin.buffer:
-                lines.put(line)
+        rest = b""
+        with suppress(OSError):
+            # Not through sys.stdin: Python aborts when it ends while a thread waits with the lock of that.
+            while piece := os.read(0, PIECE):
+                *whole, rest = (rest + piece).split(b"\n")
+                for line in whole:
+                    lines.put(line)
         os._exit(0)
 
     threading.Thread(target=watch, daemon=True).start()

@@ -190,3 +190,9 @@ def test_what_is_installed_for_one_user_alone_is_found_by_a_process_beside(
     utak_command.run_module(str(tmp_path), "kb.facts")
     assert find_spec("of_the_user") is not None
     assert str(ROOT) not in beside("kb.query_worker")[3].split(os.pathsep)
+
+
+def test_a_process_beside_that_has_done_its_work_ends_in_order() -> None:
+    """Its input is still open then, and a thread waits for it."""
+    with subprocess.Popen(beside("simulator.warming"), stdin=subprocess.PIPE, stderr=subprocess.PIPE) as worker:
+        assert worker.wait(30) == 0, worker.stderr and worker.stderr.read().decode()
