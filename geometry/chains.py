@@ -54,17 +54,3 @@ def fill(
             if k > first and k < start[chain + 1] - 1:
                 direction = onward(states[cell], direction ^ 2)
             cell += stride(direction, width)
-
-
-def crossings(chains: Chains, width: int, a: tuple[float, float], b: tuple[float, float]) -> Ints:
-    """(n, 2) the steps of chains that cross a straight line: chain, and position of the step's first cell on it."""
-    x, y = chains.cells % width - 0.5, chains.cells // width - 0.5
-    left = (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]) > 0
-    steps = np.flatnonzero(left[1:] != left[:-1])
-    chain = np.searchsorted(chains.start, steps, side="right") - 1
-    within = steps + 1 < chains.start[chain + 1]
-    steps, chain = steps[within], chain[within]
-    run, rise, u, v = x[steps + 1] - x[steps], y[steps + 1] - y[steps], x[steps], y[steps]
-    apart = (run * (a[1] - v) - rise * (a[0] - u) > 0) != (run * (b[1] - v) - rise * (b[0] - u) > 0)
-    found: Ints = np.stack([chain, steps - chains.start[chain]], axis=1)[apart].astype(np.int32)
-    return found

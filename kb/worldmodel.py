@@ -223,6 +223,11 @@ class WorldModel:
         """A point of the frame of the view's arrays, in Utak's own: east and north of where he woke."""
         return self.lattice.place_to_utak(x + self.view.west, y + self.view.south)
 
+    def point_in_words(self, place: tuple[float, float]) -> str:
+        """Return a point of the frame of the view's arrays as one of Utak's own frame, in words."""
+        east, north = self.place_to_utak(*place)
+        return f"POINT ({east:.1f} {north:.1f})"
+
     def squares(self, squares: Iterable[tuple[int, int]]) -> Mask:
         """(rows, columns): squares of the lattice on the arrays of the view."""
         mask: Mask = np.zeros(self.labels.shape, np.bool_)

@@ -317,9 +317,9 @@ def no_next_room(situation: Situation) -> str:
         return "no door is seen yet"
     woke = model.lattice.woke[0] - model.view.west, model.lattice.woke[1] - model.view.south
     where = "behind" if math.dist(woke, opening.narrow) > math.dist(woke, opening.wide) else "before"
-    east, north = model.place_to_utak(*opening.place)
+    at = model.point_in_words(opening.place)
     return (
-        f"no door is seen yet: the opening {opening.width:.1f} squares wide at POINT ({east:.1f} {north:.1f}) is none, "
+        f"no door is seen yet: the opening {opening.width:.1f} squares wide at {at} is none, "
         f"for the floor {where} it is nowhere wider than {opening.least:.1f}, less than twice as wide"
     )
 

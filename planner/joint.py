@@ -9,7 +9,7 @@ import shapely
 
 from geometry.ends import At, Between, End, InCorner, Inside, Roomy, placed
 from kb.facts import Fact
-from planner.destinations import Situation
+from planner.destinations import Situation, corner_side
 from planner.lying import Landing
 
 ROUNDING = 1e-6  # squares
@@ -36,9 +36,9 @@ def opposite_corners(goals: Sequence[Fact], situation: Situation) -> str:
 
     However much more floor becomes known, such corners only move further apart.
     """
-    wanted = {str(goal.args[1]) for goal in goals if goal.name == "at"}
+    wanted = set(map(corner_side, goals))
     for one, other in OPPOSITE:
-        if {f"corner({one})", f"corner({other})"} <= wanted:
+        if {one, other} <= wanted:
             points = (situation.corners[side].point for side in (one, other))
             (x, y), (u, v) = (situation.model.place_to_utak(*point) for point in points)
             along = abs(x - u + y - v) if one == "northeast" else abs(x - u - y + v)

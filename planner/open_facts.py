@@ -49,10 +49,10 @@ def open_fact(model: WorldModel, near: Place) -> str:
     """
     wall = _nearest(unfelt_walls(model), near)
     if wall is not None:
-        return f"the wall at {told(wall, model)}, which was never felt, is a thing that can be moved"
+        return f"the wall at {model.point_in_words(wall)}, which was never felt, is a thing that can be moved"
     unseen = _nearest(edged(model.space) & ~model.view.seen, near)
     if unseen is not None:
-        return f"the floor goes on at {told(unseen, model)}, which was never seen"
+        return f"the floor goes on at {model.point_in_words(unseen)}, which was never seen"
     whole = [node for node in model.objects if not node.moved and node.confidence >= LIKELY]
     return f"{whole[0].name}, which was never moved, is more than one thing" if whole else ""
 
@@ -87,9 +87,3 @@ def _nearest(mask: Mask, near: Place) -> Place | None:
         return None
     first = int(np.argmin((columns + 0.5 - near[0]) ** 2 + (rows + 0.5 - near[1]) ** 2))
     return columns[first] + 0.5, rows[first] + 0.5
-
-
-def told(place: Place, model: WorldModel) -> str:
-    """Return a place of the view's frame as a point of the robot's own frame, in words."""
-    east, north = model.place_to_utak(*place)
-    return f"POINT ({east:.1f} {north:.1f})"

@@ -7,7 +7,7 @@ from geometry.carrying import Carrying
 from kb.loads import is_whole
 from kb.worldmodel import Node, WorldModel
 from planner.lying import lies_askew
-from planner.open_facts import told, width_open
+from planner.open_facts import width_open
 
 Place = tuple[float, float]
 
@@ -46,7 +46,7 @@ def refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel
         passage = closest.passage
         if passage is None:
             return f"{node.name} cannot be carried there"
-        where = f"{passage.width:.2f} squares wide at {told(passage.place, model)}"
+        where = f"{passage.width:.2f} squares wide at {model.point_in_words(passage.place)}"
         if _hopeless(closest):
             return f"{node.name} cannot be carried there: even were the passage, {where}, as wide as it, it could not"
         return f"the passage for {node.name}, {where}, is too narrow by {closest.missing:.2f} squares"
@@ -56,7 +56,7 @@ def refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel
         passage = closest.passage
         if passage is None or _hopeless(closest):
             return ""
-        return width_open(passage.width, closest.missing, passage.sides, told(passage.place, model))
+        return width_open(passage.width, closest.missing, passage.sides, model.point_in_words(passage.place))
 
     return Refusal(True, reason, neck, unless)
 
