@@ -1,0 +1,125 @@
+"""Episodes before and after a change that must alter no decision: written by each checkout, then compared.
+
+    python -m benchmarks.unchanged write FOLDER [--count N] [--seed S] [--jobs J]       in each of the two checkouts
+    python -m benchmarks.unchanged compare BEFORE AFTER
+
+`write` runs all examples, and random worlds of every kind of benchmarks.odd and of the plain and the wide kind of
+benchmarks.worlds, each without noise and with noise. `compare` reads the files as JSON and leaves out `why` of the
+steps and `reason` of the result, which are sentences for people. Exits with 1 when anything else differs.
+"""
+
+import argparse
+import json
+import multiprocessing
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from benchmarks.claims.asked import Asked, all_kinds, worlds_of, written
+from simulator.episode import EpisodeLog
+from simulator.robots import make_robot
+from simulator.scenario import read_scenario
+from simulator.session import Session
+from simulator.settings import Settings
+
+EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
+NOISES = (0.0, 0.02)
+KINDS = [kind for kind in all_kinds() if kind not in ("own_snug", "own_loose")]
+Job = tuple[str | Asked, float, Path]
+
+
+def jobs_of(count: int, seed: int, folder: Path) -> Iterator[Job]:
+    """Yield each scenario and noise with the file of its episode. count : random worlds, shared among the kinds."""
+    examples: list[str | Asked] = sorted(path.parent.name for path in EXAMPLES.glob("*/goal.lp"))
+    shares = sum(9 if kind.startswith("own_") else 1 for kind in KINDS)
+    worlds = worlds_of(KINDS, seed, -(-count // shares)) if count else []
+    worlds += worlds_of([kind for kind in KINDS if not kind.startswith("own_")], seed + 500, count // 30)
+    for asked in [*examples, *worlds]:
+        name = asked if isinstance(asked, str) else asked.name.replace(":", "-")
+        for noise in NOISES:
+            yield asked, noise, folder / f"{name}-{noise}.jsonl"
+
+
+def run(job: Job) -> str:
+    """Write the episode of one job, unless it is there, and return its name."""
+    asked, noise, file = job
+    if file.exists():
+        return file.name
+    with tempfile.TemporaryDirectory() as made:
+        folder = EXAMPLES / asked if isinstance(asked, str) else Path(made)
+        if isinstance(asked, Asked):
+            written(asked, folder)
+        unfinished = file.with_suffix(".part")
+        unfinished.unlink(missing_ok=True)
+        with EpisodeLog(unfinished) as log:
+            Session(read_scenario(folder), Settings(seed=1, noise=noise), make_robot, log).run()
+        unfinished.rename(file)
+    return file.name
+
+
+def without_sentences(file: Path) -> list[str]:
+    """Return the lines of an episode without `why` and `reason`."""
+    lines = []
+    for text in file.read_text().splitlines():
+        line = json.loads(text)
+        line.pop("why", None)
+        if "result" in line:
+            line["result"].pop("reason", None)
+        lines.append(json.dumps(line))
+    return lines
+
+
+def differences(before: Path, after: Path) -> Iterator[str]:
+    """Yield a sentence for each episode that is not the same in both folders."""
+    names = {file.name for folder in (before, after) for file in folder.glob("*.jsonl")}
+    for name in sorted(names):
+        if not (before / name).exists() or not (after / name).exists():
+            yield f"{name}: in one folder only"
+            continue
+        old, new = without_sentences(before / name), without_sentences(after / name)
+        if old != new:
+            first = next((i for i, (a, b) in enumerate(zip(old, new, strict=False)) if a != b), min(len(old), len(new)))
+            yield f"{name}: differs from line {first + 1} on, of {len(old)} and {len(new)}"
+
+
+def write(given: argparse.Namespace) -> int:
+    """Run all jobs in processes beside each other."""
+    given.folder.mkdir(parents=True, exist_ok=True)
+    todo = list(jobs_of(given.count, given.seed, given.folder))
+    with multiprocessing.get_context("spawn").Pool(given.jobs) as pool:
+        for number, name in enumerate(pool.imap(run, todo), 1):
+            print(f"{number} of {len(todo)}: {name}", file=sys.stderr)
+    return 0
+
+
+def compare(given: argparse.Namespace) -> int:
+    """Print what differs and how many episodes were compared."""
+    found = list(differences(given.before, given.after))
+    for sentence in found:
+        print(sentence)
+    total = len(list(given.before.glob("*.jsonl")))
+    print(f"{total} episodes, {len(found)} not the same")
+    return 1 if found or not total else 0
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Do what the command line asks for and return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.unchanged", description=(__doc__ or "").split("\n")[0])
+    parts = parser.add_subparsers(required=True)
+    writing = parts.add_parser("write", help="run scenarios and keep their episodes")
+    writing.add_argument("folder", type=Path)
+    writing.add_argument("--count", type=int, default=300, help="random worlds (default %(default)s)")
+    writing.add_argument("--seed", type=int, default=7000, help="the first seed (default %(default)s)")
+    writing.add_argument("--jobs", type=int, default=2, help="processes (default %(default)s)")
+    writing.set_defaults(do=write)
+    comparing = parts.add_parser("compare", help="compare the episodes of two folders")
+    comparing.add_argument("before", type=Path)
+    comparing.add_argument("after", type=Path)
+    comparing.set_defaults(do=compare)
+    given = parser.parse_args(arguments)
+    return int(given.do(given))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
