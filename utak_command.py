@@ -65,7 +65,7 @@ def main() -> int:
     """Run `utak` with the arguments of this process and return its exit code."""
     exit_at_ctrl_c()
     find_ours_here()
-    from simulator.cli import main as run
+    from simulator.cli.main import main as run
 
     return run()
 

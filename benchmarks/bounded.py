@@ -1,7 +1,8 @@
 """How long a single command takes at most: scenarios under noise, each command timed by the processor's clock.
 
     python -m benchmarks.bounded [SCENARIO ...] [--noise 0,0.02,0.05] [--seeds 1,2,3,4,5] [--judge] [-o rows.jsonl]
-    python -m benchmarks.bounded --campaign 5,6,7 --count 10 --noise 0,0.02      (random worlds, see benchmarks.worlds)
+    python -m benchmarks.bounded --campaign 5,6,7 --count 10 --noise 0,0.02      (random worlds, see
+    benchmarks.worlds.makers)
 
 Scenarios are folders; all of examples/ when none is named. Each run goes in a process of its own that ends when its
 processor time is used up, so that one that runs away does not hold up the others; what it did until then is told.
@@ -21,20 +22,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from benchmarks.judging import findings
-from benchmarks.scenes import write
-from benchmarks.stopwatch import TimedBody, TimedRobot
-from benchmarks.worlds import scenario
+from benchmarks.harness.judging import findings
+from benchmarks.timing.stopwatch import TimedBody, TimedRobot
+from benchmarks.worlds.makers import scenario
+from benchmarks.worlds.scenes import write
 from kb.body import Body
-from kb.task import Task
-from simulator.episode import EpisodeLog
-from simulator.expectation import should_fail
-from simulator.robots import make_robot
-from simulator.scenario import read_scenario
-from simulator.session import Session
-from simulator.settings import Settings
-from simulator.trial import scenarios_in
-from simulator.warming import warm_all
+from kb.task.task import Task
+from simulator.episode.episode import EpisodeLog
+from simulator.run.robots import make_robot
+from simulator.run.session import Session
+from simulator.run.trial import scenarios_in
+from simulator.run.warming import warm_all
+from simulator.scenario.expectation import should_fail
+from simulator.scenario.scenario import read_scenario
+from simulator.scenario.settings import Settings
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 WARMING = (

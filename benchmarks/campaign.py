@@ -25,14 +25,14 @@ from typing import TextIO
 
 from shapely import Polygon
 
-from benchmarks.beliefs import beliefs
-from benchmarks.drawing import drawing
-from benchmarks.judging import judge_path
-from benchmarks.tally import faults, narrowness, table, verdicts
-from benchmarks.trial import Conditions, Trial, run_trial
-from benchmarks.worlds import add_kinds, scenario, seeds
-from simulator.outputs import is_rows, opened
-from simulator.session import Session
+from benchmarks.harness.beliefs import beliefs
+from benchmarks.harness.drawing import drawing
+from benchmarks.harness.judging import judge_path
+from benchmarks.harness.tally import faults, narrowness, table, verdicts
+from benchmarks.harness.trial import Conditions, Trial, run_trial
+from benchmarks.worlds.makers import add_kinds, scenario, seeds
+from simulator.episode.output_files import is_rows, opened
+from simulator.run.session import Session
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -17,8 +17,8 @@ import numpy as np
 import shapely
 from shapely import affinity, box
 
-from geometry.contact import Body, Obstacles
-from geometry.rigid import Motion, Rotate, Translate
+from geometry.motion.first_contact import Body, Obstacles
+from geometry.motion.se2 import Motion, Rotate, Translate
 
 ELL = shapely.Polygon([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)])
 HORSESHOE = shapely.Polygon([(0, 0), (3, 0), (3, 2), (2, 2), (2, 1), (1, 1), (1, 2), (0, 2)])

@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 import shapely
 
-from benchmarks.placing import digital
-from benchmarks.scenes import Scenario
-from benchmarks.walking import furthest_corner
-from benchmarks.worlds import scenario, seeds
-from geometry.carrying import Carrying, InCorner, Inside, plan_carrying
+from benchmarks.worlds.makers import scenario, seeds
+from benchmarks.worlds.placing import digital
+from benchmarks.worlds.scenes import Scenario
+from benchmarks.worlds.walking import furthest_corner
+from geometry.manipulation.plan_carrying import Carrying, InCorner, Inside, plan_carrying
 
 
 def free_squares(world: Scenario) -> np.ndarray:

@@ -2,7 +2,8 @@
 
     python -m benchmarks.floors --count 10000 [--seed 1] [--only words,shortest,sets,bodies,avoid,images,chains]
 
-Each floor is asked everything once, from a place of its own; what differs from brute force (benchmarks/exact.py) is
+Each floor is asked everything once, from a place of its own; what differs from brute force
+(benchmarks/engine/exact.py) is
 printed with the floor's number, and the number of disagreements is the exit code's reason: 1 unless it is 0.
 """
 
@@ -17,9 +18,9 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from benchmarks.exact import Exact, clearances, labels
+from benchmarks.engine.exact import Exact, clearances, labels
 from geometry import Route, Screen
-from geometry.visibility import visibility_way
+from geometry.pathfinders.visibility_graph import visibility_way
 
 Bools = NDArray[np.bool_]
 XY = tuple[float, float]

@@ -22,13 +22,13 @@ from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
 
-from geometry.movingai import MapError, parse_map
-from kb.encodings import KB, solve
-from kb.problems import BadInputError, CannotOpenError, Problem, Span
-from kb.query import QueryEngine, QueryLimitError
-from kb.userrules import checked_rules
-from simulator.scenario import read_scenario
-from simulator.tabletop import Tabletop
+from geometry.io.movingai import MapError, parse_map
+from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, Span
+from kb.reasoning.query import QueryEngine, QueryLimitError
+from kb.reasoning.solver import KB, solve
+from kb.reasoning.user_rules import checked_rules
+from simulator.scenario.scenario import read_scenario
+from simulator.world.physics import Tabletop
 
 PATIENCE = 20.0  # seconds until a file counts as hung
 REFUSAL = re.compile(r"\A[^\n]*:\d+:\d+-\d+: error: [^\n]+")

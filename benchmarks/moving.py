@@ -19,10 +19,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
-from geometry.contact import Body, Obstacles
-from geometry.floor import Floor
-from geometry.motion import Plan, plan_motion
-from geometry.rigid import Pose
+from geometry.cspace.plan_motion import Plan, plan_motion
+from geometry.motion.first_contact import Body, Obstacles
+from geometry.motion.obstacle_field import Floor
+from geometry.motion.se2 import Pose
 
 
 class Scene(NamedTuple):
@@ -99,7 +99,7 @@ def main() -> None:
 
 def _beside(scene: Scene, warm: float, args: argparse.Namespace) -> float:
     """Print OMPL's best planner and its median; how many times our time it is."""
-    from benchmarks.ompl_peer import best_planner
+    from benchmarks.engine.ompl_peer import best_planner
 
     name, peer = best_planner(scene, args.runs, args.limit)
     told = f"{1e3 * peer:9.1f}" if peer < args.limit else f"   >{1e3 * args.limit:6.0f}"

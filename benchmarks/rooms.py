@@ -16,8 +16,8 @@ import shapely
 from shapely import affinity, box
 
 from benchmarks.moving import Scene, faults
-from geometry.motion import plan_motion
-from geometry.rigid import Pose
+from geometry.cspace.plan_motion import plan_motion
+from geometry.motion.se2 import Pose
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
 TEE = shapely.Polygon([(0, 0), (6, 0), (6, 2), (4, 2), (4, 5), (2, 5), (2, 2), (0, 2)])
@@ -91,7 +91,7 @@ def main() -> None:
         if plan.status == "found":
             counts["faulty"] += faults(scene, plan, 64) > 0
         if args.peers and plan.status == "impossible":
-            from benchmarks.ompl_peer import way_exists
+            from benchmarks.engine.ompl_peer import way_exists
 
             counts["contradicted"] += way_exists(scene, args.limit)
     print(dict(counts))

@@ -14,10 +14,10 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks import peers
-from benchmarks.sightlines import Sightlines
+from benchmarks.engine import peers
+from benchmarks.engine.sightlines import Sightlines
 from geometry import Screen
-from geometry.movingai import Trip, read_map, read_trips
+from geometry.io.movingai import Trip, read_map, read_trips
 
 MAPS = Path(__file__).resolve().parents[2] / "shared" / "data" / "movingai"
 SECTIONS = ("build", "growth", "change", "query", "quality", "exact", "classes")

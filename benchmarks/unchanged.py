@@ -3,8 +3,10 @@
     python -m benchmarks.unchanged write FOLDER [--count N] [--seed S] [--jobs J]       in each of the two checkouts
     python -m benchmarks.unchanged compare BEFORE AFTER
 
-`write` runs all examples, and random worlds of every kind of benchmarks.odd and of the plain and the wide kind of
-benchmarks.worlds, each without noise and with noise. `compare` reads the files as JSON and leaves out `why` of the
+`write` runs all examples, and random worlds of every kind of benchmarks.worlds.odd and of the plain and the wide
+kind of
+benchmarks.worlds.makers, each without noise and with noise. `compare` reads the files as JSON and leaves out `why`
+of the
 steps and `reason` of the result, which are sentences for people. Exits with 1 when anything else differs.
 """
 
@@ -17,11 +19,11 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from benchmarks.claims.asked import Asked, all_kinds, worlds_of, written
-from simulator.episode import EpisodeLog
-from simulator.robots import make_robot
-from simulator.scenario import read_scenario
-from simulator.session import Session
-from simulator.settings import Settings
+from simulator.episode.episode import EpisodeLog
+from simulator.run.robots import make_robot
+from simulator.run.session import Session
+from simulator.scenario.scenario import read_scenario
+from simulator.scenario.settings import Settings
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 NOISES = (0.0, 0.02)

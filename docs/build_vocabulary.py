@@ -95,7 +95,7 @@ def section(path: Path) -> str:
 def files_section() -> str:
     """The declared vocabulary of the four kinds of fact files."""
     sys.path.insert(0, str(ROOT))
-    from kb.vocabulary import EXPECT, GOAL, START, WORLD
+    from kb.language.vocabulary import EXPECT, GOAL, START, WORLD
 
     parts: Mapping[str, Mapping[str, Sequence[object]]] = {
         "world.lp": WORLD,
@@ -103,7 +103,7 @@ def files_section() -> str:
         "goal.lp": GOAL,
         "expect.lp": EXPECT,
     }
-    lines = ["## Fact files", "", "What may stand in the files of a scenario (kb/vocabulary.py).", ""]
+    lines = ["## Fact files", "", "What may stand in the files of a scenario (kb/language/vocabulary.py).", ""]
     for name, vocabulary in parts.items():
         forms = [_form(predicate, slots) for predicate, slots in vocabulary.items()]
         lines.append(f"- **{name}**: " + ", ".join(f"`{form}`" for form in forms))
@@ -113,7 +113,7 @@ def files_section() -> str:
 def questions_section() -> str:
     """What of the world model is open, and how its arguments are spelt."""
     sys.path.insert(0, str(ROOT))
-    from kb.vocabulary import BELIEF, Open
+    from kb.language.vocabulary import BELIEF, Open
 
     words = {
         Open.NEVER: "nothing: it is known completely",
@@ -121,7 +121,7 @@ def questions_section() -> str:
         Open.UNTOLD: "things not seen yet, and things of which it says nothing",
     }
     lines = ["## What may hold besides what is believed", ""]
-    lines += ["Questions are answered by this table (kb/vocabulary.py; docs/files.md says how).", ""]
+    lines += ["Questions are answered by this table (kb/language/vocabulary.py; docs/files.md says how).", ""]
     lines += ["| predicate | more of it may hold of | its confidence |", "|---|---|---|"]
     for (name, arity), declared in BELIEF.items():
         but = f", but for {', '.join(sorted(declared.settled))}" if declared.settled else ""
@@ -133,10 +133,13 @@ def questions_section() -> str:
 def rules_section() -> str:
     """What stands in the arguments of the predicates that rules of users may derive."""
     sys.path.insert(0, str(ROOT))
-    from kb.interfaces import REACHED, READ_ONLY
+    from kb.reasoning.interfaces import REACHED, READ_ONLY
 
     lines = ["## What rules of users may derive", ""]
-    lines += ["The encodings that rules of `--kb` reach, and what stands in the arguments (kb/interfaces.py).", ""]
+    lines += [
+        "The encodings that rules of `--kb` reach, and what stands in the arguments (kb/reasoning/interfaces.py).",
+        "",
+    ]
     for name, interface in REACHED.items():
         forms = [_form(p, [s.name for s in slots]) for (p, n), slots in interface.items() if (p, n) not in READ_ONLY]
         lines.append(f"- **{name}.lp**: " + ", ".join(f"`{form}`" for form in forms))

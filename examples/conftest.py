@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from kb.problems import BadInputError, CannotOpenError
-from simulator.trial import run_trial
+from kb.language.diagnostics import BadInputError, CannotOpenError
+from simulator.run.trial import run_trial
 
 
 class ScenarioFailedError(Exception):

@@ -8,10 +8,10 @@ which brings all this together. Then ``digital`` (images of shapes) and ``templa
 ``carrying`` (how Utak brings it there).
 """
 
-from geometry.motion import Inside, Plan, plan_motion
-from geometry.passages import Passage
-from geometry.rigid import Pose, Rotate, Translate
-from geometry.route import Route
+from geometry.cspace.plan_motion import Inside, Plan, plan_motion
+from geometry.motion.se2 import Pose, Rotate, Translate
+from geometry.passages.necks import Passage
+from geometry.routes.route import Route
 from geometry.screen import Screen
 
 __all__ = ["Inside", "Passage", "Plan", "Pose", "Rotate", "Route", "Screen", "Translate", "plan_motion"]

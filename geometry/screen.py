@@ -8,24 +8,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.areas import routes_to_area
-from geometry.bones import Bones, Ints, contract
-from geometry.chains import Chains, find_chains
-from geometry.change import change_squares
-from geometry.distance import Bools, type_of_squares
-from geometry.goals import checked_goal
-from geometry.layer import Layer, find_bones, find_layer, level_of, new_state
-from geometry.narrows import narrow_squares
-from geometry.parts import Labels, find_parts
-from geometry.passages import DOOR, Passage, find_passages
-from geometry.polyline import word_of_line
-from geometry.questions import Questions
-from geometry.recycling import Tenant, take_buffers
-from geometry.route import Route
-from geometry.skeleton import States, Words
-from geometry.sweep import survey
-from geometry.tightening import word_of_crossings
-from geometry.walls import Walls, find_walls
+from geometry.homotopy.portals import word_of_line
+from geometry.incremental.update import change_squares
+from geometry.passages.narrow_stretches import narrow_squares
+from geometry.passages.necks import DOOR, Passage, find_passages
+from geometry.passages.partition import Labels, find_parts
+from geometry.passages.walls import Walls, find_walls
+from geometry.raster.distance_transform import Bools, type_of_squares
+from geometry.routes.goal_routes import routes_to_area
+from geometry.routes.goal_sets import checked_goal
+from geometry.routes.layer import Layer, find_bones, find_layer, level_of, new_state
+from geometry.routes.queries import Questions
+from geometry.routes.route import Route
+from geometry.routes.tighten import word_of_crossings
+from geometry.skeleton.buffers import Tenant, take_buffers
+from geometry.skeleton.chains import Chains, find_chains
+from geometry.skeleton.graph import Bones, Ints, contract
+from geometry.skeleton.skeleton import States, Words
+from geometry.skeleton.sweep import survey
 
 if TYPE_CHECKING:
     import networkx
@@ -100,18 +100,18 @@ class Screen:
     @cached_property
     def skeleton(self) -> Bools:
         """(rows, columns) bool: thin, with as many components and holes as the free space."""
-        from geometry.thinning import thin_skeleton
+        from geometry.skeleton.thinning import thin_skeleton
 
         return thin_skeleton(self._square, self._skeleton_at(1)[0])
 
     @cached_property
     def pathgraph(self) -> "networkx.MultiGraph[int]":
-        """Junctions and ends as nodes, chains as edges (see pathgraph.py for what they carry)."""
+        """Junctions and ends as nodes, chains as edges (see networkx_export.py for what they carry)."""
         return self.pathgraph_for(0.0)
 
     def pathgraph_for(self, radius: float) -> "networkx.MultiGraph[int]":
         """The pathgraph of a body: that of the squares whose clearance is at least its radius."""
-        from geometry.pathgraph import networkx_graph
+        from geometry.skeleton.networkx_export import networkx_graph
 
         return networkx_graph(self._square, self._chains_at(level_of(radius)))
 
@@ -207,7 +207,7 @@ class Screen:
         return questions.of_word(start, goal, word)
 
     def passages(self, pinch: float = DOOR) -> list[Passage]:
-        """The necks of free space, by place (see passages.py).
+        """The necks of free space, by place (see necks.py).
 
         pinch : only those on both sides of which the floor is at least so many times as wide.
         """
@@ -216,7 +216,7 @@ class Screen:
     def narrows(self, passage: Passage, spare: float) -> set[tuple[int, int]]:
         """The squares (column, row) about a passage where lines from wall to wall are at most so much longer than it.
 
-        spare : in squares (see narrows.py).
+        spare : in squares (see narrow_stretches.py).
         """
         return narrow_squares(self._walls, passage, spare)
 
@@ -228,7 +228,7 @@ class Screen:
     def parts(self, passages: Iterable[Passage]) -> Labels:
         """(rows, columns) int: the number of the part of the floor, cut along the passages' mouths, or 0.
 
-        0 on blocked squares, on those whose centres lie on a mouth, and between two mouths (see parts.py).
+        0 on blocked squares, on those whose centres lie on a mouth, and between two mouths (see partition.py).
         """
         return find_parts(self.free, passages)
 

@@ -1,7 +1,8 @@
 """What Utak knows, kept up to date: from each impression to a new world model.
 
-The way of one impression: regions (kb.regions), their interpretation (kb/asp), accommodation (kb.accommodation),
-objects and their shapes, and the tree (kb.worldmodel).
+The way of one impression: regions (kb.perception.regions), their interpretation (kb/asp), accommodation
+(kb.localisation.accommodation),
+objects and their shapes, and the tree (kb.world.model).
 """
 
 from collections.abc import Mapping
@@ -12,20 +13,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.components import boxes
-from kb.accommodation import Memory
+from geometry.raster.components import boxes
 from kb.body import DIRECTIONS, Command, Grasp, Impression
-from kb.evidence import FREE, FULL, OPEN, MapView
-from kb.explanation import Accommodated
-from kb.imagining import NOTHING_IMAGINED, imagine
-from kb.interpretation import Kinds, interpret, shapes
-from kb.lattice import AROUND
-from kb.loads import ROUNDING, Load, covered, seen_insets, seen_short, slack_of
-from kb.measuring import Measured, Measurer
-from kb.protruding import VERGE, protrusions, told_apart
-from kb.regions import Percept, Region, label_of, map_regions
-from kb.sizes import reshaped
-from kb.worldmodel import SPACE, Names, Node, Patch, WorldModel, patch_of, solid, space, unsettled
+from kb.localisation.accommodation import Memory
+from kb.localisation.hypotheses.explanation import Accommodated
+from kb.mapping.object_heat import NOTHING_IMAGINED, imagine
+from kb.mapping.occupancy import FREE, FULL, OPEN, MapView
+from kb.objects.held_object import ROUNDING, Load, covered, seen_insets, seen_short, slack_of
+from kb.objects.proportions import reshaped
+from kb.objects.shape_fit import Measured, Measurer
+from kb.perception.frame import AROUND
+from kb.perception.interpretation import Kinds, interpret, shapes
+from kb.perception.protrusions import VERGE, protrusions, told_apart
+from kb.perception.regions import Percept, Region, label_of, map_regions
+from kb.world.model import SPACE, Names, Node, Patch, WorldModel, patch_of, solid, space, unsettled
 
 Mask = NDArray[np.bool_]
 LEAST_OBJECT = 5  # percent: a region is kept as a possible object from here on

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from kb.belief import Places, belief
 from kb.body import Body, Command, Impression, Release
-from kb.explanation import Accommodated
 from kb.knowledge import Knowledge
-from kb.task import Task
-from planner.deciding import Decider
+from kb.localisation.hypotheses.explanation import Accommodated
+from kb.task.task import Task
+from kb.world.facts import Places, belief
+from planner.deciding.decider import Decider
 from planner.decision import Decision
 
 

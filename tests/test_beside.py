@@ -74,7 +74,7 @@ def cold_cache(place: Path) -> dict[str, str]:
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_nothing_in_the_working_directory_is_executed(command: str, folder: Path) -> None:
-    arguments = UTAK + COMMANDS[command] if command != "warming" else beside("simulator.warming")
+    arguments = UTAK + COMMANDS[command] if command != "warming" else beside("simulator.run.warming")
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     environment["PYTHONSTARTUP"] = str(folder / "json.py")
     done = subprocess.run(
@@ -153,10 +153,10 @@ def test_a_worker_ends_with_whoever_asks(tmp_path: Path) -> None:
         assert not left, number
 
 
-@pytest.mark.parametrize("module", ["kb.query_worker", "simulator.warming"])
+@pytest.mark.parametrize("module", ["kb.reasoning.query_worker", "simulator.run.warming"])
 def test_a_process_beside_ends_with_its_input_also_while_it_works(module: str, tmp_path: Path) -> None:
     """Where no signal tells of the parent's end, the end of the input does."""
-    names = ["search", "carry"] if module == "simulator.warming" else []
+    names = ["search", "carry"] if module == "simulator.run.warming" else []
     environment = os.environ | cold_cache(tmp_path)
     pipe = subprocess.PIPE
     with subprocess.Popen(beside(module, *names), stdin=pipe, stdout=pipe, stderr=pipe, env=environment) as worker:
@@ -176,7 +176,7 @@ def test_a_process_beside_ends_with_its_input_also_while_it_works(module: str, t
             worker.kill()
 
 
-@pytest.mark.filterwarnings("ignore:'kb.facts' found in sys.modules")
+@pytest.mark.filterwarnings("ignore:'kb.language.terms' found in sys.modules")
 def test_what_is_installed_for_one_user_alone_is_found_by_a_process_beside(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -184,15 +184,15 @@ def test_what_is_installed_for_one_user_alone_is_found_by_a_process_beside(
     (tmp_path / "of_the_user.py").write_text("")
     monkeypatch.setattr(sys, "path", list(sys.path))
     monkeypatch.setattr(sys, "argv", list(sys.argv))
-    utak_command.run_module(str(tmp_path), "kb.facts")
+    utak_command.run_module(str(tmp_path), "kb.language.terms")
     assert str(tmp_path) not in sys.path
     monkeypatch.setattr(utak_command, "OTHERS", ("of_the_user",))
-    utak_command.run_module(str(tmp_path), "kb.facts")
+    utak_command.run_module(str(tmp_path), "kb.language.terms")
     assert find_spec("of_the_user") is not None
-    assert str(ROOT) not in beside("kb.query_worker")[3].split(os.pathsep)
+    assert str(ROOT) not in beside("kb.reasoning.query_worker")[3].split(os.pathsep)
 
 
 def test_a_process_beside_that_has_done_its_work_ends_in_order() -> None:
     """Its input is still open then, and a thread waits for it."""
-    with subprocess.Popen(beside("simulator.warming"), stdin=subprocess.PIPE, stderr=subprocess.PIPE) as worker:
+    with subprocess.Popen(beside("simulator.run.warming"), stdin=subprocess.PIPE, stderr=subprocess.PIPE) as worker:
         assert worker.wait(30) == 0, worker.stderr and worker.stderr.read().decode()

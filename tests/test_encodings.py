@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from kb.encodings import solve
-from kb.problems import BadInputError
+from kb.language.diagnostics import BadInputError
+from kb.reasoning.solver import solve
 from tests.encoding_cases import ENCODINGS, Case, cases_of, disagreement, optimal_answers, statements, without
 
 

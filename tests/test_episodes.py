@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from simulator.cli import main
-from simulator.scenario import read_any_world
+from simulator.cli.main import main
+from simulator.scenario.scenario import read_any_world
 
 ROOT = Path(__file__).resolve().parent.parent
 GOLDEN = Path(__file__).with_name("golden_episodes.json")

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from simulator.expectation import Snapshot, should_fail, unmet
-from simulator.scenario import read_scenario
+from simulator.scenario.expectation import Snapshot, should_fail, unmet
+from simulator.scenario.scenario import read_scenario
 
 EXAMPLES = sorted(path.parent for path in (Path(__file__).resolve().parent.parent / "examples").glob("*/goal.lp"))
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import shapely
 
-from simulator.cli import main
+from simulator.cli.main import main
 
 DOOR_IN_THE_CORNER = """\
 bbbbbbbbbbbbbbbbb

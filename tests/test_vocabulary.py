@@ -5,12 +5,12 @@ import subprocess
 import sys
 from pathlib import Path
 
-from kb.belief import Places, model_facts
-from kb.corners import corners
-from kb.factfile import parse_facts
-from kb.query import VOCABULARY
-from kb.rooms import rooms_of
-from kb.source import decode
+from kb.language.reader import parse_facts
+from kb.language.source_text import decode
+from kb.reasoning.query import VOCABULARY
+from kb.world.corners import corners
+from kb.world.facts import Places, model_facts
+from kb.world.rooms import rooms_of
 from tests.kb.drawings import seen_whole
 
 ROOT = Path(__file__).resolve().parent.parent

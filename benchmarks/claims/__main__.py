@@ -1,7 +1,8 @@
 """The campaign that refutes claims.
 
     python -m benchmarks.claims --count 6 --seed 0 [--kind plugged,round] [--noise S] [--jobs J] [-o results.jsonl]
-    python -m benchmarks.claims --own 3 -o results.jsonl          (also plain and wide worlds of benchmarks.worlds)
+    python -m benchmarks.claims --own 3 -o results.jsonl          (also plain and wide worlds of
+    benchmarks.worlds.makers)
     python -m benchmarks.claims --only plugged:3 --keep FOLDER    (one world)
 
 With -o worlds that the file already has are not run again. The table goes to stdout, progress to stderr; the exit code
@@ -21,8 +22,8 @@ from benchmarks.claims.report import report
 from benchmarks.claims.row import Row, read_rows
 from benchmarks.claims.run import Limits, run_world, warm_up
 from benchmarks.claims.table import table
-from benchmarks.judging import judge_path
-from benchmarks.odd.kinds import KINDS
+from benchmarks.harness.judging import judge_path
+from benchmarks.worlds.odd.kinds import KINDS
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -52,7 +53,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.claims", description="Refute what the robot claims.")
     parser.add_argument("--count", type=int, default=0, help="worlds of each odd kind (%(default)s)")
-    parser.add_argument("--own", type=int, default=0, help="worlds of each task of benchmarks.worlds (%(default)s)")
+    parser.add_argument(
+        "--own", type=int, default=0, help="worlds of each task of benchmarks.worlds.makers (%(default)s)"
+    )
     parser.add_argument("--seed", type=int, default=0, help="the first world's seed (%(default)s)")
     parser.add_argument("--kind", type=_kinds, default=list(KINDS), help=f"of {', '.join(all_kinds())} (odd ones)")
     parser.add_argument("--only", type=named, metavar="WORLD", help="one world: KIND:SEED or own_KIND:TASK:SEED")

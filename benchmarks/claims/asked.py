@@ -5,18 +5,18 @@ from pathlib import Path
 
 from shapely.geometry.base import BaseGeometry
 
-from benchmarks.odd.kinds import KINDS, odd_world
-from benchmarks.odd.tasks import NOWHERE
-from benchmarks.scenes import write
-from benchmarks.worlds import MAKERS, scenario
+from benchmarks.worlds.makers import MAKERS, scenario
+from benchmarks.worlds.odd.kinds import KINDS, odd_world
+from benchmarks.worlds.odd.tasks import NOWHERE
+from benchmarks.worlds.scenes import write
 
-OWN = "own_"  # before the names of the kinds of benchmarks.worlds
+OWN = "own_"  # before the names of the kinds of benchmarks.worlds.makers
 OWN_ASKED = ("plain", "wide")  # those that --own runs
 
 
 @dataclass(frozen=True, order=True)
 class Asked:
-    """A world: an odd kind with task 0, or "own_" and a kind of benchmarks.worlds with its task from 1 to 9."""
+    """A world: an odd kind with task 0, or "own_" and a kind of benchmarks.worlds.makers with its task from 1 to 9."""
 
     kind: str
     seed: int
@@ -52,7 +52,7 @@ def named(text: str) -> Asked:
 
 
 def all_kinds() -> list[str]:
-    """Return the names of all kinds: the odd ones, then those of benchmarks.worlds."""
+    """Return the names of all kinds: the odd ones, then those of benchmarks.worlds.makers."""
     return [*KINDS, *(OWN + kind for kind in MAKERS)]
 
 

@@ -31,14 +31,14 @@ def main() -> None:
 
 def run(folder: Path, noise: float, noise_seed: int, max_steps: int) -> None:
     """Run the robot in the scenario of a folder and write the three files."""
-    from benchmarks.stopwatch import TimedBody, TimedRobot
+    from benchmarks.timing.stopwatch import TimedBody, TimedRobot
     from kb.body import Body
-    from kb.task import Task
-    from simulator.episode import EpisodeLog
-    from simulator.robots import make_robot
-    from simulator.scenario import read_scenario
-    from simulator.session import Session
-    from simulator.settings import Settings
+    from kb.task.task import Task
+    from simulator.episode.episode import EpisodeLog
+    from simulator.run.robots import make_robot
+    from simulator.run.session import Session
+    from simulator.scenario.scenario import read_scenario
+    from simulator.scenario.settings import Settings
 
     robots: list[TimedRobot] = []
 

@@ -1,7 +1,8 @@
 """Claims against the truth: a `done` that is not achieved, and an `impossible` to which a way is known.
 
 That a world's task can be done is known by its construction, or is found by a search that knows the true world: a
-program beside the judge (see benchmarks.judging), `countersearch.py SCENARIO --seconds S --plan`, which exits with 0
+program beside the judge (see benchmarks.harness.judging), `countersearch.py SCENARIO --seconds S --plan`, which
+exits with 0
 when it has found a way, 1 when it has not, and 2 when it cannot tell what the goal means.
 """
 
@@ -14,7 +15,7 @@ from typing import NamedTuple
 from shapely import LineString
 from shapely.geometry.base import BaseGeometry
 
-from benchmarks.judging import judge_path
+from benchmarks.harness.judging import judge_path
 
 SHORT = 80  # characters of an expectation that a page can hold
 ANSWERS = {0: "solvable", 1: "not found", 2: "unsupported"}

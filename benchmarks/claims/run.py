@@ -15,8 +15,8 @@ from benchmarks.claims import child
 from benchmarks.claims.asked import Asked, written
 from benchmarks.claims.refute import Countersearch, refuted, searched, trespassed
 from benchmarks.claims.row import ERROR, TIME, Row
-from benchmarks.judging import ROOT, judge_path
-from simulator.warming import warm_all
+from benchmarks.harness.judging import ROOT, judge_path
+from simulator.run.warming import warm_all
 from utak_command import beside
 
 WARMING = (5, 9)  # tasks: walking, and carrying

@@ -10,19 +10,19 @@ from typing import Any, NamedTuple
 import pytest
 
 from benchmarks import campaign
-from benchmarks.beliefs import Score
-from benchmarks.judging import judge_path
-from benchmarks.narrowness import Narrowness, narrowness
-from benchmarks.scenes import Scenario
-from benchmarks.stopwatch import Seconds
-from benchmarks.tally import faults, table, verdicts
-from benchmarks.tally import narrowness as told_right
-from benchmarks.trial import Conditions, Trial, run_trial
-from benchmarks.worlds import scenario, seeds
+from benchmarks.harness.beliefs import Score
+from benchmarks.harness.judging import judge_path
+from benchmarks.harness.narrowness import Narrowness, narrowness
+from benchmarks.harness.tally import faults, table, verdicts
+from benchmarks.harness.tally import narrowness as told_right
+from benchmarks.harness.trial import Conditions, Trial, run_trial
+from benchmarks.timing.stopwatch import Seconds
+from benchmarks.worlds.makers import scenario, seeds
+from benchmarks.worlds.scenes import Scenario
 from kb.body import Body, Command, Impression, Move
-from kb.lattice import turned
-from kb.task import Task
-from simulator.settings import Settings
+from kb.perception.frame import turned
+from kb.task.task import Task
+from simulator.scenario.settings import Settings
 
 
 class Report(NamedTuple):

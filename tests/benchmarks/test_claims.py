@@ -16,12 +16,12 @@ from benchmarks.claims.report import report
 from benchmarks.claims.row import Row, percentile, read_rows
 from benchmarks.claims.run import Limits, run_child, run_world
 from benchmarks.claims.table import table
-from benchmarks.odd.kinds import odd_world
-from benchmarks.odd.tasks import NO, YES
+from benchmarks.worlds.odd.kinds import odd_world
+from benchmarks.worlds.odd.tasks import NO, YES
 from kb.body import Body, Command, Impression
-from kb.task import Task
-from simulator import robots
-from simulator.settings import Settings
+from kb.task.task import Task
+from simulator.run import robots
+from simulator.scenario.settings import Settings
 
 LIMITS = Limits(search=5)
 ABLE, UNABLE = Asked("plugged", 0), Asked("plugged", 5)

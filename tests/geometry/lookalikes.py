@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.components import components
+from geometry.raster.components import components
 
 KINDS = ("city", "maze", "rooms", "noise", "warehouse", "caves", "plain", "islands", "diagonals")
 

@@ -1,7 +1,7 @@
 """All clearances of a screen at once, without the bands and the skeleton of a build."""
 
-from geometry.distance import count_columns
-from geometry.windows import measure_rows, new_window
+from geometry.raster.distance_rows import measure_rows, new_window
+from geometry.raster.distance_transform import count_columns
 
 
 def measure(free, square):

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import shapely
 
-from geometry.carrying import Carrying
-from geometry.rigid import Rotate
+from geometry.manipulation.plan_carrying import Carrying
+from geometry.motion.se2 import Rotate
 
 DEEP = 1e-6  # squares: how far anything may go into a wall
 POSES = 65  # looked at in every motion

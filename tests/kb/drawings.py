@@ -6,13 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from kb.body import Move
-from kb.evidence import FREE, FULL, OPEN, Evidence, MapView
-from kb.interpretation import interpret
 from kb.knowledge import Knowledge
-from kb.lattice import Lattice
-from kb.regions import label_of, map_regions
-from kb.retina import count_ranges
-from kb.worldmodel import Node, WorldModel, patch_of
+from kb.mapping.occupancy import FREE, FULL, OPEN, Evidence, MapView
+from kb.perception.frame import Lattice
+from kb.perception.interpretation import interpret
+from kb.perception.regions import label_of, map_regions
+from kb.perception.retina import count_ranges
+from kb.world.model import Node, WorldModel, patch_of
 from tests.kb.eyes import impression, utak_in, world_of
 
 LARGE_ROOM = ["b" * 44, *["b" + "." * 42 + "b"] * 42, "b" * 44]

@@ -2,12 +2,12 @@
 
 from collections.abc import Mapping
 
-from kb.corners import corners
-from kb.rooms import rooms_of
-from kb.task import Task
-from kb.worldmodel import WorldModel
-from planner.destinations import Situation
-from planner.screen import Screens
+from kb.task.task import Task
+from kb.world.corners import corners
+from kb.world.model import WorldModel
+from kb.world.rooms import rooms_of
+from planner.goals.robot_goals import Situation
+from planner.screen.projection import Screens
 
 NO_TASK = Task({}, (), ())
 BESIDE_A_THING = [  # a room, and Utak right beside the one thing in it

@@ -8,18 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.trial import Conditions, run_trial
+from benchmarks.harness.trial import Conditions, run_trial
 from kb.body import Command, Impression, Move
-from kb.corners import corners
-from kb.facts import Symbol
-from kb.lattice import turned
-from kb.problems import Span
-from kb.rooms import rooms_of
-from kb.task import Claim, Parameter, Task
+from kb.language.diagnostics import Span
+from kb.language.terms import Symbol
+from kb.perception.frame import turned
+from kb.task.task import Claim, Parameter, Task
+from kb.world.corners import corners
+from kb.world.rooms import rooms_of
 from planner.cycle import Options, Robot
-from planner.deciding import Decider
-from planner.goals import constraints, stages
-from planner.screen import Screens
+from planner.deciding.decider import Decider
+from planner.goals.stages import constraints, stages
+from planner.screen.projection import Screens
 from tests.kb.drawings import seen_whole
 from tests.kb.eyes import colours_of, impression, utak_in, world_of
 
@@ -265,7 +265,7 @@ def test_stages_and_constraints() -> None:
 
 
 def test_the_destination_of_a_corner_is_its_square() -> None:
-    from planner.destinations import Situation, destination
+    from planner.goals.robot_goals import Situation, destination
 
     model = seen_whole(EMPTY)
     situation = _situation(Situation, model, {})
@@ -279,7 +279,7 @@ def test_the_destination_of_a_corner_is_its_square() -> None:
 
 
 def test_the_destination_of_a_thing_is_beside_it() -> None:
-    from planner.destinations import Situation, destination
+    from planner.goals.robot_goals import Situation, destination
 
     model = seen_whole(THINGS)
     (node,) = model.objects

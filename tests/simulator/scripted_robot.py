@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from kb.body import DIRECTIONS, Body, Command, Grasp, Impression, Move, Push, Release, Turn
-from kb.task import Task
+from kb.task.task import Task
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def install() -> None:
 
 
 if __name__ == "__main__":
-    from simulator.cli import main
+    from simulator.cli.main import main
 
     install()
     sys.exit(main())

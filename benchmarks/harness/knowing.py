@@ -1,0 +1,75 @@
+"""A robot that knows the table from the start: what his planner would do if nothing had to be found out.
+
+The same mind as any other's, but his map is filled in before he wakes, and he knows how the table lies under him. The
+campaign compares with it how many commands finding out costs (`--knowing`).
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from benchmarks.worlds.placing import digital
+from benchmarks.worlds.scenes import Scenario
+from kb.body import Body, Impression
+from kb.knowledge import Knowledge
+from kb.localisation.hypotheses.explanation import Accommodated
+from kb.localisation.hypotheses.frames import Hypothesis
+from kb.mapping.occupancy import FREE, FULL
+from kb.perception.frame import Lattice, turned
+from kb.task.task import Task
+from kb.world.model import WorldModel
+from planner.cycle import Options, Robot
+from simulator.run.session import RobotMaker
+from simulator.scenario.settings import Settings
+
+BEYOND = 3  # squares of verge known around the table
+
+
+class Informed(Knowledge):
+    """The knowledge of one who was told all about a world."""
+
+    def __init__(self, world: Scenario) -> None:
+        super().__init__()
+        self._world = world
+
+    def wake(self, impression: Impression) -> tuple[WorldModel, Accommodated]:
+        """As of Knowledge, after the whole table was settled."""
+        self.learn()
+        return super().wake(impression)
+
+    def learn(self) -> None:
+        """Settle every square of the table, as it is."""
+        world, memory = self._world, self.memory
+        quarters = round(world.heading / 90 - 1e-9)
+        angle = world.heading - 90 * quarters
+        x, y = math.floor(world.utak.x), math.floor(world.utak.y)
+        within = turned(world.utak.x - x - 0.5, world.utak.y - y - 0.5, -90 * quarters)
+        woke = (within[0] + 0.5, within[1] + 0.5)
+        memory.lattice, memory.place = Lattice(angle, woke), woke
+        memory.hypotheses = (Hypothesis(angle, woke + woke),)
+        width, height = world.plan.width, world.plan.height
+        occupied = np.logical_or.reduce(
+            [digital(shape, width, height) for shape in (world.plan.verge, *(thing.polygon for thing in world.things))]
+        )
+        occupied = np.pad(occupied, BEYOND, constant_values=True)
+        rows, columns = np.indices(occupied.shape).reshape(2, -1)
+        offsets = [turned(c - BEYOND - x, r - BEYOND - y, -90 * quarters) for r, c in zip(rows, columns, strict=True)]
+        squares = np.rint(offsets).astype(int)
+        evidence = memory.evidence
+        for corner in (squares.min(0), squares.max(0)):
+            evidence.make_room(*corner.tolist())
+        where = squares[:, 1] - evidence.south, squares[:, 0] - evidence.west
+        evidence.state[where] = np.where(occupied.ravel(), FULL, FREE)
+        evidence.seen[where], evidence.settled_by[where] = True, 0
+
+
+def knowing(world: Scenario) -> RobotMaker:
+    """Makes robots that know a world."""
+
+    def make(body: Body, task: Task, settings: Settings) -> Any:
+        robot = Robot(body, task, Options(settings.paths, settings.kb_files, settings.max_steps, settings.pull))
+        robot.knowledge = Informed(world)
+        return robot
+
+    return make

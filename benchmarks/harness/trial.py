@@ -1,0 +1,221 @@
+"""One trial: the robot in one random world, judged, and compared with the truth and with the shortest way."""
+
+import math
+import signal
+import traceback
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field, replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from shapely import Polygon
+
+from benchmarks.harness.beliefs import Score, beliefs, compare, under_fovea
+from benchmarks.harness.judging import findings
+from benchmarks.harness.knowing import knowing
+from benchmarks.harness.narrowness import Narrowness, narrowness
+from benchmarks.harness.shortest import free_space, shortest_loop, shortest_way
+from benchmarks.timing.stopwatch import Seconds, TimedBody, TimedRobot
+from benchmarks.worlds.makers import scenario
+from benchmarks.worlds.placing import digital
+from benchmarks.worlds.scenes import Scenario, write
+from kb.body import Body
+from kb.task.task import Task
+from simulator.episode.episode import EpisodeLog
+from simulator.run.robots import make_robot
+from simulator.run.session import Result, RobotMaker, Session
+from simulator.scenario.scenario import read_scenario
+from simulator.scenario.settings import Settings
+
+LOOPS = (4,)  # tasks whose shortest way is a loop
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """How a trial is run: noise, seed of the noise, path-finder, most commands, most seconds.
+
+    knowing : is it also run by one who knows everything? kind : of the world, see benchmarks.worlds.makers.
+    """
+
+    noise: float = 0.0
+    seed: int = 0
+    paths: str = "skeleton"
+    max_steps: int = 200
+    seconds: int = 120
+    knowing: bool = False
+    kind: str = "wide"
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What came of one world.
+
+    `narrow` compares what he said of too narrow a passage with the truth (None where none is).
+    `needed` tells how many commands the same planner gave knowing everything (0: not tried, or not achieved),
+    `judged` holds the judge's findings (None without a judge), `cycles` the times of each cycle, `walked` and
+    `shortest` squares (nan where there is no such way), `crash` the last line of an error, if there was one.
+    """
+
+    task: int
+    seed: int
+    possible: bool
+    believed: bool = False
+    achieved: bool = False
+    verdict: str = "crash"
+    reason: str = ""
+    steps: int = 0
+    walked: float = math.nan
+    shortest: float = math.nan
+    judged: list[str] | None = None
+    cycles: list[Seconds] = field(default_factory=list)
+    score: Score | None = None
+    crash: str = ""
+    needed: int = 0
+    narrow: Narrowness | None = None
+
+    @property
+    def false_done(self) -> bool:
+        """Believed done, and was not."""
+        return self.believed and not self.achieved
+
+    @property
+    def right(self) -> bool:
+        """Achieved where that was possible, and refused with a reason where it was not."""
+        return self.achieved if self.possible else not (self.crash or self.believed or not self.reason)
+
+    @property
+    def clean(self) -> bool:
+        """Nothing at all went wrong: right, nothing found by the judge, and no certain square wrong."""
+        return self.right and not self.judged and not (self.score and self.score.wrong)
+
+    def row(self) -> dict[str, Any]:
+        """The trial as a JSON object."""
+        row = asdict(self) | {"score": self.score and self.score._asdict(), "clean": self.clean}
+        return {name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in row.items()}
+
+
+class _TooLongError(Exception):
+    """The trial took more than its seconds."""
+
+
+def run_trial(
+    task: int,
+    seed: int,
+    conditions: Conditions,
+    folder: Path,
+    watch: Callable[[Session], None] = lambda session: None,
+    maker: RobotMaker = make_robot,
+) -> Trial:
+    """Make a world, run the robot in it, and judge what he did; errors of the robot end up in the trial."""
+    world = scenario(task, seed, conditions.kind)
+    place = write(world, folder / world.name)
+    try:
+        with _alarm(conditions.seconds):
+            needed = _needed(world, place, conditions) if conditions.knowing and world.possible else 0
+            return replace(_ran(world, place, conditions, watch, maker), needed=needed)
+    except Exception as error:  # a crash is a result of the trial
+        (place / "crash.txt").write_text(traceback.format_exc())
+        frame = traceback.extract_tb(error.__traceback__)[-1]
+        where = f"{Path(frame.filename).name}:{frame.lineno}"
+        return Trial(task, seed, world.possible, crash=f"{type(error).__name__}: {error} ({where})")
+
+
+def _needed(world: Scenario, place: Path, conditions: Conditions) -> int:
+    """The commands that the same planner gives knowing everything; 0 when he does not achieve the task."""
+    settings = Settings(conditions.seed, 0.0, conditions.paths, conditions.max_steps)
+    with EpisodeLog(place / "knowing.jsonl") as log:
+        result = Session(read_scenario(place), settings, knowing(world), log).run()
+    return result.steps if result.achieved else 0
+
+
+def _ran(
+    world: Scenario, place: Path, conditions: Conditions, watch: Callable[[Session], None], maker: RobotMaker
+) -> Trial:
+    robots: list[TimedRobot] = []
+
+    def make(body: Body, told: Task, settings: Settings) -> TimedRobot:
+        timed = TimedBody(body)
+        robots.append(TimedRobot(maker(timed, told, settings), timed))
+        return robots[0]
+
+    settings = Settings(conditions.seed, conditions.noise, conditions.paths, conditions.max_steps)
+    track: list[tuple[float, float]] = []
+    with EpisodeLog(place / "episode.jsonl") as log:
+        session = Session(read_scenario(place), settings, make, log)
+
+        def follow(at: Session) -> None:
+            track.append(at.table.utak)
+            watch(at)
+
+        result = session.run(follow)
+    return _trial(world, place, result, robots[0], session, track)
+
+
+def _trial(
+    world: Scenario,
+    place: Path,
+    result: Result,
+    robot: TimedRobot,
+    session: Session,
+    track: list[tuple[float, float]],
+) -> Trial:
+    return Trial(
+        task=world.task,
+        seed=world.seed,
+        possible=world.possible,
+        believed=result.believed,
+        achieved=bool(result.achieved),
+        verdict=result.verdict,
+        reason=result.reason,
+        steps=result.steps,
+        walked=sum(math.dist(a, b) for a, b in pairwise(track)),
+        shortest=_shortest(world),
+        judged=findings(place, place / "episode.jsonl"),
+        cycles=robot.cycles,
+        narrow=narrowness(world, result.reason),
+        score=_scored(world, robot.robot, dict(session.table.polygons), track),
+    )
+
+
+def _shortest(world: Scenario) -> float:
+    if not world.possible or (world.target.is_empty and world.task not in LOOPS) or world.task > max(LOOPS):
+        return math.nan
+    free = free_space(world.plan.floor, [thing.polygon for thing in world.things], world.utak)
+    if world.task in LOOPS:
+        return shortest_loop(free, world.utak, world.things[0].polygon.centroid)
+    return shortest_way(free, world.utak, world.target)
+
+
+def _scored(world: Scenario, robot: Any, moved: dict[str, Polygon], track: list[tuple[float, float]]) -> Score:
+    """What the robot believes at the end against the truth at the end."""
+    plan = world.plan
+    things = {}
+    occupied = digital(plan.verge, plan.width, plan.height)
+    for thing in world.things:
+        polygon = moved.get(thing.name, thing.polygon)
+        grid = digital(polygon, plan.width, plan.height)
+        occupied |= grid
+        if thing.shape != "wall" and polygon.distance(plan.verge) > 0:
+            things[thing.name] = (thing.shape, polygon, grid)
+    held = beliefs(robot, (world.utak.x, world.utak.y), track[-1], world.heading)
+    return compare(held, things, np.asarray(occupied), under_fovea(track, world.heading))
+
+
+class _alarm:  # noqa: N801
+    """Within this context an alarm ends what takes too long (0: never)."""
+
+    def __init__(self, seconds: int) -> None:
+        self._seconds = seconds
+
+    def __enter__(self) -> None:
+        def ring(number: int, frame: object) -> None:
+            raise _TooLongError(f"took more than {self._seconds} s")
+
+        self._before = signal.signal(signal.SIGALRM, ring)
+        signal.alarm(self._seconds)
+
+    def __exit__(self, *_: object) -> None:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, self._before)

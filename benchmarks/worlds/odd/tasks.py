@@ -1,0 +1,134 @@
+"""Tasks of odd worlds: the facts of start.lp and goal.lp, and by expect.lp what must be true on the table at the end.
+
+Regions of expect.lp are a little larger than the words of a goal say, never smaller: who misses them was wrong.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from shapely import Point, Polygon, box, union_all
+from shapely.geometry.base import BaseGeometry
+
+from benchmarks.worlds.odd.houses import COMPASS, House
+from benchmarks.worlds.placing import digital
+from benchmarks.worlds.scenes import Task, Thing, wkt, world_text
+
+NOWHERE = Polygon()
+YES, NO, UNKNOWN = "yes", "no", "unknown"
+AT_CORNER = 1.5  # squares: one in each axis, at any angle of the axes
+AT_THING = 1.05  # squares from the squares of a thing
+THING_NEAR = 3  # squares from a corner to what is within one square of both its walls, however it is turned
+GOALS = {
+    "next": "in(utak, room(next)).\n",
+    "corner": "at(utak, corner({compass})).\n",
+    "at_x": "at(utak, x).\n",
+    "circle": "circled(utak, x).\nat(utak, start).\n",
+    "carry_next": "in(x, room(next)).\n",
+    "carry_corner": "at(x, corner({compass})).\n",
+    "carry_door": "through(x, d).\n",
+    "both": "in(x, room(next)).\nat(utak, start).\n",
+}
+TO_OTHER_ROOM = ("next", "carry_next", "carry_door", "both")
+TO_CORNER = ("corner", "carry_corner")
+WITHOUT_THING = ("next", "corner")
+
+
+@dataclass(frozen=True)
+class OddWorld:
+    """An odd world with a task.
+
+    possible : whether the task can be done, by construction: "yes", "no" or "unknown". why : says why it cannot.
+    variant : what within its kind this is a world of. avoid : where the robot must never be, by the goal's constraints.
+    """
+
+    kind: str
+    seed: int
+    task: str
+    variant: str
+    plan: House
+    things: tuple[Thing, ...]
+    utak: Point
+    heading: int
+    texts: Task
+    possible: str
+    avoid: BaseGeometry = NOWHERE
+
+    @property
+    def name(self) -> str:
+        """The name of its folder."""
+        return f"{self.kind}-{self.seed:04d}"
+
+    @property
+    def world(self) -> str:
+        """The text of world.lp."""
+        return world_text(self.plan, self.utak, self.heading, self.things)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What a kind has made: a floor, the room (0 or 1) where it all begins, things (the first one is x), the robot."""
+
+    plan: House
+    home: int
+    things: tuple[Thing, ...]
+    utak: Point
+    heading: int
+
+
+def given(
+    kind: str, seed: int, task: str, variant: str, scene: Scene, possible: str = YES, why: str = "", compass: str = ""
+) -> OddWorld:
+    """Return a scene as a world with one of the tasks; a corner task needs the compass corner meant."""
+    start = "" if task in WITHOUT_THING else f"object(x).\nshape(x, {scene.things[0].shape}).\n"
+    start += "door(d).\n" if task == "carry_door" else ""
+    expect = "fails.\n" if possible == NO else _expected(task, scene, compass)
+    texts = Task(start, GOALS[task].format(compass=compass), expect, why)
+    return OddWorld(kind, seed, task, variant, scene.plan, scene.things, scene.utak, scene.heading, texts, possible)
+
+
+def asked(world: OddWorld, start: str, goal: str, expect: str, possible: str, why: str = "") -> OddWorld:
+    """Return a world with other texts; of an impossible task nothing is expected but that it fails."""
+    return replace(world, texts=Task(start, goal, "fails.\n" if possible == NO else expect, why), possible=possible)
+
+
+def choose_corner(rng: np.random.Generator, plan: House, heading: int) -> str | None:
+    """Return a compass corner towards which one corner of the floor is the furthest beyond doubt; or None."""
+    for compass in rng.permutation(sorted(COMPASS)):
+        if plan.furthest_corner(str(compass), heading) is not None:
+            return str(compass)
+    return None
+
+
+def heading(rng: np.random.Generator, quarter: bool) -> int:
+    """Return a direction to face in degrees: a quarter turn, or half of the time any."""
+    return int(rng.integers(4)) * 90 if quarter or rng.random() < 0.5 else int(rng.integers(360))
+
+
+def beside(things: Sequence[Polygon], plan: House) -> BaseGeometry:
+    """Return the region that is at one of some things: within a square of the squares that it covers."""
+    squares = []
+    for thing in things:
+        rows, columns = np.nonzero(digital(thing, plan.width, plan.height))
+        squares += [box(i, j, i + 1, j + 1) for i, j in zip(columns.tolist(), rows.tolist(), strict=True)]
+    return union_all(squares).buffer(AT_THING, quad_segs=4)
+
+
+def _expected(task: str, scene: Scene, compass: str) -> str:
+    plan = scene.plan
+    who = "t1" if task.startswith("carry") or task == "both" else "utak"
+    back = f'near(utak, "{wkt(scene.utak)}", 2).\n'
+    if task in TO_OTHER_ROOM:
+        return f'inside({who}, "{wkt(plan.beyond(scene.home))}").\n' + (back if task == "both" else "")
+    if task == "at_x":
+        return f'inside(utak, "{wkt(beside([scene.things[0].polygon], plan))}").\n'
+    if task == "circle":
+        return "circles(utak, t1).\n" + back
+    corner = plan.furthest_corner(compass, scene.heading)
+    if corner is None:
+        raise ValueError(f"no corner is the furthest to the {compass}")
+    if task == "corner":
+        return f'inside(utak, "{wkt(corner.buffer(AT_CORNER))}").\n'
+    thing = scene.things[0].polygon
+    reach = Point(thing.centroid).hausdorff_distance(thing) * 2 + AT_CORNER
+    return f'near(t1, "{wkt(corner)}", {THING_NEAR}).\ninside(t1, "{wkt(corner.buffer(reach))}").\n'

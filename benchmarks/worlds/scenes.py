@@ -1,0 +1,121 @@
+"""A scenario as a frozen value, with the truth about it, and its four files."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+import shapely
+from shapely import Point, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from benchmarks.worlds.floorplans import Plan
+
+
+@dataclass(frozen=True)
+class Thing:
+    """An object of the world: name, colour, the class of its shape, and its polygon in squares of the table."""
+
+    name: str
+    colour: str
+    shape: str
+    polygon: Polygon
+    fixed: bool = False
+
+
+@dataclass(frozen=True)
+class Task:
+    """What start.lp, goal.lp and expect.lp say; `unable` says why the task cannot be done, empty when it can."""
+
+    start: str
+    goal: str
+    expect: str
+    unable: str = ""
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """One random world with its task.
+
+    `heading` is the direction Utak faces, degrees counter-clockwise from table north. `target` is the region that a
+    point must reach (tasks 1 to 3; empty otherwise), in squares of the table. `missing` is by how much a door is too
+    narrow for the object to be carried (0 where no door is).
+    """
+
+    task: int
+    seed: int
+    plan: Plan
+    things: tuple[Thing, ...]
+    utak: Point
+    heading: int
+    texts: Task
+    target: BaseGeometry
+    missing: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """The name of its folder."""
+        return f"task{self.task}-{self.seed:03d}"
+
+    @property
+    def possible(self) -> bool:
+        """Whether the task can be done."""
+        return not self.texts.unable
+
+    @property
+    def world(self) -> str:
+        """The text of world.lp."""
+        return world_text(self.plan, self.utak, self.heading, self.things)
+
+
+# Makes a world of (random numbers, seed, whether the task cannot be done); None when the things find no place.
+Maker = Callable[[np.random.Generator, int, bool], Scenario | None]
+
+
+class Laid(Protocol):
+    """A floor on a table of width x height squares."""
+
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    @property
+    def verge(self) -> BaseGeometry: ...
+
+
+class Told(Protocol):
+    """A world with a task, whatever made it."""
+
+    @property
+    def world(self) -> str: ...
+    @property
+    def texts(self) -> Task: ...
+
+
+def world_text(plan: Laid, utak: Point, heading: int, things: Iterable[Thing]) -> str:
+    """Return the text of world.lp."""
+    lines = [
+        f"table({plan.width}, {plan.height}).",
+        f'verge("{wkt(plan.verge)}").',
+        f'utak("{wkt(utak)}", {heading}).',
+    ]
+    for thing in things:
+        kind = "fixed" if thing.fixed else "object"
+        lines.append(f'{kind}({thing.name}, {thing.colour}, "{wkt(thing.polygon)}").')
+    return "\n".join(lines) + "\n"
+
+
+def write(scenario: Told, folder: Path) -> Path:
+    """Write the four files of a scenario into a folder, made when it is not there; gives the folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    texts = scenario.texts
+    files = {"world": scenario.world, "start": texts.start, "goal": texts.goal, "expect": texts.expect}
+    for name, text in files.items():
+        (folder / f"{name}.lp").write_text(text)
+    return folder
+
+
+def wkt(shape: BaseGeometry) -> str:
+    """Well-known text with up to six decimals and no needless zeros."""
+    return str(shapely.to_wkt(shape, rounding_precision=6, trim=True))

@@ -1,0 +1,227 @@
+"""What routing needs besides chains and runs: the portals along each chain, and how long a chain is when pulled
+tight.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.homotopy.funnel import Rope, measure_line, new_rope, tighten_word
+from geometry.homotopy.strips import Runs, extend, symbol_between
+from geometry.kernels.heap import pop, push
+from geometry.kernels.jit import bare
+from geometry.raster.distance_transform import Squares
+from geometry.skeleton.chains import Chains
+from geometry.skeleton.graph import Floats, Ints, find, first_way, is_node, onward
+from geometry.skeleton.skeleton import Flags, Heights, steepest, stride
+
+LANDMARKS = 6
+
+
+class Ways(NamedTuple):
+    """For n nodes and m chains."""
+
+    symbol: Ints
+    """Per chain cell, the signed portal (from 1) between it and the next cell of its chain; 0 within a row."""
+    word: Ints
+    """The reduced words of all whole chains."""
+    spelt: Ints
+    """(m + 1,) where each chain's word starts in ``word``."""
+    length: Floats
+    """(m,) the length of the tight rope between the chain's ends, in squares."""
+    place: Floats
+    """(n, 2) the nodes' centres, in squares."""
+    head: Ints
+    """(n, 4) the node to which the chain leads that leaves a node to the east, north, west, south; -1 for none."""
+    arc: Ints
+    """(n, 4) the code of that arc (see astar.py)."""
+    step: Floats
+    """(n, 4) its length."""
+    sight: Floats
+    """(n, landmarks) distances over the pathgraph from the landmarks; infinite where there is no way."""
+
+
+class Anchor(NamedTuple):
+    """Where a square's steepest way up meets the skeleton."""
+
+    chain: int
+    """The chain, or -1 at a node without chains."""
+    position: int
+    """Which of the chain's cells."""
+    node: int
+    """The node met, or -1 inside a chain."""
+    cell: int
+    """The padded cell."""
+
+
+def find_ways(square: Squares, chains: Chains, runs: Runs, body: bool) -> Ways:
+    """Prepare routing on a pathgraph."""
+    width = square.shape[1]
+    symbol = np.zeros(chains.cells.shape[0], np.int32)
+    length = np.empty(chains.ends.shape[0])
+    longest = int(np.diff(chains.start).max(initial=1))
+    words, spelt = np.empty(len(symbol) + 1, np.int32), np.zeros(len(length) + 1, np.int32)
+    line, rope = np.empty((4 * longest + 8, 2)), new_rope(2 * longest)
+    find_symbols(chains.start, chains.cells, runs.row, runs.up, runs.left, width, symbol)
+    portals = runs.left, runs.right, runs.line
+    measure_ways(chains.start, chains.cells, symbol, *portals, body, width, length, words, spelt, line, rope)
+    place = np.stack([chains.node % width - 0.5, chains.node // width - 0.5], axis=1)
+    shape = len(chains.node), 4
+    head, arc, step = np.full(shape, -1, np.int32), np.zeros(shape, np.int32), np.zeros(shape)
+    find_arcs(chains.leave, chains.ends, length, head, arc, step)
+    return Ways(symbol, words[: spelt[-1]].copy(), spelt, length, place, head, arc, step, sights(head, step))
+
+
+@bare
+def find_symbols(start: Ints, cells: Ints, row: Ints, up: Ints, left: Ints, width: int, symbol: Ints) -> None:
+    """Fill the symbols of all chains."""
+    for chain in range(start.shape[0] - 1):
+        for k in range(start[chain], start[chain + 1] - 1):
+            symbol[k] = symbol_between(row, up, left, 0 + cells[k], 0 + cells[k + 1], width)
+
+
+@bare
+def measure_ways(
+    start: Ints,
+    cells: Ints,
+    symbol: Ints,
+    left: Ints,
+    right: Ints,
+    line: Ints,
+    body: bool,
+    width: int,
+    length: Floats,
+    words: Ints,
+    spelt: Ints,
+    out: Floats,
+    rope: Rope,
+) -> None:
+    """Fill the words and the tight lengths of all chains."""
+    for chain in range(length.shape[0]):
+        word, size = words[spelt[chain] :], 0
+        first, last = start[chain], start[chain + 1] - 1
+        for k in range(first, last):
+            size = extend(word, size, 0 + symbol[k])
+        a, b = cells[first], cells[last]
+        ends = (a % width - 0.5, a // width - 0.5, b % width - 0.5, b // width - 0.5)
+        corners = tighten_word(left, right, line, body, word, size, ends, rope, out)
+        length[chain] = measure_line(out, corners)
+        spelt[chain + 1] = spelt[chain] + size
+
+
+@bare
+def find_arcs(leave: Ints, ends: Ints, length: Floats, head: Ints, arc: Ints, step: Floats) -> None:
+    """Fill the arcs out of every node; chains back to the same node lead nowhere."""
+    for node in range(leave.shape[0]):
+        for slot in range(4):
+            chain = leave[node, slot]
+            if chain >= 0 and ends[chain, 0] != ends[chain, 1]:
+                backward = 0 if ends[chain, 0] == node else 1
+                head[node, slot], arc[node, slot] = ends[chain, 1 - backward], 2 * chain + backward
+                step[node, slot] = length[chain]
+
+
+def sights(head: Ints, step: Floats) -> Floats:
+    """Distances from landmarks: each next one is the node furthest from those before (Goldberg and Harrelson 2005)."""
+    n = len(head)
+    sight = np.full((min(LANDMARKS, n), n), np.inf)
+    key, node = np.empty(4 * n + 8), np.empty(4 * n + 8, np.int32)
+    nearest, spot = np.full(n, np.inf), 0
+    for k in range(len(sight)):
+        distances_from(head, step, spot, sight[k], key, node)
+        if k == 0:  # the first is only a place to start from
+            spot = int(np.argmax(np.where(np.isfinite(sight[0]), sight[0], -1.0)))
+            sight[0] = np.inf
+            distances_from(head, step, spot, sight[0], key, node)
+        nearest = np.minimum(nearest, sight[k])
+        spot = int(np.argmax(nearest))
+    return np.ascontiguousarray(sight.T)
+
+
+@bare
+def distances_from(head: Ints, step: Floats, spot: int, out: Floats, key: Floats, node: Ints) -> None:
+    """Dijkstra over the whole pathgraph."""
+    out[spot] = 0.0
+    size = push(key, node, 0, 0.0, spot)
+    while size > 0:
+        done = key[0]
+        here, size = pop(key, node, size)
+        if done > out[here]:
+            continue
+        for slot in range(4):
+            other = 0 + head[here, slot]
+            if other >= 0 and done + step[here, slot] < out[other]:
+                out[other] = done + step[here, slot]
+                size = push(key, node, size, out[other], other)
+
+
+@bare
+def ascend(
+    cell: int, heights: Heights, states: Flags, width: int, row: Ints, up: Ints, left: Ints, word: Ints
+) -> tuple[int, int]:
+    """Go up the steepest way from a cell to the skeleton, writing its portals; returns cell and word size."""
+    size = 0
+    while states[cell] == 0:
+        higher = steepest(cell, heights, width)
+        size = extend(word, size, symbol_between(row, up, left, cell, higher, width))
+        cell = higher
+    return cell, size
+
+
+@bare
+def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
+    """The place of a skeleton cell on the pathgraph."""
+    if is_node(0 + states[cell]):
+        return locate_node(cell, node, leave, start, cells)
+    direction, steps, here = first_way(int(states[cell])), 0, cell
+    while steps == 0 or not is_node(0 + states[here]):
+        if steps > 0:
+            direction = onward(0 + states[here], direction ^ 2)
+        here += stride(direction, width)
+        steps += 1
+    chain = leave[find(node, here), direction ^ 2]
+    first = start[chain]
+    if cells[first + steps] != cell:  # we came to the chain's far end (or round a ring to its near one)
+        steps = start[chain + 1] - first - 1 - steps
+    return Anchor(0 + chain, steps, -1, cell)
+
+
+@bare
+def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
+    """The place of a node, as an end of one of its chains if it has any."""
+    number, found, position = find(node, cell), -1, 0
+    for direction in range(4):
+        chain = 0 + leave[number, direction]
+        if chain >= 0:
+            found = chain
+            position = 0 if cells[start[chain]] == cell else start[chain + 1] - start[chain] - 1
+    return Anchor(found, position, number, cell)
+
+
+@bare
+def add_chain(start: Ints, symbol: Ints, chain: int, begin: int, end: int, word: Ints, size: int) -> int:
+    """Add the portals along a chain from one position to another, in either direction; returns the word's size."""
+    first = start[chain]
+    if begin <= end:
+        for k in range(first + begin, first + end):
+            size = extend(word, size, 0 + symbol[k])
+    else:
+        for k in range(first + begin - 1, first + end - 1, -1):
+            size = extend(word, size, 0 - symbol[k])
+    return size
+
+
+@bare
+def add_word(other: Ints, first: int, last: int, backwards: bool, word: Ints, size: int) -> int:
+    """Add a part of a reduced word, or its inverse, to another; returns the word's size."""
+    if backwards:
+        while last > first and size > 0 and word[size - 1] == other[last - 1]:
+            last, size = last - 1, size - 1
+    else:
+        while last > first and size > 0 and word[size - 1] == -other[first]:
+            first, size = first + 1, size - 1
+    if size + last - first >= word.shape[0]:
+        return int(word.shape[0])
+    for k in range(last - first):
+        word[size + k] = -other[last - 1 - k] if backwards else other[first + k]
+    return size + last - first

@@ -1,0 +1,164 @@
+"""Nodes and chains of a changed stretch put in the place of the old ones, in arrays that have some room.
+
+# Strategy: nodes and chains are ordered by cells, so what a small change alters lies in one short stretch of either.
+Before it everything stays where it is, but for ends further on; behind it everything moves by the same number of
+places and its ends change by the same number. Only the stretch itself is merged piece by piece.
+"""
+
+from bisect import bisect_left
+from typing import Any, NamedTuple, TypeVar, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.kernels.jit import bare
+from geometry.skeleton.graph import Bones, Ints, find, pace
+from geometry.skeleton.lowest_cells import lowest_of, new_notes
+from geometry.skeleton.skeleton import Flags, Heights
+
+Array = TypeVar("Array", bound=NDArray[Any])
+
+Longs = NDArray[np.int64]
+
+ROOM = 64  # nodes or chains, and a sixteenth of what there are: so many more fit into new arrays
+
+
+class Splice(NamedTuple):
+    """Nodes after a change."""
+
+    node: Ints
+    """All nodes."""
+    low: int
+    """The first old node of the stretch that is merged, and the one behind the last."""
+    high: int
+    number: Longs
+    """(high - low,) what each of these old nodes is called now, or -1."""
+    shift: int
+    """By how much the numbers of the nodes behind grow."""
+
+
+def splice_nodes(old: Ints, low: int, high: int, open_ends: Flags, grown: Ints) -> Splice:
+    """Merge the nodes that stay in a stretch with those that have grown there; ``open_ends`` tells which are gone."""
+    stretch, stays = old[low:high], open_ends[low:high] < 16
+    merged = np.concatenate([stretch[stays], grown])
+    merged.sort()
+    number = np.where(stays, merged.searchsorted(stretch) + low, -1)
+    shift = len(merged) - len(stretch)
+    size = len(old) + shift
+    whole = with_room(old, size)
+    if shift:
+        whole[high + shift : size] = whole[high : len(old)]
+    whole[low : high + shift] = merged
+    return Splice(whole[:size], low, high, number, shift)
+
+
+def splice_chains(
+    heights: Heights, states: Flags, width: int, bones: Bones, splice: Splice, open_ends: Flags, seeds: Ints
+) -> Bones:
+    """Walk new chains from the seeds, and merge them with those that stay."""
+    old, (node, low, high, number, shift) = len(bones.port), splice
+    first, last = (bisect_left(bones.port[:, 0], 4 * n) for n in (low, high))
+    stretch = bones.port[first:last], bones.neck[first:last], bones.steps[first:last]
+    room = last - first + len(seeds)
+    fresh = np.empty((room, 2), np.int32), np.empty(room, np.int32), np.empty(room, np.int32)
+    notes = new_notes(len(heights))[0]
+    found = merge_chains(
+        heights,
+        states,
+        width,
+        bones.port[:first],
+        *stretch,
+        open_ends,
+        low,
+        high,
+        number,
+        shift,
+        seeds,
+        node,
+        *fresh,
+        notes,
+    )
+    moved = found - (last - first)
+    size = old + moved
+    port, neck, steps = with_room(bones.port, size), with_room(bones.neck, size), with_room(bones.steps, size)
+    if moved:
+        ends = port.reshape(-1)  # along one axis numpy needs no copy to move what overlaps
+        ends[2 * (last + moved) : 2 * size] = ends[2 * last : 2 * old]
+        neck[last + moved : size], steps[last + moved : size] = neck[last:old], steps[last:old]
+    if shift:
+        port[last + moved : size] += 4 * shift
+    here = slice(first, first + found)
+    port[here], neck[here], steps[here] = (part[:found] for part in fresh)
+    return Bones(node, port[:size], neck[:size], steps[:size])
+
+
+def with_room(array: Array, size: int) -> Array:
+    """The array that this one is the beginning of when it has that length, else a longer copy."""
+    whole = array.base
+    if isinstance(whole, np.ndarray) and whole.ndim == array.ndim and len(whole) >= size:
+        return cast(Array, whole)
+    longer = np.empty((size + size // 16 + ROOM, *array.shape[1:]), array.dtype)
+    longer[: len(array)] = array
+    return cast(Array, longer)
+
+
+@bare
+def renamed(end: int, low: int, high: int, number: Longs, shift: int) -> int:
+    """What an end is called now."""
+    node = end >> 2
+    if node < low:
+        return end
+    return 4 * (number[node - low] if node < high else node + shift) + (end & 3)
+
+
+@bare
+def merge_chains(
+    heights: Heights,
+    states: Flags,
+    width: int,
+    ahead: Ints,
+    old_port: Ints,
+    old_neck: Ints,
+    old_steps: Ints,
+    open_ends: Flags,
+    low: int,
+    high: int,
+    number: Longs,
+    shift: int,
+    seeds: Ints,
+    node: Ints,
+    port: Ints,
+    neck: Ints,
+    steps: Ints,
+    notes: Ints,
+) -> int:
+    """The chains kept of a stretch and the new ones, in order; returns how many. Those ``ahead`` only learn what their
+    last ends are called now."""
+    size, k = 0, 0
+    for chain in range(ahead.shape[0]):
+        if ahead[chain, 1] >= 4 * low:
+            ahead[chain, 1] = renamed(ahead[chain, 1], low, high, number, shift)
+    for chain in range(old_port.shape[0] + 1):
+        first, last = 4 * node.shape[0], 0
+        if chain < old_port.shape[0]:
+            a, b = old_port[chain, 0], old_port[chain, 1]
+            if open_ends[a >> 2] >> (a & 3) & 1 or open_ends[b >> 2] >> (b & 3) & 1:
+                continue
+            first, last = renamed(a, low, high, number, shift), renamed(b, low, high, number, shift)
+        while k < seeds.shape[0] and seeds[k] < first:
+            end, back, long, noted = pace(node[seeds[k] >> 2], seeds[k] & 3, heights, states, width, notes, 0)
+            other = 4 * find(node, end) + back
+            if seeds[k] < other:
+                port[size, 0], port[size, 1], neck[size], steps[size] = (
+                    seeds[k],
+                    other,
+                    lowest_of(notes, 0, noted, heights),
+                    long,
+                )
+                size += 1
+            k += 1
+        if chain < old_port.shape[0]:
+            port[size, 0], port[size, 1] = first, last
+            neck[size], steps[size] = old_neck[chain], old_steps[chain]
+            size += 1
+    return size

@@ -1,0 +1,138 @@
+"""A few squares change: what hangs on them is made anew, and the rest stands.
+
+# Strategy: the clearances that a change can alter (affected_region.py) are measured anew (update_distance.py),
+# with the walls of a
+block about them so large that none beyond it counts. Where they really differ, and one cell about, the skeleton is
+grown again (update_skeleton.py) and the pathgraph joined again (update_graph.py). When they are much of the
+screen, all had
+better be made anew.
+"""
+
+import numpy as np
+
+from geometry.incremental.affected_region import boxes_of, find_affected
+from geometry.incremental.update_distance import measure_within
+from geometry.incremental.update_graph import rejoin
+from geometry.incremental.update_skeleton import regrow
+from geometry.kernels.jit import bare
+from geometry.raster.distance_transform import Bools, Squares
+from geometry.skeleton.buffers import keep_scratch, take_scratch
+from geometry.skeleton.graph import Bones, Ints
+from geometry.skeleton.skeleton import States
+
+Block = tuple[int, int, int, int]
+"""First and last row, first and last column."""
+
+ALL = 0.5  # share of the screen
+
+
+def change_squares(
+    square: Squares, state: States, bones: Bones, rows: Ints, columns: Ints, free: Bools
+) -> Bones | None:
+    """Change squares (unpadded rows and columns) in ``square`` and ``state``; returns the changed pathgraph, or None,
+    and changes nothing, when all had better be made anew.
+
+    Raises
+    ------
+    ValueError
+        When no square would be left free (nothing changes then).
+    """
+    heights, width = square.reshape(-1), square.shape[1]
+    cells = (rows + 1) * width + columns + 1
+    old = heights[cells]
+    if not free.any() and len(bones.node) <= len(cells) and np.count_nonzero(old) == np.count_nonzero(heights):
+        raise ValueError("the change leaves no free square")
+    turned = free != (old > 0)
+    if not turned.any():
+        return bones
+    cells, old, free = cells[turned], old[turned], free[turned]
+    bounds = np.empty((square.shape[0], 3), np.int32)
+    find_affected(square, boxes_of(cells, square.shape), bounds)
+    if np.maximum(bounds[:, 1] - bounds[:, 0] + 1, 0).sum() > ALL * len(heights):
+        return None
+    low, high, west, _ = block = block_about(square, bounds)
+    fresh = clearances_in(square, block, bounds, cells, free)
+    if fresh is None:
+        return None
+    narrow(square, fresh, low - 1, west - 1, bounds)
+    scratch = take_scratch(len(heights))
+    journal = regrow(square, state, bounds, fresh.reshape(-1), scratch)
+    joined = rejoin(heights, width, bones, journal)
+    scratch.mark[low * width : (high + 1) * width] = 0
+    scratch.mark[journal.touched[: journal.size[0]]] = 0
+    keep_scratch(scratch)
+    return joined
+
+
+def clearances_in(square: Squares, block: Block, bounds: Ints, cells: Ints, free: Bools) -> Squares | None:
+    """Clearances in a block with one cell about, when cells change; right within the bounds, arbitrary elsewhere.
+
+    None when ``square`` is of a type that does not hold them.
+    """
+    (low, high, west, east), width = block, square.shape[1]
+    rows, columns = cells // width - low, cells % width - west
+    fresh = np.empty((high - low + 3, east - west + 3), square.dtype)
+    if free.any():
+        floor = square[low : high + 1, west : east + 1] > 0
+        floor[rows, columns] = free
+        return fresh if measure_within(floor, bounds, low - 1, west - 1, fresh) else None
+    floor = np.ones((high - low + 1, east - west + 1), np.bool_)  # of walls only the new ones can count
+    floor[rows, columns] = False
+    measure_within(floor, bounds, low - 1, west - 1, fresh, (int(columns.min()) + 1, int(columns.max()) + 1))
+    keep_lower(square, fresh, low - 1, west - 1, bounds)
+    return fresh
+
+
+@bare
+def block_about(square: Squares, bounds: Ints) -> Block:
+    """First and last row, first and last column of a block in which the cells within the bounds can be measured.
+
+    Beside the bounds clearances stay, and none between exceeds theirs by more than its distance from them.
+    """
+    low, high, west, east = bounds.shape[0], -1, square.shape[1], -1
+    for row in range(bounds.shape[0]):
+        first, last = bounds[row, 0] - 1, bounds[row, 1] + 1
+        if last > 0:
+            before, behind = reach_of(square, row, first), reach_of(square, row, last)
+            most = (before + behind + last - first) // 2 + 1
+            low, high = row - most if row - most < low else low, row + most if row + most > high else high
+            west = first - before if first - before < west else west
+            east = last + behind if last + behind > east else east
+    rows, columns = square.shape
+    low, high = low if low > 0 else 0, high if high < rows - 1 else rows - 1
+    return low, high, west if west > 0 else 0, east if east < columns - 1 else columns - 1
+
+
+@bare
+def reach_of(square: Squares, row: int, column: int) -> int:
+    """A whole number of squares above a cell's clearance."""
+    return int(0.5 * np.sqrt(float(square[row, column])) + 2.0)
+
+
+@bare
+def keep_lower(square: Squares, fresh: Squares, low: int, west: int, bounds: Ints) -> None:
+    """Put old clearances that are lower into ``fresh``, which begins in row ``low`` and column ``west``."""
+    for row in range(bounds.shape[0]):
+        first, size = bounds[row, 0], bounds[row, 1] - bounds[row, 0] + 1
+        if size > 0:
+            old, new = square[row, first : first + size], fresh[row - low, first - west : first - west + size]
+            for k in range(size):
+                new[k] = old[k] if old[k] < new[k] else new[k]
+
+
+@bare
+def narrow(square: Squares, fresh: Squares, low: int, west: int, bounds: Ints) -> None:
+    """Narrow the bounds to the cells that differ; their third column gets where in ``fresh``, flat, the first one is.
+
+    ``fresh`` begins in row ``low`` and column ``west``.
+    """
+    width = fresh.shape[1]
+    for row in range(bounds.shape[0]):
+        first, last = bounds[row, 0], bounds[row, 1]
+        while last >= first and fresh[row - low, last - west] == square[row, last]:
+            last -= 1
+        while first <= last and fresh[row - low, first - west] == square[row, first]:
+            first += 1
+        bounds[row, 0], bounds[row, 1], bounds[row, 2] = first, last, (row - low) * width + first - west
+        if last < first:
+            bounds[row, 0], bounds[row, 1] = square.shape[1], -1

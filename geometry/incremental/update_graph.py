@@ -1,0 +1,142 @@
+"""The pathgraph of a skeleton that has changed in places: chains that no change meets are kept.
+
+# Strategy: from every changed cell the old links lead to the ends of the chains it lay on, which go. Changed cells
+that are nodes now, and the ends left open, are where new chains start. They are walked and spliced in
+(splice_arrays.py)
+in the order that graph.py would give them.
+"""
+
+from bisect import bisect_left
+
+import numpy as np
+
+from geometry.incremental.splice_arrays import Longs, splice_chains, splice_nodes
+from geometry.incremental.update_skeleton import JOINED, MOVED, PASSED, Journal
+from geometry.kernels.jit import bare
+from geometry.skeleton.graph import Bones, Ints, find, first_way, is_node, onward
+from geometry.skeleton.skeleton import HALT, LINKS, Flags, Heights, stride
+
+NODES = np.array([bool(state) and is_node.function(state) for state in range(256)])
+"""Whether a cell of a state is a node."""
+
+GONE = 31  # a node that is none any more, or has changed: all its ends are open
+
+
+def rejoin(heights: Heights, width: int, bones: Bones, journal: Journal) -> Bones:
+    """The pathgraph after a change, in the memory of the one before when there is room."""
+    states, mark = journal.states, journal.mark
+    keys = np.empty(int(journal.size[0]), np.int64)
+    keys = keys[: find_changed(journal, keys)]
+    if not len(keys):
+        return bones
+    keys.sort()
+    cells, before = (keys >> 8).astype(np.int32), keys.astype(np.uint8)
+    open_ends = np.zeros(len(bones.node), np.uint8)
+    low, high = find_open(states, mark, width, cells, before, bones.node, open_ends)
+    bases = np.empty(len(cells), np.int32)
+    rings = find_rings(states, mark, width, cells, bases)
+    if rings:
+        cells = np.unique(np.concatenate([cells, bases[:rings]]))
+    grown = cells[NODES[states[cells]]]
+    if len(grown):
+        low, high = min(low, bisect_left(bones.node, grown[0])), max(high, bisect_left(bones.node, grown[-1]))
+    if low > high:
+        return bones
+    splice = splice_nodes(bones.node, low, high, open_ends, grown)
+    seeds = np.empty(4 * (len(grown) + high - low), np.int32)
+    seeds = seeds[: find_seeds(states, splice.node, grown, low, splice.number, open_ends, seeds)]
+    seeds.sort()
+    return splice_chains(heights, states, width, bones, splice, open_ends, seeds)
+
+
+@bare
+def find_changed(journal: Journal, keys: Longs) -> int:
+    """Mark and list the touched cells that differ, as 256 cell + state before; returns how many."""
+    found = 0
+    for k in range(journal.size[0]):
+        cell = journal.touched[k]
+        if journal.states[cell] != journal.before[k] or journal.mark[cell] & MOVED:
+            journal.mark[cell] |= JOINED
+            keys[found] = np.int64(cell) << 8 | journal.before[k]
+            found += 1
+    return found
+
+
+@bare
+def find_open(
+    states: Flags, mark: Flags, width: int, cells: Ints, before: Flags, node: Ints, open_ends: Flags
+) -> tuple[int, int]:
+    """Set the ends, as bits per node, of all chains on which one lay.
+
+    Returns the first node that has such an end and the one behind the last.
+    """
+    low, high = node.shape[0], 0
+    for k in range(cells.shape[0]):
+        if is_node(before[k]):
+            here = find(node, cells[k])
+            open_ends[here] = GONE
+            low, high = here if here < low else low, here + 1 if here >= high else high
+        states[cells[k]] &= 255 - HALT
+        for first in range(4):
+            if not before[k] >> first & 1:
+                continue
+            direction = first
+            cell = cells[k] + stride(direction, width)
+            while not mark[cell] & JOINED and not is_node(states[cell]):
+                direction = onward(states[cell], direction ^ 2)
+                cell += stride(direction, width)
+            if mark[cell] & JOINED:
+                continue
+            here = find(node, cell)
+            low, high = here if here < low else low, here + 1 if here >= high else high
+            if states[cell] & HALT:  # the ring that this cell stood for has changed
+                states[cell] &= 255 - HALT
+                open_ends[here] = GONE
+            else:
+                open_ends[here] |= 1 << (direction ^ 2)
+    return low, high
+
+
+@bare
+def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints) -> int:
+    """Flag the first cell of every ring without a junction on which a changed cell lies; returns how many.
+
+    Of the changed cells on a chain only the first is followed, and one more that the way of that did not pass.
+    """
+    found = 0
+    for k in range(cells.shape[0]):
+        cell = cells[k]
+        if states[cell] & LINKS == 0 or is_node(states[cell]) or mark[cell] & PASSED:
+            continue
+        mark[cell] |= PASSED
+        direction, lowest = first_way(int(states[cell])), cell
+        cell += stride(direction, width)
+        while cell != cells[k] and not is_node(states[cell]) and not mark[cell] & PASSED:
+            if mark[cell] & JOINED:
+                mark[cell] |= PASSED
+            lowest = cell if cell < lowest else lowest
+            direction = onward(states[cell], direction ^ 2)
+            cell += stride(direction, width)
+        if cell == cells[k]:
+            states[lowest] |= HALT
+            bases[found] = lowest
+            found += 1
+    return found
+
+
+@bare
+def find_seeds(states: Flags, node: Ints, grown: Ints, low: int, number: Longs, open_ends: Flags, seeds: Ints) -> int:
+    """The ends (4 node + direction) where new chains may start; returns how many."""
+    found = 0
+    for k in range(grown.shape[0]):
+        for direction in range(4):
+            if states[grown[k]] >> direction & 1:
+                seeds[found] = 4 * find(node, grown[k]) + direction
+                found += 1
+    for n in range(number.shape[0]):
+        if number[n] >= 0 and open_ends[low + n]:
+            for direction in range(4):
+                if open_ends[low + n] >> direction & 1:
+                    seeds[found] = 4 * number[n] + direction
+                    found += 1
+    return found

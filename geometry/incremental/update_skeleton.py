@@ -1,0 +1,210 @@
+"""The skeleton where clearances change: ways up that may lead elsewhere are taken back, and taken anew.
+
+# Strategy: a link leads from a cell to a higher one, and hangs on the clearances about the lower cell alone. So only
+links that leave a cell on or beside a changed one go; then, from where they led, every way that nothing leads to any
+more. What is left is part of the new skeleton, and the rest grows back as it first grew (skeleton.py).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.kernels.jit import bare
+from geometry.raster.distance_transform import Squares
+from geometry.skeleton.buffers import Scratch
+from geometry.skeleton.graph import Ints
+from geometry.skeleton.skeleton import (
+    CLIMBED,
+    GROUPS,
+    LINKS,
+    SADDLE,
+    SUMMIT,
+    Flags,
+    Heights,
+    States,
+    above,
+    find_flags,
+    higher_about,
+    highest,
+    highest_of,
+    link,
+    stride,
+)
+
+TOUCHED, MOVED = 1, 2  # marks of cells: state may differ, clearance differs
+JOINED, PASSED = 4, 8  # to be joined again; passed on the way along a chain
+
+
+class Journal(NamedTuple):
+    """What has changed."""
+
+    states: Flags
+    mark: Flags
+    """(cells,) TOUCHED and MOVED."""
+    touched: Ints
+    """The touched cells."""
+    before: Flags
+    """Their states before."""
+    size: Ints
+    """(1,) how many."""
+
+
+def regrow(square: Squares, state: States, bounds: Ints, fresh: Squares, scratch: Scratch) -> Journal:
+    """Set new clearances and grow the skeleton again.
+
+    bounds : (rows, 3 or more) first and last column that change, and where in ``fresh`` their values start.
+    """
+    heights, states, width = square.reshape(-1), state.reshape(-1), square.shape[1]
+    journal = Journal(states, *scratch, np.zeros(1, np.int32))
+    about = np.empty((len(bounds), 2), np.int32)
+    spread(bounds, width, about)
+    prune(heights, width, about, journal)
+    settle(heights, width, bounds, fresh, about, np.empty(width, np.uint8), journal)
+    grow(heights, width, about, journal)
+    return journal
+
+
+@bare
+def spread(bounds: Ints, width: int, about: Ints) -> None:
+    """The columns on or beside a changed cell, per row."""
+    rows = bounds.shape[0]
+    for row in range(rows):
+        about[row, 0], about[row, 1] = width, -1
+    for row in range(1, rows - 1):
+        for near in range(row - 1, row + 2):
+            if bounds[near, 1] >= 0:
+                first = bounds[near, 0] - 1 if bounds[near, 0] > 1 else 1
+                last = bounds[near, 1] + 1 if bounds[near, 1] < width - 2 else width - 2
+                about[row, 0] = first if first < about[row, 0] else about[row, 0]
+                about[row, 1] = last if last > about[row, 1] else about[row, 1]
+
+
+@bare
+def touch(journal: Journal, cell: int) -> None:
+    """Remember a cell's state before it changes."""
+    if not journal.mark[cell] & TOUCHED:
+        journal.mark[cell] |= TOUCHED
+        k = journal.size[0]
+        journal.touched[k], journal.before[k], journal.size[0] = cell, journal.states[cell], k + 1
+
+
+@bare
+def prune(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
+    """Take back all ways up from the cells about, and what hangs on them."""
+    states = journal.states
+    for row in range(about.shape[0]):
+        for cell in range(row * width + about[row, 0], row * width + about[row, 1] + 1):
+            if not states[cell] & (255 - SADDLE - SUMMIT):
+                continue
+            touch(journal, cell)
+            for direction in range(4):
+                other = cell + stride(direction, width)
+                if states[cell] >> direction & 1 and above(other, cell, heights):
+                    unlink(journal, cell, other, direction)
+                    wither(heights, width, about, journal, other)
+            states[cell] &= LINKS | SADDLE | SUMMIT
+
+
+@bare
+def unlink(journal: Journal, cell: int, other: int, direction: int) -> None:
+    """Take back a link."""
+    touch(journal, cell)
+    touch(journal, other)
+    journal.states[cell] &= 255 - (1 << direction)
+    journal.states[other] &= 255 - (1 << (direction ^ 2))
+
+
+@bare
+def wither(heights: Heights, width: int, about: Ints, journal: Journal, cell: int) -> None:
+    """Take back the way up from a cell outside that nothing leads to any more."""
+    states = journal.states
+    while not states[cell] & (SADDLE | SUMMIT):
+        row = cell // width
+        if about[row, 0] <= cell - row * width <= about[row, 1]:
+            return
+        up, higher = -1, cell
+        for direction in range(4):
+            if states[cell] >> direction & 1:
+                other = cell + stride(direction, width)
+                if not above(other, cell, heights):
+                    return
+                up, higher = direction, other
+        touch(journal, cell)
+        states[cell] &= LINKS
+        if up < 0:
+            return
+        unlink(journal, cell, higher, up)
+        cell = higher
+
+
+@bare
+def settle(
+    heights: Heights, width: int, bounds: Ints, fresh: Squares, about: Ints, flags: Flags, journal: Journal
+) -> None:
+    """Set the new clearances, and the flags of the cells about. ``flags`` (width,) is scratch."""
+    states = journal.states
+    for row in range(bounds.shape[0]):
+        size = bounds[row, 1] - bounds[row, 0] + 1
+        if size > 0:
+            first, source = row * width + bounds[row, 0], bounds[row, 2]
+            replace(heights[first : first + size], fresh[source : source + size], journal.mark[first : first + size])
+    for row in range(about.shape[0]):
+        size = about[row, 1] - about[row, 0] + 1
+        if size > 0:
+            first = row * width + about[row, 0]
+            find_flags(heights, width, first, 1, flags[:size])
+            if differ(states[first : first + size], flags):
+                for k in range(size):
+                    if states[first + k] & (SADDLE | SUMMIT) != flags[k]:
+                        touch(journal, first + k)
+                        states[first + k] = states[first + k] & LINKS | flags[k]
+
+
+@bare
+def replace(heights: Heights, fresh: Heights, mark: Flags) -> None:
+    """Set new clearances, and mark those that differ."""
+    for k in range(heights.shape[0]):
+        mark[k] |= np.uint8(MOVED) if heights[k] != fresh[k] else np.uint8(0)
+        heights[k] = fresh[k]
+
+
+@bare
+def differ(states: Flags, flags: Flags) -> bool:
+    """Whether any state has other flags."""
+    other = np.uint8(0)
+    for k in range(states.shape[0]):
+        other |= flags[k] ^ states[k] & np.uint8(SADDLE | SUMMIT)
+    return bool(other != 0)
+
+
+@bare
+def grow(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
+    """Go up again from the saddles about, and from where ways from outside come in."""
+    states = journal.states
+    for row in range(about.shape[0]):
+        for cell in range(row * width + about[row, 0], row * width + about[row, 1] + 1):
+            here = states[cell]
+            if here & SADDLE:
+                rest = int(GROUPS[higher_about(cell, heights, width)])
+                while rest != 0:
+                    climb(cell, highest_of(cell, rest & LINKS, heights, width), heights, width, journal)
+                    rest >>= 4
+            elif here & LINKS and not here & (SUMMIT | CLIMBED):
+                states[cell] |= CLIMBED
+                climb(cell, highest(cell, heights, width), heights, width, journal)
+
+
+@bare
+def climb(cell: int, direction: int, heights: Heights, width: int, journal: Journal) -> None:
+    """As in skeleton.py, with a journal."""
+    states = journal.states
+    while True:
+        other = cell + stride(direction, width)
+        touch(journal, cell)
+        touch(journal, other)
+        link(cell, other, direction, states)
+        cell = other
+        if states[cell] & (CLIMBED | SADDLE | SUMMIT):
+            return
+        states[cell] |= CLIMBED
+        direction = highest(cell, heights, width)

@@ -1,0 +1,127 @@
+"""The map format of the Moving AI benchmarks (Sturtevant 2012), and their scenario files.
+
+    file = head "map" row { row } blank lines
+    head = { "type" word | "height" number | "width" number }     each once, a line each, in any order
+
+Words of the head are parted by blanks or tabs, and blanks or tabs may end any line; lines end in LF or CR LF. There are
+`height` rows of `width` squares, and only blank lines follow. A map's first row of text is its north edge; screens have
+row 0 in the south, so rows are turned over.
+"""
+
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.raster.distance_transform import Bools
+
+PASSABLE = ".GS"
+KNOWN = PASSABLE + "@OTW"
+HEAD = ("type", "height", "width")
+NO_HEAD = "this is no line of a head ('type W', 'height N', 'width N'), and 'map' is missing before it"
+DIGITS = 9  # of a number in the head, at most: no file has room for more rows or squares in one
+WORD = re.compile(r"[^ \t]+")
+
+
+class MapError(ValueError):
+    """A text is no map: the `line`, and `column` to `end` of it (from 1), where it goes wrong, and `what` is wrong."""
+
+    def __init__(self, line: int, column: int, what: str, end: int | None = None) -> None:
+        self.line, self.column, self.end, self.what = line, column, max(column, end or column), what
+        super().__init__(f"{line}:{column}-{self.end}: error: {what}")
+
+
+class Trip(NamedTuple):
+    """One problem of a scenario file, in the coordinates of the turned-over screen."""
+
+    start: tuple[float, float]
+    """Centre of the first square."""
+    goal: tuple[float, float]
+    """Centre of the last square."""
+    octile: float
+    """The optimum for eight directions, as the file says."""
+
+
+def read_map(path: str | Path) -> Bools:
+    """(rows, columns) bool: where one may be.
+
+    Raises ValueError when the file is no such map; the message has file and line. OSError when it cannot be read.
+    """
+    try:
+        return parse_map(Path(path).read_bytes())
+    except MapError as error:
+        raise ValueError(f"{path}:{error.line}: error: {error.what}") from None
+
+
+def parse_map(raw: bytes) -> Bools:
+    """(rows, columns) bool: where one may be on the map that a file of these bytes describes.
+
+    Raises MapError when it is none.
+
+    >>> parse_map(b"type octile\\nheight 2\\nwidth 3\\nmap\\n..@\\n.@.\\n").tolist()
+    [[True, False, True], [True, True, False]]
+    """
+    lines = [line.removesuffix("\r").rstrip(" \t") for line in raw.decode("latin-1").split("\n")]
+    first, height, width = _head(lines)
+    rows = lines[first : first + height]
+    while rows and not rows[-1]:
+        rows.pop()
+    for number, row in enumerate(rows, first + 1):
+        _check_row(number, row, width)
+    if len(rows) < height:
+        raise MapError(first + len(rows), 1, f"the map has {len(rows)} rows, not {height}")
+    for number, line in enumerate(lines[first + height :], first + height + 1):
+        if line:
+            raise MapError(number, 1, f"the map has more than {height} rows", len(line))
+    return np.array([[square in PASSABLE for square in row] for row in reversed(rows)], np.bool_)
+
+
+def _head(lines: list[str]) -> tuple[int, int, int]:
+    """The number of lines before the first row, the height and the width."""
+    found: dict[str, int] = {}
+    for number, line in enumerate(lines, 1):
+        words = list(WORD.finditer(line))
+        if [word.group() for word in words] == ["map"]:
+            for name in HEAD[1:]:
+                if name not in found:
+                    raise MapError(number, 1, f"a line that says '{name} N' is missing before this one")
+            return number, found["height"], found["width"]
+        if not words or words[0].group() not in HEAD:
+            at = words[0].start() + 1 if words else 1
+            raise MapError(number, at, NO_HEAD, len(line))
+        name = words[0].group()
+        if name in found:
+            raise MapError(number, words[0].start() + 1, f"{name} is given twice", words[0].end())
+        if len(words) != 2:
+            at = words[2].start() + 1 if len(words) > 2 else len(line)
+            raise MapError(number, at, f"one word was expected after {name}, not {len(words) - 1}", len(line))
+        found[name] = 0 if name == "type" else _number(number, name, words[1])
+    raise MapError(len(lines), 1, "a line that says 'map' is missing")
+
+
+def _number(line: int, name: str, word: "re.Match[str]") -> int:
+    text = word.group()
+    if not re.fullmatch("[0-9]+", text) or len(text) > DIGITS or int(text) == 0:
+        raise MapError(line, word.start() + 1, f"{name} must be a whole number above 0, not {text[:20]!r}", word.end())
+    return int(text)
+
+
+def _check_row(number: int, row: str, width: int) -> None:
+    for column, square in enumerate(row[:width], 1):
+        if square not in KNOWN:
+            raise MapError(number, column, f"unknown square {square!r}; known are {' '.join(KNOWN)}")
+    if len(row) != width:
+        raise MapError(number, min(len(row), width) + 1, f"the row has {len(row)} squares, not {width}", len(row))
+
+
+def read_trips(path: str | Path) -> list[Trip]:
+    """The problems of a scenario file."""
+    trips = []
+    for line in Path(path).read_text(encoding="ascii").splitlines():
+        words = line.split()
+        if len(words) == 9:
+            height, a, b, c, d = (int(word) for word in words[3:8])
+            start, goal = (a + 0.5, height - b - 0.5), (c + 0.5, height - d - 0.5)
+            trips.append(Trip(start, goal, float(words[8])))
+    return trips

@@ -1,0 +1,37 @@
+"""A binary heap in two arrays, keys and what they belong to; the caller keeps its size."""
+
+from geometry.kernels.jit import bare
+from geometry.skeleton.graph import Floats, Ints
+
+
+@bare
+def push(keys: Floats, items: Ints, size: int, key: float, item: int) -> int:
+    """Put an item on the heap; returns the heap's size."""
+    k = size
+    while k > 0:
+        parent = (k - 1) >> 1
+        if keys[parent] <= key:
+            break
+        keys[k], items[k] = keys[parent], items[parent]
+        k = parent
+    keys[k], items[k] = key, item
+    return size + 1
+
+
+@bare
+def pop(keys: Floats, items: Ints, size: int) -> tuple[int, int]:
+    """Take the item with the least key, which is ``keys[0]``; returns it and the heap's size."""
+    top = 0 + items[0]
+    size -= 1
+    key, item = keys[size], items[size]
+    k = 0
+    while 2 * k + 1 < size:
+        child = 2 * k + 1
+        if child + 1 < size and keys[child + 1] < keys[child]:
+            child += 1
+        if keys[child] >= key:
+            break
+        keys[k], items[k] = keys[child], items[child]
+        k = child
+    keys[k], items[k] = key, item
+    return top, size

@@ -1,0 +1,105 @@
+"""The floor as triangles between the corners of its walls, and the widths that follow from them.
+
+# Strategy: a circle among the walls is as large as can be when corners of walls hold it on all sides: it is the circle
+about a triangle of the Delaunay triangulation of these corners that is not obtuse. A line from wall to wall is shorter
+than all lines beside it when no corner lies in the circle over it: it is an edge with acute angles on both sides
+(Gabriel's condition). All of this is decided with whole numbers, so that it is the same however the floor is turned,
+mirrored or moved; where several corners lie on one circle any triangulation of them tells the same.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from geometry.raster.distance_transform import Bools
+from geometry.skeleton.graph import Floats
+
+Longs = NDArray[np.int64]
+
+
+class Walls(NamedTuple):
+    """The floor between the corners of its walls.
+
+    corners : (n, 2) the corners of blocked squares that touch free ones, (x, y).
+    triangles : (m, 3) numbers of corners; together they are the free squares.
+    room : (m,) the squared width of the floor about each triangle: 0 where that is greatest elsewhere.
+    edges : (k, 2) numbers of the corners at the ends of what two triangles share.
+    sides : (k, 2) these triangles.
+    length : (k,) the squared length of each edge.
+    neck : (k,) whether all lines from wall to wall beside the edge are longer.
+    """
+
+    corners: Longs
+    triangles: Longs
+    room: Floats
+    edges: Longs
+    sides: Longs
+    length: Longs
+    neck: Bools
+
+    def opposite(self, edge: int, side: int) -> Longs:
+        """The corner (x, y) of one of the two triangles of an edge that is not on the edge."""
+        ends = self.edges[edge]
+        (other,) = (c for c in self.triangles[self.sides[edge, side]].tolist() if c not in ends)
+        point: Longs = self.corners[other]
+        return point
+
+
+def find_walls(free: Bools) -> Walls:
+    """Triangulate the free squares of a screen; everything outside it is blocked."""
+    floor = np.pad(free, 1)
+    corners, triangles = _triangulate(floor)
+    middle = corners[triangles].sum(axis=1) // 3 + 1  # of a triangle that is free all squares about it are
+    triangles = triangles[floor[middle[:, 1], middle[:, 0]]]
+    edges, sides, opposite = _shared(triangles)
+    ends = corners[edges]
+    acute = [_dot(ends[:, 0] - tip, ends[:, 1] - tip) > 0 for tip in (corners[opposite[:, n]] for n in (0, 1))]
+    length = _dot(ends[:, 1] - ends[:, 0], ends[:, 1] - ends[:, 0])
+    return Walls(corners, triangles, _widths(corners[triangles]), edges, sides, length, acute[0] & acute[1])
+
+
+def _triangulate(floor: Bools) -> tuple[Longs, Longs]:
+    """The corners of walls and the triangles of all between them. floor : the free squares in a frame of blocked."""
+    around = [floor[:-1, :-1], floor[:-1, 1:], floor[1:, :-1], floor[1:, 1:]]
+    on_wall = np.logical_or.reduce(around) & ~np.logical_and.reduce(around)
+    corners = np.argwhere(on_wall)[:, ::-1].astype(np.int64)
+    number = np.zeros(on_wall.shape, np.int64)
+    number[on_wall] = np.arange(len(corners))
+    found = shapely.get_coordinates(shapely.delaunay_triangles(shapely.multipoints(corners.astype(np.float64))))
+    points = np.rint(found).astype(np.int64).reshape(-1, 4, 2)[:, :3]
+    return corners, number[points[..., 1], points[..., 0]]
+
+
+def _shared(triangles: Longs) -> tuple[Longs, Longs, Longs]:
+    """The edges that two triangles share: their ends, these triangles, and the corners opposite."""
+    ends = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
+    owner, tip = np.tile(np.arange(len(triangles)), 3), np.concatenate([triangles[:, k] for k in (2, 0, 1)])
+    order = np.lexsort((owner, ends[:, 1], ends[:, 0]))
+    ends, owner, tip = ends[order], owner[order], tip[order]
+    first = np.flatnonzero((ends[1:] == ends[:-1]).all(axis=1))
+    pair = np.stack([first, first + 1], axis=1)
+    return ends[first], owner[pair], tip[pair]
+
+
+def _widths(points: Longs) -> Floats:
+    """The squared width of the floor about triangles, from their corners (m, 3, 2); 0 about those that are obtuse.
+
+    Walls go straight on between corners that are one square apart, so they come nearer to the centre than these by
+    what such a chord cuts off: of four times the squared radius one square is taken.
+    """
+    a, b, c = (points[:, k] for k in range(3))
+    u, v, w = b - a, c - b, a - c
+    twice = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]  # the area
+    sharp = (_dot(u, -w) >= 0) & (_dot(v, -u) >= 0) & (_dot(w, -v) >= 0)
+    lengths = [_dot(side, side).astype(np.float64) for side in (u, v, w)]
+    four_squared_radii = lengths[0] * lengths[1] * lengths[2] / twice.astype(np.float64) ** 2
+    widths: Floats = np.where(sharp, four_squared_radii - 1, 0.0)
+    return widths
+
+
+def _dot(u: Longs, v: Longs) -> Longs:
+    """The inner products of (n, 2) vectors."""
+    product: Longs = u[:, 0] * v[:, 0] + u[:, 1] * v[:, 1]
+    return product

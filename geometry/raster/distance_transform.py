@@ -1,0 +1,132 @@
+"""How far each square's centre is from the nearest square that is not free: exact, in integers.
+
+All arrays are padded by one blocked square on each side: cell ``(row + 1) * width + column + 1`` with ``width =
+columns + 2``. ``square`` is the squared distance in *half squares* from the centre to the nearest blocked square's
+edge or corner, 0 on blocked squares. A blocked square at offset (dx, dy) is ``(max(2|dx| - 1, 0))^2 + (max(2|dy| - 1,
+0))^2`` away, so ``sqrt(square) / 2`` is the clearance.
+
+# Strategy: columns first, then along each run of free squares of a row the lower envelope of parabolas
+(Felzenszwalb and Huttenlocher 2012), here as the lower convex hull of (site, height + site^2), which needs no
+division. Between squares j and j + 1 a column's edge stands at 2j + 1 half squares, so a run has a site between any
+two of its squares, with the lower of their two column distances as its height. Where walls are near,
+distance_rows.py finds
+the same faster. A row's ``gap`` is the number of steps to the nearest blocked square in each column.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.kernels.jit import bare
+
+Bools = NDArray[np.bool_]
+Gaps = NDArray[np.int16]
+Squares = NDArray[np.int16] | NDArray[np.int32]
+Sites = NDArray[np.int64]
+
+TILE = 16  # squares
+
+
+def type_of_squares(free: Bools) -> type[np.int16] | type[np.int32]:
+    """The smaller type that holds ``square`` of these free squares; now and then, on wide floor, the larger.
+
+    16 bits hold clearances up to 90.5 squares. Any larger one has 129 x 129 free squares about it, and these 7 x 7
+    whole tiles of 16 x 16: where no such are found, 16 bits surely do. Of a tile one diagonal is looked at, which
+    crosses every wall, and a quarter of that first.
+    """
+    if min(free.shape) < 129:
+        return np.int16
+    rows, columns = (n // TILE * TILE for n in free.shape)
+    open_tiles = np.ones((rows // TILE, columns // TILE), np.bool_)
+    for first in range(4):
+        for k in range(first, TILE, 4):
+            open_tiles &= free[k:rows:TILE, k:columns:TILE]
+        if not has_block(open_tiles):
+            return np.int16
+    return np.int32
+
+
+def has_block(tiles: Bools) -> bool:
+    """Whether 7 x 7 of them are open."""
+    for n in (1, 2, 3):  # whether 2, 4, 7 to the north and east are
+        tiles = tiles[n:] & tiles[:-n]
+        tiles = tiles[:, n:] & tiles[:, :-n]
+    return bool(tiles.any())
+
+
+@bare
+def count_columns(free: Bools, steps: Gaps) -> None:
+    """Fill ``steps`` (rows + 1, columns + 2 or more) with the steps to the nearest blocked square below, in the same
+    column."""
+    rows, columns = free.shape
+    for j in range(columns + 2):
+        steps[0, j] = 0
+    for row in range(rows):
+        here, below, out = free[row], steps[row], steps[row + 1]
+        out[0] = 0
+        out[columns + 1] = 0
+        for column in range(columns):
+            out[column + 1] = np.int16((below[column + 1] + np.int16(1)) * here[column])
+
+
+@bare
+def count_steps(steps: Gaps, gap: Gaps) -> None:
+    """From the steps down, and those of the row above in ``gap``, the steps to the nearest blocked square."""
+    for j in range(gap.shape[0]):
+        down, up = steps[j], np.int16(gap[j] + 1)
+        gap[j] = down if down < up else up
+
+
+@bare
+def roof_of(square: Squares) -> int:
+    """The greatest value of its type."""
+    return int((1 << 8 * square.itemsize - 1) - 1)
+
+
+@bare
+def measure_run(
+    gap: Gaps, square: Squares, first: int, last: int, begin: int, end: int, roof: int, sites: Sites, heights: Sites
+) -> None:
+    """Fill ``begin <= column < end`` with values up to a ``roof``, in the free squares ``first <= column < last``.
+
+    What is further out, on either side, must not count for any of them.
+    """
+    top = envelope(gap, first, last, sites, heights)
+    best = 0
+    for column in range(begin, end):
+        x = 2 * (column - first)
+        value = heights[best] - 2 * x * sites[best]
+        while best < top:
+            other = heights[best + 1] - 2 * x * sites[best + 1]
+            if other > value:
+                break
+            value = other
+            best += 1
+        own = 2 * np.int64(gap[column]) - 1
+        square[column] = min(own * own, value + x * x, roof)
+
+
+@bare
+def envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> int:
+    """The sites whose parabolas are lowest somewhere; relative to ``first``. Returns the index of the last."""
+    top = -1
+    before = np.int64(gap[first - 1])
+    for column in range(first, last + 1):
+        here = np.int64(gap[column])
+        lower = before if before < here else here
+        edge = 2 * lower - 1 if lower > 0 else 0
+        before = here
+        site = 2 * (column - first) - 1
+        height = edge * edge + site * site
+        while top > 0 and hidden(sites, heights, top, site, height):
+            top -= 1
+        top += 1
+        sites[top] = site
+        heights[top] = height
+    return top
+
+
+@bare
+def hidden(sites: Sites, heights: Sites, top: int, site: int, height: np.int64 | int) -> bool:
+    """Whether the top site lies on or above the line from the one beneath it to the new one."""
+    rise = (heights[top] - heights[top - 1]) * (site - sites[top])
+    return bool(rise >= (height - heights[top]) * (sites[top] - sites[top - 1]))

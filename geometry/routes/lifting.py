@@ -1,0 +1,254 @@
+"""From the word of a route to its way over the skeleton: which chains it walks, and how low it must go.
+
+# Strategy: every class of ways holds exactly one over the skeleton that never turns back. It is found by raising any
+way of the class, cell by cell. From a cell, the ways to the higher cells of one group (see skeleton.py) can be deformed
+into each other over higher cells only, so a step up to a cell of a group becomes the step to the group's highest edge
+neighbour and on along the ring. A cell that is left as it was reached is a spur, and is dropped. What cannot be raised
+is a step of the skeleton, or of the steepest way up to it from an end.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.homotopy.funnel import Ends
+from geometry.homotopy.landmarks import locate
+from geometry.homotopy.strips import Runs
+from geometry.kernels.jit import bare
+from geometry.routes.layer import Layer
+from geometry.skeleton.chains import Chains
+from geometry.skeleton.graph import Ints, find, is_node
+from geometry.skeleton.skeleton import GROUPS, Flags, Heights, above, beside, higher_about, highest_of
+
+FULL = -1
+GONE = -1  # the cell of a link of the way that was dropped
+
+
+class Lifted(NamedTuple):
+    """A way over the skeleton."""
+
+    lowest: int
+    """The least square on it, its ends included, in half squares."""
+    chains: tuple[int, ...]
+    """The chains that it walks, in order."""
+
+
+class Trail(NamedTuple):
+    """A way as a linked list of cells, each an edge neighbour of the one before; link 0 is the start, 1 the goal."""
+
+    cell: Ints
+    """(room,) padded cells."""
+    before: Ints
+    """(room,)"""
+    after: Ints
+    """(room,)"""
+    queue: Ints
+    """(room,) links to look at."""
+    waits: Ints
+    """(room,) whether a link is in the queue."""
+    tally: Ints
+    """(2,) how many links were ever made, and how many wait."""
+
+
+def new_trail(room: int) -> Trail:
+    """Return room for so many links."""
+    cell, before, after, queue = (np.empty(room, np.int32) for _ in range(4))
+    return Trail(cell, before, after, queue, np.zeros(room, np.int32), np.zeros(2, np.int32))
+
+
+def lift(layer: Layer, ends: Ends, word: Ints, trail: Trail | None = None) -> tuple[Lifted, Trail]:
+    """Return the one way over the skeleton, without turning back, of the class of a reduced word.
+
+    Parameters
+    ----------
+    ends : x and y of the start, x and y of the goal, in squares, in squares where the body may be.
+    word : signed portals from the start's run to the goal's.
+    trail : scratch, from a call before.
+
+    Returns
+    -------
+    The way, and the scratch that was used.
+    """
+    trail = trail or new_trail(4 * len(word) + 1024)
+    heights, states, width = layer.square.reshape(-1), layer.state.reshape(-1), layer.square.shape[1]
+    while (size := lift_word(heights, states, width, layer.chains, layer.runs, ends, word, trail)) == FULL:
+        trail = new_trail(4 * len(trail.cell))
+    lowest, *chains = trail.queue[:size].tolist()
+    return Lifted(lowest, tuple(chains)), trail
+
+
+def cells_of_word(layer: Layer, ends: Ends, word: Ints) -> list[int]:
+    """Return the cells of a way of a word, along each run to the nearest square of the next portal."""
+    trail = new_trail(4 * len(word) + 1024)
+    while lay(layer.runs, ends, word, layer.square.shape[1], trail) == FULL:
+        trail = new_trail(4 * len(trail.cell))
+    cells = [int(trail.cell[0]), *trail.cell[2 : trail.tally[0]].tolist(), int(trail.cell[1])]
+    return cells if trail.after[0] != 1 or cells[0] != cells[-1] else cells[:1]
+
+
+@bare
+def lift_word(
+    heights: Heights, states: Flags, width: int, chains: Chains, runs: Runs, ends: Ends, word: Ints, trail: Trail
+) -> int:
+    """Write the lowest square and the chains of a word's way over the skeleton to the trail's queue.
+
+    Returns how many numbers these are, or FULL when there is no room.
+    """
+    if lay(runs, ends, word, width, trail) == FULL or raise_trail(heights, width, trail) == FULL:
+        return FULL
+    cell, after, out = trail.cell, trail.after, trail.queue
+    link, last, size, lowest = 0, -1, 1, heights[cell[0]]
+    while link >= 0:
+        here = 0 + cell[link]
+        lowest = heights[here] if heights[here] < lowest else lowest
+        if states[here] != 0 and here != last:  # the steepest ways up to the skeleton are no part of it
+            if last >= 0 and is_node(0 + states[last]):
+                out[size] = chains.leave[find(chains.node, last), direction_of(here - last)]
+                size += 1
+            elif last >= 0 and size == 1:
+                out[1] = locate(last, states, width, chains.node, chains.leave, chains.start, chains.cells).chain
+                size = 2
+            last = here
+        link = 0 + after[link]
+    out[0] = lowest
+    return size
+
+
+@bare
+def direction_of(step: int) -> int:
+    """Return the direction of an index step between edge neighbours."""
+    if step == 1 or step == -1:
+        return 1 - step
+    return 1 if step > 0 else 3
+
+
+@bare
+def lay(runs: Runs, ends: Ends, word: Ints, width: int, trail: Trail) -> int:
+    """Lay a way of a word, along each run to the nearest square of the next portal; FULL when there is no room."""
+    cell, before, after, queue, waits, tally = trail
+    left, right = runs.left, runs.right
+    row, column, last, new = int(ends[1]), int(ends[0]), 0, 2
+    cell[0] = (row + 1) * width + column + 1
+    for k in range(word.shape[0] + 1):
+        end = k == word.shape[0]
+        portal = 0 if end else abs(word[k]) - 1
+        target = int(ends[2]) if end else column
+        if not end:
+            target = left[portal] if column < left[portal] else right[portal] if column > right[portal] else column
+        if new + abs(target - column) + 32 > cell.shape[0]:
+            return FULL
+        while column != target or not end:
+            if column != target:
+                column += 1 if column < target else -1
+            else:
+                row += 1 if word[k] > 0 else -1
+                end = True
+            cell[new], before[new], after[last] = (row + 1) * width + column + 1, last, new
+            last = new
+            new += 1
+    if last > 0:  # the last link is the goal
+        new -= 1
+        cell[1], last = cell[last], before[last]
+    else:
+        cell[1] = cell[0]
+    before[1], after[last], before[0], after[1] = last, 1, GONE, GONE
+    for link in range(new):
+        queue[link], waits[link] = link, 1
+    tally[0], tally[1] = new, new
+    return new
+
+
+@bare
+def raise_trail(heights: Heights, width: int, trail: Trail) -> int:
+    """Raise a way to the skeleton; returns the number of links made, or FULL when there is no room for more."""
+    cell, before, after, queue, waits, tally = trail
+    while tally[1] > 0:
+        tally[1] -= 1
+        link = 0 + queue[tally[1]]
+        waits[link] = 0
+        if cell[link] == GONE:
+            continue
+        if tally[0] + 16 > cell.shape[0]:
+            return FULL
+        if link != 1:
+            raise_step(heights, width, trail, link, 0 + after[link], True)
+        if link != 0:
+            raise_step(heights, width, trail, link, 0 + before[link], False)
+        if link > 1 and cell[before[link]] == cell[after[link]]:
+            drop_spur(trail, link)
+    return int(tally[0])
+
+
+@bare
+def raise_step(heights: Heights, width: int, trail: Trail, link: int, next_link: int, forward: bool) -> None:
+    """Lead the step from a link to a higher one over the highest edge neighbour of its group."""
+    cell = trail.cell
+    here, there = 0 + cell[link], 0 + cell[next_link]
+    if here == there or not above(there, here, heights):
+        return
+    higher, side = higher_about(here, heights, width), 0
+    while here + beside(side, width) != there:
+        side += 2
+    rest = int(GROUPS[higher])
+    while not rest >> (side >> 1) & 1:
+        rest >>= 4
+    best = 2 * highest_of(here, rest & 15, heights, width)
+    if best == side:
+        return
+    turn = 1
+    spot = best
+    while spot != side:  # which way round there are only higher cells
+        spot = (spot + 1) & 7
+        if not higher >> spot & 1:
+            turn = 7
+            break
+    spot, last = best, link
+    while spot != side:
+        last = insert_link(trail, here + beside(spot, width), last, next_link, forward)
+        spot = (spot + turn) & 7
+    wait(trail, link)
+    wait(trail, next_link)
+
+
+@bare
+def insert_link(trail: Trail, cell: int, last: int, next_link: int, forward: bool) -> int:
+    """Put a cell between two links of a way; returns its link."""
+    new = 0 + trail.tally[0]
+    trail.tally[0] += 1
+    trail.cell[new], trail.waits[new] = cell, 0
+    if forward:
+        trail.after[last], trail.before[new], trail.after[new], trail.before[next_link] = new, last, next_link, new
+    else:
+        trail.before[last], trail.after[new], trail.before[new], trail.after[next_link] = new, last, next_link, new
+    wait(trail, new)
+    return int(new)
+
+
+@bare
+def drop_spur(trail: Trail, link: int) -> None:
+    """Drop a link that is left as it was reached, with one of the two beside it, which are the same cell."""
+    cell, before, after = trail.cell, trail.before, trail.after
+    first, last = 0 + before[link], 0 + after[link]
+    cell[link] = GONE
+    if first == 0 and last == 1:
+        after[0], before[1] = 1, 0
+        return
+    if last == 1:
+        cell[first] = GONE
+        first = 0 + before[first]
+        after[first], before[last] = last, first
+    else:
+        cell[last] = GONE
+        last = 0 + after[last]
+        after[first], before[last] = last, first
+    wait(trail, first)
+    wait(trail, last)
+
+
+@bare
+def wait(trail: Trail, link: int) -> None:
+    """Look at a link again."""
+    if not trail.waits[link]:
+        trail.waits[link] = 1
+        trail.queue[trail.tally[1]] = link
+        trail.tally[1] += 1

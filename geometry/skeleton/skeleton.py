@@ -1,0 +1,223 @@
+"""The skeleton of a screen: steepest ways up from every saddle of the clearance.
+
+# Strategy: cells are totally ordered by (squared clearance, index). Seen from a cell, the neighbours above it in
+that order fall into groups along the ring of eight; a group counts when it touches the cell by an edge. A cell with
+no higher edge neighbour is a maximum, one with two groups or more a saddle. Clearance has no interior minimum, so
+discrete Morse theory gives maxima - sum of (groups - 1) over saddles = components - holes of the free space
+(4-connected, as DESIGN has it). From each saddle one steepest way up per group, until a way already trodden: the
+union has the homotopy type of free space, and so has its part at or above any level, which is free space for a body
+of that radius.
+
+Rows are classified and climbed in bands from the north, while they are in the processor's cache. A way that leads
+south out of the rows done so far waits at the last of them.
+
+``state`` holds one byte a cell: bits 0-3 the links to the east, north, west and south neighbours, then the flags
+below.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.kernels.jit import bare
+from geometry.raster.distance_transform import Squares
+
+States = NDArray[np.uint8]
+Heights = Squares
+"""(cells,) squares, flat."""
+Flags = States
+"""(cells,) states, flat."""
+Words = NDArray[np.uint64]
+Truth = np.bool_
+Waiting = NDArray[np.int32]
+
+LINKS = 15
+SOUTH = 3  # a direction: from the east counter-clockwise
+CLIMBED, SADDLE, SUMMIT, HALT = 16, 32, 64, 128  # HALT: a node chosen on a ring that has no junction
+
+
+@bare
+def flag(e: Truth, ne: Truth, n: Truth, nw: Truth, w: Truth, sw: Truth, s: Truth, se: Truth) -> np.uint8:
+    """The flag of a cell whose higher neighbours are so. A group ends behind each edge that the corner between does not
+    join to the next edge; where two end, the cell is a saddle."""
+    a, b, c, d = e & ~(ne & n), n & ~(nw & w), w & ~(sw & s), s & ~(se & e)
+    several = (a | b) & (c | d) | a & b | c & d
+    return np.uint8(np.uint8(several) << np.uint8(5) | np.uint8(~(e | n | w | s)) << np.uint8(6))
+
+
+def kinds() -> States:
+    """The flag of a cell by the set of its higher neighbours: bits from the east counter-clockwise; 255 is no cell."""
+    sets = [[np.bool_(higher >> k & 1) for k in range(8)] for higher in range(255)]
+    return np.array([flag.function(*ring) for ring in sets] + [0], np.uint8)
+
+
+KINDS = kinds()
+
+
+def edge_groups() -> NDArray[np.uint16]:
+    """The groups of a set of higher neighbours: for each, from the lowest four bits on, the edges by which it touches
+    the cell (bits as the links of ``state``)."""
+    table = np.zeros(256, dtype=np.uint16)
+    for higher in range(255):
+        ring = [bool(higher >> k & 1) for k in range(8)]
+        start, found, edges = ring.index(False), 0, 0
+        for k in range(start + 1, start + 9):
+            if not ring[k % 8]:
+                table[higher] |= edges << 4 * found
+                found, edges = found + (edges > 0), 0
+            elif k % 2 == 0:
+                edges |= 1 << k % 8 // 2
+    return table
+
+
+GROUPS = edge_groups()
+
+
+@bare
+def grow(
+    heights: Heights,
+    states: Flags,
+    words: Words,
+    width: int,
+    level: int,
+    south: int,
+    north: int,
+    flags: States,
+    waiting: Waiting,
+    waits: int,
+) -> int:
+    """Classify rows from ``north`` down to ``south`` and link the ways up from their saddles, among the cells whose
+    square is at least ``level``.
+
+    The rows further north are done already, and in the one further south clearances are known. ``words`` is
+    ``states`` by eights. ``waiting`` (width,) has the cells, so many, whose way up leads out of the rows done so far:
+    on entry those of row ``north + 1``, on return, which tells their number, those of row ``south``. ``flags`` (width,)
+    is scratch.
+    """
+    for row in range(south, north + 1):
+        classify(heights, states, width, level, row, flags)
+    first, last, left = south * width, (north + 1) * width, 0
+    for k in range(waits):
+        waiting[left] = climb(0 + waiting[k], SOUTH, heights, states, width, first)
+        left += waiting[left] >= 0
+    for word in range(first >> 3, (last + 7) >> 3):
+        if words[word] == 0:
+            continue
+        for cell in range(8 * word if 8 * word > first else first, 8 * word + 8 if 8 * word + 8 < last else last):
+            if states[cell] & SADDLE:
+                rest = int(GROUPS[higher_about(cell, heights, width)])
+                while rest != 0:
+                    way = climb(cell, highest_of(cell, rest & LINKS, heights, width), heights, states, width, first)
+                    if way >= 0:
+                        waiting[left] = way
+                        left += 1
+                    rest >>= 4
+    return left
+
+
+@bare
+def classify(heights: Heights, states: Flags, width: int, level: int, row: int, flags: States) -> None:
+    """Clear the states of a row and flag its summits and saddles."""
+    first = row * width
+    out = states[first : first + width]
+    find_flags(heights, width, first + 1, level, flags[: width - 2])
+    out[0] = 0
+    out[width - 1] = 0
+    for j in range(width - 2):
+        out[j + 1] = flags[j]
+
+
+@bare
+def find_flags(heights: Heights, width: int, first: int, level: int, flags: Flags) -> None:
+    """Find the flags of so many cells of a row from ``first`` on, of those at least as high as a level."""
+    size, least = flags.shape[0] + 2, heights.dtype.type(level)
+    below, here = heights[first - width - 1 : first - width - 1 + size], heights[first - 1 : first - 1 + size]
+    above = heights[first + width - 1 : first + width - 1 + size]
+    for j in range(size - 2):  # from 0, lest the loop have to allow for indices from the end
+        own = here[j + 1]
+        e, ne, n, nw = here[j + 2] >= own, above[j + 2] >= own, above[j + 1] >= own, above[j] >= own
+        w, sw, s, se = here[j] > own, below[j] > own, below[j + 1] > own, below[j + 2] > own
+        flags[j] = flag(e, ne, n, nw, w, sw, s, se) if own >= least else np.uint8(0)
+
+
+@bare
+def higher_about(cell: int, heights: Heights, width: int) -> int:
+    """The set of a cell's higher neighbours: bits from the east counter-clockwise."""
+    own = heights[cell]
+    higher = int(heights[cell + 1] >= own) | int(heights[cell + width + 1] >= own) << 1
+    higher |= int(heights[cell + width] >= own) << 2 | int(heights[cell + width - 1] >= own) << 3
+    higher |= int(heights[cell - 1] > own) << 4 | int(heights[cell - width - 1] > own) << 5
+    return int(higher | int(heights[cell - width] > own) << 6 | int(heights[cell - width + 1] > own) << 7)
+
+
+@bare
+def highest_of(cell: int, edges: int, heights: Heights, width: int) -> int:
+    """The direction of the highest among some edge neighbours of a cell (a set of links). No branches: they are not
+    to be foreseen."""
+    south = np.int64(heights[cell - width]) << 2
+    west = np.int64(heights[cell - 1]) << 2 | 1
+    east = np.int64(heights[cell + 1]) << 2 | 2
+    north = np.int64(heights[cell + width]) << 2 | 3
+    best = south if edges & 8 else -1
+    best = west if edges & 4 and west > best else best
+    best = east if edges & 1 and east > best else best
+    best = north if edges & 2 and north > best else best
+    return int(0b01001011 >> 2 * (best & 3) & 3)
+
+
+@bare
+def highest(cell: int, heights: Heights, width: int) -> int:
+    """The direction of the highest edge neighbour of a cell. With branches: along a chain they are."""
+    east, north, west, south = heights[cell + 1], heights[cell + width], heights[cell - 1], heights[cell - width]
+    if (north if north >= east else east) >= (west if west >= south else south):
+        return 1 if north >= east else 0
+    return 2 if west >= south else 3
+
+
+@bare
+def climb(cell: int, direction: int, heights: Heights, states: Flags, width: int, first: int) -> int:
+    """Link a cell to a higher neighbour and go on up from there, until a way already trodden; returns -1, or the cell
+    from which the way leads on to one before ``first``."""
+    while True:
+        other = cell + stride(direction, width)
+        if other < first:
+            return cell
+        link(cell, other, direction, states)
+        cell = other
+        if states[cell] & (CLIMBED | SADDLE | SUMMIT):
+            return -1
+        states[cell] |= CLIMBED
+        direction = highest(cell, heights, width)
+
+
+@bare
+def link(cell: int, other: int, direction: int, states: Flags) -> None:
+    """Set the two link bits between edge neighbours."""
+    states[cell] |= 1 << direction
+    states[other] |= 1 << (direction ^ 2)
+
+
+@bare
+def steepest(cell: int, heights: Heights, width: int) -> int:
+    """The highest edge neighbour of a cell that is no summit."""
+    return int(cell + stride(highest(cell, heights, width), width))
+
+
+@bare
+def above(cell: int, other: int, heights: Heights) -> bool:
+    """The total order of cells."""
+    return bool(heights[cell] > heights[other] or (heights[cell] == heights[other] and cell > other))
+
+
+@bare
+def stride(direction: int, width: int) -> int:
+    """The index step to the east, north, west or south."""
+    return (1 - (direction & 2)) * (width if direction & 1 else 1)
+
+
+@bare
+def beside(k: int, width: int) -> int:
+    """The index step to the k-th of the eight neighbours, from the east counter-clockwise."""
+    k %= 8
+    if k < 4:
+        return 1 if k == 0 else width + 2 - k
+    return -1 if k == 4 else k - width - 6

@@ -1,0 +1,59 @@
+"""Clearance and skeleton of a whole screen in one sweep over its rows.
+
+# Strategy: on large screens memory is slower than arithmetic. So distances are taken up the columns once, in the memory
+where clearances are to stand; then the rows are measured, classified and climbed band by band from the north, each band
+while it is in the processor's cache.
+"""
+
+import numpy as np
+
+from geometry.kernels.jit import bare
+from geometry.raster.distance_rows import Window, measure_rows, new_window
+from geometry.raster.distance_transform import Bools, Gaps, Squares, count_columns
+from geometry.skeleton.skeleton import Flags, Heights, States, Waiting, Words, grow
+
+BAND = 1 << 16  # cells in a band, about: 5 bytes each, a fraction of a processor's own cache
+
+
+def survey(free: Bools, square: Squares, state: States, words: Words) -> None:
+    """Fill ``square`` and ``state`` (rows + 2, columns + 2) for free squares (rows, columns).
+
+    ``words`` is ``state`` by eights.
+    """
+    width, steps = square.shape[1], square.view(np.int16)
+    count_columns(free, steps)
+    square[0], square[-1], state[0], state[-1] = 0, 0, 0, 0
+    flags, waiting = np.empty(width, np.uint8), np.empty(width, np.int32)
+    flat = square.reshape(-1), state.reshape(-1), words
+    sweep(square, steps, *flat, max(1, BAND // width), new_window(width), flags, waiting)
+
+
+def grow_all(square: Squares, level: int, state: States, words: Words) -> None:
+    """Fill ``state`` for the cells whose ``square`` is at least ``level``."""
+    width, level = square.shape[1], min(level, int(np.iinfo(square.dtype).max))
+    state[0], state[-1] = 0, 0
+    flags, waiting = np.empty(width, np.uint8), np.empty(width, np.int32)
+    grow(square.reshape(-1), state.reshape(-1), words, width, level, 1, len(square) - 2, flags, waiting, 0)
+
+
+@bare
+def sweep(
+    square: Squares,
+    steps: Gaps,
+    heights: Heights,
+    states: Flags,
+    words: Words,
+    band: int,
+    window: Window,
+    flags: States,
+    waiting: Waiting,
+) -> None:
+    """Measure and grow bands of so many rows."""
+    last, width = square.shape[0] - 2, square.shape[1]
+    measured, waits = last + 1, 0
+    for north in range(last, 0, -band):
+        south = north - band + 1 if north > band else 1
+        edge = south - 1 if south > 1 else 1
+        measure_rows(square, steps, edge, measured - 1, window)
+        waits = grow(heights, states, words, width, 1, south, north, flags, waiting, waits)
+        measured = edge

@@ -1,0 +1,78 @@
+"""The words of a fact file: names, variables, numbers, strings and marks, each with its place."""
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from kb.language.diagnostics import Problem, Span
+from kb.language.source_text import Source
+
+WORD = re.compile(
+    r"""
+    (?P<space>[ \t\r\n]+)
+  | (?P<block>%\*)
+  | (?P<comment>%[^\n]*)
+  | (?P<string>"(?:[^"\\\n]|\\[^\n])*")
+  | (?P<open>"[^\n]*)
+  | (?P<number>[0-9]+)
+  | (?P<name>_*[a-z][A-Za-z0-9_']*)
+  | (?P<variable>_*[A-Z][A-Za-z0-9_']*|_+)
+  | (?P<directive>\#[a-z_]*)
+  | (?P<mark>:-|:~|\.\.|\*\*|!=|<=|>=|.)
+    """,
+    re.VERBOSE,
+)
+COMMENT_EDGE = re.compile(r"%\*|\*%")
+
+
+class Token(NamedTuple):
+    """One word: its kind, text and place.
+
+    Kinds are `name`, `variable`, `number`, `string`, `directive`, `mark`, `open` (a string that is not closed), `end`.
+    """
+
+    kind: str
+    text: str
+    span: Span
+
+    @property
+    def named(self) -> str:
+        """The token as a message names it."""
+        if self.kind == "end":
+            return "the end of the file"
+        return self.text if len(self.text) <= 40 else f"{self.text[:37]}..."
+
+
+def tokens(source: Source, problems: list[Problem]) -> Iterator[Token]:
+    """Yield the words of a text, the last one of kind `end`; problems of form are appended to `problems`."""
+    text, at, line, begin = source.text, 0, 1, 0
+    while at < len(text):
+        match = WORD.match(text, at)
+        assert match is not None  # every character but a line end is at least a mark, and line ends are spaces
+        kind, end = match.lastgroup or "", match.end()
+        span = Span(line, at - begin + 1, end - begin)
+        if kind == "block":
+            end = _block_end(text, at)
+            if end < 0:
+                problems.append(source.problem(span, "this comment is never closed", "close it with *%"))
+                end = len(text)
+        elif kind == "open":
+            problems.append(source.problem(span, "this string is not closed on its line", 'close it with "'))
+            yield Token(kind, match.group(), span)
+        elif kind not in ("space", "comment"):
+            yield Token(kind, match.group(), span)
+        breaks = text.count("\n", at, end)
+        if breaks:
+            line, begin = line + breaks, text.rindex("\n", at, end) + 1
+        at = end
+    yield Token("end", "", Span(line, max(1, at - begin), max(1, at - begin)))
+
+
+def _block_end(text: str, start: int) -> int:
+    """Where the block comment that begins at `start` ends (they nest), or -1."""
+    depth = 0
+    for edge in COMMENT_EDGE.finditer(text, start):
+        depth += 1 if edge.group() == "%*" else -1
+        if depth == 0:
+            return edge.end()
+    return -1

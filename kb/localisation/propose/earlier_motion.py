@@ -1,0 +1,201 @@
+"""Motions told again once things have been moved: an earlier one ended elsewhere than believed, so a look contradicts.
+
+All that was seen since, and every thing that was first held since, lies where it would then. The motion after which the
+look came is told again with it, for what stopped the one may have stopped the other, seen where it is.
+"""
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence, Set
+from dataclasses import replace
+from typing import NamedTuple
+
+from geometry.motion.first_contact import Body, Obstacles
+from geometry.motion.se2 import Translate
+from kb.localisation.hypotheses.contacts import TOGETHER, Hindrances, box_of
+from kb.localisation.hypotheses.frames import Look, anywhere, candidates, exactly, fallen, search
+from kb.localisation.hypotheses.remap import Relaid, lain, relaid
+from kb.localisation.hypotheses.walk_outcomes import (
+    HAIR,
+    Correction,
+    End,
+    Moved,
+    Place,
+    Retold,
+    Walk,
+    agreed,
+    plus,
+    views,
+)
+from kb.localisation.hypotheses.what_if import Supposed, Surprise
+from kb.mapping.occupancy import FREE, FULL, OPEN, Evidence
+from kb.objects.held_object import Load, Square, covered, is_whole
+from kb.perception.frame import Lattice
+
+LAST = 4  # motions that are told again together with where he woke
+FEW = 3  # lattices on which each is tried
+
+
+class Recalled(NamedTuple):
+    """What may have come of an earlier motion, and what is to be believed then of all else."""
+
+    retold: Retold
+    supposed: Supposed
+
+
+class Haul:
+    """A straight motion with a thing in hand, on the lattice that is believed.
+
+    ends : where it may have been stopped, the likeliest first by what was seen before, and its end.
+    """
+
+    def __init__(self, motion: Moved, surprise: Surprise) -> None:
+        assert motion.load is not None
+        lattice, looks, loads = surprise.lattice, surprise.looks[: motion.number], surprise.loads
+        was = next(was for was in looks[-1].moved if was.name == motion.load)
+        self._place = lattice.place_from_utak(*looks[-1].place)
+        self._polygon = lain(loads[motion.load], was, lattice).polygon
+        self._motion = Translate(*lattice.to_lattice(*motion.shift))
+        before = relaid(lattice, lattice, looks, loads.values(), surprise.prefixes.of(motion.number)).evidence
+        stops = self._hindrances(before).stops(self._place, self._polygon, self._motion)
+        parts = dict.fromkeys((*(stop.part for stop in sorted(stops, key=lambda stop: -stop.chance)), 1.0))
+        halts = [(part, view) for part in parts for view in views(self._after(part))]
+        self.ends = tuple(End(lattice.place_to_utak(*view), part) for part, view in halts)
+
+    def _after(self, part: float) -> Place:
+        """Where Utak is after a part of the motion."""
+        return self._place[0] + part * self._motion.dx, self._place[1] + part * self._motion.dy
+
+    def ahead(self, end: End, evidence: Evidence, things: Set[Square]) -> int:
+        """What stands where it would have been stopped; FREE, too, where something would have stopped it before.
+
+        things : squares on which something stood then that was moved since.
+        """
+        body, hindrances = Body(self._polygon, [self._place]), self._hindrances(evidence)
+        known = hindrances.walls.first_contact(body, self._motion).fraction
+        if things:
+            stood = Obstacles([box_of(square) for square in things])
+            known = min(known, stood.first_contact(body, self._motion).fraction)
+        if known < end.gone - TOGETHER:
+            return FREE
+        if known < 1.0 and known < end.gone + TOGETHER:
+            return FULL
+        stops = hindrances.stops(self._place, self._polygon, self._motion)
+        return OPEN if end.gone == 1.0 or any(abs(stop.part - end.gone) < TOGETHER for stop in stops) else FREE
+
+    def _hindrances(self, evidence: Evidence) -> Hindrances:
+        return Hindrances(evidence, self._place, self._polygon, self._motion)
+
+
+def recalled(surprise: Surprise, motions: Sequence[Moved]) -> list[Recalled]:
+    """All that may have come of earlier motions by which nothing is contradicted any more, on the lattice believed.
+
+    Those come first by which something known stopped him.
+    """
+    told = [motion for motion in reversed(motions) if _held_then(motion, surprise)]
+    found = [one for motion in told for one in _otherwise(surprise, motion)]
+    return sorted(found, key=lambda one: not one.retold.known)
+
+
+def recalled_elsewhere(surprise: Surprise, motions: Sequence[Moved]) -> list[Recalled]:
+    """The same of the last motion of a thing that explains all, if he woke elsewhere in his square besides.
+
+    Neither is told without the other: where a thing was stopped depends on where it lay, which is known in squares;
+    from where he looked then does on where he woke.
+    """
+    told = (motion for motion in reversed(motions) if motion.load is not None and _held_then(motion, surprise))
+    found = ([*_elsewhere(surprise, motion)] for motion in itertools.islice(told, LAST))
+    return sorted(next(filter(None, found), []), key=lambda one: not one.retold.known)
+
+
+def _held_then(motion: Moved, surprise: Surprise) -> bool:
+    """Is it told where the thing lay that was in hand on a motion, if one was?"""
+    before = surprise.looks[motion.number - 1].moved
+    return motion.load is None or any(was.name == motion.load for was in before)
+
+
+def _otherwise(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
+    """What else may have come of one motion."""
+    looks, lattice = surprise.looks, surprise.lattice
+    believed, first = looks[motion.number].place, surprise.prefixes.of(motion.number)
+    if first.contradicted:  # whatever came of the motion
+        return
+    way = Walk(motion, lattice, looks) if motion.load is None else Haul(motion, surprise)
+    judged: dict[Place, Relaid | None] = {}  # by the shift
+    for end in way.ends:
+        shift = end.place[0] - believed[0], end.place[1] - believed[1]
+        if math.hypot(*shift) < HAIR:  # as is believed
+            continue
+        anew, correction = _corrected(surprise, motion, end)
+        if shift not in judged:
+            judged[shift] = agreed(lattice, anew.looks, anew.loads.values(), anew.unsettled, begun=first)
+        under = judged[shift]
+        if under is None or under.misfits:
+            continue
+        ahead = way.ahead(end, under.evidence, _stood(under, anew.looks, motion, lattice))
+        if ahead == FREE:
+            continue
+        supposed = replace(anew, evidence=under.evidence, loads=under.loads).tried(
+            lattice, surprise.hypotheses, whether=True
+        )
+        if not supposed.misfits:
+            yield Recalled(Retold(exactly(lattice), correction, ahead == FULL, 0), supposed)
+
+
+def _elsewhere(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
+    """What else may have come of one motion of a thing, if he woke elsewhere in his square."""
+    anywhere_in_it = anywhere((surprise.lattice.angle,))
+    for end in Haul(motion, surprise).ends:
+        anew, correction = _corrected(surprise, motion, end)
+        left = search(anew.recent, anywhere_in_it, anew.unsettled)
+        if not left:
+            continue
+        first = surprise.prefixes.of(motion.number)
+        under = relaid(surprise.lattice, surprise.lattice, anew.looks, anew.loads.values(), first)
+        anew = replace(anew, evidence=under.evidence, loads=under.loads)
+        for lattice in candidates(left, surprise.lattice)[:FEW]:
+            supposed = anew.tried(lattice, left, whether=True)
+            if supposed.misfits:
+                continue
+            under = anew.laid(lattice)
+            there = replace(anew, lattice=lattice, evidence=under.evidence, loads=under.loads)
+            way = Haul(motion, there)
+            ahead = way.ahead(end, under.evidence, _stood(under, anew.looks, motion, lattice))
+            if ahead != FREE:
+                yield Recalled(Retold(exactly(lattice), correction, ahead == FULL, 0), supposed)
+
+
+def _corrected(surprise: Surprise, motion: Moved, end: End) -> tuple[Surprise, Correction]:
+    """A surprise as it is if an earlier motion ended elsewhere, and what is corrected by that."""
+    lattice, believed = surprise.lattice, surprise.looks[motion.number].place
+    shift = end.place[0] - believed[0], end.place[1] - believed[1]
+    since = [load for load in surprise.loads.values() if load.since > motion.number]
+    seen = tuple((load.name, _aside(load, shift, surprise)) for load in since)
+    correction = Correction(motion.number, shift, seen, motion.load)
+    there, loads = correction.looks(surprise.looks), correction.loads(surprise.loads, lattice)
+    place = lattice.place_from_utak(*correction.place(lattice.place_to_utak(*surprise.place)))
+    return replace(surprise, place=place, looks=there, loads=loads), correction
+
+
+def _aside(load: Load, shift: Place, surprise: Surprise) -> Place:
+    """How far a thing lies from where it was seen to, if Utak stood aside: so many squares when its sides lie on lines.
+
+    For the eye tells squares, wherever in his own he stands.
+    """
+    if not is_whole(load.first):
+        return shift
+    lattice, look = surprise.lattice, surprise.looks[load.since - 1]
+    elsewhere = look._replace(place=plus(look.place, shift))
+    (west, south), (east, north) = fallen(lattice, [look, elsewhere])
+    return lattice.to_utak(float(east - west), float(north - south))
+
+
+def _stood(under: Relaid, looks: Sequence[Look], motion: Moved, lattice: Lattice) -> frozenset[Square]:
+    """The squares on which things stood when a motion was made that he has moved since, or before."""
+    before = {was.name: was for was in looks[motion.number - 1].moved}
+    squares: frozenset[Square] = frozenset()
+    for load in under.loads.values():
+        if load.name != motion.load:
+            lying = lain(load, before[load.name], lattice).polygon if load.name in before else load.first
+            squares |= covered(lying).squares()
+    return squares

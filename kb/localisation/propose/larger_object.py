@@ -1,0 +1,47 @@
+"""Things that are larger than they seemed: what stood in a door, or in a niche, goes on in what was taken for wall.
+
+What touches a wall is one with it to the eye, and is told from it where it sticks out. Only when it is drawn out it
+shows how far it went on: floor is seen where wall seemed to be.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import shapely
+
+from geometry.motion.se2 import Motion, Translate
+from kb.localisation.hypotheses.carry_outcomes import predicted
+from kb.localisation.hypotheses.explanation import Explanation
+from kb.localisation.hypotheses.what_if import Surprise, clashes
+from kb.mapping.occupancy import FREE
+from kb.objects.held_object import Load, covered, is_whole, patch_of_squares
+
+DEEPEST = 3  # squares by which a thing goes on in what seems to be wall, at most
+SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))
+
+
+def larger(surprise: Surprise, load: Load, motion: Motion) -> Iterator[Explanation]:
+    """That a thing in hand that never moved before went as commanded, and more of it than was seen: the least first."""
+    if load.proven or not isinstance(motion, Translate) or not is_whole(load.polygon):
+        return
+    evidence, seen = surprise.evidence, covered(load.polygon).squares()
+    others = [other for other in surprise.loads.values() if other.name != load.name]
+    for depth in range(1, DEEPEST + 1):
+        for side in SIDES:
+            whole = _going_on(load, side, depth)
+            hidden = covered(whole.polygon).squares() - seen
+            if any(evidence.state[evidence.index(*square)] == FREE for square in hidden):
+                continue
+            outcome = predicted(surprise.place, whole.polygon, motion)._replace(how="larger")
+            patch, floor = patch_of_squares(hidden), evidence.copy()
+            floor.declare(floor.squares(patch.west, patch.south, patch.mask), FREE, len(surprise.looks) - 1)
+            loads = [*others, whole.moved(outcome.polygon, whole.slack, commanded=True)]
+            if not clashes(surprise.lattice, floor, loads, outcome.place, surprise.ranges):
+                yield Explanation("larger", outcome.place, surprise.lattice, 0, float(depth), outcome, larger=whole)
+
+
+def _going_on(load: Load, side: tuple[int, int], depth: int) -> Load:
+    """A load that goes on to one side by so many squares: what shape it has is not known then."""
+    steps = (Translate(step * side[0], step * side[1]) for step in range(depth + 1))
+    polygon = shapely.union_all([step.carry(load.polygon) for step in steps])
+    return replace(load, polygon=polygon, first=polygon, shape={})

@@ -1,0 +1,246 @@
+"""Rule files as clingo reads them: statement by statement, with the predicates in each and its arithmetic checked.
+
+Runs in the process of kb.reasoning.query_worker. Arithmetic is handed to `Calculator`, which works it out exactly:
+what clingo
+would wrap to 32 bits in silence is an error at its place.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+import clingo
+from clingo.ast import (
+    AST,
+    AggregateFunction,
+    ASTType,
+    ComparisonOperator,
+    Function,
+    Sign,
+    SymbolicTerm,
+    Transformer,
+    parse_string,
+)
+
+from kb.three_valued.arithmetic import CalculationError, calculate
+from kb.three_valued.clauses import BINARY, UNARY, ClauseError, place_of
+
+COUNTING = (ASTType.Rule, ASTType.Minimize, ASTType.Defined)
+SILENT = ("Definition", "ShowSignature", "ShowTerm", "Program", "Comment")  # queries say what is shown
+REFUSED = {
+    "Script": "#script is not allowed: rules run no programs",
+    "External": "#external is not known here",
+    "Edge": "#edge is not known here",
+    "Heuristic": "#heuristic is not known here",
+    "ProjectAtom": "#project is not known here",
+    "ProjectSignature": "#project is not known here",
+    "TheoryDefinition": "theories are not known here",
+}
+
+
+class CannotReadError(Exception):
+    """A text is no file of rules: clingo's message, with its place."""
+
+
+def statements_of(text: str) -> list[dict[str, Any]]:
+    """Return the statements of a rule file, as JSON values; raises ClauseError or CannotReadError."""
+    messages: list[str] = []
+    found: list[AST] = []
+    try:
+        parse_string(text, found.append, logger=lambda _code, message: messages.append(message), message_limit=20)
+    except RuntimeError as error:
+        raise CannotReadError(messages[0] if messages else str(error)) from None
+    constants = _constants(found)
+    return [_entry(_Constants(constants).visit(node)) for node in found if _kept(node)]
+
+
+def _kept(node: AST) -> bool:
+    """Whether a statement says something; raises ClauseError for one that is not allowed."""
+    name = str(node.ast_type).rpartition(".")[2]
+    if node.ast_type not in COUNTING and name not in SILENT:
+        raise ClauseError(REFUSED.get(name, f"{name} is not known here"), place_of(node))
+    if node.ast_type == ASTType.Program and (node.name != "base" or list(node.parameters)):
+        raise ClauseError("#program is not known here", place_of(node))
+    return node.ast_type in COUNTING
+
+
+def _entry(node: AST) -> dict[str, Any]:
+    if node.ast_type == ASTType.Defined:
+        entry = {"at": place_of(node), "heads": [], "body": [], "text": "", "written": "", "plain": False}
+        return entry | {"declares": [node.name, node.arity]}
+    chosen, conditions = _head(node.head) if node.ast_type == ASTType.Rule else ([], [])
+    heads = [atom for part in chosen for atom in _atoms(part)]
+    body = [atom for part in (*node.body, *conditions) for atom in _atoms(part)]
+    return {
+        "at": place_of(node),
+        "heads": heads,
+        "body": body,
+        "text": str(_Checked().visit(node)),
+        "written": str(node),
+        "plain": _is_plain(node),
+        "declares": None,
+    }
+
+
+def _is_plain(node: AST) -> bool:
+    """Whether a statement is a rule with one atom as its head."""
+    if node.ast_type != ASTType.Rule or node.head.ast_type != ASTType.Literal:
+        return False
+    return bool(node.head.sign == Sign.NoSign and node.head.atom.ast_type == ASTType.SymbolicAtom)
+
+
+def _head(head: AST) -> tuple[list[AST], list[AST]]:
+    """The literals that a head states or chooses, and those on which that depends."""
+    if head.ast_type == ASTType.Literal:
+        return [head], []
+    if head.ast_type not in (ASTType.Aggregate, ASTType.Disjunction, ASTType.HeadAggregate):
+        raise ClauseError("theory atoms are not known here", place_of(head))
+    chosen, conditions = [], []
+    for element in head.elements:
+        inner = element.condition if head.ast_type == ASTType.HeadAggregate else element
+        chosen.append(inner.literal)
+        conditions += list(inner.condition)
+    return chosen, conditions
+
+
+def _atoms(node: AST) -> Iterator[dict[str, Any]]:
+    """The atoms in a part: name, arguments that are constants (None for others), place, and whether `not` is before."""
+    reader = _Atoms()
+    reader.visit(node)
+    yield from reader.found
+
+
+class _Atoms(Transformer):
+    """Collects atoms; those in aggregates and conditions count as if `not` stood before them."""
+
+    def __init__(self) -> None:
+        self.found: list[dict[str, Any]] = []
+        self.negative = False
+
+    def visit_Literal(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        before, self.negative = self.negative, self.negative or node.sign != Sign.NoSign
+        self.visit_children(node)
+        self.negative = before
+        return node
+
+    def visit_BodyAggregate(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        before, self.negative = self.negative, True
+        self.visit_children(node)
+        self.negative = before
+        return node
+
+    def visit_ConditionalLiteral(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        before, self.negative = self.negative, True
+        self.visit_children(node)
+        self.negative = before
+        return node
+
+    def visit_SymbolicAtom(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        for option in getattr(node.symbol, "arguments", ()) if node.symbol.ast_type == ASTType.Pool else (node.symbol,):
+            if option.ast_type == ASTType.UnaryOperation:
+                raise ClauseError("classical negation is not known here", place_of(option))
+            arguments = list(getattr(option, "arguments", ()))
+            name = option.name if option.ast_type == ASTType.Function else option.symbol.name
+            self.found.append(
+                {
+                    "name": name,
+                    "arity": len(arguments),
+                    "at": place_of(option),
+                    "constants": [str(part) if part.ast_type == ASTType.SymbolicTerm else None for part in arguments],
+                    "places": [place_of(part) for part in arguments],
+                    "negative": self.negative,
+                }
+            )
+        return node
+
+    def visit_TheoryAtom(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        raise ClauseError("theory atoms are not known here", place_of(node))
+
+
+def _constants(nodes: list[AST]) -> dict[str, clingo.Symbol]:
+    """What `#const` defines: numbers and names."""
+    found = {}
+    for node in nodes:
+        if node.ast_type == ASTType.Definition:
+            if node.value.ast_type != ASTType.SymbolicTerm:
+                raise ClauseError("a constant is a number or a name here", place_of(node))
+            found[node.name] = node.value.symbol
+    return found
+
+
+class _Constants(Transformer):
+    """Puts the values of constants in their places: those of one file's own."""
+
+    def __init__(self, values: dict[str, clingo.Symbol]) -> None:
+        self._values = values
+
+    def visit_SymbolicAtom(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        if node.symbol.ast_type == ASTType.SymbolicTerm:
+            return node  # an atom without arguments is no constant
+        return node.update(**self.visit_children(node))
+
+    def visit_SymbolicTerm(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        value = self._values.get(str(node))
+        return node if value is None else SymbolicTerm(node.location, value)
+
+
+class _Checked(Transformer):
+    """Hands arithmetic to the calculator."""
+
+    def visit_BinaryOperation(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        return self._call(node, BINARY[node.operator_type], [self.visit(node.left), self.visit(node.right)])
+
+    def visit_UnaryOperation(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        if node.argument.ast_type == ASTType.SymbolicTerm:
+            number = node.argument.symbol
+            if UNARY[node.operator_type] == "-" and number.type == clingo.SymbolType.Number:
+                return node  # a negative number
+        return self._call(node, UNARY[node.operator_type], [self.visit(node.argument)])
+
+    def visit_Function(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        if node.external:
+            raise ClauseError("operation undefined: there are no functions from outside", place_of(node))
+        return node.update(**self.visit_children(node))
+
+    def visit_BodyAggregate(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        summed = node.function in (AggregateFunction.Sum, AggregateFunction.SumPlus)
+        guards = [guard for guard in (node.left_guard, node.right_guard) if guard is not None]
+        given = [guard.term for guard in guards if guard.comparison == ComparisonOperator.Equal]
+        if summed and any(map(_has_variable, given)):
+            what = "a sum is not given to a variable in rules, for it may go beyond 32 bits"
+            raise ClauseError(what, place_of(node), "hold it against numbers, such as #sum{...} >= 50")
+        return node.update(**self.visit_children(node))
+
+    def _call(self, node: AST, sign: str, parts: list[AST]) -> AST:
+        line, column = place_of(node)
+        told = [SymbolicTerm(node.location, value) for value in (clingo.String(sign), _at(line, column))]
+        return Function(node.location, "calculated", [*told, *parts], 1)
+
+
+def _has_variable(node: AST) -> bool:
+    return any(char.isupper() for char in str(node).split('"')[0])
+
+
+def _at(line: int, column: int) -> clingo.Symbol:
+    return clingo.Function("", [clingo.Number(line), clingo.Number(column)])
+
+
+class Calculator:
+    """The arithmetic of rules: `calculated` is called while clingo grounds; the first error is kept."""
+
+    def __init__(self) -> None:
+        self.error: ClauseError | None = None
+
+    def calculated(self, sign: clingo.Symbol, at: clingo.Symbol, *parts: clingo.Symbol) -> list[clingo.Symbol]:
+        """Return the result, or nothing when there is none."""
+        place = (at.arguments[0].number, at.arguments[1].number)
+        strange = [part for part in parts if part.type != clingo.SymbolType.Number]
+        try:
+            if strange:
+                raise ClauseError(f"operation undefined: {strange[0]} is no number", place)
+            return [clingo.Number(calculate(sign.string, *(part.number for part in parts)))]
+        except CalculationError as error:
+            shown = f" {sign.string} ".join(map(str, parts)) if len(parts) == 2 else f"{sign.string}{parts[0]}"
+            self.error = self.error or ClauseError(f"{error}, in {shown}", place)
+        except ClauseError as error:
+            self.error = self.error or error
+        return []

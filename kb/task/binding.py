@@ -1,0 +1,87 @@
+"""Reconciliation of the task with the world model: which thing each parameter means (kb/asp/reconciliation.lp)."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from kb.language.terms import Symbol
+from kb.objects.proportions import may_be
+from kb.reasoning.solver import KB, solve
+from kb.task.task import Task
+from kb.world.model import Node, WorldModel
+
+
+class Reconciled(NamedTuple):
+    """What the task's objects are in the world model.
+
+    binding : parameter -> node. hypothesised : parameters of goals that nothing seen so far can be.
+    doubtful : (parameter, node) pairs that a closer look decides. contradicted : (parameter, node, property).
+    unmovable : (parameter, node) pairs that agree, but what is to be carried cannot be moved.
+    measurable : (parameter, node) pairs that may agree when it is told better how large the node is.
+    """
+
+    binding: Mapping[str, str]
+    hypothesised: tuple[str, ...]
+    doubtful: tuple[tuple[str, str], ...]
+    contradicted: tuple[tuple[str, str, str], ...]
+    unmovable: tuple[tuple[str, str], ...] = ()
+    measurable: tuple[tuple[str, str], ...] = ()
+
+
+def reconcile(
+    task: Task,
+    model: WorldModel,
+    distances: Mapping[str, float],
+    before: Mapping[str, str],
+    rules: tuple[Path, ...] = (),
+    carried: Iterable[str] = (),
+) -> Reconciled:
+    """Bind the object parameters of a task by the best match.
+
+    distances: way to each node in squares, where one is known. before: the binding up to now, which is kept unless
+    another is clearly better. carried : the parameters that shall be brought somewhere.
+    """
+    facts = [*_task_facts(task), *(f"carried({x})" for x in carried)]
+    facts += [fact for node in model.objects for fact in _node_facts(node)]
+    facts += [f"distance({name},{round(way)})" for name, way in sorted(distances.items())]
+    facts += [f"bound_before({x},{node})" for x, node in sorted(before.items())]
+    found: dict[str, list[tuple[str, ...]]] = {}
+    for atom in solve([KB / "reconciliation.lp", *rules], facts) or ():
+        found.setdefault(atom.name, []).append(tuple(str(a) for a in atom.arguments))
+    return Reconciled(
+        {atom[0]: atom[1] for atom in found.get("bind", ())},
+        tuple(x for (x,) in found.get("hypothesised", ())),
+        tuple((x, node) for x, node in found.get("doubtful", ())),
+        tuple((x, node, p) for x, node, p in found.get("contradicted", ())),
+        tuple((x, node) for x, node in found.get("unmovable", ())),
+        tuple((x, node) for x, node in found.get("measurable", ())),
+    )
+
+
+def _task_facts(task: Task) -> Iterable[str]:
+    for name, parameter in task.parameters.items():
+        if parameter.kind == "object":
+            yield f"wanted({name})"
+            if name in task.named:
+                yield f"named({name})"
+    for claim in task.claims:
+        x, value = claim.fact.args
+        assert isinstance(x, Symbol)
+        yield f"claim({x},{claim.fact.name},{value},{claim.confidence})"
+
+
+def _node_facts(node: Node) -> Iterable[str]:
+    yield f"candidate({node.name},{node.confidence})"
+    for shape, confidence in sorted(node.shape.items()):
+        yield f"has({node.name},shape,{shape},{confidence})"
+    if node.colour is not None:
+        yield f"has({node.name},colour,{node.colour},99)"
+        yield f"settled({node.name},colour)"
+    if node.open == 0:
+        yield f"settled({node.name},shape)"
+    if node.movable == 0:
+        yield f"fixed({node.name})"
+    if node.moved:
+        yield f"moved({node.name})"
+    for shape in may_be(node.polygon, node.insets):
+        yield f"may_be({node.name},shape,{shape})"

@@ -1,0 +1,43 @@
+"""What is worth doing now, as facts with a price, and the choice among them (planner/asp/aims.lp)."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from kb.reasoning.solver import solve
+from planner.screen.projection import Screens, Squares
+
+ASP = Path(__file__).resolve().parent.parent / "asp"
+
+
+class Aim(NamedTuple):
+    """Somewhere to go and why.
+
+    kind : attain, inspect, explore, pass or settle (planner/asp/aims.lp).
+    squares : flat indices of the screen, any of which will do. what : the reason in words.
+    chance : percent of belief that it leads to what is looked for. price : squares that it costs besides the way.
+    """
+
+    kind: str
+    squares: Squares
+    what: str
+    chance: int = 100
+    price: float = 0.0
+
+
+def choose(aims: Sequence[Aim], screens: Screens, last: frozenset[int]) -> Aim | None:
+    """The aim to pursue, or None when none can be reached.
+
+    last: the squares (flat indices of this screen) of the aim chosen last time; an aim that shares one with it
+    continues it.
+    """
+    facts = []
+    for number, aim in enumerate(aims):
+        reached = screens.nearest(aim.squares) if len(aim.squares) else None
+        if reached is not None:
+            kind = "pass" if reached.level and aim.kind == "explore" else aim.kind
+            facts.append(f"aim({number},{kind},{round(10 * (reached.cost + aim.price))})")
+            facts.append(f"chance({number},{aim.chance})")
+            facts += [f"last({number})"] * bool(last and not last.isdisjoint(aim.squares.tolist()))
+    answer = solve([ASP / "aims.lp"], facts) if facts else None
+    return aims[answer[0].arguments[0].number] if answer else None

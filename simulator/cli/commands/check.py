@@ -1,0 +1,92 @@
+"""`utak check`: are the files of a scenario as they must be?"""
+
+import argparse
+import sys
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, Span
+from simulator.cli import exits
+from simulator.scenario.untrusted import add_option, refuse_links
+
+TOLD = {exits.DONE: "ok", exits.BAD_INPUT: "bad", exits.CANNOT_OPEN: "cannot be opened", exits.OUR_BUG: "a bug of ours"}
+
+
+def add(parts: Any) -> None:
+    """Declare the subcommand."""
+    part = parts.add_parser("check", help="check scenarios or single files of them")
+    what = "a scenario, a folder of them, a file of one, or a file of rules for --kb"
+    part.add_argument("paths", nargs="+", metavar="FILE|FOLDER", help=what)
+    add_option(part)
+    part.set_defaults(execute=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Check every path, whatever is wrong with another; the exit code is that of the worst."""
+    from simulator.cli.outcome import attempt
+
+    codes = []
+    for root, path in [(Path(given), part) for given in options.paths for part in _parts(Path(given))]:
+        codes.append(attempt(_check, path, root, options))
+        if codes[-1] == exits.DONE:
+            print(f"{path}: ok")
+    if len(codes) > 1:
+        counts = Counter(codes)
+        print(", ".join(f"{counts[code]} {told}" for code, told in TOLD.items() if counts[code]), file=sys.stderr)
+    return exits.worst(codes)
+
+
+def _parts(path: Path) -> list[Path]:
+    """The scenarios in a folder that is none itself; else the path alone."""
+    names = ("world.lp", "world.txt", "start.lp", "goal.lp")
+    if not path.is_dir() or any((path / name).exists() for name in names):
+        return [path]
+    return sorted({goal.parent for goal in path.rglob("goal.lp")}) or [path]
+
+
+def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
+    """Check a scenario folder or one file; what a file must hold is known by its name."""
+    from simulator.scenario.scenario import read_scenario
+
+    refuse_links(options, path, root)
+    if path.is_dir():
+        read_scenario(path)
+        return exits.DONE
+    check = _checks().get(path.name)
+    if check is None:
+        if not path.exists():
+            raise CannotOpenError(str(path), "no such file or folder")
+        if path.suffix == ".lp":
+            check = _rules
+        else:
+            what = f"{path.name} is neither a file of a scenario nor one of rules"
+            hint = f"a scenario's files are {', '.join(sorted(_checks()))}; files of rules end in .lp"
+            raise BadInputError([Problem(str(path), Span(1, 1, 1), what, hint=hint)])
+    check(path)
+    return exits.DONE
+
+
+def _rules(path: Path) -> None:
+    """Check a file of rules by itself, as --kb takes it."""
+    from kb.reasoning.user_rules import checked_rules
+
+    checked_rules([path])
+
+
+def _checks() -> dict[str, Callable[[Path], Any]]:
+    """How each file of a scenario is checked."""
+    from kb.task.task import read_start, read_task
+    from simulator.scenario.expectation import read_expectations
+    from simulator.scenario.picture import read_picture
+    from simulator.scenario.scenario import read_any_world
+    from simulator.scenario.worldfile import read_world
+
+    return {
+        "world.lp": read_world,
+        "world.txt": read_picture,
+        "start.lp": read_start,
+        "goal.lp": lambda path: read_task(path.parent / "start.lp", path),
+        "expect.lp": lambda path: read_expectations(path, read_any_world(path.parent)),
+    }

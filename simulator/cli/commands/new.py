@@ -1,0 +1,65 @@
+"""`utak new`: a small scenario to start from."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from kb.language.diagnostics import CannotOpenError
+from simulator.cli import exits
+
+FILES = {
+    "world.txt": """\
+bbbbbbbbbbbbbbbbbbbbbbbb
+b......................b
+b......................b
+b..........cccc........b
+b..........cccc........b
+b......................b
+b......................b
+b...ggg................b
+b...ggg................b
+b...ggg................b
+b......................b
+b......................b
+b................U.....b
+b......................b
+b......................b
+bbbbbbbbbbbbbbbbbbbbbbbb
+""",
+    "start.lp": """\
+% What Utak is told of the things that the task speaks of.
+object(x).
+shape(x, square).
+""",
+    "goal.lp": """\
+% What shall hold in the end.
+at(utak, x).
+""",
+    "expect.lp": """\
+% What a test checks, in the table's own squares: x to the east, y to the north, (0, 0) in the southwest.
+near(utak, "POLYGON ((4 6, 7 6, 7 9, 4 9, 4 6))", 2).
+""",
+}
+
+
+def add(parts: Any) -> None:
+    """Declare the subcommand."""
+    part = parts.add_parser("new", help="write a small scenario to start from")
+    part.add_argument("folder", metavar="FOLDER", help="the folder to make")
+    part.set_defaults(execute=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Write the scenario; nothing that is there already is overwritten."""
+    folder = Path(options.folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if any(folder.iterdir()):
+            raise CannotOpenError(str(folder), "it is there already, and not empty")
+        for name, text in FILES.items():
+            with (folder / name).open("x") as stream:
+                stream.write(text)
+    except (OSError, ValueError) as error:
+        raise CannotOpenError(str(folder), getattr(error, "strerror", None) or str(error)) from None
+    print(f"{folder}: {', '.join(FILES)}")
+    return exits.DONE

@@ -1,0 +1,70 @@
+"""`utak query`: ask what Utak believes, at a step of a run or of an episode."""
+
+import argparse
+import sys
+from typing import TYPE_CHECKING, Any
+
+from simulator.cli import exits
+from simulator.cli.commands.run import add_settings, settings_of
+from simulator.cli.numbers import whole
+from simulator.cli.printing import as_json
+from simulator.scenario.untrusted import refuse_links
+
+if TYPE_CHECKING:
+    from simulator.run.story import Story
+
+MOST = 1_000_000  # rows
+
+
+def add(parts: Any) -> None:
+    """Declare the subcommand."""
+    part = parts.add_parser("query", help="ask what Utak believes")
+    part.add_argument("story", metavar="SCENARIO|EP.jsonl", help="a scenario folder, which is run, or an episode")
+    part.add_argument("query", metavar="QUERY", help='such as "object(X), shape(X, square, C)"')
+    part.add_argument("--at", type=_step, metavar="STEP", help="the step to ask at (default: the last; 0: on waking)")
+    part.add_argument("--json", action="store_true", help="print the answer as one JSON object")
+    part.add_argument("--limit", type=_limit, metavar="N", help="print so many rows at most (default 10000)")
+    add_settings(part)
+    part.set_defaults(execute=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Go to the step, ask, and print the answer."""
+    from kb.reasoning.query import MOST_ROWS, QueryEngine, QueryLimitError
+    from simulator.run.story import open_story
+
+    refuse_links(options, options.story)
+    story = open_story(options.story, settings_of(options))
+    _go_to(story, options.story, options.at)
+    step = story.line["step"]
+    try:
+        with QueryEngine(rules=options.kb) as engine:
+            answer = engine.ask(story.facts, options.query, options.limit or MOST_ROWS)
+    except QueryLimitError as limit:
+        print(f"utak: {limit}", file=sys.stderr)
+        return exits.LIMIT
+    if options.json:
+        told = {"step": step, "answer": answer.kind, "variables": list(answer.variables)}
+        print(as_json({**told, "rows": [list(row) for row in answer.rows], "more": answer.more}))
+    else:
+        print(answer)
+    return exits.DONE
+
+
+def _limit(text: str) -> int:
+    return whole(text, 1, MOST)
+
+
+def _go_to(story: "Story", name: str, step: int | None) -> None:
+    """Advance to a step, or to the end."""
+    from kb.language.diagnostics import BadInputError, Problem, Span
+
+    while story.line["step"] != step and story.advance():
+        pass
+    if step is not None and story.line["step"] != step:
+        what = f"there is no step {step}: the last is {story.line['step']}"
+        raise BadInputError([Problem(name, Span(1, 1, 1), what)])
+
+
+def _step(text: str) -> int:
+    return whole(text, 0, 1_000_000)

@@ -1,0 +1,32 @@
+"""`utak repl`: go through a run or an episode step by step, and ask what Utak believes."""
+
+import argparse
+from typing import Any
+
+from simulator.cli import exits
+from simulator.cli.commands.run import add_settings, settings_of
+from simulator.scenario.untrusted import refuse_links
+
+
+def add(parts: Any) -> None:
+    """Declare the subcommand."""
+    part = parts.add_parser("repl", help="step through a run and ask what Utak believes")
+    part.add_argument("story", metavar="SCENARIO|EP.jsonl", help="a scenario folder, which is run, or an episode")
+    add_settings(part)
+    part.set_defaults(execute=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Read commands until they end."""
+    from kb.reasoning.query import QueryEngine
+    from simulator.cli.prompt import Prompt, lines_of
+    from simulator.run.story import open_story
+
+    refuse_links(options, options.story)
+    story = open_story(options.story, settings_of(options))
+    with QueryEngine(rules=options.kb) as engine:
+        prompt = Prompt(story, engine)
+        for line in lines_of(prompt.words()):
+            if not prompt.obey(line):
+                break
+    return exits.DONE

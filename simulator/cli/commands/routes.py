@@ -1,0 +1,141 @@
+"""`utak routes`: topologically distinct ways between two points of a map or of a scenario's table."""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from kb.language.diagnostics import BadInputError, Problem, Span
+from simulator.cli import exits
+from simulator.cli.numbers import decimal, whole
+from simulator.cli.printing import as_json
+from simulator.scenario.untrusted import add_option, refuse_links
+
+if TYPE_CHECKING:
+    from geometry.raster.distance_transform import Bools
+    from geometry.routes.route import Route
+
+LARGEST = 200_000_000  # bytes of a map
+MOST = 1000
+FURTHEST = 1e6  # squares: no point lies further out
+CONVENTION = (
+    "Points are in squares, with fractions. With --origin bottom, the default, (0, 0) is the south-west corner, x goes "
+    "east and y north, as in scenarios. With --origin top, (0, 0) is the north-west corner, x goes east and y SOUTH, "
+    "as in .scen files of the Moving AI benchmarks; a line of those names squares by whole numbers, and the middle of "
+    "their square A, B is the point A+0.5,B+0.5. The ways are printed with the same origin."
+)
+
+
+def add(parts: Any) -> None:
+    """Declare the subcommand."""
+    part = parts.add_parser(
+        "routes",
+        help="find distinct ways on a Moving AI map or a scenario's table",
+        description="Find topologically distinct ways between two points of a map or of a scenario's table.",
+        epilog=CONVENTION,
+    )
+    part.add_argument("map", metavar="MAP|SCENARIO", help="a .map file, or a scenario folder")
+    part.add_argument("--from", dest="start", type=_point, required=True, metavar="X,Y", help="where the ways begin")
+    part.add_argument("--to", dest="goal", type=_point, required=True, metavar="X,Y", help="where they end")
+    part.add_argument(
+        "--origin", choices=("bottom", "top"), default="bottom", help="the corner from which points count (see below)"
+    )
+    part.add_argument("-k", type=_count, default=3, metavar="N", help="how many ways at most (default 3)")
+    part.add_argument("--json", action="store_true", help="print one JSON object")
+    part.add_argument("--svg", metavar="FILE", help="draw squares, skeleton, pathgraph and ways")
+    add_option(part)
+    part.add_argument("--force", action="store_true", help="let --svg overwrite a file that is no picture")
+    part.set_defaults(execute=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Find the ways, and print them."""
+    from geometry.screen import Screen
+
+    refuse_links(options, options.map)
+    free = _free(options.map)
+    top = len(free) if options.origin == "top" else None
+    start, goal = (_turned(point, top) for point in (options.start, options.goal))
+    try:
+        screen = Screen(free)
+        routes = screen.routes(start, goal, k=options.k)
+    except ValueError as error:
+        hint = "" if top is None else "y is counted from the bottom here"
+        raise BadInputError([Problem(options.map, Span(1, 1, 1), str(error), hint=hint)]) from None
+    if options.svg:
+        from geometry.io.svg import draw, place
+        from simulator.episode.output_files import is_svg, write_whole
+
+        picture = draw(screen, routes, ends=(start, goal), words=lambda point: place(_turned(point, top)))
+        write_whole(options.svg, picture, is_svg, "SVG picture", options.force)
+    _print(routes, options.json, top)
+    return exits.DONE if routes else exits.NOT_REACHED
+
+
+def _free(name: str) -> "Bools":
+    """Where one may be: on a map as it says, in a scenario wherever nothing stands."""
+    from geometry.io.movingai import MapError, parse_map
+    from kb.language.source_text import read_bytes
+
+    if Path(name).is_dir():
+        return _free_of_scenario(name)
+    raw = read_bytes(name, LARGEST)
+    if len(raw) > LARGEST:
+        raise BadInputError([Problem(name, Span(1, 1, 1), f"the map is larger than {LARGEST} bytes")])
+    try:
+        return parse_map(raw)
+    except MapError as error:
+        line = raw.split(b"\n")[error.line - 1].decode("latin-1").rstrip("\r")
+        raise BadInputError([Problem(name, Span(error.line, error.column, error.end), error.what, line)]) from None
+
+
+def _free_of_scenario(name: str) -> "Bools":
+    from geometry.raster.rasterize import squares
+    from simulator.scenario.scenario import read_any_world
+
+    world = read_any_world(name)
+    blocked = squares(world.verge, world.width, world.height)
+    for thing in (*world.fixed, *world.movable):
+        blocked |= squares(thing.polygon, world.width, world.height)
+    return ~blocked
+
+
+def _turned(point: tuple[float, float], top: int | None) -> tuple[float, float]:
+    """A point counted from the bottom as one from the top, or the other way round. top : rows; None for as it is."""
+    return point if top is None else (point[0], top - point[1])
+
+
+def _print(routes: "list[Route]", json: bool, top: int | None) -> None:
+    if json:
+        print(as_json({"routes": [_entry(route, top) for route in routes]}))
+        return
+    if not routes:
+        print("there is no way", file=sys.stderr)
+    for number, route in enumerate(routes, 1):
+        points = " ".join(f"({x:g}, {y:g})" for x, y in _points(route, top))
+        print(f"{number}: length {route.length:.3f}, clearance {route.clearance:g}: {points}")
+
+
+def _points(route: "Route", top: int | None) -> list[list[float]]:
+    return [list(_turned((x, y), top)) for x, y in route.points.tolist()]
+
+
+def _entry(route: "Route", top: int | None) -> dict[str, Any]:
+    return {
+        "length": float(route.length),
+        "clearance": float(route.clearance),
+        "signature": [int(part) for part in route.signature],
+        "points": _points(route, top),
+    }
+
+
+def _point(text: str) -> tuple[float, float]:
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise argparse.ArgumentTypeError(f"{text!r} is no point: write X,Y")
+    x, y = (decimal(part, -FURTHEST, FURTHEST) for part in parts)
+    return x, y
+
+
+def _count(text: str) -> int:
+    return whole(text, 1, MOST)

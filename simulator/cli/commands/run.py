@@ -1,0 +1,152 @@
+"""`utak run`: the robot wakes in a scenario and does his task."""
+
+import argparse
+import sys
+from typing import TYPE_CHECKING, Any, TextIO
+
+from simulator.cli import exits
+from simulator.cli.numbers import decimal, whole
+from simulator.cli.printing import as_json
+from simulator.cli.terminal import shown
+from simulator.scenario.untrusted import add_option, refuse_links
+
+if TYPE_CHECKING:
+    from simulator.run.session import Result, Session
+    from simulator.scenario.settings import Settings
+
+PATHS = ("skeleton", "visibility", "grid")
+
+
+def add(parts: Any) -> None:
+    """Declare the subcommand."""
+    part = parts.add_parser("run", help="run the robot on a scenario")
+    part.add_argument("scenario", metavar="SCENARIO", help="a scenario folder")
+    add_settings(part)
+    part.add_argument(
+        "--log", metavar="EP.jsonl", help="write the episode to this file as it happens; - is the standard output"
+    )
+    part.add_argument("--resume", action="store_true", help="go on from the episode that --log names")
+    part.add_argument("--force", action="store_true", help="let --log overwrite a file that is no episode")
+    part.add_argument("--json", action="store_true", help="print the result as one JSON object")
+    part.add_argument(
+        "--watch",
+        action="store_true",
+        help="draw the true table, which the robot does not see, on stderr after every step",
+    )
+    part.set_defaults(execute=execute)
+
+
+def add_settings(part: argparse.ArgumentParser) -> None:
+    """Declare the options that decide what happens in a run."""
+    part.add_argument("--seed", type=_seed, metavar="N", help="seed of all randomness (default 0)")
+    part.add_argument("--noise", type=_noise, metavar="S", help="how much motions are disturbed, 0 to 1 (default 0)")
+    part.add_argument("--paths", choices=PATHS, help="how ways are found (default skeleton)")
+    part.add_argument(
+        "--no-pull", dest="pull", action="store_false", default=None, help="push what is held, never pull"
+    )
+    part.add_argument("--max-steps", type=_steps, metavar="N", help="give up after so many commands (default 200)")
+    part.add_argument("--kb", action="append", metavar="FILE", default=[], help="a file of rules to add; repeatable")
+    add_option(part)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Run, and print the result."""
+    from simulator.episode.episode import STANDARD_OUTPUT, EpisodeLog
+    from simulator.run.robots import make_robot
+    from simulator.run.session import Session
+    from simulator.scenario.scenario import read_scenario
+
+    if options.resume and options.log in (None, STANDARD_OUTPUT):
+        print("utak run: --resume needs --log EP.jsonl", file=sys.stderr)
+        return exits.USAGE
+    refuse_links(options, options.scenario)
+    scenario = read_scenario(options.scenario)
+    settings = settings_of(options, _recorded(options))
+    with EpisodeLog(options.log, options.resume, options.force) as log:
+        session = Session(scenario, settings, make_robot, log)
+        result = session.run(_watcher(options.watch))
+    _print(result, options.json, sys.stderr if options.log == STANDARD_OUTPUT else sys.stdout)
+    return exit_code(result)
+
+
+def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = None) -> "Settings":
+    """Return the settings that the command line gives; those of a recorded episode hold where it is silent."""
+    from dataclasses import replace
+
+    from simulator.scenario.settings import Settings, kb_files_named
+
+    names = ("seed", "noise", "paths", "max_steps", "pull")
+    given = {name: getattr(options, name) for name in names if getattr(options, name) is not None}
+    kept = {name: value for name, value in (recorded or {}).items() if name in names}
+    return replace(Settings(kb_files=kb_files_named(options.kb)), **{**kept, **given})
+
+
+def exit_code(result: "Result") -> int:
+    """Return the exit code that a result deserves."""
+    if result.believed:
+        return exits.NOT_REACHED if result.achieved is False else exits.DONE
+    return exits.LIMIT if result.verdict == "limit" else exits.NOT_REACHED
+
+
+def _recorded(options: argparse.Namespace) -> dict[str, Any] | None:
+    """The options that an episode to be resumed was run with; None when there is nothing to resume."""
+    from pathlib import Path
+
+    from simulator.episode.episode import complete_lines, read_episode
+
+    if not options.resume or not Path(options.log).exists() or not complete_lines(options.log):
+        return None
+    found = read_episode(options.log).header.get("options")
+    return found if isinstance(found, dict) else None
+
+
+def _print(result: "Result", json: bool, stream: TextIO) -> None:
+    if json:
+        print(as_json({**result.line["result"], "unmet": list(result.unmet)}), file=stream)
+        return
+    truth = {None: "", True: ", achieved", False: ", not achieved"}[result.achieved]
+    print(f"{result.verdict} in {result.steps} steps{truth}: {shown(result.reason, lines=False)}", file=stream)
+    for expected in result.unmet:
+        print(f"not met: {expected}", file=sys.stderr)
+
+
+def _watcher(watch: bool) -> Any:
+    """What is shown after every step: nothing, a line on a terminal, or the table drawn."""
+    if not watch and not sys.stderr.isatty():
+        return lambda session: None
+
+    def tell(session: "Session") -> None:
+        from simulator.scenario.picture import draw
+
+        line, table = session.line, session.table
+        if watch:
+            print("the true table, which the robot may believe to be otherwise:", file=sys.stderr)
+            print(draw(table.world, table.polygons, table.utak), file=sys.stderr, end="")
+        why = shown(line["why"], lines=False)
+        print(f"step {line['step']}: {describe(line['action'])}: {why}", file=sys.stderr)
+
+    return tell
+
+
+def describe(action: dict[str, Any] | None) -> str:
+    """Return an action of an episode in words, as `move(1.5, -2)`.
+
+    >>> describe({"do": "move", "east": 1.5, "north": -2.0})
+    'move(1.5, -2)'
+    """
+    if action is None:
+        return "wake"
+    values = [f"{v:g}" if isinstance(v, float) else str(v) for k, v in action.items() if k != "do"]
+    return f"{action['do']}({', '.join(values)})" if values else str(action["do"])
+
+
+def _seed(text: str) -> int:
+    return whole(text, 0, 2**63 - 1)
+
+
+def _steps(text: str) -> int:
+    return whole(text, 0, 1_000_000)
+
+
+def _noise(text: str) -> float:
+    return decimal(text, 0, 1)

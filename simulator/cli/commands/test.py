@@ -1,0 +1,71 @@
+"""`utak test`: run scenarios and compare their ends with what expect.lp expects."""
+
+import argparse
+import sys
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from simulator.cli import exits
+from simulator.cli.commands.run import add_settings, settings_of
+from simulator.cli.terminal import shown
+from simulator.scenario.untrusted import refuse_links
+
+if TYPE_CHECKING:
+    from simulator.scenario.settings import Settings
+
+WORDS = {
+    exits.DONE: ("ok", "passed"),
+    exits.NOT_REACHED: ("FAILED", "failed"),
+    exits.BAD_INPUT: ("BAD", "bad"),
+    exits.CANNOT_OPEN: ("ABSENT", "cannot be opened"),
+    exits.OUR_BUG: ("BUG", "ended by a bug of ours"),
+}
+
+
+def add(parts: Any) -> None:
+    """Declare the subcommand."""
+    part = parts.add_parser("test", help="run scenario folders as tests")
+    part.add_argument("folders", nargs="+", metavar="FOLDER", help="a scenario, or a folder of scenarios")
+    add_settings(part)
+    part.set_defaults(execute=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Run every scenario, print one line each, and say how many passed; the exit code is that of the worst."""
+    from simulator.cli.outcome import attempt
+
+    settings = settings_of(options)
+    found: list[tuple[Path, Path]] = []
+    codes = []
+    for folder in options.folders:
+        absent = attempt(_look_into, Path(folder), found)
+        codes += [absent] if absent else []
+    for root, scenario in found:
+        code = attempt(_tried, root, scenario, settings, options)
+        codes.append(code)
+        if code not in (exits.DONE, exits.NOT_REACHED):
+            print(f"{WORDS[code][0]} {scenario}: see above", flush=True)
+    counts = Counter(codes)
+    others = "".join(f", {counts[code]} {WORDS[code][1]}" for code in WORDS if code != exits.DONE and counts[code])
+    print(f"{counts[exits.DONE]} of {len(codes)} passed{others}", file=sys.stderr)
+    return exits.worst(codes)
+
+
+def _look_into(folder: Path, found: list[tuple[Path, Path]]) -> int:
+    """Find the scenarios in a folder."""
+    from simulator.run.trial import scenarios_in
+
+    found += ((folder, scenario) for scenario in scenarios_in(folder))
+    return exits.DONE
+
+
+def _tried(root: Path, folder: Path, settings: "Settings", options: argparse.Namespace) -> int:
+    """Run one scenario and print how it went."""
+    from simulator.run.trial import run_trial
+
+    refuse_links(options, folder, root)
+    trial = run_trial(folder, settings)
+    code = exits.DONE if trial.passed else exits.NOT_REACHED
+    print(f"{WORDS[code][0]} {folder}: {shown(trial.message, lines=False)}", flush=True)
+    return code

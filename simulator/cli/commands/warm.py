@@ -1,0 +1,28 @@
+"""`utak warm`: compile the geometry kernels now, so that no run has to wait for them."""
+
+import argparse
+from typing import Any
+
+from simulator.cli import exits
+
+
+def add(parts: Any) -> None:
+    """Declare the subcommand."""
+    part = parts.add_parser("warm", help="compile the geometry kernels now, so that no run waits for them")
+    part.set_defaults(execute=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Compile for everything, and say how many kernels there are."""
+    from geometry.kernels.jit import ready
+    from simulator.run.warming import kept, warm_all
+
+    warm_all()
+    count, kept_here = ready()
+    if not count:
+        print("nothing to compile: NUMBA_DISABLE_JIT is set")
+    elif kept_here:
+        print(f"{kept()} kernels are compiled, and kept for the next runs")
+    else:
+        print(f"{count} kernels are compiled, but not kept: set NUMBA_CACHE_DIR to a folder that can be written")
+    return exits.DONE

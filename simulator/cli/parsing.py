@@ -1,0 +1,24 @@
+"""The command line of `utak`: its subcommands and their options."""
+
+import argparse
+
+from simulator.cli.commands import check, new, query, repl, routes, run, show, test, warm
+
+COMMANDS = (run, test, check, show, new, query, repl, routes, warm)
+EXIT_CODES = (
+    "exit codes: 0 done; 1 ran, goal not reached; 2 usage; 65 bad input; 66 cannot open; 70 our bug; "
+    "74 a standard stream failed; 75 limit; 130 interrupted; 141 the reader of the output went away"
+)
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of the whole command line."""
+    top = argparse.ArgumentParser(
+        prog="utak",
+        description="Utak, a robot who sees coarsely, believes with confidence and solves spatial tasks.",
+        epilog=EXIT_CODES,
+    )
+    parts = top.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for command in COMMANDS:
+        command.add(parts)
+    return top

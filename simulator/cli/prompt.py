@@ -1,0 +1,180 @@
+"""The prompt of `utak repl`: one line, one command or question; whatever is typed, the prompt comes back."""
+
+import os
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from kb.language.diagnostics import BadInputError, CannotOpenError, did_you_mean
+from kb.reasoning.query import VOCABULARY, QueryEngine, QueryLimitError
+from simulator.cli.commands.run import describe
+from simulator.cli.terminal import StreamError, shown
+from simulator.run.interrupts import deferred
+from simulator.run.story import Story
+
+HELP = """\
+?- QUERY.     ask what Utak believes: ?- object(X), shape(X, square, C).
+facts [WORD]  the world model as facts; with a word those that name it
+step [N]      go on by one step, or by N
+run           go on to the end
+show          the true table as a picture; what the robot believes of it are the facts
+help          this
+quit          leave (so does the end of the input)
+
+In facts, places and lengths are whole hundredths of a square, in the robot's frame: east and north from where it woke,
+north being the way it faced then. Confidences are percent. The robot is called utak in questions, and org in facts."""
+TRUTH = "the true table, which the robot may believe to be otherwise:"
+
+
+class Prompt:
+    """Obeys commands about one story."""
+
+    def __init__(self, story: Story, engine: QueryEngine, write: Callable[[str], object] | None = None) -> None:
+        self._story, self._engine = story, engine
+        self._write = write or (lambda text: print(text, flush=True))
+        self._commands: dict[str, Callable[[str], None]] = {
+            "?-": self._ask,
+            "facts": self._facts,
+            "help": lambda rest: self._say(HELP),
+            "run": lambda rest: self._go(None),
+            "show": lambda rest: self._say(f"{TRUTH}\n{self._story.picture()}".rstrip("\n")),
+            "step": self._step,
+        }
+
+    def words(self) -> list[str]:
+        """What can be completed: commands and the names of predicates."""
+        return sorted([*self._commands, "quit", *(f"{name}(" for name, _ in VOCABULARY)])
+
+    def obey(self, line: str) -> bool:
+        """Do what a line says; False when it says to leave. Nothing that it says raises an exception."""
+        text = line.strip()
+        name, _, rest = ("?-", "", text[2:]) if text.startswith("?-") else text.partition(" ")
+        name = name.removesuffix(".")
+        if name in ("quit", "exit"):
+            return False
+        if not text or text.startswith("%"):
+            return True
+        try:
+            if name in self._commands:
+                self._commands[name](rest.strip())
+            else:
+                self._unknown(name)
+        except (BadInputError, CannotOpenError, QueryLimitError) as problem:
+            self._say(str(problem))
+        except KeyboardInterrupt:
+            self._say("interrupted")
+        except (BrokenPipeError, StreamError):
+            raise
+        except Exception as bug:  # the prompt must come back, whatever happens
+            self._say(f"this is a bug of ours: {type(bug).__name__}: {str(bug)[:500]}")
+        return True
+
+    def _say(self, text: str) -> None:
+        self._write(text)
+
+    def _ask(self, rest: str) -> None:
+        self._say(str(self._engine.ask(self._story.facts, rest)))
+
+    def _facts(self, rest: str) -> None:
+        word = rest.removesuffix(".")
+        facts = [fact for fact in self._story.facts if not word or word in _names(fact)]
+        self._say("\n".join(facts) if facts else "none")
+
+    def _step(self, rest: str) -> None:
+        count = rest.removesuffix(".") or "1"
+        if not (count.isascii() and count.isdigit() and 0 < int(count[:9]) <= 1_000_000):
+            self._say(f"step takes a number of steps, not {rest}")
+            return
+        self._go(int(count[:9]))
+
+    def _go(self, count: int | None) -> None:
+        """Go on by some steps, or to the end."""
+        done = 0
+        while done != count:
+            with deferred(self._tell_of_ctrl_c) as pressed:
+                moved = self._story.advance()
+            if not moved:
+                break
+            done += 1
+            line = self._story.line
+            self._say(f"step {line['step']}: {describe(line.get('action'))}: {shown(str(line.get('why', '')), False)}")
+            if pressed:
+                self._say("interrupted")
+                return
+        result: Any = self._story.result
+        if result is not None:
+            reason = shown(str(result["reason"]), False)
+            self._say(f"{result['verdict']} after {result['steps']} steps: {reason}")
+        elif done == 0:
+            self._say("there are no more steps")
+
+    def _tell_of_ctrl_c(self) -> None:
+        with suppress(RuntimeError):  # something is being printed just now
+            self._say("the step comes to its end first; Ctrl-C once more breaks it off, and it did not happen")
+
+    def _unknown(self, name: str) -> None:
+        hint = did_you_mean(name, self._commands)
+        self._say(f"unknown command {name[:40]}; {hint or 'help lists what there is, ?- asks'}")
+
+
+def _names(fact: str) -> set[str]:
+    """The words of a fact."""
+    return set("".join(char if char.isalnum() or char == "_" else " " for char in fact).split())
+
+
+def lines_of(words: Sequence[str]) -> Iterator[str]:
+    """Yield the lines that are typed, with history and completion on a terminal, or that come through a pipe.
+
+    Raises StreamError when the standard input is closed or cannot be read.
+    """
+    if sys.stdin is None:
+        raise StreamError("the standard input is closed")
+    if not sys.stdin.isatty():
+        try:
+            for raw in sys.stdin.buffer:
+                yield raw.decode("utf-8", errors="replace")
+        except OSError as error:
+            raise StreamError(f"the standard input cannot be read: {error.strerror}") from None
+        return
+    _prepare(words)
+    with suppress(AttributeError):
+        sys.stdin.reconfigure(errors="replace")  # type: ignore[union-attr]  # what is typed may be of another encoding
+    while True:
+        try:
+            yield input("utak> ")
+        except EOFError:
+            print()
+            return
+        except KeyboardInterrupt:
+            print()
+
+
+def _prepare(words: Sequence[str]) -> None:
+    """History and completion, where Python has readline."""
+    try:
+        import atexit
+        import readline
+    except ImportError:
+        return
+    home = Path(os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state")
+    history = home / "utak" / "history"
+    try:
+        history.parent.mkdir(parents=True, exist_ok=True)
+        if history.exists():
+            readline.read_history_file(history)
+        readline.set_history_length(1000)
+        atexit.register(_write_history, readline, history)
+    except OSError:
+        pass  # no history, then
+    readline.set_completer(lambda text, n: [*[w for w in words if w.startswith(text)], None][n])
+    readline.set_completer_delims(" \t\n,")
+    readline.parse_and_bind("tab: complete")
+
+
+def _write_history(readline: Any, history: Path) -> None:
+    try:
+        readline.write_history_file(history)
+    except OSError:
+        print(f"utak: the history could not be written to {history}", file=sys.stderr)

@@ -1,0 +1,183 @@
+"""Episodes: what happened, as JSON lines. A header, step 0, one line a command, and the result (docs/files.md).
+
+Every line is written and flushed before the next command is given, so that a killed run leaves a readable episode.
+"""
+
+import json
+from collections import Counter
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from types import TracebackType
+from typing import Any, BinaryIO
+
+from kb.language.diagnostics import ENOUGH, BadInputError, CannotOpenError, Problem, Span
+from kb.language.source_text import read_bytes
+from simulator.episode.output_files import is_episode, keep_first, opened
+from simulator.episode.wellformed import HEADER, RESULT, STEP, Where, column
+
+VERSION = 1
+STANDARD_OUTPUT = "-"
+LARGEST = 500_000_000  # bytes
+
+Line = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Episode:
+    """An episode read back.
+
+    Attributes
+    ----------
+    header : the options, the world and the task.
+    steps : step 0 and one entry a command, in order.
+    result : how it ended, or None when the run was cut short.
+    """
+
+    header: Line
+    steps: tuple[Line, ...]
+    result: Line | None
+
+
+def encode(line: Line) -> str:
+    """Return one line of an episode, with its line end. Floats are written in full; equal values give equal bytes."""
+    return json.dumps(line, separators=(",", ":"), allow_nan=False) + "\n"
+
+
+def read_episode(path: Path | str) -> Episode:
+    """Read an episode, whole or cut short; raises CannotOpenError, or BadInputError when it is none or is damaged."""
+    name = str(path)
+    lines = complete_lines(path)
+    rows = [_decoded(name, number, row) for number, row in enumerate(lines, 1)]
+    if not rows or rows[0].get("utak") != "episode":
+        raise _none(name, 1, "this is no episode: the first line is no header")
+    if rows[0].get("version") != VERSION:
+        raise _none(name, 1, f"an episode of version {rows[0].get('version')}; this utak reads version {VERSION}")
+    result = rows.pop()["result"] if len(rows) > 1 and "result" in rows[-1] else None
+    for number, row in enumerate(rows[1:]):
+        if row.get("step") != number:
+            raise _none(name, number + 2, f"step {number} is missing")
+    problems: list[Problem] = []
+    for number, raw in enumerate(lines):
+        check = HEADER if number == 0 else STEP if number < len(rows) else RESULT
+        row = rows[number] if number < len(rows) else {"result": result}
+        problems += (_located(name, number + 1, raw, *complaint) for complaint in islice(check(row, ()), ENOUGH))
+        if problems:
+            raise BadInputError(problems)
+    return Episode(rows[0], tuple(rows[1:]), result)
+
+
+def complete_lines(path: Path | str) -> list[bytes]:
+    """Return the lines of an episode that were written to their ends; a last line cut short is left out."""
+    whole = read_bytes(str(path), LARGEST)
+    if len(whole) > LARGEST:
+        raise _none(str(path), 1, f"the file is larger than {LARGEST} bytes")
+    return [row + b"\n" for row in whole.split(b"\n")[:-1]]
+
+
+class _StrangeError(ValueError):
+    """What no line of an episode has, though Python's reader of JSON takes it."""
+
+
+def _decoded(path: str, number: int, row: bytes) -> Line:
+    try:
+        value = _JSON.decode(row.decode("utf-8"))
+    except UnicodeDecodeError as error:
+        raise _none(path, number, "this line is no text: the episode is damaged", error.start + 1) from None
+    except json.JSONDecodeError as error:
+        raise _none(path, number, f"this line is no JSON: the episode is damaged: {error.msg}", error.colno) from None
+    except (ValueError, RecursionError) as error:
+        what = str(error) if isinstance(error, _StrangeError) else "a number too long or too many brackets"
+        raise _none(path, number, f"this line is no JSON: the episode is damaged: {what}") from None
+    if not isinstance(value, dict):
+        raise _none(path, number, "a line of an episode is a JSON object")
+    return value
+
+
+def _pairs(pairs: list[tuple[str, Any]]) -> Line:
+    """An object, no key of which occurs twice."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        twice = next(key for key, count in Counter(key for key, _ in pairs).items() if count > 1)
+        raise _StrangeError(f"the key {twice[:40]} occurs twice")
+    return found
+
+
+def _constant(word: str) -> Any:
+    raise _StrangeError(f"{word} is no number")
+
+
+_JSON = json.JSONDecoder(object_pairs_hook=_pairs, parse_constant=_constant)
+
+
+def _none(path: str, number: int, what: str, column: int = 1) -> BadInputError:
+    return BadInputError([Problem(path, Span(number, column, column), what)])
+
+
+def _located(path: str, number: int, raw: bytes, where: Where, what: str) -> Problem:
+    """What is wrong with a value of a line, at the key that leads to it."""
+    at = column(raw.decode("utf-8"), where)
+    key = ".".join(where)[:80]
+    return Problem(path, Span(number, at, at), f"{key}: {what}: the episode is damaged" if key else what)
+
+
+class EpisodeLog:
+    """Writes an episode to a file, a line at a time; nobody else can write to it meanwhile.
+
+    Parameters
+    ----------
+    path : the file; `-` is the standard output; None writes nowhere.
+    resume : go on from what the file holds already. The run is repeated from the start, and every line that the file
+        holds must come out again byte for byte; a last line cut short is dropped.
+    force : overwrite a file that is no episode.
+
+    Raises CannotOpenError: when there is nothing to resume, or as `simulator.episode.output_files.opened` does.
+    """
+
+    def __init__(self, path: Path | str | None, resume: bool = False, force: bool = False) -> None:
+        self._path = path
+        self._number = 0
+        self._recorded: Sequence[bytes] = ()
+        self._stream: BinaryIO | None = None
+        if path is None or path == STANDARD_OUTPUT:
+            return
+        if resume and not Path(path).exists():
+            raise CannotOpenError(str(path), "there is no such episode to go on from")
+        self._stream = opened(path, is_episode, "episode", force)
+        try:
+            if resume:
+                self._recorded = complete_lines(path)
+            keep_first(self._stream, sum(map(len, self._recorded)))
+        except OSError as error:
+            self._stream.close()
+            raise CannotOpenError(str(path), error.strerror or str(error)) from None
+        except CannotOpenError:
+            self._stream.close()
+            raise
+
+    def __enter__(self) -> "EpisodeLog":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, at: TracebackType | None) -> None:
+        if self._stream is not None:
+            with suppress(OSError):  # what could not be written was reported then
+                self._stream.close()
+
+    def write(self, line: Line) -> None:
+        """Write one line at once; while resuming, check that it is the one recorded (BadInputError when not)."""
+        text = encode(line)
+        self._number += 1
+        if self._number <= len(self._recorded):
+            if text.encode("ascii") != self._recorded[self._number - 1]:
+                what = "the run does not repeat this line: another scenario, other options or another version of utak"
+                raise _none(str(self._path), self._number, what)
+        elif self._stream is not None:
+            try:
+                self._stream.write(text.encode("ascii"))
+                self._stream.flush()
+            except OSError as error:
+                raise CannotOpenError(str(self._path), f"it cannot be written: {error.strerror}") from None
+        elif self._path == STANDARD_OUTPUT:
+            print(text, end="", flush=True)

@@ -1,0 +1,93 @@
+"""What the lines of an episode say: options, world and task in its header, commands and motions in its steps."""
+
+import hashlib
+from typing import Any
+
+import shapely
+
+from geometry.motion.se2 import Motion, Translate
+from kb.body import Command, Grasp, Release, Turn
+from kb.language.source_text import read_source
+from simulator.episode.episode import VERSION, Line
+from simulator.scenario.scenario import Scenario
+from simulator.scenario.settings import Settings
+from simulator.world.world import Thing, World
+
+
+def action_entry(command: Command | None) -> Line | None:
+    """Return a command as an episode states it, in Utak's frame."""
+    if command is None:
+        return None
+    do = type(command).__name__.lower()
+    if isinstance(command, Grasp):
+        return {"do": do, "direction": command.direction}
+    if isinstance(command, Turn):
+        return {"do": do, "degrees": command.degrees}
+    if isinstance(command, Release):
+        return {"do": do}
+    return {"do": do, "east": command.east, "north": command.north}
+
+
+def motion_entry(motion: Motion | None) -> Line | None:
+    """Return what really happened as an episode states it, in the table's frame."""
+    if motion is None:
+        return None
+    if isinstance(motion, Translate):
+        return {"translate": [motion.dx, motion.dy]}
+    return {"rotate": motion.degrees, "about": list(motion.about)}
+
+
+def header(scenario: Scenario, settings: Settings) -> Line:
+    """Return the first line of an episode: options, world and task, without times or paths."""
+    world, task = scenario.world, scenario.task
+    rules = [read_source(path).text for path in settings.kb_files]
+    options = {
+        "seed": settings.seed,
+        "noise": settings.noise,
+        "paths": settings.paths,
+        "max_steps": settings.max_steps,
+        "pull": settings.pull,
+        "kb": [hashlib.sha256(text.encode()).hexdigest() for text in rules],
+    }
+    told = {
+        "parameters": {name: parameter.kind for name, parameter in task.parameters.items()},
+        "claims": [[str(claim.fact), claim.confidence] for claim in task.claims],
+        "goals": [str(goal) for goal in task.goals],
+        "expect": None if scenario.expectations is None else [str(fact) for fact in scenario.expectations],
+    }
+    return {"utak": "episode", "version": VERSION, "options": options, "world": _world_entry(world), "task": told}
+
+
+def _world_entry(world: World) -> Line:
+    def entry(thing: Thing) -> Line:
+        return {"colour": thing.colour, "rings": _rings(thing.polygon)}
+
+    return {
+        "table": [world.width, world.height],
+        "heading": world.heading,
+        "verge": [_rings(part) for part in getattr(world.verge, "geoms", [world.verge]) if not part.is_empty],
+        "fixed": {thing.name: entry(thing) for thing in world.fixed},
+        "movable": {thing.name: entry(thing) for thing in world.movable},
+    }
+
+
+def _rings(polygon: Any) -> list[list[list[float]]]:
+    """The outer ring and the holes of a polygon, each without its repeated last point."""
+    rings = [polygon.exterior, *polygon.interiors]
+    return [[[float(x), float(y)] for x, y in ring.coords[:-1]] for ring in rings]
+
+
+def recorded_world(head: Line) -> World:
+    """Return the world that an episode's header records, as far as a picture needs it: Utak stands at (0, 0).
+
+    Raises KeyError, TypeError or ValueError when the header is not as `header` makes it.
+    """
+    entry = head["world"]
+    width, height = entry["table"]
+    verge = shapely.MultiPolygon([shapely.Polygon(rings[0], rings[1:]) for rings in entry["verge"]])
+    movable, fixed = (tuple(_thing(*item) for item in entry[kind].items()) for kind in ("movable", "fixed"))
+    return World(int(width), int(height), verge, movable, fixed, (0.0, 0.0), int(entry["heading"]))
+
+
+def _thing(name: str, entry: Line) -> Thing:
+    return Thing(name, str(entry["colour"]), shapely.Polygon(entry["rings"][0], entry["rings"][1:]))

@@ -1,0 +1,208 @@
+"""Is a line of an episode as simulator.episode.record writes it? A check for each key; docs/files.md has the form
+in words.
+"""
+
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping
+from typing import Any
+
+from kb.body import DIRECTIONS
+from kb.language.vocabulary import MOST_SQUARES
+
+Where = tuple[str, ...]  # the keys that lead to a value
+Complaint = tuple[Where, str]
+Check = Callable[[Any, Where], Iterator[Complaint]]
+
+LONGEST = 100_000  # characters of a text
+FAR = 1e9  # squares or degrees: what a command may ask for
+MARGIN = 1.0  # squares beyond the table
+FACT = re.compile(r"-?_*[a-z][A-Za-z0-9_']*(\([ -~]*\))?\.")
+
+
+def number(low: float, high: float) -> Check:
+    """A number within bounds."""
+
+    def check(value: Any, at: Where) -> Iterator[Complaint]:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            yield at, "a number is wanted"
+        elif not low <= value <= high:  # which no NaN is, and no infinity
+            yield at, f"a number from {low:g} to {high:g} is wanted"
+
+    return check
+
+
+def whole(low: int, high: int) -> Check:
+    """A whole number within bounds."""
+
+    def check(value: Any, at: Where) -> Iterator[Complaint]:
+        if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+            yield at, f"a whole number from {low} to {high} is wanted"
+
+    return check
+
+
+def text(form: re.Pattern[str] | None = None, name: str = "a text") -> Check:
+    """A text, of a form if one is given."""
+
+    def check(value: Any, at: Where) -> Iterator[Complaint]:
+        if not isinstance(value, str) or len(value) > LONGEST or (form and not form.fullmatch(value)):
+            yield at, f"{name} is wanted"
+
+    return check
+
+
+def one_of(*known: Any) -> Check:
+    """One of some values, of their very types."""
+
+    def check(value: Any, at: Where) -> Iterator[Complaint]:
+        if not any(type(value) is type(one) and value == one for one in known):
+            yield at, f"one of {', '.join(map(str, known))} is wanted"
+
+    return check
+
+
+def or_null(inner: Check) -> Check:
+    """Null, or what another check allows."""
+
+    def check(value: Any, at: Where) -> Iterator[Complaint]:
+        if value is not None:
+            yield from inner(value, at)
+
+    return check
+
+
+def list_of(inner: Check, least: int = 0, most: int = 10_000_000) -> Check:
+    """A list of so many values, each as another check allows."""
+
+    def check(value: Any, at: Where) -> Iterator[Complaint]:
+        if not isinstance(value, list) or not least <= len(value) <= most:
+            yield at, f"a list of {least} values is wanted" if least == most else "a list of values is wanted"
+            return
+        for one in value:
+            yield from inner(one, at)
+
+    return check
+
+
+def names_to(inner: Check) -> Check:
+    """An object whose keys are names, each value as another check allows."""
+
+    def check(value: Any, at: Where) -> Iterator[Complaint]:
+        if not isinstance(value, dict):
+            yield at, "an object is wanted"
+            return
+        for key, one in value.items():
+            yield from inner(one, (*at, key))
+
+    return check
+
+
+def keys(checks: Mapping[str, Check], optional: Collection[str] = ()) -> Check:
+    """An object with these keys; others do not matter."""
+
+    def check(value: Any, at: Where) -> Iterator[Complaint]:
+        if not isinstance(value, dict):
+            yield at, "an object is wanted"
+            return
+        for key, inner in checks.items():
+            if key in value:
+                yield from inner(value[key], (*at, key))
+            elif key not in optional:
+                yield at, f"the key {key} is missing"
+
+    return check
+
+
+def action(value: Any, at: Where) -> Iterator[Complaint]:
+    """A command that was given."""
+    yield from keys({"do": one_of(*ACTIONS)})(value, at)
+    if isinstance(value, dict) and value.get("do") in ACTIONS:
+        yield from keys(ACTIONS[value["do"]])(value, at)
+
+
+def motion(value: Any, at: Where) -> Iterator[Complaint]:
+    """What really happened."""
+    turned = isinstance(value, dict) and "rotate" in value
+    pair = list_of(number(-FAR, FAR), 2, 2)
+    yield from keys({"rotate": number(-FAR, FAR), "about": pair} if turned else {"translate": pair})(value, at)
+
+
+STRAIGHT = {"east": number(-FAR, FAR), "north": number(-FAR, FAR)}
+ACTIONS: dict[str, dict[str, Check]] = {
+    "move": STRAIGHT,
+    "push": STRAIGHT,
+    "turn": {"degrees": number(-FAR, FAR)},
+    "grasp": {"direction": one_of(*DIRECTIONS)},
+    "release": {},
+}
+POINT = list_of(number(-MARGIN, MOST_SQUARES + MARGIN), 2, 2)
+RING = list_of(POINT, 3)
+RINGS = list_of(RING, 1)
+THING = keys({"colour": text(), "rings": RINGS})
+HEADER = keys(
+    {
+        "options": keys(
+            {
+                "seed": whole(0, 2**63 - 1),
+                "noise": number(0, 1),
+                "paths": one_of("skeleton", "visibility", "grid"),
+                "max_steps": whole(0, 1_000_000),
+                "pull": one_of(True, False),
+                "kb": list_of(text()),
+            },
+            optional=("pull",),
+        ),
+        "world": keys(
+            {
+                "table": list_of(whole(1, MOST_SQUARES), 2, 2),
+                "heading": whole(0, 359),
+                "verge": list_of(RINGS),
+                "fixed": names_to(THING),
+                "movable": names_to(THING),
+            }
+        ),
+        "task": keys(
+            {
+                "parameters": names_to(text()),
+                "claims": list_of(lambda value, at: iter(())),
+                "goals": list_of(text()),
+                "expect": or_null(list_of(text())),
+            }
+        ),
+    }
+)
+STEP = keys(
+    {
+        "action": or_null(action),
+        "motion": or_null(motion),
+        "utak": POINT,
+        "held": or_null(text()),
+        "objects": names_to(RING),
+        "retina": list_of(whole(0, 7), 160, 160),
+        "touch": list_of(or_null(text()), 8, 8),
+        "belief": keys({"facts": list_of(text(FACT, "a fact"))}),
+        "why": text(),
+    }
+)
+RESULT = keys(
+    {
+        "result": keys(
+            {
+                "believed": one_of(True, False),
+                "achieved": or_null(one_of(True, False)),
+                "verdict": one_of("done", "impossible", "possible_if", "limit"),
+                "reason": text(),
+                "steps": whole(0, 1_000_000),
+            }
+        )
+    }
+)
+
+
+def column(row: str, where: Where) -> int:
+    """Return the column, from 1, at which a line has the last of some keys, one inside of the other."""
+    at = 0
+    for key in where:
+        found = row.find(f'"{key}"', at)
+        at = found if found >= 0 else at
+    return at + 1

@@ -1,0 +1,31 @@
+"""The one bridge between mind and world: commands go in, impressions come out, and nothing else passes."""
+
+from kb.body import Command, Grasp, Impression, Move, Push, Release, Turn
+from simulator.world.physics import Tabletop
+
+
+class Embodiment:
+    """Utak's body on a table; satisfies `kb.body.Body`."""
+
+    def __init__(self, table: Tabletop) -> None:
+        self.__table = table
+
+    def wake(self) -> Impression:
+        """Return the first impression."""
+        return Impression(*self.__table.look())
+
+    def act(self, command: Command) -> Impression:
+        """Carry out one command and return the impression where Utak comes to a halt."""
+        table = self.__table
+        match command:
+            case Move(east, north):
+                table.move(east, north)
+            case Push(east, north):
+                table.push(east, north)
+            case Turn(degrees):
+                table.turn(degrees)
+            case Grasp(direction):
+                table.grasp(direction)
+            case Release():
+                table.release()
+        return Impression(*table.look())

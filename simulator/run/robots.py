@@ -1,0 +1,20 @@
+"""Where simulator and planner are wired together: the one robot that the command line runs."""
+
+from kb.body import Body
+from kb.task.task import Task
+from planner.goals.stages import stages
+from simulator.run.session import Robot
+from simulator.run.warming import warm
+from simulator.scenario.settings import Settings
+
+
+def make_robot(body: Body, task: Task, settings: Settings) -> Robot:
+    """Return the robot of `planner.cycle` with a body and a task."""
+    from planner.cycle import Options
+    from planner.cycle import Robot as Mind
+
+    warm(carrying=any(stage.carried for stage in stages(task)), paths=settings.paths)
+    options = Options(
+        paths=settings.paths, kb_files=settings.kb_files, max_steps=settings.max_steps, pull=settings.pull
+    )
+    return Mind(body, task, options)

@@ -1,0 +1,76 @@
+"""A scenario: a folder with the truth (world.lp or world.txt), the task (start.lp, goal.lp) and expect.lp."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, Span
+from kb.language.terms import Fact
+from kb.task.task import Task, read_task
+from simulator.scenario.expectation import read_expectations
+from simulator.scenario.picture import read_picture
+from simulator.scenario.worldfile import read_world
+from simulator.world.world import World
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A world, a task, and what is expected of the end (None without expect.lp)."""
+
+    world: World
+    task: Task
+    expectations: tuple[Fact, ...] | None
+
+
+def read_scenario(folder: Path | str) -> Scenario:
+    """Read a scenario folder.
+
+    Raises CannotOpenError when the folder or a file of it cannot be read, BadInputError with the problems of all files.
+    """
+    folder = Path(folder)
+    _must_be_folder(folder)
+    problems: list[Problem] = []
+    world = _collected(problems, lambda: read_any_world(folder))
+    task = _collected(problems, lambda: read_task(folder / "start.lp", folder / "goal.lp"))
+    expect = folder / "expect.lp"
+    expectations = _collected(problems, lambda: read_expectations(expect, world)) if expect.exists() else None
+    if problems or world is None or task is None:
+        raise BadInputError(problems)
+    return Scenario(world, task, expectations)
+
+
+def read_any_world(folder: Path | str) -> World:
+    """Read the world of a scenario folder, from world.lp or from the picture world.txt."""
+    folder = Path(folder)
+    _must_be_folder(folder)
+    facts, picture = folder / "world.lp", folder / "world.txt"
+    if facts.exists() and picture.exists():
+        what = "the scenario has two worlds, world.lp and world.txt"
+        raise BadInputError([Problem(str(picture), Span(1, 1, 1), what, hint="keep one of them")])
+    if picture.exists():
+        return read_picture(picture)
+    if not facts.exists():
+        raise CannotOpenError(str(folder), "there is neither world.lp nor world.txt in it")
+    return read_world(facts)
+
+
+def _must_be_folder(folder: Path) -> None:
+    try:
+        if folder.is_dir():
+            return
+        exists = folder.exists()
+    except (OSError, ValueError) as error:
+        raise CannotOpenError(str(folder), str(error)) from None
+    raise CannotOpenError(str(folder), "a scenario is a folder, this is none" if exists else "no such folder")
+
+
+def _collected(problems: list[Problem], read: Callable[[], T]) -> T | None:
+    """What `read` returns; the problems that it finds are appended instead of raised."""
+    try:
+        return read()
+    except BadInputError as bad:
+        problems += bad.problems
+        return None

@@ -1,0 +1,33 @@
+"""Scenarios from elsewhere: `--untrusted` reads no file to which a link leads out of the scenario's folder."""
+
+import argparse
+from pathlib import Path
+
+from kb.language.diagnostics import CannotOpenError
+from kb.language.source_text import leads_out
+
+FILES = ("world.lp", "world.txt", "start.lp", "goal.lp", "expect.lp")
+
+
+def add_option(part: argparse.ArgumentParser) -> None:
+    """Declare the option."""
+    what = "refuse links that lead out of a scenario's folder"
+    part.add_argument("--untrusted", action="store_true", help=what)
+
+
+def refuse_links(options: argparse.Namespace, place: Path | str, root: Path | str | None = None) -> None:
+    """Raise CannotOpenError when links are refused and a scenario's file, or its folder, is one that leads out.
+
+    Parameters
+    ----------
+    place : a scenario's folder, or a file of one.
+    root : the folder in which it was found; None when the user named it.
+    """
+    if not options.untrusted:
+        return
+    place = Path(place)
+    files = [place / name for name in FILES] if place.is_dir() else [place]
+    within = [place] if root is not None and place != Path(root) else []
+    for path in [*within, *files]:
+        if path.exists() and leads_out(path, root if path in within else None):
+            raise CannotOpenError(str(path), "it is a link out of its folder, which --untrusted refuses")

@@ -1,0 +1,51 @@
+"""The ring of buckets, and what is found with it: the same as with plain Dijkstra."""
+
+import networkx as nx
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from geometry.kernels.bucket_queue import RING, new_queue, put, take
+from geometry.motion.obstacle_field import DIAGONAL, SIDE, WALL, disc_ways
+
+
+@settings(max_examples=30, deadline=None, derandomize=True)
+@given(st.lists(st.integers(0, RING - 1), max_size=40))
+def test_nodes_come_out_by_cost(costs: list[int]) -> None:
+    queue = new_queue(64)
+    for node, cost in enumerate(costs):
+        put(queue, cost, node)
+    taken = []
+    for now in range(RING):
+        while (node := take(queue, now)) >= 0:
+            taken.append(costs[node])
+    assert taken == sorted(costs) and queue.used[1] == 0
+
+
+def test_what_finds_no_room_is_lost() -> None:
+    queue = new_queue(1)
+    put(queue, 3, 7)
+    put(queue, 3, 8)
+    assert (take(queue, 3), take(queue, 3)) == (7, -1)
+
+
+@settings(max_examples=15, deadline=None, derandomize=True)
+@given(arrays(np.bool_, (7, 9)), st.integers(0, 62))
+def test_the_way_of_a_disc(tight: np.ndarray, goal: int) -> None:
+    goals = np.zeros((7, 9), bool)
+    goals.flat[goal] = True
+    graph = nx.DiGraph()
+    for y, x in np.ndindex(7, 9):
+        for v, u in np.ndindex(7, 9):
+            if max(abs(x - u), abs(y - v)) == 1:
+                side = DIAGONAL if x != u and y != v else SIDE
+                graph.add_edge((y, x), (v, u), weight=side * (WALL if tight[v, u] else 1))
+    expected = nx.single_source_dijkstra_path_length(graph, divmod(goal, 9))
+    found = disc_ways(tight, goals)
+    assert all(found[place] == expected[place] for place in np.ndindex(7, 9))
+
+
+def test_without_a_goal_nothing_is_near() -> None:
+    assert disc_ways(np.zeros((3, 3), bool), np.zeros((3, 3), bool)).min() == pytest.approx(2**40)

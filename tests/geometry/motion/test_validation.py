@@ -1,0 +1,170 @@
+"""Shapes and numbers that make no sense, or only just: a clear error, or the answer of what they mean."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from shapely import MultiPolygon, Polygon, box
+
+from geometry.cspace.plan_motion import Inside, Plan, plan_motion
+from geometry.manipulation.plan_carrying import At, InCorner, plan_carrying
+from geometry.motion.se2 import Pose
+from geometry.motion.validation import sound
+
+BRICK = box(-2, -1, 2, 1)
+WALLS = box(-1, -1, 26, 13).difference(shapely.union_all([box(0, 0, 12, 12), box(13, 0, 25, 12), box(12, 4, 13, 7)]))
+START, GOAL = Pose(5, 6, 90), Pose(19, 7, 30)
+FREE = np.zeros((14, 27), np.bool_)
+FREE[1:13, 1:13] = FREE[1:13, 14:26] = FREE[5:8, 13] = True
+LOAD, NEXT = box(4, 4, 8, 6), Inside(box(14, 1, 26, 13))
+SAME = {
+    "collinear": [(-2, -1), (0, -1), (1, -1), (2, -1), (2, 0), (2, 1), (-2, 1)],
+    "repeated": [(-2, -1), (-2, -1), (2, -1), (2, -1), (2, 1), (-2, 1), (-2, 1)],
+    "clockwise": [(-2, -1), (-2, 1), (2, 1), (2, -1)],
+    "with a spike": [(-2, -1), (2, -1), (2, 1), (2, 3), (2, 1), (-2, 1)],
+}
+with np.errstate(invalid="ignore"):
+    BROKEN = Polygon([(0, 0), (4, math.nan), (4, 4)])
+    ENDLESS = Polygon([(0, 0), (4, math.inf), (4, 4)])
+BOWTIE = [(14, 1), (24, 11), (24, 1), (14, 11)]
+
+
+def moved(shape: Any = BRICK, walls: Any = WALLS, start: Pose = START, goal: Any = GOAL, **more: Any) -> Plan:
+    """A plan of the brick through the door, but for what is given."""
+    return plan_motion(shape, walls, start, goal, **more)
+
+
+def carried(shape: Any = LOAD, free: Any = FREE, utak: Any = (2.5, 2.5), goal: Any = NEXT, **more: Any) -> Any:
+    """A plan of carrying the brick into the next room, but for what is given."""
+    return plan_carrying(shape, free, utak, goal, **more)
+
+
+@pytest.mark.parametrize("points", SAME.values(), ids=SAME)
+def test_a_ring_told_otherwise_is_the_same_body(points: list[tuple[float, float]]) -> None:
+    shape = Polygon(points)
+    assert sound(shape, "it").equals(BRICK)
+    assert [m.pose(START) for m in moved(shape).motions[:1]] == [m.pose(START) for m in moved().motions[:1]]
+    there = shapely.affinity.translate(shape, 6, 5)
+    assert (carried(there).status, carried(there).commands) == ("found", carried().commands)
+
+
+def test_rings_that_cross_are_read_even_odd() -> None:
+    assert sound(Polygon(BOWTIE), "it").area == pytest.approx(50)
+    assert moved(goal=Inside(Polygon(BOWTIE))).status == "found"
+    assert moved(walls=[WALLS, Polygon([(16, 1), (18, 3), (18, 1), (16, 3)])]).status == "found"
+    assert moved(shapely.affinity.translate(Polygon(BOWTIE), -19, -6), start=Pose(6, 6)).status == "impossible"
+
+
+@pytest.mark.parametrize("shape", [BROKEN, ENDLESS, box(0, 0, 1e12, 1)])
+def test_coordinates_that_are_no_numbers_or_far_off_are_refused(shape: Polygon) -> None:
+    tries: list[Any] = [
+        lambda: moved(shape),
+        lambda: moved(walls=shape),
+        lambda: moved(goal=Inside(shape)),
+        lambda: carried(shape),
+        lambda: carried(goal=Inside(shape)),
+        lambda: carried(walls=shape),
+    ]
+    for fails in tries:
+        with pytest.raises(ValueError, match="must be finite"):
+            fails()
+
+
+@pytest.mark.parametrize("wrong", [math.nan, math.inf, 1e12])
+def test_numbers_that_make_no_sense_are_refused(wrong: float) -> None:
+    tries: list[Any] = [
+        lambda: moved(start=Pose(wrong, 6)),
+        lambda: moved(goal=Pose(6, wrong)),
+        lambda: moved(points=[(wrong, 0)]),
+        lambda: moved(pivot=(wrong, 0)),
+        lambda: carried(utak=(wrong, 1)),
+        lambda: carried(avoid=[(wrong, 0)]),
+        lambda: carried(goal=At(Pose(wrong, 0))),
+        lambda: carried(goal=At(Pose(0, 0, wrong))),
+        lambda: carried(goal=InCorner(wrong, 13, 1, 1)),
+    ]
+    for fails in tries:
+        with pytest.raises(ValueError, match="finite"):
+            fails()
+
+
+@pytest.mark.parametrize(
+    ("what", "match"),
+    [
+        ({"resolution": 0}, "resolution"),
+        ({"resolution": math.nan}, "resolution"),
+        ({"cells": 0}, "cell"),
+        ({"cells": -5}, "cell"),
+        ({"bounds": (25, 12, 0, 0)}, "bounds"),
+        ({"bounds": (0, 0, 25)}, "bounds"),
+        ({"bounds": (0, 0, math.nan, 12)}, "bounds"),
+        ({"shape": None}, "area"),
+        ({"shape": Polygon()}, "area"),
+        ({"shape": Polygon([(-2, -1), (2, -1), (0, -1)])}, "area"),
+        ({"shape": box(0, 0, 1e-9, 1e-9)}, "area"),
+        ({"shape": shapely.LineString([(0, 0), (1, 1)])}, "area"),
+    ],
+)
+def test_a_motion_that_makes_no_sense_is_refused(what: dict[str, Any], match: str) -> None:
+    with pytest.raises(ValueError, match=match):
+        moved(**what)
+
+
+@pytest.mark.parametrize(
+    ("what", "match"),
+    [
+        ({"shape": None}, "area"),
+        ({"shape": box(4, 4, 4 + 1e-9, 4 + 1e-9)}, "area"),
+        ({"shape": MultiPolygon([box(4, 4, 5, 6), box(7, 4, 8, 6)])}, "a polygon"),
+        ({"free": FREE[0]}, "rows"),
+        ({"free": np.zeros((0, 0), np.bool_)}, "rows"),
+        ({"walk": FREE[1:]}, "rows"),
+        ({"margin": -1.0}, "margin"),
+        ({"margin": math.nan}, "margin"),
+        ({"goal": None}, "goal"),
+        ({"goal": InCorner(26, 13, 0, 1)}, "corner"),
+        ({"goal": InCorner(26, 13, 1, 1, -1.0)}, "corner"),
+    ],
+)
+def test_carrying_that_makes_no_sense_is_refused(what: dict[str, Any], match: str) -> None:
+    with pytest.raises(ValueError, match=match):
+        carried(**what)
+
+
+@pytest.mark.parametrize(
+    "region", [Polygon(), Polygon([(14, 1), (20, 1), (17, 1)]), shapely.LineString([(14, 1), (20, 1)])]
+)
+def test_nothing_can_be_within_a_region_without_an_area(region: Any) -> None:
+    assert moved(goal=Inside(region)).status == "impossible"
+    assert carried(goal=Inside(region)).status == "impossible"
+    assert moved(goal=Inside([])).status == "impossible"
+
+
+def test_who_is_there_already_need_not_move() -> None:
+    assert (moved(goal=START).status, moved(goal=START).motions) == ("found", ())
+    assert moved(goal=Pose(5, 6, 450)).motions == ()
+    assert carried(goal=At(Pose(0, 0, 360))).legs == ()
+    assert moved(start=Pose(12, 9), goal=Pose(12, 9)).reason == "start"
+
+
+def test_a_start_or_goal_in_a_wall_is_named() -> None:
+    assert moved(start=Pose(12, 9)).reason == "start"
+    assert moved(goal=Pose(12, 9)).reason == "goal"
+    assert moved(start=Pose(-50, 9), bounds=(0, 0, 25, 12)).reason == "start"
+    assert carried(box(11, 4, 15, 6)).reason == "start"
+    assert carried(box(-1e6, -1e6, 1e6, 1e6)).reason == "start"
+    assert carried(box(1e6, 1e6, 1e6 + 4, 1e6 + 2)).reason == "start"
+    assert carried(goal=At(Pose(1e6, 0))).reason == "goal"
+
+
+def test_far_from_the_origin_the_same_is_found() -> None:
+    far = 1e6
+    walls = shapely.affinity.translate(WALLS, far, far)
+    plan = moved(walls=walls, start=Pose(5 + far, 6 + far, 90), goal=Pose(19 + far, 7 + far, 30))
+    assert (plan.status, len(plan.motions)) == ("found", len(moved().motions))
+
+
+def test_a_margin_wider_than_the_floor_is_kept_where_that_is_possible() -> None:
+    assert carried(margin=1e9).status == "found"

@@ -1,0 +1,164 @@
+"""Routes on random small floors beside exact answers, and the floors on which they were once wrong."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from benchmarks.engine.exact import Exact, clearances
+from benchmarks.floors import CHECKS, disagreements
+from geometry import Route, Screen
+from geometry.pathfinders.visibility_graph import visibility_way
+from geometry.routes.lifting import lift
+from geometry.routes.tighten import word_of_crossings
+
+SEED = 20  # other floors than those of the campaign
+
+
+def floor(*rows: str) -> np.ndarray:
+    """A floor drawn north row first; # is blocked."""
+    return np.array([[square != "#" for square in row] for row in rows[::-1]])
+
+
+def marked(mark: str, *rows: str) -> np.ndarray:
+    """The squares with a mark, drawn north row first."""
+    return np.array([[square == mark for square in row] for row in rows[::-1]])
+
+
+@pytest.mark.parametrize("check", CHECKS)
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(number=st.integers(0, 2**31))
+def test_floors_are_answered_exactly(check: str, number: int) -> None:
+    assert disagreements(check, SEED, number) == []
+
+
+def test_a_line_that_ends_between_two_rows_is_in_the_upper_one() -> None:
+    screen = Screen(floor("......", "....#.", "....#.", "..#..."))
+    routes = screen.routes((3.5, 1.5), (5.0, 3.0), k=2)
+    assert len({route.signature for route in routes}) == 2
+    assert [screen.tighten(route).signature for route in routes] == [route.signature for route in routes]
+
+
+def test_a_line_that_ends_at_a_pinch_must_come_from_the_side_of_its_square() -> None:
+    screen = Screen(floor("#.", ".#"))
+    with pytest.raises(ValueError, match="leaves free space"):
+        screen.tighten(Route(np.array([[0.5, 0.5], [1.0, 1.0]]), 0.0, 0.0, (), ()))
+    assert screen.tighten(Route(np.array([[1.5, 1.5], [1.0, 1.0]]), 0.0, 0.0, (), ())).signature == ()
+
+
+def test_a_route_to_a_set_keeps_out_of_blocked_squares() -> None:
+    free = floor("..#....#", "....#.##", ".#.##..#", "........")
+    for route in Screen(free).routes((1.5, 2.5), {(0, 1), (2, 1)}):
+        assert Exact(free).is_free(route.points)
+
+
+def test_a_route_to_a_set_ends_at_the_nearest_square() -> None:
+    rows = "...#gg", "...g..", "gggggg"
+    route = Screen(floor(*rows)).routes((0.5, 1.5), marked("g", *rows))[0]
+    assert (route.length, route.points[-1].tolist()) == (1.0, [0.5, 0.5])
+
+
+def test_blocked_squares_of_a_set_make_no_difference() -> None:
+    rows = "ggg", "gg#", ".g."
+    free, goal = floor(*rows), marked("g", *rows)
+    without = Screen(free).routes((2.5, 0.5), goal)
+    goal[1, 2] = True
+    assert [route.points.tolist() for route in Screen(free).routes((2.5, 0.5), goal)] == [
+        route.points.tolist() for route in without
+    ]
+    assert without
+
+
+def test_routes_to_a_set_whose_ends_can_be_moved_into_each_other_round_a_pillar_are_one() -> None:
+    rows = ".......", ".ggggg.", ".g.#.g.", ".g.#.g.", ".ggggg.", "......."
+    goal = marked("g", *rows)
+    goal[2:4, 2] = goal[2:4, 4] = False
+    routes = Screen(floor(*rows)).routes((0.5, 0.5), goal, k=5)
+    assert len(routes) == 1
+    assert routes[0].length == pytest.approx(np.sqrt(2.0))
+
+
+@pytest.mark.parametrize("radius", [0.51, 0.6, 0.7, 0.7071])
+def test_a_corridor_aslant_lets_through_what_has_room_on_its_squares(radius: float) -> None:
+    i, j = np.indices((14, 14))
+    screen = Screen(abs(i - j) <= 2)
+    graph = screen.pathgraph_for(radius)
+    assert graph.number_of_nodes() - graph.number_of_edges() == 1
+    (route,) = screen.routes((1.5, 1.5), (12.5, 12.5), radius=radius)
+    assert route.clearance == pytest.approx(np.sqrt(0.5))
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 2**31), st.floats(0.0, 4.0))
+def test_every_radius_has_the_squares_with_that_clearance(number: int, radius: float) -> None:
+    rng = np.random.default_rng(number)
+    free = rng.random(rng.integers(2, 14, 2)) >= 0.1
+    free[0, 0] = True
+    screen = Screen(free)
+    room = clearances(free) >= radius
+    squares = [(x, y) for y, x in np.argwhere(free).tolist()]
+    x, y = squares[int(rng.integers(len(squares)))]
+    assert bool(screen.routes((x + 0.5, y + 0.5), (x + 0.5, y + 0.5), radius=radius)) == room[y, x]
+
+
+@pytest.mark.parametrize(
+    ("point", "admitted"),
+    [((3.5, 1.4), True), ((3.5, 1.39), False), ((3.5, 1.0), False), ((1.4, 3.5), True), ((3.5, 5.61), False)],
+)
+def test_an_end_nearer_to_a_wall_than_the_radius_is_refused(point: tuple[float, float], admitted: bool) -> None:
+    screen = Screen(np.ones((7, 7), bool))
+    for ends in ((point, (3.5, 3.5)), ((3.5, 3.5), point), (point, point)):
+        assert bool(screen.routes(*ends, radius=1.4)) == admitted
+    assert bool(screen.routes(point, {(3, 3)}, radius=1.4)) == admitted
+
+
+def test_a_body_that_stays_where_it_is_goes_no_way() -> None:
+    screen = Screen(np.ones((7, 7), bool))
+    (route,) = screen.routes((3.2, 3.7), (3.2, 3.7), radius=1.0)
+    assert (route.length, route.points.tolist()) == (0.0, [[3.2, 3.7]])
+    (beside,) = screen.routes((3.2, 3.7), (3.8, 3.7), radius=1.0)
+    assert beside.length == pytest.approx(0.6)
+
+
+def test_the_visibility_graph_does_not_look_through_a_pinch_from_the_pinch() -> None:
+    free = floor("#.", ".#")
+    assert visibility_way(free, (1.0, 1.0), (0.5, 0.5)) is None
+    assert visibility_way(free, (0.5, 0.5), (1.0, 1.0)) is None
+    assert visibility_way(free, (1.0, 1.0), (1.5, 1.5)) is not None
+
+
+def test_an_edge_round_one_blocked_square_is_as_long_as_its_points() -> None:
+    graph = Screen(floor(".#.", "...")).pathgraph
+    ((_, _, edge),) = graph.edges(data=True)
+    assert edge["length"] == np.hypot(*np.diff(edge["points"], axis=0).T).sum() == 4.0
+
+
+def test_no_clearance_is_missing_among_random_squares() -> None:
+    rng = np.random.default_rng(3)
+    missing = 0
+    for _ in range(4):
+        free = rng.random((60, 60)) >= 0.3
+        screen, squares = Screen(free), np.argwhere(free)
+        for i, j in rng.integers(0, len(squares), (25, 2)):
+            start, goal = (tuple((squares[n][::-1] + 0.5).tolist()) for n in (i, j))
+            best = screen.shortest(start, goal)
+            for k in (2, 3, 5):
+                routes = screen.routes(start, goal, k=k)
+                missing += sum(not route.clearance > 0.0 for route in routes)
+                assert bool(routes) == (best is not None)
+                assert best is None or routes[0].length == pytest.approx(best.length, abs=1e-9)
+    assert missing == 0
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 2**31), st.sampled_from([0.0, 0.6, 1.2]))
+def test_a_class_is_lifted_to_the_way_by_which_it_was_found(number: int, radius: float) -> None:
+    rng = np.random.default_rng(number)
+    free = rng.random(rng.integers(2, 14, 2)) >= rng.choice([0.05, 0.2, 0.4])
+    free[0, 0] = True
+    screen, squares = Screen(free), np.argwhere(free)
+    start, goal = (tuple((squares[n][::-1] + 0.5).tolist()) for n in rng.integers(0, len(squares), 2))
+    for route in screen.routes(start, goal, k=1, radius=radius):
+        layer = screen._ask(radius).layer
+        found, _ = lift(layer, (*start, *goal), word_of_crossings(layer.runs, (*start, *goal), route.signature))
+        assert (0.5 * found.lowest**0.5, found.chains) == (route.clearance, route.chains)

@@ -1,0 +1,91 @@
+"""How much room a class has for an image: counted again with shapes laid at random."""
+
+import math
+from collections import Counter
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import shapely
+from shapely import affinity
+
+from geometry.raster.rasterize import squares
+from geometry.shapes import misfit
+from geometry.shapes.candidates import settled_best
+from geometry.shapes.shape_likelihood import SIZES, room_for
+
+PAD = 2
+Draw = Callable[[np.random.Generator], shapely.Polygon]
+
+
+def square(rng: np.random.Generator) -> shapely.Polygon:
+    return shapely.box(0, 0, *([rng.uniform(2, 2 + SIZES)] * 2))
+
+
+def brick(rng: np.random.Generator) -> shapely.Polygon:
+    while True:
+        wide, high = rng.uniform(2, 2 + SIZES, 2)
+        if max(wide, high) >= misfit.OBLONG * min(wide, high):
+            return shapely.box(0, 0, wide, high)
+
+
+def disc(rng: np.random.Generator) -> shapely.Polygon:
+    return shapely.Point(0, 0).buffer(rng.uniform(1, 1 + SIZES / 2), quad_segs=32)
+
+
+def image_of(shape: shapely.Polygon) -> np.ndarray:
+    """Its squares, with a rim of PAD squares."""
+    covered = squares(shape, 30, 30)
+    rows, columns = np.nonzero(covered)
+    cut = covered[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1]
+    return np.pad(cut, PAD).astype(np.int8)
+
+
+@pytest.mark.parametrize(
+    ("kind", "draw"),
+    [(misfit.SQUARE, square), (misfit.BRICK, brick), (misfit.DISC, disc)],
+    ids=["square", "brick", "disc"],
+)
+def test_an_image_is_as_likely_as_it_is_frequent(kind: int, draw: Draw) -> None:
+    """Among shapes of many sizes, turned and moved at random."""
+    rng, number = np.random.default_rng(kind), 4000
+    seen: Counter[tuple[tuple[int, ...], bytes]] = Counter()
+    for _ in range(number):
+        turned = affinity.rotate(draw(rng), rng.uniform(0, 360), origin=(0, 0))
+        image = image_of(affinity.translate(turned, *(15 + rng.random(2))))
+        seen[image.shape, image.tobytes()] += 1
+    apart = []
+    for (shape, told), count in seen.most_common(12):
+        image = np.frombuffer(told, np.int8).reshape(shape)
+        laid, wrong = settled_best(kind, image)
+        if wrong:
+            continue
+        apart.append(room_for(kind, laid, image, 0).log_likelihood - math.log(count / number))
+    assert len(apart) >= 8
+    assert abs(np.median(apart)) < 0.7
+    assert np.abs(apart).max() < 2.0
+
+
+def test_the_middle_of_what_agrees_is_told() -> None:
+    """Nearer to what was laid than what settles, which stops as soon as all agrees."""
+    rng, settled, amid = np.random.default_rng(4), [], []
+    for _ in range(30):
+        angle, x, y, side = rng.uniform(0, math.pi / 2), *(15 + rng.random(2)), rng.uniform(4, 6)
+        turned = affinity.rotate(shapely.box(-side / 2, -side / 2, side / 2, side / 2), angle, use_radians=True)
+        image = squares(affinity.translate(turned, x, y), 30, 30).astype(np.int8)
+        laid, wrong = settled_best(misfit.SQUARE, image)
+        if wrong == 0:
+            mean = room_for(misfit.SQUARE, laid, image, 0).mean
+            assert misfit.misfit(misfit.SQUARE, mean, image, math.inf) == 0
+            settled.append(abs(laid[3] - side))
+            amid.append(abs(mean[3] - side))
+    assert len(amid) >= 25
+    assert np.mean(amid) < np.mean(settled)
+
+
+def test_what_is_unknown_leaves_more_room() -> None:
+    image = np.pad(np.ones((4, 4), np.int8), PAD)
+    laid, _ = settled_best(misfit.DISC, image)
+    known = room_for(misfit.DISC, laid, image, 0).log_likelihood
+    image[PAD:-PAD, -PAD - 1] = misfit.UNKNOWN
+    assert room_for(misfit.DISC, laid, image, 0).log_likelihood > known

@@ -1,0 +1,126 @@
+"""How plain a table looks: by that it is told at the first look how the lattice lies under him."""
+
+import math
+
+import numpy as np
+import pytest
+
+from geometry.counts.gibbs import CORNER
+from kb.localisation.hypotheses.frames import ANYWHERE, CENTRED, Hypothesis, Look, search, standing
+from kb.localisation.hypotheses.map_prior import BESIDE, LESS_LIKELY, UNTRIED, Sketch, plainness, weighed
+from kb.mapping.occupancy import Evidence
+from kb.perception.frame import CENTRE, Lattice
+from kb.perception.retina import count_ranges
+from tests.kb.drawings import LARGE_ROOM, drawing, looked
+from tests.kb.eyes import impression, random_room, world_of
+
+LOOKS = [(20, 20), (21, 22), (25, 24)]
+LONG_ROOM = ["b" * 80, *["b" * 2 + "." * 76 + "b" * 2] * 20, "b" * 80]
+Point = tuple[float, float]
+
+
+def a_look(rng: np.random.Generator, heading: int) -> Look:
+    occupied = world_of(random_room(rng, 36, 36, 6))
+    free = [(i, j) for i in range(8, 28) for j in range(8, 28) if not occupied(i, j)]
+    square = free[int(rng.integers(len(free)))]
+    return Look(count_ranges(impression(occupied, square, heading).retina), (0.0, 0.0))
+
+
+def cost(evidence: Evidence) -> float:
+    sketch = Sketch(evidence)
+    sketch.draw()
+    return sketch.cost(0.0)
+
+
+def likeliest(hypotheses: tuple[Hypothesis, ...]) -> int:
+    return min(hypotheses, key=lambda h: h.dear).angle
+
+
+def test_the_first_look_mostly_tells_how_the_lattice_lies() -> None:
+    rng, off = np.random.default_rng(4), []
+    for _ in range(24):
+        heading = int(rng.integers(-44, 46))
+        found = likeliest(weighed(CENTRED, [a_look(rng, heading)]))
+        off.append(abs((found - heading + 45) % 90 - 45))
+    assert sum(angle <= 2 for angle in off) >= 21
+
+
+def test_one_is_the_plainest_and_what_was_not_tried_is_not_likely() -> None:
+    found = weighed(CENTRED, [a_look(np.random.default_rng(2), 31)])
+    assert [h.angle for h in found] == [h.angle for h in CENTRED]
+    assert min(h.dear for h in found) == 0.0
+    assert sum(h.dear == UNTRIED for h in found) > 25
+    assert sum(h.is_plausible for h in found) <= 8
+
+
+def test_only_the_likely_ones_are_weighed_again_until_they_are_given_up() -> None:
+    rng = np.random.default_rng(3)
+    look = a_look(rng, -20)
+    first = weighed(CENTRED, [look])
+    assert abs(likeliest(first) + 20) <= 2
+    told = tuple(h._replace(dear=0.0 if h.angle == 7 else 40.0) for h in first)
+    again = weighed(told, [look])  # he was sure, and nothing else is asked
+    assert abs(likeliest(again) - 7) <= BESIDE
+    assert {h.angle for h in again if h.dear < 40.0} <= {7 + step for step in range(-BESIDE, BESIDE + 1)}
+    without = tuple(h for h in told if abs(h.angle - 7) > BESIDE)
+    assert abs(likeliest(weighed(without, [look])) + 20) <= 2
+
+
+def strolled(heading: int, woke: Point, seed: int) -> list[Look]:
+    """Looks from here and there in a long room. woke : where in his square."""
+    room, rng = world_of(LONG_ROOM), np.random.default_rng(seed)
+    true = Lattice(heading, woke)
+    places = [(0.0, 0.0), *(true.place_to_utak(*rng.uniform((-34, -8), (34, 8))) for _ in range(9))]
+    looks = []
+    for place in places:
+        i, j = (math.floor(v) for v in true.place_from_utak(*place))
+        looks.append(Look(count_ranges(impression(room, (i + 40, j + 11), heading).retina), place))
+    return looks
+
+
+@pytest.mark.parametrize("heading", [-2, -1, 0, 1, 2])
+def test_a_degree_shows_by_and_by_however_sure_he_was_at_first(heading: int) -> None:
+    for seed in range(3):
+        looks = strolled(heading, CENTRE, seed)
+        left: tuple[Hypothesis, ...] = tuple(h._replace(dear=40.0 * (h.angle != 0)) for h in CENTRED)
+        for number in range(1, len(looks) + 1):
+            left = weighed(standing(left, looks[:number]), looks[:number])
+        assert likeliest(left) == heading
+
+
+def test_where_in_his_square_he_woke_is_nothing_to_a_single_look() -> None:
+    look = strolled(-7, (0.8, 0.3), 1)[0]._replace(place=(3.3, -2.2))
+    left = search([look], [h for h in ANYWHERE if -12 < h.angle < 0])
+    found = weighed(left, [look])
+    assert [h._replace(dear=0.0) for h in found] == list(left)
+    assert len(left) > 30
+    assert len({h.dear for h in found}) == len({h.angle for h in found}) == 11
+    assert likeliest(found) in (-8, -7, -6)
+
+
+def test_the_less_is_left_of_his_square_the_less_likely_he_woke_elsewhere_than_amid_it() -> None:
+    looks = strolled(1, CENTRE, 0)[:4]
+    own = Hypothesis(1, CENTRE * 2, dear=1.0)
+    half, whole = (weighed([Hypothesis(0, (0.4, 0.4, east, 0.6), dear=1.0), own], looks)[0].dear for east in (0.5, 0.6))
+    assert half == pytest.approx(whole + math.log(2))
+
+
+@pytest.mark.parametrize("room", [LARGE_ROOM, drawing(24, 24, 5, 5)])
+def test_straight_walls_cost_nothing_however_far_they_are_seen(room: list[str]) -> None:
+    near, far = cost(looked(room, LOOKS[:1])), cost(looked(room, LOOKS))
+    corners = 4 + 4 * (room != LARGE_ROOM)
+    assert near <= far + 1e-9
+    assert far <= LESS_LIKELY * CORNER * corners + 1e-9
+
+
+def test_a_look_from_elsewhere_than_believed_makes_a_table_crooked() -> None:
+    room = drawing(24, 24, 5, 5)
+    seen = count_ranges(impression(world_of(room), (25, 22)).retina)
+    sketches = []
+    for aside in (0, 1, 2):
+        evidence = looked(room, LOOKS[:2])
+        evidence.look(Lattice().samples(), seen, 5 + aside, 2, 2)
+        sketches.append((Sketch(evidence), 0.0))
+    prices = plainness(sketches)
+    assert prices[0] == 0.0
+    assert min(prices[1:]) > 2

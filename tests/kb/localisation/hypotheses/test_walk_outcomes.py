@@ -1,0 +1,171 @@
+"""Where a motion crosses the lines between squares."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from kb.localisation.hypotheses.frames import CENTRED, Look, contradictions
+from kb.localisation.hypotheses.walk_outcomes import HAIR, Moved, crossings, next_square, retold, retold_both
+from kb.mapping.occupancy import FULL, Evidence
+from kb.perception.frame import Lattice, turned
+from kb.perception.retina import count_ranges
+from tests.kb.eyes import Occupied, impression, random_room, world_of
+
+AWAY = st.floats(-9, 9, allow_nan=False).map(lambda v: round(v, 3))
+POINT = st.floats(0.05, 0.95).map(lambda v: round(v, 3) + 0.0003)
+
+
+def passes_corner(x: float, y: float, east: float, north: float) -> bool:
+    """Does a motion cross two lines nearly at once?"""
+    parts = [(line - x) / east for line in range(-12, 13) if east] + [
+        (line - y) / north for line in range(-12, 13) if north
+    ]
+    parts = sorted(part for part in parts if 0 < part < 1)
+    return any(b - a < 1e-3 for a, b in pairwise(parts))
+
+
+@given(POINT, POINT, AWAY, AWAY)
+def test_the_squares_entered_are_those_on_the_way_in_their_order(x: float, y: float, east: float, north: float) -> None:
+    assume(not passes_corner(x, y, east, north))
+    met = [(0, 0)]
+    for part in (n / 20000 for n in range(1, 20001)):
+        square = math.floor(x + part * east), math.floor(y + part * north)
+        if square != met[-1]:
+            met.append(square)
+    entered = [(0, 0)] + [crossing.entered for crossing in crossings((x, y), (east, north))]
+    steps = [abs(a[0] - b[0]) + abs(a[1] - b[1]) for a, b in pairwise(entered)]
+    assert set(steps) <= {1}
+    assert set(met) <= set(entered)
+    assert len(entered) <= abs(math.floor(x + east)) + abs(math.floor(y + north)) + 1
+
+
+@given(POINT, POINT, AWAY, AWAY)
+def test_a_line_has_a_square_on_either_side(x: float, y: float, east: float, north: float) -> None:
+    assume(not passes_corner(x, y, east, north))
+    here = (0, 0)
+    for crossing in crossings((x, y), (east, north)):
+        assert (math.floor(crossing.before[0]), math.floor(crossing.before[1])) == here
+        assert (math.floor(crossing.after[0]), math.floor(crossing.after[1])) == crossing.entered
+        assert math.dist(crossing.before, crossing.after) <= 2.1 * HAIR
+        here = crossing.entered
+
+
+def test_who_stays_in_his_square_crosses_nothing() -> None:
+    assert crossings((0.5, 0.5), (0.4, -0.4)) == ()
+    assert crossings((0.5, 0.5), (0.0, 0.0)) == ()
+
+
+def test_the_square_ahead_lies_on_the_way() -> None:
+    assert next_square((0.5, 0.5), (0.5, 9.5)) == (0, 1)
+    assert next_square((0.5, 0.5), (-3.5, 0.5)) == (-1, 0)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
+    """He believes that a motion went as commanded, which a wall had stopped, and then goes on."""
+    rng = np.random.default_rng(seed)
+    occupied, heading = world_of(random_room(rng, 26, 26, 8)), int(rng.integers(-44, 46))
+    squares = [(i, j) for i in range(3, 23) for j in range(3, 23)]
+    free = [(i, j) for i, j in squares if not occupied(i, j)]
+    x, y = free[int(rng.integers(len(free)))]
+    way = (float(rng.uniform(-14, 14)), float(rng.uniform(-14, 14)))
+    met = crossings((x + 0.5, y + 0.5), turned(*way, heading))
+    stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
+    assume(stop is not None and not passes_corner(0.5, 0.5, *turned(*way, heading)))
+    assert stop is not None
+    lattice = Lattice(heading)
+    own = lattice.place_to_utak(stop.before[0] - x, stop.before[1] - y)  # of a lattice whose origin is where he woke
+    back = (-own[0], -own[1])
+    truth = [(0.0, 0.0), own, (own[0] + 0.5 * back[0], own[1] + 0.5 * back[1])]
+    looks = []
+    for place, shift in zip(truth, [(0.0, 0.0), *[(way[0] - own[0], way[1] - own[1])] * 2], strict=True):
+        i, j = (math.floor(v) for v in lattice.place_from_utak(*place))
+        seen = count_ranges(impression(occupied, (i + x, j + y), heading).retina)
+        looks.append(Look(seen, (place[0] + shift[0], place[1] + shift[1])))
+    assume(math.dist(own, way) > 2 * HAIR)
+    found = list(retold(Moved(1, way, CENTRED), Lattice(), looks))
+    right = [
+        one
+        for one in found
+        if one.hypothesis.angle == heading and math.dist(one.correction.looks(looks)[1].place, own) < 1e-3
+    ]
+    assert right
+    assert all(one.correction.since == 1 and one.misfits == 0 for one in right)
+    for one in found:
+        assert not contradictions(one.hypothesis.lattice, one.correction.looks(looks))
+        assert one.correction.looks(looks)[0] == looks[0]
+        assert math.dist(one.correction.looks(looks)[2].place, looks[2].place) > HAIR
+
+
+def test_who_met_nothing_has_nothing_to_tell_otherwise() -> None:
+    occupied = world_of(["." * 80] * 80)
+    seen = [count_ranges(impression(occupied, (x, 40)).retina) for x in (30, 35)]
+    looks = [Look(seen[0], (0.0, 0.0)), Look(seen[1], (5.0, 0.0))]
+    told = list(retold(Moved(1, (5.0, 0.0), CENTRED[:1]), Lattice(), looks))
+    assert told == []
+
+
+@given(st.sampled_from([(1, 1), (1, -1), (-1, 1), (-1, -1)]), st.integers(1, 9))
+def test_at_a_corner_he_may_look_from_any_of_its_four_squares(way: tuple[int, int], far: int) -> None:
+    met = crossings((0.5, 0.5), (way[0] * far, way[1] * far))
+    assert len(met) == 3 * far
+    for number in range(far):
+        corner = [0.5 + side * (number + 0.5) for side in way]
+        there = met[3 * number : 3 * number + 3]
+        assert all(
+            math.dist(place, corner) < 2 * HAIR for crossing in there for place in (crossing.before, crossing.after)
+        )
+        squares = {(math.floor(x), math.floor(y)) for crossing in there for x, y in (crossing.before, crossing.after)}
+        beyond = number * way[0] + way[0], number * way[1] + way[1]
+        assert squares == {(x, y) for x in (beyond[0] - way[0], beyond[0]) for y in (beyond[1] - way[1], beyond[1])}
+        assert there[2].entered == beyond
+        assert there[0].before == there[1].before
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_two_stops_in_a_row_are_told_together(seed: int) -> None:
+    """He believes that a motion went as commanded, which a wall had stopped, and goes on against that wall."""
+    rng = np.random.default_rng(seed)
+    occupied = world_of(random_room(rng, 26, 26, 8))
+    free = [(i, j) for i in range(3, 23) for j in range(3, 23) if not occupied(i, j)]
+    x, y = free[int(rng.integers(len(free)))]
+    way = (float(rng.uniform(-14, 14)), float(rng.uniform(-14, 14)))
+    assume(not passes_corner(0.5, 0.5, *way))
+    met = crossings((x + 0.5, y + 0.5), way)
+    stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
+    assume(stop is not None)
+    assert stop is not None
+    away = stop.before[0] - x - 0.5, stop.before[1] - y - 0.5
+    assume(math.dist(away, way) > 0.3)
+    into = (stop.entered[0] + 0.5 - stop.before[0], stop.entered[1] + 0.5 - stop.before[1])
+    here = math.floor(stop.before[0]), math.floor(stop.before[1])
+    first = Look(count_ranges(impression(occupied, (x, y)).retina), (0.0, 0.0))
+    beside = Look(count_ranges(impression(occupied, here).retina), way)
+    looks = [first, beside, beside._replace(place=(way[0] + into[0], way[1] + into[1]))]
+    motions = Moved(1, way, CENTRED[:1]), Moved(2, into, CENTRED[:1])
+    found = list(retold_both(*motions, CENTRED[0], looks))
+    for one in found:
+        told = [*one.correction.looks(looks)[:2], looks[2]._replace(place=one.newest)]
+        assert one.known
+        assert not contradictions(Lattice(), told)
+    known = known_to_be_occupied(occupied, (x, y), here, stop.entered)
+    short = away[0] - way[0], away[1] - way[1]
+    assert not known or any(
+        math.dist(one.correction.shift, short) < 1e-6 and math.dist(one.newest, away) < 1e-6 for one in found
+    )
+
+
+def known_to_be_occupied(
+    occupied: Occupied, start: tuple[int, int], here: tuple[int, int], wall: tuple[int, int]
+) -> bool:
+    """Is a square known to be occupied by all that is seen from two others?"""
+    evidence = Evidence()
+    for number, (i, j) in enumerate((start, here)):
+        samples = Lattice().samples()
+        evidence.look(samples, count_ranges(impression(occupied, (i, j)).retina), i, j, number)
+    return bool(evidence.state[evidence.index(*wall)] == FULL)

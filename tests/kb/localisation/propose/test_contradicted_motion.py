@@ -1,0 +1,68 @@
+"""Whether a turn ended short is told by what seems to stand right about the thing since: eyes.py tells what is seen."""
+
+import math
+from dataclasses import replace
+
+import pytest
+import shapely
+from shapely.affinity import rotate, translate
+
+from geometry.motion.se2 import Rotate
+from kb.body import Turn
+from kb.localisation.hypotheses.frames import CENTRED, Look
+from kb.localisation.hypotheses.remap import laid, relaid
+from kb.localisation.hypotheses.what_if import Surprise
+from kb.localisation.propose.contradicted_motion import rather_short
+from kb.mapping.occupancy import OPEN
+from kb.objects.held_object import Load, covered
+from kb.perception.frame import CENTRE, Lattice
+from kb.perception.retina import count_ranges
+from tests.kb.eyes import retina, world_of
+from tests.kb.localisation.hypotheses.test_remap import around
+
+ELL = shapely.Polygon([(0, 0), (6, 0), (6, 6), (4, 6), (4, 2), (0, 2)])
+HOLD = (2.5, 2.5)  # in the nook of it
+HERE, FAR = (60.5, 15.5), 40.0  # of the table; how far he has brought it east
+HALL = world_of(["b" * 90, *["b" + "." * 88 + "b"] * 30, "b" * 90])
+
+
+def turned_by(commanded: float, truly: float) -> tuple[Surprise, Load, Rotate]:
+    """One who turned a thing the other way and brought it to where he was never before, and is commanded to turn it
+    back; and what he sees of it. It lies exactly where he believes, which he does not know.
+    """
+    lattice = Lattice()
+    thing = translate(ELL, HERE[0] - HOLD[0], HERE[1] - HOLD[1])
+    lies = translate(thing, CENTRE[0] - HERE[0], CENTRE[1] - HERE[1])
+    first = translate(rotate(lies, commanded, origin=CENTRE), -FAR)
+    taken = Load("o1", first, first, since=1)
+    load = replace(taken, polygon=lies, turned=-commanded, proven=True, astray=0.4)
+    began = around(translate(rotate(thing, commanded, origin=HERE), -FAR), HALL)
+    look = Look(count_ranges(retina(began, (math.floor(HERE[0] - FAR), math.floor(HERE[1])))), (-FAR, 0.0))
+    here = math.floor(HERE[0]), math.floor(HERE[1])
+    brought = Look(count_ranges(retina(around(thing, HALL), here)), (0.0, 0.0), (laid(load, lattice),))
+    looks = [look, look._replace(moved=(laid(taken, lattice),)), brought]
+    evidence, loads = relaid(lattice, lattice, looks, [load]).evidence, {"o1": load}
+    for square in covered(rotate(lies, commanded, origin=CENTRE).buffer(1.5)).squares():
+        evidence.state[evidence.index(*square)] = OPEN  # nothing told of them before
+    after = count_ranges(retina(around(rotate(thing, truly, origin=HERE), HALL), here))
+    surprise = Surprise(Turn(commanded), after, lattice, CENTRE, evidence, looks, loads, "o1", CENTRED[:1])
+    return surprise, load, Rotate(commanded, CENTRE)
+
+
+@pytest.mark.parametrize(("commanded", "truly"), [(-90.0, -82.0), (-90.0, -85.0), (90.0, 83.0), (180.0, 173.0)])
+def test_what_stands_about_a_thing_since_it_was_turned_is_the_thing_itself(commanded: float, truly: float) -> None:
+    end = rather_short(*turned_by(commanded, truly))
+    assert end is not None
+    assert abs(end.degrees - truly) < 10.0  # about it all is hidden: no more than that can be told
+
+
+@pytest.mark.parametrize("commanded", [-90.0, 90.0, 180.0])
+def test_a_turn_that_was_not_stopped_is_not_told_to_be(commanded: float) -> None:
+    assert rather_short(*turned_by(commanded, commanded)) is None
+
+
+@pytest.mark.parametrize("turned", [0.0, 360.0, -720.0])
+def test_a_thing_that_lies_as_it_was_taken_may_be_turned(turned: float) -> None:
+    surprise, load, motion = turned_by(90.0, 90.0)
+    load = replace(load, turned=turned)
+    assert rather_short(replace(surprise, loads={"o1": load}), load, motion) is None

@@ -1,0 +1,86 @@
+"""A push that was stopped, of one who did not wake amid his square: both are told together."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely.affinity import translate
+
+from geometry.motion.first_contact import Body, Obstacles
+from geometry.motion.se2 import Translate
+from kb.body import Move, Push, Turn
+from kb.localisation.hypotheses.frames import ELSEWHERE
+from kb.localisation.hypotheses.remap import laid
+from kb.localisation.hypotheses.what_if import Surprise
+from kb.localisation.propose.frame import halted_elsewhere
+from kb.localisation.propose.origin import PLACES
+from kb.objects.held_object import Load
+from kb.perception.frame import CENTRE, Lattice
+from tests.kb.localisation.hypotheses.test_remap import around
+from tests.kb.localisation.propose.test_earlier_motion import (
+    SIDE,
+    free_about,
+    look,
+    plus,
+    room_with_a_thing,
+    square_of,
+    surprised,
+)
+
+Point = tuple[float, float]
+
+
+def stopped_himself(rng: np.random.Generator, beside: Point) -> tuple[Surprise, Point, shapely.Polygon] | None:
+    """One who took a thing, and ran against something himself as he pushed it; where he is then, and the thing.
+
+    beside : where in his square he woke.
+    """
+    room, thing, (x, y) = room_with_a_thing(rng)
+    woke = (x + 1 + beside[0], y - 1 + beside[1])
+    way = (float(rng.integers(-14, 15)), float(rng.integers(-14, 15)))
+    if not free_about(room, x + 1, y + 1, 3) or not any(way):
+        return None
+    walls = Obstacles([shapely.box(i, j, i + 1, j + 1) for i in range(SIDE) for j in range(SIDE) if room(i, j)])
+    part = walls.first_contact(Body(thing, [woke]), Translate(*way)).fraction
+    if part in (0.0, 1.0) or part == walls.first_contact(Body(thing, []), Translate(*way)).fraction:
+        return None
+    went = way[0] * part, way[1] * part
+    lies = translate(thing, -math.floor(woke[0]), -math.floor(woke[1]))
+    load = Load("o1", lies, lies, since=1, proven=True)
+    first = look(around(thing, room), woke, (0.0, 0.0))
+    looks = [first, first._replace(moved=(laid(load, Lattice()),))]
+    after = look(around(translate(thing, *went), room), plus(woke, went), way)
+    there = plus(beside, went)
+    return surprised(Push(*way), after, looks, load, held=True), there, translate(lies, *went)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.sampled_from(PLACES))
+def test_where_he_himself_ran_against_something_is_told_with_where_he_woke(seed: int, beside: Point) -> None:
+    rng = np.random.default_rng(seed)
+    made = (stopped_himself(rng, beside) for _ in range(2000))
+    surprise, there, thing = next(one for one in made if one is not None)
+    found = halted_elsewhere(surprise)
+    near = []
+    for one in found:
+        outcome, woke = one.supposed.outcome, one.supposed.lattice.woke
+        assert outcome is not None and outcome.how == "blocked"
+        assert one.supposed.misfits == 0 and 0 < one.chance <= 1
+        assert len(one.supposed.hypotheses) <= len(PLACES) and woke in PLACES
+        assert math.isclose(one.against, ELSEWHERE - math.log(len(one.supposed.hypotheses) / len(PLACES)))
+        if math.dist(one.supposed.place, there) < 1 and outcome.polygon.hausdorff_distance(thing) < 1:
+            near += [hypothesis.box[:2] for hypothesis in one.supposed.hypotheses]
+    assert beside in near, (seed, beside, square_of(there))
+
+
+def test_what_is_turned_or_not_in_hand_is_not_told_so() -> None:
+    rng = np.random.default_rng(1)
+    surprise, *_ = next(one for one in (stopped_himself(rng, CENTRE) for _ in range(2000)) if one is not None)
+    assert halted_elsewhere(surprise)
+    for command in (Turn(30.0), Move(1.0, 0.0)):
+        held = surprise.held if isinstance(command, Turn) else None
+        other = replace(surprise, command=command, held=held)
+        assert halted_elsewhere(other) == []

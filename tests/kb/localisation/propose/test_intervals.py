@@ -1,0 +1,34 @@
+"""How intervals compare: decided by few of their numbers, as by all of them."""
+
+from typing import Any
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kb.reasoning.query_worker import answer
+from kb.three_valued.evaluation import _telling
+from kb.three_valued.uncertain_values import ORDERS, Unknown, compare
+
+ranges = st.builds(lambda low, size: range(low, low + size), st.integers(-6, 6), st.integers(0, 6))
+bound = st.none() | st.integers(-6, 9)
+unknown = st.builds(lambda low, high: [Unknown(low, high)], bound, bound).filter(
+    lambda one: one[0].low is None or one[0].high is None or one[0].low <= one[0].high
+)
+numbers = st.builds(lambda number: [number], st.integers(-6, 9))
+
+
+def truth(sign: str, firsts: Any, seconds: Any) -> Any:
+    """Whether an order holds for some pair."""
+    truths = {compare(sign, a, b, frozenset()) for a in firsts for b in seconds}
+    return True if True in truths else None if None in truths else False
+
+
+@given(st.sampled_from(sorted(ORDERS)), ranges | numbers | unknown, ranges | numbers | unknown)
+def test_few_numbers_decide_as_all_do(sign: str, firsts: Any, seconds: Any) -> None:
+    few = truth(sign, list(_telling(firsts, seconds)), list(_telling(seconds, firsts)))
+    assert few == truth(sign, firsts, seconds)
+
+
+def test_a_long_interval_is_gone_through_once() -> None:
+    found = answer([["room", "r1"]], "room(R), X = 1..9000")
+    assert len(found["rows"]) == 9000

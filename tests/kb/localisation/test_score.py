@@ -1,0 +1,52 @@
+"""What else than what is believed is thought of when a look is explained."""
+
+from collections.abc import Sequence
+from typing import cast
+
+import numpy as np
+import pytest
+
+from kb.localisation.accommodation import Memory
+from kb.localisation.hypotheses.explanation import Explanation
+from kb.localisation.hypotheses.frames import CENTRED, Look
+from kb.localisation.hypotheses.walk_outcomes import Correction, Moved, Retold
+from kb.localisation.hypotheses.what_if import Supposed, Surprise
+from kb.localisation.propose.earlier_motion import Recalled
+from kb.perception.frame import CENTRE, Lattice
+
+HELD = CENTRED[0]
+STUCK = Explanation("stuck", CENTRE, Lattice(), 0, 0.5)
+NO_SURPRISE = cast(Surprise, None)
+
+
+@pytest.mark.parametrize(
+    ("likely", "simple", "asked"),
+    [
+        (0.3, STUCK, [1]),  # the push before may well have ended there
+        (0.01, STUCK, []),
+        (0.3, STUCK._replace(how="blocked", chance=0.5), None),  # how likely that is is known
+        (0.3, STUCK._replace(how="slipped"), [1, 2]),  # nothing simple explains it: all is thought of
+        (0.3, STUCK._replace(misfits=3), [1, 2]),
+    ],
+)
+def test_what_likely_was_otherwise_is_thought_of_where_something_odd_explains_a_look(
+    likely: float, simple: Explanation, asked: list[int] | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    memory = Memory(looks=[Look(np.zeros((160, 2), np.int16), (float(n), 0.0)) for n in range(3)])
+    doubts = (((0.75, 0.5), likely), ((0.0, 0.0), 0.001))
+    memory.moved = (Moved(1, (1.0, 0.0), (HELD,), doubts=doubts), Moved(2, (1.0, 0.0), (HELD,)))
+    told = Recalled(
+        Retold(HELD, Correction(1, (-0.25, 0.5)), True, 0), Supposed(Lattice(), (HELD,), CENTRE, None, 0, False)
+    )
+    calls: list[list[int]] = []
+
+    def recalled(_: Surprise, motions: Sequence[Moved]) -> list[Recalled]:
+        calls.append([motion.number for motion in motions])
+        return [told] * bool(motions)
+
+    monkeypatch.setattr("kb.localisation.score.recalled", recalled)
+    found = memory._recalled(NO_SURPRISE, [simple])
+    assert calls == ([] if asked is None else [asked])
+    assert len(found) == bool(asked)
+    for one in found:
+        assert (one.how, one.chance, one.retold) == ("misled", likely, told.retold)

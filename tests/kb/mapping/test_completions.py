@@ -1,0 +1,115 @@
+"""Scenes, and the pictures that are drawn of them."""
+
+import numpy as np
+import pytest
+
+from geometry.counts.gibbs import DRAWN, FULL
+from kb.mapping.completions import DRAWINGS, NO_PICTURES, PICTURES, Pictures, _kept, ground_of, pictured, scenes
+from kb.mapping.occupancy import MapView
+from tests.kb.drawings import LARGE_ROOM, drawing, looked
+
+LOOKS = [(20, 20), (22, 21), (23, 23)]
+NEAR_THE_WALL = (34, 20, 6, 3)  # east, north, wide, high
+
+
+def views() -> list[MapView]:
+    rooms = (LARGE_ROOM, drawing(31, 30, 5, 5), drawing(*NEAR_THE_WALL), drawing(10, 33, 6, 2))
+    return [looked(rows, LOOKS[:count]).view() for rows in rooms for count in (1, 3)]
+
+
+@pytest.mark.parametrize("view", views())
+def test_a_square_is_drawn_in_one_scene_and_a_field_looks_at_one(view: MapView) -> None:
+    ground = ground_of(view)
+    owner = np.zeros(ground.shape, int)
+    for number, scene in enumerate(scenes(view, ground), 1):
+        part = owner[scene.rows, scene.columns]
+        assert not part[scene.ground == DRAWN].any()
+        part[scene.ground == DRAWN] = number
+    assert ((owner > 0) == (ground == DRAWN)).all()
+    beside = [(owner[1:], owner[:-1]), (owner[:, 1:], owner[:, :-1]), (owner[1:, 1:], owner[:-1, :-1])]
+    assert not any(((a != b) & (a > 0) & (b > 0)).any() for a, b in beside)
+    for where, weight in zip(view.counts.where, view.counts.weight, strict=True):
+        assert len(set(owner.ravel()[where[weight > 0]].tolist()) - {0}) <= 1
+
+
+@pytest.mark.parametrize("view", views())
+def test_pictures_agree_with_what_is_settled_and_with_nearly_all_counts(view: MapView) -> None:
+    ground = ground_of(view)
+    images = pictured(view, ground, NO_PICTURES).images
+    assert images.shape == (PICTURES, *ground.shape)
+    settled = ground != DRAWN
+    assert all((image[settled] == (ground[settled] == FULL)).all() for image in images)
+    where, weight, low, high = view.counts
+    for image in images:
+        count = (image.ravel()[where] * weight).sum(1)
+        assert ((low <= count) & (count <= high)).mean() > 0.9
+
+
+def test_a_scene_stays_the_same_when_only_others_change() -> None:
+    plain = ["b" * 100, *["b" + "." * 98 + "b"] * 98, "b" * 100]
+    rows = [row[:54] + "ggg" + row[57:] if n in (40, 41) else row for n, row in enumerate(plain)]
+    found = []
+    for looks in ([(50, 50)], [(50, 50), (50, 16)]):
+        view = looked(rows, looks).view()
+        places = {}
+        for scene in scenes(view, ground_of(view)):
+            corner = view.west + scene.columns.start, view.south + scene.rows.start
+            places[corner] = list(scene.told(view))
+        found.append(places)
+    before, after = found
+    assert len(after) > len(before)
+    assert all(after[corner] == scene for corner, scene in before.items())
+
+
+def by_square(pictures: Pictures) -> dict[tuple[int, int], bytes]:
+    """What the pictures show of each square that is drawn, by its place on the lattice."""
+    rows, columns = np.nonzero(pictures.ground == DRAWN)
+    shown = pictures.images[:, rows, columns].T
+    places = zip((columns + pictures.west).tolist(), (rows + pictures.south).tolist(), strict=True)
+    return {place: part.tobytes() for place, part in zip(places, shown, strict=True)}
+
+
+def test_what_is_drawn_stays_while_nothing_new_is_told_of_it() -> None:
+    rows = ["b" * 100, *["b" + "." * 98 + "b"] * 98, "b" * 100]
+    rows = [row[:54] + "ggg" + row[57:] if n in (40, 41) else row for n, row in enumerate(rows)]
+    looks = [(50, 50), (50, 16), (52, 20)]
+    first, second, third = (looked(rows, looks[:count]).view() for count in (1, 2, 3))
+    assert second.south < first.south
+    before = pictured(first, ground_of(first), NO_PICTURES)
+    now = pictured(second, ground_of(second), before)
+    assert by_square(before).items() <= by_square(now).items()
+    then, alone = (pictured(third, ground_of(third), earlier) for earlier in (now, NO_PICTURES))
+    assert by_square(then) != by_square(alone)
+
+
+@pytest.mark.parametrize("view", views())
+def test_the_part_of_pictures_over_a_scene_is_what_they_show_there(view: MapView) -> None:
+    whole = pictured(view, ground_of(view), NO_PICTURES)
+    for scene in scenes(view, whole.ground):
+        moved = view._replace(west=view.west - 3, south=view.south + 2)
+        part = whole.over(scene, moved)
+        assert (part.west, part.south) == (moved.west + scene.columns.start, moved.south + scene.rows.start)
+        shown = {
+            (part.west + column, part.south + row): part.images[:, row, column].tobytes()
+            for row, column in np.argwhere(part.ground == DRAWN).tolist()
+        }
+        assert shown.items() <= by_square(whole).items()
+        high, wide = part.ground.shape
+        inside = {
+            (x, y)
+            for x, y in by_square(whole)
+            if part.west <= x < part.west + wide and part.south <= y < part.south + high
+        }
+        assert inside == set(shown)
+
+
+def test_drawings_that_cost_less_are_kept_rather() -> None:
+    alike = _kept(np.full(DRAWINGS * PICTURES, 7.0))
+    assert len(set(alike.tolist())) == PICTURES
+    one = np.full(DRAWINGS * PICTURES, 40.0)
+    one[5] = 7.0
+    assert _kept(one).tolist() == [5] * PICTURES
+    costs = np.arange(DRAWINGS * PICTURES, dtype=float)
+    kept = _kept(costs)
+    assert (np.diff(costs[kept]) >= 0).all()
+    assert costs[kept].mean() < costs.mean()

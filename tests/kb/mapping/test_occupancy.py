@@ -1,0 +1,249 @@
+"""What the counts settle is true, follows from the counts, and does not depend on the order of looks."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kb.mapping.occupancy import FREE, FULL, OPEN, Evidence
+from kb.perception.frame import MOST, Lattice, Samples
+from kb.perception.retina import OWN, count_ranges
+from tests.kb.eyes import Occupied, random_room, retina, world_of
+
+seeds = st.integers(0, 2**32 - 1)
+
+
+def look(evidence: Evidence, occupied: Occupied, square: tuple[int, int], number: int) -> None:
+    """One look along the axes; the lattice is the table's own."""
+    evidence.look(Lattice(0).samples(), count_ranges(retina(occupied, square)), *square, number)
+
+
+def settled(evidence: Evidence) -> dict[tuple[int, int], int]:
+    """Settled squares (x, y) and their states."""
+    rows, columns = np.nonzero(evidence.state != OPEN)
+    return {
+        (c + evidence.west, r + evidence.south): int(evidence.state[r, c])
+        for r, c in zip(rows.tolist(), columns.tolist(), strict=True)
+    }
+
+
+def free_squares(rows: list[str], rng: np.random.Generator, count: int) -> list[tuple[int, int]]:
+    """Random free squares of a drawing."""
+    squares = [(i, len(rows) - 1 - n) for n, row in enumerate(rows) for i, mark in enumerate(row) if mark == "."]
+    return [squares[k] for k in rng.integers(len(squares), size=count)]
+
+
+@settings(max_examples=12, deadline=None)
+@given(seeds)
+def test_what_is_settled_is_true(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rows = random_room(rng, *rng.integers(8, 40, 2), things=rng.integers(0, 9))
+    occupied, evidence = world_of(rows), Evidence()
+    for number, square in enumerate(free_squares(rows, rng, 4)):
+        look(evidence, occupied, square, number)
+        evidence.stand(*square, number)
+        found = settled(evidence)
+        assert len(found) >= 63
+        assert all(occupied(*s) == (state == FULL) for s, state in found.items())
+    assert evidence.overruled == 0
+
+
+def tiny(fields: list[list[int]], weights: list[list[int]], slack: list[int]) -> Samples:
+    """Fields over a few squares in a row, padded as those of the eye."""
+    columns = np.zeros((len(fields), MOST), np.int32)
+    weight = np.zeros((len(fields), MOST), np.int16)
+    for n, (squares, times) in enumerate(zip(fields, weights, strict=True)):
+        columns[n, : len(squares)], weight[n, : len(squares)] = squares, times
+    return Samples(columns, np.zeros_like(columns), weight, np.array(slack, np.int16))
+
+
+@st.composite
+def tiny_cases(draw):
+    """Fields over at most seven squares, ranges that the truth fulfils, and the truth."""
+    many = draw(st.integers(2, 7))
+    truth = np.array(draw(st.lists(st.booleans(), min_size=many, max_size=many)))
+    fields = draw(st.lists(st.sets(st.integers(0, many - 1), min_size=1).map(sorted), min_size=1, max_size=6))
+    weights = [[draw(st.sampled_from([1, 1, 1, 2])) for _ in squares] for squares in fields]
+    slack = [draw(st.sampled_from([0, 0, 0, 1])) for _ in fields]
+    ranges = []
+    for squares, times, loose in zip(fields, weights, slack, strict=True):
+        count = int((truth[squares] * np.array(times)).sum()) + draw(st.integers(0, loose))
+        low, high = count - draw(st.integers(0, 1)), count + draw(st.integers(0, 1))
+        ranges.append((max(low, 0), min(high, sum(times) + loose)))
+    return many, fields, weights, slack, ranges
+
+
+def consistent(case) -> list[tuple[int, ...]]:
+    """All occupancies that every field allows: what falls between two squares may be occupied or not."""
+    many, fields, weights, slack, ranges = case
+    answer = []
+    for world in product((0, 1), repeat=many):
+        for squares, times, loose, (low, high) in zip(fields, weights, slack, ranges, strict=True):
+            count = sum(world[s] * t for s, t in zip(squares, times, strict=True))
+            if not low - loose <= count <= high:
+                break
+        else:
+            answer.append(world)
+    return answer
+
+
+@settings(max_examples=300, deadline=None)
+@given(tiny_cases())
+def test_what_is_settled_follows_from_the_counts(case) -> None:
+    _, fields, weights, slack, ranges = case
+    evidence = Evidence()
+    evidence.look(tiny(fields, weights, slack), np.array(ranges, np.int16), 0, 0, 0)
+    worlds = consistent(case)
+    assert worlds
+    for (x, _), state in settled(evidence).items():
+        assert {world[x] for world in worlds} == {state}
+
+
+def test_single_fields_and_full_counts_settle() -> None:
+    evidence = Evidence()
+    evidence.look(
+        tiny([[0], [1, 2], [3, 4]], [[1], [1, 1], [1, 1]], [0] * 3), np.array([(1, 1), (0, 0), (2, 2)]), 0, 0, 0
+    )
+    assert settled(evidence) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FREE, (3, 0): FULL, (4, 0): FULL}
+
+
+def test_the_difference_of_two_fields_settles() -> None:
+    evidence = Evidence()
+    evidence.look(tiny([[0, 1], [1, 2]], [[1, 1]] * 2, [0, 0]), np.array([(1, 1), (1, 1)]), 0, 0, 0)
+    assert settled(evidence) == {}
+    evidence.look(tiny([[0, 1, 2]], [[1, 1, 1]], [0]), np.array([(2, 2)]), 0, 0, 1)
+    assert settled(evidence) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FULL}
+
+
+def test_what_falls_between_two_squares_settles_nothing() -> None:
+    evidence = Evidence()
+    evidence.look(tiny([[0, 1]], [[1, 1]], [1]), np.array([(2, 2)]), 0, 0, 0)
+    assert settled(evidence) == {}
+
+
+@settings(max_examples=10, deadline=None)
+@given(seeds, st.permutations(range(4)))
+def test_the_order_of_looks_hardly_matters(seed: int, order: list[int]) -> None:
+    rng = np.random.default_rng(seed)
+    rows = random_room(rng, *rng.integers(10, 30, 2), things=6)
+    occupied, squares = world_of(rows), free_squares(rows, rng, 4)
+    one, other = Evidence(), Evidence()
+    for n in range(4):
+        look(one, occupied, squares[n], n)
+        look(other, occupied, squares[order[n]], n)
+    mine, others = settled(one), settled(other)
+    assert all(mine[s] == others[s] for s in mine.keys() & others.keys())
+    assert len(mine.keys() ^ others.keys()) <= 0.02 * len(mine)  # old fields are not compared anew among themselves
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(-300, 300), st.integers(-300, 300))
+def test_growing_keeps_everything(x: int, y: int) -> None:
+    rows = random_room(np.random.default_rng(7), 20, 20, things=5)
+    occupied, evidence = world_of(rows), Evidence()
+    look(evidence, occupied, (9, 9), 0)
+    before, view = settled(evidence), evidence.view()
+    known = dict.fromkeys(before, 0)
+    look(evidence, occupied, (x, y), 1)
+    after, larger = settled(evidence), evidence.view()
+    assert before.items() <= after.items()
+    row, column = view.south - larger.south, view.west - larger.west
+    part = larger.seen[row : row + view.seen.shape[0], column : column + view.seen.shape[1]]
+    assert part[view.seen].all()
+    for sx, sy in known:
+        assert evidence.settled_by[evidence.index(sx, sy)] == 0
+
+
+def test_the_view_says_where_it_lies() -> None:
+    occupied, evidence = world_of(random_room(np.random.default_rng(3), 12, 9, things=2)), Evidence()
+    look(evidence, occupied, (4, 4), 0)
+    view = evidence.view()
+    for (x, y), state in settled(evidence).items():
+        row, column = view.locate(x + 0.5, y + 0.5)
+        assert view.state[row, column] == state
+        assert view.probability[row, column] == state
+        assert view.seen[row, column]
+    assert (view.probability[~view.seen] == 0.5).all()
+    assert ((view.probability >= 0) & (view.probability <= 1)).all()
+
+
+def test_open_squares_are_as_likely_as_their_field_says() -> None:
+    evidence = Evidence()
+    evidence.look(tiny([[0, 1, 2, 3]], [[1] * 4], [0]), np.array([(1, 1)]), 0, 0, 0)
+    view = evidence.view()
+    likely = [view.probability[view.locate(x, 0)] for x in range(4)]
+    assert likely == pytest.approx([0.25] * 4, abs=0.02)
+
+
+def test_true_looks_clash_with_nothing_and_false_ones_do() -> None:
+    rows = ["b" * 24, *["b" + "." * 22 + "b"] * 10, "b.......ggg............b", *["b" + "." * 22 + "b"] * 8, "b" * 24]
+    occupied, evidence = world_of(rows), Evidence()
+    samples = Lattice(0).samples()
+    look(evidence, occupied, (12, 8), 0)
+    ranges = count_ranges(retina(occupied, (10, 6)))
+    assert evidence.clashes(samples, ranges, 10, 6) == 0
+    assert not evidence.misfits(samples, ranges, 10, 6).any()
+    assert evidence.clashes(samples, ranges, 11, 6) > 0
+    wrong = evidence.misfits(samples, ranges, 10, 8)
+    assert wrong.any()
+    assert not wrong[OWN]
+
+
+def test_what_is_seen_now_counts() -> None:
+    rows = ["b" * 24, *["b" + "." * 22 + "b"] * 18, "b" * 24]
+    changed = [row[:12] + "gg" + row[14:] if n in (9, 10) else row for n, row in enumerate(rows)]
+    evidence = Evidence()
+    look(evidence, world_of(rows), (10, 9), 0)
+    look(evidence, world_of(changed), (10, 9), 1)
+    assert evidence.overruled > 0
+    for (x, y), state in settled(evidence).items():
+        assert world_of(changed)(x, y) == (state == FULL)
+
+
+def test_a_second_look_from_the_same_place_tells_nothing_new() -> None:
+    rows = ["b" * 24, *["b" + "." * 22 + "b"] * 10, "b.......ggg............b", *["b" + "." * 22 + "b"] * 8, "b" * 24]
+    occupied, evidence = world_of(rows), Evidence()
+    for number, place in enumerate([(12, 8), (5, 5)]):
+        look(evidence, occupied, place, number)
+    before = evidence.view()
+    look(evidence, occupied, (12, 8), 2)
+    after = evidence.view()
+    assert all(np.array_equal(a, b) for a, b in zip(before.counts, after.counts, strict=True))
+    assert np.array_equal(before.probability, after.probability)
+    assert np.array_equal(before.settled_by, after.settled_by)
+
+
+def test_after_a_withdrawal_the_same_look_counts_again() -> None:
+    evidence = Evidence()
+    counts = tiny([[0], [1, 2]], [[1], [1, 1]], [0] * 2), np.array([(1, 1), (0, 0)])
+    evidence.look(*counts, 0, 0, 0)
+    evidence.withdraw(np.array([evidence.index(1, 0)[0] * evidence.state.shape[1] + evidence.index(1, 0)[1]], np.int32))
+    assert (1, 0) not in settled(evidence)
+    evidence.look(*counts, 0, 0, 1)
+    assert settled(evidence) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FREE}
+
+
+def test_withdrawn_squares_are_open_and_their_fields_forgotten() -> None:
+    evidence = Evidence()
+    fields = tiny([[0], [0, 1, 2], [2, 3]], [[1], [1] * 3, [1] * 2], [0] * 3)
+    evidence.look(fields, np.array([(1, 1), (2, 2), (1, 1)]), 0, 0, 0)
+    row, column = evidence.index(1, 0)
+    evidence.withdraw(np.array([row * evidence.state.shape[1] + column], np.int32))
+    evidence.look(tiny([[1]], [[1]], [0]), np.array([(0, 0)]), 0, 0, 1)
+    assert settled(evidence) == {(0, 0): FULL, (1, 0): FREE}  # the field of three would have filled square 2
+
+
+def test_standing_does_not_overrule_and_declaring_does() -> None:
+    occupied, evidence = world_of(["....", ".gg.", ".gg.", "...."]), Evidence()
+    look(evidence, occupied, (0, 0), 0)
+    evidence.stand(1, 1, 1)
+    evidence.stand(0, 0, 1)
+    assert settled(evidence)[1, 1] == FULL
+    assert settled(evidence)[0, 0] == FREE
+    mask = np.zeros(evidence.state.shape, bool)
+    mask[evidence.index(1, 1)] = True
+    evidence.declare(mask, FREE, 2)
+    assert settled(evidence)[1, 1] == FREE
+    assert evidence.settled_by[evidence.index(1, 1)] == 2

@@ -1,0 +1,148 @@
+"""A load's image is taken out of a look exactly, whatever it hides; and what a motion may have led to."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+from shapely.affinity import rotate, translate
+
+from geometry.motion.se2 import Rotate, Translate
+from kb.localisation.hypotheses.carry_outcomes import otherwise, predicted
+from kb.mapping.occupancy import Evidence
+from kb.objects.held_object import Load, covered, discounted, slack_of, whole
+from kb.perception.frame import Lattice
+from kb.perception.retina import FIELDS, OWN, count_ranges
+from tests.kb.eyes import impression, random_room, world_of
+from tests.kb.localisation.hypotheses.test_remap import around
+
+BRICK = shapely.box(0, 0, 4, 2)
+ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
+
+
+def load(polygon: shapely.Polygon, slack: float = 0.0) -> Load:
+    return Load("o1", polygon, polygon, slack)
+
+
+def squares_of(polygon: shapely.Polygon) -> set[tuple[int, int]]:
+    """The squares that a polygon covers, by shapely alone."""
+    x0, y0, x1, y1 = (int(np.floor(v)) for v in polygon.bounds)
+    return {
+        (x, y)
+        for x in range(x0, x1 + 2)
+        for y in range(y0, y1 + 2)
+        if shapely.box(x, y, x + 1, y + 1).intersection(polygon).area > 1e-9
+    }
+
+
+@given(st.floats(-20, 20), st.floats(-20, 20), st.floats(0, 360))
+@settings(max_examples=60, deadline=None)
+def test_a_load_covers_its_squares(x: float, y: float, degrees: float) -> None:
+    polygon = translate(rotate(ELL, degrees), round(x, 3), round(y, 3))
+    assert covered(polygon).squares() == squares_of(polygon)
+
+
+@given(st.floats(0, 1) | st.sampled_from([5e-324, 1e-17, 1e-12, 1e-6]))
+@settings(max_examples=60, deadline=None)
+def test_what_a_load_may_cover_is_no_less_than_what_it_surely_does(far: float) -> None:
+    some = replace(load(ELL), astray=far)
+    assert some.sure.squares() <= squares_of(ELL) <= some.possible.squares()
+
+
+@given(st.integers(-9, 9), st.integers(-9, 9), st.integers(0, 3), st.integers(-44, 45), st.integers(0, 10**6))
+@settings(max_examples=60, deadline=None)
+def test_a_look_without_the_load_says_what_it_would_say_if_the_load_were_not_there(
+    x: int, y: int, quarter: int, angle: int, seed: int
+) -> None:
+    polygon = whole(translate(rotate(ELL, 90 * quarter, origin=(0, 0)), x, y))
+    own = squares_of(polygon)
+    if (0, 0) in own:
+        return
+    others = {tuple(square) for square in np.random.default_rng(seed).integers(-14, 14, (80, 2)).tolist()} - own
+    with_load = impression(lambda i, j: (i, j) in others or (i, j) in own, (0, 0), angle)
+    samples, ranges = discounted(Lattice(angle).samples(), count_ranges(with_load.retina), 0, 0, [load(polygon)])
+    for number in range(len(FIELDS)):
+        if number == OWN:
+            continue
+        seen = zip(samples.columns[number], samples.rows[number], samples.weight[number], strict=True)
+        count = sum(int(weight) for column, row, weight in seen if (int(column), int(row)) in others)
+        slack = int(samples.slack[number])
+        assert ranges[number, 0] - slack <= count <= ranges[number, 1]
+
+
+def test_where_a_load_is_not_a_look_says_less_than_nothing() -> None:
+    empty = impression(lambda i, j: False, (0, 0))
+    _, ranges = discounted(Lattice().samples(), count_ranges(empty.retina), 0, 0, [load(translate(BRICK, 1, 1))])
+    assert (ranges[:, 1] < 0).any()
+
+
+def test_a_load_that_lies_askew_leaves_its_rim_open_until_it_is_seen() -> None:
+    askew = translate(rotate(BRICK, 20), 0.3, 1.2)
+    assert slack_of(askew) > 0 == slack_of(BRICK)
+    before = load(askew, slack_of(askew))
+    assert before.sure.squares() < covered(askew).squares() < before.possible.squares()
+    true = squares_of(askew)
+    look = impression(lambda i, j: (i, j) in true, (2, -1))
+    after = before.seen(Lattice().samples(), count_ranges(look.retina), 2, -1)
+    near = {(i, j) for i in range(-2, 6) for j in range(-5, 3)}
+    assert after.sure.squares() & near == after.possible.squares() & near == true & near
+
+
+def test_a_motion_may_go_as_told_or_not_at_all_or_end_early() -> None:
+    place, motion = (5.5, 0.5), Translate(3.0, 0.0)
+    assert predicted(place, BRICK, motion).polygon.equals(translate(BRICK, 3, 0))
+    outcomes = list(otherwise(place, BRICK, motion))
+    stuck = [o for o in outcomes if o.how == "stuck"]
+    assert [o.place for o in stuck] == [place]
+    assert stuck[0].polygon.equals(BRICK)
+    stops = [o.place[0] for o in outcomes if o.how == "blocked"]
+    assert stops == sorted(stops, reverse=True)
+    assert 5.5 < stops[-1] < stops[0] < 8.5
+    for outcome in outcomes:
+        assert outcome.place[0] - outcome.polygon.bounds[0] == pytest.approx(5.5)
+
+
+def test_a_turn_leaves_utak_and_may_have_been_about_another_point_of_his_square() -> None:
+    place, motion = (5.5, 0.5), Rotate(90.0, (5.5, 0.5))
+    true = rotate(BRICK, 90, origin=(5.25, 0.75))
+    outcomes = [predicted(place, BRICK, motion), *otherwise(place, BRICK, motion)]
+    assert {outcome.place for outcome in outcomes} == {place}
+    assert min(outcome.polygon.symmetric_difference(true).area for outcome in outcomes) < 0.2
+
+
+@example(991676, 10, 55.031408332442226, True)
+@example(322096, 45, 109.93298110907814, True)
+@given(st.integers(0, 10_000), st.sampled_from([0, 10, 30, 45, 326]), st.floats(0, 360), st.booleans())
+@settings(max_examples=80, deadline=None)
+def test_a_look_at_what_is_so_never_clashes(seed: int, heading: int, degrees: float, whole_: bool) -> None:
+    rng = np.random.default_rng(seed)
+    rows = random_room(rng, 24, 24, 4)
+    lattice = Lattice((heading + 45) % 90 - 45)
+    free = [(i, j) for j, row in enumerate(reversed(rows)) for i, mark in enumerate(row) if mark == "."]
+    evidence, occupied = Evidence(), world_of(rows)
+    quarters = round((heading - lattice.angle) / 90)
+    for number, at in enumerate(rng.choice(len(free), 3)):
+        there = free[at]
+        ranges = count_ranges(impression(occupied, there, heading).retina)
+        evidence.look(lattice.samples(), ranges, *on_lattice(there, quarters), number)
+    middle, here = (free[at] for at in rng.choice(len(free), 2))
+    turn = 90.0 * round(degrees / 90) if whole_ else round(degrees, 3)
+    thing = translate(rotate(ELL, turn, origin=(0, 0)), *middle)
+    with_it = around(thing, occupied)
+    assume(not with_it(*here))
+    lying = rotate(thing, -90 * quarters, origin=(0, 0))
+    look = count_ranges(impression(with_it, here, heading).retina)
+    x, y = on_lattice(here, quarters)
+    freed = discounted(lattice.samples(), look, x, y, [load(whole(lying))])
+    assert evidence.clashes(*freed, x, y) == 0
+
+
+def on_lattice(square: tuple[int, int], quarters: int) -> tuple[int, int]:
+    """A square of the table on the lattice of one whose frame is turned against the table by quarter turns."""
+    x, y = square[0] + 0.5, square[1] + 0.5
+    for _ in range(quarters % 4):
+        x, y = y, -x
+    return math.floor(x), math.floor(y)

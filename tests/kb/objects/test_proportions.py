@@ -1,0 +1,65 @@
+"""Whether a rectangle is a square or a brick, as far as pushes have told how large it is."""
+
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely.affinity import translate
+
+from geometry.motion.se2 import Translate
+from kb.objects.held_object import Load, covered, seen_insets
+from kb.objects.proportions import may_be, reshaped, spans
+from kb.objects.subcell_extent import WHOLE, Insets
+
+SEEN = {"brick": 86, "square": 2, "rectangle": 86, "polygon": 99}
+parts = st.integers(0, 19).map(lambda n: n / 20 + 0.017)  # never right on a line
+longs = st.integers(2, 6)
+
+
+def image(thing: shapely.Polygon) -> shapely.Polygon:
+    return shapely.box(
+        *shapely.union_all([shapely.box(x, y, x + 1, y + 1) for x, y in covered(thing).squares()]).bounds
+    )
+
+
+@given(longs, longs, parts, parts, st.lists(st.tuples(parts, parts), max_size=8))
+@settings(max_examples=80, deadline=None)
+def test_a_rectangle_may_always_be_what_it_is(
+    wide: int, high: int, x: float, y: float, pushes: list[tuple[float, float]]
+) -> None:
+    thing = shapely.box(x, y, x + wide, y + high)
+    load = Load("o1", image(thing), image(thing), insets=seen_insets(image(thing)), proven=True)
+    for dx, dy in [(0.0, 0.0), *pushes]:
+        thing = translate(thing, dx, dy)
+        moved = load.moved(Translate(dx, dy).carry(load.polygon), load.slack, commanded=True)
+        load = moved.told(lambda outline, at=thing: covered(outline).squares() == covered(at).squares()) or moved
+        sides = spans(load.polygon, load.lying_insets)
+        assert sides is not None
+        for side, long in zip(sides, (wide, high), strict=True):
+            assert side.least - 1e-9 <= long <= side.most + 1e-9
+            assert side.least - 1e-9 <= side.believed <= side.most + 1e-9
+        assert ("square" if wide == high else "brick") in may_be(load.polygon, load.lying_insets)
+
+
+def test_a_square_between_the_squares_looks_like_a_brick_until_it_is_told() -> None:
+    looks, told = shapely.box(0, 0, 4, 3), Insets((0.45, 0.45, 0.0, 0.0), (0.55, 0.55, 0.1, 0.1))
+    assert set(may_be(looks, Insets())) == {"square", "brick"}
+    assert reshaped(SEEN, looks, Insets()) == SEEN
+    half = Insets((0.45, 0.45, 0.0, 0.0), (0.55, 0.55, 1.0, 1.0))
+    assert reshaped(SEEN, shapely.box(0.5, 0, 3.5, 3), half) == SEEN  # to the north it may be shorter yet
+    square = reshaped(SEEN, shapely.box(0.5, 0, 3.5, 3), told)
+    assert square["square"] == 86 and square["brick"] == 2 and square["rectangle"] == 86
+
+
+def test_what_is_told_to_fill_its_squares_stays_what_it_is() -> None:
+    told = Insets((0.0, 0.0, 0.0, 0.0), (0.1, 0.1, 0.1, 0.1))
+    assert may_be(shapely.box(0, 0, 4, 3), told) == ("brick",)
+    assert may_be(shapely.box(0, 0, 6, 3), Insets()) == ("brick",)
+    assert reshaped(SEEN, shapely.box(0, 0, 4, 3), told) == SEEN
+
+
+def test_nothing_is_said_of_what_is_no_rectangle() -> None:
+    ell = shapely.Polygon([(0, 0), (4, 0), (4, 2), (2, 2), (2, 4), (0, 4)])
+    assert may_be(ell, Insets()) == () and may_be(None, Insets()) == () and may_be(shapely.box(0, 0, 2, 2), None) == ()
+    assert reshaped(SEEN, ell, Insets((0.5, 0.5, 0.5, 0.5), WHOLE)) == SEEN
+    slanted = shapely.Polygon([(0, 1), (1, 0), (2, 1), (1, 2)])
+    assert may_be(slanted, Insets()) == ()

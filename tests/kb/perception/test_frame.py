@@ -1,0 +1,103 @@
+"""Rigid-motion laws of the frames, and the sampled squares against the formula of the senses."""
+
+import math
+from collections import Counter
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kb.body import DIRECTIONS
+from kb.perception.frame import MOST, TIE, Lattice, turned
+from kb.perception.retina import FIELDS, OWN
+from simulator.world.senses import Senses
+from tests.kb.eyes import sampled
+
+length = st.floats(-100, 100).map(lambda v: round(v, 6))
+vector = st.tuples(length, length)
+degrees = st.integers(-720, 720)
+lattices = st.builds(Lattice, st.integers(-44, 45), st.tuples(st.floats(0, 1), st.floats(0, 1)))
+
+
+@given(vector, degrees, degrees)
+def test_turns_add_up(v: tuple[float, float], a: int, b: int) -> None:
+    assert turned(*turned(*v, a), b) == pytest.approx(turned(*v, a + b), abs=1e-9)
+
+
+@given(vector, vector, degrees)
+def test_a_turn_keeps_lengths_and_sense(v: tuple[float, float], w: tuple[float, float], a: int) -> None:
+    p, q = turned(*v, a), turned(*w, a)
+    assert math.hypot(*p) == pytest.approx(math.hypot(*v), abs=1e-9)
+    assert p[0] * q[1] - p[1] * q[0] == pytest.approx(v[0] * w[1] - v[1] * w[0], abs=1e-8)
+
+
+@given(st.integers(-50, 50), st.integers(-50, 50), st.integers(-8, 8))
+def test_quarter_turns_are_exact(x: int, y: int, quarters: int) -> None:
+    want = complex(x, y) * (1j) ** (quarters % 4)
+    assert turned(x, y, 90 * quarters) == (round(want.real), round(want.imag))
+
+
+@given(vector, lattices)
+def test_there_and_back(v: tuple[float, float], lattice: Lattice) -> None:
+    assert lattice.to_utak(*lattice.to_lattice(*v)) == pytest.approx(v, abs=1e-9)
+    assert lattice.place_to_utak(*lattice.place_from_utak(*v)) == pytest.approx(v, abs=1e-9)
+
+
+@given(vector, vector, lattices)
+def test_places_differ_by_vectors(p: tuple[float, float], v: tuple[float, float], lattice: Lattice) -> None:
+    x, y = lattice.place_from_utak(*p)
+    dx, dy = lattice.to_lattice(*v)
+    assert lattice.place_from_utak(p[0] + v[0], p[1] + v[1]) == pytest.approx((x + dx, y + dy), abs=1e-9)
+    assert lattice.place_from_utak(0, 0) == pytest.approx(lattice.woke)
+
+
+def is_tie(east: int, north: int, angle: int) -> bool:
+    """Does the offset fall so near to the middle between two squares that either may be sampled?"""
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    return any(abs(abs(v) % 1 - 0.5) < TIE for v in (east * c - north * s, east * s + north * c))
+
+
+@pytest.mark.parametrize("angle", range(-44, 46))
+def test_samples_are_those_of_the_senses(angle: int) -> None:
+    samples = Lattice(angle).samples()
+    for number, (east, north, side) in enumerate(FIELDS):
+        offsets = [(e, n) for e in range(east, east + side) for n in range(north, north + side)]
+        ties = [offset for offset in offsets if is_tie(*offset, angle)]
+        want = Counter(sampled(*offset, angle) for offset in offsets if offset not in ties)
+        row = zip(samples.columns[number], samples.rows[number], samples.weight[number], strict=True)
+        found = {(int(c), int(r)): int(w) for c, r, w in row if w}
+        assert found == ({} if number == OWN else want)
+        assert samples.slack[number] == (0 if number == OWN else len(ties))
+
+
+@pytest.mark.parametrize("angle", [0, 45, -30])
+def test_every_field_is_accounted_for(angle: int) -> None:
+    samples = Lattice(angle).samples()
+    assert samples.columns.shape == samples.rows.shape == samples.weight.shape == (160, MOST)
+    area = np.array([field.side**2 for field in FIELDS])
+    area[OWN] = 0
+    assert (samples.weight.sum(1) + samples.slack == area).all()
+
+
+def test_along_the_axes_every_square_is_sampled_once() -> None:
+    samples = Lattice(0).samples()
+    assert samples.weight.max() == 1
+    assert samples.weight.sum() == 32 * 32 - 1
+
+
+@pytest.mark.parametrize("angle", range(-44, 46))
+def test_a_direction_names_the_square_that_the_senses_mean_however_the_table_lies(angle: int) -> None:
+    lattice = Lattice(angle)
+    for direction in DIRECTIONS:
+        meant = set()
+        for quarters in range(4):
+            senses = Senses((angle + 90 * quarters) % 360)
+            i, j = senses.adjacent((0.5, 0.5), direction)
+            for _ in range(quarters):
+                i, j = j, -i
+            meant.add((i, j))
+        named = lattice.beside(direction)
+        assert meant == {named} if named is not None else len(meant) > 1 or abs(angle) == 30
+    assert all(lattice.beside(direction) == square for square, direction in lattice.directions().items())
+    assert {(1, 0), (0, 1), (-1, 0), (0, -1)} <= lattice.directions().keys()

@@ -1,0 +1,84 @@
+"""The plan of the retina against its definition, and gray levels against brute force."""
+
+from fractions import Fraction
+from math import floor
+
+import numpy as np
+import pytest
+
+from kb.perception.retina import FIELDS, OWN, REACH, Field, count_ranges, counts, neighbours, plan, rim
+
+LEVELS = {1: [0, 7], 2: [0, 2, 4, 5, 7], 4: range(8)}  # that a field of this side can show
+
+
+def shown(side: int, occupied: int) -> int:
+    """The gray level of DESIGN 4, in exact arithmetic."""
+    return floor(Fraction(7 * occupied, side * side) + Fraction(1, 2))
+
+
+@pytest.mark.parametrize("side", [1, 2, 4])
+def test_counts_are_those_that_show_the_level(side: int) -> None:
+    for level in LEVELS[side]:
+        fitting = [n for n in range(side * side + 1) if shown(side, n) == level]
+        assert counts(side, level) == (fitting[0], fitting[-1])
+        assert fitting == list(range(fitting[0], fitting[-1] + 1))
+
+
+@pytest.mark.parametrize("side", [1, 2, 4])
+def test_a_level_that_no_count_shows_is_refused(side: int) -> None:
+    possible = {shown(side, n) for n in range(side * side + 1)}
+    assert possible == set(LEVELS[side])
+    for level in set(range(-1, 10)) - possible:
+        with pytest.raises(ValueError, match="never shows"):
+            counts(side, level)
+
+
+def test_the_fields_cover_every_offset_once() -> None:
+    covered = [
+        (east, north)
+        for field in FIELDS
+        for east in range(field.east, field.east + field.side)
+        for north in range(field.north, field.north + field.side)
+    ]
+    assert sorted(covered) == [(e, n) for e in range(-REACH, REACH) for n in range(-REACH, REACH)]
+    assert [sum(f.side == side for f in FIELDS) for side in (1, 2, 4)] == [64, 48, 48]
+
+
+def test_the_order_is_by_zones_from_north_west_on() -> None:
+    keys = [(field.side, -field.north, field.east) for field in FIELDS]
+    assert keys == sorted(keys)
+
+
+def test_the_plan_names_the_field_of_each_offset() -> None:
+    numbers = plan()
+    for number, (east, north, side) in enumerate(FIELDS):
+        rows, columns = np.nonzero(numbers == number)
+        assert len(rows) == side * side
+        assert (rows.min() - REACH, columns.min() - REACH) == (north, east)
+
+
+def test_neighbours_share_an_edge() -> None:
+    def touch(a: Field, b: Field) -> bool:
+        wide = min(a.east + a.side, b.east + b.side) - max(a.east, b.east)
+        high = min(a.north + a.side, b.north + b.side) - max(a.north, b.north)
+        return (wide == 0 and high > 0) or (high == 0 and wide > 0)
+
+    found = neighbours()
+    for i, a in enumerate(FIELDS):
+        assert found[i] == {j for j, b in enumerate(FIELDS) if i != j and touch(a, b)}
+
+
+def test_the_rim_is_what_reaches_the_edge() -> None:
+    edge = {
+        i for i, f in enumerate(FIELDS) if -REACH in (f.east, f.north) or REACH in (f.east + f.side, f.north + f.side)
+    }
+    assert rim() == edge
+    assert all(FIELDS[i].side == 4 for i in edge)
+
+
+def test_his_own_field_says_nothing() -> None:
+    assert FIELDS[OWN] == (0, 0, 1)
+    ranges = count_ranges((7,) * 160)
+    assert tuple(ranges[OWN]) == (0, 1)
+    others = np.delete(ranges, OWN, axis=0)
+    assert (others[:, 1] == np.delete([f.side**2 for f in FIELDS], OWN)).all()

@@ -1,0 +1,129 @@
+"""start.lp and goal.lp: vocabulary, parameters, contradictions."""
+
+from pathlib import Path
+
+import clingo
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kb.language.diagnostics import BadInputError
+from kb.language.reader import facts_of
+from kb.task.task import Task, read_task
+
+
+def task(folder: Path, start: str, goal: str) -> Task:
+    (folder / "start.lp").write_text(start)
+    (folder / "goal.lp").write_text(goal)
+    return read_task(folder / "start.lp", folder / "goal.lp")
+
+
+def refused(folder: Path, start: str, goal: str) -> str:
+    with pytest.raises(BadInputError) as caught:
+        task(folder, start, goal)
+    return str(caught.value)
+
+
+def test_a_task_is_parameters_claims_and_goals(tmp_path: Path) -> None:
+    start = "object(x). door(d). room(r). shape(x, brick). confidence(colour(x, g), 80). shape(x, rectangle)."
+    told = task(tmp_path, start, "first(through(x, d)). then(in(utak, r)). not_through(utak, d).")
+    assert {name: p.kind for name, p in told.parameters.items()} == {"x": "object", "d": "door", "r": "room"}
+    assert [(str(c.fact), c.confidence) for c in told.claims] == [
+        ("shape(x,brick)", 100),
+        ("colour(x,g)", 80),
+        ("shape(x,rectangle)", 100),
+    ]
+    assert told.claims_of("x") == told.claims
+    assert [str(g) for g in told.goals] == ["first(through(x,d))", "then(in(utak,r))", "not_through(utak,d)"]
+
+
+START = "object(x). object(y). door(d). room(r).\n"
+GOALS = [
+    "at(utak, corner(northeast)).",
+    "at(x, corner(southwest)).",
+    "at(x, y).",
+    "at(utak, start).",
+    "in(utak, room(next)).",
+    "in(x, r).",
+    "through(x, d).",
+    "around(x, corner).",
+    "circled(utak, x).",
+    "beside(x, y).",
+    'pose(x, "POINT (3 -4.5)", -90).',
+]
+
+
+@pytest.mark.parametrize("goal", GOALS)
+def test_every_goal_of_the_design_is_read(goal: str, tmp_path: Path) -> None:
+    assert len(task(tmp_path, START, goal).goals) == 1
+
+
+def test_a_step_may_come_again(tmp_path: Path) -> None:
+    told = task(tmp_path, "", "first(at(utak, start)). then(at(utak, corner(northeast))). then(at(utak, start)).")
+    assert [str(g) for g in told.goals][0::2] == ["first(at(utak,start))", "then(at(utak,start))"]
+    again = "first(at(utak, start)). then(at(utak, corner(northeast))). then(at(utak, start)). then(at(utak, start))."
+    assert len(task(tmp_path, "", again).goals) == 4
+
+
+def test_goals_name_parameters(tmp_path: Path) -> None:
+    assert task(tmp_path, START, "first(at(utak, x)). then(through(y, d)).").named == {"x", "y", "d"}
+
+
+BAD = {
+    ("object(not). shape(not, square).", "at(utak, not)."): "not is a word of the language and cannot name anything",
+    ("", "at(utak, start). at(utak, start)."): "stated twice",
+    ("door(d).", "at(utak, start). not_through(utak, d). not_through(utak, d)."): "stated twice",
+    ("", "first(at(utak, start)). first(at(utak, start))."): "must come before",
+    ("", "at(utak, x)."): "x is not introduced in start.lp",
+    ("object(box).", "at(utak, bok)."): "did you mean box?",
+    ("object(x). shape(x, sqare).", "at(utak, x)."): "did you mean square?",
+    ("object(x). shpe(x, square).", "at(utak, x)."): "did you mean shape?",
+    ("object(x, y).", "at(utak, start)."): "object takes 1 argument, not 2",
+    ("object(x). shape(y, square).", "at(utak, x)."): "y is not introduced",
+    ("object(x). shape(x, square). shape(x, disc).", "at(utak, x)."): "contradicts shape(x,square)",
+    ("object(x). colour(x, g). colour(x, c).", "at(utak, x)."): "contradicts colour(x,g)",
+    ("object(x). colour(x, green).", "at(utak, x)."): "a single lower-case letter",
+    ("object(x). object(x).", "at(utak, x)."): "stated twice",
+    ("object(x). door(x).", "at(utak, x)."): "x is already an object",
+    ("object(utak).", "at(utak, start)."): "reserved word",
+    ("object(x). confidence(shape(x, square), 101).", "at(utak, x)."): "from 0 to 100, not 101",
+    ("object(x). confidence(shape(x, blob), 50).", "at(utak, x)."): "unknown shape blob",
+    ("object(x). shape(x, square). confidence(shape(x, square), 80).", "at(utak, x)."): "with confidence 100 and 80",
+    ("door(d). shape(d, square).", "at(utak, start)."): "d is a door; only objects have a shape",
+    ("", ""): "the goal is empty",
+    ("door(d).", "not_through(utak, d)."): "the goal is empty",
+    ("", "at(utak, corner(north))."): "unknown corner north",
+    ("", "at(utak, corner)."): "wants an object or start here, not corner",
+    ("", "at(utak, edge(northeast))."): "unknown place edge(northeast)",
+    ("door(d).", "at(utak, d)."): "d is a door; at wants an object or start here",
+    ("object(x).", "in(utak, x)."): "x is an object; in wants a room here",
+    ("", "in(utak, room(other))."): "unknown room other",
+    ("object(x).", 'pose(x, "POLYGON ((0 0, 1 0, 1 1, 0 0))", 0).'): "a shape here is a POINT",
+    ("object(x).", "pose(x, 3, 0)."): "must be a quoted text",
+    ("object(x).", "circled(x, x)."): "unknown walker x",
+    ("object(x).", "at(x, x)."): "relates x to itself",
+    ("", "then(at(utak, start))."): "without anything before it",
+    ("", "at(utak, start). first(at(utak, corner(northeast)))."): "must come before",
+    ("", "first(first(at(utak, start)))."): "unknown predicate first/1",
+}
+
+
+@pytest.mark.parametrize(("start", "goal"), BAD)
+def test_what_is_wrong_with_a_task_is_said(start: str, goal: str, tmp_path: Path) -> None:
+    assert BAD[start, goal] in refused(tmp_path, start, goal)
+
+
+def test_the_problems_of_both_files_come_together(tmp_path: Path) -> None:
+    text = refused(tmp_path, "objekt(x).", "att(utak, start).")
+    assert "start.lp:1:1-9: error: unknown predicate objekt/1" in text
+    assert "goal.lp:1:1-16: error: unknown predicate att/2" in text
+
+
+@settings(deadline=None)
+@given(st.from_regex(r"\A(_{0,2}[a-z][A-Za-z0-9_']{0,4}|not)\Z"))
+def test_what_names_a_parameter_is_a_name_to_clingo(name: str) -> None:
+    try:
+        facts_of(f"object({name}).")
+    except BadInputError:
+        return
+    assert str(clingo.parse_term(f"wanted({name})")) == f"wanted({name})"

@@ -1,0 +1,91 @@
+"""The corners of drawn floors against the definition, square by square."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+import shapely.affinity
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kb.mapping.occupancy import FULL, OPEN
+from kb.world.corners import SIDES, corners, known_floor
+from kb.world.model import Node, patch_of
+from planner.screen.projection import grown
+from tests.kb.drawings import seen_whole
+from tests.kb.eyes import random_room
+
+SIGNS = {"northeast": (1, 1), "northwest": (-1, 1), "southeast": (1, -1), "southwest": (-1, -1)}
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_a_corner_is_the_furthest_point_of_the_known_floor(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rows = random_room(rng, *rng.integers(8, 24, 2), things=5)
+    n, i = next((n, row.index(".")) for n, row in enumerate(rows) if "." in row)
+    rows[n] = rows[n][:i] + "U" + rows[n][i + 1 :]
+    model = seen_whole(rows)
+    floor = known_floor(model)
+    found = corners(model)
+    assert set(found) == set(SIDES)
+    for side, (dx, dy) in SIGNS.items():
+        r, c = np.nonzero(floor)
+        best = max(float((dx * (c + a) + dy * (r + b)).max()) for a in (0, 1) for b in (0, 1))
+        (x, y), (column, row) = found[side].point, found[side].square
+        assert dx * x + dy * y == best
+        assert floor[row, column]
+        assert x - column in (0, 1)
+        assert y - row in (0, 1)
+
+
+def test_a_plain_room() -> None:
+    rows = ["bbbbbbbb", "b......b", "b......b", "b..U...b", "bbbbbbbb"]
+    found = corners(seen_whole(rows))
+    assert {side: corner.square for side, corner in found.items()} == {
+        "northeast": (6, 3),
+        "northwest": (1, 3),
+        "southeast": (6, 1),
+        "southwest": (1, 1),
+    }
+
+
+@pytest.mark.parametrize(("pocket", "counts"), [(2, False), (8, True)])
+def test_a_glimpse_of_floor_is_no_corner_yet(pocket: int, counts: bool) -> None:
+    rows = ["b" * 24] * 2 + ["b" * 12 + "." * pocket + "b" * (12 - pocket)] + ["b" * 24] * 3
+    rows += ["b......bbbbbbbbbbbbbbbbb"] * 3 + ["b..U...bbbbbbbbbbbbbbbbb", "b" * 24]
+    found = corners(seen_whole(rows))
+    assert (found["northeast"].square[1] > 6) == counts
+
+
+def test_what_was_moved_lies_on_floor_but_the_wall_that_it_may_reach_into_is_none() -> None:
+    rows = ["bbbbbbbb", "b.....gb", "b.....gb", "b..U...b", "bbbbbbbb"]
+    model = seen_whole(rows)
+    under, label = np.array([list(row) for row in reversed(rows)]) == "g", int(model.labels.max()) + 1
+    thing = Node("o1", "object", 100, f"part{label}", patch_of(under, model.view), 0, moved=True)
+    moved = replace(model, labels=np.where(under, label, model.labels).astype(np.int32), objects=(thing,))
+    assert corners(moved)["northeast"].square == (6, 3)
+    state = np.where(under, OPEN, model.view.state).astype(np.int8)  # it may cover these, and may not
+    loose = replace(moved, view=model.view._replace(state=state))
+    assert corners(loose)["northeast"].square == (5, 3)
+    assert corners(replace(loose, beneath=under))["northeast"].square == (6, 3)  # they were floor before it came there
+
+
+def test_a_wall_seen_where_a_moved_thing_may_reach_is_not_floor_under_it() -> None:
+    rows = ["bbbbbbbb", "b.....gb", "b.....gb", "b..U...b", "bbbbbbbb"]
+    model = seen_whole(rows)
+    drawn = np.array([list(row) for row in reversed(rows)])
+    under, label = drawn == "g", int(model.labels.max()) + 1
+    reach = under | ((drawn == "b") & grown(under, 1))  # by its play it may cover the wall about it, too
+    outline = shapely.box(6, 2, 7, 4)
+    west, south = model.view.west, model.view.south
+    outline = shapely.affinity.translate(outline, west, south)
+    thing = Node("o1", "object", 100, f"part{label}", patch_of(reach, model.view), 0, moved=True, polygon=outline)
+    labels = np.where(reach, label, model.labels).astype(np.int32)
+    moved = replace(model, labels=labels, objects=(thing,))
+    assert (moved.view.state[reach] == FULL).all()
+    assert corners(moved)["northeast"].square == (6, 3)
+    assert not (known_floor(moved) & (drawn == "b")).any()
+    askew = replace(moved, objects=(replace(thing, polygon=None),))
+    assert (known_floor(askew) & (drawn == "b")).any()  # what has no outline lies on all that it covers

@@ -1,0 +1,401 @@
+"""Carrying in real worlds, end to end: what Utak believes of what he carries is what the table says."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import chain, repeat
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+import shapely
+from shapely.affinity import rotate, translate
+
+import planner.carrying.plan_executor
+from benchmarks.harness.trial import Conditions, run_trial
+from geometry.motion.se2 import Translate
+from kb.body import Command, Grasp, Move, Push, Release, Turn
+from kb.world.model import Node, WorldModel
+from planner.carrying.manipulation_oracle import Haul
+from planner.carrying.remaining_plan import clear_part
+from planner.deciding.decider import Decider
+from planner.decision import Decision
+from planner.goals.robot_goals import Situation
+from simulator.episode.episode import EpisodeLog
+from simulator.run.robots import make_robot
+from simulator.run.session import Result, Session
+from simulator.scenario.scenario import read_scenario
+from simulator.scenario.settings import Settings
+
+ROOM = ["b" * 30, *["b" + "." * 28 + "b"] * 18, "b" * 30]
+
+
+class Run(NamedTuple):
+    result: Result
+    session: Session
+    commands: list[object]
+
+
+def scene(folder: Path, world: str, start: str, goal: str) -> Path:
+    folder.mkdir(exist_ok=True)
+    (folder / "world.lp").write_text(world)
+    (folder / "start.lp").write_text(start)
+    (folder / "goal.lp").write_text(goal)
+    return folder
+
+
+def room(things: str, utak: str = "POINT (15.5 14.5)", heading: int = 0) -> str:
+    """A room of 28 x 18 squares in a verge 2 thick."""
+    ring = "(0 0, 32 0, 32 22, 0 22, 0 0), (2 2, 2 20, 30 20, 30 2, 2 2)"
+    return f'table(32, 22).\nverge("POLYGON ({ring})").\nutak("{utak}", {heading}).\n{things}\n'
+
+
+def box(x0: float, y0: float, x1: float, y1: float) -> str:
+    return f"POLYGON (({x0} {y0}, {x1} {y0}, {x1} {y1}, {x0} {y1}, {x0} {y0}))"
+
+
+def run(folder: Path, settings: Settings | None = None) -> Run:
+    session = Session(read_scenario(folder), settings or Settings(), make_robot, EpisodeLog(None))
+    commands: list[object] = []
+    session.wake()
+    while not session.finished:
+        commands.append(session.robot.decision.command)
+        session.step()
+    return Run(session.end(), session, commands)
+
+
+def on_table(session: Session, polygon: shapely.Polygon) -> shapely.Polygon:
+    """A polygon of Utak's lattice as one of the table, where he woke amid a square and quarter turns are enough."""
+    world, lattice = session.scenario.world, session.robot.knowledge.memory.lattice
+    moved = translate(polygon, -lattice.woke[0], -lattice.woke[1])
+    turned = rotate(moved, world.heading - lattice.angle, origin=(0, 0))
+    return translate(turned, *world.utak)
+
+
+def lies_as_believed(session: Session, name: str = "t") -> None:
+    loads = session.robot.knowledge.memory.loads
+    believed = min(
+        (on_table(session, load.polygon) for load in loads.values()),
+        key=lambda p: p.symmetric_difference(session.table.polygons[name]).area,
+    )
+    assert believed.symmetric_difference(session.table.polygons[name]).area < 1e-6
+
+
+SQUARE = f'object(t, g, "{box(8, 6, 11, 9)}").'
+
+
+@pytest.mark.parametrize("heading", [0, 90, 217])
+def test_a_square_into_a_corner(tmp_path: Path, heading: int) -> None:
+    folder = scene(tmp_path, room(SQUARE, heading=heading), "object(x). shape(x, square).", "at(x, corner(northeast)).")
+    done = run(folder)
+    assert done.result.verdict == "done", done.result.reason
+    lies_as_believed(done.session)
+    assert {load.colour for load in done.session.robot.knowledge.memory.loads.values()} == {"g"}  # as he felt it
+    west, south, east, north = done.session.table.polygons["t"].bounds
+    corners = {0: (30 - east, 20 - north), 90: (west - 2, 20 - north), 217: (west - 2, south - 2)}
+    assert max(corners[heading]) <= 1.0 + 1e-6
+
+
+def test_what_is_fixed_is_found_out(tmp_path: Path) -> None:
+    folder = scene(
+        tmp_path, room(SQUARE.replace("object", "fixed")), "object(x). shape(x, square).", "at(x, corner(northwest))."
+    )
+    done = run(folder)
+    assert not done.result.believed
+    assert "cannot be moved" in done.result.reason
+    assert done.result.steps < 30
+
+
+@pytest.mark.parametrize(
+    ("third", "utak"), [("24 18, 24 20, 20 20, 20 36, 46 36, 46 20, 30 20, 30 18", "33.5 28.5"), ("", "14.5 10.5")]
+)
+def test_what_stands_against_a_wall_and_makes_a_door_of_a_passage_is_felt(
+    third: str, utak: str, tmp_path: Path
+) -> None:
+    """With the thing in its corner taken for wall the room to the west is too narrow to have a door to the east."""
+    points = ["2 2, 2 18, 18 18, 18 14, 20 14, 20 18", third, "46 18, 46 2, 20 2, 20 7, 18 7, 18 2, 2 2"]
+    ring = f"(0 0, 0 38, 48 38, 48 0, 0 0), ({', '.join(part for part in points if part)})"
+    things = f'object(p, h, "{box(2, 12, 8, 17)}").\nobject(t, g, "{box(9, 4, 13, 8)}").'
+    world = f'table(48, 38).\nverge("POLYGON ({ring})").\nutak("POINT ({utak})", 0).\n{things}\n'
+    done = run(scene(tmp_path, world, "object(x). shape(x, square).", "in(x, room(next))."))
+    assert done.result.verdict == "done", done.result.reason
+    assert shapely.box(20, 2, 46, 18).covers(done.session.table.polygons["t"])
+    model = done.session.robot.model
+    assert not any((part & model.mask(node.patch)).any() for part in model.protruding for node in model.objects)
+
+
+def test_what_may_be_no_wall_hides_nothing_until_it_is_felt(tmp_path: Path) -> None:
+    ring = "(0 0, 0 34, 34 34, 34 0, 0 0), (18 4, 18 20, 4 20, 4 30, 30 30, 30 4, 18 4)"
+    ell = "POLYGON ((18 11, 24 11, 24 19, 22 19, 22 13, 18 13, 18 11))"
+    things = f'fixed(p, h, "{ell}").\nobject(t, g, "{box(12, 23, 14, 27)}").'
+    world = f'table(34, 34).\nverge("POLYGON ({ring})").\nutak("POINT (27.5 21.5)", 200).\n{things}\n'
+    done = run(scene(tmp_path, world, "object(x). shape(x, brick).", "around(x, corner)."))
+    assert done.result.verdict == "done", done.result.reason
+    wall, began = shapely.box(0, 0, 18, 20), shapely.Point(13, 25)
+    corners = shapely.points(done.session.table.polygons["t"].exterior.coords)
+    assert all(shapely.LineString([began, corner]).intersection(wall).length > 0 for corner in corners)
+
+
+def test_a_square_that_looks_like_a_brick_is_measured(tmp_path: Path) -> None:
+    between = f'object(t, g, "{box(8.5, 6, 11.5, 9)}").'
+    folder = scene(tmp_path, room(between), "object(x). shape(x, square).", "at(x, corner(northeast)).")
+    done = run(folder)
+    assert done.result.verdict == "done", done.result.reason
+    _, _, east, north = done.session.table.polygons["t"].bounds
+    assert max(30 - east, 20 - north) <= 1.0
+
+
+def test_a_brick_that_is_measured_stays_one(tmp_path: Path) -> None:
+    brick = f'object(t, g, "{box(8, 6, 12, 9)}").'
+    folder = scene(tmp_path, room(brick), "object(x). shape(x, square).", "at(x, corner(northeast)).")
+    done = run(folder)
+    assert done.result.verdict == "possible_if" and "nothing seen so far is x" in done.result.reason
+    assert done.session.table.polygons["t"].centroid.distance(shapely.Point(10, 7.5)) < 3.0
+
+
+def test_what_is_fixed_is_not_what_shall_be_carried(tmp_path: Path) -> None:
+    other = f'fixed(s, g, "{box(20, 10, 23, 13)}").'
+    folder = scene(tmp_path, room(SQUARE + other), "object(x). shape(x, square).", "at(x, corner(southeast)).")
+    done = run(folder)
+    assert done.result.verdict == "done", done.result.reason
+    lies_as_believed(done.session)
+
+
+def test_he_who_stands_off_the_middle_of_his_square_learns_from_the_first_turn(tmp_path: Path) -> None:
+    brick = f'object(t, g, "{box(8, 6, 13, 8)}").'
+    pose = 'pose(x, "POINT (4 -4)", 90).'
+    folder = scene(tmp_path, room(brick, "POINT (15.2 14.7)"), "object(x). shape(x, brick).", pose)
+    done = run(folder)
+    assert any(isinstance(command, Turn) for command in done.commands)
+    assert done.result.verdict == "done", done.result.reason
+    middle = done.session.table.polygons["t"].centroid
+    assert math.dist((middle.x, middle.y), (19.2, 10.7)) < 0.8
+
+
+def test_without_pulling_every_push_leads_away_from_him(tmp_path: Path) -> None:
+    folder = scene(tmp_path, room(SQUARE), "object(x). shape(x, square).", "at(x, corner(southwest)).")
+    session = Session(read_scenario(folder), Settings(pull=False), make_robot, EpisodeLog(None))
+    session.wake()
+    pushes = 0
+    while not session.finished:
+        command = session.robot.decision.command
+        middle, utak = session.table.polygons["t"].centroid, session.table.utak
+        if isinstance(command, Push):
+            pushes += 1
+            assert command.east * (middle.x - utak[0]) + command.north * (middle.y - utak[1]) > 0
+        session.step()
+    assert pushes
+    assert session.end().verdict == "done"
+
+
+def test_he_lets_go_before_he_walks_and_both_goals_hold_at_the_end(tmp_path: Path) -> None:
+    folder = scene(tmp_path, room(SQUARE), "object(x). shape(x, square).", "at(x, corner(southwest)). at(utak, start).")
+    done = run(folder)
+    assert done.result.verdict == "done", done.result.reason
+    holding = False
+    for command in done.commands:
+        assert not (holding and isinstance(command, Move))
+        holding = (holding or isinstance(command, Push | Turn)) and not isinstance(command, Release)
+    assert math.dist(done.session.table.utak, (15.5, 14.5)) <= 1.5
+    assert max(done.session.table.polygons["t"].bounds[:2]) <= 3.0 + 1e-6
+
+
+def test_first_beside_then_away(tmp_path: Path) -> None:
+    things = SQUARE + f'\nobject(u, r, "{box(20, 5, 25, 7)}").'
+    start = "object(x). shape(x, square). object(y). shape(y, brick)."
+    folder = scene(tmp_path, room(things), start, "first(beside(x, y)). then(at(x, corner(northwest))).")
+    session = Session(read_scenario(folder), Settings(), make_robot, EpisodeLog(None))
+    session.wake()
+    nearest = math.inf
+    while not session.finished:
+        session.step()
+        nearest = min(nearest, session.table.polygons["t"].distance(session.table.polygons["u"]))
+    assert session.end().verdict == "done"
+    assert nearest <= 1.0
+    lies_as_believed(session)
+
+
+def test_a_grasp_that_slipped_is_made_again(tmp_path: Path) -> None:
+    folder = scene(tmp_path, room(SQUARE), "object(x). shape(x, square).", "at(x, corner(northeast)).")
+    done = run(folder, Settings(noise=0.02, seed=3))
+    assert done.result.verdict == "done", done.result.reason
+    _, _, east, north = done.session.table.polygons["t"].bounds
+    assert max(30 - east, 20 - north) < 1.5
+
+
+def test_what_is_clear_of_a_plan_is_done_before_the_rest_is_seen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun = []
+
+    def watched(haul: Haul, node: Node, situation: Situation) -> Haul | None:
+        part = clear_part(haul, node, situation)
+        if part is not None:
+            own = situation.model.mask(node.patch)
+            (leg,), (whole, *_) = part.plan.legs, haul.plan.legs
+            *before, last = leg.motions
+            assert not (part.swept & ~situation.screens.safe & ~own).any()
+            assert tuple(before) == whole.motions[: len(before)]
+            aim = whole.motions[len(before)]
+            assert isinstance(last, Translate)
+            assert isinstance(aim, Translate)
+            assert abs(last.dx * aim.dy - last.dy * aim.dx) <= math.hypot(aim.dx, aim.dy)  # nearly the same way
+            assert math.hypot(last.dx, last.dy) <= math.hypot(aim.dx, aim.dy) + 1
+            begun.append(part)
+        return part
+
+    monkeypatch.setattr(planner.carrying.plan_executor, "clear_part", watched)
+    for seed in (27017, 27018):
+        trial = run_trial(5, seed, Conditions(), tmp_path / str(seed))
+        assert trial.right, (trial.verdict, trial.reason, trial.crash)
+    assert begun
+
+
+def test_a_plan_to_take_it_from_where_he_cannot_stand_is_dropped(tmp_path: Path) -> None:
+    folder = scene(tmp_path, room(SQUARE), "object(x). shape(x, square).", "at(x, corner(northeast)).")
+    session = Session(read_scenario(folder), Settings(), make_robot, EpisodeLog(None))
+    session.wake()
+    carrier = session.robot.decider.transporter.carrier
+    while carrier._course is None or carrier._course.grasped:
+        session.step()
+    within = carrier._course.polygon.centroid
+    leg = replace(carrier._course.legs[0], place=(math.floor(within.x) + 0.5, math.floor(within.y) + 0.5))
+    carrier._course = replace(carrier._course, legs=(leg,))
+    while not session.finished:
+        session.step()
+    assert session.end().verdict == "done"
+    lies_as_believed(session)
+
+
+@pytest.mark.parametrize("task", [5, 6, 7, 8, 9])
+@pytest.mark.parametrize("seed", [101, 107])
+def test_random_worlds(task: int, seed: int, tmp_path: Path) -> None:
+    trial = run_trial(task, seed, Conditions(), tmp_path)
+    assert trial.right, (trial.verdict, trial.reason, trial.crash)
+    assert not trial.judged
+    assert not trial.score or trial.score.wrong == 0
+    assert trial.narrow is None or trial.narrow.right, trial.reason
+
+
+@pytest.mark.parametrize(
+    ("task", "seed", "kind"),
+    [
+        (5, 73014, "wide"),  # he runs against a wall before he knows how the table is turned
+        (5, 75012, "wide"),  # the furthest corner lies in a room that he has not seen when he puts it down
+        # two degrees off, which a turn could be mistaken for a place beside the middle of his square
+        (6, 75010, "wide"),
+        (7, 75012, "wide"),
+        # two degrees off: the first push is stopped, which is not that he woke at the edge of his square
+        (8, 92006, "wide"),
+        (5, 141008, "snug"),  # the furthest corner lies in a room behind the next, that is entered from the side
+    ],
+)
+def test_worlds_that_were_misread(task: int, seed: int, kind: str, tmp_path: Path) -> None:
+    trial = run_trial(task, seed, Conditions(kind=kind), tmp_path)
+    assert trial.right, (trial.verdict, trial.reason, trial.crash)
+    assert not trial.judged
+
+
+def test_a_push_that_was_stopped_unseen_is_told_by_the_look_that_contradicts_itself(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # The look after it fits where it should have led, but not together with what that look settles.
+    push = Push(16.787121481478813, 13.497872142159018)
+    moves = [(-11.9382, -0.9659), (-4.5321629143, 0.113171748288), (-3.88002180319, 9.270675854908)]
+    orders: Iterator[Command] = chain((Move(*move) for move in moves), [Grasp("west"), push], repeat(Release()))
+    decide = Decider.decide
+
+    def obey(decider: Decider, *told: Any) -> Decision:
+        return replace(decide(decider, *told), command=next(orders), verdict="")
+
+    monkeypatch.setattr(Decider, "decide", obey)
+    places: list[tuple[float, float]] = []
+    trues: list[tuple[float, float]] = []
+
+    def watch(at: Session) -> None:
+        places.append(at.robot.robot.knowledge.memory.place)
+        trues.append(at.table.utak)
+
+    trial = run_trial(5, 170016, Conditions(kind="wide", max_steps=6), tmp_path, watch)
+    assert not trial.believed and not trial.crash
+    (pushed,) = [n for n in range(1, len(trues)) if math.dist(trues[n - 1], trues[n]) > 19]
+    far = math.dist(trues[pushed - 1], trues[pushed])
+    assert far < math.hypot(push.east, push.north) - 1
+    assert math.dist(places[pushed - 1], places[pushed]) == pytest.approx(far, abs=1)
+
+
+@pytest.mark.parametrize("heading", [81, 99])
+def test_who_has_hardly_looked_looks_once_more_before_he_takes_what_stands_beside_him(
+    heading: int, tmp_path: Path
+) -> None:
+    world = room(f'object(t, g, "{box(14, 8, 17, 14)}").', heading=heading)
+    folder = scene(tmp_path, world, "object(x). shape(x, brick).", "at(x, corner(northeast)).")
+    done = run(folder)
+    assert done.result.verdict == "done", done.result.reason
+    assert not isinstance(done.commands[0], Grasp)
+    lies_as_believed(done.session)
+
+
+def test_what_goes_round_in_circles_is_let_go_and_taken_elsewhere(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = scene(tmp_path, room(SQUARE), "object(x). shape(x, square).", "at(x, corner(northeast)).")
+    session = Session(read_scenario(folder), Settings(), make_robot, EpisodeLog(None))
+    session.wake()
+    circles, circling = session.robot.decider.pursuer._circles, []
+
+    def noticed(model: WorldModel, command: object) -> bool:
+        again = isinstance(command, Push) and (not circling or circling[0] == model.place)
+        circling.extend([model.place] * again)
+        return again
+
+    monkeypatch.setattr(circles, "noticed", noticed)
+    taken, after = [], []
+    while not session.finished:
+        command = session.robot.decision.command
+        if isinstance(command, Grasp):
+            taken.append(session.robot.model.place)
+        session.step()
+        if circling and not after:
+            after.append(session.robot.decision.command)
+    assert session.end().verdict == "done"
+    assert isinstance(after[0], Release)
+    assert taken[0] == circling[0]
+    assert math.dist(taken[0], taken[1]) >= 1
+    _, _, east, north = session.table.polygons["t"].bounds
+    assert max(30 - east, 20 - north) <= 1
+
+
+def into_northeast(folder: Path) -> None:
+    """The square is carried into the northeast corner, and truly lies there."""
+    done = run(folder)
+    assert done.result.verdict == "done", done.result.reason
+    _, _, east, north = done.session.table.polygons["t"].bounds
+    assert max(30 - east, 20 - north) <= 1
+
+
+@pytest.mark.parametrize("corners", [(12, 2, 15, 5), (2, 9, 5, 12), (2, 2, 5, 5)])
+def test_what_stands_against_a_wall_is_felt_and_carried(corners: tuple[float, ...], tmp_path: Path) -> None:
+    x0, y0, x1, y1 = corners
+    world = room(f'object(t, g, "{box(x0, y0, x1, y1)}").')
+    into_northeast(scene(tmp_path, world, "object(x). shape(x, square).", "at(x, corner(northeast))."))
+
+
+@pytest.mark.parametrize("part", [0.07, 0.35, 0.5, 0.81])
+def test_what_lies_between_the_squares_is_brought_right_into_its_corner(part: float, tmp_path: Path) -> None:
+    world = room(f'object(t, g, "{box(8 + part, 6 + part, 11 + part, 9 + part)}").')
+    into_northeast(scene(tmp_path, world, "object(x). shape(x, square).", "at(x, corner(northeast))."))
+
+
+@pytest.mark.parametrize(
+    ("seed", "kind", "how"),
+    [
+        (402016, "wide", "is taken along: a room is not seen that may go further"),
+        (370059, "loose", "is led out, to be taken otherwise"),
+    ],
+)
+def test_who_is_shut_in_a_corner_leads_out_what_he_holds(seed: int, kind: str, how: str, tmp_path: Path) -> None:
+    trial = run_trial(5, seed, Conditions(kind=kind), tmp_path)
+    assert how in next(tmp_path.rglob("episode.jsonl")).read_text()
+    assert trial.achieved
+    assert trial.believed

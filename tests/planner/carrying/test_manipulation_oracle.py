@@ -1,0 +1,236 @@
+"""What is said of a thing for which no way is found."""
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
+
+import pytest
+import shapely
+import shapely.affinity
+
+from geometry.cspace.bottleneck import Neck
+from geometry.manipulation.plan_carrying import Carrying, Inside
+from kb.language.reader import facts_of
+from kb.mapping.occupancy import FULL
+from kb.objects.held_object import covered
+from kb.task.task import Task
+from kb.world.model import Node
+from kb.world.rooms import SURE
+from planner.carrying.infeasibility import Refusal, nearest_to_done, refusal
+from planner.carrying.manipulation_oracle import KEPT, OFTEN, Haul, Hauler, Request
+from planner.goals.placement import LIKELY
+from tests.kb.drawings import seen_whole
+from tests.planner.situations import situation_of
+
+PARTED = [
+    "b" * 24,
+    *["b" + "." * 10 + "bb" + "." * 10 + "b"] * 4,
+    "b...gggg...............b",
+    "b...gggg..........U....b",
+    "b...gggg...bb..........b",
+    "b...gggg...bb..........b",
+    *["b" + "." * 10 + "bb" + "." * 10 + "b"] * 4,
+    "b" * 24,
+]
+
+STOPPED_UP = [  # a square in the door leaves it too narrow
+    "b" * 24,
+    *["b" + "." * 10 + "bb" + "." * 10 + "b"] * 3,
+    *["b" + "." * 22 + "b"] * 2,
+    "b...................U..b",
+    "b" + "." * 10 + "r" + "." * 11 + "b",
+    "b" + "." * 22 + "b",
+    *["b" + "." * 10 + "bb" + "." * 10 + "b"] * 3,
+    "b" * 24,
+]
+
+
+def asked(west: float, turned: float = 0.0, dubious: bool = False, stuck: int = 0, sure: bool = True) -> Haul | Refusal:
+    """The way through a door two squares wide for a thing four wide with its west side there; it was drawn at 4."""
+    model = seen_whole(PARTED)
+    (node,) = model.objects
+    view = model.view._replace(sure=sure)
+    model = replace(model, view=view)
+    left, bottom = view.west + west, view.south + 5
+    square = shapely.box(left, bottom, left + 4, bottom + 4)
+    node = replace(node, polygon=square, moved=turned != 0.0, turned=turned, dubious=dubious, stuck=stuck)
+    return Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}), situation_of(model))
+
+
+def test_a_passage_that_is_too_narrow_is_a_proof() -> None:
+    answer = asked(4)
+    assert isinstance(answer, Refusal)
+    assert answer.proved
+    assert "too narrow by 2.00" in answer.reason()
+
+
+@pytest.mark.parametrize("west", [-0.5, 0.5, 9.0])
+def test_what_seems_to_lie_in_a_wall_proves_nothing(west: float) -> None:
+    answer = asked(west)
+    assert isinstance(answer, Refusal)
+    assert not answer.proved
+    assert "overlap a wall" in answer.reason()
+
+
+@pytest.mark.parametrize(("turned", "proved"), [(0.0, True), (-90.0, True), (181.0, True), (75.0, False)])
+def test_what_he_has_turned_askew_proves_nothing(turned: float, proved: bool) -> None:
+    answer = asked(4, turned)
+    assert isinstance(answer, Refusal)
+    assert answer.proved == proved
+    assert ("askew" in answer.reason()) != proved
+
+
+@pytest.mark.parametrize(
+    ("moved", "west", "opens", "proved"),
+    [
+        (True, 4.3, False, False),
+        (True, 4.0, False, True),
+        (False, 4.3, False, True),
+        (True, 4.3, True, True),
+    ],
+)
+def test_what_was_stopped_amid_squares_and_no_wider_passage_would_let_on_proves_nothing(
+    moved: bool, west: float, opens: bool, proved: bool
+) -> None:
+    shape = shapely.box(west, 5, west + 4, 9)
+    node = Node("o1", "object", 60, "part1", covered(shape), 0, polygon=shape, moved=moved)
+    plan = Carrying("impossible", reason="body")
+    neck = Neck((9.0, 7.0), ((9.0, 6.0), (9.0, 8.0)), 2.0)
+    plan.__dict__.update(passage=neck, opens=opens, missing=0.5 if opens else math.inf)  # as if it had been worked out
+    answer = refusal(node, [(2, plan)], seen_whole(PARTED))
+    assert answer.proved == proved
+    assert ("stopped on its way" in answer.reason()) != proved
+
+
+@pytest.mark.parametrize(("anew", "askew", "proved"), [(False, 20.0, True), (True, 20.0, False), (True, 0.0, True)])
+def test_what_lies_askew_proves_nothing_once_all_was_forgotten(anew: bool, askew: float, proved: bool) -> None:
+    model = replace(seen_whole(PARTED), anew=anew)
+    (node,) = model.objects
+    shape = shapely.affinity.rotate(shapely.box(4, 5, 8, 9), askew)
+    west, south = model.view.west, model.view.south
+    node = replace(node, polygon=shapely.affinity.translate(shape, west, south), moved=False)
+    answer = Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}), situation_of(model))
+    assert isinstance(answer, Refusal)
+    assert answer.proved == proved
+    assert ("forgotten" in answer.reason()) != proved
+
+
+@pytest.mark.parametrize("dubious", [False, True])
+def test_what_is_seen_to_agree_ill_with_where_it_lies_proves_nothing(dubious: bool) -> None:
+    answer = asked(4, dubious=dubious)
+    assert isinstance(answer, Refusal)
+    assert answer.proved != dubious
+    assert ("agree" in answer.reason()) == dubious
+
+
+@pytest.mark.parametrize(("stuck", "sure"), [(0, True), (0, False), (1, True), (1, False)])
+def test_what_did_not_move_proves_nothing_for_who_is_not_sure_of_his_map(stuck: int, sure: bool) -> None:
+    answer = asked(4, stuck=stuck, sure=sure)
+    assert isinstance(answer, Refusal)
+    assert answer.proved == (sure or not stuck)
+    assert ("did not move" in answer.reason()) != answer.proved
+
+
+@pytest.mark.parametrize(("inexact", "apart", "proved"), [(False, 0, True), (True, 0, False), (True, 2, True)])
+def test_what_may_be_part_of_what_is_carried_proves_nothing(inexact: bool, apart: int, proved: bool) -> None:
+    model = seen_whole(STOPPED_UP)
+    x, y = model.view.west + 11, model.view.south + 5
+    small, square = shapely.box(x, y, x + 1, y + 1), shapely.box(x - 4 - apart, y - 1, x - apart, y + 3)
+    assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == FULL
+    beside = Node("o1", "object", LIKELY - 1, "part1", covered(small), 0, polygon=small)
+    node = Node("o2", "object", 99, "part2", covered(square), 0, polygon=square, moved=True, inexact=inexact)
+    model = replace(model, objects=(beside, node))
+    answer = Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 11))}), situation_of(model))
+    assert isinstance(answer, Refusal) == proved
+    assert not isinstance(answer, Refusal) or answer.proved
+
+
+@pytest.mark.parametrize(("movable", "thick", "proved"), [(0, 1, False), (0, 3, True), (50, 1, False)])
+def test_what_cannot_be_moved_may_cover_the_squares_at_its_rim_in_part(movable: int, thick: int, proved: bool) -> None:
+    """It stands in a door of five squares, as high and as thick as that; what is carried is four squares wide.
+
+    What may be moved is moved out of the way.
+    """
+    rows, half = [line.replace("r", ".") for line in STOPPED_UP], thick // 2
+    for n in range(6 - half, 7 + half):
+        rows[n] = rows[n][: 11 - half] + "r" * thick + rows[n][12 + half :]
+    model = seen_whole(rows)
+    x, y = model.view.west + 11 - half, model.view.south + 6 - half
+    assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == FULL
+    fixed, square = shapely.box(x, y, x + thick, y + thick), shapely.box(x - 6, y - 2, x - 2, y + 2)
+    other = Node("o1", "object", 60, "part1", covered(fixed), 0, polygon=fixed, movable=movable)
+    node = Node("o2", "object", 99, "part2", covered(square), 0, polygon=square)
+    model = replace(model, objects=(other, node))
+    answer = Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 12))}), situation_of(model))
+    assert isinstance(answer, Refusal) == proved
+    assert answer.proved if isinstance(answer, Refusal) else answer.aside == ("o1",)
+
+
+@pytest.mark.parametrize(
+    ("plans", "told"),
+    [([(4, 1.0), (4, math.inf)], 0), ([(0, 1.0), (4, math.inf)], 1), ([(4, 2.0), (4, 1.0)], 1), ([(4, math.nan)], 0)],
+)
+def test_the_passage_told_is_one_that_could_be_widened(plans: list[tuple[int, float]], told: int) -> None:
+    asked_for = [(level, cast(Carrying, SimpleNamespace(opens=math.isfinite(missing)))) for level, missing in plans]
+    assert nearest_to_done(asked_for) is asked_for[told][1]
+
+
+FLUSH = [  # an L of five squares, and a door as wide
+    "b" * 30,
+    *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 4,
+    "b" + "." * 28 + "b",
+    "b....gg" + "." * 22 + "b",
+    "b....gg" + "." * 15 + "U......b",
+    "b....ggggg" + "." * 19 + "b",
+    "b....ggggg" + "." * 19 + "b",
+    *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 5,
+    "b" * 30,
+]
+
+
+@pytest.mark.parametrize(("tight", "kept"), [(0, 0.0), (OFTEN, KEPT)])
+def test_what_stood_against_something_often_keeps_its_distance(tight: int, kept: float) -> None:
+    model = seen_whole(FLUSH)
+    (node,) = model.objects
+    west, south = model.view.west + 5, model.view.south + 6
+    ell = [(0, 0), (5, 0), (5, 2), (2, 2), (2, 4), (0, 4)]
+    node = replace(node, polygon=shapely.Polygon([(x + west, y + south) for x, y in ell]))
+    room = Inside(shapely.box(16, 1, 29, 15))
+    found = Hauler().find(Request(node, {"r": room}, tight=tight), situation_of(model))
+    assert isinstance(found, Haul)
+    walls = shapely.union_all(
+        [shapely.box(c, r, c + 1, r + 1) for r, c in zip(*(model.view.state == FULL).nonzero(), strict=True)]
+    ).difference(shapely.box(5, 6, 10, 10))
+    shape = shapely.Polygon([(x + 5, y + 6) for x, y in ell])
+    nearest = 1.0
+    for leg in found.plan.legs:
+        for motion in leg.motions:
+            nearest = min(nearest, *(motion.part(n / 64).carry(shape).distance(walls) for n in range(1, 65)))
+            shape = motion.carry(shape)
+    assert room.polygon.covers(shape)
+    assert nearest >= kept - 1e-6
+
+
+@pytest.mark.parametrize(
+    ("who", "found", "proved"), [("", True, False), ("y", True, False), ("x", False, True), ("utak", False, False)]
+)
+def test_nothing_is_carried_through_a_door_that_the_task_forbids(who: str, found: bool, proved: bool) -> None:
+    """It may go through where only he may not: that no way is found with him proves nothing."""
+    rows = [row.replace("gggg", "gg..") for row in PARTED]
+    model = seen_whole(rows)
+    (node,) = model.objects
+    left, bottom = node.patch.west, node.patch.south
+    node = replace(node, polygon=shapely.box(left, bottom, left + 2, bottom + 4))
+    model = replace(model, objects=(node,), held=node.name, place=(left + 2.5, bottom + 1.5))
+    task = Task({}, (), facts_of(f"not_through({who}, d).") if who else ())
+    situation = situation_of(model, {"x": node.name}, task)
+    assert len(situation.rooms.sure) == 1
+    request = Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}, held=True)
+    answer = Hauler().find(request, situation)
+    assert isinstance(answer, Haul) == found
+    assert not isinstance(answer, Refusal) or answer.proved == proved
+    (door,) = situation.rooms.doors
+    likely = replace(situation, rooms=replace(situation.rooms, doors=(replace(door, confidence=SURE - 1),)))
+    assert bool(likely.forbidden(node.name)) == (who == "x")  # a thing is kept from what may be a door
+    assert bool(likely.forbidden("utak")) == (who == "utak")  # and Utak, too, while no door is sure

@@ -1,0 +1,110 @@
+"""Doors that the task forbids: which one is meant, and whether it was gone through."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kb.task.task import Task
+from kb.world.rooms import Door, crosses, went_through
+from planner.goals.robot_goals import Situation
+from tests.kb.drawings import seen_whole
+from tests.planner.carrying.test_carrying import run, scene
+from tests.planner.goals.test_object_goals import facts_of
+from tests.planner.situations import situation_of
+
+DOOR = Door("d1", (5.0, 2.0), (5.0, 5.0), (1, 2), 99)
+WALL = "b" + "." * 11 + "bb" + "." * 11 + "b"
+OPEN = "b" + "." * 24 + "b"
+BEGUN = "b..U" + "." * 8 + "bb" + "." * 11 + "b"
+ONE_DOOR = ["b" * 26, *[WALL] * 4, BEGUN, *[OPEN] * 3, *[WALL] * 4, "b" * 26]
+TWO_DOORS = [row[:-1] + ("." if row == OPEN else "b") + row[12:] for row in ONE_DOOR]  # and a third room
+NEVER = Task({}, (), facts_of("not_through(utak, d)."))
+
+
+@pytest.mark.parametrize(
+    ("track", "through"),
+    [
+        ([(1, 3), (8, 3)], True),
+        ([(1, 3), (8, 3), (1, 3)], True),  # there and back
+        ([(1, 3), (4.9, 3)], False),
+        ([(1, 8), (8, 8)], False),  # beside it
+        ([(1, 3)], False),
+        ([], False),
+    ],
+)
+def test_through_a_door_is_over_its_neck(track: list[tuple[float, float]], through: bool) -> None:
+    assert went_through(np.array(track, float).reshape(-1, 2), DOOR) == through
+
+
+def test_there_and_back_crosses_nothing_in_all() -> None:
+    assert crosses(np.array([(1, 3), (8, 3), (1, 3)], float), DOOR) == 0
+
+
+def situation(rows: list[str], confidence: int, *track: tuple[float, float]) -> Situation:
+    """A situation in a drawn house all of whose doors are believed as much. track : squares from where Utak woke."""
+    found = situation_of(seen_whole(rows), task=NEVER)
+    doors = tuple(replace(door, confidence=confidence) for door in found.rooms.doors)
+    return replace(found, rooms=replace(found.rooms, doors=doors), track=((0.5, 0.5), *track))
+
+
+def names(doors: tuple[Door, ...]) -> list[str]:
+    return [door.name for door in doors]
+
+
+def test_one_door_is_meant_and_others_may_be_used() -> None:
+    assert len(situation(TWO_DOORS, 99).rooms.doors) == 2
+    assert names(situation(TWO_DOORS, 99).forbidden("utak")) == ["d1"]
+
+
+def test_while_no_door_is_sure_none_may_be_used() -> None:
+    assert names(situation(TWO_DOORS, 40).forbidden("utak")) == ["d1", "d2"]
+    assert names(situation(TWO_DOORS, 10).forbidden("utak")) == ["d1", "d2"]  # however unlikely
+
+
+def test_the_door_that_was_gone_through_is_not_the_one_that_is_meant() -> None:
+    (middle,) = situation(ONE_DOOR, 99).rooms.doors
+    x, y = middle.place
+    model = situation(ONE_DOOR, 99).model
+    there = (x + model.view.west + 4.0, y + model.view.south)
+    here = (x + model.view.west - 4.0, y + model.view.south)
+    assert situation(ONE_DOOR, 99, here, there).avoided == ()
+    assert names(situation(ONE_DOOR, 99, here).avoided) == ["d1"]
+    two = situation(TWO_DOORS, 99, here, there)
+    assert len(two.avoided) == 1 and two.forbidden("utak") == two.avoided
+
+
+def test_who_is_not_forbidden_a_door_may_use_it() -> None:
+    assert replace(situation(ONE_DOOR, 99), task=Task({}, (), ())).forbidden("utak") == ()
+
+
+def two_rooms(door: tuple[int, int], mirrored: bool) -> str:
+    """A world of two rooms one above the other and a door between them, from one x to another; or its mirror image."""
+    across = [
+        (23, 21),
+        (door[1], 21),
+        (door[1], 23),
+        (23, 23),
+        (23, 43),
+        (2, 43),
+        (2, 23),
+        (door[0], 23),
+        (door[0], 21),
+    ]
+    ring = [*across, (2, 21), (2, 2), (23, 2)]
+    utak = (14.5, 29.5)
+    if mirrored:
+        ring, utak = [(25 - x, y) for x, y in ring], (25 - utak[0], utak[1])
+    hole = ", ".join(f"{x} {y}" for x, y in [*ring, ring[0]])
+    verge = f'verge("POLYGON ((0 0, 25 0, 25 45, 0 45, 0 0), ({hole}))").'
+    return f'table(25, 45).\n{verge}\nutak("POINT ({utak[0]} {utak[1]})", 270).\n'
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("door", [(5, 10), (8, 11), (16, 20)])
+def test_the_only_door_is_never_gone_through(door: tuple[int, int], mirrored: bool, tmp_path: Path) -> None:
+    goals = "in(utak, room(next)). not_through(utak, d)."
+    found = run(scene(tmp_path, two_rooms(door, mirrored), "door(d).", goals))
+    assert found.result.verdict == "possible_if" and "forbidden" in found.result.reason
+    assert found.session.table.utak[1] > 22.0

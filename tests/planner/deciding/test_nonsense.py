@@ -1,0 +1,50 @@
+"""Whatever he is shown, Utak goes on or gives up with a reason: a broken eye is no reason to fall over."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kb.body import Command, Impression
+from kb.perception.retina import FIELDS, OWN
+from kb.task.task import Task
+from planner.cycle import Options, Robot
+from tests.kb.eyes import impression, random_room, utak_in, world_of
+from tests.planner.test_cycle import NORTHEAST, SQUARE
+
+LEVELS = {1: (0, 7), 2: (0, 2, 4, 5, 7), 4: tuple(range(8))}
+
+
+class Nonsense:
+    """A body that shows random impressions, at least in part."""
+
+    def __init__(self, seed: int, broken: float) -> None:
+        self.rng, self.broken = np.random.default_rng(seed), broken
+        rows = random_room(self.rng, 24, 20, things=4)
+        self.rows = [rows[0], *rows[1:5], rows[5][:5] + "U" + rows[5][6:], *rows[6:]]
+
+    def wake(self) -> Impression:
+        true = impression(world_of(self.rows), utak_in(self.rows))
+        levels = [
+            level if self.rng.random() >= self.broken else int(self.rng.choice(LEVELS[field.side]))
+            for level, field in zip(true.retina, FIELDS, strict=True)
+        ]
+        levels[OWN] = 7
+        touch = tuple(self.rng.choice(["b", "g", None]) if self.rng.random() < self.broken else t for t in true.touch)
+        return Impression(tuple(levels), touch)
+
+    def act(self, command: Command) -> Impression:
+        return self.wake()
+
+
+@pytest.mark.parametrize("task", [Task({}, (), (NORTHEAST,)), SQUARE], ids=["corner", "square"])
+@settings(max_examples=3, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), broken=st.sampled_from([0.02, 0.3, 1.0]))
+def test_nonsense_is_survived(task: Task, seed: int, broken: float) -> None:
+    robot = Robot(Nonsense(seed, broken), task, Options(max_steps=6))
+    report = robot.wake()
+    while not robot.finished:
+        assert sum(report.belief["cells"].values()) == len(FIELDS)
+        report = robot.step()
+    assert robot.verdict.verdict in ("done", "impossible", "possible_if", "limit")
+    assert robot.verdict.reason

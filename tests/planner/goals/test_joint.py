@@ -1,0 +1,66 @@
+"""Which goals cannot hold at once."""
+
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from geometry.manipulation.goals import At, End, InCorner, Inside, met, placed
+from geometry.motion.se2 import Pose
+from planner.goals.joint import confines, conflict, opposite_corners
+from planner.goals.placement import Landing
+from tests.kb.drawings import seen_whole
+from tests.planner.goals.test_object_goals import facts_of
+from tests.planner.situations import BESIDE_A_THING, situation_of
+
+THING = shapely.box(3, 3, 6, 5)
+NORTHEAST, SOUTHWEST = InCorner(20.0, 16.0, 1, 1), InCorner(0.0, 0.0, -1, -1)
+EVERYWHERE = Inside(shapely.box(0, 0, 20, 16))
+
+
+def land(*ends: End, missing: str = "") -> Landing:
+    return Landing({f"e{number}": end for number, end in enumerate(ends)}, missing)
+
+
+@pytest.mark.parametrize(
+    ("lands", "found"),
+    [
+        ([land(NORTHEAST), land(SOUTHWEST)], (0, 1)),
+        ([land(EVERYWHERE), land(NORTHEAST), land(SOUTHWEST)], (1, 2)),
+        ([land(NORTHEAST), land(EVERYWHERE)], None),
+        ([land(NORTHEAST), land(SOUTHWEST, missing="more is to be seen")], None),
+        ([land(NORTHEAST), land(SOUTHWEST, NORTHEAST)], None),  # one of its places will do
+        ([land(InCorner(6.0, 5.0, 1, 1)), land(InCorner(3.0, 3.0, -1, -1))], None),  # it fills the room
+        ([land(Inside(shapely.box(0, 0, 5, 5))), land(Inside(shapely.box(4, 0, 9, 5)))], (0, 1)),
+        ([land(At(Pose(0.0, 0.0, 0.0))), land(At(Pose(0.0, 2.5, 0.0)))], (0, 1)),
+    ],
+)
+def test_goals_whose_places_lie_apart_are_told(lands: list[Landing], found: tuple[int, int] | None) -> None:
+    assert conflict(lands, THING) == found
+
+
+@given(
+    st.sampled_from([NORTHEAST, SOUTHWEST, EVERYWHERE, Inside(shapely.box(0, 0, 9, 9)), At(Pose(2.0, 3.0, 90.0))]),
+    st.floats(-3, 17),
+    st.floats(-3, 13),
+    st.floats(0, 360),
+)
+def test_what_meets_a_goal_lies_within_its_region(end: End, dx: float, dy: float, degrees: float) -> None:
+    pose = end.pose if isinstance(end, At) else Pose(dx, dy, degrees)
+    lying = placed(THING, pose)
+    if met(end, THING, lying):
+        assert confines(end, THING).buffer(1e-5).covers(lying)
+
+
+def test_opposite_corners_are_apart_whatever_else_there_is() -> None:
+    situation = situation_of(seen_whole(BESIDE_A_THING))
+    both = facts_of("at(utak, corner(northeast)). at(utak, corner(southwest)).")
+    assert "too far apart" in opposite_corners(both, situation)
+    one_side = facts_of("at(utak, corner(northeast)). at(utak, corner(northwest)).")
+    assert opposite_corners(one_side, situation) == ""  # with more floor they may be one
+
+
+def test_in_a_nook_opposite_corners_are_near_enough() -> None:
+    situation = situation_of(seen_whole(["bbbb", "b.Ub", "b..b", "bbbb"]))
+    both = facts_of("at(utak, corner(northwest)). at(utak, corner(southeast)).")
+    assert opposite_corners(both, situation) == ""

@@ -1,0 +1,40 @@
+"""Where the furthest corner may lie: in rooms that are not seen, as far as they are looked for."""
+
+import pytest
+
+from planner.goals.robot_goals import BESIDE_DOOR, FURTHEST, ONWARD, rooms_to_see
+from tests.kb.drawings import seen_whole
+from tests.planner.situations import situation_of
+
+DOOR = 2  # columns west of it
+
+
+def looks(wide: int, high: int, north: bool, side: str = "northeast") -> int:
+    """How many rooms are looked for towards a corner of a room with a door in its north or south wall, beyond which all
+    is unseen."""
+    wall = "b" * (1 + DOOR) + "..." + "b" * (wide - DOOR - 2)
+    inside = [*["b" + "." * wide + "b"] * (high - 1), "b....U" + "." * (wide - 5) + "b"]
+    rows = ["b" * (wide + 2), *inside, wall, wall, *["?" * len(wall)] * 3]
+    situation = situation_of(seen_whole(rows[::-1] if north else rows))
+    assert len(situation.rooms.doors) == 1
+    return len(rooms_to_see(side, situation))
+
+
+@pytest.mark.parametrize(("wide", "high"), [(12, 8), (16, 8), (18, 10), (19, 10), (22, 12), (34, 24)])
+def test_a_room_behind_a_door_that_leads_away_from_a_corner_may_go_further_to_its_sides_only(
+    wide: int, high: int
+) -> None:
+    short = wide - DOOR - 3 + high + 1  # from the door's near end to the corner, east and north added
+    assert looks(wide, high, north=False) == (short <= BESIDE_DOOR)
+
+
+@pytest.mark.parametrize("wide", [16, 30, 48, 52, 53, 60])
+def test_a_room_behind_a_door_that_leads_towards_a_corner_may_go_further(wide: int) -> None:
+    short = wide - DOOR - 3 - 2
+    assert looks(wide, 12, north=True) == (short <= min(FURTHEST, ONWARD + BESIDE_DOOR))
+
+
+@pytest.mark.parametrize("north", [True, False])
+def test_what_is_looked_for_depends_on_where_the_door_leads(north: bool) -> None:
+    for side in ("northeast", "southeast"):
+        assert looks(28, 18, north, side) == (("north" in side) == north)

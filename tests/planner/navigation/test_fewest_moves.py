@@ -1,0 +1,173 @@
+"""Who carries things goes by the fewest straight moves."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from kb.language.diagnostics import Span
+from kb.language.terms import Symbol
+from kb.task.task import Task
+from kb.world.rooms import rooms_of
+from planner.deciding.decider import Decider
+from planner.navigation.fewest_moves import MANY_MOVES, MOVE, WAY, FewestMoves
+from planner.navigation.subgoals import Aim
+from planner.screen.moves import one_move
+from planner.screen.projection import Screens
+from planner.screen.sweeps import clear
+from planner.screen.unseen_gain import REACH
+from planner.sights.frontiers import best_views
+from tests.kb.drawings import seen_whole
+from tests.planner.situations import situation_of
+
+WALLS = [
+    "b" * 40,
+    *["b" + "." * 38 + "b"] * 5,
+    "b.........bbbbbbbbbbbbbbbbbbbbbbbbbbbbbb",
+    "b.........bbbbbbbbbbbbbbbbbbbbbbbbbbbbbb",
+    *["b" + "." * 38 + "b"] * 4,
+    "bbbbbbbbbbbbbbbbbbbbbbbbbbbbbb.........b",
+    "bbbbbbbbbbbbbbbbbbbbbbbbbbbbbb.........b",
+    *["b" + "." * 38 + "b"] * 2,
+    "b..U" + "." * 35 + "b",
+    *["b" + "." * 38 + "b"] * 2,
+    "b" * 40,
+]
+
+
+def flat(column: int, line: int) -> int:
+    """The flat index of a square of the drawing, its lines counted from the north."""
+    return (len(WALLS) - 1 - line) * len(WALLS[0]) + column
+
+
+def aim(*squares: tuple[int, int]) -> Aim:
+    """An aim at squares (column, line) of the drawing."""
+    return Aim("explore", np.array([flat(*square) for square in squares]), "there", 50)
+
+
+def symbol(name: str, *args: Symbol) -> Symbol:
+    return Symbol(name, args, Span(0, 0, 0))
+
+
+@pytest.fixture
+def screens() -> Screens:
+    return Screens(seen_whole(WALLS))
+
+
+def test_of_an_aim_what_one_move_leads_to_counts(screens: Screens) -> None:
+    behind, open_ = (31, 12), (29, 15)
+    assert one_move(screens, "explore").ravel()[[flat(*behind), flat(*open_)]].tolist() == [False, True]
+    fewest = FewestMoves(screens)
+    (priced,) = fewest.priced([aim(behind, open_)])
+    assert priced.squares.tolist() == [flat(*open_)]
+    way = fewest.way(priced)
+    assert way is not None
+    assert way.squares == (screens.here, (29, len(WALLS) - 1 - 15))
+
+
+def test_a_move_is_saved_by_a_long_detour() -> None:
+    rows = ["b" * 40, *["b" + "." * 38 + "b"] * 11, "b..U........b" + "." * 26 + "b", "b" * 40]
+    screens = Screens(seen_whole(rows))
+    width = len(rows[0])
+    behind, far = width + 14, 12 * width + 37
+    assert one_move(screens, "explore").ravel()[[behind, far]].tolist() == [False, True]
+    ways = screens.distances[0].ravel()[[behind, far]] / 5
+    assert ways[0] + 2 < ways[1]
+    (priced,) = FewestMoves(screens).priced([Aim("explore", np.array([behind, far]), "there")])
+    assert priced.squares.tolist() == [far]
+
+
+@pytest.mark.parametrize(("square", "moves"), [((29, 15), 1), ((33, 9), 2), ((3, 2), MANY_MOVES)])
+def test_an_aim_costs_what_its_moves_cost_and_a_share_of_its_way(
+    screens: Screens, square: tuple[int, int], moves: int
+) -> None:
+    far = screens.distances[0].ravel()[flat(*square)] / 5
+    (priced,) = FewestMoves(screens).priced([aim(square)._replace(price=7.0)])
+    assert far + priced.price == pytest.approx(7.0 + moves * MOVE + WAY * far)
+
+
+def test_the_first_of_two_moves_ends_where_the_second_can_begin(screens: Screens) -> None:
+    met = aim((33, 9))
+    way = FewestMoves(screens).way(met)
+    assert way is not None
+    (_, via) = way.squares
+    end = (33, len(WALLS) - 1 - 9)
+    assert clear(screens.safe, screens.here, via)
+    assert clear(screens.safe, via, end)
+    assert FewestMoves(screens).way(aim((3, 2))) is None
+
+
+@pytest.mark.parametrize("unseen", ["north", "south"])
+def test_he_turns_where_he_sees_what_he_has_not_seen(unseen: str) -> None:
+    """A block stands between him and what he aims at; either side of it leads round as far."""
+    hall, block = "b" + "." * 58 + "b", "b" + "." * 25 + "b" * 8 + "." * 25 + "b"
+    here = "b..U" + block[4:]
+    model = seen_whole(["b" * 60, *[hall] * 9, *[block] * 4, here, *[block] * 4, *[hall] * 9, "b" * 60])
+    seen = model.view.seen.copy()
+    seen[slice(-4, None) if unseen == "north" else slice(4)] = False
+    screens = Screens(replace(model, view=model.view._replace(seen=seen)))
+    row = screens.here[1]
+    way = FewestMoves(screens).way(Aim("explore", np.array([row * 60 + 56]), "there"))
+    assert way is not None
+    assert (way.squares[1][1] > row) == (unseen == "north")
+
+
+def half_seen(shown: int) -> Screens:
+    """A hall of which so many columns were seen, from its west, where he stands."""
+    model = seen_whole(["b" * 60, *["b" + "." * 58 + "b"] * 17, "b..U" + "." * 55 + "b", "b" * 60])
+    seen = model.view.seen.copy()
+    seen[:, shown:] = False
+    return Screens(replace(model, view=model.view._replace(seen=seen)))
+
+
+def test_the_best_view_is_had_where_most_comes_into_sight_for_its_way() -> None:
+    screens = half_seen(40)
+    met = one_move(screens, "explore")
+    (look,) = best_views(screens, met, MOVE, WAY)
+    columns = look.squares % met.shape[1]
+    assert met.ravel()[look.squares].all()
+    assert columns.min() > 40 - REACH  # from further west hardly anything new is seen
+    assert (columns < 39).any()  # and it need not be right beside what was not
+    west = met & (np.arange(met.shape[1]) < columns.min())
+    (nearer,) = best_views(screens, west, MOVE, WAY)
+    assert 1 <= nearer.chance <= look.chance
+
+
+def test_there_is_no_view_where_nothing_new_comes_into_sight() -> None:
+    screens = half_seen(60)
+    amid = np.zeros_like(one_move(screens, "explore"))
+    assert best_views(screens, amid, MOVE, WAY) == []
+    hall = seen_whole(["b" * 70, *["b" + "." * 68 + "b"] * 40, "b..U" + "." * 65 + "b", "b" * 70])
+    screens = Screens(hall)
+    amid = np.zeros(hall.view.seen.shape, bool)
+    amid[20:23, 30:40] = True
+    assert best_views(screens, amid, MOVE, WAY) == []
+
+
+def test_every_first_move_is_one_that_may_be_made() -> None:
+    for spread in (0.0, math.pi):
+        screens = Screens(replace(seen_whole(WALLS), likely_spread=spread))
+        reached = one_move(screens, "explore")
+        for square in np.flatnonzero(screens.floor)[::7].tolist():
+            way = FewestMoves(screens).way(Aim("explore", np.array([square]), "there"))
+            if way is not None:
+                column, row = way.squares[-1]
+                assert reached[row, column]
+
+
+def test_no_straight_move_leads_through_a_forbidden_door() -> None:
+    rows = ["b" * 30, *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 5, "b...U" + "." * 24 + "b"]
+    rows += ["b" + "." * 28 + "b"] * 2 + rows[1:6] + ["b" * 30]
+    model = seen_whole(rows)
+    assert len(rooms_of(model).doors) == 1
+    carried = symbol("at", symbol("x"), symbol("corner", symbol("northeast")))
+    never = symbol("not_through", symbol("utak"), symbol("d"))
+    screens, beyond = Screens(model), Aim("explore", np.array([7 * 30 + 25]), "there")
+    assert FewestMoves(screens).way(beyond) is not None
+    for goals, moves in (((carried,), True), ((carried, never), False)):
+        task = Task({}, (), goals)
+        decider = Decider(task)
+        situation = situation_of(model, task=task)
+        decision = decider.pursuer._walk(beyond, decider.stages[0], situation, FewestMoves(screens))
+        assert (decision.command is not None) == moves

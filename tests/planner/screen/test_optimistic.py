@@ -1,0 +1,123 @@
+"""Floor that is hoped for, and plans that are begun over it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from geometry.manipulation.goals import End
+from geometry.manipulation.plan_carrying import Inside
+from kb.world.model import Node, WorldModel
+from planner.carrying.manipulation_oracle import Haul, Hauler, Request
+from planner.goals.robot_goals import Situation
+from planner.screen.optimistic import BEYOND, hoped_floor, spread
+from planner.screen.projection import UNSEEN, marked
+from tests.kb.drawings import seen_whole, unclear
+from tests.planner.situations import situation_of
+
+HALF_SEEN = [  # the room goes on behind what is seen of it
+    "b" * 22 + "??",
+    *["b" + "." * 21 + "??"] * 4,
+    "b...gggg" + "." * 14 + "??",
+    "b...gggg.........U....??",
+    *["b" + "." * 21 + "??"] * 4,
+    "b" * 22 + "??",
+]
+
+WALLED = [  # what is seen to be next lies behind a wall that the thing must be pushed round
+    "b" * 22 + "??",
+    *["b" + "." * 9 + "b" + "." * 11 + "??"] * 4,
+    "b...gggg" + "." * 14 + "??",
+    "b...gggg.........U....??",
+    *["b" + "." * 21 + "??"] * 4,
+    "b" * 22 + "??",
+]
+
+JAGGED = [  # what is seen of the next room leaves no place for the thing right behind the door
+    "b" * 34,
+    *["b" + "." * 12 + "bb" + "." * 18 + "b"] * 4,
+    *["b..gggg" + "." * 6 + "bb" + "." * 18 + "b"] * 2,
+    "b..gggg.......U" + "." * 18 + "b",
+    *["b" + "." * 32 + "b"] * 4,
+    *["b" + "." * 12 + "bb" + "." * 18 + "b"] * 3,
+    "b" * 34,
+]
+
+
+@settings(deadline=None)
+@given(st.integers(1, 10), st.integers(1, 23))
+def test_only_what_was_never_seen_is_hoped_for_and_not_too_far(row: int, column: int) -> None:
+    situation = situation_of(seen_whole(HALF_SEEN))
+    shape = situation.model.view.seen.shape
+    mask = marked(np.array([row * shape[1] + column]), shape)
+    wider = spread(mask, situation)
+    assert wider.shape == tuple(size + 2 * BEYOND for size in mask.shape)
+    inside = wider[BEYOND:-BEYOND, BEYOND:-BEYOND]
+    assert not (inside & situation.model.view.seen & ~mask).any()
+    rows, columns = np.nonzero(wider)
+    assert (abs(rows - BEYOND - row) + abs(columns - BEYOND - column)).max() <= BEYOND
+    assert len(rows) > 1 if column >= 21 else len(rows) == 1
+
+
+def test_floor_is_hoped_to_go_on_behind_its_open_edge_but_not_through_walls() -> None:
+    situation = situation_of(seen_whole(HALF_SEEN))
+    free = hoped_floor(situation)
+    seen = np.pad(situation.screens.free(0), BEYOND)
+    beyond = free & ~seen
+    assert beyond[BEYOND + 5, BEYOND + 22 : BEYOND + 22 + BEYOND].all()
+    assert not beyond[BEYOND + 5, BEYOND + 22 + BEYOND :].any()
+    assert not beyond[BEYOND:-BEYOND, BEYOND : BEYOND + 22].any()
+
+
+def thing(model: WorldModel) -> Node:
+    """The one thing there is, with its outline."""
+    (node,) = model.objects
+    x0, y0 = node.patch.west, node.patch.south
+    rows, columns = node.patch.mask.shape
+    return replace(node, polygon=shapely.box(x0, y0, x0 + columns, y0 + rows))
+
+
+def found(
+    model: WorldModel, ends: dict[str, End], hoped: dict[str, End] | None = None, open_: bool = False
+) -> tuple[Haul, Situation]:
+    """The way that is chosen. open_ : is it open how the lattice lies?"""
+    model = replace(model, likely_spread=0.3) if open_ else model
+    situation = situation_of(model)
+    answer = Hauler().find(Request(thing(model), ends, hoped=lambda: hoped or {}), situation)
+    assert isinstance(answer, Haul)
+    return answer, situation
+
+
+def beside_the_jamb(chance: float) -> WorldModel:
+    """JAGGED, where two squares beside the door's jamb, over which the straight way leads, are not settled."""
+    return unclear(seen_whole(JAGGED), slice(8, 9), slice(13, 15), chance)
+
+
+THROUGH = {"r2": Inside(shapely.box(15, 1, 33, 15))}
+
+
+def test_a_push_over_what_is_hoped_to_be_free_is_taken_where_it_saves_one() -> None:
+    model = beside_the_jamb(0.2)
+    haul, situation = found(model, THROUGH)
+    assert haul.hopes and haul.level == UNSEEN
+    assert len(haul.plan.legs[0].motions) == 1
+    assert (haul.swept & ~situation.screens.free(0) & ~situation.model.mask(thing(model).patch)).any()
+    sure, _ = found(beside_the_jamb(0.6), THROUGH)
+    assert not sure.hopes and sure.plan.commands > haul.plan.commands
+
+
+def test_what_is_sure_is_not_left_for_a_hope_that_saves_nothing() -> None:
+    haul, _ = found(seen_whole(JAGGED), THROUGH)
+    assert not haul.hopes and haul.level == 0
+
+
+@pytest.mark.parametrize("open_", [False, True])
+def test_who_does_not_know_how_the_lattice_lies_ends_in_what_he_has_seen(open_: bool) -> None:
+    near, far = Inside(shapely.box(11, 7, 22, 11)), Inside(shapely.box(11, 1, 27, 11))
+    haul, _ = found(seen_whole(WALLED), {"r": near}, {"r": far}, open_)
+    assert haul.hopes != open_
+    if open_:
+        assert near.polygon.buffer(1e-6).covers(haul.plan.polygon)

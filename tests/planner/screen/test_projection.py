@@ -1,0 +1,384 @@
+"""The projection is monotone; what is aimed at, looked for and walked over is what it must be."""
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kb.mapping.occupancy import FREE, OPEN
+from kb.world.model import WorldModel
+from planner.navigation.encircle import pivot, ways_round, winding
+from planner.navigation.routes import choose_way, ways
+from planner.navigation.subgoals import Aim, choose
+from planner.screen.moves import HURRY, LOOSE, NARROW, STROLL, Pace, next_move, one_move
+from planner.screen.projection import TRUSTED, UNSEEN, WARY, Screens, grown
+from planner.screen.sweeps import clear_line, swept
+from planner.sights import frontiers
+from tests.kb.drawings import seen_whole, walked
+from tests.kb.eyes import random_room
+
+
+def random_walk(seed: int) -> WorldModel:
+    """The model of one who looked two or three times in a random room."""
+    rng = np.random.default_rng(seed)
+    while True:
+        rows = random_room(rng, *rng.integers(10, 34, 2), things=rng.integers(1, 7))
+        free = [(i, n) for n, row in enumerate(rows) for i, mark in enumerate(row) if mark == "."]
+        if free:
+            break
+    chosen = [free[k] for k in rng.integers(len(free), size=3)]
+    (i, n), *rest = chosen
+    rows[n] = rows[n][:i] + "U" + rows[n][i + 1 :]
+    places = [(i, n), *rest]
+    way = [(c - a, b - d) for (a, b), (c, d) in itertools.pairwise(places)]
+    return walked(rows, way).model
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_the_projection_is_monotone(seed: int) -> None:
+    screens = Screens(random_walk(seed))
+    for level in range(UNSEEN):
+        assert not (screens.free(level) & ~screens.free(level + 1)).any()
+        before, after = screens.distances[level], screens.distances[level + 1]
+        assert (after[before >= 0] >= 0).all()
+        assert (after <= before)[before >= 0].all()
+    assert not (screens.floor & ~screens.free(0)).any()
+    assert screens.floor[screens.here[1], screens.here[0]]
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_safe_squares_are_settled_or_far_from_doubt(seed: int) -> None:
+    model = random_walk(seed)
+    safe, view = Screens(model).safe, model.view
+    row, column = model.view.locate(*model.place)
+    for r, c in np.argwhere(safe).tolist():
+        if view.state[r, c] == FREE or (r, c) == (row, column):
+            continue
+        near = (slice(max(r - 1, 0), r + 2), slice(max(c - 1, 0), c + 2))
+        assert view.seen[near].all()
+        assert (view.probability[near][view.state[near] == OPEN] < 0.3).all()
+
+
+@given(st.integers(1, 9), st.integers(1, 9), st.integers(0, 2**32 - 1), st.integers(0, 3))
+def test_grown_is_chebyshev(rows: int, columns: int, seed: int, squares: int) -> None:
+    mask = np.random.default_rng(seed).random((rows, columns)) < 0.15
+    where = np.argwhere(mask)
+    want = [
+        [bool(len(where)) and int(np.abs(where - (r, c)).max(1).min()) <= squares for c in range(columns)]
+        for r in range(rows)
+    ]
+    assert np.array_equal(grown(mask, squares), np.array(want))
+
+
+HALL = [
+    "b" * 20,
+    *["b" + "." * 18 + "b"] * 5,
+    "b....U.....ggg.....b",
+    *["b..........ggg.....b"] * 2,
+    *["b" + "." * 18 + "b"] * 5,
+    "b" * 20,
+]
+
+
+def flat(model: WorldModel, x: int, y: int) -> np.ndarray:
+    """The flat index of a square (x, y) relative to where Utak woke."""
+    row, column = model.view.locate(x + 0.5, y + 0.5)
+    return np.array([row * model.labels.shape[1] + column])
+
+
+@pytest.mark.parametrize("pace", [STROLL, HURRY])
+@pytest.mark.parametrize("kind", sorted(STROLL.longest))
+def test_a_move_sweeps_safe_squares_alone(kind: str, pace: Pace) -> None:
+    model = seen_whole(HALL)
+    screens = Screens(model)
+    for goal in ((11, 0), (11, -2), (6, 5), (-4, 5), (0, 1)):
+        for way in ways(screens, 0, flat(model, *goal), "skeleton"):
+            move = next_move(screens, way.squares, kind, pace=pace)
+            east, north = round(move.east), round(move.north)
+            assert (east, north) == (move.east, move.north)
+            assert max(abs(east), abs(north)) <= pace.longest[kind]
+            c, r = swept(east, north)
+            assert screens.safe[r + screens.here[1], c + screens.here[0]].all()
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_longer_moves_than_a_step_are_safe_in_random_models(seed: int) -> None:
+    model = random_walk(seed)
+    screens = Screens(model)
+    squares = np.flatnonzero(screens.floor)
+    rng = np.random.default_rng(seed)
+    for goal in rng.choice(squares, size=min(4, len(squares)), replace=False):
+        for way in ways(screens, 0, np.array([goal]), "skeleton"):
+            if len(way.squares) < 2:
+                continue
+            move = next_move(screens, way.squares, "attain")
+            if max(abs(move.east), abs(move.north)) > 1:
+                c, r = swept(round(move.east), round(move.north))
+                assert screens.safe[r + screens.here[1], c + screens.here[0]].all()
+
+
+def test_ways_are_free_connected_and_distinct() -> None:
+    model = seen_whole(HALL)
+    screens = Screens(model)
+    found = ways(screens, 0, flat(model, 12, -1), "skeleton")
+    assert len(found) >= 2
+    for way in found:
+        assert way.squares[0] == screens.here
+        assert all(screens.free(0)[y, x] for x, y in way.squares)
+        assert all(abs(a - c) + abs(b - d) == 1 for (a, b), (c, d) in zip(way.squares, way.squares[1:], strict=False))
+    assert found[0].length <= found[1].length
+    chosen = choose_way(found, screens, frozenset(), (), frozenset())
+    assert chosen == found[0]
+    sticky = choose_way(found[:2], screens, frozenset(found[1].squares), (), frozenset())
+    assert sticky == (found[1] if found[1].length - found[0].length < 2 else found[0])
+
+
+def test_who_is_there_has_a_way_of_one_square() -> None:
+    model = seen_whole(HALL)
+    screens = Screens(model)
+    (way,) = ways(screens, 0, flat(model, 0, 0), "skeleton")
+    assert way.squares == (screens.here,)
+    assert way.length == 0
+
+
+def test_nearest_is_by_level_first() -> None:
+    rows = ["b" * 12, "b..........b", "b.U..?...?.b", "b..........b", "b" * 12]
+    model = seen_whole(rows)
+    screens = Screens(model)
+    reached = screens.nearest(np.concatenate([flat(model, 3, 0), flat(model, 8, 0)]))
+    assert reached is not None
+    assert reached.level == 0  # the further one is floor, the nearer one was never seen
+    assert reached.cost == pytest.approx(9.4)
+    only = screens.nearest(flat(model, 3, 0))
+    assert only is not None
+    assert only.level == UNSEEN
+    assert screens.nearest(flat(model, 9, 1)) is None
+
+
+def test_the_choice_of_an_aim() -> None:
+    model = seen_whole(HALL)
+    screens = Screens(model)
+    near, far = Aim("explore", flat(model, 1, 0), "near"), Aim("explore", flat(model, 12, 0), "far")
+    goal = Aim("attain", flat(model, 12, 3), "there")
+    assert choose([near, far], screens, frozenset()) == near
+    assert choose([near, far, goal], screens, frozenset()) == goal
+    wall = Aim("attain", flat(model, 14, 0), "in the wall")
+    assert choose([wall, far], screens, frozenset()) == far
+    assert choose([wall], screens, frozenset()) is None
+    assert choose([near._replace(price=30.0), far], screens, frozenset()) == far
+    assert choose([], screens, frozenset()) is None
+
+
+def test_frontiers_border_on_what_was_never_seen() -> None:
+    rows = ["bbbbb?????", "b....?????", "b.U..?????", "b.........", "bbbbb....?"]
+    model = seen_whole(rows)
+    screens = Screens(model)
+    found = np.unique(np.concatenate([look.squares for look in frontiers.frontiers(screens, 0)]))
+    near = grown(~model.view.seen, 1)
+    assert np.array_equal(found, np.flatnonzero(screens.floor & near))
+    closed = Screens(seen_whole(HALL))
+    assert frontiers.frontiers(closed, 0) == []
+    assert frontiers.vague_places(closed, 0, odd=False) == []
+    assert frontiers.rooms_beyond(closed) == []
+
+
+def test_floor_seen_over_a_wall_is_a_room_beyond() -> None:
+    rows = ["bbbbbbbbbbb", "b....b....b", "b.U..b....b", "b....b....b", "bbbbbbbbbbb"]
+    screens = Screens(seen_whole(rows))
+    (room,) = frontiers.rooms_beyond(screens)
+    assert len(room.squares) == 12
+    assert not screens.floor.ravel()[room.squares].any()
+    small = ["bbbbbbbbbbb", "b....b...bb", "b.U..b..bbb", "b....bbbbbb", "bbbbbbbbbbb"]
+    assert frontiers.rooms_beyond(Screens(seen_whole(small))) == []
+
+
+def test_a_second_look_from_the_same_square_is_not_worth_it() -> None:
+    rows = ["bbbbb????", "b.U..????", "bbbbb????"]
+    model = seen_whole(rows)
+    (border,) = frontiers.frontiers(Screens(model), 0)
+    looked = replace(model, looked_from=frozenset({(2, 0)}))
+    assert frontiers.frontiers(Screens(looked), 0) == []
+    beside = Screens(replace(model, looked_from=frozenset({(0, 0)})))
+    assert len(frontiers.frontiers(beside, 0)[0].squares) == len(border.squares)
+    assert frontiers.frontiers(beside, 2) == []
+
+
+def test_circling_winds_once() -> None:
+    model = seen_whole(HALL)
+    (node,) = model.objects
+    screens = Screens(model)
+    track = [model.place]
+    offered = ways_round(screens, track, node)
+    assert len(offered) == 2
+    sides = set()
+    for turn, way in offered.items():
+        assert way.squares[0] == way.squares[-1] == screens.here
+        assert all(screens.free(0)[y, x] for x, y in way.squares)
+        walked_track = [(x + 0.5 + model.view.west, y + 0.5 + model.view.south) for x, y in way.squares]
+        assert winding(walked_track, node) == turn
+        sides.add(turn)
+    assert sides == {1, -1}
+
+
+@pytest.mark.parametrize("aside", [-0.49, -1e-12, 0.0, 0.3])
+def test_where_in_his_square_he_halts_changes_no_way_round(aside: float) -> None:
+    model = seen_whole(HALL)
+    (node,) = model.objects
+    x, y = pivot(node)
+    moved = replace(model, place=(x + 6, y + aside))
+    offered = ways_round(Screens(moved), [model.place, (x, y + 5), moved.place], node)
+    amid = ways_round(Screens(moved), [model.place, (x, y + 5), (x + 6, y)], node)
+    assert {turn: way.squares for turn, way in offered.items()} == {turn: way.squares for turn, way in amid.items()}
+
+
+def test_half_a_turn_leaves_the_other_half() -> None:
+    model = seen_whole(HALL)
+    (node,) = model.objects
+    x, y = pivot(node)
+    over = [model.place, (x, y + 5), (x + 6, y + 0.5)]
+    moved = replace(model, place=over[-1])
+    offered = ways_round(Screens(moved), over, node)
+    whole_turns = set()
+    for turn, way in offered.items():
+        rest = [(c + 0.5 + model.view.west, r + 0.5 + model.view.south) for c, r in way.squares]
+        assert winding([*over, *rest[1:]], node) == turn
+        whole_turns.add(turn)
+    assert whole_turns == {1, -1}
+    shortest = min(offered.values(), key=lambda way: way.length)
+    assert min(r for _, r in shortest.squares) + model.view.south + 0.5 < y  # under it, not back over it
+
+
+def test_the_pivot_lies_within_the_object() -> None:
+    model = seen_whole(["bbbbbbbb", "b......b", "b.gggg.b", "b.g..g.b", "b.g..g.b", "b.U....b", "bbbbbbbb"])
+    (node,) = model.objects
+    x, y = pivot(node)
+    assert (int(np.floor(x)), int(np.floor(y))) in node.patch.squares()
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_what_no_wall_explains_is_part_of_what_is_vague(seed: int) -> None:
+    screens = Screens(random_walk(seed))
+
+    def squares(odd: bool) -> set[int]:
+        return {int(s) for look in frontiers.vague_places(screens, 0, odd=odd) for s in look.squares}
+
+    assert squares(odd=True) <= squares(odd=False) <= set(np.flatnonzero(screens.floor).tolist())
+
+
+@pytest.mark.parametrize("leeway", [(-0.5, -0.5, 0.5, 0.5), (-0.5, 0.0, 0.0, 0.5), (-0.05, -0.05, 0.05, 0.05)])
+def test_he_halts_near_the_edge_of_a_square_while_he_may_have_woken_elsewhere(leeway: tuple[float, ...]) -> None:
+    model = replace(seen_whole(HALL), leeway=leeway)
+    screens = Screens(model)
+    for goal in ((4, 3), (-3, -2), (5, -4)):
+        way = ways(screens, 0, flat(model, *goal), "skeleton")[0]
+        move = next_move(screens, way.squares, "explore")
+        plain = next_move(screens, way.squares, "attain")
+        assert (plain.east, plain.north) == (round(plain.east), round(plain.north))
+        west, south, east, north = leeway
+        for gone, back, forth in ((move.east, west, east), (move.north, south, north)):
+            aside = gone - round(gone)
+            assert math.floor(gone + 0.5) == round(gone)  # in the square that he goes to
+            assert -0.5 < aside < 0.5
+            assert aside == 0 or (aside > 0.4 and forth > LOOSE) or (aside < -0.4 and -back > LOOSE)
+        assert (round(move.east), round(move.north)) == (move.east, move.north) or max(leeway) > LOOSE
+    assert any(
+        next_move(screens, ways(screens, 0, flat(model, *goal), "skeleton")[0].squares, "explore").east % 1
+        for goal in ((4, 3), (-3, -2), (5, -4))
+    ) == (max(leeway) > LOOSE)
+
+
+def test_while_it_is_open_how_the_lattice_lies_no_turn_leads_to_the_line_between_two_squares() -> None:
+    model = replace(seen_whole(HALL), likely_spread=math.pi)
+    screens = Screens(model)
+    plain = 0
+    for goal in np.flatnonzero(screens.floor).tolist():
+        for way in ways(screens, 0, np.array([goal]), "skeleton")[:1]:
+            if len(way.squares) < 2:
+                continue
+            move = next_move(screens, way.squares, "explore")
+            plain += (move.east, move.north) == (round(move.east), round(move.north))
+            for degrees in range(360):
+                c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+                x = model.place[0] + c * move.east - s * move.north
+                y = model.place[1] + s * move.east + c * move.north
+                assert 1e-4 < x % 1 < 1 - 1e-4
+                assert 1e-4 < y % 1 < 1 - 1e-4
+    assert plain > 0
+
+
+@pytest.mark.parametrize("pace", [STROLL, HURRY])
+def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear_unless_they_are_bold(pace: Pace) -> None:
+    model = replace(seen_whole(HALL), likely_spread=math.pi)
+    screens = Screens(model)
+    clear_of = ~grown(~screens.safe, 1)
+    longest, near = 0.0, []
+    for goal in np.flatnonzero(screens.floor).tolist():
+        for way in ways(screens, 0, np.array([goal]), "skeleton")[:1]:
+            if len(way.squares) < 2:
+                continue
+            move = next_move(screens, way.squares, "explore", pace=pace)
+            far = max(abs(move.east), abs(move.north))
+            longest = max(longest, far)
+            assert far < pace.unsure + 0.5
+            column, row = screens.here[0] + round(move.east), screens.here[1] + round(move.north)
+            near.append(far > NARROW + 0.5 and not clear_of[row, column])
+    assert longest > NARROW + 0.5
+    assert any(near) == pace.bold
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_the_bold_go_right_up_to_what_is_not_settled_but_not_to_what_was_never_seen(seed: int) -> None:
+    screens = Screens(random_walk(seed))
+    view = screens.model.view
+    more = screens.believed & ~screens.safe
+    assert (screens.believed & screens.safe == screens.safe).all()
+    hardly = screens.free(0) & (view.probability <= TRUSTED)
+    assert (more == hardly & ~screens.safe & ~grown(~view.seen, 1)).all()
+    beside_doubt = grown(view.seen & (view.state == OPEN) & (view.probability >= WARY), 1)
+    assert not (more & ~beside_doubt).any()
+
+
+@pytest.mark.parametrize("spread", [0.0, math.pi])
+def test_who_hurries_is_bold_and_who_strolls_is_not(spread: float) -> None:
+    screens = Screens(replace(random_walk(3), likely_spread=spread))
+    for kind in STROLL.longest:
+        assert (HURRY.ground(screens, kind) == (screens.approached if kind == "inspect" else screens.believed)).all()
+        assert (STROLL.ground(screens, kind) == screens.safe).all()
+    assert (screens.believed != screens.safe).any()
+
+
+@pytest.mark.parametrize("spread", [0.0, math.pi])
+@pytest.mark.parametrize("kind", sorted(STROLL.longest))
+def test_one_move_leads_just_where_the_next_move_may_end(kind: str, spread: float) -> None:
+    screens = Screens(replace(seen_whole(HALL), likely_spread=spread))
+    reached = one_move(screens, kind)
+    ended = np.zeros_like(reached)
+    ended[screens.here[1], screens.here[0]] = True
+    for row, column in np.argwhere(screens.floor).tolist():
+        if (column, row) != screens.here:
+            step = (
+                (column, row) if max(abs(column - screens.here[0]), abs(row - screens.here[1])) <= 1 else screens.here
+            )
+            move = next_move(screens, [screens.here, step, (column, row)], kind, pace=HURRY)
+            ended[screens.here[1] + round(move.north), screens.here[0] + round(move.east)] = True
+    assert (reached & screens.believed == ended & screens.believed).all()
+
+
+def test_he_does_not_halt_near_an_edge_where_what_lies_beyond_it_may_stop_him() -> None:
+    model = replace(seen_whole(HALL), leeway=(-0.5, -0.5, 0.5, 0.5))
+    screens = Screens(model)
+    for goal in np.flatnonzero(screens.floor).tolist():
+        for way in ways(screens, 0, np.array([goal]), "skeleton")[:1]:
+            if len(way.squares) > 1:
+                move = next_move(screens, way.squares, "explore")
+                here = (screens.here[0] + 0.5, screens.here[1] + 0.5)
+                assert clear_line(screens.safe, here, (here[0] + move.east, here[1] + move.north))

@@ -1,0 +1,176 @@
+"""From where what may be a thing is looked at, and where he goes to take it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geometry.raster.components import edged
+from kb.language.reader import facts_of
+from kb.mapping.occupancy import FULL, OPEN
+from kb.world.corners import Corner
+from planner.goals.corner_goal import approach
+from planner.navigation.fewest_moves import FewestMoves
+from planner.navigation.subgoals import Aim
+from planner.screen.moves import HURRY, one_move
+from planner.screen.projection import LEVELS, WALL_LIKE, Screens, grown
+from planner.sights.frontiers import CLOSE, FURTHER
+from planner.sights.viewpoints import ARRIVE, LIKELY, TAKE, Approach, close
+from tests.kb.drawings import drawing, seen_whole
+from tests.planner.situations import situation_of
+
+ROOM = [row[:4] + "U" + row[5:] if k == 38 else row for k, row in enumerate(drawing(30, 20, 4, 4))]
+
+
+def distance_from(squares: np.ndarray, mask: np.ndarray) -> np.ndarray:
+    """Rows or columns from each square (flat) to the nearest of a mask."""
+    at = np.stack(np.divmod(squares, mask.shape[1]), axis=1)
+    apart = np.abs(at[:, None] - np.argwhere(mask)[None]).max(2)
+    return np.asarray(apart.min(1))
+
+
+def room(looked_from: frozenset[tuple[int, int]] = frozenset()) -> tuple[Screens, np.ndarray]:
+    """Screens of a room with one thing, and the squares of that. looked_from : squares of the lattice."""
+    model = replace(seen_whole(ROOM), looked_from=looked_from)
+    return Screens(model), model.mask(model.objects[0].patch)
+
+
+def test_what_is_hardly_what_is_looked_for_is_seen_from_afar_first() -> None:
+    screens, mask = room()
+    away = distance_from(close(screens, mask, 0.2, ARRIVE), mask)
+    assert away.max() == FURTHER > CLOSE
+    assert distance_from(close(screens, mask, 0.2, TAKE), mask).max() <= CLOSE
+    row, column = np.argwhere(mask).min(0)
+    view = screens.model.view
+    screens, mask = room(frozenset({(int(column) + view.west - FURTHER, int(row) + view.south)}))
+    away = distance_from(close(screens, mask, 0.2, ARRIVE), mask)
+    assert away.max() == CLOSE
+
+
+@pytest.mark.parametrize("to", [ARRIVE, TAKE])
+def test_what_is_likely_looked_for_is_gone_up_to(to: Approach) -> None:
+    screens, mask = room()
+    squares = close(screens, mask, 0.8, to)
+    assert (distance_from(squares, mask) == 1).all()
+    assert edged(mask).ravel()[squares].all()
+
+
+def test_what_he_shall_take_is_gone_up_to_where_it_surely_is() -> None:
+    screens, mask = room()
+    column = int(np.argwhere(mask)[:, 1].min())
+    rim = mask & (np.arange(mask.shape[1]) == column)[None]  # may be part of the thing, and may be floor
+    view = screens.model.view
+    doubtful = np.where(rim, 0.5, view.probability).astype(np.float32)
+    screens = Screens(replace(screens.model, view=view._replace(probability=doubtful)))
+    squares = close(screens, mask, 0.8, TAKE)
+    assert edged(mask & ~rim).ravel()[squares].all()
+    only = Screens(replace(screens.model, view=view._replace(probability=np.where(mask, 0.5, doubtful))))
+    assert edged(mask).ravel()[close(only, mask, 0.8, TAKE)].all()
+
+
+def looking(screens: Screens, squares: np.ndarray, probability: float, state: int) -> Screens:
+    """The same, but for squares that are occupied with another probability, and settled or open."""
+    view = screens.model.view
+    chance = np.where(squares, probability, view.probability).astype(np.float32)
+    states = np.where(squares, state, view.state).astype(view.state.dtype)
+    return Screens(replace(screens.model, view=view._replace(probability=chance, state=states)))
+
+
+def sides(mask: np.ndarray) -> dict[str, np.ndarray]:
+    """The squares at each side of a thing, that of its containing rectangle."""
+    (south, west), (north, east) = np.argwhere(mask).min(0), np.argwhere(mask).max(0)
+    rows, columns = np.indices(mask.shape)
+    across, up = (columns >= west) & (columns <= east), (rows >= south) & (rows <= north)
+    return {
+        "west": up & (columns == west - 1),
+        "east": up & (columns == east + 1),
+        "south": across & (rows == south - 1),
+        "north": across & (rows == north + 1),
+    }
+
+
+@pytest.mark.parametrize(
+    ("corner", "wanted"),
+    [
+        ((1, 1), {"west", "south"}),
+        ((-1, 1), {"east", "south"}),
+        ((1, -1), {"west", "north"}),
+        ((-1, -1), {"east", "north"}),
+    ],
+)
+def test_he_does_not_stand_between_a_thing_and_the_corner_it_is_for(corner: tuple[int, int], wanted: set[str]) -> None:
+    screens, mask = room()
+    squares = close(screens, mask, 1.0, TAKE._replace(corner=corner))
+    by_side = sides(mask)
+    assert len(squares)
+    assert np.logical_or.reduce([by_side[name] for name in wanted]).ravel()[squares].all()
+
+
+def test_he_stands_in_its_way_where_no_other_side_is_floor() -> None:
+    screens, mask = room()
+    by_side = sides(mask)
+    screens = looking(screens, by_side["west"] | by_side["south"], 1.0, FULL)
+    squares = close(screens, mask, 1.0, TAKE._replace(corner=(1, 1)))
+    assert len(squares)
+    assert (by_side["east"] | by_side["north"]).ravel()[squares].all()
+
+
+def test_of_the_sides_of_a_thing_one_is_taken_that_a_straight_move_leads_to() -> None:
+    screens, mask = room()
+    met = one_move(screens, "inspect").ravel()
+    at_sides = np.flatnonzero(edged(mask) & screens.floor)
+    assert met[at_sides].any()
+    assert not met[at_sides].all()
+    assert met[close(screens, mask, LIKELY, TAKE)].all()
+    all_round = close(screens, mask, LIKELY, ARRIVE)
+    assert sorted(all_round.tolist()) == at_sides.tolist()
+
+
+def test_who_goes_up_to_a_thing_goes_over_what_may_well_be_floor_beside_it() -> None:
+    screens, mask = room()
+    ring = grown(mask, 1) & ~mask
+    screens = looking(screens, ring, LEVELS[1], OPEN)
+    assert not screens.believed[ring].any()
+    assert (HURRY.ground(screens, "inspect") == screens.approached).all()
+    assert (screens.approached & ~screens.believed == edged(mask) & ring).all()
+    squares = close(screens, mask, 1.0, TAKE)
+    assert edged(mask).ravel()[squares].all()
+    fewest, aim = FewestMoves(screens), Aim("inspect", squares, "a thing")
+    way, dear = fewest.way(aim), fewest.priced([aim])[0]
+    assert way is not None
+    assert (np.flatnonzero(ring) == way.squares[-1][1] * mask.shape[1] + way.squares[-1][0]).any()
+    assert len(dear.squares)
+    assert not fewest.way(aim._replace(kind="explore"))
+    assert dear.price < fewest.priced([aim._replace(kind="explore")])[0].price
+    assert not looking(screens, ring, LEVELS[2], OPEN).approached[ring].any()
+
+
+def test_nothing_is_gone_up_to_so_beside_the_verge() -> None:
+    screens, _ = room()
+    verge = screens.model.verge & (screens.model.view.probability >= WALL_LIKE)
+    assert (edged(verge) & screens.believed).any()
+    beside = edged(verge) & ~verge
+    screens = looking(screens, beside, LEVELS[1], OPEN)
+    assert not screens.approached[beside].any()
+
+
+def test_how_far_a_square_is_no_way_leads_to_is_told_as_it_lies() -> None:
+    screens, mask = room()
+    inside = np.flatnonzero(mask)[:1]
+    row, column = divmod(int(inside[0]), mask.shape[1])
+    assert screens.far(inside) == pytest.approx(np.hypot(column - screens.here[0], row - screens.here[1]))
+    some = np.flatnonzero(screens.floor)
+    assert (screens.far(some) == screens.distances[0].ravel()[some] / 5).all()
+
+
+def test_what_is_for_a_corner_is_gone_up_to_from_away_of_its_walls() -> None:
+    screens, _ = room()
+    corners = {"northeast": Corner((9.0, 5.0), (8, 5)), "southwest": Corner((2.0, 3.0), (2, 3))}
+    goals = {name: facts_of(f"at(x, corner({name})).")[0] for name in (*corners, "southeast")}
+    situation = situation_of(screens.model, {})
+    situation = replace(situation, corners=corners)
+    assert approach([goals["northeast"]], situation) == TAKE._replace(corner=(1, -1))
+    assert approach([goals["southwest"]], situation) == TAKE._replace(corner=(-1, -1))
+    assert approach([goals["southeast"]], situation) == TAKE
+    assert approach([facts_of("in(x, room(next)).")[0], goals["northeast"]], situation).corner == (1, -1)
+    assert approach([facts_of("beside(x, y).")[0]], situation) == TAKE

@@ -1,0 +1,106 @@
+"""Presses of what is carried against the walls of a corner."""
+
+from dataclasses import replace
+
+import pytest
+import shapely
+
+from geometry.manipulation.goals import InCorner
+from geometry.motion.se2 import Translate
+from kb.body import Push
+from kb.world.model import Node
+from planner.goals.corner_goal import WALL, _presses
+from planner.goals.placement import Landing
+from planner.goals.robot_goals import Situation
+from planner.skills.press import Presser
+from tests.kb.drawings import seen_whole
+from tests.planner.goals.test_object_goals import facts_of
+from tests.planner.situations import BESIDE_A_THING, situation_of
+
+(GOAL,) = facts_of("at(x, corner(northeast)).")
+ACROSS, UP = Translate(1.0, 0.0), Translate(0.0, 1.5)
+LAND = Landing({}, holds=True, presses={"across": ACROSS, "up": UP})
+
+
+def holding() -> tuple[Situation, Node]:
+    """Utak beside a thing that he holds."""
+    model = seen_whole(BESIDE_A_THING)
+    (node,) = model.objects
+    west, south, mask = node.patch
+    node = replace(node, polygon=shapely.box(west, south, west + mask.shape[1], south + mask.shape[0]))
+    return situation_of(replace(model, objects=(node,), held=node.name)), node
+
+
+def moved(node: Node, dx: float, dy: float) -> Node:
+    return replace(node, polygon=shapely.affinity.translate(node.polygon, dx, dy))
+
+
+def test_each_press_is_given_once_and_what_was_stopped_by_all_is_there() -> None:
+    situation, node = holding()
+    presser = Presser()
+    assert not presser.is_pressed(GOAL, node, situation)
+    presser.begin(GOAL, node, LAND, situation)
+    for way in (ACROSS, UP):
+        act = presser.next(node, situation.model)
+        assert act is not None and act.command == Push(way.dx, way.dy)
+        node = moved(node, 0.3 * way.dx, 0.3 * way.dy)
+        assert presser.is_pressed(GOAL, node, situation)
+    assert presser.next(node, situation.model) is None
+    assert presser.is_pressed(GOAL, node, situation)
+
+
+def test_what_went_the_whole_way_was_not_stopped() -> None:
+    situation, node = holding()
+    presser = Presser()
+    presser.begin(GOAL, node, LAND, situation)
+    presser.next(node, situation.model)
+    assert not presser.is_pressed(GOAL, moved(node, 1.0, 0.0), situation)
+    assert not presser.is_pressed(GOAL, node, situation)  # all of it is forgotten
+
+
+@pytest.mark.parametrize("change", ["let go", "another goal", "another corner", "pushed"])
+def test_presses_count_for_one_thing_in_hand_one_goal_and_one_corner(change: str) -> None:
+    situation, node = holding()
+    presser, goal = Presser(), GOAL
+    presser.begin(GOAL, node, LAND, situation)
+    presser.next(node, situation.model)
+    if change == "let go":
+        situation = replace(situation, model=replace(situation.model, held=None))
+    elif change == "another goal":
+        (goal,) = facts_of("at(x, corner(southwest)).")
+    elif change == "another corner":
+        corner = situation.corners["northeast"]
+        corners = {**situation.corners, "northeast": corner._replace(point=(corner.point[0] + 3.0, corner.point[1]))}
+        situation = replace(situation, corners=corners)
+    else:
+        presser.forget()
+    assert not presser.is_pressed(goal, node, situation)
+
+
+def test_nothing_is_pressed_that_has_no_presses_or_is_not_held() -> None:
+    situation, node = holding()
+    presser = Presser()
+    presser.begin(GOAL, node, replace(LAND, presses={}), situation)
+    assert not presser.is_pressed(GOAL, node, situation)
+    loose = replace(situation, model=replace(situation.model, held=None))
+    presser.begin(GOAL, node, LAND, loose)
+    assert not presser.is_pressed(GOAL, node, loose)
+
+
+@pytest.mark.parametrize(
+    ("gap", "short", "ways"),
+    [
+        ((0.0, 0.0), (0.0, 0.0, 0.0, 0.0), {}),  # what lies right beside these squares is near enough
+        ((0.0, 0.0), (0.0, 0.9, 0.0, 0.0), {"across": WALL + 0.9}),  # its eastern side may lie further in
+        ((0.0, 0.5), (0.9, 0.0, 0.9, 0.0), {"up": WALL + 0.5}),  # others do not matter
+        ((0.5, 0.5), (0.0, 0.0, 0.0, 0.5), {"across": WALL + 0.5, "up": WALL + 1.0}),
+    ],
+)
+def test_towards_a_wall_that_may_be_further_than_a_square_a_thing_is_pressed(
+    gap: tuple[float, float], short: tuple[float, float, float, float], ways: dict[str, float]
+) -> None:
+    _, node = holding()
+    end = InCorner(20.0, 20.0, 1, 1)
+    shape = shapely.box(16.0 - gap[0], 17.0 - gap[1], 20.0 - gap[0], 20.0 - gap[1])
+    found = _presses(end, replace(node, short=short), shape)
+    assert {name: push.dx + push.dy for name, push in found.items()} == pytest.approx(ways)

@@ -1,0 +1,255 @@
+"""The subcommands that ask, test and begin: query, repl, test, new, and scenarios as pytest tests."""
+
+import io
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import scripted_robot
+from random_scenes import write_scene
+
+from simulator.cli.main import main
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture
+def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A scenario, and the scripted robot to run on it."""
+    monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
+    scripted_robot.install()
+    return write_scene(tmp_path / "scene", 1)
+
+
+def repl(monkeypatch: pytest.MonkeyPatch, text: str, *arguments: str) -> int:
+    """`utak repl` with piped input."""
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(text.encode())))
+    return main(["repl", *arguments])
+
+
+def test_query_asks_a_run_at_a_step(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["query", str(scene), "unseen(R, N)", "--at", "0"]) == 0
+    assert capsys.readouterr().out == "R   N\nr1  30\n"
+    assert main(["query", str(scene), "unseen(R, N)", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {
+        "step": 30,
+        "answer": "bindings",
+        "variables": ["R", "N"],
+        "rows": [["r1", 0]],
+        "more": False,
+    }
+
+
+def test_rows_that_are_left_out_are_told_of(
+    scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asking = ["query", str(scene), "unseen(R, N), X = 1..12000", "--at", "0"]
+    for more, rows in (([], 10_000), (["--limit", "7"], 7), (["--limit", "12000"], 12_000)):
+        assert main([*asking, "--json", *more]) == 0
+        found = json.loads(capsys.readouterr().out)
+        assert len(found["rows"]) == rows
+        assert found["more"] == (rows < 12_000)
+    assert main([*asking, "--limit", "3"]) == 0
+    assert capsys.readouterr().out.endswith("\n... and more than these 3 rows\n")
+    for bad in ("0", "-1", "x", "1000001"):
+        assert main([*asking, "--limit", bad]) == 2
+    assert repl(monkeypatch, "?- unseen(R, N), X = 1..12000.\n", str(scene)) == 0
+    assert capsys.readouterr().out.endswith("\n... and more than these 10000 rows\n")
+
+
+def test_the_robot_may_be_called_utak(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    facts = ["node(org).", "offset(org,100,200).", "node(o1)."]
+    monkeypatch.setattr("simulator.run.story.facts_of_line", lambda line: facts)
+    scene = ROOT / "examples" / "go_northeast"
+    for query, said in {
+        "offset(utak, E, N)": "E    N\n100  200\n",
+        "offset(org, E, N)": "E    N\n100  200\n",
+        "node(utak)": "yes\n",
+        'X = "utak"': 'X\n"utak"\n',
+    }.items():
+        assert main(["query", str(scene), query, "--at", "0"]) == 0
+        assert capsys.readouterr().out == said
+
+
+def test_a_picture_of_the_truth_says_that_it_is(
+    scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert repl(monkeypatch, "show\nhelp\n", str(scene)) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("the true table, which the robot may believe to be otherwise:\nbbb")
+    assert "hundredths of a square" in out
+    assert main(["run", str(scene), "--watch", "--max-steps", "1"]) == 75
+    assert capsys.readouterr().err.count("the true table") == 2
+
+
+def test_query_asks_an_episode(scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = str(tmp_path / "ep.jsonl")
+    main(["run", str(scene), "--log", path])
+    capsys.readouterr()
+    assert main(["query", path, "unseen(r1, 20)", "--at", "10"]) == 0
+    assert main(["query", path, "kind(n1, verge, 100)"]) == 0
+    assert capsys.readouterr().out == "yes\nno\n"
+    assert main(["query", path, "node(X)", "--at", "99"]) == 65
+    assert main(["query", path, "nod(X)"]) == 65
+    assert main(["query", path, "X = 1..1000000, Y = 1..1000000"]) == 75
+    assert main(["query", str(tmp_path / "none"), "node(X)"]) == 66
+    err = capsys.readouterr().err
+    assert "there is no step 99: the last is 30" in err
+    assert "did you mean node?" in err
+
+
+def test_the_prompt_obeys_and_never_breaks(
+    scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (
+        "help\n?- unseen(R, N).\nstep\nstep 2\nstep x\nfacts r1\nfacts zz\nshow\n\nfly\nfact\n?- nod(X).\n?-\n"
+        "?- \xff\nstep -1\nstep 99999999999999\nrun\nstep\n?- unseen(r1, 0).\nquit\nhelp\n"
+    )
+    assert repl(monkeypatch, text, str(scene)) == 0
+    out = capsys.readouterr().out
+    for said in [
+        "go on to the end",
+        "r1  30",
+        "step 3: ",
+        "step takes a number of steps, not x",
+        "unseen(r1,27).",
+        "none",
+        "bbbb",
+        "unknown command fly",
+        "did you mean facts?",
+        "did you mean node?",
+        "the query is empty",
+        "step takes a number of steps, not -1",
+        "limit after 30 steps: the script has ended",
+    ]:
+        assert said in out
+    assert out.endswith("yes\n")
+    assert "Traceback" not in out
+
+
+def test_the_prompt_reads_an_episode_cut_short(
+    scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "ep.jsonl"
+    main(["run", str(scene), "--log", str(path)])
+    rows = path.read_bytes().splitlines(keepends=True)
+    path.write_bytes(b"".join(rows[:5]) + rows[5][:50])
+    capsys.readouterr()
+    assert repl(monkeypatch, "show\nrun\nstep\nshow", str(path)) == 0
+    out = capsys.readouterr().out
+    assert "step 3: " in out
+    assert "there are no more steps" in out
+    assert out.count("U") == 2
+    path.write_bytes(rows[0])
+    assert repl(monkeypatch, "", str(path)) == 65
+    bare = json.dumps({"utak": "episode", "version": 1}) + "\n" + json.dumps({"step": 0}) + "\n"
+    path.write_text(bare)
+    assert repl(monkeypatch, "show\n", str(path)) == 65
+    assert f"{path}:1:1-1: error: the key options is missing" in capsys.readouterr().err
+
+
+class DoneRobot(scripted_robot.Robot):
+    """Stands still and believes that he is done."""
+
+    @property
+    def finished(self) -> bool:
+        return True
+
+    @property
+    def verdict(self) -> scripted_robot.Verdict:
+        return scripted_robot.Verdict(True, "done", "it holds")
+
+
+def expecting(folder: Path, text: str) -> Path:
+    (folder / "expect.lp").write_text(text)
+    return folder
+
+
+def test_test_runs_scenarios(scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    expecting(scene, "fails.")
+    assert main(["test", str(scene)]) == 0
+    assert capsys.readouterr().out == f"ok {scene}: limit in 30 steps: the script has ended\n"
+    good = expecting(shutil.copytree(scene, scene.parent / "good"), "within(0).")
+    assert main(["test", str(scene.parent)]) == 1
+    seen = capsys.readouterr()
+    assert f"FAILED {good}: not met: within(0); Utak does not believe that he is done; limit in 30" in seen.out
+    assert "1 of 2 passed" in seen.err
+    monkeypatch.setattr(sys.modules["planner.cycle"], "Robot", DoneRobot)
+    assert main(["test", str(good)]) == 0
+    assert main(["test", str(scene)]) == 1
+    assert "Utak believes that he did what cannot be done" in capsys.readouterr().out
+
+
+def test_test_says_what_is_wrong(scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    expecting(scene, "unmoved(o77).")
+    assert main(["test", str(scene)]) == 65
+    (scene / "expect.lp").unlink()
+    assert main(["test", str(scene)]) == 65
+    (tmp_path / "empty").mkdir()
+    assert main(["test", str(tmp_path / "empty")]) == 66
+    err = capsys.readouterr().err
+    assert "the world has no object o77" in err
+    assert "a test needs expect.lp" in err
+
+
+def test_new_begins_a_good_scenario(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "deep" / "mine"
+    assert main(["new", str(folder)]) == 0
+    assert main(["check", str(folder)]) == 0
+    before = (folder / "goal.lp").read_text()
+    assert main(["new", str(folder)]) == 66
+    assert main(["new", str(folder / "goal.lp")]) == 66
+    assert "not empty" in capsys.readouterr().err
+    assert (folder / "goal.lp").read_text() == before
+
+
+def test_scenarios_are_pytest_tests(scene: Path) -> None:
+    root = scene.parent
+    shutil.copy(ROOT / "examples" / "conftest.py", root / "conftest.py")
+    with (root / "conftest.py").open("a") as stream:
+        stream.write(f"\nimport sys\nsys.path.insert(0, {str(Path(__file__).parent)!r})\n")
+        stream.write("import scripted_robot\nscripted_robot.install()\n")
+    expecting(scene, "fails.")
+    expecting(shutil.copytree(scene, root / "bad"), "within(0).")
+    expecting(shutil.copytree(scene, root / "worse"), "within(x).")
+    (root / "pytest.ini").write_text(f"[pytest]\npythonpath = {ROOT}\n")
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(root)]
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
+    assert "1 passed" in done.stdout
+    assert "2 failed" in done.stdout
+    assert "not met: within(0)" in done.stdout
+    assert "expect.lp:1:8-8: error: a number of steps must be an integer, not x" in done.stdout
+
+
+def test_routes_go_both_ways_round(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "s").mkdir()
+    (tmp_path / "s" / "world.txt").write_text("......\n..gg..\n.U....\n")
+    ends = [str(tmp_path / "s"), "--from", "0.5,1.5", "--to", "5.5,1.5"]
+    assert main(["routes", *ends, "--json", "--svg", str(tmp_path / "out.svg")]) == 0
+    routes = json.loads(capsys.readouterr().out)["routes"]
+    assert [route["points"][1][1] for route in routes] in ([1, 2], [2, 1])
+    assert len({tuple(route["signature"]) for route in routes}) == 2
+    assert (tmp_path / "out.svg").read_text().startswith("<svg")
+    assert main(["routes", *ends, "-k", "1"]) == 0
+    assert capsys.readouterr().out.startswith("1: length 5.")
+
+
+def test_routes_on_a_map(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "a.map"
+    path.write_text("type octile\nheight 2\nwidth 3\nmap\n..@\n.@.\n")
+    assert main(["routes", str(path), "--from", "0.5,0.5", "--to", "1.5,1.5"]) == 0
+    assert main(["routes", str(path), "--from", "0.5,0.5", "--to", "2.5,0.5"]) == 1
+    seen = capsys.readouterr()
+    assert seen.out.count("\n") == 1
+    assert "there is no way" in seen.err
+    assert main(["routes", str(path), "--from", "0.5,0.5", "--to", "1.5,0.5"]) == 65
+    assert main(["routes", str(path), "--from", "0.5", "--to", "1.5,0.5"]) == 2
+    path.write_text("type octile\nheight 2\nwidth 3\nmap\n..@\n.?.\n")
+    assert main(["routes", str(path), "--from", "0.5,0.5", "--to", "1.5,0.5"]) == 65
+    assert main(["routes", str(tmp_path / "no.map"), "--from", "0,0", "--to", "1,1"]) == 66
+    err = capsys.readouterr().err
+    assert "lies in a blocked square" in err
+    assert f"{path}:6:2-2: error: unknown square '?'" in err

@@ -1,0 +1,138 @@
+"""Many scenarios at once, and scenarios from elsewhere: one that is wrong is told and the rest goes on."""
+
+import os
+import re
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+import scripted_robot
+from random_scenes import write_scene
+
+from kb.language.source_text import leads_out, read_source
+from simulator.cli import exits
+from simulator.cli.main import main
+
+SECRET = "root_x17(toor_x18).\nand nonsense_x19 :- so(0n_x20.\n"
+
+
+@pytest.fixture
+def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A scenario that passes its test, and the scripted robot to run on it."""
+    monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
+    scripted_robot.install()
+    folder = write_scene(tmp_path / "suite" / "good", 1)
+    (folder / "expect.lp").write_text("fails.")
+    return folder
+
+
+def suite(scene: Path) -> Path:
+    """A folder with the good scenario and three that are not."""
+    root = scene.parent
+    (shutil.copytree(scene, root / "a_failed") / "expect.lp").write_text("within(0).")
+    (shutil.copytree(scene, root / "b_bad") / "expect.lp").write_text("within(x).")
+    (shutil.copytree(scene, root / "c_absent") / "world.lp").unlink()
+    return root
+
+
+def test_a_test_goes_on_whatever_is_wrong_with_one(
+    scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    root = suite(scene)
+    assert main(["test", str(root), str(root / "nowhere")]) == 66
+    seen = capsys.readouterr()
+    for word, name in (("FAILED", "a_failed"), ("BAD", "b_bad"), ("ABSENT", "c_absent"), ("ok", "good")):
+        assert f"{word} {root / name}: " in seen.out
+    assert f"{root / 'b_bad' / 'expect.lp'}:1:8-8: error: a number of steps" in seen.err
+    assert "1 of 5 passed, 1 failed, 1 bad, 2 cannot be opened" in seen.err
+    assert main(["test", str(root / "good"), str(root / "b_bad")]) == 65
+    step = scripted_robot.Robot.step
+
+    def failing(robot: scripted_robot.Robot) -> scripted_robot.Report:
+        return step(robot) if len(os.environ.get("BROKEN", "")) % 2 else 1 // 0  # type: ignore[return-value]
+
+    monkeypatch.setattr(scripted_robot.Robot, "step", failing)
+    assert main(["test", str(root)]) == 70
+    seen = capsys.readouterr()
+    assert f"BUG {root / 'good'}: " in seen.out
+    assert "2 ended by a bug of ours" in seen.err
+    assert "a bug of ours: ZeroDivisionError" in seen.err
+
+
+def test_a_check_goes_on_whatever_is_wrong_with_one(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    root = suite(scene)
+    assert main(["check", str(root), str(root / "nowhere")]) == 66
+    seen = capsys.readouterr()
+    assert seen.out.count(": ok\n") == 2
+    assert f"{root / 'b_bad' / 'expect.lp'}:1:8-8: error: a number of steps" in seen.err
+    assert "2 ok, 1 bad, 2 cannot be opened" in seen.err
+    assert main(["check", str(root / "good"), str(root / "b_bad")]) == 65
+
+
+def test_the_worst_code_stands_for_all() -> None:
+    assert exits.worst([]) == 0
+    assert exits.worst([0, 1, 0]) == 1
+    assert exits.worst([1, 65, 0]) == 65
+    assert exits.worst([66, 65]) == 66
+    assert exits.worst([66, 70, 1]) == 70
+
+
+@pytest.mark.parametrize("text", ["", "\n", "% nothing yet\n"])
+def test_an_empty_expectation_is_refused(text: str, scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (scene / "expect.lp").write_text(text)
+    for command in ("run", "test", "check"):
+        assert main([command, str(scene)]) == 65
+        assert "expect.lp:1:1-1: error: nothing is expected" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["start.lp", "goal.lp", "expect.lp", "world.lp", "world.txt"])
+@pytest.mark.parametrize("command", ["run", "test", "check", "show", "query", "repl", "routes"])
+def test_nothing_of_a_file_behind_a_link_is_shown(
+    name: str, command: str, scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "secret").write_text(SECRET)
+    if name == "world.txt":
+        (scene / "world.lp").unlink()
+    (scene / name).unlink(missing_ok=True)
+    (scene / name).symlink_to(tmp_path / "secret")
+    more = {"query": ["node(X)"], "routes": ["--from", "1,1", "--to", "2,2"]}.get(command, [])
+    code = main([command, str(scene), *more])
+    seen = capsys.readouterr()
+    if "world" in name or command not in ("show", "routes"):
+        assert code == 65
+        assert re.search(rf"{name}:\d+:", seen.err)
+    assert not [word for word in ("x17", "x18", "x19", "x20", "nonsense") if word in seen.out + seen.err]
+    assert main([command, str(scene), *more, "--untrusted"]) == 66
+    assert "a link out of its folder" in capsys.readouterr().err
+
+
+def test_links_that_stay_inside_are_read_as_ever(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (scene / "goal.lp").rename(scene / "real.lp")
+    (scene / "goal.lp").symlink_to("real.lp")
+    other = scene.parent.parent / "other"
+    other.symlink_to(scene)
+    for folder in (scene, other):
+        assert main(["check", str(folder), "--untrusted"]) == 0
+    (scene / "real.lp").write_text("at(utak, cornr(northeast)).")
+    assert main(["check", str(other), "--untrusted"]) == 65
+    assert "at(utak, cornr(northeast))." in capsys.readouterr().err
+
+
+def test_a_linked_folder_in_a_suite_is_refused_too(scene: Path, tmp_path: Path) -> None:
+    shutil.copytree(scene, tmp_path / "elsewhere")
+    (scene.parent / "linked").symlink_to(tmp_path / "elsewhere")
+    assert not leads_out(scene, scene.parent)
+    assert leads_out(scene.parent / "linked", scene.parent)
+    assert leads_out(scene.parent / "linked" / "goal.lp", scene.parent)
+    assert not leads_out(scene.parent / "linked" / "goal.lp")
+    assert main(["check", str(scene.parent / "linked"), "--untrusted"]) == 0  # the user names it
+
+
+def test_rules_behind_a_link_are_not_shown(tmp_path: Path) -> None:
+    (tmp_path / "far").mkdir()
+    (tmp_path / "far" / "rules.lp").write_text("fine(1).\nsecret_x17(1\n")
+    (tmp_path / "here").mkdir()
+    (tmp_path / "here" / "rules.lp").symlink_to(tmp_path / "far" / "rules.lp")
+    source = read_source(tmp_path / "here" / "rules.lp")
+    assert "x17" not in str(source.problem(source.start(), "unexpected secret_x17", "secret_x17"))

@@ -1,0 +1,128 @@
+"""Files that are written: nothing of another kind is overwritten, and no two runs write to one."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import scripted_robot
+from random_scenes import write_scene
+
+from kb.language.diagnostics import CannotOpenError
+from simulator.cli.main import main
+from simulator.episode.episode import EpisodeLog, read_episode
+from simulator.episode.output_files import is_episode, is_svg, write_whole
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture
+def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A scenario, and the scripted robot to run on it."""
+    monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
+    scripted_robot.install()
+    return write_scene(tmp_path / "scene", 1)
+
+
+OTHERS = {
+    "goal.lp": b"at(utak, start).\n",
+    "notes.json": b'{"a": 1}\n',
+    "diary": b"my diary",
+    "binary": bytes(range(256)),
+    "like": b'{"utak": "query"}\n',
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+@pytest.mark.parametrize("more", [[], ["--resume"]])
+def test_a_log_overwrites_nothing_but_an_episode(name: str, more: list[str], scene: Path, tmp_path: Path) -> None:
+    path = tmp_path / name
+    path.write_bytes(OTHERS[name])
+    assert main(["run", str(scene), "--log", str(path), *more]) in (65, 66)
+    assert path.read_bytes() == OTHERS[name]
+    assert main(["run", str(scene), "--log", str(path), "--force"]) == 75
+    assert read_episode(path).result is not None
+
+
+def test_an_episode_or_an_empty_file_is_overwritten(scene: Path, tmp_path: Path) -> None:
+    path = tmp_path / "ep.jsonl"
+    path.write_text("")
+    for steps in (5, 2):
+        assert main(["run", str(scene), "--log", str(path), "--max-steps", str(steps)]) == 75
+        assert len(read_episode(path).steps) == steps + 1
+    path.write_bytes(path.read_bytes()[:9])  # a run that was killed while it wrote its first line
+    assert main(["run", str(scene), "--log", str(path)]) == 75
+
+
+def test_a_second_run_on_one_log_is_refused(scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "ep.jsonl"
+    with EpisodeLog(path) as log:
+        log.write({"utak": "episode", "version": 1})
+        before = path.read_bytes()
+        for more in ([], ["--resume", "--seed", "0"], ["--force"]):
+            assert main(["run", str(scene), "--log", str(path), *more]) in (65, 66), more
+        assert path.read_bytes() == before
+    assert "another process is writing to it" in capsys.readouterr().err
+    assert main(["run", str(scene), "--log", str(path)]) == 75
+
+
+def test_two_processes_cannot_write_to_one_log(scene: Path, tmp_path: Path) -> None:
+    command = [sys.executable, scripted_robot.__file__, "run", str(scene), "--log", str(tmp_path / "ep.jsonl")]
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "SCRIPTED_PAUSE": "0.02"}
+    pipe = subprocess.PIPE
+    runs = [subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe, text=True) for _ in range(2)]
+    said = "".join(run.communicate()[1] for run in runs)
+    assert sorted(run.returncode for run in runs) == [66, 75], said
+    assert "another process is writing to it" in said
+    assert read_episode(tmp_path / "ep.jsonl").result is not None
+
+
+def test_what_is_not_there_cannot_be_gone_on_with(scene: Path, tmp_path: Path) -> None:
+    path = tmp_path / "absent.jsonl"
+    assert main(["run", str(scene), "--log", str(path), "--resume"]) == 66
+    assert not path.exists()
+
+
+def test_a_dash_is_the_standard_output(
+    scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    main(["run", str(scene), "--log", "ep.jsonl"])
+    capsys.readouterr()
+    assert main(["run", str(scene), "--log", "-", "--json"]) == 75
+    seen = capsys.readouterr()
+    assert seen.out == Path("ep.jsonl").read_text()
+    assert json.loads(seen.err)["verdict"] == "limit"
+    assert not Path("-").exists()
+    assert main(["run", str(scene), "--log", "-", "--resume"]) == 2
+
+
+def test_what_is_no_file_is_written_as_it_is(scene: Path) -> None:
+    assert main(["run", str(scene), "--log", os.devnull]) == 75
+
+
+def test_a_picture_overwrites_nothing_but_a_picture(tmp_path: Path) -> None:
+    path = tmp_path / "a.map"
+    path.write_text("type octile\nheight 2\nwidth 3\nmap\n...\n...\n")
+    ways = ["routes", str(path), "--from", "0.5,0.5", "--to", "2.5,0.5"]
+    before = path.read_text()
+    assert main([*ways, "--svg", str(path)]) == 66
+    assert path.read_text() == before
+    picture = tmp_path / "out.svg"
+    for _ in range(2):
+        assert main([*ways, "--svg", str(picture)]) == 0
+        assert is_svg(picture.read_bytes())
+        picture.write_text('<?xml version="1.0"?>\n<!-- old -->\n<svg/>' + " " * 100_000)
+    (tmp_path / "notes").write_text("mine")
+    assert main([*ways, "--svg", str(tmp_path / "notes")]) == 66
+    assert main([*ways, "--svg", str(tmp_path / "notes"), "--force"]) == 0
+    assert is_svg((tmp_path / "notes").read_bytes())
+
+
+def test_what_cannot_be_written_is_told(tmp_path: Path) -> None:
+    for path in (tmp_path, tmp_path / "no" / "file", "/dev/full"):
+        with pytest.raises(CannotOpenError):
+            write_whole(path, "x" * 9, is_svg, "picture")
+    assert is_episode(b'{"utak": "episode", "version": 1')

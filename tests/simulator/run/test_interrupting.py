@@ -1,0 +1,210 @@
+"""Ctrl-C at any moment: a step is whole or did not happen, and nothing but a message comes of it."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import pytest
+import scripted_robot
+from random_scenes import write_scene
+
+from kb.reasoning.query import QueryEngine
+from simulator.cli.commands.new import FILES
+from simulator.cli.prompt import Prompt
+from simulator.run.interrupts import deferred
+from simulator.run.story import Story, open_story
+from simulator.scenario.settings import Settings
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture(autouse=True)
+def ctrl_c_interrupts() -> Iterator[None]:
+    """Ctrl-C interrupts, also where the tests run in the background of a shell that shields them from it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.fixture
+def scripted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every run is the scripted robot's."""
+    monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
+    scripted_robot.install()
+
+
+def finished(story: Story) -> list[Any]:
+    """Every line of a story to its end, with its pictures, and its result."""
+    lines = [(story.line, story.picture())]
+    while story.advance():
+        lines.append((story.line, story.picture()))
+    return [*lines, story.result]
+
+
+@contextmanager
+def interrupted_at(event: int) -> Iterator[None]:
+    """Raise KeyboardInterrupt at the so manieth line or return of our code that is executed in the block."""
+    left = event
+
+    def trace(frame: FrameType, kind: str, _: Any) -> Any:
+        nonlocal left
+        if str(ROOT) not in frame.f_code.co_filename or ".venv" in frame.f_code.co_filename:
+            return None
+        left -= 1
+        if left == 0:
+            raise KeyboardInterrupt
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        yield
+    finally:
+        sys.settrace(before)
+
+
+def test_a_step_that_is_broken_off_anywhere_did_not_happen(tmp_path: Path, scripted: None) -> None:
+    folder, settings = write_scene(tmp_path / "s", 4), Settings(noise=0.05, max_steps=8)
+    whole = finished(open_story(folder, settings))
+    draw = random.Random(1)
+    for _ in range(25):
+        story = open_story(folder, settings)
+        seen = [(story.line, story.picture())]
+        broken = 0
+        while story.result is None:
+            before = story.line
+            with suppress(KeyboardInterrupt), interrupted_at(draw.choice([draw.randint(1, 40), draw.randint(1, 700)])):
+                story.advance()
+            if story.line is not before:
+                seen.append((story.line, story.picture()))
+            else:
+                broken += 1
+            if broken > 6:
+                seen += finished(story)[1:-1]
+        assert [*seen, story.result] == whole
+
+
+def test_the_robot_itself_goes_on_as_if_nothing_had_been(tmp_path: Path) -> None:
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text)
+    whole = finished(open_story(tmp_path, Settings()))
+    story, draw = open_story(tmp_path, Settings()), random.Random(2)
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    try:
+        for _ in range(4):
+            try:
+                signal.setitimer(signal.ITIMER_REAL, draw.uniform(0.01, 0.3))
+                story.advance()
+            except Exception as other:  # some libraries call it by another name
+                assert isinstance(other, RuntimeError | ImportError), other
+            except KeyboardInterrupt:
+                pass
+            finally:
+                with suppress(KeyboardInterrupt):
+                    signal.setitimer(signal.ITIMER_REAL, 0)
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    assert finished(story)[-2:] == whole[-2:]
+
+
+def test_the_first_keeps_the_step_and_the_second_breaks_it_off() -> None:
+    told: list[str] = []
+    with deferred(lambda: told.append("once")) as pressed:
+        signal.raise_signal(signal.SIGINT)
+        assert told == ["once"]
+    assert pressed
+    with pytest.raises(KeyboardInterrupt), deferred(lambda: None):
+        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
+    with deferred(lambda: None) as pressed:
+        pass
+    assert not pressed
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
+
+
+def test_the_prompt_stops_after_a_whole_step(tmp_path: Path, scripted: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    story = open_story(write_scene(tmp_path / "s", 4), Settings())
+    step = scripted_robot.Robot.step
+
+    def pressing(robot: scripted_robot.Robot) -> Any:
+        if robot.left == 27:
+            signal.raise_signal(signal.SIGINT)
+        return step(robot)
+
+    monkeypatch.setattr(scripted_robot.Robot, "step", pressing)
+    said: list[str] = []
+    with QueryEngine() as engine:
+        Prompt(story, engine, said.append).obey("run")
+    assert [text.split(":")[0] for text in said if text.startswith("step")] == ["step 1", "step 2", "step 3", "step 4"]
+    assert said[-1] == "interrupted"
+    assert story.line["step"] == 4
+
+
+def test_an_answer_that_nobody_waited_for_is_not_given_to_the_next_question() -> None:
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    with QueryEngine() as engine:
+        engine.ask(["node(o1)."], "node(X)")
+        before = signal.signal(signal.SIGALRM, interrupt)
+        try:
+            with pytest.raises(KeyboardInterrupt):
+                signal.setitimer(signal.ITIMER_REAL, 0.2)
+                engine.ask(["node(o1)."], "X = 1..9000000")
+        finally:
+            signal.signal(signal.SIGALRM, before)
+        assert engine.ask(["node(o1)."], "node(o1)").kind == "yes"
+
+
+def press_after(seconds: float, command: list[str], **options: Any) -> tuple[int, str]:
+    """The exit code and the messages of a command that gets SIGINT after a while."""
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options) as run:
+        time.sleep(seconds)
+        run.send_signal(signal.SIGINT)
+        _, said = run.communicate()
+    return run.returncode, said
+
+
+def test_ctrl_c_soon_after_the_start_is_no_traceback(tmp_path: Path) -> None:
+    """From the first line of ours on; what Python says before that is not ours."""
+    folder = write_scene(tmp_path / "s", 1)
+    code = (
+        f"import sys, os; sys.argv = ['utak', 'run', sys.argv[1]]; sys.path.insert(0, {str(ROOT)!r}); "
+        "from utak_command import main; print(flush=True); sys.exit(main())"
+    )
+    for milliseconds in (15, 40, 80, 150, 300):
+        command = [sys.executable, "-c", code, str(folder)]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as run:
+            assert run.stdout is not None
+            run.stdout.readline()
+            time.sleep(milliseconds / 1000)
+            run.send_signal(signal.SIGINT)
+            _, said = run.communicate()
+        assert run.returncode in (130, 1, 75), said
+        assert "Traceback" not in said
+        assert "bug" not in said
+
+
+def test_a_background_job_ignores_ctrl_c(tmp_path: Path) -> None:
+    def ignore() -> None:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    folder = write_scene(tmp_path / "s", 1)
+    command = [sys.executable, scripted_robot.__file__, "run", str(folder)]
+    prepare: Callable[[], None] = ignore
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "SCRIPTED_PAUSE": "0.02"}
+    code, said = press_after(0.5, command, preexec_fn=prepare, env=environment)
+    assert code == 75, said

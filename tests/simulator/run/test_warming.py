@@ -1,0 +1,145 @@
+"""What is compiled before the first run, where it is kept, and what is said of it."""
+
+import os
+import pty
+import subprocess
+import sys
+from contextlib import suppress
+
+import pytest
+
+from simulator.run import warming
+
+COMPILED = os.environ.get("NUMBA_DISABLE_JIT", "0") == "0"
+
+
+def test_each_use_works_by_itself() -> None:
+    for use in {use for halves in warming.HALVES.values() for half in halves for use in half}:
+        use()
+
+
+def test_two_processes_share_the_work() -> None:
+    walking, carrying = ([use for half in warming.HALVES[kind] for use in half] for kind in (False, True))
+    assert len(set(walking)) == len(walking)
+    assert len(set(carrying)) == len(carrying)
+    assert set(carrying) - set(walking) == {warming.carry}
+    assert set(walking) <= set(carrying)
+
+
+def test_the_other_process_does_what_it_is_told(monkeypatch) -> None:
+    done = []
+    monkeypatch.setattr(warming, "compile_for", done.extend)
+    for halves in warming.HALVES.values():
+        done.clear()
+        warming.main([use.__name__ for use in halves[1]])
+        assert sorted(done, key=repr) == sorted(halves[1], key=repr)
+
+
+def test_the_first_run_says_what_it_does(monkeypatch) -> None:
+    told, done = [], []
+    monkeypatch.setattr(warming, "cold", list)
+    monkeypatch.setattr(warming, "beside", lambda *_: [sys.executable, "-I", "-c", ""])
+    monkeypatch.setattr(warming, "tell", lambda: told.append(True))
+    monkeypatch.setattr(warming, "compile_for", done.extend)
+    monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
+    warming.warm(carrying=False)
+    assert told
+    assert done == list(warming.HALVES[False][0])
+    monkeypatch.setattr(warming, "cold", lambda uses: [])
+    warming.warm(carrying=True)
+    assert len(told) == 1
+
+
+def test_bytecode_is_kept_where_python_keeps_none(monkeypatch, tmp_path) -> None:
+    (tmp_path / "part").mkdir()
+    (tmp_path / "part" / "module.py").write_text("ANSWER = 42\n")
+    (tmp_path / "broken.py").write_text("ANSWER =\n")
+    monkeypatch.setattr(warming, "PACKAGES", [tmp_path, tmp_path / "absent"])
+    monkeypatch.setattr(warming, "cold", list)
+    monkeypatch.setattr(warming, "beside", lambda *_: [sys.executable, "-I", "-c", ""])
+    monkeypatch.setattr(warming, "tell", lambda: None)
+    monkeypatch.setattr(warming, "compile_for", lambda _: None)
+    monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
+    for told, kept in ((False, 0), (True, 1)):
+        monkeypatch.setattr(sys, "dont_write_bytecode", told)
+        warming.warm(carrying=False)
+        assert len(list(tmp_path.rglob("module.*.pyc"))) == kept
+
+
+def test_every_package_of_the_robot_is_among_those_whose_bytecode_is_kept() -> None:
+    assert all((package / "__init__.py").is_file() for package in warming.PACKAGES)
+
+
+def test_what_is_missing_is_known_use_by_use(monkeypatch, tmp_path) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    uses = list(warming.INDEX)
+    assert warming.cold(uses) == uses
+    (tmp_path / "geometry_1234").mkdir()
+    (tmp_path / "geometry_1234" / "router.itineraries-17.py311.nbi").touch()
+    assert warming.cold(uses) == [warming.carry, warming.sightlines]
+    (tmp_path / "geometry_1234" / "astar.haul-20.py311.nbi").touch()
+    (tmp_path / "other.function-1.py311.nbi").touch()
+    assert warming.cold([warming.search, warming.carry]) == []
+    assert warming.kept() == 2
+
+
+def test_only_what_is_missing_is_compiled(monkeypatch) -> None:
+    done = []
+    monkeypatch.setattr(warming, "tell", lambda: None)
+    monkeypatch.setattr(warming, "compile_for", done.extend)
+    monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
+    for use, asked in ((warming.carry, (True, "skeleton")), (warming.sightlines, (False, "visibility"))):
+        done.clear()
+        monkeypatch.setattr(warming, "cold", lambda uses, use=use: [use])
+        warming.warm(*asked)
+        assert done == [use]
+
+
+CODE = """
+import numpy as np
+from geometry.kernels import jit
+jit.PATIENCE, jit.OFTEN = 0.0, 0.0
+from geometry.homotopy.funnel import measure_line
+measure_line(np.zeros((2, 2)), 2)
+print(*jit.ready())
+"""
+
+
+def compiling(**environment: str) -> "subprocess.CompletedProcess[str]":
+    """A process that compiles a kernel."""
+    settings = {**os.environ, **environment}
+    settings.pop("NUMBA_CACHE_DIR", None)
+    return subprocess.run([sys.executable, "-c", CODE], capture_output=True, text=True, check=True, env=settings)
+
+
+@pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
+def test_kernels_are_kept_in_the_users_cache_where_the_installation_cannot_be_written(monkeypatch, tmp_path) -> None:
+    place = {"XDG_CACHE_HOME": str(tmp_path), "NUMBA_CACHE_LOCATOR_CLASSES": "UserWideCacheLocator"}
+    assert "compiling" in compiling(**place).stderr
+    assert "compiling" not in compiling(**place).stderr
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert tmp_path / "numba" in warming._caches()
+    assert list((tmp_path / "numba").rglob("rope.measure_line-*.nbi"))
+
+
+@pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
+def test_where_nothing_can_be_kept_it_is_said() -> None:
+    done = compiling(NUMBA_CACHE_LOCATOR_CLASSES="IPythonCacheLocator")
+    assert "they cannot be kept for the next run: set NUMBA_CACHE_DIR" in done.stderr
+    assert done.stdout.split()[1] == "False"
+
+
+@pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
+def test_a_terminal_is_told_how_far_it_is(tmp_path) -> None:
+    ours, theirs = pty.openpty()
+    with suppress(OSError):  # where pseudo-terminals end by an error
+        environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+        subprocess.run(
+            [sys.executable, "-c", CODE], stdout=subprocess.DEVNULL, stderr=theirs, check=True, env=environment
+        )
+    os.close(theirs)
+    said = os.read(ours, 10_000).decode()
+    os.close(ours)
+    assert "once per installation" in said
+    assert "kernels compiled so far: 1, in " in said
