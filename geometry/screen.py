@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from geometry.homotopy.portals import word_of_line
 from geometry.incremental.update import change_squares
+from geometry.kernels.arrays import Bools, Ints, Labels
 from geometry.passages.narrow_stretches import narrow_squares
 from geometry.passages.necks import DOOR, Passage, find_passages
-from geometry.passages.partition import Labels, find_parts
+from geometry.passages.partition import find_parts
 from geometry.passages.walls import Walls, find_walls
-from geometry.raster.distance_transform import Bools, type_of_squares
+from geometry.raster.distance_transform import type_of_squares
 from geometry.routes.goal_routes import routes_to_area
 from geometry.routes.goal_sets import checked_goal
 from geometry.routes.layer import Layer, find_bones, find_layer, level_of, new_state
@@ -23,7 +24,7 @@ from geometry.routes.route import Route
 from geometry.routes.tighten import word_of_crossings
 from geometry.skeleton.buffers import Tenant, take_buffers
 from geometry.skeleton.chains import Chains, find_chains
-from geometry.skeleton.graph import Bones, Ints, contract
+from geometry.skeleton.graph import Bones, contract
 from geometry.skeleton.skeleton import States, Words
 from geometry.skeleton.sweep import survey
 

@@ -14,6 +14,7 @@ two neither of which is fresh have told all that they tell together.
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Ints, Longs
 from geometry.kernels.jit import compiled
 
 OPEN, FREE, FULL = -1, 0, 1
@@ -21,14 +22,12 @@ ROUNDS = 20  # of both rules, at most
 
 States = NDArray[np.int8]
 Numbers = NDArray[np.int16]
-Squares = NDArray[np.int32]
-Ints = NDArray[np.int64]
 
 
 @compiled
 def residue(
-    state: States, where: Squares, weight: Numbers, low: Numbers, high: Numbers
-) -> tuple[NDArray[np.bool_], Ints, Ints, Ints]:
+    state: States, where: Ints, weight: Numbers, low: Numbers, high: Numbers
+) -> tuple[NDArray[np.bool_], Longs, Longs, Longs]:
     """Of every field: its open entries (n, m), their weight, and the least and the greatest count left for them."""
     number, most = where.shape
     open_ = np.zeros((number, most), np.bool_)
@@ -49,9 +48,7 @@ def residue(
 
 
 @compiled
-def misfits(
-    state: States, where: Squares, weight: Numbers, low: Numbers, high: Numbers, wrong: NDArray[np.bool_]
-) -> int:
+def misfits(state: States, where: Ints, weight: Numbers, low: Numbers, high: Numbers, wrong: NDArray[np.bool_]) -> int:
     """How many fields cannot show what they show if all that is settled is right; they are marked in `wrong` (n,)."""
     found = 0
     for i in range(where.shape[0]):
@@ -71,7 +68,7 @@ def misfits(
 def settle(
     state: States,
     settled_by: Numbers,
-    where: Squares,
+    where: Ints,
     weight: Numbers,
     low: Numbers,
     high: Numbers,
@@ -98,7 +95,7 @@ def settle(
 def _single(
     state: States,
     settled_by: Numbers,
-    where: Squares,
+    where: Ints,
     weight: Numbers,
     low: Numbers,
     high: Numbers,
@@ -143,7 +140,7 @@ def _single(
 def _pairs(
     state: States,
     settled_by: Numbers,
-    where: Squares,
+    where: Ints,
     weight: Numbers,
     low: Numbers,
     high: Numbers,
@@ -223,8 +220,8 @@ def _pairs(
 
 @compiled
 def _fields_on(
-    state: States, where: Squares, weight: Numbers, room: Ints, chosen: NDArray[np.bool_], entries: int
-) -> tuple[Ints, Ints]:
+    state: States, where: Ints, weight: Numbers, room: Longs, chosen: NDArray[np.bool_], entries: int
+) -> tuple[Longs, Longs]:
     """The chosen fields with room on every open square: those on square s are on[first[s]:first[s + 1]]."""
     first, on = np.zeros(len(state) + 2, np.int64), np.empty(entries, np.int64)
     for i in range(where.shape[0]):

@@ -3,9 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Bools
 from geometry.kernels.jit import compiled
-
-Bools = NDArray[np.bool_]
 
 
 @compiled

@@ -16,11 +16,10 @@ import numpy.typing as npt
 import shapely
 from shapely import affinity
 
+from geometry.kernels.arrays import Bools, Floats
 from geometry.kernels.jit import compiled
 from geometry.motion.obstacle_field import Floor, cheapest
 
-Floats = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 Answer = Callable[[Any, bool], str]
 CLOSE = 0.02  # squares: to which the missing width is found
 NEARLY = 0.25  # squares: until it is told to that, what is hard to decide is asked at length
@@ -44,7 +43,7 @@ class Neck:
     width: float
 
 
-def neck_near(floor: Floor, goals: Mask, reached: Floats, radius: float) -> Neck | None:
+def neck_near(floor: Floor, goals: Bools, reached: Floats, radius: float) -> Neck | None:
     """The narrowest place on the widest way to the goal, not further than LOOK radii from where a body came to.
 
     goals : the goal's pixels in the floor's raster. reached : (n, 2) places that the body came to, the start first.
@@ -64,7 +63,7 @@ def neck_near(floor: Floor, goals: Mask, reached: Floats, radius: float) -> Neck
     return _neck_at(floor, (float(x), float(y)))
 
 
-def _narrowest(room: Floats, asked: Mask) -> int:
+def _narrowest(room: Floats, asked: Bools) -> int:
     """Where a way is narrowest, of the pixels asked for, and on from there as long as it grows narrower.
 
     That is amid a neck of several pixels, not at its mouth. room : of each pixel of the way, in squares.
@@ -82,7 +81,7 @@ class Field(NamedTuple):
 
     frame: Floats
     raster: Floats
-    goals: Mask
+    goals: Bools
 
     def pixels(self, places: Floats) -> npt.NDArray[np.intp]:
         """The pixels (n, 2) row, column of places (n, 2) x, y."""
@@ -91,7 +90,7 @@ class Field(NamedTuple):
         return pixels
 
 
-def _field_with_a_way(floor: Floor, goals: Mask, start: Floats) -> tuple[Field, float]:
+def _field_with_a_way(floor: Floor, goals: Bools, start: Floats) -> tuple[Field, float]:
     """The coarsest field with a way from the start to a goal, and the least room on the widest way.
 
     The floor's own field and 0.0 when there is a way in none.
@@ -121,7 +120,7 @@ def _ways(field: Field, wide: float) -> Floats:
 
 
 @compiled
-def _widest(raster: Floats, goals: Mask, row: int, column: int, pixel: float) -> float:
+def _widest(raster: Floats, goals: Bools, row: int, column: int, pixel: float) -> float:
     """The least distance to walls on the way from the goal pixels to a pixel where that is greatest (maximin)."""
     rows, columns = raster.shape
     wide = np.full((rows, columns), -1e9)

@@ -15,11 +15,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
 from geometry.motion.cell_clearance import FULL, SHUT, Ground, Mover, classify
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
 FINEST = 24  # halvings of place or angle at most
 WHOLE = 1 << FINEST
 DEEPEST = 2 * FINEST

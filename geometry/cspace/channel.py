@@ -17,12 +17,11 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.cspace.cell_tree import DEEPEST, Tree, next_neighbour, splittable
+from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.full_heap import pop, push
 from geometry.kernels.jit import bare
 from geometry.motion.cell_clearance import DEAD, FREE, FULL, OPEN, SHUT, Ground, Mover, classify
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
 EAGER = 2.0  # how much dearer the way still to go is than the way gone
 DEAR = np.array([1.0, 2.0, 5.0, 1e9, 50.0])  # the cost of a square's way by kind of cell, while it is large
 WEARY, PATIENT, WORN = 1.15, 8, 5.0  # a doubtful cell is so much dearer with each depth below so many; at most

@@ -11,12 +11,11 @@ import math
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 
+from geometry.kernels.arrays import Floats
 from geometry.motion.validation import FURTHEST
 
-Floats = npt.NDArray[np.float64]
 Place = tuple[float, float]
 FLESH = 1e-7  # squares by which the inscribed disc is taken to be smaller, for bodies may touch
 QUARTER = 4  # sides of the polygon that stands for a quarter of a circle

@@ -14,11 +14,11 @@ import shapely
 
 from geometry.cspace.local_planner import BLOCKED, EVEN, Scene, hop, shorter_turn
 from geometry.cspace.smoothing import motions_along
+from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import bare, compiled
 from geometry.motion.cell_clearance import Ground, Mover, distance_at
 from geometry.motion.se2 import Motion
 
-Floats = npt.NDArray[np.float64]
 STEPS, SWING = 40.0, 20.0  # squares pushed, radians turned that count as much as one motion
 BESIDE = 30  # candidates along the way
 ROOMY = 0.2  # of the body's radius: more room is not looked for

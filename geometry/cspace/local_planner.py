@@ -4,13 +4,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import bare
 from geometry.motion.cell_clearance import Ground, Mover
 from geometry.motion.time_of_impact import Surface, push_through_skin, turn_through_skin
 
-Floats = npt.NDArray[np.float64]
 BLOCKED, TURN_FIRST, PUSH_FIRST = 0, 1, 2
 EVEN = 1e-12  # radians or squares: less is no motion
 

@@ -21,6 +21,7 @@ import shapely
 
 from geometry.cspace.bottleneck import Neck, helps, missing_width, neck_near
 from geometry.cspace.solver import Inside, Problem
+from geometry.kernels.arrays import Floats
 from geometry.motion.body import new_mover
 from geometry.motion.obstacle_field import Floor
 from geometry.motion.se2 import Motion, Pose, Translate
@@ -28,7 +29,6 @@ from geometry.motion.validation import check
 
 __all__ = ["Inside", "Plan", "plan_motion"]
 
-Floats = npt.NDArray[np.float64]
 FIRST, CAPACITY = 100_000, 400_000  # cells: enough for margins of a few times the resolution; and for wide rooms
 AGAIN = 0.25  # of the resolution, when it is asked again with more cells
 COARSE, FEW = 4e-4, 40_000  # resolution and cells for the missing width at first

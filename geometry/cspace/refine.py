@@ -8,11 +8,9 @@ import numpy.typing as npt
 
 from geometry.cspace.cell_tree import Tree, split, splittable
 from geometry.cspace.local_planner import BLOCKED, Scene, hop, put
+from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
 from geometry.motion.cell_clearance import DEAD, FREE, OPEN
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
 
 
 class Way(NamedTuple):

@@ -1,8 +1,5 @@
 """Rounds of a search: a chain is found and followed, what is to blame split, until one is free or none is left."""
 
-import numpy as np
-import numpy.typing as npt
-
 from geometry.cspace.cell_tree import Tree, leaf_at
 from geometry.cspace.channel import REGION, Hunt, find_chain
 from geometry.cspace.local_planner import Scene
@@ -10,7 +7,6 @@ from geometry.cspace.refine import Way, follow
 from geometry.kernels.jit import bare
 from geometry.motion.cell_clearance import Ground
 
-Floats = npt.NDArray[np.float64]
 NONE, FOUND, MORE = 0, 1, 2
 
 

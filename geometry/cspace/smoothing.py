@@ -4,14 +4,13 @@ import math
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
 from geometry.cspace.local_planner import BLOCKED, EVEN, TURN_FIRST, Scene, hop, put, shorter_turn
+from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import bare, compiled
 from geometry.motion.cell_clearance import distance_at
 from geometry.motion.se2 import Motion, Rotate, Translate
 
-Floats = npt.NDArray[np.float64]
 LOOSE = 0.01  # of the body's radius: with less room a pose counts as touching
 PULLS = 4  # times that every corner of the way is pulled straight
 

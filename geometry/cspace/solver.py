@@ -17,13 +17,13 @@ from geometry.cspace.local_planner import BLOCKED, Scene, hop, new_scene
 from geometry.cspace.refine import new_way
 from geometry.cspace.rounds import FOUND, MORE, next_chain, pursue
 from geometry.cspace.smoothing import loosened, motions_along, shorten
+from geometry.kernels.arrays import Floats
 from geometry.motion.body import centre_pose
 from geometry.motion.cell_clearance import OPEN, Ground, Mover
 from geometry.motion.obstacle_field import Floor
 from geometry.motion.se2 import Motion, Pose
 from geometry.motion.validation import sound
 
-Floats = npt.NDArray[np.float64]
 FEW = 20  # cells: a body fewer across is decided by its discs where the cells leave it open
 ROUNDS = 64  # at a stretch: between two, the user may interrupt
 

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
-from geometry.skeleton.graph import Floats, Ints
 
 Ends = tuple[float, float, float, float]  # x and y of the start, x and y of the goal
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from geometry.homotopy.funnel import Rope, measure_line, new_rope, tighten_word
 from geometry.homotopy.strips import Runs, extend, symbol_between
+from geometry.kernels.arrays import Floats, Ints, SquaredDistances
 from geometry.kernels.heap import pop, push
 from geometry.kernels.jit import bare
-from geometry.raster.distance_transform import Squares
 from geometry.skeleton.chains import Chains
-from geometry.skeleton.graph import Floats, Ints, find, first_way, is_node, onward
+from geometry.skeleton.graph import find, first_way, is_node, onward
 from geometry.skeleton.skeleton import Flags, Heights, steepest, stride
 
 LANDMARKS = 6
@@ -54,7 +54,7 @@ class Anchor(NamedTuple):
     """The padded cell."""
 
 
-def find_ways(square: Squares, chains: Chains, runs: Runs, body: bool) -> Ways:
+def find_ways(square: SquaredDistances, chains: Chains, runs: Runs, body: bool) -> Ways:
     """Prepare routing on a pathgraph."""
     width = square.shape[1]
     symbol = np.zeros(chains.cells.shape[0], np.int32)

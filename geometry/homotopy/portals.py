@@ -6,9 +6,8 @@ from itertools import pairwise
 import numpy as np
 
 from geometry.homotopy.strips import Runs, extend, run_at
-from geometry.skeleton.graph import Ints
+from geometry.kernels.arrays import XY, Ints
 
-XY = tuple[float, float]
 SLACK = 1e-9  # squares by which a corner may miss a wall's corner that it rounds
 
 

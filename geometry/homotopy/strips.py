@@ -10,9 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from geometry.kernels.arrays import Ints, SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.raster.distance_transform import Squares
-from geometry.skeleton.graph import Ints
 
 
 class Runs(NamedTuple):
@@ -44,7 +43,7 @@ class Runs(NamedTuple):
     """(n,) the signed portal out of a run from which there is no other way on, however one goes; else 0."""
 
 
-def find_runs(square: Squares, level: int) -> Runs:
+def find_runs(square: SquaredDistances, level: int) -> Runs:
     """The runs and portals of the cells whose ``square`` is at least ``level``."""
     row = np.zeros(square.shape[0] - 1, np.int32)
     n = count_runs(square, level, row)
@@ -66,7 +65,7 @@ def trimmed(size: int, a: Ints, b: Ints, c: Ints) -> tuple[Ints, Ints, Ints]:
 
 
 @bare
-def count_runs(square: Squares, level: int, row: Ints) -> int:
+def count_runs(square: SquaredDistances, level: int, row: Ints) -> int:
     """Fill ``row`` and return the number of runs."""
     total = 0
     for i in range(1, square.shape[0] - 1):
@@ -78,7 +77,7 @@ def count_runs(square: Squares, level: int, row: Ints) -> int:
 
 
 @bare
-def fill_runs(square: Squares, level: int, low: Ints, high: Ints) -> None:
+def fill_runs(square: SquaredDistances, level: int, low: Ints, high: Ints) -> None:
     """Write the ends of all runs."""
     run = 0
     for i in range(1, square.shape[0] - 1):

@@ -8,9 +8,8 @@ how many cells can be skipped, and one cell of nine, with a margin, speaks for a
 
 import numpy as np
 
+from geometry.kernels.arrays import Ints, SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.raster.distance_rows import Ints
-from geometry.raster.distance_transform import Squares
 
 TILE = 32  # changed squares in one tile of so many squares a side are taken together
 STEP = 3  # rows and columns, the middle ones of which are looked at
@@ -47,7 +46,7 @@ def fill_boxes(cells: Ints, width: int, slot: Ints, boxes: Ints) -> int:
 
 
 @bare
-def find_affected(square: Squares, boxes: Ints, bounds: Ints) -> None:
+def find_affected(square: SquaredDistances, boxes: Ints, bounds: Ints) -> None:
     """Fill the first two columns of ``bounds`` (rows, 2 or more), per row the first and last cell that may change."""
     last = square.shape[0] - 2
     for row in range(bounds.shape[0]):
@@ -64,7 +63,7 @@ def find_affected(square: Squares, boxes: Ints, bounds: Ints) -> None:
 
 
 @bare
-def widen(square: Squares, boxes: Ints, k: int, row: int, bounds: Ints) -> bool:
+def widen(square: SquaredDistances, boxes: Ints, k: int, row: int, bounds: Ints) -> bool:
     """Include the cells of a row and of the two beside it that a box may change; returns whether there may be any
     further off."""
     left, right = boxes[k, 2], boxes[k, 3]

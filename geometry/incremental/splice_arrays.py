@@ -11,14 +11,14 @@ from typing import Any, NamedTuple, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Ints, Longs
 from geometry.kernels.jit import bare
-from geometry.skeleton.graph import Bones, Ints, find, pace
+from geometry.skeleton.graph import Bones, find, pace
 from geometry.skeleton.lowest_cells import lowest_of, new_notes
 from geometry.skeleton.skeleton import Flags, Heights
 
 Array = TypeVar("Array", bound=NDArray[Any])
 
-Longs = NDArray[np.int64]
 
 ROOM = 64  # nodes or chains, and a sixteenth of what there are: so many more fit into new arrays
 

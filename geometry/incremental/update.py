@@ -14,10 +14,10 @@ from geometry.incremental.affected_region import boxes_of, find_affected
 from geometry.incremental.update_distance import measure_within
 from geometry.incremental.update_graph import rejoin
 from geometry.incremental.update_skeleton import regrow
+from geometry.kernels.arrays import Bools, Ints, SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.raster.distance_transform import Bools, Squares
 from geometry.skeleton.buffers import keep_scratch, take_scratch
-from geometry.skeleton.graph import Bones, Ints
+from geometry.skeleton.graph import Bones
 from geometry.skeleton.skeleton import States
 
 Block = tuple[int, int, int, int]
@@ -27,7 +27,7 @@ ALL = 0.5  # share of the screen
 
 
 def change_squares(
-    square: Squares, state: States, bones: Bones, rows: Ints, columns: Ints, free: Bools
+    square: SquaredDistances, state: States, bones: Bones, rows: Ints, columns: Ints, free: Bools
 ) -> Bones | None:
     """Change squares (unpadded rows and columns) in ``square`` and ``state``; returns the changed pathgraph, or None,
     and changes nothing, when all had better be made anew.
@@ -64,7 +64,9 @@ def change_squares(
     return joined
 
 
-def clearances_in(square: Squares, block: Block, bounds: Ints, cells: Ints, free: Bools) -> Squares | None:
+def clearances_in(
+    square: SquaredDistances, block: Block, bounds: Ints, cells: Ints, free: Bools
+) -> SquaredDistances | None:
     """Clearances in a block with one cell about, when cells change; right within the bounds, arbitrary elsewhere.
 
     None when ``square`` is of a type that does not hold them.
@@ -84,7 +86,7 @@ def clearances_in(square: Squares, block: Block, bounds: Ints, cells: Ints, free
 
 
 @bare
-def block_about(square: Squares, bounds: Ints) -> Block:
+def block_about(square: SquaredDistances, bounds: Ints) -> Block:
     """First and last row, first and last column of a block in which the cells within the bounds can be measured.
 
     Beside the bounds clearances stay, and none between exceeds theirs by more than its distance from them.
@@ -104,13 +106,13 @@ def block_about(square: Squares, bounds: Ints) -> Block:
 
 
 @bare
-def reach_of(square: Squares, row: int, column: int) -> int:
+def reach_of(square: SquaredDistances, row: int, column: int) -> int:
     """A whole number of squares above a cell's clearance."""
     return int(0.5 * np.sqrt(float(square[row, column])) + 2.0)
 
 
 @bare
-def keep_lower(square: Squares, fresh: Squares, low: int, west: int, bounds: Ints) -> None:
+def keep_lower(square: SquaredDistances, fresh: SquaredDistances, low: int, west: int, bounds: Ints) -> None:
     """Put old clearances that are lower into ``fresh``, which begins in row ``low`` and column ``west``."""
     for row in range(bounds.shape[0]):
         first, size = bounds[row, 0], bounds[row, 1] - bounds[row, 0] + 1
@@ -121,7 +123,7 @@ def keep_lower(square: Squares, fresh: Squares, low: int, west: int, bounds: Int
 
 
 @bare
-def narrow(square: Squares, fresh: Squares, low: int, west: int, bounds: Ints) -> None:
+def narrow(square: SquaredDistances, fresh: SquaredDistances, low: int, west: int, bounds: Ints) -> None:
     """Narrow the bounds to the cells that differ; their third column gets where in ``fresh``, flat, the first one is.
 
     ``fresh`` begins in row ``low`` and column ``west``.

@@ -7,24 +7,18 @@ sites on the same side of a cell the one that is nearer to it stays so for all c
 
 import numpy as np
 
+from geometry.kernels.arrays import Bools, Ints, SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.raster.distance_rows import Ints, greatest
-from geometry.raster.distance_transform import (
-    Bools,
-    Gaps,
-    Sites,
-    Squares,
-    count_columns,
-    count_steps,
-    measure_run,
-    roof_of,
-)
+from geometry.raster.distance_rows import greatest
+from geometry.raster.distance_transform import Gaps, Sites, count_columns, count_steps, measure_run, roof_of
 
 Span = tuple[int, int]
 EVERYWHERE: Span = (1, 0)
 
 
-def measure_within(free: Bools, bounds: Ints, low: int, west: int, square: Squares, sites: Span = EVERYWHERE) -> bool:
+def measure_within(
+    free: Bools, bounds: Ints, low: int, west: int, square: SquaredDistances, sites: Span = EVERYWHERE
+) -> bool:
     """Fill ``square`` (rows + 2, columns + 2) within the bounds; returns whether its type holds it.
 
     free : (rows, columns) of a block, outside of which everything counts as blocked.
@@ -44,7 +38,7 @@ def measure_parts(
     bounds: Ints,
     low: int,
     west: int,
-    square: Squares,
+    square: SquaredDistances,
     first: int,
     last: int,
     gap: Gaps,

@@ -10,10 +10,11 @@ from bisect import bisect_left
 
 import numpy as np
 
-from geometry.incremental.splice_arrays import Longs, splice_chains, splice_nodes
+from geometry.incremental.splice_arrays import splice_chains, splice_nodes
 from geometry.incremental.update_skeleton import JOINED, MOVED, PASSED, Journal
+from geometry.kernels.arrays import Ints, Longs
 from geometry.kernels.jit import bare
-from geometry.skeleton.graph import Bones, Ints, find, first_way, is_node, onward
+from geometry.skeleton.graph import Bones, find, first_way, is_node, onward
 from geometry.skeleton.skeleton import HALT, LINKS, Flags, Heights, stride
 
 NODES = np.array([bool(state) and is_node.function(state) for state in range(256)])

@@ -9,10 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from geometry.kernels.arrays import Ints, SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.raster.distance_transform import Squares
 from geometry.skeleton.buffers import Scratch
-from geometry.skeleton.graph import Ints
 from geometry.skeleton.skeleton import (
     CLIMBED,
     GROUPS,
@@ -49,7 +48,7 @@ class Journal(NamedTuple):
     """(1,) how many."""
 
 
-def regrow(square: Squares, state: States, bounds: Ints, fresh: Squares, scratch: Scratch) -> Journal:
+def regrow(square: SquaredDistances, state: States, bounds: Ints, fresh: SquaredDistances, scratch: Scratch) -> Journal:
     """Set new clearances and grow the skeleton again.
 
     bounds : (rows, 3 or more) first and last column that change, and where in ``fresh`` their values start.
@@ -139,7 +138,7 @@ def wither(heights: Heights, width: int, about: Ints, journal: Journal, cell: in
 
 @bare
 def settle(
-    heights: Heights, width: int, bounds: Ints, fresh: Squares, about: Ints, flags: Flags, journal: Journal
+    heights: Heights, width: int, bounds: Ints, fresh: SquaredDistances, about: Ints, flags: Flags, journal: Journal
 ) -> None:
     """Set the new clearances, and the flags of the cells about. ``flags`` (width,) is scratch."""
     states = journal.states

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.raster.distance_transform import Bools
+from geometry.kernels.arrays import Bools
 
 PASSABLE = ".GS"
 KNOWN = PASSABLE + "@OTW"

@@ -5,13 +5,11 @@ from math import floor, isnan, log10
 
 import numpy as np
 
+from geometry.kernels.arrays import XY, Bools, Floats
 from geometry.passages.necks import Passage
-from geometry.raster.distance_transform import Bools
 from geometry.routes.route import Route
 from geometry.screen import Screen
-from geometry.skeleton.graph import Floats
 
-XY = tuple[float, float]
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 """Colours that colour-blind readers tell apart (Okabe and Ito 2008)."""
 DASHES = ("", "3 2", "1 1.5", "5 1.5 1 1.5")  # in widths of the line; with the colours every route of 28 has its own

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from geometry.kernels.arrays import Ints
 from geometry.kernels.jit import bare, compiled
 
 RING = 2048  # buckets: more than the dearest step
-Ints = npt.NDArray[np.int32]
 
 
 class Queue(NamedTuple):

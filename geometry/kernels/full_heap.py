@@ -3,12 +3,11 @@
 import numpy as np
 import numpy.typing as npt
 
+from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.heap import pop as take
 from geometry.kernels.heap import push as put
 from geometry.kernels.jit import bare
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
 Count = npt.NDArray[np.int64]
 
 

@@ -1,7 +1,7 @@
 """A binary heap in two arrays, keys and what they belong to; the caller keeps its size."""
 
+from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
-from geometry.skeleton.graph import Floats, Ints
 
 
 @bare

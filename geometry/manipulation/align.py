@@ -11,9 +11,10 @@ from itertools import product
 import shapely
 
 from geometry.cspace.fewest_motions import askew
+from geometry.kernels.arrays import XY
 from geometry.manipulation.grasps import holds_about
 from geometry.manipulation.lattice_planner import carry_squarewise
-from geometry.manipulation.legs import Leg, Point, commands, grip_square, may_push, rounded
+from geometry.manipulation.legs import Leg, commands, grip_square, may_push, rounded
 from geometry.manipulation.query import Errand
 from geometry.manipulation.remaining import after, joined
 from geometry.motion.se2 import Motion, Rotate, Translate
@@ -48,7 +49,7 @@ def _ways(errand: Errand) -> Iterator[Leg]:
                 break
 
 
-def _straight(errand: Errand, utak: Point, degrees: float) -> tuple[Motion, ...]:
+def _straight(errand: Errand, utak: XY, degrees: float) -> tuple[Motion, ...]:
     """The turn and the push that lay the body straight; () when they are not free, or nothing is to be done."""
     motions: list[Motion] = []
     shape = errand.shape

@@ -5,12 +5,13 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
+from geometry.kernels.arrays import XY, Floats, Longs
 from geometry.manipulation.goals import At, placed
-from geometry.manipulation.legs import Leg, Point, Push, at_utak, grip_square, rounded
+from geometry.manipulation.legs import Leg, Push, at_utak, grip_square, rounded
 from geometry.manipulation.query import Errand
 from geometry.manipulation.workspace import padded
 from geometry.motion.se2 import Motion, Rotate, Translate
-from geometry.state_lattice.footprints import Floats, Ints, Stencil, quarter
+from geometry.state_lattice.footprints import Stencil, quarter
 from geometry.state_lattice.lattice import Costs, Grid
 
 ENDS = 300  # of a push that are looked at
@@ -32,14 +33,14 @@ class Retelling:
         self.shape = errand.shape
         self.at = errand.square
 
-    def legs(self, nodes: Ints) -> list[Leg]:
+    def legs(self, nodes: Longs) -> list[Leg]:
         """The legs, one for each run of nodes with the same hold."""
         count = (self.grid.rows + 2 * self.grid.pad) * self.grid.stride
         steps = [(n // count // 36, n // count // 9 % 4, n // count % 9, n % count) for n in nodes.tolist()]
         runs = [list(run) for _, run in groupby(steps, key=lambda step: step[0])]
         return [self._leg(run, run is runs[0], run is runs[-1]) for run in runs]
 
-    def _utak(self, step: Step) -> Point:
+    def _utak(self, step: Step) -> XY:
         """The middle of Utak's square at a step."""
         x, y = self.holds[step[1]][step[0]].tolist()
         column, row = self.grid.square(step[3])
@@ -72,7 +73,7 @@ class Retelling:
         x, y = self._utak(step)
         return math.floor(x), math.floor(y)
 
-    def _turned(self, quarters: int, utak: Point) -> Motion:
+    def _turned(self, quarters: int, utak: XY) -> Motion:
         """Turn the shape; half a turn the way that has more room."""
         ways = [90.0] if quarters == 1 else [-90.0] if quarters == 3 else [180.0, -180.0]
         turns = [Rotate(degrees, utak) for degrees in ways]
@@ -85,7 +86,7 @@ class Retelling:
         self.shape = turns[0].carry(self.shape)
         return turns[0]
 
-    def _pushed(self, before: list[Point], steps: list[Step], last: bool) -> list[Motion]:
+    def _pushed(self, before: list[XY], steps: list[Step], last: bool) -> list[Motion]:
         """The pushes along the steps of one quarter turn, as few as can be; the last ones right to the goal.
 
         before : where Utak is before he comes to the first of the steps.
@@ -114,7 +115,7 @@ class Retelling:
         ends: Floats = np.column_stack([column, row]) - self.grid.pad + self.holds[quarters][hold] + 0.5
         return ends
 
-    def _stops(self, before: list[Point], steps: list[Step]) -> tuple[Floats, Ints]:
+    def _stops(self, before: list[XY], steps: list[Step]) -> tuple[Floats, Longs]:
         """Where Utak is at each place on the way (n, 2), and at which of them the way turns, both ends among them."""
         stops = [*before, self._utak(steps[0])]
         corners, heading = [0], 8

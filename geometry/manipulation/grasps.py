@@ -7,11 +7,11 @@ import numpy as np
 import shapely
 
 from geometry.cspace.fewest_motions import evenly
-from geometry.manipulation.legs import Point
+from geometry.kernels.arrays import XY, Floats
 from geometry.manipulation.query import Errand
 from geometry.raster.geodesic import reach
 from geometry.raster.rasterize import squares
-from geometry.state_lattice.footprints import DIRECTIONS, Floats
+from geometry.state_lattice.footprints import DIRECTIONS
 
 SAMPLES = 60  # of a track
 FIFTHS = 5  # of a square: the unit of geometry.raster.geodesic
@@ -24,7 +24,7 @@ class Hold:
     taken : he is there and has hold of it.
     """
 
-    place: Point
+    place: XY
     walk: int
     taken: bool = False
 
@@ -49,7 +49,7 @@ def holds_about(errand: Errand) -> list[Hold]:
     return own + sorted(fit, key=lambda hold: (hold.walk, hold.place))
 
 
-def promise(errand: Errand, hold: Hold, track: Floats) -> tuple[bool, int, float, int, Point]:
+def promise(errand: Errand, hold: Hold, track: Floats) -> tuple[bool, int, float, int, XY]:
     """How good a hold is likely to be, the least the best: the hold that he has before all others.
 
     Then: how often the track would bring Utak into a wall; how far the furthest corner is; how far he has to walk.

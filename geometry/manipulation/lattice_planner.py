@@ -9,6 +9,7 @@ from itertools import product
 import numpy as np
 import shapely
 
+from geometry.kernels.arrays import Bools
 from geometry.manipulation.extract_legs import MIDDLE, Retelling
 from geometry.manipulation.goals import prices
 from geometry.manipulation.legs import Leg, commands, may_push, only_pushes, rounded, verified
@@ -17,7 +18,7 @@ from geometry.manipulation.remaining import after
 from geometry.manipulation.workspace import padded
 from geometry.motion.se2 import Rotate, Translate
 from geometry.state_lattice.astar import CALM, first_walk, haul
-from geometry.state_lattice.footprints import DIRECTIONS, Mask, Stencil, new_stencil
+from geometry.state_lattice.footprints import DIRECTIONS, Stencil, new_stencil
 from geometry.state_lattice.heuristic import NEVER, STILL, guess
 from geometry.state_lattice.lattice import AWKWARD, COMMAND, REGRASP, Costs, new_board, new_grid
 
@@ -171,7 +172,7 @@ def _grips(errand: Errand, body: Stencil) -> Costs:
     return np.array(grips, np.int32)
 
 
-def _allowed(errand: Errand, body: Stencil) -> Mask:
+def _allowed(errand: Errand, body: Stencil) -> Bools:
     """In which directions one may push from each hold, in each quarter turn: (4, holds, 8)."""
     allowed = np.ones((4, len(body.holds), 8), np.bool_)
     if errand.pull:

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 import shapely
 
+from geometry.kernels.arrays import XY, Bools, Floats, Longs
 from geometry.manipulation.workspace import Yard, broad
 from geometry.motion.se2 import Motion, Rotate, Translate
 from geometry.raster.rasterize import areas
-from geometry.state_lattice.footprints import DIRECTIONS, Floats, Ints, Mask
+from geometry.state_lattice.footprints import DIRECTIONS
 
-Point = tuple[float, float]
 STOPS = 40  # of a push that are looked at, or all where it turns
 NUMBERS = 9  # digits that commands are given with
 STRIDE = 12  # squares walked by a command, about
@@ -39,10 +39,10 @@ class Leg:
     taken : whether he has hold of the body already: he neither walks nor grasps. Only of the first leg of a plan.
     """
 
-    place: Point
+    place: XY
     direction_square: tuple[int, int]
     motions: tuple[Motion, ...]
-    hold: Point = (0.0, 0.0)
+    hold: XY = (0.0, 0.0)
     walk: int = 0
     taken: bool = False
 
@@ -52,7 +52,7 @@ class Leg:
         return math.ceil(self.walk / STRIDE) + (0 if self.taken else 1) + len(self.motions) + 1
 
 
-def grip_square(shape: Any, place: Point) -> tuple[int, int] | None:
+def grip_square(shape: Any, place: XY) -> tuple[int, int] | None:
     """Which of the eight squares about Utak's own the body covers most, a straight one first; None when none."""
     column, row = math.floor(place[0]) - 1, math.floor(place[1]) - 1
     near = shapely.transform(shape, lambda p: p - np.array([column, row]))
@@ -73,7 +73,7 @@ def commands(legs: Sequence[Leg]) -> int:
     return sum(leg.commands for leg in legs)
 
 
-def at_utak(place: Point, motions: Sequence[Motion]) -> tuple[Motion, ...]:
+def at_utak(place: XY, motions: Sequence[Motion]) -> tuple[Motion, ...]:
     """The motions with turns about where Utak is at that time, free of rounding."""
     told: list[Motion] = []
     for motion in motions:
@@ -91,12 +91,12 @@ def shifted(leg: Leg, dx: float, dy: float) -> Leg:
     return replace(leg, place=place, motions=at_utak(place, leg.motions))
 
 
-def may_push(shape: Any, utak: Point, dx: float, dy: float) -> bool:
+def may_push(shape: Any, utak: XY, dx: float, dy: float) -> bool:
     """Whether a push leads away from Utak towards the body: it has a component along the line to its centroid."""
     return bool(dx * (shape.centroid.x - utak[0]) + dy * (shape.centroid.y - utak[1]) > 1e-9)
 
 
-def only_pushes(shape: Any, place: Point, motions: Sequence[Motion]) -> bool:
+def only_pushes(shape: Any, place: XY, motions: Sequence[Motion]) -> bool:
     """Whether no push goes backwards. shape, place : as the shape lies and where Utak is before the first motion."""
     for motion in motions:
         if isinstance(motion, Translate):
@@ -118,7 +118,7 @@ class Push:
 
     shape: Any
     stops: Floats
-    corners: Ints
+    corners: Longs
     ends: Floats
     margin: float
     pull: bool
@@ -155,7 +155,7 @@ class Push:
             at = best[at][2]
         return np.array(kept[::-1])
 
-    def _free(self, yard: Yard, here: Floats, there: Floats) -> Mask:
+    def _free(self, yard: Yard, here: Floats, there: Floats) -> Bools:
         """To which of some places (n, 2) he can push straight from one: (n,)."""
         utak = (float(self.stops[0, 0]), float(self.stops[0, 1]))
         vectors = there - here

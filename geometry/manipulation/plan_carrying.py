@@ -20,11 +20,12 @@ import numpy as np
 
 from geometry.cspace.bottleneck import Neck
 from geometry.cspace.plan_motion import Plan
+from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.align import carry_straightened
 from geometry.manipulation.free_body import move_alone
 from geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, met
 from geometry.manipulation.lattice_planner import carry_squarewise
-from geometry.manipulation.legs import Leg, Point, commands, shifted, verified
+from geometry.manipulation.legs import Leg, commands, shifted, verified
 from geometry.manipulation.press import pressed
 from geometry.manipulation.query import Errand
 from geometry.manipulation.single_grasp import carry_freed, carry_held
@@ -32,7 +33,6 @@ from geometry.manipulation.workspace import Yard
 from geometry.motion.first_contact import boundary_edges
 from geometry.motion.se2 import Pose, Rotate, Translate
 from geometry.motion.validation import check, sound
-from geometry.state_lattice.footprints import Mask
 
 LEAST_ANGLE = 0.1  # the sine of that at which two walls of a corner meet
 DEAREST_TURN = 2.5  # commands: with what a tight one costs besides, still below geometry.kernels.bucket_queue.RING
@@ -107,13 +107,13 @@ class Carrying:
 
 def plan_carrying(
     shape: Any,
-    free: Mask,
-    utak: Point,
+    free: Bools,
+    utak: XY,
     goal: End,
     margin: float = 0.0,
     pull: bool = True,
-    avoid: Sequence[Point] = (),
-    walk: Mask | None = None,
+    avoid: Sequence[XY] = (),
+    walk: Bools | None = None,
     walls: Any = None,
     held: bool = False,
     turn: float = 1.0,
@@ -184,7 +184,7 @@ def _planned(errand: Errand) -> Carrying:
     return plan or Carrying("limit", reason="hold" if body.status == "found" else "body", body=body)
 
 
-def _check(free: Mask, utak: Point, margin: float, avoid: Sequence[Point], walk: Mask | None, turn: float) -> None:
+def _check(free: Bools, utak: XY, margin: float, avoid: Sequence[XY], walk: Bools | None, turn: float) -> None:
     """Raise for what makes no sense."""
     if free.ndim != 2 or free.size == 0 or (walk is not None and walk.shape != free.shape):
         raise ValueError("free and walk must be arrays of the same rows and columns, of which there must be some")

@@ -4,10 +4,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.goals import End
-from geometry.manipulation.legs import Point
 from geometry.manipulation.workspace import Yard
-from geometry.state_lattice.footprints import Mask
 
 NEAR = 0.25  # squares: a hold within this of one to be avoided is avoided
 
@@ -24,12 +23,12 @@ class Errand:
 
     shape: Any
     yard: Yard
-    utak: Point
+    utak: XY
     goal: End
     margin: float
     pull: bool
-    avoid: tuple[Point, ...]
-    walk: Mask
+    avoid: tuple[XY, ...]
+    walk: Bools
     held: bool = False
     turn: float = 1.0
 
@@ -40,7 +39,7 @@ class Errand:
         column, row = math.floor(self.utak[0]), math.floor(self.utak[1])
         return min(max(column, 0), columns - 1), min(max(row, 0), rows - 1)
 
-    def hold_from(self, place: Point) -> Point:
+    def hold_from(self, place: XY) -> XY:
         """Where a place is relative to the centroid of the shape as it lies now: see Leg.hold."""
         return place[0] - self.shape.centroid.x, place[1] - self.shape.centroid.y
 

@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from geometry.kernels.arrays import XY
 from geometry.manipulation.goals import At, End, placed
-from geometry.manipulation.legs import Leg, Point
+from geometry.manipulation.legs import Leg
 from geometry.manipulation.query import Errand
 from geometry.motion.se2 import Pose, Rotate, Translate, turned
 
@@ -54,7 +55,7 @@ def _goal_after(goal: End, before: Any, now: Any, degrees: float) -> End:
     return At(Pose(there.x - here.x, there.y - here.y, round(goal.pose.degrees - degrees, 7)))
 
 
-def _turned(hold: Point, degrees: float) -> Point:
+def _turned(hold: XY, degrees: float) -> XY:
     """A hold in a frame turned by some degrees."""
     x, y = turned(np.array([hold]), degrees)[0]
     return float(x), float(y)

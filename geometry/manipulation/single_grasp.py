@@ -18,18 +18,18 @@ import shapely
 from geometry.cspace.fewest_motions import askew, fewest_motions, slant
 from geometry.cspace.local_planner import new_scene
 from geometry.cspace.plan_motion import plan_motion
+from geometry.kernels.arrays import XY, Floats
 from geometry.manipulation.align import carry_straightened
 from geometry.manipulation.free_body import move_alone
 from geometry.manipulation.goals import At, Between, InCorner, Inside, Roomy, placed
 from geometry.manipulation.grasps import Hold, holds_about, promise
 from geometry.manipulation.lattice_planner import carry_squarewise
-from geometry.manipulation.legs import Leg, Point, at_utak, grip_square, only_pushes, rounded, verified
+from geometry.manipulation.legs import Leg, at_utak, grip_square, only_pushes, rounded, verified
 from geometry.manipulation.query import Errand
 from geometry.manipulation.remaining import after, joined
 from geometry.manipulation.workspace import ARM, padded
 from geometry.motion.body import centre_pose, new_mover
 from geometry.motion.se2 import Motion, Pose
-from geometry.state_lattice.footprints import Floats
 
 HOLDS = 6  # asked at most
 SHORT = 9  # motions that are few enough
@@ -132,9 +132,7 @@ def _leg(errand: Errand, hold: Hold, goal: Pose | Inside, roomy: bool, cells: in
     return Leg(hold.place, square or (0, 0), motions, errand.hold_from(hold.place), hold.walk, hold.taken), looked
 
 
-def _motions(
-    errand: Errand, place: Point, goal: Pose | Inside, roomy: bool, cells: int
-) -> tuple[tuple[Motion, ...], int]:
+def _motions(errand: Errand, place: XY, goal: Pose | Inside, roomy: bool, cells: int) -> tuple[tuple[Motion, ...], int]:
     """The motions that bring the shape to a goal with a hold, () when none are found; how many cells were looked at."""
     middle = np.array([errand.shape.centroid.x, errand.shape.centroid.y])
     utak = (place[0] - middle[0], place[1] - middle[1])

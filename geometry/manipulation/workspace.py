@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import shapely
 
+from geometry.kernels.arrays import Bools, Floats
 from geometry.motion.first_contact import Body, Obstacles
 from geometry.motion.obstacle_field import Floor
 from geometry.motion.se2 import Motion
-from geometry.state_lattice.footprints import Floats, Mask
 
 EDGE = 4.0  # squares: how thick the outside of the array is drawn
 ARM = 0.45  # squares: how far Utak should keep from walls, where he can
@@ -26,7 +26,7 @@ class Yard:
         known better than by squares, `free` are those squares that they leave whole.
     """
 
-    def __init__(self, free: Mask, walls: Any = None) -> None:
+    def __init__(self, free: Bools, walls: Any = None) -> None:
         rows, columns = free.shape
         self.free = free
         self.outer = shapely.box(-EDGE, -EDGE, columns + EDGE, rows + EDGE)
@@ -49,9 +49,9 @@ class Yard:
         """Whether a body can make a motion to the end."""
         return self.obstacles.first_contact(body, motion).fraction >= WHOLE
 
-    def far(self, body: Body, vectors: Floats) -> Mask:
+    def far(self, body: Body, vectors: Floats) -> Bools:
         """Which pushes (n, 2) a body can make to the end: (n,)."""
-        free: Mask = self.obstacles.pushes(body, vectors) >= WHOLE
+        free: Bools = self.obstacles.pushes(body, vectors) >= WHOLE
         return free
 
 
@@ -70,7 +70,7 @@ def arms(utak: tuple[float, float]) -> Any:
     return shapely.box(utak[0] - ARM, utak[1] - ARM, utak[0] + ARM, utak[1] + ARM)
 
 
-def _strips(free: Mask) -> Any:
+def _strips(free: Bools) -> Any:
     """The free squares as few rectangles: runs along rows, joined with the same runs of the rows that follow."""
     strips = []
     growing: dict[tuple[int, int], int] = {}
@@ -83,7 +83,7 @@ def _strips(free: Mask) -> Any:
     return strips
 
 
-def _runs(line: Mask) -> set[tuple[int, int]]:
+def _runs(line: Bools) -> set[tuple[int, int]]:
     """The runs of True in a row as (first, stop)."""
     change = np.flatnonzero(np.diff(np.concatenate([[False], line, [False]]).astype(np.int8)))
     return {(int(a), int(b)) for a, b in change.reshape(-1, 2)}

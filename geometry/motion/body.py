@@ -6,16 +6,14 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 
+from geometry.kernels.arrays import XY, Floats
 from geometry.motion.cell_clearance import Mover
 from geometry.motion.first_contact import boundary_edges, with_normals
 from geometry.motion.se2 import Pose
 from geometry.motion.validation import check, sound
 
-Point = tuple[float, float]
-Floats = npt.NDArray[np.float64]
 DISCS = 16  # inscribed in a body at most
 GRID = 16  # places along the body's longer side where discs are tried
 SPECK = 1e-3  # squares: half the diagonal of what stands for a point that moves with the body
@@ -40,7 +38,7 @@ def new_mover(
 
 
 @lru_cache(maxsize=32)
-def _mover(wkb: bytes, points: tuple[Point, ...], pivot: Point | None) -> Mover:
+def _mover(wkb: bytes, points: tuple[XY, ...], pivot: XY | None) -> Mover:
     """The same: one body is planned for many times. Nobody writes into a Mover's arrays."""
     shape = shapely.from_wkb(wkb)
     specks = [shapely.Point(p).buffer(SPECK, quad_segs=1) for p in points]

@@ -8,13 +8,9 @@ in the ground's blocks.
 import math
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
+from geometry.kernels.arrays import Floats, Longs
 from geometry.kernels.jit import bare
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 FREE, OPEN, SHUT, FULL, DEAD = 0, 1, 2, 3, 4
 
 
@@ -45,9 +41,9 @@ class Ground(NamedTuple):
     edges: Floats
     raster: Floats
     frame: Floats
-    first: Ints
-    near: Ints
-    blocks: Ints
+    first: Longs
+    near: Longs
+    blocks: Longs
     reach: float
     bounds: Floats
 
@@ -245,8 +241,8 @@ def _always_overlaps(
 def _keeps_crossing(
     body: Floats,
     edges: Floats,
-    near: Ints,
-    first: Ints,
+    near: Longs,
+    first: Longs,
     block: int,
     x: float,
     y: float,

@@ -19,10 +19,10 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
+from geometry.kernels.arrays import Floats
 from geometry.motion.se2 import Motion, Translate
 from geometry.motion.time_of_impact import Surface, first_push, first_turn, many_pushes, many_turns
 
-Floats = npt.NDArray[np.float64]
 SKIN = 1e-8  # squares: a body may be this deep in an obstacle before a motion further in is stopped
 CHUNK = 4  # edges that are looked at or left alone together
 SHORT = 1e-7  # squares: points of a contour nearer to the one before are left out, for the skin would turn them over

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
+from geometry.kernels.arrays import Floats, Longs
 from geometry.kernels.bucket_queue import Queue, new_queue, put, take
 from geometry.kernels.jit import bare, compiled
 from geometry.motion.body import centre_pose
@@ -21,8 +22,6 @@ from geometry.motion.first_contact import Obstacles
 from geometry.motion.se2 import Pose
 from geometry.motion.validation import FURTHEST, sound
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 PIXELS = 128  # along the longer side of the raster
 BLOCK = 8  # pixels along the side of a block
 RIM = 0.1  # of the longer side, around the bounds
@@ -137,7 +136,7 @@ def _measure(edges: Floats, frame: Floats, raster: Floats) -> None:
 
 
 @compiled
-def _blocks(edges: Floats, frame: Floats, rows: int, columns: int, reach: float) -> tuple[Ints, Ints]:
+def _blocks(edges: Floats, frame: Floats, rows: int, columns: int, reach: float) -> tuple[Longs, Longs]:
     """For each block of pixels the edges within reach of a place in it: (blocks + 1,) where each list begins, lists."""
     first = np.zeros(rows * columns + 1, np.int64)
     near = np.empty(rows * columns * max(len(edges), 1), np.int64)
@@ -154,7 +153,7 @@ def _blocks(edges: Floats, frame: Floats, rows: int, columns: int, reach: float)
     return first, near[:count].copy()
 
 
-def disc_ways(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_]) -> Ints:
+def disc_ways(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_]) -> Longs:
     """Dijkstra's algorithm from the goal pixels over the eight neighbours, WALL times as dear where it is tight.
 
     Returns (rows, columns), in units of which SIDE make a pixel's way.
@@ -166,7 +165,7 @@ def disc_ways(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_]) -> Int
 
 
 @bare
-def _spread(price: Ints, ways: Ints, width: int, queue: Queue) -> None:
+def _spread(price: Longs, ways: Longs, width: int, queue: Queue) -> None:
     """Find the ways of all pixels, from those that are 0. The rim of pixels around them, all -1, leads nowhere."""
     for at in range(len(ways)):
         if ways[at] == 0:

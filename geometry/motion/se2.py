@@ -7,10 +7,9 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 
-Floats = npt.NDArray[np.float64]
+from geometry.kernels.arrays import Floats
 
 
 class Pose(NamedTuple):

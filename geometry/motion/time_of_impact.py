@@ -10,10 +10,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import bare, compiled
 from geometry.motion.cell_clearance import point_to_edge
-
-Floats = npt.NDArray[np.float64]
 
 
 class Surface(NamedTuple):

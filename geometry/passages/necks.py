@@ -15,11 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from geometry.kernels.arrays import XY, Bools, Longs
 from geometry.kernels.jit import compiled
-from geometry.passages.walls import Longs, Walls
-from geometry.raster.distance_transform import Bools
+from geometry.passages.walls import Walls
 
-XY = tuple[float, float]
 Segment = tuple[XY, XY]
 DOOR = 2.0  # times as wide as a door the floor is at least on both sides of it: the definition
 HAIR = 1e-6

@@ -3,15 +3,10 @@
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Bools, Floats, Ints, Labels
 from geometry.kernels.jit import bare, compiled
 from geometry.passages.necks import Passage
-from geometry.raster.distance_transform import Bools
-from geometry.skeleton.graph import Ints
-
-Labels = NDArray[np.int32]
-Points = NDArray[np.float64]
 
 
 def find_parts(free: Bools, passages: Iterable[Passage]) -> Labels:
@@ -73,7 +68,7 @@ def bar_centres(floor: Bools, a: tuple[float, float], b: tuple[float, float]) ->
 
 
 @compiled
-def mark_crossed(shut: Bools, line: Points) -> None:
+def mark_crossed(shut: Bools, line: Floats) -> None:
     """Mark the steps between centres of squares that a line crosses an odd number of times.
 
     line : (n, 2) points (x, y).

@@ -11,12 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-from geometry.raster.distance_transform import Bools
-from geometry.skeleton.graph import Floats
-
-Longs = NDArray[np.int64]
+from geometry.kernels.arrays import Bools, Floats, Longs
 
 
 class Walls(NamedTuple):

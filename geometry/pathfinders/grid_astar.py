@@ -8,13 +8,11 @@ from math import sqrt
 
 import numpy as np
 
-from geometry.raster.distance_transform import Bools
-from geometry.skeleton.graph import Floats
+from geometry.kernels.arrays import Bools, Floats, Square
 
 DIAGONAL = sqrt(2.0)
 STRAIGHT = ((1, 0, 1.0), (0, 1, 1.0), (-1, 0, 1.0), (0, -1, 1.0))
 STEPS = (*STRAIGHT, *((dx, dy, DIAGONAL) for dx, dy in ((1, 1), (-1, 1), (-1, -1), (1, -1))))
-Square = tuple[int, int]
 
 
 def grid_way(free: Bools, start: tuple[float, float], goal: tuple[float, float]) -> Floats | None:

@@ -13,9 +13,9 @@ import numpy as np
 
 from geometry.homotopy.funnel import Ends, Rope, measure_line, new_rope, reach, tighten_word
 from geometry.homotopy.strips import Runs, extend, run_at
+from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.heap import pop, push
 from geometry.kernels.jit import bare
-from geometry.skeleton.graph import Floats, Ints
 
 CLOSE = 1e-9  # squares: two ways to a corner that differ by less are equally long
 WEST, EAST, DONE = 0, 1, 2  # columns of ``span``

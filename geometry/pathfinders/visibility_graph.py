@@ -9,11 +9,8 @@ from heapq import heappop, heappush
 
 import numpy as np
 
+from geometry.kernels.arrays import XY, Bools, Floats
 from geometry.kernels.jit import bare
-from geometry.raster.distance_transform import Bools
-from geometry.skeleton.graph import Floats
-
-XY = tuple[float, float]
 
 
 def extreme_points(free: Bools) -> Floats:

@@ -8,10 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Bools, Labels
 from geometry.kernels.jit import compiled
-
-Bools = NDArray[np.bool_]
-Labels = NDArray[np.int32]
 
 
 class Components(NamedTuple):

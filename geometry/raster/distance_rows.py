@@ -9,12 +9,10 @@ at once, many times as fast as an envelope; far from them the envelope of distan
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Ints, SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.raster.distance_transform import Gaps, Sites, Squares, count_steps, measure_run, roof_of
-
-Ints = NDArray[np.int32]
+from geometry.raster.distance_transform import Gaps, Sites, count_steps, measure_run, roof_of
 
 STRETCH = 128  # columns that share one reach
 FARTHEST = 60
@@ -47,7 +45,7 @@ def new_window(width: int) -> Window:
 
 
 @bare
-def measure_rows(square: Squares, steps: Gaps, south: int, north: int, window: Window) -> bool:
+def measure_rows(square: SquaredDistances, steps: Gaps, south: int, north: int, window: Window) -> bool:
     """Fill rows of ``square`` (rows + 2, columns + 2) from ``north`` down to ``south``, after those further north.
 
     ``steps`` (rows + 2, columns + 2 or more) has the steps to the nearest blocked square below; it may lie in the same
@@ -112,7 +110,7 @@ def four_sites(west: Gaps, east: Gaps, t: int, value: Gaps) -> None:
 
 
 @bare
-def publish(value: Gaps, out: Squares) -> int:
+def publish(value: Gaps, out: SquaredDistances) -> int:
     """Copy, and return the greatest."""
     most = np.int16(0)
     for j in range(value.shape[0]):
@@ -122,7 +120,7 @@ def publish(value: Gaps, out: Squares) -> int:
 
 
 @bare
-def greatest(out: Squares) -> int:
+def greatest(out: SquaredDistances) -> int:
     """The greatest of some values."""
     most = 0 * out[0]
     for j in range(out.shape[0]):
@@ -138,7 +136,7 @@ def steps_for(most: int) -> int:
 
 @bare
 def measure_far(
-    gap: Gaps, out: Squares, first: int, last: int, done: int, roof: int, sites: Sites, heights: Sites
+    gap: Gaps, out: SquaredDistances, first: int, last: int, done: int, roof: int, sites: Sites, heights: Sites
 ) -> int:
     """Measure the runs that meet a stretch, but for columns up to ``done``; returns how far these runs go."""
     column = first if first > done else done

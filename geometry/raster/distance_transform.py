@@ -16,11 +16,10 @@ the same faster. A row's ``gap`` is the number of steps to the nearest blocked s
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Bools, SquaredDistances
 from geometry.kernels.jit import bare
 
-Bools = NDArray[np.bool_]
 Gaps = NDArray[np.int16]
-Squares = NDArray[np.int16] | NDArray[np.int32]
 Sites = NDArray[np.int64]
 
 TILE = 16  # squares
@@ -77,14 +76,22 @@ def count_steps(steps: Gaps, gap: Gaps) -> None:
 
 
 @bare
-def roof_of(square: Squares) -> int:
+def roof_of(square: SquaredDistances) -> int:
     """The greatest value of its type."""
     return int((1 << 8 * square.itemsize - 1) - 1)
 
 
 @bare
 def measure_run(
-    gap: Gaps, square: Squares, first: int, last: int, begin: int, end: int, roof: int, sites: Sites, heights: Sites
+    gap: Gaps,
+    square: SquaredDistances,
+    first: int,
+    last: int,
+    begin: int,
+    end: int,
+    roof: int,
+    sites: Sites,
+    heights: Sites,
 ) -> None:
     """Fill ``begin <= column < end`` with values up to a ``roof``, in the free squares ``first <= column < last``.
 

@@ -4,14 +4,12 @@ from math import ceil, hypot
 
 import numpy as np
 
-from geometry.raster.distance_transform import Squares
-from geometry.skeleton.graph import Floats
+from geometry.kernels.arrays import XY, Floats, SquaredDistances
 
-XY = tuple[float, float]
 SLACK = 1e-9  # squares by which a body may be too near to a wall for rounding
 
 
-def keeps_clear(square: Squares, start: XY, goal: XY, radius: float) -> bool:
+def keeps_clear(square: SquaredDistances, start: XY, goal: XY, radius: float) -> bool:
     """Return whether a disc moved straight from one point to another of the same square keeps out of blocked squares.
 
     Parameters

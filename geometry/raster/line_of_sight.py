@@ -7,15 +7,14 @@ that a whole one sweeps on the way.
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Bools
 from geometry.kernels.jit import compiled
 
 MEETING = 1e-9  # squares of overlap from which on two squares meet
-Mask = NDArray[np.bool_]
 
 
-def straight(free: Mask, column: int, row: int, longest: int, among: Mask | None = None) -> Mask:
+def straight(free: Bools, column: int, row: int, longest: int, among: Bools | None = None) -> Bools:
     """(rows, columns) bool: the squares to which a straight move leads from a square, itself among them.
 
     Parameters
@@ -32,14 +31,14 @@ def straight(free: Mask, column: int, row: int, longest: int, among: Mask | None
     rows, columns = free.shape
     if not (0 <= row < rows and 0 <= column < columns):
         raise ValueError(f"the start ({column}, {row}) lies outside the raster")
-    reached: Mask = np.zeros(free.shape, np.bool_)
+    reached: Bools = np.zeros(free.shape, np.bool_)
     asked = free if among is None else free & among
     _mark(np.ascontiguousarray(free), np.ascontiguousarray(asked), column, row, longest, reached)
     return reached
 
 
 @compiled
-def _mark(free: Mask, asked: Mask, column: int, row: int, longest: int, reached: Mask) -> None:
+def _mark(free: Bools, asked: Bools, column: int, row: int, longest: int, reached: Bools) -> None:
     rows, columns = free.shape
     for r in range(max(row - longest, 0), min(row + longest + 1, rows)):
         for c in range(max(column - longest, 0), min(column + longest + 1, columns)):
@@ -47,7 +46,7 @@ def _mark(free: Mask, asked: Mask, column: int, row: int, longest: int, reached:
 
 
 @compiled
-def _open(free: Mask, column: int, row: int, dx: int, dy: int) -> bool:
+def _open(free: Bools, column: int, row: int, dx: int, dy: int) -> bool:
     """Is every square free that a unit square sweeps on its way by (dx, dy)?"""
     for j in range(min(0, dy), max(0, dy) + 1):
         first, last = 0.0, 1.0  # the part of the way on which it meets this row

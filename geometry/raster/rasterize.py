@@ -15,10 +15,10 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
+from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import compiled
 from geometry.motion.se2 import Motion
 
-Floats = npt.NDArray[np.float64]
 TOUCH = 1e-9  # squares^2: a smaller common area is mere touching
 
 

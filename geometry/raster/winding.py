@@ -10,12 +10,11 @@ point.
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Square
 from geometry.kernels.jit import compiled
 
 MOST = 2  # crossings: sheets from -MOST to MOST
 _SIDE, _DIAGONAL = 5, 7
-
-Square = tuple[int, int]
 
 
 def crossings(points: NDArray[np.float64], about: tuple[float, float]) -> int:

@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.homotopy.landmarks import Ways
+from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.heap import pop, push
 from geometry.kernels.jit import bare
-from geometry.skeleton.graph import Floats, Ints
 from geometry.skeleton.skeleton import States
 
 EAGER = 1.05  # times the bound, where arcs are made dearer anyway: a third of the time on random squares, as good ways

@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.homotopy.landmarks import locate
+from geometry.kernels.arrays import Bools, Ints, Labels
 from geometry.passages.necks import Passage
-from geometry.passages.partition import Labels, cut_floor
-from geometry.raster.distance_transform import Bools
+from geometry.passages.partition import cut_floor
 from geometry.routes.layer import Layer
 from geometry.routes.lifting import direction_of
-from geometry.skeleton.graph import Ints, find, is_node
+from geometry.skeleton.graph import find, is_node
 from geometry.skeleton.skeleton import steepest, stride
 
 

@@ -4,15 +4,14 @@ from itertools import pairwise
 from math import hypot, inf, nan
 
 from geometry.homotopy.portals import join_words, word_of_line
+from geometry.kernels.arrays import XY, Bools, Ints
 from geometry.passages.necks import Passage
-from geometry.raster.distance_transform import Bools
 from geometry.routes.barrier import Barrier
 from geometry.routes.goal_sets import Region, edge_cells, regions, word_of_cells
 from geometry.routes.lifting import cells_of_word
-from geometry.routes.queries import CLOSE, SPARE, XY, Questions
+from geometry.routes.queries import CLOSE, SPARE, Questions
 from geometry.routes.route import Route
 from geometry.routes.tighten import tight_route
-from geometry.skeleton.graph import Ints
 
 
 def routes_to_area(

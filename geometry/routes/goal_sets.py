@@ -13,11 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from geometry.homotopy.strips import Runs, symbol_between
-from geometry.passages.partition import Labels, number_parts
-from geometry.raster.distance_transform import Bools, Squares
-from geometry.skeleton.graph import Ints
-
-XY = tuple[float, float]
+from geometry.kernels.arrays import Bools, Ints, Labels, SquaredDistances
+from geometry.passages.partition import number_parts
 
 
 class Region(NamedTuple):
@@ -69,7 +66,7 @@ def checked_goal(goal: ArrayLike | set[tuple[int, int]], shape: tuple[int, int])
     raise ValueError(f"goal must be a point (x, y), a bool array of shape {shape} or a set of squares (column, row)")
 
 
-def regions(square: Squares, level: int, runs: Runs, goal: Bools) -> list[Region]:
+def regions(square: SquaredDistances, level: int, runs: Runs, goal: Bools) -> list[Region]:
     """Return the connected parts of a goal set where a body may be."""
     inside = np.zeros(square.shape, np.bool_)
     inside[1:-1, 1:-1] = goal & (square[1:-1, 1:-1] >= level)
@@ -79,7 +76,7 @@ def regions(square: Squares, level: int, runs: Runs, goal: Bools) -> list[Region
     return [region(square, runs, label, number) for number in range(1, count + 1)]
 
 
-def region(square: Squares, runs: Runs, label: Labels, number: int) -> Region:
+def region(square: SquaredDistances, runs: Runs, label: Labels, number: int) -> Region:
     """Return one part."""
     width = square.shape[1]
     cells = np.flatnonzero(label == number)
@@ -122,7 +119,7 @@ def folded(edges: list[tuple[int, int, int]], count: int) -> tuple[list[int], di
     return [standing_for(v) for v in range(count)], step
 
 
-def edge_cells(square: Squares, level: int, goal: Bools, start: int) -> list[int]:
+def edge_cells(square: SquaredDistances, level: int, goal: Bools, start: int) -> list[int]:
     """Return the cells of a goal set one of which is the nearest: where a way comes in from outside, or starts.
 
     A way to the centre of another cell comes over a cell of the set whose centre is as near to where it goes on.

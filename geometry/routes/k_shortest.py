@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.homotopy.landmarks import Ways
+from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
 from geometry.routes.astar import Query, Search, seek, survey
-from geometry.skeleton.graph import Floats, Ints
 
 MANY = 2000  # chains from which on distances to the goal are first sought close about the shortest way alone
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from geometry.homotopy.landmarks import Ways, find_ways
 from geometry.homotopy.strips import Runs, find_runs
-from geometry.raster.distance_transform import Squares
+from geometry.kernels.arrays import SquaredDistances
 from geometry.skeleton.chains import Chains
 from geometry.skeleton.graph import Bones, contract
 from geometry.skeleton.skeleton import States, Words
@@ -21,7 +21,7 @@ HIGHEST = 2**31 - 1  # above any square
 class Layer(NamedTuple):
     """What a query needs."""
 
-    square: Squares
+    square: SquaredDistances
     """(rows + 2, columns + 2) squared clearances in half squares."""
     state: States
     """(rows + 2, columns + 2) links and flags of the skeleton."""
@@ -40,13 +40,13 @@ def new_state(shape: tuple[int, ...], words: Words | None = None) -> tuple[State
     return words.view(np.uint8)[:cells].reshape(shape), words
 
 
-def find_bones(square: Squares, level: int, state: States, words: Words) -> Bones:
+def find_bones(square: SquaredDistances, level: int, state: States, words: Words) -> Bones:
     """The pathgraph of the cells whose ``square`` is at least ``level``; fills ``state``."""
     grow_all(square, level, state, words)
     return contract(square, state, words)
 
 
-def find_layer(square: Squares, level: int, body: bool, state: States, chains: Chains) -> Layer:
+def find_layer(square: SquaredDistances, level: int, body: bool, state: States, chains: Chains) -> Layer:
     """Runs and ways for a pathgraph."""
     runs = find_runs(square, level)
     return Layer(square, state, chains, runs, find_ways(square, chains, runs, body), body)

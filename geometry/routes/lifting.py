@@ -14,10 +14,11 @@ import numpy as np
 from geometry.homotopy.funnel import Ends
 from geometry.homotopy.landmarks import locate
 from geometry.homotopy.strips import Runs
+from geometry.kernels.arrays import Ints
 from geometry.kernels.jit import bare
 from geometry.routes.layer import Layer
 from geometry.skeleton.chains import Chains
-from geometry.skeleton.graph import Ints, find, is_node
+from geometry.skeleton.graph import find, is_node
 from geometry.skeleton.skeleton import GROUPS, Flags, Heights, above, beside, higher_about, highest_of
 
 FULL = -1

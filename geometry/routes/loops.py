@@ -12,10 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.homotopy.landmarks import Anchor
-from geometry.raster.distance_transform import Bools
+from geometry.kernels.arrays import Bools, Ints
 from geometry.routes.layer import Layer
 from geometry.skeleton.chains import Chains
-from geometry.skeleton.graph import Ints
 
 WIDEST = 2  # windings either way that a search may pass through
 

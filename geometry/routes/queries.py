@@ -11,9 +11,9 @@ from geometry.homotopy.funnel import Ends
 from geometry.homotopy.landmarks import ascend, find_ways, locate
 from geometry.homotopy.portals import crossings_of, join_words, word_of_line
 from geometry.homotopy.strips import find_runs
+from geometry.kernels.arrays import XY, Bools, Ints
 from geometry.passages.necks import Passage
 from geometry.pathfinders.polyanya import FULL, NONE, Scout, new_scout, shortest_line
-from geometry.raster.distance_transform import Bools
 from geometry.raster.exact_clearance import keeps_clear
 from geometry.routes.barrier import Barrier, raise_barrier, way_over_cells, way_to_skeleton
 from geometry.routes.goal_sets import word_of_cells
@@ -24,9 +24,7 @@ from geometry.routes.route import Route, length_of, read_answers
 from geometry.routes.router import OVERFLOW, Desk, Ground, ground_of, itineraries, new_desk
 from geometry.routes.tighten import tight_route
 from geometry.skeleton.chains import Chains
-from geometry.skeleton.graph import Ints
 
-XY = tuple[float, float]
 SPARE, FEWER = 8, 1  # ways tried beyond those wanted, since their order changes when ropes are pulled tight
 SMALL = 128  # chains of a pathgraph up to which SPARE ways are tried, else FEWER
 CLOSE = 1e-9  # squares by which lengths may differ for rounding

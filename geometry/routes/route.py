@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geometry.kernels.arrays import Floats
 from geometry.routes.router import Answers
-from geometry.skeleton.graph import Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)

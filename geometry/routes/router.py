@@ -9,12 +9,12 @@ import numpy as np
 from geometry.homotopy.funnel import Ends, Rope, measure_line, new_rope, tighten_word
 from geometry.homotopy.landmarks import Anchor, Ways, add_chain, add_word, ascend, locate
 from geometry.homotopy.strips import Runs
+from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
 from geometry.routes.astar import Query, Search, new_search
 from geometry.routes.k_shortest import Album, new_album, shortest_ways
 from geometry.routes.layer import Layer
 from geometry.skeleton.chains import Chains
-from geometry.skeleton.graph import Floats, Ints
 from geometry.skeleton.skeleton import Flags, Heights, States
 
 

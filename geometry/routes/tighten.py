@@ -7,9 +7,9 @@ import numpy as np
 from geometry.homotopy.funnel import Ends, measure_line, new_rope, tighten_word
 from geometry.homotopy.portals import crossings_of, join_words
 from geometry.homotopy.strips import Runs, run_at
+from geometry.kernels.arrays import Ints
 from geometry.routes.layer import Layer
 from geometry.routes.route import Route
-from geometry.skeleton.graph import Ints
 
 
 def tight_route(layer: Layer, ends: Ends, word: Ints, clearance: float, chains: tuple[int, ...]) -> Route:

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import compiled
 from geometry.shapes.misfit import (
     BRICK,
@@ -15,7 +16,6 @@ from geometry.shapes.misfit import (
     TRIANGLE,
     UNKNOWN,
     WANTED,
-    Floats,
     Image,
     disagreement,
     impropriety,

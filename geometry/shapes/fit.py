@@ -17,15 +17,13 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 
+from geometry.kernels.arrays import Bools, Floats
 from geometry.shapes import misfit
 from geometry.shapes.candidates import settled_best, whole_best
 from geometry.shapes.shape_likelihood import room_for
 
-Bools = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
 CLASSES = {
     "square": misfit.SQUARE,
     "brick": misfit.BRICK,

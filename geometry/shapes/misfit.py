@@ -14,9 +14,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import compiled
 
-Floats = npt.NDArray[np.float64]
 Image = npt.NDArray[np.int8]
 UNWANTED, WANTED, UNKNOWN = 0, 1, 2
 SQUARE, BRICK, ELL, TEE, HORSESHOE, TRIANGLE, DISC = 0, 1, 2, 3, 4, 5, 6

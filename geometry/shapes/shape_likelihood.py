@@ -14,9 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import compiled
 from geometry.shapes.candidates import freedom
-from geometry.shapes.misfit import BRICK, DISC, ELL, NUMBERS, SQUARE, TRIANGLE, Floats, Image, impropriety, misfit
+from geometry.shapes.misfit import BRICK, DISC, ELL, NUMBERS, SQUARE, TRIANGLE, Image, impropriety, misfit
 
 DRAWS = 2000  # shapes of the walk, and at random in the box
 SEED = 1

@@ -8,9 +8,9 @@ counts in its lowest bits, and nothing ever carries to the next.
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Ints
 from geometry.kernels.jit import bare
 
-Ints = NDArray[np.int32]
 Eights = NDArray[np.int64]
 """(words,) states of eight cells each, the first in the lowest byte; what is beyond the last cell is 0."""
 Flags = NDArray[np.uint8]

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.raster.distance_transform import Squares
+from geometry.kernels.arrays import SquaredDistances
 from geometry.skeleton.skeleton import States, Waiting, Words
 
 PAGE = 4096  # bytes; the system's own may be larger
@@ -25,7 +25,7 @@ POPULATE_WRITE = 23  # of Linux's madvise, since 5.14
 class Buffers(NamedTuple):
     """The arrays of a screen, by padded shape."""
 
-    square: Squares
+    square: SquaredDistances
     words: Words
 
 

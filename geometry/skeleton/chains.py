@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from geometry.kernels.arrays import Ints
 from geometry.kernels.jit import bare
-from geometry.skeleton.graph import Bones, Ints, onward
+from geometry.skeleton.graph import Bones, onward
 from geometry.skeleton.skeleton import Flags, States, stride
 
 

@@ -9,16 +9,13 @@ order of their first node and direction, so equal skeletons give equal arrays. T
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Ints, SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.raster.distance_transform import Squares
 from geometry.skeleton.bit_parallel import Eights, collect, count, number
 from geometry.skeleton.lowest_cells import Notes, lowest_of, new_notes, settle
 from geometry.skeleton.skeleton import HALT, LINKS, SADDLE, Flags, Heights, States, Words, above, stride
 
-Ints = NDArray[np.int32]
-Floats = NDArray[np.float64]
 LOOK = 4  # steps of a walk after which it looks whether there is room for as many notes more
 AHEAD = 1 << 14  # words of states: twice as many fit into a processor's own cache beside what a walk needs
 
@@ -36,7 +33,7 @@ class Bones(NamedTuple):
     """(m,) how many steps from square to square it takes from end to end."""
 
 
-def contract(square: Squares, state: States, words: Words) -> Bones:
+def contract(square: SquaredDistances, state: States, words: Words) -> Bones:
     """The chains of the skeleton that ``state`` links."""
     heights, states, width = square.reshape(-1), state.reshape(-1), state.shape[1]
     eights, size, notes = words.view(np.int64), len(words), new_notes(len(states))

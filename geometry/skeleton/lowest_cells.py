@@ -8,12 +8,10 @@ fetched together.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Ints, SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.raster.distance_transform import Squares
 
-Ints = NDArray[np.int32]
 Notes = Ints
 
 LEAST, MOST = 32, 1024  # notes
@@ -25,7 +23,7 @@ def new_notes(cells: int) -> Notes:
 
 
 @bare
-def lowest_of(notes: Ints, first: int, last: int, heights: Squares) -> int:
+def lowest_of(notes: Ints, first: int, last: int, heights: SquaredDistances) -> int:
     """The lowest of one chain's notes, ``first <= k < last``, in the order of skeleton.py."""
     lowest = int(~notes[first])
     low = heights[lowest]
@@ -38,7 +36,7 @@ def lowest_of(notes: Ints, first: int, last: int, heights: Squares) -> int:
 
 
 @bare
-def settle(notes: Ints, values: Ints, noted: int, heights: Squares, chain: int, neck: Ints) -> None:
+def settle(notes: Ints, values: Ints, noted: int, heights: SquaredDistances, chain: int, neck: Ints) -> None:
     """Find the necks of successive chains, from ``chain`` on, of which there are so many notes. ``values`` is
     scratch. No branches: they are not to be foreseen."""
     for k in range(noted):

@@ -4,15 +4,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from geometry.raster.distance_transform import Squares
+from geometry.kernels.arrays import Floats, SquaredDistances
 from geometry.skeleton.chains import Chains
-from geometry.skeleton.graph import Floats
 
 if TYPE_CHECKING:
     import networkx
 
 
-def networkx_graph(square: Squares, chains: Chains) -> "networkx.MultiGraph[int]":
+def networkx_graph(square: SquaredDistances, chains: Chains) -> "networkx.MultiGraph[int]":
     """Junctions and ends as nodes, chains as edges.
 
     Nodes are numbered from 0 and carry ``x``, ``y`` and ``clearance``; an edge's key is the number of its chain, and it

@@ -18,11 +18,11 @@ below.
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kernels.arrays import SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.raster.distance_transform import Squares
 
 States = NDArray[np.uint8]
-Heights = Squares
+Heights = SquaredDistances
 """(cells,) squares, flat."""
 Flags = States
 """(cells,) states, flat."""

@@ -7,15 +7,16 @@ while it is in the processor's cache.
 
 import numpy as np
 
+from geometry.kernels.arrays import Bools, SquaredDistances
 from geometry.kernels.jit import bare
 from geometry.raster.distance_rows import Window, measure_rows, new_window
-from geometry.raster.distance_transform import Bools, Gaps, Squares, count_columns
+from geometry.raster.distance_transform import Gaps, count_columns
 from geometry.skeleton.skeleton import Flags, Heights, States, Waiting, Words, grow
 
 BAND = 1 << 16  # cells in a band, about: 5 bytes each, a fraction of a processor's own cache
 
 
-def survey(free: Bools, square: Squares, state: States, words: Words) -> None:
+def survey(free: Bools, square: SquaredDistances, state: States, words: Words) -> None:
     """Fill ``square`` and ``state`` (rows + 2, columns + 2) for free squares (rows, columns).
 
     ``words`` is ``state`` by eights.
@@ -28,7 +29,7 @@ def survey(free: Bools, square: Squares, state: States, words: Words) -> None:
     sweep(square, steps, *flat, max(1, BAND // width), new_window(width), flags, waiting)
 
 
-def grow_all(square: Squares, level: int, state: States, words: Words) -> None:
+def grow_all(square: SquaredDistances, level: int, state: States, words: Words) -> None:
     """Fill ``state`` for the cells whose ``square`` is at least ``level``."""
     width, level = square.shape[1], min(level, int(np.iinfo(square.dtype).max))
     state[0], state[-1] = 0, 0
@@ -38,7 +39,7 @@ def grow_all(square: Squares, level: int, state: States, words: Words) -> None:
 
 @bare
 def sweep(
-    square: Squares,
+    square: SquaredDistances,
     steps: Gaps,
     heights: Heights,
     states: Flags,

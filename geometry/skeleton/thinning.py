@@ -8,13 +8,12 @@ lines.
 
 import numpy as np
 
+from geometry.kernels.arrays import Bools, Ints, SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.raster.distance_transform import Bools, Squares
-from geometry.skeleton.graph import Ints
 from geometry.skeleton.skeleton import KINDS, States, beside
 
 
-def thin_skeleton(square: Squares, state: States) -> Bools:
+def thin_skeleton(square: SquaredDistances, state: States) -> Bools:
     """(rows, columns) bool: the skeleton's cells."""
     line = state > 0
     reached = square == 0

@@ -11,8 +11,8 @@ import heapq
 
 import numpy as np
 
+from geometry.kernels.arrays import Longs
 from geometry.kernels.jit import compiled
-from geometry.state_lattice.footprints import Ints
 from geometry.state_lattice.heuristic import NEVER, STILL
 from geometry.state_lattice.lattice import COMMAND, REGRASP, WALK, Board, Costs, turn_cost, turned_place
 
@@ -31,7 +31,7 @@ def haul(
     most: int,
     cost: Costs,
     parent: Costs,
-) -> Ints:
+) -> Longs:
     """The nodes from the first grasp to the goal, in order; empty when there is none.
 
     left : geometry.state_lattice.heuristic.guess. ends : the price of ending at each pose, -1 off the goal. begin
@@ -97,7 +97,7 @@ def haul(
 
 
 @compiled
-def _traced(parent: Costs, final: int) -> Ints:
+def _traced(parent: Costs, final: int) -> Longs:
     """The nodes that lead to one, in order."""
     length, node = 0, final
     while node >= 0:
@@ -111,7 +111,7 @@ def _traced(parent: Costs, final: int) -> Ints:
 
 
 @compiled
-def _nexts(board: Board, hold: int, k: int, m: int, p: int, bend: int, around: Ints, price: Ints) -> int:
+def _nexts(board: Board, hold: int, k: int, m: int, p: int, bend: int, around: Longs, price: Longs) -> int:
     """The nodes to which one step with the body in hand leads, and its price; how many."""
     squares = len(board.solid)
     base = (hold * 4 + k) * 9
@@ -156,7 +156,7 @@ def _walk(board: Board, hold: int, k: int, p: int, walk: Costs, seen: Costs, mar
 
 
 @compiled
-def _spread(board: Board, wanted: Ints, start: int, walk: Costs, seen: Costs, mark: int) -> None:
+def _spread(board: Board, wanted: Longs, start: int, walk: Costs, seen: Costs, mark: int) -> None:
     """Write the price of walking from a square to each of those wanted. Squares seen with the mark are closed."""
     waiting = 0
     for n in range(len(wanted)):

@@ -14,18 +14,15 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 from shapely import affinity
 
+from geometry.kernels.arrays import Bools, Floats, Longs
 from geometry.kernels.jit import compiled
 from geometry.motion.first_contact import Body, Obstacles
 from geometry.motion.time_of_impact import turn_through_skin
 from geometry.raster.rasterize import squares
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Mask = npt.NDArray[np.bool_]
 DIRECTIONS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))  # a quarter turn is two further
 
 
@@ -41,13 +38,13 @@ class Stencil:
     """
 
     home: tuple[int, int]
-    holds: Ints
-    lying: Ints
-    steps: tuple[Ints, ...]
-    turns: tuple[Ints, ...]
+    holds: Longs
+    lying: Longs
+    steps: tuple[Longs, ...]
+    turns: tuple[Longs, ...]
 
 
-def new_stencil(near: Any, own: tuple[int, int] | None = None, holds: Ints | None = None) -> Stencil:
+def new_stencil(near: Any, own: tuple[int, int] | None = None, holds: Longs | None = None) -> Stencil:
     """The stencil of a shape whose centroid lies in the square (0, 0).
 
     own : the square of the one who has hold of it. holds : those that it is about, None for all that there are.
@@ -59,29 +56,29 @@ def new_stencil(near: Any, own: tuple[int, int] | None = None, holds: Ints | Non
     return Stencil((0, 0), holds, lying, steps, tuple(_turn(body, lying, hold) for hold in holds))
 
 
-def quarter(offsets: Ints, count: int) -> Ints:
+def quarter(offsets: Longs, count: int) -> Longs:
     """Offsets (n, 2) after so many quarter turns about the middle of the square (0, 0)."""
     for _ in range(count % 4):
         offsets = np.column_stack([-offsets[:, 1], offsets[:, 0]])
     return offsets
 
 
-def _offsets(shape: Any) -> Ints:
+def _offsets(shape: Any) -> Longs:
     """The squares that a shape covers as offsets (n, 2), in order."""
     far = math.ceil(max(abs(v) for v in shape.bounds)) + 1
     rows, columns = np.nonzero(squares(affinity.translate(shape, far, far), 2 * far, 2 * far))
-    offsets: Ints = np.column_stack([columns, rows]).astype(np.int64) - far
+    offsets: Longs = np.column_stack([columns, rows]).astype(np.int64) - far
     return offsets
 
 
-def _ring(lying: Ints, own: tuple[int, int] | None) -> Ints:
+def _ring(lying: Longs, own: tuple[int, int] | None) -> Longs:
     """The squares that touch the given ones, by an edge or a corner, and one more: offsets (n, 2), in order."""
     covered = {(int(x), int(y)) for x, y in lying}
     about = {(x + dx, y + dy) for x, y in covered for dx, dy in DIRECTIONS} - covered
     return np.array(sorted(about | ({own} if own else set())), dtype=np.int64).reshape(-1, 2)
 
 
-def _step(near: Any, lying: Ints, dx: int, dy: int) -> Ints:
+def _step(near: Any, lying: Longs, dx: int, dy: int) -> Longs:
     """The squares met by a push of one square."""
     moved = lying + np.array([dx, dy])
     if dx == 0 or dy == 0:
@@ -98,7 +95,7 @@ def swept(shape: Any, dx: float, dy: float) -> Any:
     return shapely.union_all(parts)
 
 
-def _turn(body: Body, lying: Ints, hold: Ints) -> Ints:
+def _turn(body: Body, lying: Longs, hold: Longs) -> Longs:
     """The squares met by a quarter turn counter-clockwise about the middle of a square."""
     pivot = hold + 0.5
     far = math.ceil(float(np.hypot(*(body.edges[:, :2] - pivot).T).max())) + 1
@@ -121,7 +118,7 @@ UNIT = _unit()
 
 @compiled
 def _meet(
-    corners: Floats, body: Floats, met: Mask, cx: float, cy: float, hull: Floats, skin: Floats, chunks: Floats
+    corners: Floats, body: Floats, met: Bools, cx: float, cy: float, hull: Floats, skin: Floats, chunks: Floats
 ) -> None:
     """Mark the squares of a window about a place that a body runs into in a quarter turn about it."""
     far = len(met) // 2

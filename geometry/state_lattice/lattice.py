@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from geometry.kernels.arrays import Bools, Longs
 from geometry.kernels.jit import compiled
-from geometry.state_lattice.footprints import DIRECTIONS, Ints, Mask, Stencil, quarter
+from geometry.state_lattice.footprints import DIRECTIONS, Stencil, quarter
 
 Costs = npt.NDArray[np.int32]
 COMMAND = 500
@@ -25,8 +26,8 @@ AWKWARD = COMMAND // 5  # a grasp of a square that is reached over a corner only
 class Lists(NamedTuple):
     """Lists of numbers one after another: list n is items[first[n] : first[n + 1]]."""
 
-    items: Ints
-    first: Ints
+    items: Longs
+    first: Longs
 
 
 class Board(NamedTuple):
@@ -43,18 +44,18 @@ class Board(NamedTuple):
     steps : (8,) the offset of each direction. turn : the price of a turn where there is room for it.
     """
 
-    solid: Mask
-    walk: Mask
-    holds: Ints
+    solid: Bools
+    walk: Bools
+    holds: Longs
     grip: Costs
     push: Costs
-    utak: Mask
-    lies: Mask
+    utak: Bools
+    lies: Bools
     image: Lists
     turns: Lists
     wide: Lists
-    allowed: Mask
-    steps: Ints
+    allowed: Bools
+    steps: Longs
     turn: int
 
 
@@ -78,33 +79,33 @@ class Grid(NamedTuple):
         """The (column, row) of a number."""
         return number % self.stride - self.pad, number // self.stride - self.pad
 
-    def padded(self, squares: Mask, value: bool) -> Mask:
+    def padded(self, squares: Bools, value: bool) -> Bools:
         """A (rows, columns) array as (squares,)."""
         return np.pad(squares, self.pad, constant_values=value).ravel()
 
-    def offsets(self, offsets: Ints) -> Ints:
+    def offsets(self, offsets: Longs) -> Longs:
         """Offsets (n, 2) of columns and rows as differences of numbers."""
-        flat: Ints = offsets[:, 1] * self.stride + offsets[:, 0]
+        flat: Longs = offsets[:, 1] * self.stride + offsets[:, 0]
         return flat
 
-    def places(self) -> Ints:
+    def places(self) -> Longs:
         """The numbers of all squares of the table."""
         row, column = np.divmod(np.arange(self.rows * self.columns), self.columns)
         return (row + self.pad) * self.stride + column + self.pad
 
-    def clear(self, solid: Mask, offsets: Ints) -> Mask:
+    def clear(self, solid: Bools, offsets: Longs) -> Bools:
         """At which squares of the table none of the offsets (n, 2) is solid: (squares,), False off the table."""
         return _clear(solid, self.places(), self.offsets(offsets))
 
 
-def new_grid(free: Mask, body: Stencil, wide: Stencil) -> Grid:
+def new_grid(free: Bools, body: Stencil, wide: Stencil) -> Grid:
     """A grid padded widely enough for every step and turn of a body."""
     reach = max(int(np.abs(part).max()) for part in (*body.turns, *wide.turns, *wide.steps))
     return Grid(free.shape[1], free.shape[0], max(reach, 2 * int(np.abs(body.holds).max())) + 2)
 
 
 def new_board(
-    grid: Grid, free: Mask, walk: Mask, body: Stencil, wide: Stencil, grip: Costs, allowed: Mask, turn: int
+    grid: Grid, free: Bools, walk: Bools, body: Stencil, wide: Stencil, grip: Costs, allowed: Bools, turn: int
 ) -> Board:
     """The board of free squares (rows, columns) for a body, and for the same body with its margin."""
     solid = grid.padded(~free, True)
@@ -138,19 +139,19 @@ def _turned(grid: Grid, body: Stencil) -> Lists:
     return _listed([grid.offsets(quarter(turn, k)) for turn in body.turns for k in range(4)])
 
 
-def _corner(dx: int, dy: int) -> Ints:
+def _corner(dx: int, dy: int) -> Longs:
     """The squares that must be free for Utak to take a step: his own and the next, both sides of a diagonal too."""
     return np.array(sorted({(0, 0), (dx, 0), (0, dy), (dx, dy)}), dtype=np.int64)
 
 
-def _listed(lists: list[Ints]) -> Lists:
+def _listed(lists: list[Longs]) -> Lists:
     """Lists one after another."""
     first = np.concatenate([[0], np.cumsum([len(each) for each in lists])]).astype(np.int64)
     return Lists(np.concatenate([np.empty(0, np.int64), *lists]), first)
 
 
 @compiled
-def _clear(solid: Mask, places: Ints, offsets: Ints) -> Mask:
+def _clear(solid: Bools, places: Longs, offsets: Longs) -> Bools:
     clear = np.zeros(len(solid), np.bool_)
     for place in places:
         clear[place] = True
@@ -162,7 +163,7 @@ def _clear(solid: Mask, places: Ints, offsets: Ints) -> Mask:
 
 
 @compiled
-def _pushes(solid: Mask, places: Ints, body: Lists, wide: Lists, with_margin: bool) -> Costs:
+def _pushes(solid: Bools, places: Longs, body: Lists, wide: Lists, with_margin: bool) -> Costs:
     """The prices of Board.push."""
     push = np.zeros((4, 8, len(solid)), np.int32)
     for k in range(4):
@@ -195,7 +196,7 @@ def turn_cost(board: Board, hold: int, quarters: int, place: int, way: int) -> i
 
 
 @compiled
-def _fits(solid: Mask, lists: Lists, which: int, place: int) -> bool:
+def _fits(solid: Bools, lists: Lists, which: int, place: int) -> bool:
     """Whether none of the offsets in a list, seen from a place, is solid."""
     for n in range(lists.first[which], lists.first[which + 1]):  # noqa: SIM110 (numba)
         if solid[place + lists.items[n]]:

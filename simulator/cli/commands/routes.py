@@ -12,7 +12,7 @@ from simulator.cli.printing import as_json
 from simulator.scenario.untrusted import add_option, refuse_links
 
 if TYPE_CHECKING:
-    from geometry.raster.distance_transform import Bools
+    from geometry.kernels.arrays import Bools
     from geometry.routes.route import Route
 
 LARGEST = 200_000_000  # bytes of a map
