@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from benchmarks.harness.judging import findings
-from benchmarks.timing.stopwatch import TimedBody, TimedRobot
+from benchmarks.harness.stopwatch import TimedBody, TimedRobot
 from benchmarks.worlds.makers import scenario
 from benchmarks.worlds.scenes import write
 from kb.body import Body

@@ -19,14 +19,15 @@ from kb.localisation.accommodation import Memory
 from kb.localisation.hypotheses.explanation import Accommodated
 from kb.mapping.object_heat import NOTHING_IMAGINED, imagine
 from kb.mapping.occupancy import FREE, FULL, OPEN, MapView
-from kb.objects.held_object import ROUNDING, Load, covered, seen_insets, seen_short, slack_of
+from kb.mapping.patch import Patch, covered, patch_of
+from kb.objects.held_object import ROUNDING, Load, seen_insets, seen_short, slack_of
 from kb.objects.proportions import reshaped
 from kb.objects.shape_fit import Measured, Measurer
 from kb.perception.frame import AROUND
 from kb.perception.interpretation import Kinds, interpret, shapes
 from kb.perception.protrusions import VERGE, protrusions, told_apart
 from kb.perception.regions import Percept, Region, label_of, map_regions
-from kb.world.model import SPACE, Names, Node, Patch, WorldModel, patch_of, solid, space, unsettled
+from kb.world.model import SPACE, Names, Node, WorldModel, solid, space, unsettled
 
 Mask = NDArray[np.bool_]
 LEAST_OBJECT = 5  # percent: a region is kept as a possible object from here on

@@ -31,7 +31,7 @@ def main() -> None:
 
 def run(folder: Path, noise: float, noise_seed: int, max_steps: int) -> None:
     """Run the robot in the scenario of a folder and write the three files."""
-    from benchmarks.timing.stopwatch import TimedBody, TimedRobot
+    from benchmarks.harness.stopwatch import TimedBody, TimedRobot
     from kb.body import Body
     from kb.task.task import Task
     from simulator.episode.episode import EpisodeLog

@@ -17,7 +17,7 @@ from benchmarks.harness.judging import findings
 from benchmarks.harness.knowing import knowing
 from benchmarks.harness.narrowness import Narrowness, narrowness
 from benchmarks.harness.shortest import free_space, shortest_loop, shortest_way
-from benchmarks.timing.stopwatch import Seconds, TimedBody, TimedRobot
+from benchmarks.harness.stopwatch import Seconds, TimedBody, TimedRobot
 from benchmarks.worlds.makers import scenario
 from benchmarks.worlds.placing import digital
 from benchmarks.worlds.scenes import Scenario, write

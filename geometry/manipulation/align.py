@@ -15,8 +15,7 @@ from geometry.kernels.arrays import XY
 from geometry.manipulation.grasps import holds_about
 from geometry.manipulation.lattice_planner import carry_squarewise
 from geometry.manipulation.legs import Leg, commands, grip_square, may_push, rounded
-from geometry.manipulation.query import Errand
-from geometry.manipulation.remaining import after, joined
+from geometry.manipulation.query import Errand, after, joined
 from geometry.motion.se2 import Motion, Rotate, Translate
 
 LEAST = 1e-6  # degrees or squares: less is no motion

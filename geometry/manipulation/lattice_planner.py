@@ -13,8 +13,7 @@ from geometry.kernels.arrays import Bools
 from geometry.manipulation.extract_legs import MIDDLE, Retelling
 from geometry.manipulation.goals import prices
 from geometry.manipulation.legs import Leg, commands, may_push, only_pushes, rounded, verified
-from geometry.manipulation.query import Errand
-from geometry.manipulation.remaining import after
+from geometry.manipulation.query import Errand, after
 from geometry.manipulation.workspace import padded
 from geometry.motion.se2 import Rotate, Translate
 from geometry.state_lattice.astar import CALM, first_walk, haul

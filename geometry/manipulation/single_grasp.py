@@ -25,8 +25,7 @@ from geometry.manipulation.goals import At, Between, InCorner, Inside, Roomy, pl
 from geometry.manipulation.grasps import Hold, holds_about, promise
 from geometry.manipulation.lattice_planner import carry_squarewise
 from geometry.manipulation.legs import Leg, at_utak, grip_square, only_pushes, rounded, verified
-from geometry.manipulation.query import Errand
-from geometry.manipulation.remaining import after, joined
+from geometry.manipulation.query import Errand, after, joined
 from geometry.manipulation.workspace import ARM, padded
 from geometry.motion.body import centre_pose, new_mover
 from geometry.motion.se2 import Motion, Pose

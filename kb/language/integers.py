@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from kb.language.diagnostics import Problem, Span
 from kb.language.source_text import Source
 from kb.language.tokens import tokens
-from kb.three_valued.arithmetic import HIGH
 
+LOW, HIGH = -(2**31), 2**31 - 1
 BASES = {"0x": 16, "0o": 8, "0b": 2}
 LITERAL = re.compile(r"0x[0-9A-Fa-f]+|0o[0-7]+|0b[01]+|[0-9]+")
 BEFORE_A_TERM = frozenset("(,;=<>+*/\\&?^|{:[@") | {"<=", ">=", "!=", "..", "**", ":-", ":~", "not", "#count"}

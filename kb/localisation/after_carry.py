@@ -16,7 +16,8 @@ from kb.localisation.propose.contradicted_motion import overlooked
 from kb.localisation.propose.held_object_state import after, leaning
 from kb.localisation.propose.larger_object import larger
 from kb.localisation.score import CONTRADICTED, Judging, Place
-from kb.objects.held_object import ROUNDING, Load, covered
+from kb.mapping.patch import covered
+from kb.objects.held_object import ROUNDING, Load
 
 CLEAR = 0.25  # how likely a motion is stopped, at most, that comes upon nothing
 

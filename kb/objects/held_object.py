@@ -17,10 +17,9 @@ import shapely
 from numpy.typing import NDArray
 
 from geometry.counts.uncover import uncover
-from geometry.raster.rasterize import squares
+from kb.mapping.patch import Patch, covered, patch_of_squares
 from kb.objects.subcell_extent import NONE, Insets, Sides, further, moved_in, told, turned, within_play
 from kb.perception.frame import Samples
-from kb.world.model import Patch
 
 Mask = NDArray[np.bool_]
 Square = tuple[int, int]  # (x, y) of the lattice
@@ -198,23 +197,6 @@ class Load:
 def borne_out(loads: Mapping[str, Load], held: str | None) -> dict[str, Load]:
     """The loads that are held or were seen to move: he may have grasped beside any other, and it stands elsewhere."""
     return {name: load for name, load in loads.items() if load.proven or name == held}
-
-
-def covered(polygon: Any) -> Patch:
-    """The squares of the lattice that a polygon covers."""
-    x0, y0, x1, y1 = polygon.bounds
-    west, south = int(np.floor(x0)), int(np.floor(y0))
-    placed = shapely.transform(polygon, lambda points: points - np.array([west, south]))
-    return Patch(west, south, squares(placed, int(np.ceil(x1)) - west, int(np.ceil(y1)) - south))
-
-
-def patch_of_squares(squares_: Iterable[Square]) -> Patch:
-    """The patch of some squares, at least one."""
-    columns, rows = np.array(sorted(squares_)).T
-    west, south = int(columns.min()), int(rows.min())
-    mask = np.zeros((int(rows.max()) + 1 - south, int(columns.max()) + 1 - west), np.bool_)
-    mask[rows - south, columns - west] = True
-    return Patch(west, south, mask)
 
 
 def whole(polygon: Any) -> Any:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geometry.shapes.fit import fit_shapes
 from kb.mapping.occupancy import FULL, OPEN, MapView
-from kb.world.model import Patch
+from kb.mapping.patch import Patch
 
 Mask = NDArray[np.bool_]
 LIKELY = 0.85  # that a square is covered: then it is measured as if it were

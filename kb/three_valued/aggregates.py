@@ -2,7 +2,8 @@
 
 import clingo
 
-from kb.three_valued.arithmetic import HIGH, LOW, checked
+from kb.language.integers import HIGH, LOW
+from kb.three_valued.arithmetic import checked
 from kb.three_valued.uncertain_values import Unknown, Value, bounds, symbol
 
 Tuple = tuple[Value, ...]

@@ -5,7 +5,8 @@ Division and remainder are those of clingo (towards zero); a power with a negati
 
 from collections.abc import Callable, Mapping
 
-LOW, HIGH = -(2**31), 2**31 - 1
+from kb.language.integers import HIGH, LOW
+
 MOST_BITS = 64  # no power with more of them is worked out
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import clingo
 from clingo.ast import AST, AggregateFunction, ASTType, BinaryOperator, ComparisonOperator, Sign, UnaryOperator
 
-from kb.three_valued.arithmetic import LOW
+from kb.language.integers import LOW
 
 SIGNS = {
     ComparisonOperator.GreaterThan: ">", ComparisonOperator.LessThan: "<", ComparisonOperator.LessEqual: "<=",

@@ -11,8 +11,9 @@ from typing import Any
 
 import clingo
 
+from kb.language.integers import HIGH, LOW
 from kb.three_valued.aggregates import Tally
-from kb.three_valued.arithmetic import HIGH, LOW, CalculationError, calculate
+from kb.three_valued.arithmetic import CalculationError, calculate
 from kb.three_valued.clauses import (
     Aggregate,
     Always,

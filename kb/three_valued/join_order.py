@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from kb.three_valued.arithmetic import HIGH, LOW
+from kb.language.integers import HIGH, LOW
 from kb.three_valued.clauses import (
     Aggregate,
     Atom,

@@ -10,7 +10,8 @@ from typing import Any
 
 import clingo
 
-from kb.three_valued.arithmetic import HIGH, LOW, calculate
+from kb.language.integers import HIGH, LOW
+from kb.three_valued.arithmetic import calculate
 
 Truth = bool | None
 Value = Any  # int, clingo.Symbol or Unknown

@@ -12,7 +12,7 @@ import shapely
 from numpy.typing import NDArray
 
 from kb.mapping.occupancy import FULL
-from kb.objects.held_object import covered
+from kb.mapping.patch import covered
 from kb.perception.regions import label_of
 from kb.reasoning.solver import KB, solve
 from kb.world.model import WorldModel

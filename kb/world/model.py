@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from geometry.raster.components import edged
 from kb.mapping.object_heat import NOTHING_IMAGINED, Imagined
 from kb.mapping.occupancy import OPEN, MapView
+from kb.mapping.patch import Patch
 from kb.objects.subcell_extent import NONE, Insets, Sides
 from kb.perception.frame import Lattice
 from kb.perception.interpretation import Kinds
@@ -35,28 +36,6 @@ SURELY_VERGE = 40 + 4 * SMALLEST_WALL  # percent: as sure of verge as kb/asp/int
 ORG, FLOOR, VERGE = "org", "floor", "verge"
 
 Mask = NDArray[np.bool_]
-
-
-class Patch(NamedTuple):
-    """A set of squares of the lattice. west, south.
-
-    The square at [0, 0] of mask, a (rows, columns) array cut to its extent.
-    """
-
-    west: int
-    south: int
-    mask: Mask
-
-    @property
-    def centre(self) -> tuple[float, float]:
-        """The mean of its squares' centres."""
-        rows, columns = np.nonzero(self.mask)
-        return self.west + float(columns.mean()) + 0.5, self.south + float(rows.mean()) + 0.5
-
-    def squares(self) -> set[tuple[int, int]]:
-        """Its squares (x, y)."""
-        rows, columns = np.nonzero(self.mask)
-        return {(self.west + c, self.south + r) for r, c in zip(rows.tolist(), columns.tolist(), strict=True)}
 
 
 @dataclass(frozen=True)
@@ -288,13 +267,6 @@ class Names:
     def forget(self) -> None:
         """Give new names to all patches from now on."""
         self._known = {}
-
-
-def patch_of(mask: Mask, view: MapView) -> Patch:
-    """The squares of a mask on the view's arrays, cut to their extent."""
-    rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))
-    part = mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-    return Patch(view.west + int(columns[0]), view.south + int(rows[0]), part.copy())
 
 
 def unsettled(mask: Mask, view: MapView) -> tuple[int, int]:

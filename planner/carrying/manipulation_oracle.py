@@ -23,12 +23,12 @@ from kb.perception.frame import AROUND
 from kb.reasoning.solver import solve
 from kb.world.model import Node, WorldModel
 from planner.carrying.infeasibility import Refusal, refusal
+from planner.goals.optimistic import BEYOND, BOLD, framed, hoped_floor
 from planner.goals.placement import LIKELY, SURELY, Ends, barred, hidden_behind, in_view, region_of
-from planner.goals.robot_goals import Situation
 from planner.navigation.subgoals import ASP
 from planner.screen.moves import is_open
-from planner.screen.optimistic import BEYOND, BOLD, framed, hoped_floor
 from planner.screen.projection import UNSEEN, grown
+from planner.situation import Situation
 
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]

@@ -16,6 +16,7 @@ from kb.mapping.occupancy import OPEN
 from kb.objects.held_object import is_whole
 from kb.perception.frame import CENTRE
 from kb.world.model import SPACE, Node, WorldModel
+from planner.advice import Act, Go, See
 from planner.carrying.infeasibility import Refusal
 from planner.carrying.manipulation_oracle import Haul, Hauler, Request
 from planner.carrying.remaining_plan import (
@@ -30,11 +31,11 @@ from planner.carrying.remaining_plan import (
     stands,
 )
 from planner.goals.placement import SURELY, Ends, drawn_out, region_of
-from planner.goals.robot_goals import Situation
 from planner.screen.moves import is_open
 from planner.screen.projection import Squares, grown
 from planner.sights.frontiers import Lookout, by_touch, sight_of
 from planner.sights.viewpoints import TAKE, inspection
+from planner.situation import Situation
 from planner.skills.failed_grasps import FailedHolds
 from planner.skills.take_along import by_way, lead, near, out
 from planner.skills.unjam import drawn_back
@@ -47,31 +48,6 @@ NOWHERE = 0.1  # squares: who comes no further is where he was
 TEDIOUS = 8  # commands of a plan above which what is not clear about its way is looked at first
 SIGHT = "sight"  # the target of a plan that brings a thing near to where he wants to look
 ABOUT = 2  # squares beside the way of a plan within which more room would help
-
-
-@dataclass(frozen=True)
-class Act:
-    """A command to give now. departs : the push that it is, when no plan asks for it (Carrier.depart)."""
-
-    command: Command
-    why: str
-    departs: Translate | None = None
-
-
-@dataclass(frozen=True)
-class Go:
-    """A square to walk to (a flat index on the view's arrays). place : its middle, on the lattice, where to halt."""
-
-    square: Squares
-    place: Place
-    why: str
-
-
-@dataclass(frozen=True)
-class See:
-    """Squares that must be seen before the way over them is relied upon."""
-
-    lookout: Lookout
 
 
 Advice = Act | Go | See | Refusal

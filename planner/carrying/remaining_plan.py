@@ -15,11 +15,12 @@ from geometry.manipulation.plan_carrying import Leg
 from geometry.manipulation.workspace import Yard
 from geometry.motion.se2 import Motion, Translate
 from kb.body import DIRECTIONS
-from kb.world.model import Node, Patch, WorldModel
+from kb.mapping.patch import Patch
+from kb.world.model import Node, WorldModel
 from planner.carrying.manipulation_oracle import Haul, swept_squares
 from planner.goals.placement import barred, in_view, lands_in_one
-from planner.goals.robot_goals import Situation
 from planner.screen.projection import Squares
+from planner.situation import Situation
 
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]

@@ -15,17 +15,18 @@ from geometry.raster.geodesic import UNREACHED
 from kb.language.terms import Fact
 from kb.localisation.propose.larger_object import DEEPEST, SIDES
 from kb.world.model import Node, WorldModel
-from planner.carrying.plan_executor import Act, Carrier
+from planner.advice import Act
+from planner.carrying.plan_executor import Carrier
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.verification import Verifier
 from planner.decision import Decision
 from planner.goals.placement import LIKELY, SURELY, hidden_behind, leads_away, out_of_wall, region_of
-from planner.goals.robot_goals import Situation
-from planner.goals.stages import Stage
 from planner.navigation.routes import Way, ways
 from planner.navigation.subgoals import Aim
 from planner.screen.projection import UNSEEN, Mask, Screens
 from planner.sights.frontiers import by_touch
+from planner.situation import Situation
+from planner.stages import Stage
 
 ASIDE = "aside"  # the target of what he moves out of his way
 

@@ -26,14 +26,15 @@ from planner.deciding.transport import Transporter
 from planner.deciding.verification import Verifier, before_elsewhere, here, misgiving
 from planner.decision import Decision
 from planner.goals.joint import opposite_corners
-from planner.goals.robot_goals import Situation, contains, destination, no_way
-from planner.goals.stages import BY_THE_WAY, FROM_THE_START, Stage, stages
+from planner.goals.robot_goals import contains, destination, no_way
 from planner.navigation.encircle import pivot, ways_round, winding
 from planner.navigation.subgoals import Aim
 from planner.screen.moves import next_move
 from planner.screen.projection import Screens, ways_to_objects
 from planner.sights.viewpoints import ARRIVE
+from planner.situation import Situation
 from planner.skills.into_corner import IntoCorner, halted
+from planner.stages import BY_THE_WAY, FROM_THE_START, Stage, stages
 
 Place = tuple[float, float]
 

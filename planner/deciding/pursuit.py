@@ -8,11 +8,10 @@ from dataclasses import replace
 
 from kb.body import Command, Release
 from kb.world.model import WorldModel
-from planner.carrying.plan_executor import Advice, Go, See
+from planner.advice import Go, See
+from planner.carrying.plan_executor import Advice
 from planner.deciding.search import against_walls, perhaps_islands
 from planner.decision import Decision
-from planner.goals.robot_goals import Situation
-from planner.goals.stages import Stage
 from planner.navigation.fewest_moves import FewestMoves
 from planner.navigation.loop_guard import Circles
 from planner.navigation.routes import Way, choose_way, ways
@@ -20,6 +19,8 @@ from planner.navigation.sticky_route import Kept, lattice_squares
 from planner.navigation.subgoals import Aim, choose
 from planner.screen.moves import HURRY, STROLL, halting, next_move
 from planner.screen.projection import Squares
+from planner.situation import Situation
+from planner.stages import Stage
 
 
 class Pursuer:

@@ -10,13 +10,14 @@ from kb.mapping.object_heat import seen_in_part
 from kb.task.binding import Reconciled
 from kb.world.model import Node, WorldModel
 from kb.world.rooms import rooms_of
-from planner.goals.robot_goals import Destination, Situation
+from planner.goals.robot_goals import Destination
 from planner.navigation.fewest_moves import MOVE, WAY
 from planner.navigation.subgoals import Aim
 from planner.screen.moves import one_move
 from planner.screen.projection import Screens, Squares, grown
 from planner.sights import frontiers
 from planner.sights.viewpoints import TAKE, Approach, inspection, sightings
+from planner.situation import Situation
 
 ODD = -10.0  # squares: how much rather what no straight wall explains is looked at
 ODDLY, HARDLY, PERHAPS = 4, 2, 20  # percent that odd squares, likely walls, floor beyond hold what is missing

@@ -13,9 +13,10 @@ from kb.body import Grasp, Move, Push, Turn
 from kb.language.terms import Fact
 from kb.task.binding import Reconciled
 from kb.world.model import Node
+from planner.advice import Act, Go, See
 from planner.carrying.infeasibility import Refusal
 from planner.carrying.open_facts import verdict_if_missing
-from planner.carrying.plan_executor import Act, Advice, Carrier, Go, See
+from planner.carrying.plan_executor import Advice, Carrier
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.search import aims_towards
 from planner.deciding.verification import Verifier, before_taking, more_of
@@ -25,12 +26,13 @@ from planner.goals.joint import conflict
 from planner.goals.object_goals import landing
 from planner.goals.origins import Beginnings
 from planner.goals.placement import Landing, can_leave, in_view, lands_in_one
-from planner.goals.robot_goals import Situation, nowhere
-from planner.goals.stages import FROM_THE_START, Stage
+from planner.goals.robot_goals import nowhere
 from planner.navigation.subgoals import Aim
 from planner.screen.moves import is_open
+from planner.situation import Situation
 from planner.skills.measure_size import Sizer, least_outline
 from planner.skills.press import Presser
+from planner.stages import FROM_THE_START, Stage
 
 SIZE = "size"  # the target of a push that only tells how large a thing is
 MISSED = 2  # plans that miss before where they should lead to is looked at

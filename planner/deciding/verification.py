@@ -16,11 +16,12 @@ from kb.world.doors import jamb
 from kb.world.model import Node, WorldModel
 from kb.world.rooms import SURE, Door, rooms_of
 from planner.carrying.infeasibility import Refusal
-from planner.goals.robot_goals import Situation, contains, out_of_sight
+from planner.goals.robot_goals import contains, out_of_sight
 from planner.navigation.subgoals import Aim
 from planner.screen.moves import is_open
 from planner.sights import frontiers
 from planner.sights.viewpoints import TAKE, inspection
+from planner.situation import Situation
 
 Place = tuple[float, float]
 Mask = NDArray[np.bool_]

@@ -17,10 +17,11 @@ from geometry.raster.geodesic import UNREACHED, reach
 from kb.language.terms import Fact
 from kb.world.model import CLEAR, Node
 from planner.goals.placement import HAIR, Landing, Mask, can_leave, in_view, lands, lies_askew, region_of
-from planner.goals.robot_goals import Situation, corner_side, rooms_to_see, unknown_corner
+from planner.goals.robot_goals import corner_side, rooms_to_see, unknown_corner
 from planner.screen.projection import grown
 from planner.sights.frontiers import Lookout, short_of, sight_of
 from planner.sights.viewpoints import TAKE, Approach
+from planner.situation import Situation
 
 IN_SIGHT = 6  # squares from a corner within which it is seen well
 FLUSH = 0.1  # squares between an object and walls that it touches

@@ -10,7 +10,8 @@ import shapely
 from geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, placed
 from kb.language.terms import Fact
 from planner.goals.placement import Landing
-from planner.goals.robot_goals import Situation, corner_side
+from planner.goals.robot_goals import corner_side
+from planner.situation import Situation
 
 ROUNDING = 1e-6  # squares
 AT_CORNER = (1.0, 1.0)  # squares from a corner, east and north, within which Utak is at it

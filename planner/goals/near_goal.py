@@ -13,7 +13,7 @@ from kb.language.terms import Fact, Number, Text
 from kb.language.wkt import parse_wkt
 from kb.world.model import Node
 from planner.goals.placement import TURNED, Landing, in_view, region_of
-from planner.goals.robot_goals import Situation
+from planner.situation import Situation
 
 BESIDE = 1.0  # squares from a thing within which it is reached
 NEAR = 0.7  # squares in each axis within which something surely is that near, across a corner too

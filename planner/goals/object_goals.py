@@ -14,9 +14,10 @@ from kb.world.model import Node
 from kb.world.rooms import Rooms
 from planner.goals.corner_goal import cornered
 from planner.goals.near_goal import around_start, beside, posed
+from planner.goals.optimistic import BEYOND, spread
 from planner.goals.placement import Landing, Mask, in_view, lands_in_one, region_of
-from planner.goals.robot_goals import Situation, corner_side, doorsteps, no_next_room, numbers, out_of_sight
-from planner.screen.optimistic import BEYOND, spread
+from planner.goals.robot_goals import corner_side, doorsteps, no_next_room, numbers, out_of_sight
+from planner.situation import Situation
 
 Place = tuple[float, float]
 RIM = 1.0  # squares from the edge of a region within which he is not sure that something is in it

@@ -9,7 +9,7 @@ import math
 from typing import NamedTuple
 
 from kb.world.model import Node
-from planner.goals.robot_goals import Situation
+from planner.situation import Situation
 
 Place = tuple[float, float]
 SAME = 3.0  # squares that a door may have come to lie elsewhere

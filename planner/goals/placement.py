@@ -17,9 +17,9 @@ from geometry.motion.se2 import Pose, Translate
 from geometry.raster.rasterize import squares
 from kb.localisation.propose.larger_object import DEEPEST, SIDES
 from kb.world.model import Node, WorldModel
-from planner.goals.robot_goals import Situation
 from planner.screen.projection import grown, shifted
 from planner.sights.frontiers import Lookout
+from planner.situation import Situation
 
 Mask = NDArray[np.bool_]
 Ends = Callable[[], Mapping[str, End]]  # by their names, worked out when asked
@@ -48,7 +48,7 @@ class Landing:
     presses : pushes, by their names, by which it comes to touch walls that may lie further away than is believed; after
     them a goal that holds by what is believed holds surely.
     some : it may end elsewhere, too: that it can be brought to none of the ends proves nothing.
-    hoped : the ends, if the floor goes on as it is hoped to (planner.screen.optimistic); worked out when asked.
+    hoped : the ends, if the floor goes on as it is hoped to (planner.goals.optimistic); worked out when asked.
     by_the_way : what must be seen before it holds, where it does not yet: to come back for that takes longer. Likewise.
     """
 

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from geometry.raster.components import edged
 from geometry.raster.geodesic import UNREACHED, reach
 from kb.mapping.occupancy import FREE, OPEN
-from kb.world.model import SPACE, Patch, WorldModel
+from kb.mapping.patch import Patch
+from kb.world.model import SPACE, WorldModel
 from planner.screen.unseen_gain import gain
 
 Mask = NDArray[np.bool_]

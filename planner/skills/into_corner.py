@@ -11,11 +11,12 @@ import numpy as np
 
 from kb.body import Command, Move
 from kb.world.corners import Corner, known_floor
-from planner.goals.robot_goals import Situation, corner_side
-from planner.goals.stages import Stage
+from planner.goals.robot_goals import corner_side
 from planner.screen.moves import halting, is_open, move_by
 from planner.screen.projection import Screens
 from planner.screen.sweeps import Square, squares_met
+from planner.situation import Situation
+from planner.stages import Stage
 
 Place = tuple[float, float]
 NEAR = 0.01  # squares from both lines of the corner's square at which Utak halts

@@ -13,9 +13,10 @@ from geometry.motion.se2 import Translate
 from kb.body import Push
 from kb.language.terms import Fact
 from kb.world.model import Node, WorldModel
-from planner.carrying.plan_executor import Act
+from planner.advice import Act
 from planner.goals.placement import Landing
-from planner.goals.robot_goals import Situation, corner_side
+from planner.goals.robot_goals import corner_side
+from planner.situation import Situation
 
 STOPPED = 0.1  # squares that a push at least falls short which was stopped
 SAME = 2.0  # squares by which a corner may come to lie elsewhere by what a thing that is pressed into it shows

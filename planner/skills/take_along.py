@@ -13,9 +13,9 @@ from geometry.motion.se2 import Translate
 from geometry.raster.components import components
 from kb.world.model import Node
 from planner.goals.placement import barred, in_view, leads_away, region_of
-from planner.goals.robot_goals import Situation
 from planner.screen.moves import HURRY
 from planner.screen.projection import Squares, grown, marked
+from planner.situation import Situation
 
 Floats = NDArray[np.float64]
 NEARBY = 4  # squares from where he wants to look within which a thing is brought

@@ -21,7 +21,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         find_ours_here()
         from simulator.cli import parsing  # noqa: F401 (all that is imported before anything is done)
-        from simulator.cli.terminal import fill_gaps, guarded
+        from simulator.terminal.streams import fill_gaps, guarded
 
         if arguments is None:
             fill_gaps()
@@ -80,9 +80,9 @@ def signal_again() -> None:
 def _guarded(arguments: Sequence[str] | None, interrupts: _Interrupts) -> int:
     """Run, with streams to which all can be written, and return the exit code."""
     from kb.language.diagnostics import BadInputError, CannotOpenError
-    from simulator.cli import exits
-    from simulator.cli.outcome import bug_message
-    from simulator.cli.terminal import StreamError
+    from simulator.terminal import exits
+    from simulator.terminal.outcome import bug_message
+    from simulator.terminal.streams import StreamError
 
     try:
         code = _executed(arguments)
@@ -107,8 +107,8 @@ def _guarded(arguments: Sequence[str] | None, interrupts: _Interrupts) -> int:
 
 
 def _executed(arguments: Sequence[str] | None) -> int:
-    from simulator.cli import exits
     from simulator.cli.parsing import parser
+    from simulator.terminal import exits
 
     try:
         options = parser().parse_args(arguments)
@@ -125,7 +125,7 @@ def _say(code: int, message: str) -> int:
 
 def _code(code: int, lost: str) -> int:
     """The exit code, when something could not be said on the standard error: then it did not go well."""
-    from simulator.cli import exits
+    from simulator.terminal import exits
 
     return exits.LOST_OUTPUT if lost and code == exits.DONE else code
 

@@ -2,7 +2,7 @@
 
 from kb.body import Body
 from kb.task.task import Task
-from planner.goals.stages import stages
+from planner.stages import stages
 from simulator.run.session import Robot
 from simulator.run.warming import warm
 from simulator.scenario.settings import Settings

@@ -13,10 +13,10 @@ from benchmarks import campaign
 from benchmarks.harness.beliefs import Score
 from benchmarks.harness.judging import judge_path
 from benchmarks.harness.narrowness import Narrowness, narrowness
+from benchmarks.harness.stopwatch import Seconds
 from benchmarks.harness.tally import faults, table, verdicts
 from benchmarks.harness.tally import narrowness as told_right
 from benchmarks.harness.trial import Conditions, Trial, run_trial
-from benchmarks.timing.stopwatch import Seconds
 from benchmarks.worlds.makers import scenario, seeds
 from benchmarks.worlds.scenes import Scenario
 from kb.body import Body, Command, Impression, Move

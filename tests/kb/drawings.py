@@ -8,11 +8,12 @@ import numpy as np
 from kb.body import Move
 from kb.knowledge import Knowledge
 from kb.mapping.occupancy import FREE, FULL, OPEN, Evidence, MapView
+from kb.mapping.patch import patch_of
 from kb.perception.frame import Lattice
 from kb.perception.interpretation import interpret
 from kb.perception.regions import label_of, map_regions
 from kb.perception.retina import count_ranges
-from kb.world.model import Node, WorldModel, patch_of
+from kb.world.model import Node, WorldModel
 from tests.kb.eyes import impression, utak_in, world_of
 
 LARGE_ROOM = ["b" * 44, *["b" + "." * 42 + "b"] * 42, "b" * 44]

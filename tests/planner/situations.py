@@ -6,8 +6,8 @@ from kb.task.task import Task
 from kb.world.corners import corners
 from kb.world.model import WorldModel
 from kb.world.rooms import rooms_of
-from planner.goals.robot_goals import Situation
 from planner.screen.projection import Screens
+from planner.situation import Situation
 
 NO_TASK = Task({}, (), ())
 BESIDE_A_THING = [  # a room, and Utak right beside the one thing in it

@@ -18,8 +18,8 @@ from kb.world.corners import corners
 from kb.world.rooms import rooms_of
 from planner.cycle import Options, Robot
 from planner.deciding.decider import Decider
-from planner.goals.stages import constraints, stages
 from planner.screen.projection import Screens
+from planner.stages import constraints, stages
 from tests.kb.drawings import seen_whole
 from tests.kb.eyes import colours_of, impression, utak_in, world_of
 
@@ -265,7 +265,8 @@ def test_stages_and_constraints() -> None:
 
 
 def test_the_destination_of_a_corner_is_its_square() -> None:
-    from planner.goals.robot_goals import Situation, destination
+    from planner.goals.robot_goals import destination
+    from planner.situation import Situation
 
     model = seen_whole(EMPTY)
     situation = _situation(Situation, model, {})
@@ -279,7 +280,8 @@ def test_the_destination_of_a_corner_is_its_square() -> None:
 
 
 def test_the_destination_of_a_thing_is_beside_it() -> None:
-    from planner.goals.robot_goals import Situation, destination
+    from planner.goals.robot_goals import destination
+    from planner.situation import Situation
 
     model = seen_whole(THINGS)
     (node,) = model.objects

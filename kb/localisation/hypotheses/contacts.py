@@ -16,7 +16,8 @@ from kb.localisation.hypotheses.carry_outcomes import Outcome, ahead, length_of,
 from kb.mapping.completions import Pictures
 from kb.mapping.obstacle_chance import Outlook
 from kb.mapping.occupancy import FULL, OPEN, Evidence
-from kb.objects.held_object import Load, Square, covered
+from kb.mapping.patch import covered
+from kb.objects.held_object import Load, Square
 
 Place = tuple[float, float]
 

@@ -19,10 +19,10 @@ from geometry.raster.components import components, edged
 from geometry.shapes.fit import fit_shapes
 from kb.localisation.hypotheses.frames import Laid, Look, fallen
 from kb.mapping.occupancy import FREE, FULL, OPEN, Evidence
-from kb.objects.held_object import Load, covered, discounted, is_whole, whole
+from kb.mapping.patch import Patch, covered
+from kb.objects.held_object import Load, discounted, is_whole, whole
 from kb.objects.subcell_extent import Insets
 from kb.perception.frame import Lattice
-from kb.world.model import Patch
 
 ASKEW = 8.0  # degrees from one lattice to another from where on an outline that was measured on the one is not right
 UNTOLD = 0.25  # of the squares of a thing, so many may be open when it is measured anew

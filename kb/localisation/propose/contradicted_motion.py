@@ -13,7 +13,8 @@ from geometry.motion.se2 import Motion, Rotate
 from kb.localisation.hypotheses.carry_outcomes import STRIDE, Outcome, otherwise, predicted
 from kb.localisation.hypotheses.what_if import Place, Surprise, clashes
 from kb.mapping.occupancy import FULL
-from kb.objects.held_object import WHOLE, Load, covered
+from kb.mapping.patch import covered
+from kb.objects.held_object import WHOLE, Load
 
 CROWDED = 4  # squares that seem to stand right about a thing since it was turned, of which nothing told
 BESIDE = 1.0  # squares about a thing

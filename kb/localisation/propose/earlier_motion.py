@@ -29,7 +29,8 @@ from kb.localisation.hypotheses.walk_outcomes import (
 )
 from kb.localisation.hypotheses.what_if import Supposed, Surprise
 from kb.mapping.occupancy import FREE, FULL, OPEN, Evidence
-from kb.objects.held_object import Load, Square, covered, is_whole
+from kb.mapping.patch import covered
+from kb.objects.held_object import Load, Square, is_whole
 from kb.perception.frame import Lattice
 
 LAST = 4  # motions that are told again together with where he woke

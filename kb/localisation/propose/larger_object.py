@@ -14,7 +14,8 @@ from kb.localisation.hypotheses.carry_outcomes import predicted
 from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.what_if import Surprise, clashes
 from kb.mapping.occupancy import FREE
-from kb.objects.held_object import Load, covered, is_whole, patch_of_squares
+from kb.mapping.patch import covered, patch_of_squares
+from kb.objects.held_object import Load, is_whole
 
 DEEPEST = 3  # squares by which a thing goes on in what seems to be wall, at most
 SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, Span
-from simulator.cli import exits
 from simulator.scenario.untrusted import add_option, refuse_links
+from simulator.terminal import exits
 
 TOLD = {exits.DONE: "ok", exits.BAD_INPUT: "bad", exits.CANNOT_OPEN: "cannot be opened", exits.OUR_BUG: "a bug of ours"}
 
@@ -25,7 +25,7 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Check every path, whatever is wrong with another; the exit code is that of the worst."""
-    from simulator.cli.outcome import attempt
+    from simulator.terminal.outcome import attempt
 
     codes = []
     for root, path in [(Path(given), part) for given in options.paths for part in _parts(Path(given))]:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from kb.language.diagnostics import CannotOpenError
-from simulator.cli import exits
+from simulator.terminal import exits
 
 FILES = {
     "world.txt": """\

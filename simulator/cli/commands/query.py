@@ -4,11 +4,11 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
-from simulator.cli import exits
 from simulator.cli.commands.run import add_settings, settings_of
-from simulator.cli.numbers import whole
-from simulator.cli.printing import as_json
 from simulator.scenario.untrusted import refuse_links
+from simulator.terminal import exits
+from simulator.terminal.numbers import whole
+from simulator.terminal.printing import as_json
 
 if TYPE_CHECKING:
     from simulator.run.story import Story

@@ -3,9 +3,9 @@
 import argparse
 from typing import Any
 
-from simulator.cli import exits
 from simulator.cli.commands.run import add_settings, settings_of
 from simulator.scenario.untrusted import refuse_links
+from simulator.terminal import exits
 
 
 def add(parts: Any) -> None:
@@ -19,8 +19,8 @@ def add(parts: Any) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Read commands until they end."""
     from kb.reasoning.query import QueryEngine
-    from simulator.cli.prompt import Prompt, lines_of
     from simulator.run.story import open_story
+    from simulator.terminal.prompt import Prompt, lines_of
 
     refuse_links(options, options.story)
     story = open_story(options.story, settings_of(options))

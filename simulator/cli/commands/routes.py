@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kb.language.diagnostics import BadInputError, Problem, Span
-from simulator.cli import exits
-from simulator.cli.numbers import decimal, whole
-from simulator.cli.printing import as_json
 from simulator.scenario.untrusted import add_option, refuse_links
+from simulator.terminal import exits
+from simulator.terminal.numbers import decimal, whole
+from simulator.terminal.printing import as_json
 
 if TYPE_CHECKING:
     from geometry.kernels.arrays import Bools

@@ -4,11 +4,12 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any, TextIO
 
-from simulator.cli import exits
-from simulator.cli.numbers import decimal, whole
-from simulator.cli.printing import as_json
-from simulator.cli.terminal import shown
 from simulator.scenario.untrusted import add_option, refuse_links
+from simulator.terminal import exits
+from simulator.terminal.action_in_words import describe
+from simulator.terminal.numbers import decimal, whole
+from simulator.terminal.printing import as_json
+from simulator.terminal.streams import shown
 
 if TYPE_CHECKING:
     from simulator.run.session import Result, Session
@@ -126,18 +127,6 @@ def _watcher(watch: bool) -> Any:
         print(f"step {line['step']}: {describe(line['action'])}: {why}", file=sys.stderr)
 
     return tell
-
-
-def describe(action: dict[str, Any] | None) -> str:
-    """Return an action of an episode in words, as `move(1.5, -2)`.
-
-    >>> describe({"do": "move", "east": 1.5, "north": -2.0})
-    'move(1.5, -2)'
-    """
-    if action is None:
-        return "wake"
-    values = [f"{v:g}" if isinstance(v, float) else str(v) for k, v in action.items() if k != "do"]
-    return f"{action['do']}({', '.join(values)})" if values else str(action["do"])
 
 
 def _seed(text: str) -> int:

@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from simulator.cli import exits
 from simulator.scenario.untrusted import add_option, refuse_links
+from simulator.terminal import exits
 
 
 def add(parts: Any) -> None:

@@ -6,10 +6,10 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from simulator.cli import exits
 from simulator.cli.commands.run import add_settings, settings_of
-from simulator.cli.terminal import shown
 from simulator.scenario.untrusted import refuse_links
+from simulator.terminal import exits
+from simulator.terminal.streams import shown
 
 if TYPE_CHECKING:
     from simulator.scenario.settings import Settings
@@ -33,7 +33,7 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Run every scenario, print one line each, and say how many passed; the exit code is that of the worst."""
-    from simulator.cli.outcome import attempt
+    from simulator.terminal.outcome import attempt
 
     settings = settings_of(options)
     found: list[tuple[Path, Path]] = []

@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from simulator.cli import exits
+from simulator.terminal import exits
 
 
 def add(parts: Any) -> None:

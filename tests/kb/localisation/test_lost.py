@@ -13,10 +13,11 @@ from kb.localisation.holding import ASTRAY, LOST
 from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.frames import Hypothesis
 from kb.mapping.occupancy import FULL, OPEN
+from kb.mapping.patch import Patch
 from kb.objects.held_object import Load
 from kb.perception.frame import Lattice, turned
 from kb.task.task import Task
-from kb.world.model import Names, Patch
+from kb.world.model import Names
 from planner.deciding.decider import Decider
 from tests.kb.drawings import walked
 from tests.kb.eyes import impression, random_room, utak_in, world_of

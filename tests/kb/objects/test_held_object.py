@@ -13,7 +13,8 @@ from shapely.affinity import rotate, translate
 from geometry.motion.se2 import Rotate, Translate
 from kb.localisation.hypotheses.carry_outcomes import otherwise, predicted
 from kb.mapping.occupancy import Evidence
-from kb.objects.held_object import Load, covered, discounted, slack_of, whole
+from kb.mapping.patch import covered
+from kb.objects.held_object import Load, discounted, slack_of, whole
 from kb.perception.frame import Lattice
 from kb.perception.retina import FIELDS, OWN, count_ranges
 from tests.kb.eyes import impression, random_room, world_of

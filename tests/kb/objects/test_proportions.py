@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 from shapely.affinity import translate
 
 from geometry.motion.se2 import Translate
-from kb.objects.held_object import Load, covered, seen_insets
+from kb.mapping.patch import covered
+from kb.objects.held_object import Load, seen_insets
 from kb.objects.proportions import may_be, reshaped, spans
 from kb.objects.subcell_extent import WHOLE, Insets
 

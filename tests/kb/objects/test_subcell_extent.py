@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
 from geometry.motion.se2 import Rotate, Translate
-from kb.objects.held_object import Load, covered, seen_insets
+from kb.mapping.patch import covered
+from kb.objects.held_object import Load, seen_insets
 from kb.objects.subcell_extent import NONE, TELLING, WHOLE, Insets, Sides, further, moved_in, told, turned
 from kb.world.model import Node
 from planner.skills.measure_size import FINE, least_outline, phases

@@ -10,8 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.mapping.occupancy import FULL, OPEN
+from kb.mapping.patch import patch_of
 from kb.world.corners import SIDES, corners, known_floor
-from kb.world.model import Node, patch_of
+from kb.world.model import Node
 from planner.screen.projection import grown
 from tests.kb.drawings import seen_whole
 from tests.kb.eyes import random_room

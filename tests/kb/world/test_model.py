@@ -12,12 +12,13 @@ from hypothesis import strategies as st
 from kb.body import Grasp, Move, Release
 from kb.knowledge import _laid
 from kb.mapping.occupancy import FREE, FULL, OPEN, MapView
-from kb.objects.held_object import Load, covered
+from kb.mapping.patch import Patch, covered, patch_of
+from kb.objects.held_object import Load
 from kb.objects.shape_fit import Measurer
 from kb.perception.frame import Lattice
 from kb.world.corners import corners
 from kb.world.facts import Places, model_facts
-from kb.world.model import SPACE, Names, Patch, patch_of, unsettled
+from kb.world.model import SPACE, Names, unsettled
 from kb.world.rooms import rooms_of
 from tests.kb.drawings import seen_whole, walked
 from tests.kb.eyes import impression, utak_in, world_of

@@ -20,7 +20,7 @@ from planner.carrying.manipulation_oracle import Haul
 from planner.carrying.remaining_plan import clear_part
 from planner.deciding.decider import Decider
 from planner.decision import Decision
-from planner.goals.robot_goals import Situation
+from planner.situation import Situation
 from simulator.episode.episode import EpisodeLog
 from simulator.run.robots import make_robot
 from simulator.run.session import Result, Session

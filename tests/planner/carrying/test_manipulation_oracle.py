@@ -13,7 +13,7 @@ from geometry.cspace.bottleneck import Neck
 from geometry.manipulation.plan_carrying import Carrying, Inside
 from kb.language.reader import facts_of
 from kb.mapping.occupancy import FULL
-from kb.objects.held_object import covered
+from kb.mapping.patch import covered
 from kb.task.task import Task
 from kb.world.model import Node
 from kb.world.rooms import SURE

@@ -16,7 +16,7 @@ from kb.world.model import Node, WorldModel
 from planner.carrying.manipulation_oracle import Haul
 from planner.carrying.remaining_plan import ALIKE, Course, course_of, followed, from_here
 from planner.goals.placement import in_view, lands
-from planner.goals.robot_goals import Situation
+from planner.situation import Situation
 
 
 def turns(course: Course) -> bool:

@@ -13,15 +13,16 @@ from geometry.raster.geodesic import UNREACHED, reach
 from geometry.raster.rasterize import areas
 from kb.body import Grasp, Move, Push, Turn
 from kb.language.reader import facts_of
-from kb.world.model import Node, Patch
+from kb.mapping.patch import Patch
+from kb.world.model import Node
 from planner.carrying.plan_executor import Carrier
 from planner.deciding.clearing import Clearer, Obstacle, obstacles
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.verification import Verifier
 from planner.decision import Decision
 from planner.goals.placement import drawn_out, hidden_behind, in_view
-from planner.goals.robot_goals import Situation
-from planner.goals.stages import Stage
+from planner.situation import Situation
+from planner.stages import Stage
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
 

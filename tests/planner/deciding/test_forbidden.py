@@ -8,7 +8,7 @@ import pytest
 
 from kb.task.task import Task
 from kb.world.rooms import Door, crosses, went_through
-from planner.goals.robot_goals import Situation
+from planner.situation import Situation
 from tests.kb.drawings import seen_whole
 from tests.planner.carrying.test_carrying import run, scene
 from tests.planner.goals.test_object_goals import facts_of

@@ -16,16 +16,17 @@ from kb.language.reader import facts_of
 from kb.mapping.occupancy import OPEN
 from kb.task.binding import Reconciled
 from kb.world.model import Node, WorldModel
+from planner.advice import Act, Go
 from planner.carrying.infeasibility import Refusal
 from planner.carrying.manipulation_oracle import Haul, Hauler, Request
-from planner.carrying.plan_executor import Act, Carrier, Go
+from planner.carrying.plan_executor import Carrier
 from planner.carrying.remaining_plan import Course
 from planner.deciding import transport
 from planner.deciding.decider import Decider
 from planner.goals.placement import Landing
-from planner.goals.robot_goals import Situation
-from planner.goals.stages import Stage
 from planner.sights.frontiers import CLOSE
+from planner.situation import Situation
+from planner.stages import Stage
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of
 

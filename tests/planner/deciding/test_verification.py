@@ -26,8 +26,8 @@ from planner.deciding.verification import (
     misgiving,
     unseen_beyond,
 )
-from planner.goals.stages import Stage
 from planner.sights.frontiers import CLOSE
+from planner.stages import Stage
 from tests.kb.drawings import seen_whole, walked
 from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of
 

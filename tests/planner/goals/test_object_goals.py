@@ -9,7 +9,7 @@ import shapely
 import shapely.affinity
 
 from kb.language.reader import facts_of
-from kb.objects.held_object import covered
+from kb.mapping.patch import covered
 from kb.world.model import Node, WorldModel
 from planner.carrying.plan_executor import Carrier
 from planner.goals.object_goals import landing

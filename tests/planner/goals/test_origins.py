@@ -8,7 +8,7 @@ import shapely.affinity
 
 from kb.world.rooms import Rooms
 from planner.goals.origins import Beginnings
-from planner.goals.robot_goals import Situation
+from planner.situation import Situation
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import BESIDE_A_THING, situation_of
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 
 from kb.body import Grasp, Move
-from planner.goals.robot_goals import Situation
-from planner.goals.stages import Stage
+from planner.situation import Situation
 from planner.skills.into_corner import NEAR, PRESS, IntoCorner, halted, halting_place, lies_straight
+from planner.stages import Stage
 from tests.kb.drawings import seen_whole
 from tests.planner.goals.test_object_goals import facts_of
 from tests.planner.situations import situation_of

@@ -9,8 +9,9 @@ from shapely import affinity
 
 from benchmarks.harness.trial import Conditions, run_trial
 from geometry.manipulation.goals import At
+from kb.mapping.patch import Patch
 from kb.objects.subcell_extent import Insets
-from kb.world.model import Node, Patch
+from kb.world.model import Node
 from planner.skills.measure_size import MOST, Sizer
 
 

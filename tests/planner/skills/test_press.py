@@ -11,7 +11,7 @@ from kb.body import Push
 from kb.world.model import Node
 from planner.goals.corner_goal import WALL, _presses
 from planner.goals.placement import Landing
-from planner.goals.robot_goals import Situation
+from planner.situation import Situation
 from planner.skills.press import Presser
 from tests.kb.drawings import seen_whole
 from tests.planner.goals.test_object_goals import facts_of

@@ -16,21 +16,23 @@ from geometry.manipulation.workspace import Yard
 from geometry.motion.se2 import Motion, Rotate, Translate
 from kb.body import Grasp, Move, Push, Release
 from kb.language.reader import facts_of
+from kb.mapping.patch import Patch
 from kb.task.binding import Reconciled
-from kb.world.model import Node, Patch
+from kb.world.model import Node
+from planner.advice import Act, See
 from planner.carrying.infeasibility import Refusal
-from planner.carrying.plan_executor import Act, Carrier, See
+from planner.carrying.plan_executor import Carrier
 from planner.carrying.remaining_plan import Course
 from planner.deciding.decider import Decider
 from planner.deciding.transport import Transporter
 from planner.decision import Decision
 from planner.goals.placement import Landing, in_view
-from planner.goals.robot_goals import Situation
-from planner.goals.stages import Stage
 from planner.navigation.subgoals import Aim
 from planner.screen.projection import Squares
 from planner.sights.frontiers import Lookout
+from planner.situation import Situation
 from planner.skills.take_along import NEARBY, by_way, lead, near, out
+from planner.stages import Stage
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import NO_TASK, situation_of
 

@@ -11,7 +11,7 @@ from shapely.affinity import translate
 
 from geometry.motion.se2 import Translate
 from kb.mapping.occupancy import FULL
-from kb.objects.held_object import covered
+from kb.mapping.patch import covered
 from kb.world.model import Node, WorldModel
 from planner.skills.failed_grasps import MOST, FailedHolds
 from planner.skills.unjam import BACK, ONWARD, ROOM, drawn_back

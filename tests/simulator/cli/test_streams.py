@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from random_scenes import write_scene
 
 from simulator.cli.main import main
-from simulator.cli.terminal import Guarded, StreamError, shown
+from simulator.terminal.streams import Guarded, StreamError, shown
 
 ROOT = Path(__file__).resolve().parents[3]
 HOSTILE = "\x1b[2J\x1b]0;owned\x07\r\x9b31m\u202egnp.exe\u2066\x7f\b\u2028"

@@ -11,8 +11,8 @@ import scripted_robot
 from random_scenes import write_scene
 
 from kb.language.source_text import leads_out, read_source
-from simulator.cli import exits
 from simulator.cli.main import main
+from simulator.terminal import exits
 
 SECRET = "root_x17(toor_x18).\nand nonsense_x19 :- so(0n_x20.\n"
 

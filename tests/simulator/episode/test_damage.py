@@ -18,11 +18,11 @@ from hypothesis import strategies as st
 from random_scenes import write_scene
 
 from kb.language.diagnostics import BadInputError, CannotOpenError
-from simulator.cli.commands.run import describe
 from simulator.cli.main import main
 from simulator.episode.episode import read_episode
 from simulator.run.story import Recorded
 from simulator.scenario.scenario import read_scenario
+from simulator.terminal.action_in_words import describe
 
 PLACE = re.compile(r"ep\.jsonl:\d+:\d+-\d+: error: ")
 

@@ -18,10 +18,10 @@ from random_scenes import write_scene
 
 from kb.reasoning.query import QueryEngine
 from simulator.cli.commands.new import FILES
-from simulator.cli.prompt import Prompt
 from simulator.run.interrupts import deferred
 from simulator.run.story import Story, open_story
 from simulator.scenario.settings import Settings
+from simulator.terminal.prompt import Prompt
 
 ROOT = Path(__file__).resolve().parents[3]
 

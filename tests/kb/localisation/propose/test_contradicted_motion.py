@@ -14,7 +14,8 @@ from kb.localisation.hypotheses.remap import laid, relaid
 from kb.localisation.hypotheses.what_if import Surprise
 from kb.localisation.propose.contradicted_motion import rather_short
 from kb.mapping.occupancy import OPEN
-from kb.objects.held_object import Load, covered
+from kb.mapping.patch import covered
+from kb.objects.held_object import Load
 from kb.perception.frame import CENTRE, Lattice
 from kb.perception.retina import count_ranges
 from tests.kb.eyes import retina, world_of

@@ -2,7 +2,7 @@
 
 from kb.language.reader import facts_of
 from kb.task.task import Task
-from planner.goals.stages import stages
+from planner.stages import stages
 
 
 def test_a_step_that_comes_again_is_a_stage_of_its_own() -> None:

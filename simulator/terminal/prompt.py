@@ -9,10 +9,10 @@ from typing import Any
 
 from kb.language.diagnostics import BadInputError, CannotOpenError, did_you_mean
 from kb.reasoning.query import VOCABULARY, QueryEngine, QueryLimitError
-from simulator.cli.commands.run import describe
-from simulator.cli.terminal import StreamError, shown
 from simulator.run.interrupts import deferred
 from simulator.run.story import Story
+from simulator.terminal.action_in_words import describe
+from simulator.terminal.streams import StreamError, shown
 
 HELP = """\
 ?- QUERY.     ask what Utak believes: ?- object(X), shape(X, square, C).

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import ParamSpec
 
 from kb.language.diagnostics import BadInputError, CannotOpenError
-from simulator.cli import exits
-from simulator.cli.terminal import StreamError
+from simulator.terminal import exits
+from simulator.terminal.streams import StreamError
 
 P = ParamSpec("P")
 

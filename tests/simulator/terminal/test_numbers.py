@@ -20,7 +20,7 @@ from kb.reasoning.query import QueryEngine
 from kb.reasoning.user_rules import checked_rules
 from simulator.cli import parsing
 from simulator.cli.main import main
-from simulator.cli.printing import as_json
+from simulator.terminal.printing import as_json
 
 
 @pytest.fixture(scope="module")

@@ -12,9 +12,9 @@ from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import Inside
 from kb.world.model import Node, WorldModel
 from planner.carrying.manipulation_oracle import Haul, Hauler, Request
-from planner.goals.robot_goals import Situation
-from planner.screen.optimistic import BEYOND, hoped_floor, spread
+from planner.goals.optimistic import BEYOND, hoped_floor, spread
 from planner.screen.projection import UNSEEN, marked
+from planner.situation import Situation
 from tests.kb.drawings import seen_whole, unclear
 from tests.planner.situations import situation_of
 

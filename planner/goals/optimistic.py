@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.raster.components import edged
-from planner.goals.robot_goals import Situation
+from planner.situation import Situation
 
 Mask = NDArray[np.bool_]
 BEYOND = 6  # squares that floor is hoped to go on unseen
