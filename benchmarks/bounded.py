@@ -58,7 +58,7 @@ class Run(NamedTuple):
     judged: bool
 
 
-class Row(NamedTuple):
+class BoundedRow(NamedTuple):
     """What came of a run.
 
     seconds : of the processor, of waking and of each command. actions : what was commanded, None on waking.
@@ -131,7 +131,7 @@ def warm() -> None:
         run_here(Run(EXAMPLES / name, noise, 1, 20, False), lambda _: None)
 
 
-def bounded(run: Run, seconds: int) -> Row:
+def bounded(run: Run, seconds: int) -> BoundedRow:
     """A run in a process of its own, which ends after so many seconds of the processor."""
     context = multiprocessing.get_context("fork")
     ours, theirs = context.Pipe(duplex=False)
@@ -143,7 +143,7 @@ def bounded(run: Run, seconds: int) -> Row:
     last = told.pop() if told and isinstance(told[-1], dict) else {"verdict": "ended"}
     if last["verdict"] == "ended":  # what is left went into the command that was not done
         told.append((seconds - sum(second for second, _ in told), "not done"))
-    return Row(
+    return BoundedRow(
         run.folder.name,
         run.noise,
         run.seed,
@@ -202,7 +202,7 @@ def run_here(run: Run, tell: Any) -> None:
     )
 
 
-def _told(rows: Iterable[Row], output: Path | None) -> Iterator[Row]:
+def _told(rows: Iterable[BoundedRow], output: Path | None) -> Iterator[BoundedRow]:
     """The rows as they come, each told on stderr and written to the output."""
     if output is not None:
         output.write_text("")
@@ -214,7 +214,7 @@ def _told(rows: Iterable[Row], output: Path | None) -> Iterator[Row]:
         yield row
 
 
-def _line(row: Row) -> str:
+def _line(row: BoundedRow) -> str:
     worst, high = max(row.seconds, default=0.0), percentile(row.seconds)
     marks = " FALSE" * row.false + " LONG" * (worst > BOUND) + " JUDGE" * bool(row.judged)
     told = f"{row.name:28} {row.noise:<5} {row.seed:3} {row.verdict:12} {row.achieved!s:6}"
@@ -226,10 +226,10 @@ def percentile(seconds: Sequence[float]) -> float:
     return float(np.percentile(seconds, 95)) if seconds else 0.0
 
 
-def report(rows: Sequence[Row]) -> Iterator[str]:
+def report(rows: Sequence[BoundedRow]) -> Iterator[str]:
     """Lines: a table of scenario and noise, worst first, then the longest commands, false claims, and totals."""
     yield f"{'scenario':28} noise  longest   95%    all s  verdicts"
-    groups: dict[tuple[str, float], list[Row]] = {}
+    groups: dict[tuple[str, float], list[BoundedRow]] = {}
     for row in rows:
         groups.setdefault((row.name, row.noise), []).append(row)
     for (name, noise), group in sorted(groups.items(), key=lambda item: -_worst(item[1])):
@@ -247,7 +247,7 @@ def report(rows: Sequence[Row]) -> Iterator[str]:
     yield from _totals(rows)
 
 
-def _totals(rows: Sequence[Row]) -> Iterator[str]:
+def _totals(rows: Sequence[BoundedRow]) -> Iterator[str]:
     for noise in sorted({row.noise for row in rows}):
         group = [row for row in rows if row.noise == noise]
         seconds = [second for row in group for second in row.seconds]
@@ -260,7 +260,7 @@ def _totals(rows: Sequence[Row]) -> Iterator[str]:
         )
 
 
-def _worst(group: Iterable[Row]) -> float:
+def _worst(group: Iterable[BoundedRow]) -> float:
     return max((second for row in group for second in row.seconds), default=0.0)
 
 

@@ -29,7 +29,7 @@ from benchmarks.harness.beliefs import beliefs
 from benchmarks.harness.drawing import drawing
 from benchmarks.harness.judging import judge_path
 from benchmarks.harness.tally import faults, narrowness, table, verdicts
-from benchmarks.harness.trial import Conditions, Trial, run_trial
+from benchmarks.harness.trial import CampaignTrial, Conditions, run_trial
 from benchmarks.worlds.makers import add_kinds, scenario, seeds
 from simulator.episode.output_files import is_rows, opened
 from simulator.run.session import Session
@@ -107,7 +107,7 @@ def _warm_up(folder: Path) -> None:
     run_trial(4, 0, Conditions(max_steps=30, seconds=0), folder / "warming-up")
 
 
-def _run_all(worlds: list[tuple[int, int]], conditions: Conditions, folder: Path, jobs: int) -> Iterator[Trial]:
+def _run_all(worlds: list[tuple[int, int]], conditions: Conditions, folder: Path, jobs: int) -> Iterator[CampaignTrial]:
     run = partial(_one, conditions=conditions, folder=folder)
     if jobs <= 1:
         yield from map(run, worlds)
@@ -117,11 +117,11 @@ def _run_all(worlds: list[tuple[int, int]], conditions: Conditions, folder: Path
         yield from pool.map(run, worlds)
 
 
-def _one(world: tuple[int, int], conditions: Conditions, folder: Path) -> Trial:
+def _one(world: tuple[int, int], conditions: Conditions, folder: Path) -> CampaignTrial:
     return run_trial(*world, conditions, folder)
 
 
-def _reported(trials: Iterable[Trial], count: int, output: TextIO | None) -> Iterator[Trial]:
+def _reported(trials: Iterable[CampaignTrial], count: int, output: TextIO | None) -> Iterator[CampaignTrial]:
     """The trials as they come, each told on stderr and written to the output."""
     for number, trial in enumerate(trials, 1):
         if output is not None:
@@ -133,7 +133,7 @@ def _reported(trials: Iterable[Trial], count: int, output: TextIO | None) -> Ite
         yield trial
 
 
-def _watched(task: int, seed: int, conditions: Conditions, folder: Path) -> Trial:
+def _watched(task: int, seed: int, conditions: Conditions, folder: Path) -> CampaignTrial:
     """One world with a drawing of it at each step, on stderr."""
     world = scenario(task, seed, conditions.kind)
     print(f"{world.name}, heading {world.heading}: {world.texts.goal}{world.texts.expect}", file=sys.stderr)

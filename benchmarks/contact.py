@@ -17,7 +17,7 @@ import numpy as np
 import shapely
 from shapely import affinity, box
 
-from geometry.motion.first_contact import Body, Obstacles
+from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Motion, Rotate, Translate
 
 ELL = shapely.Polygon([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)])
@@ -84,7 +84,7 @@ def speed(count: int, pieces: int) -> None:
         if piece.distance(body) > 0.1:
             obstacles.append(piece)
     vectors, degrees = rng.uniform(-8, 8, (count, 2)), rng.uniform(-180, 180, count)
-    prepared, mover = Obstacles(obstacles), Body(body)
+    prepared, mover = Obstacles(obstacles), ContactBody(body)
     prepared.pushes(mover, vectors[:2])
     prepared.turns(mover, degrees[:2], vectors[:2])
     solid = shapely.union_all(obstacles)
@@ -124,7 +124,7 @@ def disagreements(count: int) -> int:
         prepared = Obstacles(still)
         for _ in range(5):
             motion = _motion(rng)
-            fraction = prepared.first_contact(Body(body), motion).fraction
+            fraction = prepared.first_contact(ContactBody(body), motion).fraction
             bad += _disagrees(body, still, motion, fraction)
             body = motion.part(fraction).carry(body)
             done += 1

@@ -1,4 +1,4 @@
-"""Carrying planned from the truth, in random worlds of tasks 5 to 9; every plan done again with shapely.
+"""CarryingPlan planned from the truth, in random worlds of tasks 5 to 9; every plan done again with shapely.
 
     python -m benchmarks.errands [--task 5,6,7,8,9] [--seed N] [--count N] [--no-pull] [--margin M] [--unable]
 
@@ -16,19 +16,19 @@ import shapely
 
 from benchmarks.worlds.makers import scenario, seeds
 from benchmarks.worlds.placing import digital
-from benchmarks.worlds.scenes import Scenario
+from benchmarks.worlds.scenes import RandomScenario
 from benchmarks.worlds.walking import furthest_corner
-from geometry.manipulation.plan_carrying import Carrying, InCorner, Inside, plan_carrying
+from geometry.manipulation.plan_carrying import CarryingPlan, InCorner, Inside, plan_carrying
 
 
-def free_squares(world: Scenario) -> np.ndarray:
+def free_squares(world: RandomScenario) -> np.ndarray:
     """The squares that neither walls nor other things cover."""
     width, height = world.plan.width, world.plan.height
     others = [world.plan.verge, *(thing.polygon for thing in world.things[1:])]
     return ~np.any([digital(other, width, height) for other in others], axis=0)
 
 
-def goal_of(world: Scenario) -> InCorner | Inside:
+def goal_of(world: RandomScenario) -> InCorner | Inside:
     """What the task asks for, from the truth."""
     if world.task != 5:
         return Inside(list(shapely.get_parts(world.target)))
@@ -38,7 +38,7 @@ def goal_of(world: Scenario) -> InCorner | Inside:
     return InCorner(x, y, -int(inward_x), -int(inward_y))
 
 
-def faults(plan: Carrying, shape: Any, free: np.ndarray, goal: InCorner | Inside, samples: int = 65) -> list[str]:
+def faults(plan: CarryingPlan, shape: Any, free: np.ndarray, goal: InCorner | Inside, samples: int = 65) -> list[str]:
     """What is wrong with a plan when it is done again with shapely; nothing when all is well."""
     rows, columns = np.nonzero(free)
     floor = shapely.union_all(shapely.box(columns, rows, columns + 1, rows + 1)).buffer(1e-6, join_style="mitre")

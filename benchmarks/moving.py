@@ -19,13 +19,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
-from geometry.cspace.plan_motion import Plan, plan_motion
-from geometry.motion.first_contact import Body, Obstacles
-from geometry.motion.obstacle_field import Floor
+from geometry.cspace.plan_motion import MotionPlan, plan_motion
+from geometry.motion.first_contact import ContactBody, Obstacles
+from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Pose
 
 
-class Scene(NamedTuple):
+class MovingScene(NamedTuple):
     """One moving problem."""
 
     name: str
@@ -37,33 +37,35 @@ class Scene(NamedTuple):
     expected: str
 
 
-def load(path: Path) -> Scene:
+def load(path: Path) -> MovingScene:
     """Read a scene."""
     told = json.loads(path.read_text())
     start, goal = (Pose(x, y, math.degrees(a)) for x, y, a in (told["start"], told["goal"]))
     obstacles = [shapely.Polygon(ring) for ring in told["obstacles"]]
-    return Scene(told["name"], shapely.Polygon(told["robot"]), obstacles, start, goal, told["bounds"], told["expected"])
+    return MovingScene(
+        told["name"], shapely.Polygon(told["robot"]), obstacles, start, goal, told["bounds"], told["expected"]
+    )
 
 
-def faults(scene: Scene, plan: Plan, samples: int = 512) -> int:
+def faults(scene: MovingScene, plan: MotionPlan, samples: int = 512) -> int:
     """How many motions of a plan go into an obstacle, by shapely or by first contact; and 1000 for the wrong end."""
     solid = shapely.union_all(scene.obstacles).buffer(-1e-6, join_style="mitre")
     shapely.prepare(solid)
     obstacles, body, bad = Obstacles(scene.obstacles), scene.start.place(scene.body), 0
     for motion in plan.motions:
         swept = [motion.part(t).carry(body) for t in np.linspace(0, 1, samples)]
-        free = obstacles.first_contact(Body(body), motion).fraction == 1.0
+        free = obstacles.first_contact(ContactBody(body), motion).fraction == 1.0
         bad += bool(shapely.intersects(solid, swept).any()) or not free
         body = motion.carry(body)
     return bad + 1000 * int(body.symmetric_difference(scene.goal.place(scene.body)).area > 1e-6)
 
 
-def timed(scene: Scene, runs: int) -> tuple[Plan, float, float]:
+def timed(scene: MovingScene, runs: int) -> tuple[MotionPlan, float, float]:
     """The plan, and the least milliseconds without and with the preparation of the floor."""
     warm, cold = [], []
     for _ in range(runs):
         begin = time.perf_counter()
-        floor = Floor(scene.obstacles, scene.bounds)
+        floor = ObstacleField(scene.obstacles, scene.bounds)
         ready = time.perf_counter()
         plan = plan_motion(scene.body, floor, scene.start, scene.goal)
         end = time.perf_counter()
@@ -97,7 +99,7 @@ def main() -> None:
     _sum_up(ratios)
 
 
-def _beside(scene: Scene, warm: float, args: argparse.Namespace) -> float:
+def _beside(scene: MovingScene, warm: float, args: argparse.Namespace) -> float:
     """Print OMPL's best planner and its median; how many times our time it is."""
     from benchmarks.engine.ompl_peer import best_planner
 

@@ -15,7 +15,7 @@ import numpy as np
 import shapely
 from shapely import affinity, box
 
-from benchmarks.moving import Scene, faults
+from benchmarks.moving import MovingScene, faults
 from geometry.cspace.plan_motion import plan_motion
 from geometry.motion.se2 import Pose
 
@@ -33,7 +33,7 @@ BODIES = [
 ]
 
 
-def random_scene(rng: np.random.Generator, rooms: int) -> Scene | None:
+def random_scene(rng: np.random.Generator, rooms: int) -> MovingScene | None:
     """Rooms in a row with doors, some things about, a body with its reference point anywhere; None when none fits."""
     size = float(rng.uniform(0.6, 1.1))
     body = affinity.scale(BODIES[int(rng.integers(len(BODIES)))], size, size, origin=(0, 0))
@@ -57,7 +57,7 @@ def random_scene(rng: np.random.Generator, rooms: int) -> Scene | None:
     ends = [_free_pose(rng, body, walls, west, east, high) for west, east in ((0, 0.4 * x), (0.6 * x, x))]
     if ends[0] is None or ends[1] is None:
         return None
-    return Scene("rooms", body, list(shapely.get_parts(walls)), ends[0], ends[1], [0, 0, x, high], "unknown")
+    return MovingScene("rooms", body, list(shapely.get_parts(walls)), ends[0], ends[1], [0, 0, x, high], "unknown")
 
 
 def _free_pose(rng: np.random.Generator, body: Any, walls: Any, west: float, east: float, high: float) -> Pose | None:

@@ -8,10 +8,10 @@ which brings all this together. Then ``digital`` (images of shapes) and ``templa
 ``carrying`` (how Utak brings it there).
 """
 
-from geometry.cspace.plan_motion import Inside, Plan, plan_motion
+from geometry.cspace.plan_motion import Inside, MotionPlan, plan_motion
 from geometry.motion.se2 import Pose, Rotate, Translate
 from geometry.passages.necks import Passage
 from geometry.routes.route import Route
 from geometry.screen import Screen
 
-__all__ = ["Inside", "Passage", "Plan", "Pose", "Rotate", "Route", "Screen", "Translate", "plan_motion"]
+__all__ = ["Inside", "MotionPlan", "Passage", "Pose", "Rotate", "Route", "Screen", "Translate", "plan_motion"]

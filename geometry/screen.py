@@ -19,12 +19,12 @@ from geometry.raster.distance_transform import type_of_squares
 from geometry.routes.goal_routes import routes_to_area
 from geometry.routes.goal_sets import checked_goal
 from geometry.routes.layer import Layer, find_bones, find_layer, level_of, new_state
-from geometry.routes.queries import Questions
+from geometry.routes.queries import LayerQueries
 from geometry.routes.route import Route
 from geometry.routes.tighten import word_of_crossings
 from geometry.skeleton.buffers import Tenant, take_buffers
 from geometry.skeleton.chains import Chains, find_chains
-from geometry.skeleton.graph import Bones, contract
+from geometry.skeleton.graph import SkeletonGraph, contract
 from geometry.skeleton.skeleton import States, Words
 from geometry.skeleton.sweep import survey
 
@@ -63,10 +63,10 @@ class Screen:
         rows, columns = grid.shape
         self.shape = (rows, columns)
         self._rent(type_of_squares(grid))
-        self._skeletons: dict[int, tuple[States, Words, Bones]] = {1: self._survey(grid)}
+        self._skeletons: dict[int, tuple[States, Words, SkeletonGraph]] = {1: self._survey(grid)}
         self._chains: dict[int, Chains] = {}
         self._layers: dict[tuple[int, bool], Layer] = {}
-        self._questions: dict[float, Questions] = {}
+        self._questions: dict[float, LayerQueries] = {}
 
     def changed(self, rows: ArrayLike, columns: ArrayLike, values: ArrayLike) -> "Screen":
         """Set some squares free (True) or blocked (False), in place, much faster than a new screen; returns itself.
@@ -250,13 +250,13 @@ class Screen:
         self._tenant = Tenant()
         self._square, self._words = take_buffers(self._tenant, (self.shape[0] + 2, self.shape[1] + 2), kind)
 
-    def _survey(self, grid: Bools) -> tuple[States, Words, Bones]:
+    def _survey(self, grid: Bools) -> tuple[States, Words, SkeletonGraph]:
         """Measure all clearances and find the skeleton and pathgraph of free squares."""
         state, words = new_state(self._square.shape, self._words)
         survey(grid, self._square, state, words)
         return state, words, contract(self._square, state, words)
 
-    def _survey_changed(self, rows: Ints, columns: Ints, values: Bools) -> tuple[States, Words, Bones]:
+    def _survey_changed(self, rows: Ints, columns: Ints, values: Bools) -> tuple[States, Words, SkeletonGraph]:
         """The same with some squares changed."""
         grid = self.free
         grid[rows, columns] = values
@@ -265,7 +265,7 @@ class Screen:
             self._rent(kind)
         return self._survey(grid)
 
-    def _skeleton_at(self, level: int) -> tuple[States, Words, Bones]:
+    def _skeleton_at(self, level: int) -> tuple[States, Words, SkeletonGraph]:
         """The skeleton and pathgraph of the squares of at least that level."""
         found = self._skeletons.get(level)
         if found is None:
@@ -282,7 +282,7 @@ class Screen:
             found = self._chains[level] = find_chains(bones, state)
         return found
 
-    def _ask(self, radius: float) -> Questions:
+    def _ask(self, radius: float) -> LayerQueries:
         """What answers questions for a body of that radius."""
         found = self._questions.get(radius)
         if found is None:
@@ -290,7 +290,7 @@ class Screen:
             if key not in self._layers:
                 state, chains = self._skeleton_at(key[0])[0], self._chains_at(key[0])
                 self._layers[key] = find_layer(self._square, key[0], key[1], state, chains)
-            found = self._questions[radius] = Questions(self._layers[key], key[0], radius)
+            found = self._questions[radius] = LayerQueries(self._layers[key], key[0], radius)
         return found
 
 

@@ -20,7 +20,7 @@ from kb.localisation.hypotheses.explanation import Accommodated
 from kb.mapping.object_heat import NOTHING_IMAGINED, imagine
 from kb.mapping.occupancy import FREE, FULL, OPEN, MapView
 from kb.mapping.patch import Patch, covered, patch_of
-from kb.objects.held_object import ROUNDING, Load, seen_insets, seen_short, slack_of
+from kb.objects.held_object import ROUNDING, HeldObject, seen_insets, seen_short, slack_of
 from kb.objects.proportions import reshaped
 from kb.objects.shape_fit import Measured, Measurer
 from kb.perception.frame import AROUND
@@ -80,7 +80,7 @@ class Knowledge:
         node = min(there, key=lambda n: n.name not in self.memory.loads, default=None)
         if node is None or node.polygon is None or self.memory.held is not None:
             return
-        load = Load(
+        load = HeldObject(
             name=node.name,
             polygon=node.polygon,
             first=node.polygon,
@@ -245,7 +245,7 @@ def _parts(model: WorldModel, labels: list[int]) -> list[_Part]:
     return found
 
 
-def _node(load: Load, patch: Patch, label: int) -> Node:
+def _node(load: HeldObject, patch: Patch, label: int) -> Node:
     """The node of a thing that he has held. patch : the squares that it covers, or may cover."""
     movable = 99 if load.proven else 0 if load.stuck >= FIXED else 50
     return Node(
@@ -271,7 +271,7 @@ def _node(load: Load, patch: Patch, label: int) -> Node:
     )
 
 
-def _laid(model: WorldModel, load: Load) -> tuple[WorldModel, Patch]:
+def _laid(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
     """The model with a load laid upon its map, as a region of its own, and the squares that it covers or may cover.
 
     Utak's own square stays his, for he is a point; but what a load covers in part is no longer settled. Walls that it

@@ -6,7 +6,7 @@ from geometry.kernels.arrays import XY
 from geometry.motion.se2 import Translate
 from kb.body import Command
 from planner.screen.projection import Squares
-from planner.sights.frontiers import Lookout
+from planner.sights.frontiers import Viewpoint
 
 
 @dataclass(frozen=True)
@@ -31,4 +31,4 @@ class Go:
 class See:
     """Squares that must be seen before the way over them is relied upon."""
 
-    lookout: Lookout
+    lookout: Viewpoint

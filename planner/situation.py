@@ -13,8 +13,8 @@ from kb.task.task import Task
 from kb.world.corners import Corner
 from kb.world.model import WorldModel
 from kb.world.rooms import LIKELY_DOOR, SURE, Door, Rooms, rooms_of, went_through
-from planner.screen.projection import Screens, grown
-from planner.sights.frontiers import Lookout, sight_of
+from planner.screen.projection import CostMaps, grown
+from planner.sights.frontiers import Viewpoint, sight_of
 from planner.stages import constraints
 
 
@@ -27,7 +27,7 @@ class Situation:
     """
 
     model: WorldModel
-    screens: Screens
+    screens: CostMaps
     binding: Mapping[str, str]
     rooms: Rooms
     corners: Mapping[str, Corner]
@@ -44,9 +44,9 @@ class Situation:
 
     def along_with(self, patch: Patch) -> "Situation":
         """The same for who takes something along wherever he goes, from its squares on."""
-        return replace(self, screens=Screens(self.model, self.model.mask(patch)))
+        return replace(self, screens=CostMaps(self.model, self.model.mask(patch)))
 
-    def beyond(self, place: tuple[float, float]) -> tuple[Bools, tuple[Lookout, ...]]:
+    def beyond(self, place: tuple[float, float]) -> tuple[Bools, tuple[Viewpoint, ...]]:
         """(rows, columns) what shares a door with the room of a point, and what to look at before that is believed.
 
         The rooms are others if what goes on unseen, and is taken for verge, is an object.
@@ -92,7 +92,7 @@ class Situation:
         return rooms.beyond(int(rooms.labels[row, column]), least)
 
 
-def loose_ends(situation: Situation) -> tuple[Lookout, ...]:
+def loose_ends(situation: Situation) -> tuple[Viewpoint, ...]:
     """Where to look at what goes on unseen and is hardly long enough to be a wall: rooms may end elsewhere."""
     model = situation.model
     pieces = model.verge & ~model.walls & grown(~model.view.seen, 1)

@@ -19,7 +19,7 @@ from pathlib import Path
 
 from benchmarks.claims.asked import OWN, OWN_ASKED, Asked, all_kinds, named, worlds_of
 from benchmarks.claims.report import report
-from benchmarks.claims.row import Row, read_rows
+from benchmarks.claims.row import ClaimRow, read_rows
 from benchmarks.claims.run import Limits, run_world, warm_up
 from benchmarks.claims.table import table
 from benchmarks.harness.judging import judge_path
@@ -87,7 +87,7 @@ def _asked(given: argparse.Namespace) -> list[Asked]:
     return worlds_of(given.kind, given.seed, given.count) + own
 
 
-def _run_all(asked: list[Asked], limits: Limits, folder: Path, keep: Path | None, jobs: int) -> Iterator[Row]:
+def _run_all(asked: list[Asked], limits: Limits, folder: Path, keep: Path | None, jobs: int) -> Iterator[ClaimRow]:
     if not asked:
         return
     warm_up(folder)
@@ -95,7 +95,7 @@ def _run_all(asked: list[Asked], limits: Limits, folder: Path, keep: Path | None
         yield from pool.map(lambda world: run_world(world, limits, folder, keep), asked)
 
 
-def _told(row: Row) -> str:
+def _told(row: ClaimRow) -> str:
     marks = [
         "FALSE DONE" * row.false_done,
         "FALSE IMPOSSIBLE" * row.false_impossible,

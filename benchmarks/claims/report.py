@@ -2,17 +2,17 @@
 
 from collections.abc import Iterator, Sequence
 
-from benchmarks.claims.row import Row
+from benchmarks.claims.row import ClaimRow
 from benchmarks.claims.table import table
 
 
-def report(rows: Sequence[Row]) -> str:
+def report(rows: Sequence[ClaimRow]) -> str:
     """Return the page as Markdown, worlds sorted by kind and seed."""
     ordered = sorted(rows, key=lambda row: row.asked)
     return "\n".join(_lines(ordered)) + "\n"
 
 
-def _lines(rows: Sequence[Row]) -> Iterator[str]:
+def _lines(rows: Sequence[ClaimRow]) -> Iterator[str]:
     yield from ("# What came of the worlds", "", "```text", table(rows).rstrip(), "```")
     yield from ("", "## False claims", "")
     for row in rows:
@@ -32,6 +32,6 @@ def _lines(rows: Sequence[Row]) -> Iterator[str]:
             yield f"- {_head(row)} ({row.commands} commands): {row.reason}"
 
 
-def _head(row: Row) -> str:
+def _head(row: ClaimRow) -> str:
     what = f"{row.goal}, {row.variant}" if row.variant and row.variant != row.goal else row.goal
     return f"`{row.asked.name}` ({what}; can be done: {row.possible}) **{row.verdict}**"

@@ -12,7 +12,7 @@ TIME, ERROR = "time", "error"  # in place of a verdict: the run was ended by a l
 
 
 @dataclass(frozen=True)
-class Row:
+class ClaimRow:
     """What came of one world.
 
     verdict : what the robot said, whatever the word; or "time" or "error". cycles : processor seconds of each command.
@@ -76,7 +76,7 @@ def percentile(seconds: list[float], share: float = 0.95) -> float:
     return ordered[min(len(ordered) - 1, int(share * len(ordered)))] if ordered else 0.0
 
 
-def read_rows(path: Path) -> list[Row]:
+def read_rows(path: Path) -> list[ClaimRow]:
     """Return the rows of a file of results; a last line that was cut short is left out."""
     rows = []
     for line in path.read_text().splitlines():
@@ -84,5 +84,5 @@ def read_rows(path: Path) -> list[Row]:
             told: dict[str, Any] = json.loads(line)
         except json.JSONDecodeError:
             continue
-        rows.append(Row(**{name: told[name] for name in Row.__dataclass_fields__}))
+        rows.append(ClaimRow(**{name: told[name] for name in ClaimRow.__dataclass_fields__}))
     return rows

@@ -14,7 +14,7 @@ from shapely import Polygon
 from benchmarks.claims import child
 from benchmarks.claims.asked import Asked, written
 from benchmarks.claims.refute import Countersearch, refuted, searched, trespassed
-from benchmarks.claims.row import ERROR, TIME, Row
+from benchmarks.claims.row import ERROR, TIME, ClaimRow
 from benchmarks.harness.judging import ROOT, judge_path
 from simulator.run.warming import warm_all
 from utak_command import beside
@@ -60,7 +60,9 @@ def run_child(place: Path, limits: Limits) -> str:
 Runner = Callable[[Path, Limits], str]
 
 
-def run_world(asked: Asked, limits: Limits, folder: Path, keep: Path | None = None, runner: Runner = run_child) -> Row:
+def run_world(
+    asked: Asked, limits: Limits, folder: Path, keep: Path | None = None, runner: Runner = run_child
+) -> ClaimRow:
     """Run a world in a folder that is removed again; a copy of what went wrong stays in `keep`.
 
     runner : runs the robot in a scenario's folder as `run_child` does.
@@ -80,7 +82,7 @@ def run_world(asked: Asked, limits: Limits, folder: Path, keep: Path | None = No
         achieved = False
     search = searched(place, limits.search) if verdict == "impossible" else Countersearch("")
     claims = refuted(verdict, believed, achieved, unmet, known.possible, search)
-    row = Row(
+    row = ClaimRow(
         kind=asked.kind,
         seed=asked.seed,
         task=asked.task,

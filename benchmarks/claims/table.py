@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 
-from benchmarks.claims.row import Row, percentile
+from benchmarks.claims.row import ClaimRow, percentile
 
 VERDICTS = ("done", "impossible", "possible_if", "limit")
 
 
-def table(rows: Sequence[Row]) -> str:
+def table(rows: Sequence[ClaimRow]) -> str:
     """Return what came of the worlds by kind, as aligned text; verdicts of other names have columns of their own."""
     others = sorted({row.verdict for row in rows} - set(VERDICTS) - {"error"})
     verdicts = [*VERDICTS, *others, "error"]
@@ -19,7 +19,7 @@ def table(rows: Sequence[Row]) -> str:
     return "".join("  ".join(c.rjust(w) for c, w in zip(cell, widths, strict=True)) + "\n" for cell in cells)
 
 
-def _line(name: str, rows: Sequence[Row], verdicts: Sequence[str]) -> dict[str, str]:
+def _line(name: str, rows: Sequence[ClaimRow], verdicts: Sequence[str]) -> dict[str, str]:
     cycles = [seconds for row in rows for seconds in row.cycles]
     judged = [row for row in rows if row.judged is not None]
     return {

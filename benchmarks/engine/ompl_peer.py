@@ -10,7 +10,7 @@ from ompl import base, geometric, util
 
 from geometry.motion.body import new_mover
 from geometry.motion.cell_clearance import distance_at
-from geometry.motion.obstacle_field import Floor
+from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Pose
 
 PLANNERS = ("RRTConnect", "LBKPIECE1", "BKPIECE1", "KPIECE1", "PRM")
@@ -63,7 +63,7 @@ def _solve(scene: Any, name: str, limit: float) -> float:
 def _search(scene: Any, name: str, limit: float) -> tuple[Any, float]:
     """OMPL's set-up after a search, and how many seconds that took."""
     mover = new_mover(scene.body)
-    ground = Floor(scene.obstacles, scene.bounds).ground(mover)
+    ground = ObstacleField(scene.obstacles, scene.bounds).ground(mover)
     ox, oy = (float(v) for v in mover.reference)
 
     def is_valid(state: Any) -> bool:

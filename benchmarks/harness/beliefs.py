@@ -23,7 +23,7 @@ HAIR = 1e-5  # squares from a line between two squares to a point that is on it
 NEAR = 0.1  # the least common part of union for a believed object to be the true one
 
 
-class Beliefs(NamedTuple):
+class SeenBeliefs(NamedTuple):
     """What a robot holds, in squares of the table.
 
     objects : (class, polygon) of the objects of his model. certain : (x, y, occupied) squares held with confidence 100.
@@ -69,7 +69,7 @@ class Frame(NamedTuple):
         return affine_transform(shape, [c, -s, s, c, x, y])
 
 
-def beliefs(robot: Any, woke: tuple[float, float], now: tuple[float, float], heading: int) -> Beliefs:
+def beliefs(robot: Any, woke: tuple[float, float], now: tuple[float, float], heading: int) -> SeenBeliefs:
     """What a robot believes at the end; empty when he exposes no model.
 
     Parameters
@@ -79,7 +79,7 @@ def beliefs(robot: Any, woke: tuple[float, float], now: tuple[float, float], hea
     """
     model = getattr(robot, "model", None)
     if model is None:
-        return Beliefs([], [])
+        return SeenBeliefs([], [])
     quarters = round((heading - model.lattice.angle) / 90) % 4
     x, y = Frame(quarters, 0, 0).square(*(math.floor(v) for v in model.place))
     frames = [Frame(quarters, east - x, north - y) for east, north in _beside(now)]
@@ -94,7 +94,7 @@ def beliefs(robot: Any, woke: tuple[float, float], now: tuple[float, float], hea
         (*frame.square(column + west, row + south), bool(occupied))
         for row, column, occupied in zip(rows.tolist(), columns.tolist(), full.tolist(), strict=True)
     ]
-    return Beliefs(objects, certain, drift)
+    return SeenBeliefs(objects, certain, drift)
 
 
 def _beside(place: tuple[float, float]) -> Iterable[tuple[int, int]]:
@@ -130,7 +130,7 @@ def squares_of(grid: NDArray[np.bool_]) -> set[tuple[int, int]]:
 
 
 def compare(
-    held: Beliefs,
+    held: SeenBeliefs,
     things: Mapping[str, tuple[str, Polygon, NDArray[np.bool_]]],
     occupied: NDArray[np.bool_],
     seen: set[tuple[int, int]],
@@ -160,7 +160,7 @@ def compare(
     return Score(met, known, whole, whole_known, len(held.certain), int(wrong), held.drift, tuple(mistaken))
 
 
-def _match(held: Beliefs, polygon: Polygon) -> str:
+def _match(held: SeenBeliefs, polygon: Polygon) -> str:
     """The class of the believed object that covers the true one best; "nothing" where none does."""
     best, name = NEAR, "nothing"
     for kind, shape in held.objects:

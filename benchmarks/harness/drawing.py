@@ -7,13 +7,13 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from benchmarks.worlds.placing import digital
-from benchmarks.worlds.scenes import Scenario
+from benchmarks.worlds.scenes import RandomScenario
 
 ARROWS = "^<v>"  # north, west, south, east
 
 
 def drawing(
-    scenario: Scenario,
+    scenario: RandomScenario,
     utak: tuple[float, float] | None = None,
     objects: Mapping[str, Polygon] | None = None,
     marks: Mapping[str, BaseGeometry] | None = None,

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from benchmarks.worlds.placing import digital
-from benchmarks.worlds.scenes import Scenario
+from benchmarks.worlds.scenes import RandomScenario
 from kb.body import Body, Impression
 from kb.knowledge import Knowledge
 from kb.localisation.hypotheses.explanation import Accommodated
-from kb.localisation.hypotheses.frames import Hypothesis
+from kb.localisation.hypotheses.frames import FrameHypothesis
 from kb.mapping.occupancy import FREE, FULL
-from kb.perception.frame import Lattice, turned
+from kb.perception.frame import Frame, turned
 from kb.task.task import Task
 from kb.world.model import WorldModel
 from planner.cycle import Options, Robot
@@ -29,7 +29,7 @@ BEYOND = 3  # squares of verge known around the table
 class Informed(Knowledge):
     """The knowledge of one who was told all about a world."""
 
-    def __init__(self, world: Scenario) -> None:
+    def __init__(self, world: RandomScenario) -> None:
         super().__init__()
         self._world = world
 
@@ -46,8 +46,8 @@ class Informed(Knowledge):
         x, y = math.floor(world.utak.x), math.floor(world.utak.y)
         within = turned(world.utak.x - x - 0.5, world.utak.y - y - 0.5, -90 * quarters)
         woke = (within[0] + 0.5, within[1] + 0.5)
-        memory.lattice, memory.place = Lattice(angle, woke), woke
-        memory.hypotheses = (Hypothesis(angle, woke + woke),)
+        memory.lattice, memory.place = Frame(angle, woke), woke
+        memory.hypotheses = (FrameHypothesis(angle, woke + woke),)
         width, height = world.plan.width, world.plan.height
         occupied = np.logical_or.reduce(
             [digital(shape, width, height) for shape in (world.plan.verge, *(thing.polygon for thing in world.things))]
@@ -64,7 +64,7 @@ class Informed(Knowledge):
         evidence.seen[where], evidence.settled_by[where] = True, 0
 
 
-def knowing(world: Scenario) -> RobotMaker:
+def knowing(world: RandomScenario) -> RobotMaker:
     """Makes robots that know a world."""
 
     def make(body: Body, task: Task, settings: Settings) -> Any:

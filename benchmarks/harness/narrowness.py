@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from shapely import Point
 
-from benchmarks.worlds.scenes import Scenario
+from benchmarks.worlds.scenes import RandomScenario
 from kb.perception.frame import turned
 
 ALLOWED = 0.25  # squares by which a missing width may be off
@@ -29,7 +29,7 @@ class Narrowness(NamedTuple):
         return abs(self.off) <= ALLOWED and self.away <= NEAR
 
 
-def narrowness(world: Scenario, reason: str) -> Narrowness | None:
+def narrowness(world: RandomScenario, reason: str) -> Narrowness | None:
     """Compare the reason of a verdict with the truth; None where no passage is too narrow."""
     if not world.missing:
         return None

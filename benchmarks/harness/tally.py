@@ -5,12 +5,12 @@ from collections import Counter
 from collections.abc import Sequence
 from statistics import median
 
-from benchmarks.harness.trial import Trial
+from benchmarks.harness.trial import CampaignTrial
 
 ROMAN = {1: "i", 2: "ii", 3: "iii", 4: "iv", 5: "v", 6: "vi", 7: "vii", 8: "viii", 9: "ix"}
 
 
-def table(trials: Sequence[Trial]) -> str:
+def table(trials: Sequence[CampaignTrial]) -> str:
     """What came of the trials, a row a task and one for all, as aligned text."""
     tasks = sorted({trial.task for trial in trials})
     groups = [(f"({ROMAN[task]})", [trial for trial in trials if trial.task == task]) for task in tasks]
@@ -21,7 +21,7 @@ def table(trials: Sequence[Trial]) -> str:
     return "\n".join("  ".join(cell.rjust(w) for cell, w in zip(line, widths, strict=True)) for line in lines) + "\n"
 
 
-def _row(name: str, trials: Sequence[Trial]) -> dict[str, str]:
+def _row(name: str, trials: Sequence[CampaignTrial]) -> dict[str, str]:
     possible = [trial for trial in trials if trial.possible]
     unable = [trial for trial in trials if not trial.possible]
     ratios = [t.walked / t.shortest for t in possible if t.achieved and t.shortest > 1]
@@ -57,17 +57,17 @@ def _part(some: int, whole: int) -> str:
     return f"{some}/{whole}" if whole else "-"
 
 
-def _judged(trials: Sequence[Trial]) -> str:
+def _judged(trials: Sequence[CampaignTrial]) -> str:
     """Episodes in which the judge found something; "none!" when there was no judge."""
     judged = [trial.judged for trial in trials if not trial.crash]
     return "none!" if any(said is None for said in judged) else str(sum(bool(said) for said in judged))
 
 
-def _summed(trials: Sequence[Trial], name: str) -> int:
+def _summed(trials: Sequence[CampaignTrial], name: str) -> int:
     return sum(getattr(trial.score, name) for trial in trials if trial.score is not None)
 
 
-def verdicts(trials: Sequence[Trial]) -> str:
+def verdicts(trials: Sequence[CampaignTrial]) -> str:
     """How often each verdict was given, where the task can be done and where it cannot."""
     lines = []
     for possible in (True, False):
@@ -78,7 +78,7 @@ def verdicts(trials: Sequence[Trial]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def narrowness(trials: Sequence[Trial]) -> str:
+def narrowness(trials: Sequence[CampaignTrial]) -> str:
     """How well passages that are too narrow were told; "" when there were none."""
     told = [trial.narrow for trial in trials if trial.narrow is not None]
     if not told:
@@ -92,7 +92,7 @@ def narrowness(trials: Sequence[Trial]) -> str:
     )
 
 
-def faults(trials: Sequence[Trial]) -> str:
+def faults(trials: Sequence[CampaignTrial]) -> str:
     """A line for whatever was not as it should be, with the worlds in which it was so."""
     said: dict[str, list[str]] = {}
     for trial in trials:
@@ -103,7 +103,7 @@ def faults(trials: Sequence[Trial]) -> str:
     return "\n".join(lines) + ("\n" if lines else "")
 
 
-def _faults(trial: Trial) -> list[str]:
+def _faults(trial: CampaignTrial) -> list[str]:
     found = [f"crash: {trial.crash}"] if trial.crash else []
     if trial.false_done:
         found.append("FALSE DONE")

@@ -20,7 +20,7 @@ from benchmarks.harness.shortest import free_space, shortest_loop, shortest_way
 from benchmarks.harness.stopwatch import Seconds, TimedBody, TimedRobot
 from benchmarks.worlds.makers import scenario
 from benchmarks.worlds.placing import digital
-from benchmarks.worlds.scenes import Scenario, write
+from benchmarks.worlds.scenes import RandomScenario, write
 from kb.body import Body
 from kb.task.task import Task
 from simulator.episode.episode import EpisodeLog
@@ -49,7 +49,7 @@ class Conditions:
 
 
 @dataclass(frozen=True)
-class Trial:
+class CampaignTrial:
     """What came of one world.
 
     `narrow` compares what he said of too narrow a passage with the truth (None where none is).
@@ -107,7 +107,7 @@ def run_trial(
     folder: Path,
     watch: Callable[[Session], None] = lambda session: None,
     maker: RobotMaker = make_robot,
-) -> Trial:
+) -> CampaignTrial:
     """Make a world, run the robot in it, and judge what he did; errors of the robot end up in the trial."""
     world = scenario(task, seed, conditions.kind)
     place = write(world, folder / world.name)
@@ -119,10 +119,10 @@ def run_trial(
         (place / "crash.txt").write_text(traceback.format_exc())
         frame = traceback.extract_tb(error.__traceback__)[-1]
         where = f"{Path(frame.filename).name}:{frame.lineno}"
-        return Trial(task, seed, world.possible, crash=f"{type(error).__name__}: {error} ({where})")
+        return CampaignTrial(task, seed, world.possible, crash=f"{type(error).__name__}: {error} ({where})")
 
 
-def _needed(world: Scenario, place: Path, conditions: Conditions) -> int:
+def _needed(world: RandomScenario, place: Path, conditions: Conditions) -> int:
     """The commands that the same planner gives knowing everything; 0 when he does not achieve the task."""
     settings = Settings(conditions.seed, 0.0, conditions.paths, conditions.max_steps)
     with EpisodeLog(place / "knowing.jsonl") as log:
@@ -131,8 +131,8 @@ def _needed(world: Scenario, place: Path, conditions: Conditions) -> int:
 
 
 def _ran(
-    world: Scenario, place: Path, conditions: Conditions, watch: Callable[[Session], None], maker: RobotMaker
-) -> Trial:
+    world: RandomScenario, place: Path, conditions: Conditions, watch: Callable[[Session], None], maker: RobotMaker
+) -> CampaignTrial:
     robots: list[TimedRobot] = []
 
     def make(body: Body, told: Task, settings: Settings) -> TimedRobot:
@@ -154,14 +154,14 @@ def _ran(
 
 
 def _trial(
-    world: Scenario,
+    world: RandomScenario,
     place: Path,
     result: Result,
     robot: TimedRobot,
     session: Session,
     track: list[tuple[float, float]],
-) -> Trial:
-    return Trial(
+) -> CampaignTrial:
+    return CampaignTrial(
         task=world.task,
         seed=world.seed,
         possible=world.possible,
@@ -179,7 +179,7 @@ def _trial(
     )
 
 
-def _shortest(world: Scenario) -> float:
+def _shortest(world: RandomScenario) -> float:
     if not world.possible or (world.target.is_empty and world.task not in LOOPS) or world.task > max(LOOPS):
         return math.nan
     free = free_space(world.plan.floor, [thing.polygon for thing in world.things], world.utak)
@@ -188,7 +188,7 @@ def _shortest(world: Scenario) -> float:
     return shortest_way(free, world.utak, world.target)
 
 
-def _scored(world: Scenario, robot: Any, moved: dict[str, Polygon], track: list[tuple[float, float]]) -> Score:
+def _scored(world: RandomScenario, robot: Any, moved: dict[str, Polygon], track: list[tuple[float, float]]) -> Score:
     """What the robot believes at the end against the truth at the end."""
     plan = world.plan
     things = {}

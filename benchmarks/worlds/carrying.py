@@ -8,10 +8,10 @@ import numpy as np
 from shapely import Point, Polygon, union_all
 from shapely.geometry.base import BaseGeometry
 
-from benchmarks.worlds.floorplans import SIDES, SNUG, Door, Plan, Sides, corridor, random_plan
+from benchmarks.worlds.floorplans import SIDES, SNUG, FloorPlan, PlanDoor, Sides, corridor, random_plan
 from benchmarks.worlds.furniture import ell, rectangle
 from benchmarks.worlds.placing import colour, face, furniture, lay, stand
-from benchmarks.worlds.scenes import Maker, Scenario, Task, Thing, wkt
+from benchmarks.worlds.scenes import Maker, PlacedThing, RandomScenario, TaskTexts, wkt
 from benchmarks.worlds.walking import NOWHERE, corner_box, furthest_corner
 
 # Least door in a wall 2 thick that an L of arms `a` and width `w` passes: {(a, w): squares}. Found by a flood of the
@@ -42,7 +42,7 @@ def door_widths(least: float, narrow: bool) -> tuple[int, int]:
 
 def to_corner_world(
     rng: np.random.Generator, seed: int, narrow: bool, sides: Sides = SIDES, fewest: int = 1
-) -> Scenario | None:
+) -> RandomScenario | None:
     """(v) Push the square into the northeast corner of the floor; narrow: the corner is beyond too narrow a door.
 
     fewest : rooms.
@@ -61,7 +61,7 @@ def to_corner_world(
 
 def next_room_world(
     rng: np.random.Generator, seed: int, narrow: bool, task: int = 6, shape: str = "square", sides: Sides = SIDES
-) -> Scenario | None:
+) -> RandomScenario | None:
     """(vi) Push the square, or (ix) the L-shaped object, into the next room."""
     outline, least = load(rng, shape)
     plan = random_plan(rng, 2 if narrow else int(rng.integers(2, 4)), door_widths(least, narrow), sides=sides)
@@ -71,7 +71,9 @@ def next_room_world(
     return carried(rng, task, seed, plan, shape, outline, home, target, goal, face(rng), least if narrow else 0.0)
 
 
-def through_door_world(rng: np.random.Generator, seed: int, narrow: bool, sides: Sides = SIDES) -> Scenario | None:
+def through_door_world(
+    rng: np.random.Generator, seed: int, narrow: bool, sides: Sides = SIDES
+) -> RandomScenario | None:
     """(vii) Push the brick through the door: any door, so it ends in any other room."""
     outline, least = load(rng, "brick")
     plan = random_plan(rng, 2 if narrow else int(rng.integers(2, 4)), door_widths(least, narrow), sides=sides)
@@ -81,7 +83,7 @@ def through_door_world(rng: np.random.Generator, seed: int, narrow: bool, sides:
     return carried(rng, 7, seed, plan, "brick", outline, home, target, goal, face(rng), least if narrow else 0.0)
 
 
-def around_corner_world(rng: np.random.Generator, seed: int, narrow: bool) -> Scenario | None:
+def around_corner_world(rng: np.random.Generator, seed: int, narrow: bool) -> RandomScenario | None:
     """(viii) Push the brick around the corner of a corridor; narrow: the second arm is narrower than the brick."""
     outline, least = load(rng, "brick")
     long, thin = int(outline.bounds[2]), int(least)
@@ -92,7 +94,7 @@ def around_corner_world(rng: np.random.Generator, seed: int, narrow: bool) -> Sc
     polygon = lay(rng, outline, one, [two], wall_gap=1.5)
     if polygon is None or polygon.distance(two) < 6:
         return None
-    thing = Thing("t1", colour(rng), "brick", polygon)
+    thing = PlacedThing("t1", colour(rng), "brick", polygon)
     utak = stand(rng, [one], [thing], NOWHERE, 0)
     missing = float(thin - second) if narrow else 0.0
     return _finished(8, seed, plan, (thing,), utak, face(rng), "around(x, corner).\n", two, missing)
@@ -121,7 +123,7 @@ def carried(
     rng: np.random.Generator,
     task: int,
     seed: int,
-    plan: Plan,
+    plan: FloorPlan,
     shape: str,
     outline: Polygon,
     home: str,
@@ -129,13 +131,13 @@ def carried(
     goal: str,
     heading: int,
     least: float,
-) -> Scenario | None:
+) -> RandomScenario | None:
     """A world with the load in its home room and up to two other things that leave it a way; None when they do not."""
     necks = [door.polygon for door in plan.doors]
     polygon = lay(rng, outline, plan.room(home), [*necks, *([target] if task == 5 else [])])
     if polygon is None:
         return None
-    thing = Thing("t1", colour(rng), shape, polygon)
+    thing = PlacedThing("t1", colour(rng), shape, polygon)
     span = math.hypot(outline.bounds[2], outline.bounds[3])
     keep = [polygon, *[neck.buffer(span) for neck in necks], *([target.buffer(span)] if task == 5 else [])]
     rooms = [room.polygon for room in plan.rooms]
@@ -147,7 +149,7 @@ def carried(
     return _finished(task, seed, plan, things, utak, heading, goal, target, missing)
 
 
-def _roomy(plan: Plan, things: Sequence[Thing], radius: float, target: BaseGeometry | None) -> bool:
+def _roomy(plan: FloorPlan, things: Sequence[PlacedThing], radius: float, target: BaseGeometry | None) -> bool:
     """Whether a disc about the load can go in each room from the load to the doors and to the target's box."""
     for room in plan.rooms:
         others = union_all([thing.polygon for thing in things[1:]])
@@ -164,7 +166,7 @@ def _roomy(plan: Plan, things: Sequence[Thing], radius: float, target: BaseGeome
     return True
 
 
-def _before(door: Door, room: Polygon, radius: float) -> Point:
+def _before(door: PlanDoor, room: Polygon, radius: float) -> Point:
     """The point in a room before the middle of a door, the radius away from the wall."""
     middle = door.polygon.centroid
     away = radius + door.polygon.area / door.width / 2
@@ -175,14 +177,14 @@ def _before(door: Door, room: Polygon, radius: float) -> Point:
 def _finished(
     task: int,
     seed: int,
-    plan: Plan,
-    things: tuple[Thing, ...],
+    plan: FloorPlan,
+    things: tuple[PlacedThing, ...],
     utak: Point | None,
     heading: int,
     goal: str,
     target: BaseGeometry,
     missing: float,
-) -> Scenario | None:
+) -> RandomScenario | None:
     if utak is None:
         return None
     expect = f'inside(t1, "{wkt(target)}").\n'
@@ -190,4 +192,6 @@ def _finished(
     if unable:
         expect = f"% {unable}\nfails.\n{expect}"
     start = f"object(x).\nshape(x, {things[0].shape}).\n" + ("door(d).\n" if task == 7 else "")
-    return Scenario(task, seed, plan, things, utak, heading, Task(start, goal, expect, unable), target, missing)
+    return RandomScenario(
+        task, seed, plan, things, utak, heading, TaskTexts(start, goal, expect, unable), target, missing
+    )

@@ -16,7 +16,7 @@ ARM = 9  # squares: the least width of an arm of an L-shaped room
 
 
 @dataclass(frozen=True)
-class Room:
+class PlanRoom:
     """A room of the floor: its name and its polygon, without the necks of its doors."""
 
     name: str
@@ -24,7 +24,7 @@ class Room:
 
 
 @dataclass(frozen=True)
-class Door:
+class PlanDoor:
     """A neck of the floor, as thick as the wall it goes through; `vertical` when the wall runs north and south."""
 
     rooms: tuple[str, str]
@@ -34,13 +34,13 @@ class Door:
 
 
 @dataclass(frozen=True)
-class Plan:
+class FloorPlan:
     """A table of width x height squares, its rooms and its doors (none when the rooms are closed off)."""
 
     width: int
     height: int
-    rooms: tuple[Room, ...]
-    doors: tuple[Door, ...]
+    rooms: tuple[PlanRoom, ...]
+    doors: tuple[PlanDoor, ...]
 
     @property
     def floor(self) -> BaseGeometry:
@@ -99,7 +99,7 @@ def random_plan(
     ells: float = 0.15,
     loops: float = 0.0,
     sides: Sides = SIDES,
-) -> Plan:
+) -> FloorPlan:
     """A plan with so many rooms, each joined to the next by a door.
 
     Parameters
@@ -123,11 +123,11 @@ def random_plan(
             joints += [_door(rng, rects, pair, widths[pair[0]], wall) for pair in pairs]
             made = [joint for joint in joints if joint is not None]
             shapes = [_cut(rng, rect, made, max(ARM, least)) if rng.random() < ells else box(*rect) for rect in rects]
-            named = tuple(Room(f"r{i + 1}", shape) for i, shape in enumerate(shapes))
-            return Plan(*size, named, () if closed else tuple(made))
+            named = tuple(PlanRoom(f"r{i + 1}", shape) for i, shape in enumerate(shapes))
+            return FloorPlan(*size, named, () if closed else tuple(made))
 
 
-def corridor(rng: np.random.Generator, widths: tuple[int, int], wall: int = 2) -> tuple[Plan, Polygon, Polygon]:
+def corridor(rng: np.random.Generator, widths: tuple[int, int], wall: int = 2) -> tuple[FloorPlan, Polygon, Polygon]:
     """A floor in the form of an L, mirrored at random: the plan (one room), its two arms without the elbow.
 
     The first arm runs west and east and has width `widths[0]`, the second north and south with `widths[1]`.
@@ -139,8 +139,8 @@ def corridor(rng: np.random.Generator, widths: tuple[int, int], wall: int = 2) -
     elbow = box(wall + long, wall, width - wall, wall + widths[0])
     east, north = bool(rng.integers(2)), bool(rng.integers(2))
     parts = [_mirrored(part, width, height, east, north) for part in (first, second, elbow)]
-    room = Room("r1", union_all(parts).simplify(0))
-    return Plan(width, height, (room,), ()), parts[0], parts[1]
+    room = PlanRoom("r1", union_all(parts).simplify(0))
+    return FloorPlan(width, height, (room,), ()), parts[0], parts[1]
 
 
 Rect = tuple[int, int, int, int]
@@ -185,7 +185,7 @@ def _rectangles(
     return rects, (columns[-1][1] + wall, rows[-1][1] + wall)
 
 
-def _door(rng: np.random.Generator, rects: list[Rect], pair: tuple[int, int], width: int, wall: int) -> Door | None:
+def _door(rng: np.random.Generator, rects: list[Rect], pair: tuple[int, int], width: int, wall: int) -> PlanDoor | None:
     """A door between two of the rectangles, or None where they do not face each other widely enough."""
     a, b = (rects[index] for index in pair)
     names = (f"r{pair[0] + 1}", f"r{pair[1] + 1}")
@@ -199,11 +199,11 @@ def _door(rng: np.random.Generator, rects: list[Rect], pair: tuple[int, int], wi
                 at = int(rng.integers(low, high + 1))
                 corners = (one[axis + 2], at, other[axis], at + width)
                 neck = box(*corners) if vertical else box(corners[1], corners[0], corners[3], corners[2])
-                return Door(names, neck, width, vertical)
+                return PlanDoor(names, neck, width, vertical)
     return None
 
 
-def _cut(rng: np.random.Generator, rect: Rect, doors: list[Door], arm: int) -> Polygon:
+def _cut(rng: np.random.Generator, rect: Rect, doors: list[PlanDoor], arm: int) -> Polygon:
     """The rectangle without one of its corners, the cut clear of the doors, or as it was when it is too small."""
     west, south, east, north = rect
     room = box(*rect)
@@ -233,7 +233,7 @@ def convex_corners(floor: BaseGeometry) -> list[tuple[float, float, float, float
     return corners
 
 
-def is_simple_row(plan: Plan) -> bool:
+def is_simple_row(plan: FloorPlan) -> bool:
     """Whether each room is joined to the next one (what random_plan promises unless the rooms are closed off)."""
     joined = [set(door.rooms) for door in plan.doors]
     return all({a.name, b.name} in joined for a, b in pairwise(plan.rooms))

@@ -13,7 +13,7 @@ from shapely.affinity import rotate, translate
 
 from benchmarks.worlds.carrying import CARRYING_SNUG
 from benchmarks.worlds.furniture import rounded
-from benchmarks.worlds.scenes import Maker, Scenario, Thing
+from benchmarks.worlds.scenes import Maker, PlacedThing, RandomScenario
 
 BETWEEN = 0.7  # of all things lie between the squares
 TURNED = 0.25  # of what is carried is turned by any angle
@@ -21,12 +21,12 @@ UNEVEN = 0.4  # of all Ls have arms of two widths
 CLEAR = 1.0  # squares from a thing to all else, and to Utak's square
 
 
-def loosened(rng: np.random.Generator, seed: int, unable: bool, maker: Maker) -> Scenario | None:
+def loosened(rng: np.random.Generator, seed: int, unable: bool, maker: Maker) -> RandomScenario | None:
     """A world of another maker with its things moved by parts of squares, turned or thinned; None where none fits."""
     made = maker(rng, seed, unable)
     if made is None:
         return None
-    things: list[Thing] = []
+    things: list[PlacedThing] = []
     for number, thing in enumerate(made.things):
         polygon = thing.polygon
         if number == 0:
@@ -54,7 +54,7 @@ def thinned(rng: np.random.Generator, ell: Polygon) -> Polygon:
     return left.simplify(0)
 
 
-def clear(world: Scenario, things: list[Thing]) -> bool:
+def clear(world: RandomScenario, things: list[PlacedThing]) -> bool:
     """Whether all things stand apart from the walls, each other and Utak."""
     x, y = int(world.utak.x), int(world.utak.y)
     square = box(x, y, x + 1, y + 1)

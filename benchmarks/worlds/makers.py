@@ -14,7 +14,7 @@ import numpy as np
 from benchmarks.worlds.carrying import CARRYING, CARRYING_SNUG
 from benchmarks.worlds.loose import LOOSE
 from benchmarks.worlds.plain import PLAIN
-from benchmarks.worlds.scenes import Scenario, write
+from benchmarks.worlds.scenes import RandomScenario, write
 from benchmarks.worlds.walking import WALKING
 
 MAKERS = {"wide": WALKING | CARRYING, "snug": WALKING | CARRYING_SNUG, "plain": PLAIN, "loose": LOOSE}
@@ -23,7 +23,7 @@ UNABLE_EVERY = 12  # seeds
 TRIES = 20_000
 
 
-def scenario(task: int, seed: int, kind: str = "wide") -> Scenario:
+def scenario(task: int, seed: int, kind: str = "wide") -> RandomScenario:
     """A random world with a task.
 
     Parameters

@@ -8,7 +8,7 @@ from shapely import Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
 from benchmarks.worlds.furniture import COLOURS, SHAPES, laid, outline
-from benchmarks.worlds.scenes import Thing
+from benchmarks.worlds.scenes import PlacedThing
 
 GAP = 3.0  # squares between an object and anything else: at least two whole free squares for Utak
 TURNED_GAP = 4.0  # between an object at an odd angle and another one: its squares reach beyond its sides
@@ -46,10 +46,10 @@ def furniture(
     count: int,
     keep_clear: Sequence[BaseGeometry],
     without: Sequence[str] = (),
-) -> tuple[Thing, ...]:
+) -> tuple[PlacedThing, ...]:
     """Up to `count` things of all shapes but those in `without`, named d1, d2 ...; a third turned, some fixed."""
     shapes = [shape for shape in SHAPES if shape not in without]
-    things: list[Thing] = []
+    things: list[PlacedThing] = []
     for _ in range(count):
         room = rooms[int(rng.integers(len(rooms)))]
         shape, turned = shapes[rng.integers(len(shapes))], bool(rng.random() < 0.35)
@@ -57,7 +57,7 @@ def furniture(
         polygon = lay(rng, shape, room, taken, turned)
         if polygon is not None:
             fixed = bool(rng.random() < 0.12)
-            things.append(Thing(f"d{len(things) + 1}", colour(rng), shape, polygon, fixed))
+            things.append(PlacedThing(f"d{len(things) + 1}", colour(rng), shape, polygon, fixed))
     return tuple(things)
 
 
@@ -67,7 +67,11 @@ def colour(rng: np.random.Generator) -> str:
 
 
 def stand(
-    rng: np.random.Generator, rooms: Sequence[Polygon], things: Sequence[Thing], away: BaseGeometry, distance: float
+    rng: np.random.Generator,
+    rooms: Sequence[Polygon],
+    things: Sequence[PlacedThing],
+    away: BaseGeometry,
+    distance: float,
 ) -> Point | None:
     """A place for Utak in a free square of a room, at least so far from a region; None when none is found.
 

@@ -10,10 +10,10 @@ from shapely import Point, Polygon, box, union_all
 from shapely.geometry.base import BaseGeometry
 
 from benchmarks.worlds.carrying import ELLS
-from benchmarks.worlds.floorplans import Door, Plan, Room, corridor
+from benchmarks.worlds.floorplans import FloorPlan, PlanDoor, PlanRoom, corridor
 from benchmarks.worlds.furniture import ell, rectangle
 from benchmarks.worlds.placing import colour, lay, stand
-from benchmarks.worlds.scenes import Maker, Scenario, Task, Thing, wkt
+from benchmarks.worlds.scenes import Maker, PlacedThing, RandomScenario, TaskTexts, wkt
 from benchmarks.worlds.walking import NOWHERE, corner_box, furthest_corner
 
 WALL = 2
@@ -21,14 +21,14 @@ OTHERS = ("brick", "l_shape", "triangle")
 APART = 6.0  # squares that a walk takes at least
 
 
-def one_room(rng: np.random.Generator) -> Plan:
+def one_room(rng: np.random.Generator) -> FloorPlan:
     """A rectangular room."""
     width, height = (int(rng.integers(20, 44)) for _ in range(2))
     room = box(WALL, WALL, WALL + width, WALL + height)
-    return Plan(width + 2 * WALL, height + 2 * WALL, (Room("r1", room),), ())
+    return FloorPlan(width + 2 * WALL, height + 2 * WALL, (PlanRoom("r1", room),), ())
 
 
-def two_rooms(rng: np.random.Generator, doors: tuple[int, int]) -> Plan:
+def two_rooms(rng: np.random.Generator, doors: tuple[int, int]) -> FloorPlan:
     """Two rooms side by side or one above the other, with a door of a width between these."""
     width = int(rng.integers(doors[0], doors[1] + 1))
     near, far = (int(rng.integers(18, 24)) for _ in range(2))
@@ -44,8 +44,8 @@ def two_rooms(rng: np.random.Generator, doors: tuple[int, int]) -> Plan:
         vertical = False
     else:
         vertical = True
-    rooms = tuple(Room(f"r{i}", box(*rect)) for i, rect in enumerate(rects, 1))
-    return Plan(*size, rooms, (Door(("r1", "r2"), box(*neck), width, vertical),))
+    rooms = tuple(PlanRoom(f"r{i}", box(*rect)) for i, rect in enumerate(rects, 1))
+    return FloorPlan(*size, rooms, (PlanDoor(("r1", "r2"), box(*neck), width, vertical),))
 
 
 def other(rng: np.random.Generator, without: str) -> tuple[str, Polygon]:
@@ -83,7 +83,7 @@ GOALS = {
 }
 
 
-def plain_world(rng: np.random.Generator, task: int, seed: int) -> Scenario | None:
+def plain_world(rng: np.random.Generator, task: int, seed: int) -> RandomScenario | None:
     """One of the nine tasks in a plain world; None when the things find no place."""
     shape = SHAPE.get(task, "")
     outline, least = load(rng, shape) if shape else (None, 3.0)
@@ -99,13 +99,13 @@ def plain_world(rng: np.random.Generator, task: int, seed: int) -> Scenario | No
     if corner is None:
         return None
     necks: list[BaseGeometry] = [door.polygon for door in plan.doors]
-    things: list[Thing] = []
+    things: list[PlacedThing] = []
     if outline is not None:
         keep = [*necks, *([corner_box(corner, outline.bounds[2] + 1.5)] if task == 5 else []), second]
         polygon = lay(rng, outline, home, [area for area in keep if not area.is_empty])
         if polygon is None or (task == 8 and polygon.distance(second) < APART):
             return None
-        things.append(Thing("t1", colour(rng), shape, polygon))
+        things.append(PlacedThing("t1", colour(rng), shape, polygon))
     if task != 8:
         things += _others(rng, plan, shape, [*necks, *(thing.polygon for thing in things)])
     target = _target(task, plan, home, corner, things, second)
@@ -114,27 +114,27 @@ def plain_world(rng: np.random.Generator, task: int, seed: int) -> Scenario | No
     if utak is None:
         return None
     utak = Point(int(utak.x) + 0.5, int(utak.y) + 0.5)
-    return Scenario(task, seed, plan, tuple(things), utak, heading, _texts(task, shape, target, utak), target)
+    return RandomScenario(task, seed, plan, tuple(things), utak, heading, _texts(task, shape, target, utak), target)
 
 
-def _others(rng: np.random.Generator, plan: Plan, shape: str, keep: list[BaseGeometry]) -> list[Thing]:
+def _others(rng: np.random.Generator, plan: FloorPlan, shape: str, keep: list[BaseGeometry]) -> list[PlacedThing]:
     """Up to two things that are not of the task."""
-    found: list[Thing] = []
+    found: list[PlacedThing] = []
     for number in range(1, int(rng.integers(0, 3)) + 1):
         kind, outline = other(rng, shape)
         room = plan.rooms[int(rng.integers(len(plan.rooms)))].polygon
         polygon = lay(rng, outline, room, [area.buffer(2) for area in keep] + [t.polygon for t in found])
         if polygon is not None:
-            found.append(Thing(f"d{number}", colour(rng), kind, polygon))
+            found.append(PlacedThing(f"d{number}", colour(rng), kind, polygon))
     return found
 
 
 def _target(
     task: int,
-    plan: Plan,
+    plan: FloorPlan,
     home: Polygon,
     corner: tuple[float, float, float, float],
-    things: list[Thing],
+    things: list[PlacedThing],
     second: BaseGeometry,
 ) -> BaseGeometry:
     """The region that is to be reached."""
@@ -151,14 +151,14 @@ def _target(
     return union_all([room.polygon for room in plan.rooms if not room.polygon.equals(home)])
 
 
-def _texts(task: int, shape: str, target: BaseGeometry, utak: Point) -> Task:
+def _texts(task: int, shape: str, target: BaseGeometry, utak: Point) -> TaskTexts:
     start = f"object(x).\nshape(x, {shape}).\n" if shape else ""
     start += "door(d).\n" if task == 7 else ""
     who = "t1" if task >= 5 else "utak"
     expect = f'inside({who}, "{wkt(target)}").\n'
     if task == 4:
         expect = f'circles(utak, t1).\nnear(utak, "{wkt(utak)}", 2).\nunmoved(t1).\n'
-    return Task(start, GOALS[task], expect)
+    return TaskTexts(start, GOALS[task], expect)
 
 
 PLAIN: dict[int, Maker] = {

@@ -10,11 +10,11 @@ import shapely
 from shapely import Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from benchmarks.worlds.floorplans import Plan
+from benchmarks.worlds.floorplans import FloorPlan
 
 
 @dataclass(frozen=True)
-class Thing:
+class PlacedThing:
     """An object of the world: name, colour, the class of its shape, and its polygon in squares of the table."""
 
     name: str
@@ -25,7 +25,7 @@ class Thing:
 
 
 @dataclass(frozen=True)
-class Task:
+class TaskTexts:
     """What start.lp, goal.lp and expect.lp say; `unable` says why the task cannot be done, empty when it can."""
 
     start: str
@@ -35,7 +35,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Scenario:
+class RandomScenario:
     """One random world with its task.
 
     `heading` is the direction Utak faces, degrees counter-clockwise from table north. `target` is the region that a
@@ -45,11 +45,11 @@ class Scenario:
 
     task: int
     seed: int
-    plan: Plan
-    things: tuple[Thing, ...]
+    plan: FloorPlan
+    things: tuple[PlacedThing, ...]
     utak: Point
     heading: int
-    texts: Task
+    texts: TaskTexts
     target: BaseGeometry
     missing: float = 0.0
 
@@ -70,10 +70,10 @@ class Scenario:
 
 
 # Makes a world of (random numbers, seed, whether the task cannot be done); None when the things find no place.
-Maker = Callable[[np.random.Generator, int, bool], Scenario | None]
+Maker = Callable[[np.random.Generator, int, bool], RandomScenario | None]
 
 
-class Laid(Protocol):
+class LaidFloor(Protocol):
     """A floor on a table of width x height squares."""
 
     @property
@@ -90,10 +90,10 @@ class Told(Protocol):
     @property
     def world(self) -> str: ...
     @property
-    def texts(self) -> Task: ...
+    def texts(self) -> TaskTexts: ...
 
 
-def world_text(plan: Laid, utak: Point, heading: int, things: Iterable[Thing]) -> str:
+def world_text(plan: LaidFloor, utak: Point, heading: int, things: Iterable[PlacedThing]) -> str:
     """Return the text of world.lp."""
     lines = [
         f"table({plan.width}, {plan.height}).",

@@ -8,9 +8,9 @@ from shapely import Polygon, union_all
 from shapely.affinity import rotate, translate
 
 from benchmarks.worlds.carrying import carried, door_widths, load
-from benchmarks.worlds.floorplans import Plan, random_plan
+from benchmarks.worlds.floorplans import FloorPlan, random_plan
 from benchmarks.worlds.placing import GAP, face, spot
-from benchmarks.worlds.scenes import Scenario, wkt
+from benchmarks.worlds.scenes import RandomScenario, wkt
 from benchmarks.worlds.walking import corner_box, furthest_corner
 from kb.perception.frame import turned
 
@@ -20,7 +20,7 @@ OFF = 2  # doors between Utak and a thing for the next room
 TASKS = {"corner": 5, "square": 6, "brick": 7, "l_shape": 9, "pose": 6}
 
 
-def six_room_world(kind: str, seed: int, loops: bool = False) -> Scenario:
+def six_room_world(kind: str, seed: int, loops: bool = False) -> RandomScenario:
     """A random world of six rooms.
 
     Parameters
@@ -37,7 +37,7 @@ def six_room_world(kind: str, seed: int, loops: bool = False) -> Scenario:
             return made
 
 
-def doors_between(plan: Plan, one: str) -> dict[str, int]:
+def doors_between(plan: FloorPlan, one: str) -> dict[str, int]:
     """How many doors lie between a room and each."""
     away, front = {one: 0}, [one]
     while front:
@@ -49,7 +49,7 @@ def doors_between(plan: Plan, one: str) -> dict[str, int]:
     return away
 
 
-def _drawn(rng: np.random.Generator, kind: str, seed: int, loops: float) -> Scenario | None:
+def _drawn(rng: np.random.Generator, kind: str, seed: int, loops: float) -> RandomScenario | None:
     """A world, or None when what was drawn is too near, or leaves no room."""
     shape = SHAPES.get(kind, kind)
     outline, least = load(rng, shape)
@@ -71,7 +71,7 @@ def _drawn(rng: np.random.Generator, kind: str, seed: int, loops: float) -> Scen
     return made if away[stands] >= OFF else None
 
 
-def _posed(rng: np.random.Generator, world: Scenario, rooms: Sequence[Polygon]) -> Scenario | None:
+def _posed(rng: np.random.Generator, world: RandomScenario, rooms: Sequence[Polygon]) -> RandomScenario | None:
     """The same world, but its thing must be brought to a pose in one of some rooms."""
     thing, quarters = world.things[0].polygon, int(rng.integers(4))
     if not rooms:

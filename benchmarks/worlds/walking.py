@@ -10,10 +10,10 @@ from shapely import Point, Polygon, box, union_all
 from shapely.affinity import translate
 from shapely.geometry.base import BaseGeometry
 
-from benchmarks.worlds.floorplans import Plan, convex_corners, random_plan
+from benchmarks.worlds.floorplans import FloorPlan, convex_corners, random_plan
 from benchmarks.worlds.furniture import rectangle
 from benchmarks.worlds.placing import GAP, colour, face, furniture, lay, spot, stand
-from benchmarks.worlds.scenes import Maker, Scenario, Task, Thing, wkt
+from benchmarks.worlds.scenes import Maker, PlacedThing, RandomScenario, TaskTexts, wkt
 
 DOORS = (3, 6)
 EYESHOT = 8.0  # squares: what lies so near is seen at every heading
@@ -57,7 +57,7 @@ def furthest_corner(floor: BaseGeometry, compass: str, heading: int) -> tuple[fl
     return ranked[0] if best - second >= TIE else None
 
 
-def corner_world(rng: np.random.Generator, seed: int, unable: bool) -> Scenario | None:
+def corner_world(rng: np.random.Generator, seed: int, unable: bool) -> RandomScenario | None:
     """(i) Go to the northeast corner (now and then another) of the whole floor; unable: it lies in a closed room."""
     plan = random_plan(rng, 2 if unable else int(rng.integers(1, 4)), DOORS, walls(rng), closed=unable)
     heading = face(rng)
@@ -74,7 +74,9 @@ def corner_world(rng: np.random.Generator, seed: int, unable: bool) -> Scenario 
     utak = stand(rng, starts, things, target, 6)
     expect = f'inside(utak, "{wkt(target)}").\n'
     why = "the corner is in a room without a door" if unable else ""
-    return _made(1, seed, plan, things, utak, heading, Task("", f"at(utak, corner({compass})).\n", expect, why), target)
+    return _made(
+        1, seed, plan, things, utak, heading, TaskTexts("", f"at(utak, corner({compass})).\n", expect, why), target
+    )
 
 
 def _overlooks(room: Polygon, compass: str, heading: int, beyond: BaseGeometry) -> bool:
@@ -83,7 +85,7 @@ def _overlooks(room: Polygon, compass: str, heading: int, beyond: BaseGeometry) 
     return corner is not None and Point(corner[:2]).distance(beyond) < EYESHOT
 
 
-def next_room_world(rng: np.random.Generator, seed: int, unable: bool) -> Scenario | None:
+def next_room_world(rng: np.random.Generator, seed: int, unable: bool) -> RandomScenario | None:
     """(ii) Go to the next room: any that shares a door with the first; unable: there is none, or no door."""
     closed = unable and rng.random() < 0.3
     count = (2 if closed else 1) if unable else int(rng.integers(2, 4))
@@ -94,10 +96,10 @@ def next_room_world(rng: np.random.Generator, seed: int, unable: bool) -> Scenar
     target = union_all([plan.room(name) for name in plan.neighbours(first.name)])
     expect = "" if unable else f'inside(utak, "{wkt(target)}").\n'
     why = ("no door leads to the other room" if closed else "there is one room only") if unable else ""
-    return _made(2, seed, plan, things, utak, face(rng), Task("", "in(utak, room(next)).\n", expect, why), target)
+    return _made(2, seed, plan, things, utak, face(rng), TaskTexts("", "in(utak, room(next)).\n", expect, why), target)
 
 
-def to_square_world(rng: np.random.Generator, seed: int, unable: bool) -> Scenario | None:
+def to_square_world(rng: np.random.Generator, seed: int, unable: bool) -> RandomScenario | None:
     """(iii) Go to the square, now and then to either of two; unable: none there, walled in, or in a closed room."""
     kind = str(rng.choice(["none", "ring", "closed"])) if unable else ""
     plan = _any_plan(rng, kind == "closed")
@@ -112,11 +114,11 @@ def to_square_world(rng: np.random.Generator, seed: int, unable: bool) -> Scenar
     starts = [room for room in rooms if not (kind == "closed" and room.intersects(goals))]
     utak = stand(rng, starts, [thing for thing in things if thing.shape != "wall"] + _filled(things), goals, 6)
     expect = f'near(utak, "{wkt(goals)}", 2).\n' if count else ""
-    texts = Task(SQUARE, "at(utak, x).\n", expect, WHY[kind])
+    texts = TaskTexts(SQUARE, "at(utak, x).\n", expect, WHY[kind])
     return _made(3, seed, plan, things, utak, face(rng), texts, goals.buffer(2, quad_segs=8))
 
 
-def round_square_world(rng: np.random.Generator, seed: int, unable: bool) -> Scenario | None:
+def round_square_world(rng: np.random.Generator, seed: int, unable: bool) -> RandomScenario | None:
     """(iv) Go round the square and return; unable: there is none, it stands against a wall, or in a closed room."""
     kind = str(rng.choice(["none", "flush", "closed"])) if unable else ""
     plan = _any_plan(rng, kind == "closed")
@@ -133,7 +135,7 @@ def round_square_world(rng: np.random.Generator, seed: int, unable: bool) -> Sce
         return None
     circle = "circles(utak, t1).\nunmoved(t1).\n" if squares else ""
     expect = circle + f'near(utak, "{wkt(utak)}", 2).\n'
-    texts = Task(SQUARE, "circled(utak, x).\nat(utak, start).\n", expect, WHY[kind])
+    texts = TaskTexts(SQUARE, "circled(utak, x).\nat(utak, start).\n", expect, WHY[kind])
     return _made(4, seed, plan, things, utak, face(rng), texts, NOWHERE)
 
 
@@ -148,43 +150,43 @@ WALKING: dict[int, Maker] = {
 def _made(
     task: int,
     seed: int,
-    plan: Plan,
-    things: tuple[Thing, ...],
+    plan: FloorPlan,
+    things: tuple[PlacedThing, ...],
     utak: Point | None,
     heading: int,
-    texts: Task,
+    texts: TaskTexts,
     target: BaseGeometry,
-) -> Scenario | None:
+) -> RandomScenario | None:
     """The scenario, expecting `fails` where the task cannot be done; None without a place for Utak."""
     if utak is None:
         return None
     if texts.unable:
-        texts = Task(texts.start, texts.goal, f"% {texts.unable}\nfails.\n" + texts.expect, texts.unable)
-    return Scenario(task, seed, plan, things, utak, heading, texts, target)
+        texts = TaskTexts(texts.start, texts.goal, f"% {texts.unable}\nfails.\n" + texts.expect, texts.unable)
+    return RandomScenario(task, seed, plan, things, utak, heading, texts, target)
 
 
-def _any_plan(rng: np.random.Generator, closed: bool) -> Plan:
+def _any_plan(rng: np.random.Generator, closed: bool) -> FloorPlan:
     return random_plan(rng, 2 if closed else int(rng.integers(1, 4)), DOORS, walls(rng), closed=closed)
 
 
-def _necks(plan: Plan) -> list[BaseGeometry]:
+def _necks(plan: FloorPlan) -> list[BaseGeometry]:
     return [door.polygon for door in plan.doors]
 
 
-def _squares(rng: np.random.Generator, plan: Plan, count: int) -> tuple[Thing, ...] | None:
+def _squares(rng: np.random.Generator, plan: FloorPlan, count: int) -> tuple[PlacedThing, ...] | None:
     """So many squares anywhere, a third of them turned; None when one finds no place."""
-    made: list[Thing] = []
+    made: list[PlacedThing] = []
     for number in range(count):
         room = plan.rooms[rng.integers(len(plan.rooms))].polygon
         taken = [*_necks(plan), *(thing.polygon for thing in made)]
         polygon = lay(rng, "square", room, taken, turned=bool(rng.random() < 0.35))
         if polygon is None:
             return None
-        made.append(Thing(f"t{number + 1}", colour(rng), "square", polygon))
+        made.append(PlacedThing(f"t{number + 1}", colour(rng), "square", polygon))
     return tuple(made)
 
 
-def _ringed(rng: np.random.Generator, plan: Plan) -> tuple[Thing, ...] | None:
+def _ringed(rng: np.random.Generator, plan: FloorPlan) -> tuple[PlacedThing, ...] | None:
     """A square of side 3 in a yard of fixed walls 2 thick: two simple polygons that touch, longer than wide."""
     yard = lay(rng, rectangle(14, 11), plan.rooms[rng.integers(len(plan.rooms))].polygon, _necks(plan))
     if yard is None:
@@ -197,17 +199,17 @@ def _ringed(rng: np.random.Generator, plan: Plan) -> tuple[Thing, ...] | None:
     middle = inner.centroid
     square = translate(rectangle(3, 3), math.floor(middle.x - 1), math.floor(middle.y - 1))
     shade = colour(rng)
-    halves = [Thing(f"p{k + 1}", shade, "wall", part, fixed=True) for k, part in enumerate((half, rest))]
-    return (Thing("t1", colour(rng), "square", square), *halves)
+    halves = [PlacedThing(f"p{k + 1}", shade, "wall", part, fixed=True) for k, part in enumerate((half, rest))]
+    return (PlacedThing("t1", colour(rng), "square", square), *halves)
 
 
-def _filled(things: tuple[Thing, ...]) -> list[Thing]:
+def _filled(things: tuple[PlacedThing, ...]) -> list[PlacedThing]:
     """The yard with all that is in it, as one thing, so that Utak does not begin inside."""
     parts = [thing.polygon for thing in things if thing.shape == "wall"]
-    return [Thing("yard", "a", "wall", union_all(parts).envelope)] if parts else []
+    return [PlacedThing("yard", "a", "wall", union_all(parts).envelope)] if parts else []
 
 
-def _flush(rng: np.random.Generator, plan: Plan) -> tuple[Thing, ...] | None:
+def _flush(rng: np.random.Generator, plan: FloorPlan) -> tuple[PlacedThing, ...] | None:
     """A square that stands against the wall of a room, clear of its corners and doors."""
     room = plan.rooms[rng.integers(len(plan.rooms))].polygon
     side = int(rng.integers(3, 6))
@@ -223,4 +225,4 @@ def _flush(rng: np.random.Generator, plan: Plan) -> tuple[Thing, ...] | None:
     along = square.intersection(room.boundary).length
     clear = all(square.distance(neck) >= GAP for neck in _necks(plan))
     fits = room.covers(square) and abs(along - side) < 1e-9 and clear
-    return (Thing("t1", colour(rng), "square", square),) if fits else None
+    return (PlacedThing("t1", colour(rng), "square", square),) if fits else None

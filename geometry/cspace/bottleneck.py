@@ -18,7 +18,7 @@ from shapely import affinity
 
 from geometry.kernels.arrays import Bools, Floats
 from geometry.kernels.jit import compiled
-from geometry.motion.obstacle_field import Floor, cheapest
+from geometry.motion.obstacle_field import ObstacleField, cheapest
 
 Answer = Callable[[Any, bool], str]
 CLOSE = 0.02  # squares: to which the missing width is found
@@ -32,7 +32,7 @@ FINER = (1, 2, 4)  # times as fine as the floor's raster: a slit between its pix
 
 
 @dataclass(frozen=True)
-class Neck:
+class Bottleneck:
     """A locally narrowest place between obstacles.
 
     place : (x, y), its middle. sides : the two points (x, y) of the obstacles that make it. width : between them.
@@ -43,7 +43,7 @@ class Neck:
     width: float
 
 
-def neck_near(floor: Floor, goals: Bools, reached: Floats, radius: float) -> Neck | None:
+def neck_near(floor: ObstacleField, goals: Bools, reached: Floats, radius: float) -> Bottleneck | None:
     """The narrowest place on the widest way to the goal, not further than LOOK radii from where a body came to.
 
     goals : the goal's pixels in the floor's raster. reached : (n, 2) places that the body came to, the start first.
@@ -76,8 +76,10 @@ def _narrowest(room: Floats, asked: Bools) -> int:
     return first + (int(wider[0]) if len(wider) else len(room) - first) // 2
 
 
-class Field(NamedTuple):
-    """Distances to obstacles: frame and raster as of a Floor or finer; goals: (rows, columns) the goal's pixels."""
+class ClearanceField(NamedTuple):
+    """Distances to obstacles: frame and raster as of a ObstacleField or finer; goals: (rows, columns) the goal's
+    pixels.
+    """
 
     frame: Floats
     raster: Floats
@@ -90,24 +92,24 @@ class Field(NamedTuple):
         return pixels
 
 
-def _field_with_a_way(floor: Floor, goals: Bools, start: Floats) -> tuple[Field, float]:
+def _field_with_a_way(floor: ObstacleField, goals: Bools, start: Floats) -> tuple[ClearanceField, float]:
     """The coarsest field with a way from the start to a goal, and the least room on the widest way.
 
     The floor's own field and 0.0 when there is a way in none.
     """
-    field = Field(floor.frame, floor.raster, goals)
+    field = ClearanceField(floor.frame, floor.raster, goals)
     for times in FINER:
         if times > 1:
             frame, raster = floor.finer(times)
-            field = Field(frame, raster, goals.repeat(times, 0).repeat(times, 1) & (raster > 0.0))
+            field = ClearanceField(frame, raster, goals.repeat(times, 0).repeat(times, 1) & (raster > 0.0))
         row, column = field.pixels(start[None])[0].tolist()
         wide = _widest(field.raster, field.goals, row, column, field.frame[2])
         if wide > 0.0:
             return field, wide
-    return Field(floor.frame, floor.raster, goals), 0.0
+    return ClearanceField(floor.frame, floor.raster, goals), 0.0
 
 
-def _ways(field: Field, wide: float) -> Floats:
+def _ways(field: ClearanceField, wide: float) -> Floats:
     """What it costs to the goal from every pixel, by ways nowhere narrower than the widest way from the start is.
 
     Room is cheap, so that ways keep off walls and are narrow only where they must be. They end at goal pixels that are
@@ -164,7 +166,7 @@ def _descent(ways: Floats, start: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
     return np.array(track)
 
 
-def _neck_at(floor: Floor, place: tuple[float, float]) -> Neck | None:
+def _neck_at(floor: ObstacleField, place: tuple[float, float]) -> Bottleneck | None:
     """The neck about a place: from the nearest point of an obstacle to the nearest on the other side, made straight."""
     solid = shapely.union_all(floor.polygons)
     here = np.array(place)
@@ -184,7 +186,7 @@ def _neck_at(floor: Floor, place: tuple[float, float]) -> Neck | None:
         return None
     (ax, ay), (bx, by) = sides
     width = math.hypot(bx - ax, by - ay)
-    return Neck((float(here[0]), float(here[1])), ((float(ax), float(ay)), (float(bx), float(by))), width)
+    return Bottleneck((float(here[0]), float(here[1])), ((float(ax), float(ay)), (float(bx), float(by))), width)
 
 
 def _nearest(here: Floats, solid: Any) -> Floats | None:
@@ -201,7 +203,7 @@ def _beyond(here: Floats, ahead: Floats, far: float) -> Any:
     return shapely.Polygon([base - across, base - across + far * unit, base + across + far * unit, base + across])
 
 
-def widened(solid: Any, neck: Neck, extra: float, reach: float) -> Any:
+def widened(solid: Any, neck: Bottleneck, extra: float, reach: float) -> Any:
     """The obstacles with the two sides of a neck moved apart by `extra`, within `reach` of it.
 
     Only the free space that the neck is in moves: what lies behind a wall would open it from behind.
@@ -218,12 +220,12 @@ def widened(solid: Any, neck: Neck, extra: float, reach: float) -> Any:
     return solid.difference(shapely.union_all(copies).intersection(window))
 
 
-def helps(solid: Any, neck: Neck, radius: float, answer: Answer) -> bool:
+def helps(solid: Any, neck: Bottleneck, radius: float, answer: Answer) -> bool:
     """Would a body of some radius get through if only a neck were as wide as that? answer : as for missing_width."""
     return _decided(widened(solid, neck, _most(neck, radius), _reach(neck, radius)), answer) == "found"
 
 
-def missing_width(solid: Any, neck: Neck, radius: float, answer: Answer) -> float:
+def missing_width(solid: Any, neck: Bottleneck, radius: float, answer: Answer) -> float:
     """How much wider a neck must be, in squares, for a body of some radius to pass, if that helps.
 
     answer : the status of planning the body's motion when the obstacles are these, and whether it is asked at length.
@@ -250,11 +252,11 @@ def _decided(walls: Any, answer: Answer) -> str:
     return answer(walls, True) if status == "limit" else status
 
 
-def _most(neck: Neck, radius: float) -> float:
+def _most(neck: Bottleneck, radius: float) -> float:
     """By how much a neck is widened at most, in squares."""
     return max(2.2 * radius - neck.width, 4 * CLOSE)
 
 
-def _reach(neck: Neck, radius: float) -> float:
+def _reach(neck: Bottleneck, radius: float) -> float:
     """Within how many squares of a neck its sides are moved."""
     return neck.width + 2 * radius + _most(neck, radius)

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
-from geometry.motion.cell_clearance import FULL, SHUT, Ground, Mover, classify
+from geometry.motion.cell_clearance import FULL, SHUT, MovingBody, NearbyEdges, classify
 
 FINEST = 24  # halvings of place or angle at most
 WHOLE = 1 << FINEST
@@ -25,7 +25,7 @@ DEEPEST = 2 * FINEST
 LINKS = 64  # there is room for so many a cell
 
 
-class Tree(NamedTuple):
+class CellTree(NamedTuple):
     """Cells, numbered from 0, the root.
 
     box: (capacity, 4) the least corner as whole numbers x, y, angle, and the depth. child: first child or -1 for a
@@ -47,7 +47,7 @@ class Tree(NamedTuple):
     middle: Floats
 
 
-def new_tree(x: float, y: float, side: float, radius: float, resolution: float, capacity: int) -> Tree:
+def new_tree(x: float, y: float, side: float, radius: float, resolution: float, capacity: int) -> CellTree:
     """A tree of one cell: the square of places at (x, y) and all angles. resolution: cells are not split below it."""
     sizes = [(WHOLE, WHOLE)]
     for _ in range(DEEPEST):
@@ -55,7 +55,7 @@ def new_tree(x: float, y: float, side: float, radius: float, resolution: float, 
         spread = side * (place / WHOLE) / math.sqrt(2)
         swing = 2 * radius * math.sin(math.pi * min(angle / WHOLE, 1.0) / 2)
         sizes.append((place // 2, angle) if spread >= swing else (place, angle // 2))
-    tree = Tree(
+    tree = CellTree(
         np.empty((capacity, 4), np.int32),
         np.empty(capacity, np.int32),
         np.empty(capacity, np.int8),
@@ -73,7 +73,7 @@ def new_tree(x: float, y: float, side: float, radius: float, resolution: float, 
 
 
 @bare
-def splittable(tree: Tree, cell: int, mover: Mover) -> bool:
+def splittable(tree: CellTree, cell: int, mover: MovingBody) -> bool:
     """Whether a cell is larger than the resolution and there is room for its children."""
     depth = tree.box[cell, 3]
     if depth + 1 >= len(tree.sizes) or tree.used[0] + 4 > len(tree.child) or tree.links[0] > len(tree.link) // 2:
@@ -84,7 +84,7 @@ def splittable(tree: Tree, cell: int, mover: Mover) -> bool:
 
 
 @bare
-def split(tree: Tree, cell: int, mover: Mover, ground: Ground) -> None:
+def split(tree: CellTree, cell: int, mover: MovingBody, ground: NearbyEdges) -> None:
     """Give a leaf its children and classify them."""
     depth = tree.box[cell, 3] + 1
     place, angle = tree.sizes[depth, 0], tree.sizes[depth, 1]
@@ -122,7 +122,7 @@ def split(tree: Tree, cell: int, mover: Mover, ground: Ground) -> None:
 
 
 @bare
-def leaf_at(tree: Tree, x: float, y: float, angle: float) -> int:
+def leaf_at(tree: CellTree, x: float, y: float, angle: float) -> int:
     """The leaf that holds a pose; -1 outside the tree."""
     ix = math.floor((x - tree.frame[0]) / tree.frame[2])
     iy = math.floor((y - tree.frame[1]) / tree.frame[2])
@@ -143,7 +143,7 @@ def leaf_at(tree: Tree, x: float, y: float, angle: float) -> int:
 
 
 @bare
-def _link_if_face(tree: Tree, a: int, b: int) -> None:
+def _link_if_face(tree: CellTree, a: int, b: int) -> None:
     """Link two leaves to each other when they share a face and neither is FULL."""
     if tree.kind[a] == FULL or tree.kind[b] == FULL:
         return

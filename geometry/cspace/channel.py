@@ -16,11 +16,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.cspace.cell_tree import DEEPEST, Tree, next_neighbour, splittable
+from geometry.cspace.cell_tree import DEEPEST, CellTree, next_neighbour, splittable
 from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.full_heap import pop, push
 from geometry.kernels.jit import bare
-from geometry.motion.cell_clearance import DEAD, FREE, FULL, OPEN, SHUT, Ground, Mover, classify
+from geometry.motion.cell_clearance import DEAD, FREE, FULL, OPEN, SHUT, MovingBody, NearbyEdges, classify
 
 EAGER = 2.0  # how much dearer the way still to go is than the way gone
 DEAR = np.array([1.0, 2.0, 5.0, 1e9, 50.0])  # the cost of a square's way by kind of cell, while it is large
@@ -32,7 +32,7 @@ REGION = -2  # in place of a goal cell: the goal is a region
 UNSEEN, OFFERED, SETTLED, DOUBTED = 0, 1, 2, 3
 
 
-class Hunt(NamedTuple):
+class ChannelSearch(NamedTuple):
     """A search among the cells of a tree, kept from one chain to the next.
 
     guess: of the way left from a cell; cost: of the way to it; before: the cell before it; state: UNSEEN, OFFERED (on
@@ -57,18 +57,28 @@ class Hunt(NamedTuple):
     eye: Floats
 
 
-def new_hunt(capacity: int, ways: Floats, eye: Floats) -> Hunt:
+def new_hunt(capacity: int, ways: Floats, eye: Floats) -> ChannelSearch:
     """Room to search a tree of up to so many cells."""
     before, chain, loose = (np.empty(capacity, np.int32) for _ in range(3))
     verdict, item = np.zeros(capacity, np.int32), np.empty(8 * capacity, np.int32)
     numbers = np.zeros(2, np.int64), np.empty(8 * capacity), item, np.zeros(2, np.int64)
     state = np.empty(capacity, np.int8)
-    return Hunt(np.empty(capacity), np.empty(capacity), before, state, verdict, *numbers, chain, loose, ways, eye)
+    return ChannelSearch(
+        np.empty(capacity), np.empty(capacity), before, state, verdict, *numbers, chain, loose, ways, eye
+    )
 
 
 @bare
 def find_chain(
-    tree: Tree, mover: Mover, ground: Ground, region: Ground, hunt: Hunt, start: int, goal: int, nth: int, dead: bool
+    tree: CellTree,
+    mover: MovingBody,
+    ground: NearbyEdges,
+    region: NearbyEdges,
+    hunt: ChannelSearch,
+    start: int,
+    goal: int,
+    nth: int,
+    dead: bool,
 ) -> int:
     """Search on for a chain from a cell to the goal; its length, 0 when there is none.
 
@@ -103,7 +113,7 @@ def find_chain(
 
 
 @bare
-def _goal_sight(tree: Tree, mover: Mover, region: Ground, cell: int) -> int:
+def _goal_sight(tree: CellTree, mover: MovingBody, region: NearbyEdges, cell: int) -> int:
     """FREE or OPEN when a cell's middle is in the goal region, SHUT when another pose in it may be, else FULL."""
     depth = tree.box[cell, 3]
     spread = tree.sizes[depth, 0] * tree.frame[2] / math.sqrt(2.0)
@@ -112,7 +122,7 @@ def _goal_sight(tree: Tree, mover: Mover, region: Ground, cell: int) -> int:
 
 
 @bare
-def _repair(tree: Tree, mover: Mover, ground: Ground, hunt: Hunt, nth: int) -> None:
+def _repair(tree: CellTree, mover: MovingBody, ground: NearbyEdges, hunt: ChannelSearch, nth: int) -> None:
     """Cut off what hung on cells that were split or given up, and offer it and the new cells again."""
     loose = 0
     for cell in range(hunt.seen[0]):
@@ -149,7 +159,7 @@ def _cut_off(child: Ints, kind: npt.NDArray[np.int8], before: Ints, verdict: Int
 
 
 @bare
-def _be_offered(tree: Tree, hunt: Hunt, radius: float, cell: int) -> None:
+def _be_offered(tree: CellTree, hunt: ChannelSearch, radius: float, cell: int) -> None:
     """Let the settled neighbours of a cell offer it the cheapest way to it."""
     child, head, links, middle, kind = tree.child, tree.head, tree.link, tree.middle, tree.kind
     best, by = 1e18, -1
@@ -167,7 +177,7 @@ def _be_offered(tree: Tree, hunt: Hunt, radius: float, cell: int) -> None:
 
 
 @bare
-def _spread_out(tree: Tree, hunt: Hunt, radius: float, cell: int, dead: bool) -> None:
+def _spread_out(tree: CellTree, hunt: ChannelSearch, radius: float, cell: int, dead: bool) -> None:
     """Offer the neighbours of a settled cell the way through it."""
     child, head, links, middle, kind = tree.child, tree.head, tree.link, tree.middle, tree.kind
     link = next_neighbour(child, head, links, cell, -1)

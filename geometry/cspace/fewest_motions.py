@@ -12,11 +12,11 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from geometry.cspace.local_planner import BLOCKED, EVEN, Scene, hop, shorter_turn
+from geometry.cspace.local_planner import BLOCKED, EVEN, HopContext, hop, shorter_turn
 from geometry.cspace.smoothing import motions_along
 from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import bare, compiled
-from geometry.motion.cell_clearance import Ground, Mover, distance_at
+from geometry.motion.cell_clearance import MovingBody, NearbyEdges, distance_at
 from geometry.motion.se2 import Motion
 
 STEPS, SWING = 40.0, 20.0  # squares pushed, radians turned that count as much as one motion
@@ -24,7 +24,7 @@ BESIDE = 30  # candidates along the way
 ROOMY = 0.2  # of the body's radius: more room is not looked for
 
 
-def fewest_motions(scene: Scene, track: Floats, edge: float) -> tuple[Motion, ...]:
+def fewest_motions(scene: HopContext, track: Floats, edge: float) -> tuple[Motion, ...]:
     """The motions of a way made few; () when a hop of it is not free.
 
     Parameters
@@ -51,7 +51,7 @@ def askew(shape: Any) -> float:
     return math.degrees(slant(shape)) % 90.0
 
 
-def _candidates(mover: Mover, ground: Ground, track: Floats, edge: float) -> Floats:
+def _candidates(mover: MovingBody, ground: NearbyEdges, track: Floats, edge: float) -> Floats:
     """Poses on and near a way: (n, 3), the first its start, the last its end."""
     along = evenly(track, mover.radius, BESIDE)
     straight = along[::2].copy()
@@ -72,7 +72,7 @@ def evenly(track: Floats, radius: float, count: int) -> Floats:
 
 
 @bare
-def centred(mover: Mover, ground: Ground, pose: Floats) -> None:
+def centred(mover: MovingBody, ground: NearbyEdges, pose: Floats) -> None:
     """Move a pose, in place and without turning it, to where the body has more room: steps in eight directions."""
     c, s = math.cos(pose[2]), math.sin(pose[2])
     enough = ROOMY * mover.radius
@@ -91,7 +91,7 @@ def centred(mover: Mover, ground: Ground, pose: Floats) -> None:
 
 
 @compiled
-def _fewest(scene: Scene, poses: Floats) -> npt.NDArray[np.int64]:
+def _fewest(scene: HopContext, poses: Floats) -> npt.NDArray[np.int64]:
     """The order of the poses on the way with the fewest motions from the first to the last; empty without any."""
     count = len(poses)
     cost, before = np.full(count, np.inf), np.full(count, -1, np.int64)

@@ -7,25 +7,25 @@ import numpy as np
 
 from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import bare
-from geometry.motion.cell_clearance import Ground, Mover
+from geometry.motion.cell_clearance import MovingBody, NearbyEdges
 from geometry.motion.time_of_impact import Surface, push_through_skin, turn_through_skin
 
 BLOCKED, TURN_FIRST, PUSH_FIRST = 0, 1, 2
 EVEN = 1e-12  # radians or squares: less is no motion
 
 
-class Scene(NamedTuple):
+class HopContext(NamedTuple):
     """A body, where it moves, the surface that it must not go into; scratch: (m, 7) the edges of the body placed."""
 
-    mover: Mover
-    ground: Ground
+    mover: MovingBody
+    ground: NearbyEdges
     surface: Surface
     placed: Floats
 
 
-def new_scene(mover: Mover, ground: Ground, surface: Surface) -> Scene:
+def new_scene(mover: MovingBody, ground: NearbyEdges, surface: Surface) -> HopContext:
     """A scene with scratch of its own."""
-    return Scene(mover, ground, surface, np.empty_like(mover.edges))
+    return HopContext(mover, ground, surface, np.empty_like(mover.edges))
 
 
 @bare
@@ -51,7 +51,7 @@ def _place(own: Floats, edges: Floats, x: float, y: float, angle: float) -> None
 
 
 @bare
-def push_is_free(scene: Scene, x: float, y: float, angle: float, dx: float, dy: float) -> bool:
+def push_is_free(scene: HopContext, x: float, y: float, angle: float, dx: float, dy: float) -> bool:
     """Whether the body can be pushed from a pose by (dx, dy)."""
     if not _reference_within(scene.mover.reference, scene.ground.bounds, x + dx, y + dy, angle):
         return False
@@ -63,7 +63,7 @@ def push_is_free(scene: Scene, x: float, y: float, angle: float, dx: float, dy: 
 
 
 @bare
-def turn_is_free(scene: Scene, x: float, y: float, angle: float, turn: float) -> bool:
+def turn_is_free(scene: HopContext, x: float, y: float, angle: float, turn: float) -> bool:
     """Whether the body can be turned about its centre from a pose by some radians."""
     if not _arc_within(scene.mover.reference, scene.ground.bounds, x, y, angle, turn):
         return False
@@ -82,7 +82,7 @@ def shorter_turn(turn: float) -> float:
 
 
 @bare
-def hop(scene: Scene, here: Floats, there: Floats) -> int:
+def hop(scene: HopContext, here: Floats, there: Floats) -> int:
     """Whether the body can go from pose to pose (x, y, angle): TURN_FIRST, PUSH_FIRST or BLOCKED."""
     dx, dy = there[0] - here[0], there[1] - here[1]
     turn = shorter_turn(there[2] - here[2])

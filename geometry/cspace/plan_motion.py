@@ -19,15 +19,15 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from geometry.cspace.bottleneck import Neck, helps, missing_width, neck_near
-from geometry.cspace.solver import Inside, Problem
+from geometry.cspace.bottleneck import Bottleneck, helps, missing_width, neck_near
+from geometry.cspace.solver import Inside, MotionSolver
 from geometry.kernels.arrays import Floats
 from geometry.motion.body import new_mover
-from geometry.motion.obstacle_field import Floor
+from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Motion, Pose, Translate
 from geometry.motion.validation import check
 
-__all__ = ["Inside", "Plan", "plan_motion"]
+__all__ = ["Inside", "MotionPlan", "plan_motion"]
 
 FIRST, CAPACITY = 100_000, 400_000  # cells: enough for margins of a few times the resolution; and for wide rooms
 AGAIN = 0.25  # of the resolution, when it is asked again with more cells
@@ -35,7 +35,7 @@ COARSE, FEW = 4e-4, 40_000  # resolution and cells for the missing width at firs
 
 
 @dataclass(frozen=True)
-class Question:
+class MotionQuery:
     """What plan_motion was asked, and how far its search got.
 
     reached : (n, 2) where the middle of the body's greatest inscribed disc came to, the start first. goals : the pixels
@@ -43,7 +43,7 @@ class Question:
     """
 
     shape: Any
-    floor: Floor
+    floor: ObstacleField
     start: Pose
     goal: "Pose | Inside"
     points: Sequence[tuple[float, float]]
@@ -61,7 +61,7 @@ class Question:
 
         at_length : with as many cells as the question itself, rather than with a few.
         """
-        floor, goal = Floor(walls, self.floor.bounds.tolist()), self.goal
+        floor, goal = ObstacleField(walls, self.floor.bounds.tolist()), self.goal
         if isinstance(goal, Inside):
             opened = self.solid.difference(walls)
             goal = Inside([shapely.union_all([part, opened]) for part in shapely.get_parts(goal.polygon)])
@@ -70,7 +70,7 @@ class Question:
 
 
 @dataclass(frozen=True)
-class Plan:
+class MotionPlan:
     """What plan_motion found.
 
     Attributes
@@ -93,10 +93,10 @@ class Plan:
     resolution: float = 0.0
     reason: str = ""
     track: Floats = field(default_factory=lambda: np.empty((0, 3)), repr=False, compare=False)
-    question: Question | None = field(default=None, repr=False, compare=False)
+    question: MotionQuery | None = field(default=None, repr=False, compare=False)
 
     @cached_property
-    def passage(self) -> Neck | None:
+    def passage(self) -> Bottleneck | None:
         """The neck that is too narrow; None unless impossible for want of one. Worked out when asked for."""
         q = self.question
         return None if q is None else neck_near(q.floor, q.goals, q.reached, q.radius)
@@ -143,13 +143,14 @@ def plan_motion(
     points: Sequence[tuple[float, float]] = (),
     cells: int = CAPACITY,
     pivot: tuple[float, float] | None = None,
-) -> Plan:
+) -> MotionPlan:
     """Find how to move a polygon among polygons from a pose to a goal, or prove that it cannot be done.
 
     Parameters
     ----------
     shape : shapely Polygon or MultiPolygon whose reference point is the origin, in squares.
-    obstacles : any shapely geometry, a sequence of them, or a Floor prepared for many calls (bounds are then its own).
+    obstacles : any shapely geometry, a sequence of them, or a ObstacleField prepared for many calls (bounds are
+    then its own).
     start : Pose of the reference point. The body may touch obstacles there.
     goal : Pose, or Inside(polygon).
     bounds : (x0, y0, x1, y1) of the reference point; None for the box around obstacles, start and goal.
@@ -161,7 +162,7 @@ def plan_motion(
 
     Returns
     -------
-    Plan
+    MotionPlan
 
     Raises
     ------
@@ -175,14 +176,18 @@ def plan_motion(
             if not math.isfinite(pose.degrees):
                 raise ValueError(f"{name} must be finite")
     mover = new_mover(shape, points, pivot)
-    floor = obstacles if isinstance(obstacles, Floor) else Floor(obstacles, _bounds(obstacles, start, goal, bounds))
-    problem = Problem(mover, floor, start, goal, resolution, min(cells, FIRST))
+    floor = (
+        obstacles
+        if isinstance(obstacles, ObstacleField)
+        else ObstacleField(obstacles, _bounds(obstacles, start, goal, bounds))
+    )
+    problem = MotionSolver(mover, floor, start, goal, resolution, min(cells, FIRST))
     for name, pose in (("start", start), ("goal", goal)):
         if isinstance(pose, Pose) and not floor.has_room(mover, shape, points, pose):
-            return Plan("impossible", resolution=problem.least, reason=name)
+            return MotionPlan("impossible", resolution=problem.least, reason=name)
     status, motions = problem.solve()
     if status == "limit" and cells > FIRST:
-        problem = Problem(mover, floor, start, goal, AGAIN * resolution, cells)
+        problem = MotionSolver(mover, floor, start, goal, AGAIN * resolution, cells)
         status, motions = problem.solve()
     if status == "limit" and problem.small:
         status, motions = problem.by_discs()
@@ -191,9 +196,9 @@ def plan_motion(
         poses.append(motion.pose(poses[-1]))
     asked = None
     if status == "impossible":
-        asked = Question(shape, floor, start, goal, tuple(points), mover.radius, problem.reached(), problem.goals)
+        asked = MotionQuery(shape, floor, start, goal, tuple(points), mover.radius, problem.reached(), problem.goals)
     looked = int(problem.tree.used[0])
-    return Plan(status, motions, tuple(poses), looked, problem.rounds, problem.least, "", problem.track, asked)
+    return MotionPlan(status, motions, tuple(poses), looked, problem.rounds, problem.least, "", problem.track, asked)
 
 
 def _bounds(obstacles: Any, start: Pose, goal: Pose | Inside, bounds: Sequence[float] | None) -> Sequence[float]:

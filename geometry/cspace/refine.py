@@ -6,14 +6,14 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.cspace.cell_tree import Tree, split, splittable
-from geometry.cspace.local_planner import BLOCKED, Scene, hop, put
+from geometry.cspace.cell_tree import CellTree, split, splittable
+from geometry.cspace.local_planner import BLOCKED, HopContext, hop, put
 from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
 from geometry.motion.cell_clearance import DEAD, FREE, OPEN
 
 
-class Way(NamedTuple):
+class HopSequence(NamedTuple):
     """The poses of a way found so far.
 
     poses: (n, 3) x, y, angle, the first being the start; used: (1,) how many of them are in use; goal: the pose to end
@@ -29,15 +29,17 @@ class Way(NamedTuple):
     stops: Floats
 
 
-def new_way(start: Floats, goal: Floats, cells: int) -> Way:
+def new_way(start: Floats, goal: Floats, cells: int) -> HopSequence:
     """A way that begins at a pose, with room for chains of so many cells."""
-    way = Way(np.empty((2 * cells + 2, 3)), np.ones(1, np.int64), goal, np.full(cells, -1, np.int32), np.empty((2, 3)))
+    way = HopSequence(
+        np.empty((2 * cells + 2, 3)), np.ones(1, np.int64), goal, np.full(cells, -1, np.int32), np.empty((2, 3))
+    )
     way.poses[0] = start
     return way
 
 
 @bare
-def follow(tree: Tree, scene: Scene, chain: Ints, length: int, doubt: bool, way: Way) -> int:
+def follow(tree: CellTree, scene: HopContext, chain: Ints, length: int, doubt: bool, way: HopSequence) -> int:
     """Check the hops of a chain and split what is to blame; how many cells were changed. 0: the way is free.
 
     One doubtful cell may be jumped over. After a hop that fails the rest is followed as if it had not, so that one look
@@ -87,7 +89,15 @@ def _stop_at(
 
 @bare
 def _go(
-    tree: Tree, scene: Scene, chain: Ints, length: int, way: Way, last: int, n: int, here: Floats, there: Floats
+    tree: CellTree,
+    scene: HopContext,
+    chain: Ints,
+    length: int,
+    way: HopSequence,
+    last: int,
+    n: int,
+    here: Floats,
+    there: Floats,
 ) -> bool:
     """Hop to the n-th stop, straight or by way of the face between the two cells, and write it down."""
     if not _straight(scene, chain, length, way, last, n, here, there):
@@ -104,7 +114,9 @@ def _go(
 
 
 @bare
-def _straight(scene: Scene, chain: Ints, length: int, way: Way, last: int, n: int, here: Floats, there: Floats) -> bool:
+def _straight(
+    scene: HopContext, chain: Ints, length: int, way: HopSequence, last: int, n: int, here: Floats, there: Floats
+) -> bool:
     """Whether the hop to the n-th stop is free; from middle to middle of two cells that is found out only once."""
     between = last >= 0 and n < length
     if between and way.free_from[chain[n]] == chain[last]:
@@ -117,7 +129,7 @@ def _straight(scene: Scene, chain: Ints, length: int, way: Way, last: int, n: in
 
 
 @bare
-def _meet(tree: Tree, a: int, b: int, middle: Floats) -> None:
+def _meet(tree: CellTree, a: int, b: int, middle: Floats) -> None:
     """Write the pose in the middle of the face that two neighbouring cells share."""
     for k in range(3):
         unit = tree.frame[2] if k < 2 else tree.frame[3]
@@ -134,7 +146,7 @@ def _meet(tree: Tree, a: int, b: int, middle: Floats) -> None:
 
 
 @bare
-def _blame(tree: Tree, scene: Scene, chain: Ints, last: int, n: int, length: int, ends: int) -> int:
+def _blame(tree: CellTree, scene: HopContext, chain: Ints, last: int, n: int, length: int, ends: int) -> int:
     """Split the cell that a failed hop leads into, and the one that it leaves when that is as doubtful and as large."""
     blamed = 0
     if n < length and tree.kind[chain[n]] != FREE:
@@ -149,7 +161,7 @@ def _blame(tree: Tree, scene: Scene, chain: Ints, last: int, n: int, length: int
 
 
 @bare
-def _divide_near(tree: Tree, scene: Scene, chain: Ints, n: int, length: int, ends: int) -> int:
+def _divide_near(tree: CellTree, scene: HopContext, chain: Ints, n: int, length: int, ends: int) -> int:
     """Divide the n-th cell of a chain; when it holds an end that is to be reached and is too small, the one beside it.
 
     The body is free at its ends: their cells are never given up. Others come as near to them as they can.
@@ -163,7 +175,7 @@ def _divide_near(tree: Tree, scene: Scene, chain: Ints, n: int, length: int, end
 
 
 @bare
-def _divide(tree: Tree, scene: Scene, cell: int) -> int:
+def _divide(tree: CellTree, scene: HopContext, cell: int) -> int:
     """Split a leaf, or give it up when it is too small. Always 1: it was changed, now or before."""
     if tree.child[cell] >= 0 or tree.kind[cell] == DEAD:
         return 1

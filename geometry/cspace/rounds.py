@@ -1,17 +1,19 @@
 """Rounds of a search: a chain is found and followed, what is to blame split, until one is free or none is left."""
 
-from geometry.cspace.cell_tree import Tree, leaf_at
-from geometry.cspace.channel import REGION, Hunt, find_chain
-from geometry.cspace.local_planner import Scene
-from geometry.cspace.refine import Way, follow
+from geometry.cspace.cell_tree import CellTree, leaf_at
+from geometry.cspace.channel import REGION, ChannelSearch, find_chain
+from geometry.cspace.local_planner import HopContext
+from geometry.cspace.refine import HopSequence, follow
 from geometry.kernels.jit import bare
-from geometry.motion.cell_clearance import Ground
+from geometry.motion.cell_clearance import NearbyEdges
 
 NONE, FOUND, MORE = 0, 1, 2
 
 
 @bare
-def pursue(tree: Tree, scene: Scene, region: Ground, hunt: Hunt, way: Way, nth: int, last: int) -> tuple[int, int]:
+def pursue(
+    tree: CellTree, scene: HopContext, region: NearbyEdges, hunt: ChannelSearch, way: HopSequence, nth: int, last: int
+) -> tuple[int, int]:
     """Go on from the round `nth`, counted from 1, up to the round `last`: the outcome and the round it came to.
 
     FOUND: the way is free; NONE: no chain is left; MORE: neither, so far.
@@ -28,7 +30,9 @@ def pursue(tree: Tree, scene: Scene, region: Ground, hunt: Hunt, way: Way, nth: 
 
 
 @bare
-def next_chain(tree: Tree, scene: Scene, region: Ground, hunt: Hunt, way: Way, nth: int, dead: bool) -> int:
+def next_chain(
+    tree: CellTree, scene: HopContext, region: NearbyEdges, hunt: ChannelSearch, way: HopSequence, nth: int, dead: bool
+) -> int:
     """The length of the chain of a round; 0 when there is none, dead: not even through cells given up."""
     start, goal = way.poses[0], way.goal
     first = leaf_at(tree, start[0], start[1], start[2])

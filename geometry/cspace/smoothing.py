@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.cspace.local_planner import BLOCKED, EVEN, TURN_FIRST, Scene, hop, put, shorter_turn
+from geometry.cspace.local_planner import BLOCKED, EVEN, TURN_FIRST, HopContext, hop, put, shorter_turn
 from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import bare, compiled
 from geometry.motion.cell_clearance import distance_at
@@ -16,7 +16,7 @@ PULLS = 4  # times that every corner of the way is pulled straight
 
 
 @compiled
-def shorten(scene: Scene, poses: Floats) -> Floats:
+def shorten(scene: HopContext, poses: Floats) -> Floats:
     """A shorter way from the first to the last of (n, 3) poses: hops over poses, then corners pulled straight."""
     kept = _jump(scene, poses)
     if len(kept) > 2:
@@ -28,7 +28,7 @@ def shorten(scene: Scene, poses: Floats) -> Floats:
 
 
 @compiled
-def _retracted(scene: Scene, poses: Floats) -> Floats:
+def _retracted(scene: HopContext, poses: Floats) -> Floats:
     """The way with its corners moved to where the body has most room: there the longest hops begin.
 
     Where two such corners do not see each other the old ones stay between them.
@@ -52,7 +52,7 @@ def _retracted(scene: Scene, poses: Floats) -> Floats:
 
 
 @bare
-def _make_room(scene: Scene, pose: Floats) -> None:
+def _make_room(scene: HopContext, pose: Floats) -> None:
     """Move a pose, in place, towards more distance from the obstacles: halving steps in place and angle."""
     best, radius = _room(scene, pose), scene.mover.radius
     step = min(max(best, 0.02 * radius), 0.5 * radius)
@@ -71,7 +71,7 @@ def _make_room(scene: Scene, pose: Floats) -> None:
 
 
 @compiled
-def loosened(scene: Scene, pose: Floats, leaving: bool) -> Floats:
+def loosened(scene: HopContext, pose: Floats, leaving: bool) -> Floats:
     """A pose near one that touches obstacles, with more room about it and a free push from there or, leaving, to there.
 
     Where a body touches no cell is free: a search must begin and end a little away from the wall.
@@ -97,14 +97,14 @@ def loosened(scene: Scene, pose: Floats, leaving: bool) -> Floats:
 
 
 @bare
-def _room(scene: Scene, pose: Floats) -> float:
+def _room(scene: HopContext, pose: Floats) -> float:
     """The body's distance from the obstacles at a pose, as far as it matters."""
     mover, c, s = scene.mover, math.cos(pose[2]), math.sin(pose[2])
     return min(distance_at(mover, scene.ground, pose[0], pose[1], c, s), 0.3 * mover.radius)
 
 
 @compiled
-def _jump(scene: Scene, poses: Floats) -> Floats:
+def _jump(scene: HopContext, poses: Floats) -> Floats:
     """From each pose hop as far ahead as doubling and halving finds."""
     kept = np.empty_like(poses)
     put(kept[0], poses[0])
@@ -129,7 +129,7 @@ def _jump(scene: Scene, poses: Floats) -> Floats:
 
 
 @compiled
-def _pull(scene: Scene, poses: Floats) -> None:
+def _pull(scene: HopContext, poses: Floats) -> None:
     """Move each pose towards the straight way between its neighbours as far as the hops stay free."""
     here, step = np.empty(3), np.empty(3)
     for n in range(1, len(poses) - 1):
@@ -151,7 +151,7 @@ def _pull(scene: Scene, poses: Floats) -> None:
             put(poses[n], here)
 
 
-def motions_along(scene: Scene, poses: Floats) -> tuple[Motion, ...]:
+def motions_along(scene: HopContext, poses: Floats) -> tuple[Motion, ...]:
     """The turns and pushes of a way, in order, those of no size left out.
 
     Raises

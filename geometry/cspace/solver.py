@@ -10,17 +10,17 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from geometry.cspace.cell_tree import Tree, new_tree
-from geometry.cspace.channel import SETTLED, Hunt, new_hunt
+from geometry.cspace.cell_tree import CellTree, new_tree
+from geometry.cspace.channel import SETTLED, ChannelSearch, new_hunt
 from geometry.cspace.disc_bounds import cannot_pass, way_of_disc
-from geometry.cspace.local_planner import BLOCKED, Scene, hop, new_scene
+from geometry.cspace.local_planner import BLOCKED, HopContext, hop, new_scene
 from geometry.cspace.refine import new_way
 from geometry.cspace.rounds import FOUND, MORE, next_chain, pursue
 from geometry.cspace.smoothing import loosened, motions_along, shorten
 from geometry.kernels.arrays import Floats
 from geometry.motion.body import centre_pose
-from geometry.motion.cell_clearance import OPEN, Ground, Mover
-from geometry.motion.obstacle_field import Floor
+from geometry.motion.cell_clearance import OPEN, MovingBody, NearbyEdges
+from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Motion, Pose
 from geometry.motion.validation import sound
 
@@ -45,11 +45,11 @@ class Inside:
         return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
 
 
-class Problem:
+class MotionSolver:
     """One planning problem on its way to a Plan."""
 
     def __init__(
-        self, mover: Mover, floor: Floor, start: Pose, goal: Pose | Inside, resolution: float, cells: int
+        self, mover: MovingBody, floor: ObstacleField, start: Pose, goal: Pose | Inside, resolution: float, cells: int
     ) -> None:
         self.mover, self.floor = mover, floor
         self.start = centre_pose(mover, start)
@@ -64,15 +64,15 @@ class Problem:
         self.within = goal.polygon if isinstance(goal, Inside) else None
         reach = float(np.hypot(*mover.reference))
         corner, side = floor.bounds[:2] - reach, floor.side + 2 * reach
-        self.tree: Tree = new_tree(corner[0], corner[1], side * (1 + 1e-9), mover.radius, self.least, cells)
+        self.tree: CellTree = new_tree(corner[0], corner[1], side * (1 + 1e-9), mover.radius, self.least, cells)
 
     @cached_property
-    def hunt(self) -> Hunt:
+    def hunt(self) -> ChannelSearch:
         """The search, with its guess of the way left."""
         eye = self.mover.probes[0]
         return new_hunt(len(self.tree.child), self.floor.ways(self.goals, float(eye[2])), eye[:2].copy())
 
-    def _goal(self, goal: Pose | Inside) -> tuple[Floats, Ground, npt.NDArray[np.bool_]]:
+    def _goal(self, goal: Pose | Inside) -> tuple[Floats, NearbyEdges, npt.NDArray[np.bool_]]:
         """The pose to end at (empty for a region), the region's complement as ground, and the goal's pixels."""
         if isinstance(goal, Pose):
             end = centre_pose(self.mover, goal)
@@ -151,7 +151,7 @@ class Problem:
         scene = self._scene()
         return None if any(hop(scene, a, b) == BLOCKED for a, b in pairwise(poses)) else poses
 
-    def _scene(self) -> Scene:
+    def _scene(self) -> HopContext:
         """The body among the obstacles, for exact first contact."""
         return new_scene(self.mover, self.ground, self.floor.surface)
 

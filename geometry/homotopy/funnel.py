@@ -1,4 +1,4 @@
-"""Rope tightening: the shortest way through a word of portals.
+"""Funnel tightening: the shortest way through a word of portals.
 
 # Strategy: the funnel of Lee and Preparata (1984). The way to the two ends of the last portal is a funnel with two
 chains of corners that bend outwards from a common apex; each new end pops what the rope no longer touches. The
@@ -16,7 +16,7 @@ from geometry.kernels.jit import bare
 Ends = tuple[float, float, float, float]  # x and y of the start, x and y of the goal
 
 
-class Rope(NamedTuple):
+class Funnel(NamedTuple):
     """Room for one tightening through at most (size - 4) / 4 portals."""
 
     x: Floats
@@ -29,10 +29,10 @@ class Rope(NamedTuple):
     """(2 size,) the funnel, from its left end over the apex to its right end."""
 
 
-def new_rope(portals: int) -> Rope:
+def new_rope(portals: int) -> Funnel:
     """Room for that many portals."""
     size = 4 * portals + 8
-    return Rope(
+    return Funnel(
         np.empty(size),
         np.empty(size),
         np.empty(size, np.int32),
@@ -42,7 +42,7 @@ def new_rope(portals: int) -> Rope:
 
 @bare
 def tighten_word(
-    lefts: Ints, rights: Ints, lines: Ints, body: bool, word: Ints, size: int, ends: Ends, rope: Rope, out: Floats
+    lefts: Ints, rights: Ints, lines: Ints, body: bool, word: Ints, size: int, ends: Ends, rope: Funnel, out: Floats
 ) -> int:
     """Write the corners of the tight rope to ``out`` (corners, 2), both ends included; returns their number.
 

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.homotopy.funnel import Rope, measure_line, new_rope, tighten_word
-from geometry.homotopy.strips import Runs, extend, symbol_between
+from geometry.homotopy.funnel import Funnel, measure_line, new_rope, tighten_word
+from geometry.homotopy.strips import Strips, extend, symbol_between
 from geometry.kernels.arrays import Floats, Ints, SquaredDistances
 from geometry.kernels.heap import pop, push
 from geometry.kernels.jit import bare
@@ -18,7 +18,7 @@ from geometry.skeleton.skeleton import Flags, Heights, steepest, stride
 LANDMARKS = 6
 
 
-class Ways(NamedTuple):
+class Landmarks(NamedTuple):
     """For n nodes and m chains."""
 
     symbol: Ints
@@ -54,7 +54,7 @@ class Anchor(NamedTuple):
     """The padded cell."""
 
 
-def find_ways(square: SquaredDistances, chains: Chains, runs: Runs, body: bool) -> Ways:
+def find_ways(square: SquaredDistances, chains: Chains, runs: Strips, body: bool) -> Landmarks:
     """Prepare routing on a pathgraph."""
     width = square.shape[1]
     symbol = np.zeros(chains.cells.shape[0], np.int32)
@@ -69,7 +69,7 @@ def find_ways(square: SquaredDistances, chains: Chains, runs: Runs, body: bool) 
     shape = len(chains.node), 4
     head, arc, step = np.full(shape, -1, np.int32), np.zeros(shape, np.int32), np.zeros(shape)
     find_arcs(chains.leave, chains.ends, length, head, arc, step)
-    return Ways(symbol, words[: spelt[-1]].copy(), spelt, length, place, head, arc, step, sights(head, step))
+    return Landmarks(symbol, words[: spelt[-1]].copy(), spelt, length, place, head, arc, step, sights(head, step))
 
 
 @bare
@@ -94,7 +94,7 @@ def measure_ways(
     words: Ints,
     spelt: Ints,
     out: Floats,
-    rope: Rope,
+    rope: Funnel,
 ) -> None:
     """Fill the words and the tight lengths of all chains."""
     for chain in range(length.shape[0]):

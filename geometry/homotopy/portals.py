@@ -5,13 +5,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.homotopy.strips import Runs, extend, run_at
+from geometry.homotopy.strips import Strips, extend, run_at
 from geometry.kernels.arrays import XY, Ints
 
 SLACK = 1e-9  # squares by which a corner may miss a wall's corner that it rounds
 
 
-def word_of_line(runs: Runs, points: Sequence[Sequence[float]]) -> Ints:
+def word_of_line(runs: Strips, points: Sequence[Sequence[float]]) -> Ints:
     """The reduced word of a polyline; it may touch walls and their corners.
 
     Raises
@@ -40,7 +40,7 @@ def word_of_line(runs: Runs, points: Sequence[Sequence[float]]) -> Ints:
     return np.array(symbols, np.int32)
 
 
-def first_run(runs: Runs, point: XY) -> tuple[int, int]:
+def first_run(runs: Strips, point: XY) -> tuple[int, int]:
     """The run and row of a line's first point."""
     row = min(int(point[1]), len(runs.row) - 2)
     run = int(run_at(runs.row, runs.low, row, int(point[0])))
@@ -49,7 +49,7 @@ def first_run(runs: Runs, point: XY) -> tuple[int, int]:
     return run, row
 
 
-def symbol_into_square(runs: Runs, run: int, row: int, point: XY) -> int:
+def symbol_into_square(runs: Strips, run: int, row: int, point: XY) -> int:
     """Return the portal from the run in which a line ends to that of its last point's square, 0 if they are the same.
 
     A point on a line between two rows belongs to the upper one, from whichever side the line comes: words between the
@@ -74,7 +74,7 @@ def symbol_into_square(runs: Runs, run: int, row: int, point: XY) -> int:
     raise ValueError(f"the line leaves free space at {point}")
 
 
-def leave_point(runs: Runs, run: int, row: int, p: XY, q: XY) -> XY | None:
+def leave_point(runs: Strips, run: int, row: int, p: XY, q: XY) -> XY | None:
     """Where the segment from p, in a run, leaves it; None when it ends in it."""
     low, high = float(runs.low[run]), float(runs.high[run] + 1)
     last = 1.0
@@ -89,7 +89,7 @@ def leave_point(runs: Runs, run: int, row: int, p: XY, q: XY) -> XY | None:
     return p[0] + last * (q[0] - p[0]), p[1] + last * (q[1] - p[1])
 
 
-def best_portal(runs: Runs, run: int, row: int, p: XY, q: XY) -> int:
+def best_portal(runs: Strips, run: int, row: int, p: XY, q: XY) -> int:
     """The signed portal at p on the edge of a run through which one gets furthest towards q."""
     choices: list[tuple[float, int]] = []
     for sign, bounds, next_run, step in ((1, runs.up, runs.upper, 1), (-1, runs.down, runs.lower, -1)):
@@ -116,7 +116,7 @@ def join_words(*words: Ints) -> Ints:
     return whole[:size]
 
 
-def crossings_of(runs: Runs, word: Ints) -> tuple[int, ...]:
+def crossings_of(runs: Strips, word: Ints) -> tuple[int, ...]:
     """The signed crossing numbers of a reduced word."""
     numbers = runs.crossing[np.abs(word) - 1] * np.sign(word)
     return tuple(numbers[numbers != 0].tolist())

@@ -1,4 +1,4 @@
-"""Runs and portals: free space cut into horizontal strips, whose nerve has the homotopy type of free space.
+"""Strips and portals: free space cut into horizontal strips, whose nerve has the homotopy type of free space.
 
 A run is a maximal horizontal row of free squares; a portal is the overlap of a run with one in the row above. The
 class of a path is the word of portals it crosses (up positive, down negative, counted from 1) without neighbouring
@@ -14,7 +14,7 @@ from geometry.kernels.arrays import Ints, SquaredDistances
 from geometry.kernels.jit import bare
 
 
-class Runs(NamedTuple):
+class Strips(NamedTuple):
     """n runs ordered by (row, column) and p portals ordered by (lower row, column); rows and columns are unpadded."""
 
     row: Ints
@@ -43,7 +43,7 @@ class Runs(NamedTuple):
     """(n,) the signed portal out of a run from which there is no other way on, however one goes; else 0."""
 
 
-def find_runs(square: SquaredDistances, level: int) -> Runs:
+def find_runs(square: SquaredDistances, level: int) -> Strips:
     """The runs and portals of the cells whose ``square`` is at least ``level``."""
     row = np.zeros(square.shape[0] - 1, np.int32)
     n = count_runs(square, level, row)
@@ -56,7 +56,7 @@ def find_runs(square: SquaredDistances, level: int) -> Runs:
     number_crossings(lower, upper, np.arange(n, dtype=np.int32), crossing)
     exits = np.zeros(n, np.int32)
     find_exits(up, down, lower, upper, exits, (np.diff(up) + np.diff(down)).astype(np.int32), np.empty(n, np.int32))
-    return Runs(row, low, high, up, down, *trimmed(p, left, right, lower), *trimmed(p, upper, line, crossing), exits)
+    return Strips(row, low, high, up, down, *trimmed(p, left, right, lower), *trimmed(p, upper, line, crossing), exits)
 
 
 def trimmed(size: int, a: Ints, b: Ints, c: Ints) -> tuple[Ints, Ints, Ints]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from geometry.kernels.arrays import Ints, Longs
 from geometry.kernels.jit import bare
-from geometry.skeleton.graph import Bones, find, pace
+from geometry.skeleton.graph import SkeletonGraph, find, pace
 from geometry.skeleton.lowest_cells import lowest_of, new_notes
 from geometry.skeleton.skeleton import Flags, Heights
 
@@ -53,8 +53,8 @@ def splice_nodes(old: Ints, low: int, high: int, open_ends: Flags, grown: Ints) 
 
 
 def splice_chains(
-    heights: Heights, states: Flags, width: int, bones: Bones, splice: Splice, open_ends: Flags, seeds: Ints
-) -> Bones:
+    heights: Heights, states: Flags, width: int, bones: SkeletonGraph, splice: Splice, open_ends: Flags, seeds: Ints
+) -> SkeletonGraph:
     """Walk new chains from the seeds, and merge them with those that stay."""
     old, (node, low, high, number, shift) = len(bones.port), splice
     first, last = (bisect_left(bones.port[:, 0], 4 * n) for n in (low, high))
@@ -89,7 +89,7 @@ def splice_chains(
         port[last + moved : size] += 4 * shift
     here = slice(first, first + found)
     port[here], neck[here], steps[here] = (part[:found] for part in fresh)
-    return Bones(node, port[:size], neck[:size], steps[:size])
+    return SkeletonGraph(node, port[:size], neck[:size], steps[:size])
 
 
 def with_room(array: Array, size: int) -> Array:

@@ -17,7 +17,7 @@ from geometry.incremental.update_skeleton import regrow
 from geometry.kernels.arrays import Bools, Ints, SquaredDistances
 from geometry.kernels.jit import bare
 from geometry.skeleton.buffers import keep_scratch, take_scratch
-from geometry.skeleton.graph import Bones
+from geometry.skeleton.graph import SkeletonGraph
 from geometry.skeleton.skeleton import States
 
 Block = tuple[int, int, int, int]
@@ -27,8 +27,8 @@ ALL = 0.5  # share of the screen
 
 
 def change_squares(
-    square: SquaredDistances, state: States, bones: Bones, rows: Ints, columns: Ints, free: Bools
-) -> Bones | None:
+    square: SquaredDistances, state: States, bones: SkeletonGraph, rows: Ints, columns: Ints, free: Bools
+) -> SkeletonGraph | None:
     """Change squares (unpadded rows and columns) in ``square`` and ``state``; returns the changed pathgraph, or None,
     and changes nothing, when all had better be made anew.
 

@@ -11,10 +11,10 @@ from bisect import bisect_left
 import numpy as np
 
 from geometry.incremental.splice_arrays import splice_chains, splice_nodes
-from geometry.incremental.update_skeleton import JOINED, MOVED, PASSED, Journal
+from geometry.incremental.update_skeleton import JOINED, MOVED, PASSED, ChangeLog
 from geometry.kernels.arrays import Ints, Longs
 from geometry.kernels.jit import bare
-from geometry.skeleton.graph import Bones, find, first_way, is_node, onward
+from geometry.skeleton.graph import SkeletonGraph, find, first_way, is_node, onward
 from geometry.skeleton.skeleton import HALT, LINKS, Flags, Heights, stride
 
 NODES = np.array([bool(state) and is_node.function(state) for state in range(256)])
@@ -23,7 +23,7 @@ NODES = np.array([bool(state) and is_node.function(state) for state in range(256
 GONE = 31  # a node that is none any more, or has changed: all its ends are open
 
 
-def rejoin(heights: Heights, width: int, bones: Bones, journal: Journal) -> Bones:
+def rejoin(heights: Heights, width: int, bones: SkeletonGraph, journal: ChangeLog) -> SkeletonGraph:
     """The pathgraph after a change, in the memory of the one before when there is room."""
     states, mark = journal.states, journal.mark
     keys = np.empty(int(journal.size[0]), np.int64)
@@ -51,7 +51,7 @@ def rejoin(heights: Heights, width: int, bones: Bones, journal: Journal) -> Bone
 
 
 @bare
-def find_changed(journal: Journal, keys: Longs) -> int:
+def find_changed(journal: ChangeLog, keys: Longs) -> int:
     """Mark and list the touched cells that differ, as 256 cell + state before; returns how many."""
     found = 0
     for k in range(journal.size[0]):

@@ -34,7 +34,7 @@ TOUCHED, MOVED = 1, 2  # marks of cells: state may differ, clearance differs
 JOINED, PASSED = 4, 8  # to be joined again; passed on the way along a chain
 
 
-class Journal(NamedTuple):
+class ChangeLog(NamedTuple):
     """What has changed."""
 
     states: Flags
@@ -48,13 +48,15 @@ class Journal(NamedTuple):
     """(1,) how many."""
 
 
-def regrow(square: SquaredDistances, state: States, bounds: Ints, fresh: SquaredDistances, scratch: Scratch) -> Journal:
+def regrow(
+    square: SquaredDistances, state: States, bounds: Ints, fresh: SquaredDistances, scratch: Scratch
+) -> ChangeLog:
     """Set new clearances and grow the skeleton again.
 
     bounds : (rows, 3 or more) first and last column that change, and where in ``fresh`` their values start.
     """
     heights, states, width = square.reshape(-1), state.reshape(-1), square.shape[1]
-    journal = Journal(states, *scratch, np.zeros(1, np.int32))
+    journal = ChangeLog(states, *scratch, np.zeros(1, np.int32))
     about = np.empty((len(bounds), 2), np.int32)
     spread(bounds, width, about)
     prune(heights, width, about, journal)
@@ -79,7 +81,7 @@ def spread(bounds: Ints, width: int, about: Ints) -> None:
 
 
 @bare
-def touch(journal: Journal, cell: int) -> None:
+def touch(journal: ChangeLog, cell: int) -> None:
     """Remember a cell's state before it changes."""
     if not journal.mark[cell] & TOUCHED:
         journal.mark[cell] |= TOUCHED
@@ -88,7 +90,7 @@ def touch(journal: Journal, cell: int) -> None:
 
 
 @bare
-def prune(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
+def prune(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None:
     """Take back all ways up from the cells about, and what hangs on them."""
     states = journal.states
     for row in range(about.shape[0]):
@@ -105,7 +107,7 @@ def prune(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
 
 
 @bare
-def unlink(journal: Journal, cell: int, other: int, direction: int) -> None:
+def unlink(journal: ChangeLog, cell: int, other: int, direction: int) -> None:
     """Take back a link."""
     touch(journal, cell)
     touch(journal, other)
@@ -114,7 +116,7 @@ def unlink(journal: Journal, cell: int, other: int, direction: int) -> None:
 
 
 @bare
-def wither(heights: Heights, width: int, about: Ints, journal: Journal, cell: int) -> None:
+def wither(heights: Heights, width: int, about: Ints, journal: ChangeLog, cell: int) -> None:
     """Take back the way up from a cell outside that nothing leads to any more."""
     states = journal.states
     while not states[cell] & (SADDLE | SUMMIT):
@@ -138,7 +140,7 @@ def wither(heights: Heights, width: int, about: Ints, journal: Journal, cell: in
 
 @bare
 def settle(
-    heights: Heights, width: int, bounds: Ints, fresh: SquaredDistances, about: Ints, flags: Flags, journal: Journal
+    heights: Heights, width: int, bounds: Ints, fresh: SquaredDistances, about: Ints, flags: Flags, journal: ChangeLog
 ) -> None:
     """Set the new clearances, and the flags of the cells about. ``flags`` (width,) is scratch."""
     states = journal.states
@@ -177,7 +179,7 @@ def differ(states: Flags, flags: Flags) -> bool:
 
 
 @bare
-def grow(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
+def grow(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None:
     """Go up again from the saddles about, and from where ways from outside come in."""
     states = journal.states
     for row in range(about.shape[0]):
@@ -194,7 +196,7 @@ def grow(heights: Heights, width: int, about: Ints, journal: Journal) -> None:
 
 
 @bare
-def climb(cell: int, direction: int, heights: Heights, width: int, journal: Journal) -> None:
+def climb(cell: int, direction: int, heights: Heights, width: int, journal: ChangeLog) -> None:
     """As in skeleton.py, with a journal."""
     states = journal.states
     while True:

@@ -15,14 +15,14 @@ from geometry.kernels.arrays import XY
 from geometry.manipulation.grasps import holds_about
 from geometry.manipulation.lattice_planner import carry_squarewise
 from geometry.manipulation.legs import Leg, commands, grip_square, may_push, rounded
-from geometry.manipulation.query import Errand, after, joined
+from geometry.manipulation.query import ManipulationQuery, after, joined
 from geometry.motion.se2 import Motion, Rotate, Translate
 
 LEAST = 1e-6  # degrees or squares: less is no motion
 TRIES = 4  # holds with which the rest is planned
 
 
-def carry_straightened(errand: Errand, tries: int = TRIES) -> list[Leg] | None:
+def carry_straightened(errand: ManipulationQuery, tries: int = TRIES) -> list[Leg] | None:
     """Legs of which the first lays the body straight and the others go by whole squares; None when none are found."""
     best: list[Leg] | None = None
     for _, first in zip(range(tries), _ways(errand), strict=False):
@@ -33,7 +33,7 @@ def carry_straightened(errand: Errand, tries: int = TRIES) -> list[Leg] | None:
     return best
 
 
-def _ways(errand: Errand) -> Iterator[Leg]:
+def _ways(errand: ManipulationQuery) -> Iterator[Leg]:
     """The ways to lay the body straight, those with short walks first."""
     over = askew(errand.shape)
     for hold in holds_about(errand):
@@ -48,7 +48,7 @@ def _ways(errand: Errand) -> Iterator[Leg]:
                 break
 
 
-def _straight(errand: Errand, utak: XY, degrees: float) -> tuple[Motion, ...]:
+def _straight(errand: ManipulationQuery, utak: XY, degrees: float) -> tuple[Motion, ...]:
     """The turn and the push that lay the body straight; () when they are not free, or nothing is to be done."""
     motions: list[Motion] = []
     shape = errand.shape

@@ -7,11 +7,11 @@ import numpy as np
 
 from geometry.kernels.arrays import XY, Floats, Longs
 from geometry.manipulation.goals import At, placed
-from geometry.manipulation.legs import Leg, Push, at_utak, grip_square, rounded
-from geometry.manipulation.query import Errand
+from geometry.manipulation.legs import Leg, PushSegment, at_utak, grip_square, rounded
+from geometry.manipulation.query import ManipulationQuery
 from geometry.manipulation.workspace import padded
 from geometry.motion.se2 import Motion, Rotate, Translate
-from geometry.state_lattice.footprints import Stencil, quarter
+from geometry.state_lattice.footprints import Footprints, quarter
 from geometry.state_lattice.lattice import Costs, Grid
 
 ENDS = 300  # of a push that are looked at
@@ -19,14 +19,16 @@ MIDDLE = 1e-7  # squares: who is no further from the middle of his square is the
 Step = tuple[int, int, int, int]  # hold, quarter, direction, place
 
 
-class Retelling:
+class LegExtraction:
     """The nodes of a search told as legs.
 
     errand : what was searched for. begun : the errand as it was before Utak, with hold of the shape, was thought to
     have pushed it so that he stands in the middle of a square. ends : the price of ending at each pose.
     """
 
-    def __init__(self, errand: Errand, begun: Errand, body: Stencil, grid: Grid, ends: Costs) -> None:
+    def __init__(
+        self, errand: ManipulationQuery, begun: ManipulationQuery, body: Footprints, grid: Grid, ends: Costs
+    ) -> None:
         self.errand, self.body, self.grid, self.ends = errand, body, grid, ends
         self.holds = [quarter(body.holds, k) for k in range(4)]
         self.begun = begun
@@ -100,7 +102,7 @@ class Retelling:
                 corners = np.append(corners, len(stops))
                 stops = np.vstack([stops, final])
         ends = self._ends(steps[0]) if last and not isinstance(goal, At) else np.empty((0, 2))
-        push = Push(self.shape, stops, corners, ends, self.errand.margin, self.errand.pull)
+        push = PushSegment(self.shape, stops, corners, ends, self.errand.margin, self.errand.pull)
         motions: list[Motion] = []
         for (x, y), (u, v) in pairwise(push.pieces(self.errand.yard).tolist()):
             motions.append(rounded(Translate(u - x, v - y)))

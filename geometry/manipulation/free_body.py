@@ -5,16 +5,16 @@ from typing import Any
 import numpy as np
 import shapely
 
-from geometry.cspace.plan_motion import Plan, plan_motion
+from geometry.cspace.plan_motion import MotionPlan, plan_motion
 from geometry.manipulation.goals import At, Between, InCorner, Inside
-from geometry.manipulation.query import Errand
+from geometry.manipulation.query import ManipulationQuery
 from geometry.motion.se2 import Pose
 
 CELLS = 60_000  # looked at at most
 
 
-def move_alone(errand: Errand) -> Plan:
-    """Plan the body's way without Utak. What is impossible for it by itself is impossible."""
+def move_alone(errand: ManipulationQuery) -> MotionPlan:
+    """MotionPlan the body's way without Utak. What is impossible for it by itself is impossible."""
     middle = errand.shape.centroid
     centred = shapely.transform(errand.shape, lambda p: p - np.array([middle.x, middle.y]))
     goal = errand.goal
@@ -27,11 +27,11 @@ def move_alone(errand: Errand) -> Plan:
     elif isinstance(goal, Inside):
         there = goal
     else:
-        return Plan("limit")
+        return MotionPlan("limit")
     return plan_motion(centred, errand.yard.floor, Pose(middle.x, middle.y, 0.0), there, cells=CELLS)
 
 
-def _about(goal: InCorner, errand: Errand) -> Any:
+def _about(goal: InCorner, errand: ManipulationQuery) -> Any:
     """The floor near a corner in which a body must lie to be in it: what cannot be brought there cannot be in it."""
     reach = 2.0 * shapely.minimum_bounding_radius(errand.shape) + goal.slack
 
@@ -46,7 +46,7 @@ def _about(goal: InCorner, errand: Errand) -> Any:
     return shapely.MultiPolygon(fitting)
 
 
-def _near_both(goal: Between, errand: Errand) -> Any:
+def _near_both(goal: Between, errand: ManipulationQuery) -> Any:
     """The floor near two walls in which a body must lie to be within so many squares of both."""
     reach = 2.0 * shapely.minimum_bounding_radius(errand.shape) + goal.slack
     parts = shapely.get_parts(errand.yard.floor_polygon.intersection(goal.about(reach)))

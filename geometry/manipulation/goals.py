@@ -11,8 +11,8 @@ import shapely
 from geometry.cspace.solver import Inside
 from geometry.motion.se2 import Pose, turned
 from geometry.raster.rasterize import areas
-from geometry.state_lattice.footprints import DIRECTIONS, Stencil, quarter
-from geometry.state_lattice.lattice import COMMAND, Board, Costs, Grid
+from geometry.state_lattice.footprints import DIRECTIONS, Footprints, quarter
+from geometry.state_lattice.lattice import COMMAND, Costs, Grid, StateLattice
 
 __all__ = ["At", "Between", "End", "InCorner", "Inside"]
 
@@ -138,7 +138,7 @@ def moved(goal: End, dx: float, dy: float) -> End:
     return goal
 
 
-def prices(goal: End, shape: Any, body: Stencil, board: Board, grid: Grid) -> Costs:
+def prices(goal: End, shape: Any, body: Footprints, board: StateLattice, grid: Grid) -> Costs:
     """The price of ending at each pose of the board, -1 where the goal is not met: (4, squares).
 
     For a pose off the lattice the places beside it count, when it is a whole number of quarter turns away.
@@ -156,7 +156,7 @@ def prices(goal: End, shape: Any, body: Stencil, board: Board, grid: Grid) -> Co
     return np.where(board.lies, np.array(found), -1).astype(np.int32)
 
 
-def _inside(goal: Inside, lying: npt.NDArray[np.int64], board: Board, grid: Grid) -> Costs:
+def _inside(goal: Inside, lying: npt.NDArray[np.int64], board: StateLattice, grid: Grid) -> Costs:
     """The prices of one quarter: dear where the body, were it a square larger, would reach free squares outside."""
     price = np.full(len(board.solid), -1, np.int32)
     fat = np.unique(np.vstack([lying, *(lying + np.array(step) for step in DIRECTIONS)]), axis=0)
@@ -168,7 +168,7 @@ def _inside(goal: Inside, lying: npt.NDArray[np.int64], board: Board, grid: Grid
     return price
 
 
-def _roomy(goal: Roomy, lying: npt.NDArray[np.int64], board: Board, grid: Grid) -> Costs:
+def _roomy(goal: Roomy, lying: npt.NDArray[np.int64], board: StateLattice, grid: Grid) -> Costs:
     """The prices of one quarter where all squares within two of the body's are free: a tenth of a command a square."""
     reach = range(-2, 3)
     fat = np.unique(np.vstack([lying + np.array((dx, dy)) for dx in reach for dy in reach]), axis=0)
@@ -180,7 +180,7 @@ def _roomy(goal: Roomy, lying: npt.NDArray[np.int64], board: Board, grid: Grid) 
     return np.where(roomy & (far <= VICINITY), np.round(far * COMMAND / 10), -1).astype(np.int32)
 
 
-def _cornered(goal: InCorner, shape: Any, body: Stencil, k: int, grid: Grid) -> Costs:
+def _cornered(goal: InCorner, shape: Any, body: Footprints, k: int, grid: Grid) -> Costs:
     """The prices of one quarter: dear where a gap to a wall is more than half of what is allowed."""
     x0, y0, x1, y1 = lying_at(shape, body, k, body.home).bounds
     row, column = np.divmod(np.arange((grid.rows + 2 * grid.pad) * grid.stride), grid.stride)
@@ -190,7 +190,7 @@ def _cornered(goal: InCorner, shape: Any, body: Stencil, k: int, grid: Grid) -> 
     return np.where(most.admits(bounds), np.where(gap <= goal.slack / 2 + CLOSE, 0, UNEASY), -1).astype(np.int32)
 
 
-def _between(goal: Between, shape: Any, body: Stencil, k: int, grid: Grid) -> Costs:
+def _between(goal: Between, shape: Any, body: Footprints, k: int, grid: Grid) -> Costs:
     """The prices of one quarter: dear where a gap to a wall is more than half of what is allowed."""
     gaps = goal.gaps(lying_at(shape, body, k, body.home))
     row, column = np.divmod(np.arange((grid.rows + 2 * grid.pad) * grid.stride), grid.stride)
@@ -199,14 +199,14 @@ def _between(goal: Between, shape: Any, body: Stencil, k: int, grid: Grid) -> Co
     return np.where(gap <= goal.slack + CLOSE, np.where(gap <= goal.slack / 2, 0, UNEASY), -1).astype(np.int32)
 
 
-def lying_at(shape: Any, body: Stencil, k: int, place: tuple[int, int]) -> Any:
+def lying_at(shape: Any, body: Footprints, k: int, place: tuple[int, int]) -> Any:
     """The shape in a pose of the board: k quarter turns about the middle of its home square, then moved."""
     home = np.array(body.home) + 0.5
     move = np.array(place) + 0.5
     return shapely.transform(shape, lambda p: turned(p - home, 90.0 * k) + move)
 
 
-def _beside(pose: Pose, shape: Any, body: Stencil, grid: Grid) -> Costs:
+def _beside(pose: Pose, shape: Any, body: Footprints, grid: Grid) -> Costs:
     """The pose's own place on the board, or the up to four about it."""
     found = np.full((4, (grid.rows + 2 * grid.pad) * grid.stride), -1, np.int32)
     k = round(pose.degrees / 90.0)

@@ -8,7 +8,7 @@ import shapely
 
 from geometry.cspace.fewest_motions import evenly
 from geometry.kernels.arrays import XY, Floats
-from geometry.manipulation.query import Errand
+from geometry.manipulation.query import ManipulationQuery
 from geometry.raster.geodesic import reach
 from geometry.raster.rasterize import squares
 from geometry.state_lattice.footprints import DIRECTIONS
@@ -18,7 +18,7 @@ FIFTHS = 5  # of a square: the unit of geometry.raster.geodesic
 
 
 @dataclass(frozen=True)
-class Hold:
+class Grasp:
     """A place where Utak can take the body where it lies: (x, y), the middle of a square, and the squares to walk.
 
     taken : he is there and has hold of it.
@@ -29,7 +29,7 @@ class Hold:
     taken: bool = False
 
 
-def holds_about(errand: Errand) -> list[Hold]:
+def holds_about(errand: ManipulationQuery) -> list[Grasp]:
     """The hold that he has, then those that he can walk to, the nearest first, without those refuted."""
     shape, utak = errand.shape, errand.utak
     rows, columns = errand.walk.shape
@@ -43,13 +43,13 @@ def holds_about(errand: Errand) -> list[Hold]:
     for dx, dy in DIRECTIONS:
         beside |= framed[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns]
     found = np.argwhere(beside & ~lying & errand.yard.free & (ways >= 0))
-    holds = [Hold((column + 0.5, row + 0.5), int(ways[row, column]) // FIFTHS) for row, column in found.tolist()]
+    holds = [Grasp((column + 0.5, row + 0.5), int(ways[row, column]) // FIFTHS) for row, column in found.tolist()]
     fit = [hold for hold in holds if not errand.avoids(*errand.hold_from(hold.place))]
-    own = [Hold(utak, 0, True)] if errand.held else []
+    own = [Grasp(utak, 0, True)] if errand.held else []
     return own + sorted(fit, key=lambda hold: (hold.walk, hold.place))
 
 
-def promise(errand: Errand, hold: Hold, track: Floats) -> tuple[bool, int, float, int, XY]:
+def promise(errand: ManipulationQuery, hold: Grasp, track: Floats) -> tuple[bool, int, float, int, XY]:
     """How good a hold is likely to be, the least the best: the hold that he has before all others.
 
     Then: how often the track would bring Utak into a wall; how far the furthest corner is; how far he has to walk.

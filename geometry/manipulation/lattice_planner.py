@@ -10,14 +10,14 @@ import numpy as np
 import shapely
 
 from geometry.kernels.arrays import Bools
-from geometry.manipulation.extract_legs import MIDDLE, Retelling
+from geometry.manipulation.extract_legs import MIDDLE, LegExtraction
 from geometry.manipulation.goals import prices
 from geometry.manipulation.legs import Leg, commands, may_push, only_pushes, rounded, verified
-from geometry.manipulation.query import Errand, after
+from geometry.manipulation.query import ManipulationQuery, after
 from geometry.manipulation.workspace import padded
 from geometry.motion.se2 import Rotate, Translate
 from geometry.state_lattice.astar import CALM, first_walk, haul
-from geometry.state_lattice.footprints import DIRECTIONS, Stencil, new_stencil
+from geometry.state_lattice.footprints import DIRECTIONS, Footprints, new_stencil
 from geometry.state_lattice.heuristic import NEVER, STILL, guess
 from geometry.state_lattice.lattice import AWKWARD, COMMAND, REGRASP, Costs, new_board, new_grid
 
@@ -27,7 +27,7 @@ BENDS = (COMMAND, COMMAND // 2)  # the price of another direction in the same pu
 NUDGES = 2  # pushes to the middle of a square that are tried
 
 
-def _stencils(errand: Errand) -> tuple[Stencil, Stencil]:
+def _stencils(errand: ManipulationQuery) -> tuple[Footprints, Footprints]:
     """The stencils of the shape and of the shape with its margin."""
     shape = errand.shape
     home = (math.floor(shape.centroid.x), math.floor(shape.centroid.y))
@@ -38,14 +38,14 @@ def _stencils(errand: Errand) -> tuple[Stencil, Stencil]:
 
 
 @lru_cache(maxsize=32)
-def _stencils_near(wkb: bytes, margin: float, own: tuple[int, int] | None) -> tuple[Stencil, Stencil]:
+def _stencils_near(wkb: bytes, margin: float, own: tuple[int, int] | None) -> tuple[Footprints, Footprints]:
     """The stencils of a shape whose centroid lies in the square (0, 0)."""
     shape = shapely.from_wkb(wkb)
     body = new_stencil(shape, own)
     return body, new_stencil(padded(shape, margin), holds=body.holds) if margin > 0.0 else body
 
 
-def carry_squarewise(errand: Errand) -> list[Leg] | None:
+def carry_squarewise(errand: ManipulationQuery) -> list[Leg] | None:
     """The cheapest legs by whole squares, or some in haste where that takes long; None when none are found.
 
     Who has hold of the shape off the middle of a square pushes it by whole squares all the same, as long as he does not
@@ -66,7 +66,7 @@ def carry_squarewise(errand: Errand) -> list[Leg] | None:
     return straight or _fewest(replace(errand, held=False))
 
 
-def _pushed_off_the_middle(errand: Errand) -> list[Leg] | None:
+def _pushed_off_the_middle(errand: ManipulationQuery) -> list[Leg] | None:
     """The cheapest legs by whole squares of one who stands off the middle of his square, if the first only pushes."""
     x, y = errand.utak
     legs = _fewest(replace(errand, utak=(math.floor(x) + 0.5, math.floor(y) + 0.5)))
@@ -78,7 +78,7 @@ def _pushed_off_the_middle(errand: Errand) -> list[Leg] | None:
     return legs if verified(errand.yard, errand.shape, legs) is not None else None
 
 
-def _nudges(errand: Errand) -> list[Translate]:
+def _nudges(errand: ManipulationQuery) -> list[Translate]:
     """The pushes that bring Utak to the middle of a square, the shortest first; one of no length when he is there."""
     x, y = (sorted((math.floor(v - 0.5) + 0.5 - v, math.floor(v - 0.5) + 1.5 - v), key=abs) for v in errand.utak)
     x, y = ([0.0] if abs(near) <= MIDDLE else [near, far] for near, far in (x, y))
@@ -86,20 +86,20 @@ def _nudges(errand: Errand) -> list[Translate]:
     return sorted(pushes, key=lambda push: math.hypot(*push))[:NUDGES]
 
 
-def _may_begin(errand: Errand, leg: Leg) -> bool:
+def _may_begin(errand: ManipulationQuery, leg: Leg) -> bool:
     """Whether Utak, with hold of the shape, can and may make the first motion of a leg."""
     motion = leg.motions[0] if leg.motions else Translate(0.0, 0.0)
     pushes = errand.pull or only_pushes(errand.shape, errand.utak, [motion])
     return pushes and errand.yard.lets(errand.shape, errand.utak, motion)
 
 
-def _price(errand: Errand, legs: Sequence[Leg]) -> float:
+def _price(errand: ManipulationQuery, legs: Sequence[Leg]) -> float:
     """About how many commands legs take, a turn for as many as it counts for."""
     turns = sum(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
     return commands(legs) + (errand.turn - 1.0) * turns
 
 
-def _fewest(errand: Errand, begun: Errand | None = None) -> list[Leg] | None:
+def _fewest(errand: ManipulationQuery, begun: ManipulationQuery | None = None) -> list[Leg] | None:
     """The legs of one who stands in the middle of a square when he has hold of the shape.
 
     A push that turns may come to be one straight push, or two: both prices are tried, and the fewer commands taken.
@@ -119,7 +119,7 @@ def _fewest(errand: Errand, begun: Errand | None = None) -> list[Leg] | None:
 class _Search:
     """A search by whole squares: what does not depend on its prices is made once."""
 
-    def __init__(self, errand: Errand, begun: Errand) -> None:
+    def __init__(self, errand: ManipulationQuery, begun: ManipulationQuery) -> None:
         self.errand, self.begun = errand, begun
         self.body, wide = _stencils(errand)
         rows, columns = errand.walk.shape
@@ -147,11 +147,11 @@ class _Search:
             cost, parent = np.zeros(count, np.int32), np.empty(count, np.int32)
             nodes = haul(self.board, left, self.ends, self.begin, self.place, bend, haste, most, cost, parent)
             if len(nodes):
-                return Retelling(self.errand, self.begun, self.body, self.grid, self.ends).legs(nodes)
+                return LegExtraction(self.errand, self.begun, self.body, self.grid, self.ends).legs(nodes)
         return None
 
 
-def _begin(errand: Errand, body: Stencil, walk: Costs) -> Costs:
+def _begin(errand: ManipulationQuery, body: Footprints, walk: Costs) -> Costs:
     """The price of the first grasp at each hold: nothing for the hold that he has, who must let go for any other."""
     if not errand.held:
         return walk
@@ -160,7 +160,7 @@ def _begin(errand: Errand, body: Stencil, walk: Costs) -> Costs:
     return begin
 
 
-def _grips(errand: Errand, body: Stencil) -> Costs:
+def _grips(errand: ManipulationQuery, body: Footprints) -> Costs:
     """The price of a grasp at each hold, -1 where it is to be avoided."""
     lying = {(int(x), int(y)) for x, y in body.lying}
     grips = []
@@ -171,7 +171,7 @@ def _grips(errand: Errand, body: Stencil) -> Costs:
     return np.array(grips, np.int32)
 
 
-def _allowed(errand: Errand, body: Stencil) -> Bools:
+def _allowed(errand: ManipulationQuery, body: Footprints) -> Bools:
     """In which directions one may push from each hold, in each quarter turn: (4, holds, 8)."""
     allowed = np.ones((4, len(body.holds), 8), np.bool_)
     if errand.pull:

@@ -14,7 +14,7 @@ import numpy as np
 import shapely
 
 from geometry.kernels.arrays import XY, Bools, Floats, Longs
-from geometry.manipulation.workspace import Yard, broad
+from geometry.manipulation.workspace import Workspace, broad
 from geometry.motion.se2 import Motion, Rotate, Translate
 from geometry.raster.rasterize import areas
 from geometry.state_lattice.footprints import DIRECTIONS
@@ -108,7 +108,7 @@ def only_pushes(shape: Any, place: XY, motions: Sequence[Motion]) -> bool:
 
 
 @dataclass(frozen=True)
-class Push:
+class PushSegment:
     """A push in several pieces that shall have fewer.
 
     shape : as it lies when the push begins. stops : (n, 2) places of Utak on the way that is known, the first where he
@@ -123,7 +123,7 @@ class Push:
     margin: float
     pull: bool
 
-    def pieces(self, yard: Yard) -> Floats:
+    def pieces(self, yard: Workspace) -> Floats:
         """The stops to keep, so that the push has the fewest straight pieces, then the shortest: (k, 2)."""
         if len(self.corners) <= 2:
             return self.stops[self.corners]
@@ -138,7 +138,7 @@ class Push:
                     best[j] = min(best[j], told)
         return self._traced(yard, stops, best)
 
-    def _traced(self, yard: Yard, stops: Floats, best: list[tuple[int, float, int]]) -> Floats:
+    def _traced(self, yard: Workspace, stops: Floats, best: list[tuple[int, float, int]]) -> Floats:
         """The stops of the best way to the last one, or to another end where that takes fewer pieces."""
         final, at = (best[-1][0], best[-1][1]), len(stops) - 1
         kept: list[Floats] = []
@@ -155,7 +155,7 @@ class Push:
             at = best[at][2]
         return np.array(kept[::-1])
 
-    def _free(self, yard: Yard, here: Floats, there: Floats) -> Bools:
+    def _free(self, yard: Workspace, here: Floats, there: Floats) -> Bools:
         """To which of some places (n, 2) he can push straight from one: (n,)."""
         utak = (float(self.stops[0, 0]), float(self.stops[0, 1]))
         vectors = there - here
@@ -165,7 +165,7 @@ class Push:
         return free
 
 
-def verified(yard: Yard, shape: Any, legs: Sequence[Leg]) -> Any:
+def verified(yard: Workspace, shape: Any, legs: Sequence[Leg]) -> Any:
     """The shape after all legs; None when one of the motions is not free or a grasp reaches nothing."""
     for leg in legs:
         at = leg.place

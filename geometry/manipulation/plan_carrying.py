@@ -1,4 +1,4 @@
-"""Carrying: how Utak brings a body to a goal, letting go of it and taking it again where he must.
+"""CarryingPlan: how Utak brings a body to a goal, letting go of it and taking it again where he must.
 
     plan = plan_carrying(brick, free, (3.5, 3.5), Inside(room))
     for leg in plan.legs:
@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from geometry.cspace.bottleneck import Neck
-from geometry.cspace.plan_motion import Plan
+from geometry.cspace.bottleneck import Bottleneck
+from geometry.cspace.plan_motion import MotionPlan
 from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.align import carry_straightened
 from geometry.manipulation.free_body import move_alone
@@ -27,20 +27,20 @@ from geometry.manipulation.goals import At, Between, End, InCorner, Inside, Room
 from geometry.manipulation.lattice_planner import carry_squarewise
 from geometry.manipulation.legs import Leg, commands, shifted, verified
 from geometry.manipulation.press import pressed
-from geometry.manipulation.query import Errand
+from geometry.manipulation.query import ManipulationQuery
 from geometry.manipulation.single_grasp import carry_freed, carry_held
-from geometry.manipulation.workspace import Yard
+from geometry.manipulation.workspace import Workspace
 from geometry.motion.first_contact import boundary_edges
 from geometry.motion.se2 import Pose, Rotate, Translate
 from geometry.motion.validation import check, sound
 
 LEAST_ANGLE = 0.1  # the sine of that at which two walls of a corner meet
 DEAREST_TURN = 2.5  # commands: with what a tight one costs besides, still below geometry.kernels.bucket_queue.RING
-__all__ = ["At", "Between", "Carrying", "InCorner", "Inside", "Leg", "Pose", "plan_carrying"]
+__all__ = ["At", "Between", "CarryingPlan", "InCorner", "Inside", "Leg", "Pose", "plan_carrying"]
 
 
 @dataclass(frozen=True)
-class Carrying:
+class CarryingPlan:
     """What plan_carrying found.
 
     Attributes
@@ -62,7 +62,7 @@ class Carrying:
     pose: Pose | None = None
     polygon: Any = None
     reason: str = ""
-    body: Plan | None = field(default=None, repr=False, compare=False)
+    body: MotionPlan | None = field(default=None, repr=False, compare=False)
     held: bool = False
 
     @property
@@ -84,13 +84,13 @@ class Carrying:
         pushes = [m for leg in self.legs for m in leg.motions if isinstance(m, Translate)]
         return math.fsum(math.hypot(push.dx, push.dy) for push in pushes)
 
-    def shifted(self, dx: float, dy: float) -> "Carrying":
+    def shifted(self, dx: float, dy: float) -> "CarryingPlan":
         """The same plan so much further east and north; for one that was found."""
         polygon = None if self.polygon is None else Translate(dx, dy).carry(self.polygon)
         return replace(self, legs=tuple(shifted(leg, dx, dy) for leg in self.legs), polygon=polygon)
 
     @cached_property
-    def passage(self) -> Neck | None:
+    def passage(self) -> Bottleneck | None:
         """The neck that is too narrow for the body; None unless impossible for want of one. Worked out when asked."""
         return None if self.body is None else self.body.passage
 
@@ -101,7 +101,7 @@ class Carrying:
 
     @cached_property
     def missing(self) -> float:
-        """By how much it is too narrow, in squares: see Plan.missing. nan unless there is a passage."""
+        """By how much it is too narrow, in squares: see MotionPlan.missing. nan unless there is a passage."""
         return math.nan if self.body is None else self.body.missing
 
 
@@ -117,8 +117,8 @@ def plan_carrying(
     walls: Any = None,
     held: bool = False,
     turn: float = 1.0,
-) -> Carrying:
-    """Plan how Utak carries a body to a goal.
+) -> CarryingPlan:
+    """MotionPlan how Utak carries a body to a goal.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def plan_carrying(
 
     Returns
     -------
-    Carrying : every motion free by exact first contact for body and Utak as one, with its numbers as they are told.
+    CarryingPlan : every motion free by exact first contact for body and Utak as one, with its numbers as they are told.
 
     Raises
     ------
@@ -155,17 +155,17 @@ def plan_carrying(
     _check_goal(goal)
     x0, y0, x1, y1 = shape.bounds
     if x0 <= -1.0 or y0 <= -1.0 or x1 >= free.shape[1] + 1.0 or y1 >= free.shape[0] + 1.0:
-        return Carrying("impossible", reason="start", held=held)
+        return CarryingPlan("impossible", reason="start", held=held)
     margin = min(margin, float(max(free.shape)))
     walk = free if walk is None else np.ascontiguousarray(walk, dtype=bool)
-    errand = Errand(shape, Yard(free, walls), utak, goal, margin, pull, tuple(avoid), walk, turn=turn)
+    errand = ManipulationQuery(shape, Workspace(free, walls), utak, goal, margin, pull, tuple(avoid), walk, turn=turn)
     errand = replace(errand, held=held and not errand.avoids(*errand.hold_from(utak)))
     if met(goal, shape, shape):
-        return Carrying("found", pose=Pose(0.0, 0.0), polygon=shape, held=held)
+        return CarryingPlan("found", pose=Pose(0.0, 0.0), polygon=shape, held=held)
     return replace(_planned(errand), held=held)
 
 
-def _planned(errand: Errand) -> Carrying:
+def _planned(errand: ManipulationQuery) -> CarryingPlan:
     """The word of the first planner that finds something, or why none does."""
     plan = _told(errand, pressed(errand, carry_squarewise(errand)))
     if plan is None and isinstance(errand.goal, InCorner) and errand.goal.press:
@@ -176,12 +176,12 @@ def _planned(errand: Errand) -> Carrying:
         return plan
     body = move_alone(errand)
     if body.status == "impossible":
-        return Carrying("impossible", reason=body.reason or "body", body=body)
+        return CarryingPlan("impossible", reason=body.reason or "body", body=body)
     if body.status == "found":
         plan = _told(errand, carry_held(errand, body.track)) or _told(errand, carry_freed(errand))
     else:  # where it lies too tightly to be told what it can do, it had better be brought out first
         plan = _told(errand, carry_freed(errand)) or _told(errand, carry_held(errand, body.track))
-    return plan or Carrying("limit", reason="hold" if body.status == "found" else "body", body=body)
+    return plan or CarryingPlan("limit", reason="hold" if body.status == "found" else "body", body=body)
 
 
 def _check(free: Bools, utak: XY, margin: float, avoid: Sequence[XY], walk: Bools | None, turn: float) -> None:
@@ -221,7 +221,7 @@ def _check_goal(goal: End) -> None:
         raise ValueError(f"the goal must be At, Inside, InCorner or Between, not {goal!r}")
 
 
-def _told(errand: Errand, legs: Sequence[Leg] | None) -> Carrying | None:
+def _told(errand: ManipulationQuery, legs: Sequence[Leg] | None) -> CarryingPlan | None:
     """The plan of some legs, when they are free and lead to the goal; else None."""
     shape = errand.shape
     end = None if legs is None else verified(errand.yard, shape, legs)
@@ -229,4 +229,4 @@ def _told(errand: Errand, legs: Sequence[Leg] | None) -> Carrying | None:
         return None
     degrees = math.fsum(m.degrees for leg in legs for m in leg.motions if isinstance(m, Rotate))
     dx, dy = end.centroid.x - shape.centroid.x, end.centroid.y - shape.centroid.y
-    return Carrying("found", tuple(legs), Pose(dx, dy, degrees), end)
+    return CarryingPlan("found", tuple(legs), Pose(dx, dy, degrees), end)

@@ -10,11 +10,11 @@ from itertools import product
 
 from geometry.manipulation.goals import CLOSE, InCorner
 from geometry.manipulation.legs import Leg, only_pushes, rounded, verified
-from geometry.manipulation.query import Errand
+from geometry.manipulation.query import ManipulationQuery
 from geometry.motion.se2 import Motion, Rotate, Translate
 
 
-def pressed(errand: Errand, legs: Sequence[Leg] | None) -> Sequence[Leg] | None:
+def pressed(errand: ManipulationQuery, legs: Sequence[Leg] | None) -> Sequence[Leg] | None:
     """Legs after which the body lies in a corner, of such as bring it nearly there; the same where that is not free.
 
     The last push is made longer, or else another one is made.
@@ -55,7 +55,7 @@ def _moves(motion: Motion) -> bool:
     return isinstance(motion, Rotate) or any(motion)
 
 
-def _may(errand: Errand, legs: Sequence[Leg]) -> bool:
+def _may(errand: ManipulationQuery, legs: Sequence[Leg]) -> bool:
     """Whether no push of the last leg goes backwards where that is forbidden."""
     if errand.pull:
         return True

@@ -10,14 +10,14 @@ import numpy as np
 from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.goals import At, End, placed
 from geometry.manipulation.legs import Leg
-from geometry.manipulation.workspace import Yard
+from geometry.manipulation.workspace import Workspace
 from geometry.motion.se2 import Pose, Rotate, Translate, turned
 
 NEAR = 0.25  # squares: a hold within this of one to be avoided is avoided
 
 
 @dataclass(frozen=True)
-class Errand:
+class ManipulationQuery:
     """What plan_carrying was asked.
 
     shape : as it lies. yard : where it and Utak may be. utak : where he is. goal : where the shape shall end. margin :
@@ -27,7 +27,7 @@ class Errand:
     """
 
     shape: Any
-    yard: Yard
+    yard: Workspace
     utak: XY
     goal: End
     margin: float
@@ -53,7 +53,7 @@ class Errand:
         return any(math.dist((x, y), refuted) <= NEAR for refuted in self.avoid)
 
 
-def after(errand: Errand, legs: Sequence[Leg], held: bool = False) -> Errand:
+def after(errand: ManipulationQuery, legs: Sequence[Leg], held: bool = False) -> ManipulationQuery:
     """The errand that is left after some legs: shape and Utak are elsewhere, the goal is the same.
 
     held : whether he has not let go at the end of them.

@@ -22,10 +22,10 @@ from geometry.kernels.arrays import XY, Floats
 from geometry.manipulation.align import carry_straightened
 from geometry.manipulation.free_body import move_alone
 from geometry.manipulation.goals import At, Between, InCorner, Inside, Roomy, placed
-from geometry.manipulation.grasps import Hold, holds_about, promise
+from geometry.manipulation.grasps import Grasp, holds_about, promise
 from geometry.manipulation.lattice_planner import carry_squarewise
 from geometry.manipulation.legs import Leg, at_utak, grip_square, only_pushes, rounded, verified
-from geometry.manipulation.query import Errand, after, joined
+from geometry.manipulation.query import ManipulationQuery, after, joined
 from geometry.manipulation.workspace import ARM, padded
 from geometry.motion.body import centre_pose, new_mover
 from geometry.motion.se2 import Motion, Pose
@@ -38,7 +38,7 @@ MOST_TURNS = 5  # that lay a body along a wall are tried
 AWAY = 0.1  # squares: how far from the walls of a corner a body is put
 
 
-def carry_held(errand: Errand, track: Floats) -> list[Leg] | None:
+def carry_held(errand: ManipulationQuery, track: Floats) -> list[Leg] | None:
     """One leg that leads to the goal, the first that is short enough or the best of some; None when none is found.
 
     track : (n, 3) a way of the body by itself, places and angles of some point of it, or nothing.
@@ -57,7 +57,7 @@ def carry_held(errand: Errand, track: Floats) -> list[Leg] | None:
     return [min(legs, key=lambda leg: leg.commands)] if legs else None
 
 
-def carry_freed(errand: Errand) -> list[Leg] | None:
+def carry_freed(errand: ManipulationQuery) -> list[Leg] | None:
     """Legs by whole squares to where there is room all round, near the pose to be reached, and then one leg there."""
     near = None
     if isinstance(errand.goal, At):
@@ -72,7 +72,7 @@ def carry_freed(errand: Errand) -> list[Leg] | None:
     return None if rest is None else joined(first, rest)
 
 
-def ends_of(errand: Errand) -> list[Pose | Inside]:
+def ends_of(errand: ManipulationQuery) -> list[Pose | Inside]:
     """The goal as poses of the body's centroid or regions. In a corner: near the walls, turned by quarters.
 
     Where it must not reach far from them, straight to the axes, however it lies now.
@@ -120,7 +120,9 @@ def _along(goal: Between, shape: Any, degrees: float) -> Pose:
     return Pose(shape.centroid.x + dx, shape.centroid.y + dy, degrees)
 
 
-def _leg(errand: Errand, hold: Hold, goal: Pose | Inside, roomy: bool, cells: int) -> tuple[Leg | None, int]:
+def _leg(
+    errand: ManipulationQuery, hold: Grasp, goal: Pose | Inside, roomy: bool, cells: int
+) -> tuple[Leg | None, int]:
     """The leg with one hold, with room about body and Utak or without, and how many cells that took."""
     square = grip_square(errand.shape, hold.place)
     if square is None and not hold.taken:
@@ -131,7 +133,9 @@ def _leg(errand: Errand, hold: Hold, goal: Pose | Inside, roomy: bool, cells: in
     return Leg(hold.place, square or (0, 0), motions, errand.hold_from(hold.place), hold.walk, hold.taken), looked
 
 
-def _motions(errand: Errand, place: XY, goal: Pose | Inside, roomy: bool, cells: int) -> tuple[tuple[Motion, ...], int]:
+def _motions(
+    errand: ManipulationQuery, place: XY, goal: Pose | Inside, roomy: bool, cells: int
+) -> tuple[tuple[Motion, ...], int]:
     """The motions that bring the shape to a goal with a hold, () when none are found; how many cells were looked at."""
     middle = np.array([errand.shape.centroid.x, errand.shape.centroid.y])
     utak = (place[0] - middle[0], place[1] - middle[1])

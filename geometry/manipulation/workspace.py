@@ -7,8 +7,8 @@ import numpy as np
 import shapely
 
 from geometry.kernels.arrays import Bools, Floats
-from geometry.motion.first_contact import Body, Obstacles
-from geometry.motion.obstacle_field import Floor
+from geometry.motion.first_contact import ContactBody, Obstacles
+from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Motion
 
 EDGE = 4.0  # squares: how thick the outside of the array is drawn
@@ -16,7 +16,7 @@ ARM = 0.45  # squares: how far Utak should keep from walls, where he can
 WHOLE = 1.0 - 1e-12
 
 
-class Yard:
+class Workspace:
     """The squares on which a body and Utak may be; all else, and all outside the array, is wall.
 
     Parameters
@@ -36,28 +36,28 @@ class Yard:
         self.obstacles = Obstacles(self.walls)
 
     @cached_property
-    def floor(self) -> Floor:
+    def floor(self) -> ObstacleField:
         """The walls prepared for plan_motion."""
         rows, columns = self.free.shape
-        return Floor(self.walls, (0.0, 0.0, float(columns), float(rows)))
+        return ObstacleField(self.walls, (0.0, 0.0, float(columns), float(rows)))
 
     def lets(self, shape: Any, utak: tuple[float, float], motion: Motion) -> bool:
         """Whether shape and Utak as one body can make a motion."""
-        return self.frees(Body(shape, [utak]), motion)
+        return self.frees(ContactBody(shape, [utak]), motion)
 
-    def frees(self, body: Body, motion: Motion) -> bool:
+    def frees(self, body: ContactBody, motion: Motion) -> bool:
         """Whether a body can make a motion to the end."""
         return self.obstacles.first_contact(body, motion).fraction >= WHOLE
 
-    def far(self, body: Body, vectors: Floats) -> Bools:
+    def far(self, body: ContactBody, vectors: Floats) -> Bools:
         """Which pushes (n, 2) a body can make to the end: (n,)."""
         free: Bools = self.obstacles.pushes(body, vectors) >= WHOLE
         return free
 
 
-def broad(shape: Any, utak: tuple[float, float], margin: float) -> Body:
+def broad(shape: Any, utak: tuple[float, float], margin: float) -> ContactBody:
     """Shape and Utak with all the room about them that they should have: a margin, and an arm's length."""
-    return Body(shapely.MultiPolygon(shapely.get_parts([padded(shape, margin), arms(utak)])))
+    return ContactBody(shapely.MultiPolygon(shapely.get_parts([padded(shape, margin), arms(utak)])))
 
 
 def padded(shape: Any, margin: float) -> Any:

@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from geometry.kernels.arrays import XY, Floats
-from geometry.motion.cell_clearance import Mover
+from geometry.motion.cell_clearance import MovingBody
 from geometry.motion.first_contact import boundary_edges, with_normals
 from geometry.motion.se2 import Pose
 from geometry.motion.validation import check, sound
@@ -21,7 +21,7 @@ SPECK = 1e-3  # squares: half the diagonal of what stands for a point that moves
 
 def new_mover(
     shape: Any, points: Iterable[tuple[float, float]] = (), pivot: tuple[float, float] | None = None
-) -> Mover:
+) -> MovingBody:
     """A body from its shape, its own origin being the reference point, and points that move with it.
 
     pivot : what it is turned about; None for the centre of the enclosing circle, about which it moves least.
@@ -38,8 +38,8 @@ def new_mover(
 
 
 @lru_cache(maxsize=32)
-def _mover(wkb: bytes, points: tuple[XY, ...], pivot: XY | None) -> Mover:
-    """The same: one body is planned for many times. Nobody writes into a Mover's arrays."""
+def _mover(wkb: bytes, points: tuple[XY, ...], pivot: XY | None) -> MovingBody:
+    """The same: one body is planned for many times. Nobody writes into a MovingBody's arrays."""
     shape = shapely.from_wkb(wkb)
     specks = [shapely.Point(p).buffer(SPECK, quad_segs=1) for p in points]
     whole = shapely.union_all([shape, *specks]) if specks else shape
@@ -52,7 +52,9 @@ def _mover(wkb: bytes, points: tuple[XY, ...], pivot: XY | None) -> Mover:
     probes = np.vstack([_discs(shape, middle), corners])
     away = np.hypot(probes[:, 0], probes[:, 1])
     seeds = np.array([part.exterior.coords[0] for part in shapely.get_parts(whole)]) - middle
-    return Mover(with_normals(edges), np.ascontiguousarray(np.column_stack([probes, away])), radius, -middle, seeds)
+    return MovingBody(
+        with_normals(edges), np.ascontiguousarray(np.column_stack([probes, away])), radius, -middle, seeds
+    )
 
 
 def _discs(shape: Any, middle: Floats) -> Floats:
@@ -77,7 +79,7 @@ def _discs(shape: Any, middle: Floats) -> Floats:
     return np.column_stack([places[taken] - middle, room[taken]])
 
 
-def centre_pose(mover: Mover, pose: Pose) -> Floats:
+def centre_pose(mover: MovingBody, pose: Pose) -> Floats:
     """The pose of the enclosing circle's centre, (x, y, radians), when the reference point is at a pose."""
     angle = math.radians(pose.degrees)
     c, s = math.cos(angle), math.sin(angle)
@@ -85,7 +87,7 @@ def centre_pose(mover: Mover, pose: Pose) -> Floats:
     return np.array([pose.x - c * ox + s * oy, pose.y - s * ox - c * oy, angle])
 
 
-def reference_pose(mover: Mover, pose: Floats) -> Pose:
+def reference_pose(mover: MovingBody, pose: Floats) -> Pose:
     """The pose of the reference point when the centre's is (x, y, radians)."""
     x, y, angle = (float(v) for v in pose)
     c, s = math.cos(angle), math.sin(angle)

@@ -14,7 +14,7 @@ from geometry.kernels.jit import bare
 FREE, OPEN, SHUT, FULL, DEAD = 0, 1, 2, 3, 4
 
 
-class Mover(NamedTuple):
+class MovingBody(NamedTuple):
     """A body about a centre.
 
     edges: (m, 7) rows x0, y0, x1, y1, outward normal, length. probes: (k, 4) rows x, y, r, distance from the centre:
@@ -29,7 +29,7 @@ class Mover(NamedTuple):
     seeds: Floats
 
 
-class Ground(NamedTuple):
+class NearbyEdges(NamedTuple):
     """Where a body moves.
 
     edges: (n, 7) of the united obstacles. raster: (rows, columns) signed distance to the obstacles at pixel centres,
@@ -49,7 +49,7 @@ class Ground(NamedTuple):
 
 
 @bare
-def rough_distance(ground: Ground, x: float, y: float) -> tuple[float, float]:
+def rough_distance(ground: NearbyEdges, x: float, y: float) -> tuple[float, float]:
     """The signed distance to the obstacles at the nearest pixel, and how far that is from (x, y)."""
     rows, columns = ground.raster.shape
     pixel = ground.frame[2]
@@ -61,7 +61,7 @@ def rough_distance(ground: Ground, x: float, y: float) -> tuple[float, float]:
 
 
 @bare
-def block_at(ground: Ground, x: float, y: float) -> int:
+def block_at(ground: NearbyEdges, x: float, y: float) -> int:
     """The block of a place."""
     size = ground.frame[2] * ground.blocks[1]
     columns = ground.blocks[0]
@@ -94,7 +94,7 @@ def inside(x: float, y: float, edges: Floats) -> bool:
 
 
 @bare
-def signed_distance(x: float, y: float, ground: Ground, block: int) -> float:
+def signed_distance(x: float, y: float, ground: NearbyEdges, block: int) -> float:
     """The distance from a point of the body to the obstacles, negative inside them; at most the ground's reach."""
     edges = ground.edges
     best, side = ground.reach * ground.reach, 1e9
@@ -111,7 +111,7 @@ def signed_distance(x: float, y: float, ground: Ground, block: int) -> float:
 
 
 @bare
-def distance_at(mover: Mover, ground: Ground, x: float, y: float, c: float, s: float) -> float:
+def distance_at(mover: MovingBody, ground: NearbyEdges, x: float, y: float, c: float, s: float) -> float:
     """The distance between the placed body and the obstacles, at most the ground's reach; -1 when they overlap."""
     edges, body = ground.edges, mover.edges
     best = ground.reach * ground.reach
@@ -159,7 +159,9 @@ def _edge_to_body(ax: float, ay: float, bx: float, by: float, length: float, bod
 
 
 @bare
-def classify(mover: Mover, ground: Ground, x: float, y: float, angle: float, spread: float, half: float) -> int:
+def classify(
+    mover: MovingBody, ground: NearbyEdges, x: float, y: float, angle: float, spread: float, half: float
+) -> int:
     """What a cell of poses is: about (x, y, angle), places at most `spread` away, angles at most `half`.
 
     FREE: the body overlaps nothing in any of them. FULL: it overlaps an obstacle in all. OPEN: neither is known, and at
@@ -191,7 +193,7 @@ def classify(mover: Mover, ground: Ground, x: float, y: float, angle: float, spr
 
 @bare
 def _in_bounds(
-    mover: Mover, ground: Ground, x: float, y: float, c: float, s: float, spread: float, swing: float
+    mover: MovingBody, ground: NearbyEdges, x: float, y: float, c: float, s: float, spread: float, swing: float
 ) -> int:
     """FREE, OPEN, SHUT or FULL by the bounds of the reference point alone."""
     ox, oy = mover.reference[0], mover.reference[1]
@@ -208,7 +210,7 @@ def _in_bounds(
 
 @bare
 def _always_overlaps(
-    mover: Mover, ground: Ground, x: float, y: float, c: float, s: float, spread: float, swing: float
+    mover: MovingBody, ground: NearbyEdges, x: float, y: float, c: float, s: float, spread: float, swing: float
 ) -> bool:
     """Whether an inscribed disc or a corner of either stays within the other, or two edges go on crossing."""
     block = block_at(ground, x, y)

@@ -49,7 +49,7 @@ UNSTOPPED = Contact(1.0)
 NO_EDGES = np.empty((0, 7))
 
 
-class Body:
+class ContactBody:
     """Something rigid that moves: a polygon (or several), points, or all as one.
 
     Parameters
@@ -75,9 +75,9 @@ class Body:
         loose = [(points, NO_EDGES, True), (points, NO_EDGES, False)] if len(points) else []
         self.runs: tuple[tuple[Floats, Floats, bool], ...] = (*solid, *loose)
 
-    def after(self, motion: Motion) -> "Body":
+    def after(self, motion: Motion) -> "ContactBody":
         """The body after a motion."""
-        moved = Body()
+        moved = ContactBody()
         edges = with_normals(motion.points(self.edges[:, :4].reshape(-1, 2)).reshape(-1, 4))
         moved._made_of(edges, np.ascontiguousarray(motion.points(self.points)))
         return moved
@@ -109,7 +109,7 @@ class Obstacles:
         hull = with_normals(boundary_edges(one))
         return Surface(hull, _drawn_in(hull, SKIN), _chunks(hull), self.surface.edges, self.surface.owner)
 
-    def first_contact(self, body: Body, motion: Motion) -> Contact:
+    def first_contact(self, body: ContactBody, motion: Motion) -> Contact:
         """Move a body until it would go into an obstacle.
 
         Returns
@@ -140,7 +140,7 @@ class Obstacles:
                 contact = Contact(fraction, (at_x, at_y), owner, (nx, ny))
         return contact
 
-    def pushes(self, body: Body, vectors: Floats) -> Floats:
+    def pushes(self, body: ContactBody, vectors: Floats) -> Floats:
         """Fractions travelled (n,) for many translations (n, 2) of one body from where it stands.
 
         Raises
@@ -154,7 +154,7 @@ class Obstacles:
             free = np.minimum(free, many_pushes(corners, edges, surface, vectors))
         return free
 
-    def turns(self, body: Body, degrees: Floats, pivots: Floats) -> Floats:
+    def turns(self, body: ContactBody, degrees: Floats, pivots: Floats) -> Floats:
         """Fractions travelled (n,) for many turns (n,), degrees, about pivots (n, 2) of one body from where it stands.
 
         Raises

@@ -17,7 +17,7 @@ from geometry.kernels.arrays import Floats, Longs
 from geometry.kernels.bucket_queue import Queue, new_queue, put, take
 from geometry.kernels.jit import bare, compiled
 from geometry.motion.body import centre_pose
-from geometry.motion.cell_clearance import Ground, Mover, distance_at, inside, point_to_edge
+from geometry.motion.cell_clearance import MovingBody, NearbyEdges, distance_at, inside, point_to_edge
 from geometry.motion.first_contact import Obstacles
 from geometry.motion.se2 import Pose
 from geometry.motion.validation import FURTHEST, sound
@@ -31,7 +31,7 @@ FAR = 2**40  # dearer than any
 WALL = 60  # going through pixels where the disc does not fit, but for a slot in them, looks so much dearer
 
 
-class Floor:
+class ObstacleField:
     """Obstacles and bounds, prepared once for many calls of plan_motion.
 
     Parameters
@@ -58,8 +58,8 @@ class Floor:
         self.frame = np.array([corner[0], corner[1], pixel])
         self.raster = np.empty((int(rows), int(columns)))
         _measure(self.surface.hull, self.frame, self.raster)
-        self._grounds: dict[float, Ground] = {}
-        self._around: dict[bytes, Floor] = {}
+        self._grounds: dict[float, NearbyEdges] = {}
+        self._around: dict[bytes, ObstacleField] = {}
 
     def finer(self, times: int) -> tuple[Floats, Floats]:
         """The frame and the raster with pixels of which so many make the side of one."""
@@ -68,30 +68,30 @@ class Floor:
         _measure(self.surface.hull, frame, raster)
         return frame, raster
 
-    def ground(self, mover: Mover) -> Ground:
+    def ground(self, mover: MovingBody) -> NearbyEdges:
         """What the kernels need to know of the floor for a body of this radius."""
         if mover.radius not in self._grounds:
             self._grounds[mover.radius] = self._prepare(mover.radius)
         return self._grounds[mover.radius]
 
-    def around(self, polygon: Any) -> "Floor":
+    def around(self, polygon: Any) -> "ObstacleField":
         """The floor on which all but a polygon is an obstacle: where a body is free it is within the polygon."""
         key = shapely.to_wkb(polygon)
         if key not in self._around:
             outer = shapely.box(*self.bounds).buffer(self.side, join_style="mitre")
             for part in shapely.get_parts(polygon):
                 outer = outer.difference(part)
-            self._around[key] = Floor(outer, self.bounds.tolist())
+            self._around[key] = ObstacleField(outer, self.bounds.tolist())
         return self._around[key]
 
-    def _prepare(self, radius: float) -> Ground:
+    def _prepare(self, radius: float) -> NearbyEdges:
         rows, columns = self.raster.shape
         down, across = math.ceil(rows / BLOCK), math.ceil(columns / BLOCK)
         first, near = _blocks(self.surface.hull, self.frame, down, across, 2 * radius)
         blocks = np.array([across, BLOCK])
-        return Ground(self.surface.hull, self.raster, self.frame, first, near, blocks, radius, self.bounds)
+        return NearbyEdges(self.surface.hull, self.raster, self.frame, first, near, blocks, radius, self.bounds)
 
-    def has_room(self, mover: Mover, shape: Any, points: Sequence[tuple[float, float]], pose: Pose) -> bool:
+    def has_room(self, mover: MovingBody, shape: Any, points: Sequence[tuple[float, float]], pose: Pose) -> bool:
         """Whether a body at a pose of its reference point is within bounds and at most touches obstacles.
 
         mover : the same shape and points, ready to be moved. Only what may touch needs the shape itself looked at.

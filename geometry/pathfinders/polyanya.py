@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.homotopy.funnel import Ends, Rope, measure_line, new_rope, reach, tighten_word
-from geometry.homotopy.strips import Runs, extend, run_at
+from geometry.homotopy.funnel import Ends, Funnel, measure_line, new_rope, reach, tighten_word
+from geometry.homotopy.strips import Strips, extend, run_at
 from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.heap import pop, push
 from geometry.kernels.jit import bare
@@ -50,17 +50,17 @@ class Nodes(NamedTuple):
     """(runs,) the stamp on dead ends that may be entered, for the goal lies in them."""
 
 
-class Scout(NamedTuple):
+class PolyanyaSearch(NamedTuple):
     """All scratch of a search."""
 
     nodes: Nodes
     word: Ints
-    rope: Rope
+    rope: Funnel
     line: Floats
     sizes: Ints
 
 
-def new_scout(room: int, runs: Runs) -> Scout:
+def new_scout(room: int, runs: Strips) -> PolyanyaSearch:
     """Scratch for that many nodes."""
     portals = len(runs.left)
     nodes = Nodes(
@@ -74,12 +74,14 @@ def new_scout(room: int, runs: Runs) -> Scout:
         np.zeros(len(runs.low), np.int32),
     )
     words = room // 8
-    return Scout(nodes, np.empty(words, np.int32), new_rope(words), np.empty((4 * words + 8, 2)), np.zeros(2, np.int32))
+    return PolyanyaSearch(
+        nodes, np.empty(words, np.int32), new_rope(words), np.empty((4 * words + 8, 2)), np.zeros(2, np.int32)
+    )
 
 
 @bare
 def shortest_line(
-    runs: Runs, ends: Ends, limit: float, nodes: Nodes, word: Ints, rope: Rope, line: Floats, sizes: Ints
+    runs: Strips, ends: Ends, limit: float, nodes: Nodes, word: Ints, rope: Funnel, line: Floats, sizes: Ints
 ) -> float:
     """The length of the shortest way; its numbers of symbols and corners go to ``sizes``, NONE or FULL to the first.
 
@@ -96,7 +98,7 @@ def shortest_line(
 
 
 @bare
-def shortest_word(runs: Runs, ends: Ends, limit: float, nodes: Nodes, word: Ints) -> int:
+def shortest_word(runs: Strips, ends: Ends, limit: float, nodes: Nodes, word: Ints) -> int:
     """Write the reduced word of the shortest way; returns its size, NONE when there is no way, FULL without room."""
     rows, lows, up, down, line = runs.row, runs.low, runs.up, runs.down, runs.line
     left, right, lower, upper = runs.left, runs.right, runs.lower, runs.upper

@@ -20,7 +20,7 @@ ROOM = FARTHEST + 4  # room on either side of a row of own distances, where ther
 TALLEST = 67  # squares; own distances beyond count as so much, lest 16 bits overflow; more than FARTHEST + 1
 
 
-class Window(NamedTuple):
+class RowWindow(NamedTuple):
     """Scratch of measuring rows of a padded width, from the north."""
 
     gap: Gaps
@@ -37,15 +37,15 @@ class Window(NamedTuple):
     """(width + 1,)"""
 
 
-def new_window(width: int) -> Window:
+def new_window(width: int) -> RowWindow:
     """Scratch as it is north of all rows."""
     own, reach = np.zeros(width + 2 * ROOM, np.int16), np.zeros(-(-width // STRETCH), np.int32)
     sites, heights = np.empty((2, width + 1), np.int64)
-    return Window(np.zeros(width, np.int16), own, np.empty(width, np.int16), reach, sites, heights)
+    return RowWindow(np.zeros(width, np.int16), own, np.empty(width, np.int16), reach, sites, heights)
 
 
 @bare
-def measure_rows(square: SquaredDistances, steps: Gaps, south: int, north: int, window: Window) -> bool:
+def measure_rows(square: SquaredDistances, steps: Gaps, south: int, north: int, window: RowWindow) -> bool:
     """Fill rows of ``square`` (rows + 2, columns + 2) from ``north`` down to ``south``, after those further north.
 
     ``steps`` (rows + 2, columns + 2 or more) has the steps to the nearest blocked square below; it may lie in the same

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.homotopy.landmarks import Ways
+from geometry.homotopy.landmarks import Landmarks
 from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.heap import pop, push
 from geometry.kernels.jit import bare
@@ -19,7 +19,7 @@ from geometry.skeleton.skeleton import States
 EAGER = 1.05  # times the bound, where arcs are made dearer anyway: a third of the time on random squares, as good ways
 
 
-class Query(NamedTuple):
+class RouteQuery(NamedTuple):
     """What one question adds to the pathgraph."""
 
     joint: Ints
@@ -78,7 +78,7 @@ def new_search(nodes: int, chains: int) -> Search:
 
 
 @bare
-def seek(ways: Ways, query: Query, search: Search, origin: int) -> bool:
+def seek(ways: Landmarks, query: RouteQuery, search: Search, origin: int) -> bool:
     """A* from a node to the goal, under the stamp's bars and seals; the way is then in ``came``.
 
     The shortest way, unless the query's line makes arcs dearer: then one at most EAGER times as dear as the cheapest.
@@ -150,7 +150,7 @@ def bound(sight: Floats, ends: Floats, end: int, node: int) -> float:
 
 
 @bare
-def survey(ways: Ways, query: Query, search: Search, limit: float) -> None:
+def survey(ways: Landmarks, query: RouteQuery, search: Search, limit: float) -> None:
     """Fill ``ahead`` with the exact distances to the goal: Dijkstra, backwards.
 
     Nodes that no way up to the limit can pass are left out.

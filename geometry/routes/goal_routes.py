@@ -7,15 +7,15 @@ from geometry.homotopy.portals import join_words, word_of_line
 from geometry.kernels.arrays import XY, Bools, Ints
 from geometry.passages.necks import Passage
 from geometry.routes.barrier import Barrier
-from geometry.routes.goal_sets import Region, edge_cells, regions, word_of_cells
+from geometry.routes.goal_sets import GoalRegion, edge_cells, regions, word_of_cells
 from geometry.routes.lifting import cells_of_word
-from geometry.routes.queries import CLOSE, SPARE, Questions
+from geometry.routes.queries import CLOSE, SPARE, LayerQueries
 from geometry.routes.route import Route
 from geometry.routes.tighten import tight_route
 
 
 def routes_to_area(
-    questions: Questions, start: XY, goal: Bools, k: int, avoid: tuple[Passage, ...] = ()
+    questions: LayerQueries, start: XY, goal: Bools, k: int, avoid: tuple[Passage, ...] = ()
 ) -> list[Route]:
     """Return at most so many routes to squares of a set, each the shortest of its class, shortest first.
 
@@ -25,7 +25,7 @@ def routes_to_area(
     """
     if not questions.admits(start):
         return []
-    area = Area(questions, start, goal, avoid)
+    area = GoalArea(questions, start, goal, avoid)
     best: dict[tuple[int, ...], Route] = {}
     for route, number, cell in [*area.nearest(), *area.by_representatives(k)]:
         word = word_of_line(questions.layer.runs, route.points.tolist())
@@ -38,16 +38,16 @@ def routes_to_area(
 Ending = tuple[Route, int, int]  # a route, the number of the part of the set in which it ends, and the cell
 
 
-class Area:
+class GoalArea:
     """A goal set and what is asked of it."""
 
-    def __init__(self, questions: Questions, start: XY, goal: Bools, avoid: tuple[Passage, ...]) -> None:
+    def __init__(self, questions: LayerQueries, start: XY, goal: Bools, avoid: tuple[Passage, ...]) -> None:
         self.questions, self.start, self.avoid = questions, start, avoid
         self.layer = questions.layer
         self.width: int = self.layer.square.shape[1]
         self.goal = goal & (self.layer.square[1:-1, 1:-1] >= questions.level)
         self.barrier: Barrier | None = questions.barrier(avoid) if avoid else None
-        self.places: list[Region] = regions(self.layer.square, questions.level, self.layer.runs, goal)
+        self.places: list[GoalRegion] = regions(self.layer.square, questions.level, self.layer.runs, goal)
         self.owner = {cell: number for number, place in enumerate(self.places) for cell in place.vertex}
 
     def nearest(self) -> list[Ending]:
@@ -81,7 +81,7 @@ class Area:
                 found.append(self.shortened(*self.cut(route, place)))
         return found
 
-    def cut(self, route: Route, place: Region) -> tuple[Ints, int]:
+    def cut(self, route: Route, place: GoalRegion) -> tuple[Ints, int]:
         """Return the word of a route to a representative up to the first cell of the set, and that cell.
 
         The whole of it where the way from square to square, unlike the route, leads through what is to be avoided.

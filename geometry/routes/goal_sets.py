@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.homotopy.strips import Runs, symbol_between
+from geometry.homotopy.strips import Strips, symbol_between
 from geometry.kernels.arrays import Bools, Ints, Labels, SquaredDistances
 from geometry.passages.partition import number_parts
 
 
-class Region(NamedTuple):
+class GoalRegion(NamedTuple):
     """One connected part of a goal set, in padded cells.
 
     A part may go round walls, and the end of a route may as well. So the part is folded: its rows of squares are
@@ -66,7 +66,7 @@ def checked_goal(goal: ArrayLike | set[tuple[int, int]], shape: tuple[int, int])
     raise ValueError(f"goal must be a point (x, y), a bool array of shape {shape} or a set of squares (column, row)")
 
 
-def regions(square: SquaredDistances, level: int, runs: Runs, goal: Bools) -> list[Region]:
+def regions(square: SquaredDistances, level: int, runs: Strips, goal: Bools) -> list[GoalRegion]:
     """Return the connected parts of a goal set where a body may be."""
     inside = np.zeros(square.shape, np.bool_)
     inside[1:-1, 1:-1] = goal & (square[1:-1, 1:-1] >= level)
@@ -76,7 +76,7 @@ def regions(square: SquaredDistances, level: int, runs: Runs, goal: Bools) -> li
     return [region(square, runs, label, number) for number in range(1, count + 1)]
 
 
-def region(square: SquaredDistances, runs: Runs, label: Labels, number: int) -> Region:
+def region(square: SquaredDistances, runs: Strips, label: Labels, number: int) -> GoalRegion:
     """Return one part."""
     width = square.shape[1]
     cells = np.flatnonzero(label == number)
@@ -92,7 +92,7 @@ def region(square: SquaredDistances, runs: Runs, label: Labels, number: int) -> 
             edges[row, int(symbol), above] = None
             edges[above, -int(symbol), row] = None
     vertex, step = folded(list(edges), int(rows[-1]) + 1)
-    return Region(best, {cell: vertex[row] for cell, row in row_of.items()}, step)
+    return GoalRegion(best, {cell: vertex[row] for cell, row in row_of.items()}, step)
 
 
 def folded(edges: list[tuple[int, int, int]], count: int) -> tuple[list[int], dict[tuple[int, int], int]]:
@@ -135,7 +135,7 @@ def edge_cells(square: SquaredDistances, level: int, goal: Bools, start: int) ->
     return [int(cell) for cell in np.flatnonzero(edge & inside & free)]
 
 
-def word_of_cells(runs: Runs, cells: list[int], width: int) -> Ints:
+def word_of_cells(runs: Strips, cells: list[int], width: int) -> Ints:
     """The portals crossed from cell to cell, not reduced."""
     symbols = [symbol_between(runs.row, runs.up, runs.left, a, b, width) for a, b in pairwise(cells)]
     return np.array([s for s in symbols if s], np.int32)

@@ -10,16 +10,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.homotopy.landmarks import Ways
+from geometry.homotopy.landmarks import Landmarks
 from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
-from geometry.routes.astar import Query, Search, seek, survey
+from geometry.routes.astar import RouteQuery, Search, seek, survey
 
 MANY = 2000  # chains from which on distances to the goal are first sought close about the shortest way alone
 
 
-class Album(NamedTuple):
-    """Ways found: those taken come first, shortest first, then those in hand, shortest first."""
+class PathStore(NamedTuple):
+    """Landmarks found: those taken come first, shortest first, then those in hand, shortest first."""
 
     place: Ints
     """(room,) in which row of the others each way stands."""
@@ -35,14 +35,14 @@ class Album(NamedTuple):
     """(room,) how many first arcs it has in common with the way that is being varied."""
 
 
-def new_album(room: int, longest: int) -> Album:
+def new_album(room: int, longest: int) -> PathStore:
     """Room for some ways of at most ``longest`` arcs."""
     place, size, fork, shared = (np.empty(room, np.int32) for _ in range(4))
-    return Album(place, np.empty(room), np.empty((room, longest), np.int32), size, fork, shared)
+    return PathStore(place, np.empty(room), np.empty((room, longest), np.int32), size, fork, shared)
 
 
 @bare
-def shortest_ways(ends: Ints, ways: Ways, query: Query, search: Search, album: Album, wanted: int) -> int:
+def shortest_ways(ends: Ints, ways: Landmarks, query: RouteQuery, search: Search, album: PathStore, wanted: int) -> int:
     """Fill the album with up to ``wanted`` shortest ways; returns their number. ``ends`` are those of the chains."""
     n = ways.head.shape[0]
     search.stamp[1] = 0
@@ -67,7 +67,9 @@ def shortest_ways(ends: Ints, ways: Ways, query: Query, search: Search, album: A
 
 
 @bare
-def branch(ends: Ints, ways: Ways, query: Query, search: Search, album: Album, way: int, have: int, wanted: int) -> int:
+def branch(
+    ends: Ints, ways: Landmarks, query: RouteQuery, search: Search, album: PathStore, way: int, have: int, wanted: int
+) -> int:
     """Put the best ways that leave a taken way, at each of its arcs from its fork on; returns how many there are."""
     joint, extra, length = query.joint, query.cost, ways.length
     path, barred, sealed, stamps = search.path, search.barred, search.sealed, search.stamp
@@ -121,7 +123,7 @@ def in_common(arcs: Ints, size: Ints, row: int, other: int) -> int:
 
 
 @bare
-def promise(ways: Ways, query: Query, search: Search, origin: int) -> float:
+def promise(ways: Landmarks, query: RouteQuery, search: Search, origin: int) -> float:
     """The least that a way from a node over an unsealed arc can cost."""
     arc, head, step = ways.arc, ways.head, ways.step
     joint, extra, shut = query.joint, query.cost, query.shut

@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.homotopy.landmarks import Ways, find_ways
-from geometry.homotopy.strips import Runs, find_runs
+from geometry.homotopy.landmarks import Landmarks, find_ways
+from geometry.homotopy.strips import Strips, find_runs
 from geometry.kernels.arrays import SquaredDistances
 from geometry.skeleton.chains import Chains
-from geometry.skeleton.graph import Bones, contract
+from geometry.skeleton.graph import SkeletonGraph, contract
 from geometry.skeleton.skeleton import States, Words
 from geometry.skeleton.sweep import grow_all
 
@@ -26,8 +26,8 @@ class Layer(NamedTuple):
     state: States
     """(rows + 2, columns + 2) links and flags of the skeleton."""
     chains: Chains
-    runs: Runs
-    ways: Ways
+    runs: Strips
+    ways: Landmarks
     body: bool
     """False for a point, which may use whole squares; True for a body, whose centre keeps to the lines of centres."""
 
@@ -40,14 +40,14 @@ def new_state(shape: tuple[int, ...], words: Words | None = None) -> tuple[State
     return words.view(np.uint8)[:cells].reshape(shape), words
 
 
-def find_bones(square: SquaredDistances, level: int, state: States, words: Words) -> Bones:
+def find_bones(square: SquaredDistances, level: int, state: States, words: Words) -> SkeletonGraph:
     """The pathgraph of the cells whose ``square`` is at least ``level``; fills ``state``."""
     grow_all(square, level, state, words)
     return contract(square, state, words)
 
 
 def find_layer(square: SquaredDistances, level: int, body: bool, state: States, chains: Chains) -> Layer:
-    """Runs and ways for a pathgraph."""
+    """Strips and ways for a pathgraph."""
     runs = find_runs(square, level)
     return Layer(square, state, chains, runs, find_ways(square, chains, runs, body), body)
 

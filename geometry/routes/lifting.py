@@ -13,7 +13,7 @@ import numpy as np
 
 from geometry.homotopy.funnel import Ends
 from geometry.homotopy.landmarks import locate
-from geometry.homotopy.strips import Runs
+from geometry.homotopy.strips import Strips
 from geometry.kernels.arrays import Ints
 from geometry.kernels.jit import bare
 from geometry.routes.layer import Layer
@@ -89,7 +89,7 @@ def cells_of_word(layer: Layer, ends: Ends, word: Ints) -> list[int]:
 
 @bare
 def lift_word(
-    heights: Heights, states: Flags, width: int, chains: Chains, runs: Runs, ends: Ends, word: Ints, trail: Trail
+    heights: Heights, states: Flags, width: int, chains: Chains, runs: Strips, ends: Ends, word: Ints, trail: Trail
 ) -> int:
     """Write the lowest square and the chains of a word's way over the skeleton to the trail's queue.
 
@@ -124,7 +124,7 @@ def direction_of(step: int) -> int:
 
 
 @bare
-def lay(runs: Runs, ends: Ends, word: Ints, width: int, trail: Trail) -> int:
+def lay(runs: Strips, ends: Ends, word: Ints, width: int, trail: Trail) -> int:
     """Lay a way of a word, along each run to the nearest square of the next portal; FULL when there is no room."""
     cell, before, after, queue, waits, tally = trail
     left, right = runs.left, runs.right

@@ -1,4 +1,4 @@
-"""Questions put to one layer of a screen, and the scratch they share."""
+"""LayerQueries put to one layer of a screen, and the scratch they share."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -13,7 +13,7 @@ from geometry.homotopy.portals import crossings_of, join_words, word_of_line
 from geometry.homotopy.strips import find_runs
 from geometry.kernels.arrays import XY, Bools, Ints
 from geometry.passages.necks import Passage
-from geometry.pathfinders.polyanya import FULL, NONE, Scout, new_scout, shortest_line
+from geometry.pathfinders.polyanya import FULL, NONE, PolyanyaSearch, new_scout, shortest_line
 from geometry.raster.exact_clearance import keeps_clear
 from geometry.routes.barrier import Barrier, raise_barrier, way_over_cells, way_to_skeleton
 from geometry.routes.goal_sets import word_of_cells
@@ -21,7 +21,7 @@ from geometry.routes.layer import Layer
 from geometry.routes.lifting import Lifted, Trail, lift, lift_word, new_trail
 from geometry.routes.loops import Arc, cells_of_way, closed_ways
 from geometry.routes.route import Route, length_of, read_answers
-from geometry.routes.router import OVERFLOW, Desk, Ground, ground_of, itineraries, new_desk
+from geometry.routes.router import OVERFLOW, RouterBuffers, RoutingData, ground_of, itineraries, new_desk
 from geometry.routes.tighten import tight_route
 from geometry.skeleton.chains import Chains
 
@@ -36,14 +36,14 @@ def rehearse() -> None:
     ints, ends_of, none = np.zeros(1, np.int32), np.full((1, 4), -1, np.int32), np.full((1, 4), -1, np.int16)
     chains = Chains(ints, ends_of, np.empty((0, 2), np.int32), ints, ints, ints[:0])  # one node, no chain
     runs = find_runs(none, 1)
-    ground = Ground(none[0], np.zeros(1, np.uint8), 1, chains, runs, find_ways(none, chains, runs, False), False)
+    ground = RoutingData(none[0], np.zeros(1, np.uint8), 1, chains, runs, find_ways(none, chains, runs, False), False)
     ends = 0.0, 0.0, 0.0, 0.0
     itineraries.entry(ground, ends, 1, new_desk(1, 1, 1, 1, 8, NO_BARS))
     shortest_line.entry(runs, ends, inf, *new_scout(8, runs))
     lift_word.entry(none[0], ground.states, 1, chains, runs, ends, ints, new_trail(1))
 
 
-class Questions:
+class LayerQueries:
     """A layer with the scratch of its searches, which grows as needed."""
 
     def __init__(self, layer: Layer, level: int, radius: float) -> None:
@@ -52,10 +52,10 @@ class Questions:
         self.radius = radius
         self._width: int = layer.square.shape[1]
         self._winding = bool(layer.runs.crossing.any())
-        self._desks: dict[int, Desk] = {}
-        self._scout: Scout | None = None
+        self._desks: dict[int, RouterBuffers] = {}
+        self._scout: PolyanyaSearch | None = None
         self._ground = ground_of(layer)
-        self._solve: Callable[[Ground, Ends, int, Desk], int] | None = None
+        self._solve: Callable[[RoutingData, Ends, int, RouterBuffers], int] | None = None
         self._trail: Trail | None = None
         self._raised: tuple[tuple[Passage, ...], Barrier] | None = None
 
@@ -79,7 +79,7 @@ class Questions:
         """How many ways over the pathgraph are pulled tight for so many routes."""
         return 1 if k == 1 else k + (SPARE if len(self.layer.ways.length) <= SMALL else FEWER)
 
-    def _search(self, ends: Ends, wanted: int, bars: Ints) -> tuple[Desk, int]:
+    def _search(self, ends: Ends, wanted: int, bars: Ints) -> tuple[RouterBuffers, int]:
         """The best ways over the pathgraph, pulled tight, and how many there are."""
         found, room = OVERFLOW, 0
         while found == OVERFLOW:
@@ -165,7 +165,7 @@ class Questions:
 
     def _scouted(self, length: float, ends: Ends | None) -> Route:
         """The way left in the scout; with its way over the skeleton when its ends are told."""
-        scout = cast(Scout, self._scout)
+        scout = cast(PolyanyaSearch, self._scout)
         size, corners = scout.sizes.tolist()
         points, word = scout.line[:corners].copy(), scout.word[:size]
         points.flags.writeable = False
@@ -202,7 +202,7 @@ class Questions:
         route = tight_route(self.layer, (*at, *at), word, 0.5 * lowest**0.5, chains)
         return self.with_ends(route, start, start)
 
-    def _desk(self, wanted: int, room: int) -> Desk:
+    def _desk(self, wanted: int, room: int) -> RouterBuffers:
         """Scratch for that many routes, with at least that much room for words."""
         desk = self._desks.get(wanted)
         if desk is None or len(desk.start) < room:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.kernels.arrays import Floats
-from geometry.routes.router import Answers
+from geometry.routes.router import RouteAnswers
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,7 +30,7 @@ class Route:
     when not known."""
 
 
-def read_answers(answers: Answers, found: int, most: int) -> list[Route]:
+def read_answers(answers: RouteAnswers, found: int, most: int) -> list[Route]:
     """The routes of a query, shortest first, at most so many."""
     bounds = answers.bounds[: found + 1].tolist()
     lengths, lowest = answers.length[:found].tolist(), answers.lowest[:found].tolist()

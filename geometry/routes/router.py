@@ -6,19 +6,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.homotopy.funnel import Ends, Rope, measure_line, new_rope, tighten_word
-from geometry.homotopy.landmarks import Anchor, Ways, add_chain, add_word, ascend, locate
-from geometry.homotopy.strips import Runs
+from geometry.homotopy.funnel import Ends, Funnel, measure_line, new_rope, tighten_word
+from geometry.homotopy.landmarks import Anchor, Landmarks, add_chain, add_word, ascend, locate
+from geometry.homotopy.strips import Strips
 from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
-from geometry.routes.astar import Query, Search, new_search
-from geometry.routes.k_shortest import Album, new_album, shortest_ways
+from geometry.routes.astar import RouteQuery, Search, new_search
+from geometry.routes.k_shortest import PathStore, new_album, shortest_ways
 from geometry.routes.layer import Layer
 from geometry.skeleton.chains import Chains
 from geometry.skeleton.skeleton import Flags, Heights, States
 
 
-class Answers(NamedTuple):
+class RouteAnswers(NamedTuple):
     """Room for the routes found. What belongs to route k lies between its bounds k and k + 1."""
 
     bounds: Ints
@@ -35,14 +35,14 @@ class Answers(NamedTuple):
     """(room,) the least squared clearance on the way over the skeleton, in half squares."""
 
 
-class Desk(NamedTuple):
+class RouterBuffers(NamedTuple):
     """All scratch of a query."""
 
-    query: Query
+    query: RouteQuery
     search: Search
-    album: Album
-    rope: Rope
-    answers: Answers
+    album: PathStore
+    rope: Funnel
+    answers: RouteAnswers
     start: Ints
     """From the start up to the skeleton."""
     goal: Ints
@@ -53,9 +53,9 @@ class Desk(NamedTuple):
     """(n + 2, 3) chains that a way walks, and the positions between which."""
 
 
-def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars: Ints) -> Desk:
+def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars: Ints) -> RouterBuffers:
     """Scratch for ``wanted`` routes of words up to ``room`` over a pathgraph of that size."""
-    query = Query(
+    query = RouteQuery(
         np.empty(4, np.int32),
         np.empty(5),
         np.empty((2, sights)),
@@ -64,7 +64,7 @@ def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars:
         bars,
     )
     answered = wanted if wanted > 1 else len(BOWS)
-    answers = Answers(
+    answers = RouteAnswers(
         np.zeros((answered + 1, 3), np.int32),
         np.empty((8 * room, 2)),
         np.empty(room * answered, np.int32),
@@ -74,7 +74,7 @@ def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars:
     )
     start, goal, whole = (np.empty(room, np.int32) for _ in range(3))
     stretch = np.empty((nodes + 2, 3), np.int32)
-    return Desk(
+    return RouterBuffers(
         query,
         new_search(nodes, chains),
         new_album(wanted, nodes + 2),
@@ -92,26 +92,26 @@ BOWS = 0.2, 6.0, 1.0  # by trial among the best three on the benchmark maps and 
 ENOUGH = 1.02  # times the straight line: no other way is looked for when a rope is no longer
 
 
-class Ground(NamedTuple):
+class RoutingData(NamedTuple):
     """What a query reads of a layer, for kernels."""
 
     heights: Heights
     states: Flags
     width: int
     chains: Chains
-    runs: Runs
-    ways: Ways
+    runs: Strips
+    ways: Landmarks
     body: bool
 
 
-def ground_of(layer: Layer) -> Ground:
+def ground_of(layer: Layer) -> RoutingData:
     """The same arrays, flat where they are read by cell."""
     heights, states = layer.square.reshape(-1), layer.state.reshape(-1)
-    return Ground(heights, states, layer.square.shape[1], layer.chains, layer.runs, layer.ways, layer.body)
+    return RoutingData(heights, states, layer.square.shape[1], layer.chains, layer.runs, layer.ways, layer.body)
 
 
 @bare
-def itineraries(ground: Ground, ends: Ends, wanted: int, desk: Desk) -> int:
+def itineraries(ground: RoutingData, ends: Ends, wanted: int, desk: RouterBuffers) -> int:
     """Fill the desk's answers with up to ``wanted`` tight routes, by the length of their ways over the pathgraph.
 
     When one is wanted, with up to three, the best ways for several bows, of which the shortest is meant. Returns their
@@ -175,7 +175,7 @@ def bow(line: Floats, ends: Ends, share: float) -> None:
 
 
 @bare
-def pose(query: Query, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, length: Floats) -> None:
+def pose(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, length: Floats) -> None:
     """Set the query's five arcs."""
     joint, cost, bars = query.joint, query.cost, query.bars
     for k in range(2):
@@ -279,7 +279,15 @@ def lowest_on(starts: Ints, cells: Ints, neck: Ints, heights: Heights, stretch: 
 
 @bare
 def spell(
-    starts: Ints, ways: Ways, rise: Ints, risen: int, stretch: Ints, steps: int, fall: Ints, fallen: int, word: Ints
+    starts: Ints,
+    ways: Landmarks,
+    rise: Ints,
+    risen: int,
+    stretch: Ints,
+    steps: int,
+    fall: Ints,
+    fallen: int,
+    word: Ints,
 ) -> int:
     """Write the portals of a way from start to goal; returns the word's size."""
     symbol, words, spelt = ways.symbol, ways.word, ways.spelt
@@ -295,15 +303,15 @@ def spell(
 
 @bare
 def publish(
-    runs: Runs,
+    runs: Strips,
     body: bool,
     word: Ints,
     size: int,
     ends: Ends,
-    rope: Rope,
+    rope: Funnel,
     stretch: Ints,
     steps: int,
-    answers: Answers,
+    answers: RouteAnswers,
     k: int,
 ) -> bool:
     """Pull the rope tight and write the k-th route; False when there is no room."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from geometry.homotopy.funnel import Ends, measure_line, new_rope, tighten_word
 from geometry.homotopy.portals import crossings_of, join_words
-from geometry.homotopy.strips import Runs, run_at
+from geometry.homotopy.strips import Strips, run_at
 from geometry.kernels.arrays import Ints
 from geometry.routes.layer import Layer
 from geometry.routes.route import Route
@@ -23,7 +23,7 @@ def tight_route(layer: Layer, ends: Ends, word: Ints, clearance: float, chains: 
     return Route(points, measure_line(points, corners), clearance, crossings_of(runs, word), chains)
 
 
-def word_of_crossings(runs: Runs, ends: Ends, crossings: Sequence[int]) -> Ints | None:
+def word_of_crossings(runs: Strips, ends: Ends, crossings: Sequence[int]) -> Ints | None:
     """The portals of the class with these crossing numbers; None when start and goal are not connected.
 
     Raises
@@ -52,7 +52,7 @@ def word_of_crossings(runs: Runs, ends: Ends, crossings: Sequence[int]) -> Ints 
     return None if last is None else join_words(*pieces, last)
 
 
-def forest(runs: Runs) -> Ints:
+def forest(runs: Strips) -> Ints:
     """Per run, the signed portal towards the first run of its component; 0 at that."""
     links: list[list[tuple[int, int]]] = [[] for _ in range(len(runs.low))]
     for portal in np.flatnonzero(runs.crossing == 0).tolist():
@@ -72,7 +72,7 @@ def forest(runs: Runs) -> Ints:
     return towards
 
 
-def way_in_forest(runs: Runs, tree: Ints, run: int, goal: int) -> Ints | None:
+def way_in_forest(runs: Strips, tree: Ints, run: int, goal: int) -> Ints | None:
     """The portals from one run to another over the forest; None when they are not connected."""
     up, top = way_to_root(runs, tree, run)
     down, other = way_to_root(runs, tree, goal)
@@ -81,7 +81,7 @@ def way_in_forest(runs: Runs, tree: Ints, run: int, goal: int) -> Ints | None:
     return join_words(np.array(up, np.int32), -np.array(down[::-1], np.int32))
 
 
-def way_to_root(runs: Runs, tree: Ints, run: int) -> tuple[list[int], int]:
+def way_to_root(runs: Strips, tree: Ints, run: int) -> tuple[list[int], int]:
     """The portals from a run to the first of its component, and that run."""
     word: list[int] = []
     while tree[run]:

@@ -27,7 +27,7 @@ SIZES, WIDTHS = 5.0, 2.0  # squares over which lengths and widths of arms are eq
 REACH = 10.0  # squares, to the east and to the north, over which two corners of a triangle are, seen from the third
 
 
-class Room(NamedTuple):
+class ParameterVolume(NamedTuple):
     """The room that a class has for an image.
 
     mean : (NUMBERS,), in the middle of the shapes that agree. log_likelihood : of the image.
@@ -37,7 +37,7 @@ class Room(NamedTuple):
     log_likelihood: float
 
 
-def room_for(kind: int, shape: Floats, image: Image, wrong: int) -> Room:
+def room_for(kind: int, shape: Floats, image: Image, wrong: int) -> ParameterVolume:
     """The room about a shape that gets so many squares of an image wrong. kind, shape, image : as in
     geometry.shapes.misfit.
 
@@ -47,7 +47,7 @@ def room_for(kind: int, shape: Floats, image: Image, wrong: int) -> Room:
     if kind == ELL and shape[6] != 0.0:
         free[6] = free[5]
     mean, volume = _wander(kind, shape, image, wrong, free, _luck())
-    return Room(mean, math.log(volume) + _density(kind, bool(free[6])))
+    return ParameterVolume(mean, math.log(volume) + _density(kind, bool(free[6])))
 
 
 def _density(kind: int, uneven: bool) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 
 from geometry.kernels.arrays import Ints
 from geometry.kernels.jit import bare
-from geometry.skeleton.graph import Bones, onward
+from geometry.skeleton.graph import SkeletonGraph, onward
 from geometry.skeleton.skeleton import Flags, States, stride
 
 
@@ -27,7 +27,7 @@ class Chains(NamedTuple):
     """(m,) index into ``cells`` of each chain's lowest cell in the order of skeleton.py."""
 
 
-def find_chains(bones: Bones, state: States) -> Chains:
+def find_chains(bones: SkeletonGraph, state: States) -> Chains:
     """Walk all chains."""
     states, width, size = state.reshape(-1), state.shape[1], len(bones.steps)
     start = np.zeros(size + 1, np.int32)

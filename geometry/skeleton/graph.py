@@ -20,7 +20,7 @@ LOOK = 4  # steps of a walk after which it looks whether there is room for as ma
 AHEAD = 1 << 14  # words of states: twice as many fit into a processor's own cache beside what a walk needs
 
 
-class Bones(NamedTuple):
+class SkeletonGraph(NamedTuple):
     """The pathgraph of n nodes and m chains; cells are padded indices (see distance_transform.py)."""
 
     node: Ints
@@ -33,7 +33,7 @@ class Bones(NamedTuple):
     """(m,) how many steps from square to square it takes from end to end."""
 
 
-def contract(square: SquaredDistances, state: States, words: Words) -> Bones:
+def contract(square: SquaredDistances, state: States, words: Words) -> SkeletonGraph:
     """The chains of the skeleton that ``state`` links."""
     heights, states, width = square.reshape(-1), state.reshape(-1), state.shape[1]
     eights, size, notes = words.view(np.int64), len(words), new_notes(len(states))
@@ -44,7 +44,7 @@ def contract(square: SquaredDistances, state: States, words: Words) -> Bones:
         neck, steps = np.empty(ends // 2, np.int32), np.empty(ends // 2, np.int32)
         seen = np.zeros(nodes, np.uint8)
         if pace_all(heights, states, eights, width, base, since, node, port, neck, steps, seen, notes) == links:
-            return Bones(node[:nodes], port, neck, steps)
+            return SkeletonGraph(node[:nodes], port, neck, steps)
         del node, port, neck, steps, seen  # their memory is wanted again
         halt_rings(heights, states, width, words)
 

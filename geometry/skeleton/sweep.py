@@ -9,7 +9,7 @@ import numpy as np
 
 from geometry.kernels.arrays import Bools, SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.raster.distance_rows import Window, measure_rows, new_window
+from geometry.raster.distance_rows import RowWindow, measure_rows, new_window
 from geometry.raster.distance_transform import Gaps, count_columns
 from geometry.skeleton.skeleton import Flags, Heights, States, Waiting, Words, grow
 
@@ -45,7 +45,7 @@ def sweep(
     states: Flags,
     words: Words,
     band: int,
-    window: Window,
+    window: RowWindow,
     flags: States,
     waiting: Waiting,
 ) -> None:

@@ -14,14 +14,14 @@ import numpy as np
 from geometry.kernels.arrays import Longs
 from geometry.kernels.jit import compiled
 from geometry.state_lattice.heuristic import NEVER, STILL
-from geometry.state_lattice.lattice import COMMAND, REGRASP, WALK, Board, Costs, turn_cost, turned_place
+from geometry.state_lattice.lattice import COMMAND, REGRASP, WALK, Costs, StateLattice, turn_cost, turned_place
 
 CALM = 4  # the haste of a search that takes the time it needs
 
 
 @compiled
 def haul(
-    board: Board,
+    board: StateLattice,
     left: Costs,
     ends: Costs,
     begin: Costs,
@@ -111,7 +111,7 @@ def _traced(parent: Costs, final: int) -> Longs:
 
 
 @compiled
-def _nexts(board: Board, hold: int, k: int, m: int, p: int, bend: int, around: Longs, price: Longs) -> int:
+def _nexts(board: StateLattice, hold: int, k: int, m: int, p: int, bend: int, around: Longs, price: Longs) -> int:
     """The nodes to which one step with the body in hand leads, and its price; how many."""
     squares = len(board.solid)
     base = (hold * 4 + k) * 9
@@ -148,7 +148,7 @@ def _nexts(board: Board, hold: int, k: int, m: int, p: int, bend: int, around: L
 
 
 @compiled
-def _walk(board: Board, hold: int, k: int, p: int, walk: Costs, seen: Costs, mark: int) -> None:
+def _walk(board: StateLattice, hold: int, k: int, p: int, walk: Costs, seen: Costs, mark: int) -> None:
     """Write what it costs to walk from a hold to each of the others while the body lies: (holds,), -1 without a way."""
     for n in range(board.image.first[k], board.image.first[k + 1]):
         seen[p + board.image.items[n]] = mark
@@ -156,7 +156,7 @@ def _walk(board: Board, hold: int, k: int, p: int, walk: Costs, seen: Costs, mar
 
 
 @compiled
-def _spread(board: Board, wanted: Longs, start: int, walk: Costs, seen: Costs, mark: int) -> None:
+def _spread(board: StateLattice, wanted: Longs, start: int, walk: Costs, seen: Costs, mark: int) -> None:
     """Write the price of walking from a square to each of those wanted. Squares seen with the mark are closed."""
     waiting = 0
     for n in range(len(wanted)):
@@ -182,7 +182,7 @@ def _spread(board: Board, wanted: Longs, start: int, walk: Costs, seen: Costs, m
 
 
 @compiled
-def first_walk(board: Board, place: int, start: int) -> Costs:
+def first_walk(board: StateLattice, place: int, start: int) -> Costs:
     """The price of walking from a square to each hold of the body where it lies unturned and taking it; -1 if none."""
     begin, seen = np.empty(len(board.grip), np.int32), np.zeros(len(board.solid), np.int32)
     for n in range(board.image.first[0], board.image.first[1]):

@@ -19,7 +19,7 @@ from shapely import affinity
 
 from geometry.kernels.arrays import Bools, Floats, Longs
 from geometry.kernels.jit import compiled
-from geometry.motion.first_contact import Body, Obstacles
+from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.time_of_impact import turn_through_skin
 from geometry.raster.rasterize import squares
 
@@ -27,7 +27,7 @@ DIRECTIONS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -
 
 
 @dataclass(frozen=True)
-class Stencil:
+class Footprints:
     """A shape among squares, as (columns, rows) offsets from the square of its centroid.
 
     home : (column, row) of the centroid's square where the shape lies now.
@@ -44,16 +44,16 @@ class Stencil:
     turns: tuple[Longs, ...]
 
 
-def new_stencil(near: Any, own: tuple[int, int] | None = None, holds: Longs | None = None) -> Stencil:
+def new_stencil(near: Any, own: tuple[int, int] | None = None, holds: Longs | None = None) -> Footprints:
     """The stencil of a shape whose centroid lies in the square (0, 0).
 
     own : the square of the one who has hold of it. holds : those that it is about, None for all that there are.
     """
     lying = _offsets(near)
     holds = _ring(lying, own) if holds is None else holds
-    body = Body(near)
+    body = ContactBody(near)
     steps = tuple(_step(near, lying, dx, dy) for dx, dy in DIRECTIONS)
-    return Stencil((0, 0), holds, lying, steps, tuple(_turn(body, lying, hold) for hold in holds))
+    return Footprints((0, 0), holds, lying, steps, tuple(_turn(body, lying, hold) for hold in holds))
 
 
 def quarter(offsets: Longs, count: int) -> Longs:
@@ -95,7 +95,7 @@ def swept(shape: Any, dx: float, dy: float) -> Any:
     return shapely.union_all(parts)
 
 
-def _turn(body: Body, lying: Longs, hold: Longs) -> Longs:
+def _turn(body: ContactBody, lying: Longs, hold: Longs) -> Longs:
     """The squares met by a quarter turn counter-clockwise about the middle of a square."""
     pivot = hold + 0.5
     far = math.ceil(float(np.hypot(*(body.edges[:, :2] - pivot).T).max())) + 1

@@ -9,7 +9,7 @@ import numpy as np
 
 from geometry.kernels.bucket_queue import new_queue, put, take
 from geometry.kernels.jit import compiled
-from geometry.state_lattice.lattice import COMMAND, Board, Costs, turn_cost, turned_place
+from geometry.state_lattice.lattice import COMMAND, Costs, StateLattice, turn_cost, turned_place
 
 STILL = 8  # the direction of a body that lies
 NEVER = 2**30
@@ -17,7 +17,7 @@ PUTS = 64  # entries for each pose: far more than come to be, and memory that is
 
 
 @compiled
-def guess(board: Board, ends: Costs, bend: int) -> Costs:
+def guess(board: StateLattice, ends: Costs, bend: int) -> Costs:
     """The least cost left: (4, 9, squares), by quarter turn and direction of the push that is under way.
 
     ends : (4, squares) the price of ending at a pose, -1 where the goal is not met; below RING. bend : the price of

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from geometry.kernels.arrays import Bools, Longs
 from geometry.kernels.jit import compiled
-from geometry.state_lattice.footprints import DIRECTIONS, Stencil, quarter
+from geometry.state_lattice.footprints import DIRECTIONS, Footprints, quarter
 
 Costs = npt.NDArray[np.int32]
 COMMAND = 500
@@ -30,7 +30,7 @@ class Lists(NamedTuple):
     first: Longs
 
 
-class Board(NamedTuple):
+class StateLattice(NamedTuple):
     """All that the search asks of table and body, in arrays for numba. Offsets are differences of square numbers.
 
     solid, walk : (squares,) what stops a body; where Utak may walk when nothing is in his way.
@@ -98,21 +98,21 @@ class Grid(NamedTuple):
         return _clear(solid, self.places(), self.offsets(offsets))
 
 
-def new_grid(free: Bools, body: Stencil, wide: Stencil) -> Grid:
+def new_grid(free: Bools, body: Footprints, wide: Footprints) -> Grid:
     """A grid padded widely enough for every step and turn of a body."""
     reach = max(int(np.abs(part).max()) for part in (*body.turns, *wide.turns, *wide.steps))
     return Grid(free.shape[1], free.shape[0], max(reach, 2 * int(np.abs(body.holds).max())) + 2)
 
 
 def new_board(
-    grid: Grid, free: Bools, walk: Bools, body: Stencil, wide: Stencil, grip: Costs, allowed: Bools, turn: int
-) -> Board:
+    grid: Grid, free: Bools, walk: Bools, body: Footprints, wide: Footprints, grip: Costs, allowed: Bools, turn: int
+) -> StateLattice:
     """The board of free squares (rows, columns) for a body, and for the same body with its margin."""
     solid = grid.padded(~free, True)
     places, quarters = grid.places(), [quarter(body.lying, k) for k in range(4)]
     push = _pushes(solid, places, _stepped(grid, body), _stepped(grid, wide), wide is not body)
     image, turns = _listed([grid.offsets(lying) for lying in quarters]), _turned(grid, body)
-    return Board(
+    return StateLattice(
         solid,
         grid.padded(walk, False),
         np.array([grid.offsets(quarter(body.holds, k)) for k in range(4)]),
@@ -129,12 +129,12 @@ def new_board(
     )
 
 
-def _stepped(grid: Grid, body: Stencil) -> Lists:
+def _stepped(grid: Grid, body: Footprints) -> Lists:
     """The squares met by a push, by quarter turn * 8 + direction."""
     return _listed([grid.offsets(quarter(body.steps[(d - 2 * k) % 8], k)) for k in range(4) for d in range(8)])
 
 
-def _turned(grid: Grid, body: Stencil) -> Lists:
+def _turned(grid: Grid, body: Footprints) -> Lists:
     """The squares met by a quarter turn counter-clockwise, by hold * 4 + quarter turn."""
     return _listed([grid.offsets(quarter(turn, k)) for turn in body.turns for k in range(4)])
 
@@ -164,7 +164,7 @@ def _clear(solid: Bools, places: Longs, offsets: Longs) -> Bools:
 
 @compiled
 def _pushes(solid: Bools, places: Longs, body: Lists, wide: Lists, with_margin: bool) -> Costs:
-    """The prices of Board.push."""
+    """The prices of StateLattice.push."""
     push = np.zeros((4, 8, len(solid)), np.int32)
     for k in range(4):
         for d in range(8):
@@ -176,13 +176,13 @@ def _pushes(solid: Bools, places: Longs, body: Lists, wide: Lists, with_margin: 
 
 
 @compiled
-def turned_place(board: Board, hold: int, quarters: int, place: int, way: int) -> int:
+def turned_place(board: StateLattice, hold: int, quarters: int, place: int, way: int) -> int:
     """Where the body's centroid comes to in so many quarter turns about a hold, counter-clockwise positive."""
     return int(place + board.holds[quarters, hold] - board.holds[(quarters + way) % 4, hold])
 
 
 @compiled
-def turn_cost(board: Board, hold: int, quarters: int, place: int, way: int) -> int:
+def turn_cost(board: StateLattice, hold: int, quarters: int, place: int, way: int) -> int:
     """The cost of a quarter turn (way 1 or -1) about a hold without the command itself, -1 when it is blocked."""
     if way < 0:
         place = turned_place(board, hold, quarters, place, way)

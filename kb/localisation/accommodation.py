@@ -17,13 +17,13 @@ from kb.localisation.after_carry import Carried
 from kb.localisation.after_walk import Walked
 from kb.localisation.holding import RECENT
 from kb.localisation.hypotheses.explanation import Accommodated, Explanation, statuses
-from kb.localisation.hypotheses.frames import ANYWHERE, Look
+from kb.localisation.hypotheses.frames import ANYWHERE, Observation
 from kb.localisation.hypotheses.remap import laid
-from kb.localisation.hypotheses.walk_outcomes import Moved, amid, ends, next_square, views
+from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis, amid, ends, next_square, views
 from kb.localisation.hypotheses.what_if import as_motion
 from kb.localisation.score import Place
-from kb.mapping.occupancy import FREE, FULL, Evidence
-from kb.objects.held_object import ROUNDING, Load, discounted
+from kb.mapping.occupancy import FREE, FULL, OccupancyMap
+from kb.objects.held_object import ROUNDING, HeldObject, discounted
 from kb.perception.retina import count_ranges
 
 REMEMBERED = 12  # motions that may turn out to have been stopped
@@ -40,7 +40,7 @@ class Memory(Walked, Carried):
         slips he takes no longer from what he has forgotten.
         """
         been = (*self.been, *(look.place for look in self.looks[:-1]))
-        return Memory(Evidence(), self.lattice, self.place, hypotheses=ANYWHERE, been=been)
+        return Memory(OccupancyMap(), self.lattice, self.place, hypotheses=ANYWHERE, been=been)
 
     def wake(self, impression: Impression) -> Accommodated:
         """Take in the first impression."""
@@ -59,7 +59,7 @@ class Memory(Walked, Carried):
         x, y = self.place
         return self._accommodate(impression, (x + shift[0], y + shift[1]), ends((x, y), shift), command)
 
-    def grasp(self, load: Load) -> None:
+    def grasp(self, load: HeldObject) -> None:
         """Believe that a thing is in hand: what is new as a load is taken out of the standing map.
 
         A thing lies on the floor, so there is floor under it.
@@ -69,12 +69,12 @@ class Memory(Walked, Carried):
         self.loads.setdefault(load.name, replace(load, since=len(self.looks)))
         self.held = load.name
 
-    def _take_out(self, load: Load) -> None:
+    def _take_out(self, load: HeldObject) -> None:
         """Believe that there is floor where a load lies."""
         patch = load.possible
         self.evidence.declare(self.evidence.squares(patch.west, patch.south, patch.mask), FREE, len(self.looks) - 1)
 
-    def _carry(self, impression: Impression, load: Load, command: Push | Turn) -> Accommodated:
+    def _carry(self, impression: Impression, load: HeldObject, command: Push | Turn) -> Accommodated:
         """Take in the impression that followed a push or a turn with a load in hand."""
         ranges, motion = count_ranges(impression.retina), as_motion(command, self.lattice, self.place)
         if isinstance(command, Turn) and self._beside_line:
@@ -123,7 +123,7 @@ class Memory(Walked, Carried):
 
     def _remember(self, command: Move | Push, load: str | None = None) -> None:
         """A motion that is looked at next may turn out to have ended otherwise. load : the name of what is in hand."""
-        motion = Moved(len(self.looks), (command.east, command.north), self.hypotheses, load=load)
+        motion = MotionHypothesis(len(self.looks), (command.east, command.north), self.hypotheses, load=load)
         self.moved = (*self.moved[1 - REMEMBERED :], motion)
 
     def _take_in(self, explanation: Explanation, ranges: NDArray[np.int16]) -> Accommodated:
@@ -135,7 +135,7 @@ class Memory(Walked, Carried):
         cells = statuses(self.evidence, samples, counts, x, y)
         self.place = explanation.place
         moved = tuple(laid(load, self.lattice) for load in self.loads.values())
-        self.looks.append(Look(ranges, self.lattice.place_to_utak(*self.place), moved))
+        self.looks.append(Observation(ranges, self.lattice.place_to_utak(*self.place), moved))
         self.evidence.look(samples, counts, x, y, len(self.looks) - 1)
         self.evidence.overruled += explanation.misfits  # also where two looks contradict, and nothing that was settled
         if len(self.looks) == 1:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from geometry.motion.se2 import Motion, Rotate
 from kb.localisation.hypotheses.carry_outcomes import Outcome, otherwise, predicted
-from kb.localisation.hypotheses.contacts import Hindrances, led_to, suspects
+from kb.localisation.hypotheses.contacts import Obstructions, led_to, suspects
 from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.what_if import Surprise, agreeing, clashes
 from kb.localisation.propose.blocked import halts, whole_first
@@ -17,7 +17,7 @@ from kb.localisation.propose.held_object_state import after, leaning
 from kb.localisation.propose.larger_object import larger
 from kb.localisation.score import CONTRADICTED, Judging, Place
 from kb.mapping.patch import covered
-from kb.objects.held_object import ROUNDING, Load
+from kb.objects.held_object import ROUNDING, HeldObject
 
 CLEAR = 0.25  # how likely a motion is stopped, at most, that comes upon nothing
 
@@ -25,7 +25,7 @@ CLEAR = 0.25  # how likely a motion is stopped, at most, that comes upon nothing
 class Carried(Judging):
     """What is held true, with the explanations of a look after a motion of what he holds."""
 
-    def _came_of(self, surprise: Surprise, load: Load, motion: Motion) -> Explanation:
+    def _came_of(self, surprise: Surprise, load: HeldObject, motion: Motion) -> Explanation:
         """What came of a motion with a load in hand, by the look after it."""
         ranges = surprise.ranges
         whole = self._outcome(surprise, predicted(self.place, load.polygon, motion))
@@ -54,7 +54,7 @@ class Carried(Judging):
         told = {"unchanged": unchanged, "clear": clear, "uneven": uneven}
         return self._choose(explanations, [fact for fact, so in told.items() if so])
 
-    def _halted_push(self, surprise: Surprise, load: Load, motion: Motion) -> list[Explanation]:
+    def _halted_push(self, surprise: Surprise, load: HeldObject, motion: Motion) -> list[Explanation]:
         """Where a push came to a halt that may have been stopped, of the halts that the look bears out."""
         ended = []
         for halt in halts(surprise, load, motion):
@@ -62,7 +62,7 @@ class Carried(Judging):
             ended.append((halt, self._outcome(surprise, halt.outcome)))
         return self._halted(surprise, ended)
 
-    def _carried(self, load: Load, chosen: Explanation, motion: Motion, ranges: NDArray[np.int16]) -> None:
+    def _carried(self, load: HeldObject, chosen: Explanation, motion: Motion, ranges: NDArray[np.int16]) -> None:
         """Believe what came of a motion with a load in hand."""
         self.slipped |= chosen.how == "slipped"
         others, place = self._others(load), chosen.place
@@ -71,11 +71,11 @@ class Carried(Judging):
         load = replace(load, inexact=load.inexact or self.slipped)
         carried = after(load, chosen.outcome, chosen.misfits, bool(suspected))
         if carried.inexact and carried.proven and not suspected and chosen.outcome and chosen.outcome.stopped:
-            walls = Hindrances(self.evidence, place, carried.polygon, motion).walls
+            walls = Obstructions(self.evidence, place, carried.polygon, motion).walls
             carried = leaning(carried, motion, walls, lambda lying: self._clashes(ranges, place, [*others, lying]))
         self.loads[load.name] = carried
 
-    def _smaller(self, ranges: NDArray[np.int16], load: Load, whole: Explanation) -> list[Explanation]:
+    def _smaller(self, ranges: NDArray[np.int16], load: HeldObject, whole: Explanation) -> list[Explanation]:
         """That less of a thing was seen than was predicted, for it does not fill its squares. whole : as predicted."""
         outcome = whole.outcome
         assert outcome is not None
@@ -86,7 +86,7 @@ class Carried(Judging):
         told = outcome._replace(how="smaller", polygon=less.polygon, insets=less.insets)
         return [whole._replace(how="smaller", misfits=0, outcome=told)]
 
-    def _told(self, load: Load, ranges: NDArray[np.int16], place: Place) -> Load | None:
+    def _told(self, load: HeldObject, ranges: NDArray[np.int16], place: Place) -> HeldObject | None:
         """What a look tells of how far in the sides of a thing lie; None when it agrees with no such outline.
 
         Where the thing may lie there is rather floor than something that happens to fill what the thing leaves free.
@@ -100,7 +100,7 @@ class Carried(Judging):
 
         return load.told(agrees)
 
-    def _others(self, load: Load) -> list[Load]:
+    def _others(self, load: HeldObject) -> list[HeldObject]:
         """All loads but one."""
         return [other for other in self.loads.values() if other.name != load.name]
 

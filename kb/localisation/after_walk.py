@@ -13,8 +13,8 @@ from kb.localisation.hypotheses.explanation import Explanation, misled
 from kb.localisation.hypotheses.frames import (
     DOUBTED,
     MEMORY,
-    Hypothesis,
-    Look,
+    FrameHypothesis,
+    Observation,
     anywhere,
     candidates,
     cramped,
@@ -23,11 +23,18 @@ from kb.localisation.hypotheses.frames import (
 )
 from kb.localisation.hypotheses.map_prior import weighed
 from kb.localisation.hypotheses.remap import Prefixes, relaid
-from kb.localisation.hypotheses.walk_outcomes import Moved, Retold, around, retold, retold_both, views
+from kb.localisation.hypotheses.walk_outcomes import (
+    MotionHypothesis,
+    ReestimatedWalk,
+    around,
+    retold,
+    retold_both,
+    views,
+)
 from kb.localisation.propose.blocked import halts, whole_first
 from kb.localisation.propose.origin import misplaced
 from kb.localisation.score import CONTRADICTED, MOST_SEARCHES, Judging, Place
-from kb.perception.frame import Lattice
+from kb.perception.frame import Frame
 
 MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one is believed
 KEPT = 16  # lattices on which the first looks are kept laid, for other motions
@@ -44,7 +51,7 @@ class Walked(Judging):
         ahead = [self._explanation("predicted", place, ranges, predicted) for place in views(predicted)]
         first = min(ahead, key=lambda one: one.misfits)
         predicted = first.place
-        look = Look(ranges, self.lattice.place_to_utak(*predicted))
+        look = Observation(ranges, self.lattice.place_to_utak(*predicted))
         halted = self._halted_walk(command, ranges) if stops and command is not None else []
         if halted and not whole_first(halted) and not first.misfits:
             first = first._replace(misfits=CONTRADICTED)
@@ -94,8 +101,8 @@ class Walked(Judging):
 
     def _misled(
         self,
-        look: Look,
-        told: Callable[[Moved], Iterable[Retold]],
+        look: Observation,
+        told: Callable[[MotionHypothesis], Iterable[ReestimatedWalk]],
         turned: list[Explanation],
         others: list[Explanation],
     ) -> list[Explanation]:
@@ -112,7 +119,7 @@ class Walked(Judging):
             met = [e for e in met if e.lattice == self.lattice]
         return met or self._stopped_twice(look)
 
-    def _stopped(self, look: Look, told: Iterable[Iterable[Retold]]) -> list[Explanation]:
+    def _stopped(self, look: Observation, told: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
         """That one of some motions was stopped, as it was told. look : as predicted.
 
         Where the newest one came to a halt on the lattice held is judged already, if it may have been stopped at all.
@@ -125,7 +132,7 @@ class Walked(Judging):
             if one.correction.since != judged or e.lattice != self.lattice
         ]
 
-    def _stopped_twice(self, look: Look) -> list[Explanation]:
+    def _stopped_twice(self, look: Observation) -> list[Explanation]:
         """That the newest motion was stopped, and one before it unnoticed, on the lattice held. look : as predicted."""
         looks, newest, found = [*self.looks, look], self.moved[-1], []
         held = [hypothesis for hypothesis in newest.hypotheses if hypothesis.lattice == self.lattice][:1]
@@ -136,7 +143,9 @@ class Walked(Judging):
             found.append(Explanation("misled", place, self.lattice, 0, far, None, self.hypotheses, told))
         return found
 
-    def _plainest(self, ended: Sequence[Explanation], look: Look, left: tuple[Hypothesis, ...]) -> Explanation:
+    def _plainest(
+        self, ended: Sequence[Explanation], look: Observation, left: tuple[FrameHypothesis, ...]
+    ) -> Explanation:
         """The lattice held, on which nothing contradicts, or another one on which the table looks plainer.
 
         ended : explanations of a look on the lattice held. left : the hypotheses that stand, weighed.
@@ -150,7 +159,9 @@ class Walked(Judging):
             explanations.append(Explanation("turned", place, plainest, 0, 0.0, None, left))
         return self._choose(explanations, ["stands"])
 
-    def _turned(self, look: Look, left: tuple[Hypothesis, ...], recent: list[Look]) -> list[Explanation]:
+    def _turned(
+        self, look: Observation, left: tuple[FrameHypothesis, ...], recent: list[Observation]
+    ) -> list[Explanation]:
         """The lattice to believe instead of the one held, on which looks contradict.
 
         look : the new one, as predicted, recent : the last ones with it. left : the hypotheses that stand.
@@ -170,7 +181,7 @@ class Walked(Judging):
         crooked = self._dear(lattice.angle)
         return [Explanation("turned", place, lattice, misfits, 0.0, None, left, crooked=crooked)] * bool(left)
 
-    def _borne_out(self, left: tuple[Hypothesis, ...], look: Look) -> tuple[Lattice, int]:
+    def _borne_out(self, left: tuple[FrameHypothesis, ...], look: Observation) -> tuple[Frame, int]:
         """Of the lattices left, the one that all looks bear out best, and how many fields it leaves as noise."""
         if not left:
             return self.lattice, NONE_FITS

@@ -8,12 +8,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.frames import CENTRED, Box, Hypothesis, Look, leeway
-from kb.localisation.hypotheses.walk_outcomes import HAIR, Moved
-from kb.mapping.completions import Pictures
-from kb.mapping.occupancy import FREE, OPEN, Evidence
-from kb.objects.held_object import Load
-from kb.perception.frame import CENTRE, Lattice
+from kb.localisation.hypotheses.frames import CENTRED, Box, FrameHypothesis, Observation, leeway
+from kb.localisation.hypotheses.walk_outcomes import HAIR, MotionHypothesis
+from kb.mapping.completions import Completions
+from kb.mapping.occupancy import FREE, OPEN, OccupancyMap
+from kb.objects.held_object import HeldObject
+from kb.perception.frame import CENTRE, Frame
 
 RECENT = 4  # looks by which he tells that he is lost
 LOST = 8  # misfits, of these looks
@@ -34,23 +34,23 @@ class Holding:
     look after it, if it came upon anything. pictures : the last ones of the map on this lattice, if any were drawn.
     """
 
-    evidence: Evidence = field(default_factory=Evidence)
-    lattice: Lattice = field(default_factory=Lattice)
+    evidence: OccupancyMap = field(default_factory=OccupancyMap)
+    lattice: Frame = field(default_factory=Frame)
     place: Place = CENTRE
-    looks: list[Look] = field(default_factory=list)
-    hypotheses: tuple[Hypothesis, ...] = CENTRED
+    looks: list[Observation] = field(default_factory=list)
+    hypotheses: tuple[FrameHypothesis, ...] = CENTRED
     trust: int = 0
     barred: set[tuple[int, int]] = field(default_factory=set)
     suspected: set[tuple[int, int]] = field(default_factory=set)
     searches: int = 0
     slipped: bool = False
-    moved: tuple[Moved, ...] = ()
-    loads: dict[str, Load] = field(default_factory=dict)
+    moved: tuple[MotionHypothesis, ...] = ()
+    loads: dict[str, HeldObject] = field(default_factory=dict)
     held: str | None = None
     unfit: tuple[int, ...] = ()
     been: tuple[Place, ...] = ()
     ended: tuple[Explanation, ...] = ()
-    pictures: Pictures | None = None
+    pictures: Completions | None = None
 
     @property
     def lost(self) -> bool:
@@ -83,7 +83,7 @@ class Holding:
         """The same of those on which the table is hardly less plain than on any other."""
         return self._spread(other for other in self.hypotheses if other.is_plausible)
 
-    def _spread(self, hypotheses: Iterable[Hypothesis]) -> float:
+    def _spread(self, hypotheses: Iterable[FrameHypothesis]) -> float:
         return math.radians(max((abs(other.angle - self.lattice.angle) for other in hypotheses), default=0))
 
     @property
@@ -135,7 +135,7 @@ class Holding:
         """Did a look contradict another one, or a motion end beside where it should?"""
         return self.slipped or self.evidence.overruled > 0
 
-    def _elsewhere_likely(self, motion: Moved) -> bool:
+    def _elsewhere_likely(self, motion: MotionHypothesis) -> bool:
         """Did a motion likely end in another square than is believed, by the look after it?"""
         if motion.number >= len(self.looks):
             return False
@@ -144,16 +144,16 @@ class Holding:
         return len(squares) > 1
 
     @property
-    def tellable(self) -> tuple[Moved, ...]:
+    def tellable(self) -> tuple[MotionHypothesis, ...]:
         """The last straight motions that can be told again: alone, or with a thing that is still known, in hand."""
         return tuple(motion for motion in self.moved if motion.load is None or motion.load in self.loads)
 
     @property
-    def in_doubt(self) -> tuple[Moved, ...]:
+    def in_doubt(self) -> tuple[MotionHypothesis, ...]:
         """Those that likely ended elsewhere than is believed."""
         return tuple(motion for motion in self.earlier if motion.likely(DOUBTED))
 
     @property
-    def earlier(self) -> tuple[Moved, ...]:
+    def earlier(self) -> tuple[MotionHypothesis, ...]:
         """Those of them after which a look was taken in already."""
         return tuple(motion for motion in self.tellable if motion.number < len(self.looks))

@@ -11,12 +11,12 @@ from kb.body import Command
 from kb.localisation.holding import Holding
 from kb.localisation.hypotheses.explanation import Explanation, cheapest
 from kb.localisation.hypotheses.map_prior import UNTRIED
-from kb.localisation.hypotheses.remap import Layings, relaid
+from kb.localisation.hypotheses.remap import RemapCache, relaid
 from kb.localisation.hypotheses.what_if import Surprise, clashes
 from kb.localisation.propose import blocked
-from kb.localisation.propose.earlier_motion import Recalled, recalled, recalled_elsewhere
+from kb.localisation.propose.earlier_motion import ReestimatedMotion, recalled, recalled_elsewhere
 from kb.localisation.propose.frame import explained, halted_elsewhere
-from kb.objects.held_object import Load, borne_out
+from kb.objects.held_object import HeldObject, borne_out
 
 MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are blamed for what contradicts
 HOPELESS = 18  # times that nothing else explained it better before nothing more is tried that takes as long
@@ -43,7 +43,9 @@ class Judging(Holding):
             self.pictures,
         )
 
-    def _halted(self, surprise: Surprise, ended: Iterable[tuple[blocked.Halt, Explanation]]) -> list[Explanation]:
+    def _halted(
+        self, surprise: Surprise, ended: Iterable[tuple[blocked.BlockedMotion, Explanation]]
+    ) -> list[Explanation]:
         """Of the halts of the newest motion, told so, those that its look bears out: they are remembered."""
         told = (one._replace(chance=halt.chance, against=halt.against) for halt, one in ended if not one.misfits)
         self.ended = tuple(blocked.borne_out(surprise, told))
@@ -113,7 +115,7 @@ class Judging(Holding):
         likely = explanation.how != "slipped" or self.slipped
         return likely and not explanation.misfits and explanation.lattice.angle == self.lattice.angle
 
-    def _told_again(self, recalled: Recalled) -> Explanation:
+    def _told_again(self, recalled: ReestimatedMotion) -> Explanation:
         """That an earlier motion ended elsewhere than is believed, as it was told again."""
         told, one = recalled
         far = math.hypot(*told.correction.shift)
@@ -146,7 +148,7 @@ class Judging(Holding):
             return 0.0
         return min((one.dear for one in self.hypotheses if one.angle == angle), default=UNTRIED)
 
-    def _clashes(self, ranges: NDArray[np.int16], place: Place, loads: Iterable[Load]) -> int:
+    def _clashes(self, ranges: NDArray[np.int16], place: Place, loads: Iterable[HeldObject]) -> int:
         """How many fields cannot be right if the impression was received at a place, with the loads where they lie."""
         return clashes(self.lattice, self.evidence, loads, place, ranges)
 
@@ -174,7 +176,7 @@ class Judging(Holding):
         if chosen.retold is not None or len(loads) < len(self.loads):
             under = relaid(chosen.lattice, self.lattice, self.looks, loads.values())
         else:
-            under = Layings(self.lattice, self.evidence, self.looks, loads).on(chosen.lattice)
+            under = RemapCache(self.lattice, self.evidence, self.looks, loads).on(chosen.lattice)
         if under.evidence is not self.evidence:
             self.barred, self.suspected, self.pictures = set(), set(), None
         self.lattice, self.evidence, self.loads = chosen.lattice, under.evidence, dict(under.loads)

@@ -1,4 +1,4 @@
-"""Pictures of what no count settles: drawn for one scene at a time, and gone on with from look to look.
+"""Completions of what no count settles: drawn for one scene at a time, and gone on with from look to look.
 
 The squares that are not settled fall into scenes that tell nothing of each other: no field looks at two of them, and
 settled squares lie in between. What is drawn of a scene stays as it is until a look tells something new of it; then
@@ -30,7 +30,7 @@ Image = NDArray[np.int8]
 Told = tuple[int | bytes, ...]
 
 
-class Scene(NamedTuple):
+class CompletionTask(NamedTuple):
     """A part of the map to be pictured. ground, first: as for geometry.counts.gibbs.pictures, cut to the part.
 
     rows, columns : where it lies on the map. counts : of the squares to be drawn alone, with flat indices of the part.
@@ -48,8 +48,8 @@ class Scene(NamedTuple):
         return view.west + self.columns.start, view.south + self.rows.start, *(array.tobytes() for array in arrays)
 
 
-class Pictures(NamedTuple):
-    """Pictures of a map.
+class Completions(NamedTuple):
+    """Completions of a map.
 
     west, south : the lattice square at [0, 0]. ground : (rows, columns) int8, what is given. images : (PICTURES, rows,
     columns) int8, 1 where a square is occupied. scenes : the pictures of each, (PICTURES, n) int8.
@@ -70,7 +70,7 @@ class Pictures(NamedTuple):
         shown: NDArray[np.bool_] = self.images[:, row, column] > 0
         return shown
 
-    def over(self, scene: Scene, view: MapView) -> "Pictures":
+    def over(self, scene: CompletionTask, view: MapView) -> "Completions":
         """The part that lies where a scene of another map is; unseen where there is none."""
         south, west = view.south + scene.rows.start - self.south, view.west + scene.columns.start - self.west
         ground: Image = np.full(scene.ground.shape, UNSEEN, np.int8)
@@ -81,10 +81,10 @@ class Pictures(NamedTuple):
         own = slice(low + south, top + south), slice(left + west, right + west)
         ground[low:top, left:right] = self.ground[own]
         images[:, low:top, left:right] = self.images[:, own[0], own[1]]
-        return Pictures(self.west + west, self.south + south, ground, images, {})
+        return Completions(self.west + west, self.south + south, ground, images, {})
 
 
-NO_PICTURES = Pictures(0, 0, np.zeros((0, 0), np.int8), np.zeros((PICTURES, 0, 0), np.int8), {})
+NO_PICTURES = Completions(0, 0, np.zeros((0, 0), np.int8), np.zeros((PICTURES, 0, 0), np.int8), {})
 
 
 def ground_of(view: MapView) -> Image:
@@ -96,8 +96,8 @@ def ground_of(view: MapView) -> Image:
     return ground
 
 
-def pictured(view: MapView, ground: Image, before: Pictures) -> Pictures:
-    """Pictures that agree with all counts. before : those of the last look, on the same lattice."""
+def pictured(view: MapView, ground: Image, before: Completions) -> Completions:
+    """Completions that agree with all counts. before : those of the last look, on the same lattice."""
     images = np.repeat((ground == FULL).astype(np.int8)[None], PICTURES, axis=0)
     drawn = {}
     for scene in scenes(view, ground):
@@ -105,10 +105,10 @@ def pictured(view: MapView, ground: Image, before: Pictures) -> Pictures:
         now = before.scenes.get(told)
         drawn[told] = _drawn(scene, before.over(scene, view)) if now is None else now
         images[:, scene.rows, scene.columns][:, scene.ground == DRAWN] = drawn[told]
-    return Pictures(view.west, view.south, ground, images, drawn)
+    return Completions(view.west, view.south, ground, images, drawn)
 
 
-def _drawn(scene: Scene, before: Pictures) -> Image:
+def _drawn(scene: CompletionTask, before: Completions) -> Image:
     """(PICTURES, n): the pictures of a scene, at the squares that are to be drawn."""
     open_ = scene.ground == DRAWN
     known = open_ & (before.ground != UNSEEN)
@@ -126,7 +126,7 @@ def _kept(costs: NDArray[np.float64]) -> NDArray[np.int64]:
     return kept
 
 
-def scenes(view: MapView, ground: Image) -> Iterator[Scene]:
+def scenes(view: MapView, ground: Image) -> Iterator[CompletionTask]:
     """The parts of a map that tell nothing of each other."""
     open_ = ground == DRAWN
     counts = _left(view.counts, ground)
@@ -148,7 +148,7 @@ def scenes(view: MapView, ground: Image) -> Iterator[Scene]:
         up, along = np.divmod(told.where, ground.shape[1])
         inside = (up - rows.start) * part.shape[1] + along - columns.start
         told = told._replace(where=np.where(told.weight > 0, inside, 0).astype(np.int32))
-        yield Scene(rows, columns, part, first[rows, columns], told)
+        yield CompletionTask(rows, columns, part, first[rows, columns], told)
 
 
 def _left(counts: Counts, ground: Image) -> Counts:

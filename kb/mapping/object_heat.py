@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from geometry.counts.gibbs import DRAWN
 from geometry.counts.moments import Blobs, blobs
-from kb.mapping.completions import NO_PICTURES, Pictures, ground_of, pictured
+from kb.mapping.completions import NO_PICTURES, Completions, ground_of, pictured
 from kb.mapping.occupancy import MapView
 
 SMALLEST = 4  # squares of a thing that is worth a look
@@ -36,10 +36,10 @@ GONE_ON = 10  # squares along which what goes on unseen is seen, from where on i
 Floats = NDArray[np.float64]
 
 
-class Imagined(NamedTuple):
-    """Pictures of the map as it may be."""
+class CompletionSummary(NamedTuple):
+    """Completions of the map as it may be."""
 
-    pictures: Pictures
+    pictures: Completions
 
     def probability(self, by_counts: NDArray[np.float32]) -> NDArray[np.float32]:
         """(rows, columns): that a square is occupied, with what counts alone say for one more picture."""
@@ -60,12 +60,12 @@ class Imagined(NamedTuple):
         return likely
 
 
-NOTHING_IMAGINED = Imagined(NO_PICTURES)
+NOTHING_IMAGINED = CompletionSummary(NO_PICTURES)
 
 
-def imagine(view: MapView, before: Imagined = NOTHING_IMAGINED) -> Imagined:
-    """Pictures of a map. before : those of the last look, on the same lattice."""
-    return Imagined(pictured(view, ground_of(view), before.pictures))
+def imagine(view: MapView, before: CompletionSummary = NOTHING_IMAGINED) -> CompletionSummary:
+    """Completions of a map. before : those of the last look, on the same lattice."""
+    return CompletionSummary(pictured(view, ground_of(view), before.pictures))
 
 
 def likeness(found: Blobs, shape: str) -> Floats:

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kb.mapping.completions import Pictures
-from kb.mapping.occupancy import FULL, OPEN, Evidence
+from kb.mapping.completions import Completions
+from kb.mapping.occupancy import FULL, OPEN, OccupancyMap
 
 Square = tuple[int, int]
 Floats = NDArray[np.float64]
@@ -19,10 +19,10 @@ HARDLY, BESIDE = 0.001, 0.02  # how likely all pictures show a square wrongly; b
 UNSEEN = np.array([0.12])  # how likely something stands on a square never seen: floor mostly goes on
 
 
-class Outlook:
+class ObstacleChance:
     """What may stand on the squares of a map. pictures : of it; by counts alone without."""
 
-    def __init__(self, evidence: Evidence, pictures: Pictures | None = None) -> None:
+    def __init__(self, evidence: OccupancyMap, pictures: Completions | None = None) -> None:
         self._evidence = evidence
         self._pictures = pictures
         self._known: dict[Square, Floats] = {}

@@ -76,7 +76,7 @@ class MapView(NamedTuple):
         )
 
 
-class Evidence:
+class OccupancyMap:
     """The growing map. Arrays are [row, column]; square (x, y) of the lattice lies at [y - south, x - west].
 
     Attributes
@@ -109,7 +109,7 @@ class Evidence:
         """(rows, columns): log odds that an open square is occupied; 0 where nothing was seen."""
         return self._odds.logit
 
-    def copy(self) -> "Evidence":
+    def copy(self) -> "OccupancyMap":
         """The same, to be told more."""
         other = copy(self)
         other.state, other.seen = self.state.copy(), self.seen.copy()
@@ -245,7 +245,7 @@ class Evidence:
         there[:] = self.state[max(row, 0) :, max(column, 0) :][: there.shape[0], : there.shape[1]]
         return part
 
-    def supposing(self, squares: Iterable[tuple[int, int]]) -> "Evidence":
+    def supposing(self, squares: Iterable[tuple[int, int]]) -> "OccupancyMap":
         """The same, were those of some squares free that rather are: to be asked, and to be told nothing."""
         other = copy(self)
         other.state = self.state.copy()

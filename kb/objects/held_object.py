@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from geometry.counts.uncover import uncover
 from kb.mapping.patch import Patch, covered, patch_of_squares
-from kb.objects.subcell_extent import NONE, Insets, Sides, further, moved_in, told, turned, within_play
+from kb.objects.subcell_extent import NONE, Sides, SubcellExtent, further, moved_in, told, turned, within_play
 from kb.perception.frame import Samples
 
 Mask = NDArray[np.bool_]
@@ -31,7 +31,7 @@ NOTHING = Patch(0, 0, np.zeros((1, 1), np.bool_))  # no square
 
 
 @dataclass(frozen=True)
-class Load:
+class HeldObject:
     """Something that Utak has held.
 
     Attributes
@@ -69,7 +69,7 @@ class Load:
     skewed: bool = False
     thwarted: int = 0
     inexact: bool = False
-    insets: Insets | None = None
+    insets: SubcellExtent | None = None
     stopped: bool = False
 
     @property
@@ -84,7 +84,7 @@ class Load:
         return play if play >= WHOLE else 0.0
 
     @property
-    def lying_insets(self) -> Insets | None:
+    def lying_insets(self) -> SubcellExtent | None:
         """How far in its sides lie, those to the west, east, south, north as it lies now; None when it lies askew."""
         quarters = self._quarters
         return None if self.insets is None or quarters is None else self.insets.after(quarters)
@@ -127,7 +127,7 @@ class Load:
                 return outline
         return self.polygon.buffer(-inwards * self.play, join_style="mitre")
 
-    def moved(self, polygon: Any, slack: float, degrees: float = 0.0, commanded: bool = False) -> "Load":
+    def moved(self, polygon: Any, slack: float, degrees: float = 0.0, commanded: bool = False) -> "HeldObject":
         """The load after a motion that it was seen to make.
 
         degrees : by which it was turned. commanded : whether it went all the way; where it was stopped it lies right
@@ -136,7 +136,7 @@ class Load:
         stopped, turned = self.stopped or not commanded, self.turned + degrees
         return replace(self.lying(polygon, slack), turned=turned, proven=True, stuck=0, stopped=stopped)
 
-    def lying(self, polygon: Any, otherwise: float = SLIGHT) -> "Load":
+    def lying(self, polygon: Any, otherwise: float = SLIGHT) -> "HeldObject":
         """The load where a polygon says, of which no look has told yet.
 
         otherwise : its slack; what is whole has none, unless its sides may lie further in or out.
@@ -148,7 +148,7 @@ class Load:
             slack = max(slack, self.insets.play)
         return replace(self, polygon=placed, slack=slack, full=nothing, empty=nothing)
 
-    def seen(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> "Load":
+    def seen(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> "HeldObject":
         """The load after a look from square (x, y): fields of a single square tell which of the open ones it covers."""
         single = (samples.weight.sum(1) == 1) & (samples.slack == 0)
         open_ = self.possible.squares() - self.sure.squares()
@@ -160,7 +160,7 @@ class Load:
         empty = self.empty | {square for square in open_ if counts.get(square, (0, 1))[1] == 0}
         return replace(self, full=full, empty=empty)
 
-    def told(self, agrees: Callable[[Any], bool]) -> "Load | None":
+    def told(self, agrees: Callable[[Any], bool]) -> "HeldObject | None":
         """The load as a look leaves it that tells how far in its sides lie; None when it agrees with no such outline.
 
         agrees : does the look agree with the load if that is its outline?
@@ -171,7 +171,7 @@ class Load:
         left = told(self.insets.after(quarters), self.polygon, agrees)
         return None if left is None else self.inset(left.after(-quarters))
 
-    def inset(self, insets: Insets) -> "Load | None":
+    def inset(self, insets: SubcellExtent) -> "HeldObject | None":
         """The load with its sides where they are believed to lie then; None when it would be no outline."""
         quarters = self._quarters
         if self.insets is None or quarters is None:
@@ -185,16 +185,16 @@ class Load:
         lying = self.lying(polygon, max(insets.play, ROUNDING))
         return replace(lying, first=first, insets=insets)
 
-    def woken(self, far: float) -> "Load":
+    def woken(self, far: float) -> "HeldObject":
         """The load, if where Utak woke is known up to so many squares, which tells about what point it was turned."""
         return replace(self, astray=2 * far * abs(math.sin(math.radians(self.turned / 2))))
 
-    def resisted(self) -> "Load":
+    def resisted(self) -> "HeldObject":
         """The load after a motion that it was expected to make and did not."""
         return replace(self, stuck=self.stuck + 1)
 
 
-def borne_out(loads: Mapping[str, Load], held: str | None) -> dict[str, Load]:
+def borne_out(loads: Mapping[str, HeldObject], held: str | None) -> dict[str, HeldObject]:
     """The loads that are held or were seen to move: he may have grasped beside any other, and it stands elsewhere."""
     return {name: load for name, load in loads.items() if load.proven or name == held}
 
@@ -215,9 +215,9 @@ def slack_of(polygon: Any, otherwise: float = SLIGHT) -> float:
     return 0.0 if is_whole(polygon) else max(otherwise, ROUNDING)
 
 
-def seen_insets(polygon: Any) -> Insets | None:
+def seen_insets(polygon: Any) -> SubcellExtent | None:
     """How far in the sides of a thing may lie that never moved; None when they are not along the lattice."""
-    return Insets() if polygon is not None and is_whole(polygon) else None
+    return SubcellExtent() if polygon is not None and is_whole(polygon) else None
 
 
 def seen_short(polygon: Any) -> Sides:
@@ -229,7 +229,7 @@ def seen_short(polygon: Any) -> Sides:
 
 
 def discounted(
-    samples: Samples, ranges: NDArray[np.int16], x: int, y: int, loads: Iterable[Load]
+    samples: Samples, ranges: NDArray[np.int16], x: int, y: int, loads: Iterable[HeldObject]
 ) -> tuple[Samples, NDArray[np.int16]]:
     """What a look from square (x, y) says of all but the loads: their squares are not sampled, and not counted.
 

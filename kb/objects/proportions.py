@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
-from kb.objects.subcell_extent import ALONG, Insets
+from kb.objects.subcell_extent import ALONG, SubcellExtent
 
 SAME = 0.25  # squares by which the sides of a square may seem to differ
 TOLD = 0.5  # squares within which the length of a side must be known to go by it
 
 
-class Span(NamedTuple):
+class SideInterval(NamedTuple):
     """How long a side is believed to be, and at least and at most, in squares."""
 
     believed: float
@@ -24,7 +24,7 @@ class Span(NamedTuple):
     most: float
 
 
-def spans(polygon: Any, insets: Insets | None) -> tuple[Span, Span] | None:
+def spans(polygon: Any, insets: SubcellExtent | None) -> tuple[SideInterval, SideInterval] | None:
     """The sides of a rectangle that lies along the lattice, to the east and to the north; None for all else."""
     if polygon is None or insets is None:
         return None
@@ -35,12 +35,12 @@ def spans(polygon: Any, insets: Insets | None) -> tuple[Span, Span] | None:
     return _span(x1 - x0, insets, 0), _span(y1 - y0, insets, 2)
 
 
-def _span(length: float, insets: Insets, axis: int) -> Span:
+def _span(length: float, insets: SubcellExtent, axis: int) -> SideInterval:
     here, least, most = (sum(sides[axis : axis + 2]) for sides in (insets.believed, insets.least, insets.most))
-    return Span(length, length + here - most, length + here - least)
+    return SideInterval(length, length + here - most, length + here - least)
 
 
-def may_be(polygon: Any, insets: Insets | None) -> tuple[str, ...]:
+def may_be(polygon: Any, insets: SubcellExtent | None) -> tuple[str, ...]:
     """What a rectangle may be as far as its sides are told: square, brick, or both; () for all else."""
     sides = spans(polygon, insets)
     if sides is None:
@@ -50,7 +50,7 @@ def may_be(polygon: Any, insets: Insets | None) -> tuple[str, ...]:
     return ("square",) * (apart <= SAME) + ("brick",) * (further > SAME)
 
 
-def reshaped(shape: Mapping[str, int], polygon: Any, insets: Insets | None) -> Mapping[str, int]:
+def reshaped(shape: Mapping[str, int], polygon: Any, insets: SubcellExtent | None) -> Mapping[str, int]:
     """The confidences in classes of shapes, where pushes told that a rectangle is smaller than the squares it fills."""
     sides = spans(polygon, insets)
     if sides is None or insets is None or not any(insets.believed):

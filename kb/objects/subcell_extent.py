@@ -21,7 +21,7 @@ NONE: Sides = (0.0, 0.0, 0.0, 0.0)
 WHOLE: Sides = (1.0, 1.0, 1.0, 1.0)
 
 
-class Insets(NamedTuple):
+class SubcellExtent(NamedTuple):
     """How far each side lies within the squares in which a thing was seen, in squares: at least, and less than.
 
     The sides are those of the thing as it lay when it was first held.
@@ -56,9 +56,9 @@ class Insets(NamedTuple):
         """The greatest of these."""
         return max(max(sides) for sides in self.plays)
 
-    def after(self, quarters: int) -> "Insets":
+    def after(self, quarters: int) -> "SubcellExtent":
         """Of the sides as they lie after so many quarter turns."""
-        return Insets(turned(self.least, quarters), turned(self.most, quarters))
+        return SubcellExtent(turned(self.least, quarters), turned(self.most, quarters))
 
 
 def _believed(least: tuple[float, ...], most: tuple[float, ...]) -> tuple[float, float]:
@@ -80,7 +80,7 @@ def turned(sides: Sides, quarters: int) -> Sides:
     return sides
 
 
-def further(to: Insets, since: Insets) -> Sides:
+def further(to: SubcellExtent, since: SubcellExtent) -> Sides:
     """How much further in the sides are believed to lie than they were."""
     west, east, south, north = (new - old for new, old in zip(to.believed, since.believed, strict=True))
     return west, east, south, north
@@ -127,7 +127,7 @@ def depths(image: tuple[float, float, float, float]) -> Sides:
     return math.floor(x0) + 1 - x0, x1 - math.ceil(x1) + 1, math.floor(y0) + 1 - y0, y1 - math.ceil(y1) + 1
 
 
-def told(insets: Insets, polygon: Any, agrees: Callable[[Any], bool]) -> Insets | None:
+def told(insets: SubcellExtent, polygon: Any, agrees: Callable[[Any], bool]) -> SubcellExtent | None:
     """What a look leaves of what may be; None when it agrees with nothing.
 
     insets, polygon : the sides as they lie at the look, by which the outline is believed where it is. agrees : does
@@ -141,7 +141,7 @@ def told(insets: Insets, polygon: Any, agrees: Callable[[Any], bool]) -> Insets 
         return insets if agrees(polygon) else None
     left = []
     for parts in product(*halves):
-        part = Insets(_sides(p[0] for p in parts), _sides(p[1] for p in parts))
+        part = SubcellExtent(_sides(p[0] for p in parts), _sides(p[1] for p in parts))
         lying = moved_in(polygon, further(part, insets))
         if lying is not None and agrees(lying):
             left.append(part)
@@ -149,7 +149,7 @@ def told(insets: Insets, polygon: Any, agrees: Callable[[Any], bool]) -> Insets 
         return None
     least = _sides(min(side) for side in zip(*(part.least for part in left), strict=True))
     most = _sides(max(side) for side in zip(*(part.most for part in left), strict=True))
-    return Insets(least, most)
+    return SubcellExtent(least, most)
 
 
 def _halves(least: float, most: float, deep: float) -> list[tuple[float, float]]:

@@ -44,7 +44,7 @@ class Samples(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Lattice:
+class Frame:
     """How Utak's frame lies in the lattice.
 
     Angle, the degrees by which it is turned counter-clockwise, and woke, the lattice point of its origin.

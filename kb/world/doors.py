@@ -24,7 +24,7 @@ HAIR = 1e-6
 UNCLEAR = 2.0  # squares by which it may be unclear on either side how wide a door is
 
 
-class Neck(NamedTuple):
+class DoorwayNeck(NamedTuple):
     """A neck of the floor in the frame of the view's arrays.
 
     line : where it was seen best, from wall to wall. certainty : percent of belief that it is open and that verge
@@ -36,13 +36,13 @@ class Neck(NamedTuple):
     certainty: int
 
 
-class Necks(NamedTuple):
+class DoorwayNecks(NamedTuple):
     """The necks of a floor, and that floor: in a frame of BEHIND squares, and what was never seen counts as floor."""
 
-    necks: list[Neck]
+    necks: list[DoorwayNeck]
     screen: Screen
 
-    def narrow(self, neck: Neck) -> Mask:
+    def narrow(self, neck: DoorwayNeck) -> Mask:
         """(rows, columns): the squares where the neck itself may be, if its walls lie anywhere in their squares."""
         mask = np.zeros(self.screen.shape, np.bool_)
         for column, row in self.screen.narrows(neck.passage.shifted(BEHIND, BEHIND), ANYWHERE):
@@ -50,7 +50,7 @@ class Necks(NamedTuple):
         return mask[BEHIND:-BEHIND, BEHIND:-BEHIND]
 
 
-def find_necks(model: WorldModel, verge: Mask, doubtful: Mask) -> Necks:
+def find_necks(model: WorldModel, verge: Mask, doubtful: Mask) -> DoorwayNecks:
     """All necks of the floor, those first that have floor twice as wide on both sides.
 
     verge : (rows, columns) what bounds the floor; doubtful : what may, but rather does not.
@@ -66,8 +66,8 @@ def find_necks(model: WorldModel, verge: Mask, doubtful: Mask) -> Necks:
             for across in _along(passage, line, verge.shape)
         ]
         certainty, number = max(known)
-        found.append(Neck(passage, lines[-number], certainty))
-    return Necks(found, screen)
+        found.append(DoorwayNeck(passage, lines[-number], certainty))
+    return DoorwayNecks(found, screen)
 
 
 def _passages(screen: Screen) -> list[Passage]:

@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.raster.components import edged
-from kb.mapping.object_heat import NOTHING_IMAGINED, Imagined
+from kb.mapping.object_heat import NOTHING_IMAGINED, CompletionSummary
 from kb.mapping.occupancy import OPEN, MapView
 from kb.mapping.patch import Patch
-from kb.objects.subcell_extent import NONE, Insets, Sides
-from kb.perception.frame import Lattice
+from kb.objects.subcell_extent import NONE, Sides, SubcellExtent
+from kb.perception.frame import Frame
 from kb.perception.interpretation import Kinds
 from kb.perception.protrusions import protrusions, unfelt
 from kb.perception.regions import Percept
@@ -76,7 +76,7 @@ class Node:
     inexact: bool = False
     astray: bool = False
     short: Sides = NONE
-    insets: Insets | None = None
+    insets: SubcellExtent | None = None
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class WorldModel:
     contradicted : is there a part of the impression that agrees with nothing that is believed?
     """
 
-    lattice: Lattice
+    lattice: Frame
     place: tuple[float, float]
     view: MapView
     labels: NDArray[np.int32]
@@ -118,7 +118,7 @@ class WorldModel:
     spread: float = 0.0
     likely_spread: float = 0.0
     leeway: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
-    imagined: Imagined = NOTHING_IMAGINED
+    imagined: CompletionSummary = NOTHING_IMAGINED
     beneath: Mask | None = None
     touch: tuple[str | None, ...] = ()
     felt: Mapping[tuple[int, int], str] = field(default_factory=dict)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from geometry import Passage, Screen
 from geometry.raster.winding import crossings
 from kb.reasoning.solver import KB, solve
-from kb.world.doors import Neck, Segment, find_necks
+from kb.world.doors import DoorwayNeck, Segment, find_necks
 from kb.world.model import WorldModel
 
 Mask = NDArray[np.bool_]
@@ -153,7 +153,7 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), verge: Mask | None
     return Rooms(doors, np.where(doubtful, 0, order[labels]).astype(np.int32), doorways & floor, opening)
 
 
-def _judged(found: list[Neck], rules: tuple[Path, ...]) -> tuple[list[tuple[Neck, int]], Opening | None]:
+def _judged(found: list[DoorwayNeck], rules: tuple[Path, ...]) -> tuple[list[tuple[DoorwayNeck, int]], Opening | None]:
     """Those necks that kb/asp takes for doors, with its confidence, and the one that comes nearest to be a door."""
     known = [neck for neck in found if neck.certainty > 0]
     facts = []
@@ -168,7 +168,7 @@ def _judged(found: list[Neck], rules: tuple[Path, ...]) -> tuple[list[tuple[Neck
     return [(known[number], confidence) for number, confidence in sorted(chosen.items())], opening
 
 
-def _opening(neck: Neck) -> Opening:
+def _opening(neck: DoorwayNeck) -> Opening:
     """A neck that is no door, as it is told."""
     (least, narrow), (_, wide) = sorted(zip(neck.passage.sides, neck.passage.gates, strict=True))
     return Opening(*neck.line, 2 * least, narrow, wide)

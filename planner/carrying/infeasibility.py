@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from geometry.manipulation.plan_carrying import Carrying
+from geometry.manipulation.plan_carrying import CarryingPlan
 from kb.objects.held_object import is_whole
 from kb.world.model import Node, WorldModel
 from planner.carrying.open_facts import width_open
@@ -13,7 +13,7 @@ Place = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Refusal:
+class Infeasibility:
     """No way was found.
 
     proved : there is none, whatever the unseen holds. reason : in words; neck : the middle of the passage that is too
@@ -27,15 +27,17 @@ class Refusal:
     unless: Callable[[], str] = lambda: ""
 
 
-def refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel) -> Refusal:
+def refusal(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> Infeasibility:
     """Why nothing was found. It is proved when every target was refuted, whatever lies in the unseen."""
     if not plans:
-        return Refusal(False, lambda: f"nothing is known of where {node.name} could be carried")
+        return Infeasibility(False, lambda: f"nothing is known of where {node.name} could be carried")
     if any(plan.status != "impossible" for _, plan in plans):
-        return Refusal(False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none")
+        return Infeasibility(
+            False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none"
+        )
     doubt = _doubt(node, plans, model)
     if doubt:
-        return Refusal(False, lambda: f"where {node.name} lies is not known well: {doubt}")
+        return Infeasibility(False, lambda: f"where {node.name} lies is not known well: {doubt}")
 
     def neck() -> Place | None:
         passage = nearest_to_done(plans).passage
@@ -58,10 +60,10 @@ def refusal(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel
             return ""
         return width_open(passage.width, closest.missing, passage.sides, model.point_in_words(passage.place))
 
-    return Refusal(True, reason, neck, unless)
+    return Infeasibility(True, reason, neck, unless)
 
 
-def _doubt(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel) -> str:
+def _doubt(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> str:
     """What speaks against that a thing lies where it is believed to, in words; nothing when nothing does.
 
     plans : all that are impossible, the last one asked for last.
@@ -83,13 +85,13 @@ def _doubt(node: Node, plans: Sequence[tuple[int, Carrying]], model: WorldModel)
     return "it was stopped on its way there" if amid_squares and _hopeless(nearest_to_done(plans)) else ""
 
 
-def nearest_to_done(plans: Sequence[tuple[int, Carrying]]) -> Carrying:
+def nearest_to_done(plans: Sequence[tuple[int, CarryingPlan]]) -> CarryingPlan:
     """Of plans that are impossible the last that is so by a passage, over as many squares as any of them."""
     widest = max(level for level, _ in plans)
     asked = [plan for level, plan in reversed(plans) if level == widest]
     return next((plan for plan in asked if plan.opens), asked[0])
 
 
-def _hopeless(plan: Carrying) -> bool:
+def _hopeless(plan: CarryingPlan) -> bool:
     """Is there a passage that is too narrow, and it is not for want of that alone?"""
     return plan.passage is not None and not plan.opens

@@ -14,7 +14,7 @@ import shapely
 from numpy.typing import NDArray
 
 from geometry.manipulation.goals import End, moved
-from geometry.manipulation.plan_carrying import At, Between, Carrying, InCorner, Inside, plan_carrying
+from geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, plan_carrying
 from geometry.motion.se2 import Rotate, Translate
 from geometry.raster.rasterize import squares, squares_after
 from kb.localisation.propose.larger_object import DEEPEST, SIDES
@@ -22,7 +22,7 @@ from kb.objects.held_object import is_whole
 from kb.perception.frame import AROUND
 from kb.reasoning.solver import solve
 from kb.world.model import Node, WorldModel
-from planner.carrying.infeasibility import Refusal, refusal
+from planner.carrying.infeasibility import Infeasibility, refusal
 from planner.goals.optimistic import BEYOND, BOLD, framed, hoped_floor
 from planner.goals.placement import LIKELY, SURELY, Ends, barred, hidden_behind, in_view, region_of
 from planner.navigation.subgoals import ASP
@@ -43,7 +43,7 @@ WIDEST = 0.6  # at most: what is kept free on either side must leave a way throu
 
 
 @dataclass(frozen=True)
-class Haul:
+class ManipulationPlan:
     """A way to carry something that geometry verified.
 
     Attributes
@@ -54,7 +54,7 @@ class Haul:
     is begun without a look at them.
     """
 
-    plan: Carrying
+    plan: CarryingPlan
     target: str
     level: int
     swept: Mask
@@ -93,7 +93,7 @@ class Request:
     hoped: Ends = dict
 
 
-class Ground(NamedTuple):
+class CarryingFloor(NamedTuple):
     """Where a thing and Utak are, and which squares they may use: all in one frame.
 
     shape : of the thing. utak : his place. free, walk : (rows, columns) squares for the thing and him with it, and for
@@ -106,15 +106,15 @@ class Ground(NamedTuple):
     walk: Mask
 
 
-class Hauler:
+class ManipulationOracle:
     """Finds ways to carry things, and remembers what it was last told for the same question."""
 
     def __init__(self, pull: bool = True) -> None:
         self._pull = pull
-        self._known: dict[tuple[Any, ...], Carrying] = {}
+        self._known: dict[tuple[Any, ...], CarryingPlan] = {}
         self._hopeless = False
 
-    def find(self, request: Request, situation: Situation) -> Haul | Refusal:
+    def find(self, request: Request, situation: Situation) -> ManipulationPlan | Infeasibility:
         """The way that is chosen and verified, or why there is none."""
         shape, utak = in_view(request.node.polygon, situation), situation.model.place_on_view
         floors = {(level, aside): _free(request.node, situation, level, aside) for level, aside in _kinds(situation)}
@@ -125,13 +125,13 @@ class Hauler:
         ]
         options += [f"last({request.last})"] * (request.last in request.ends)
         verdicts: list[str] = []
-        plans: list[tuple[int, Carrying]] = []  # each with the level that it was asked for
+        plans: list[tuple[int, CarryingPlan]] = []  # each with the level that it was asked for
         for _ in range(MOST_ROUNDS):
             choice = _choice([*options, *verdicts, *["hopeless"] * self._hopeless])
             if choice is None:
                 break
             name, level, aside = choice
-            ground = Ground(shape, utak, floors[level, aside], situation.screens.free(level))
+            ground = CarryingFloor(shape, utak, floors[level, aside], situation.screens.free(level))
             plan = self._plan(request, request.ends[name], ground, situation.model)
             if plan.status == "found" and self._hopeless:
                 self._hopeless = False  # what was hopeless is no more: now the best way is asked for
@@ -147,7 +147,7 @@ class Hauler:
         unsure = len(own) > 1 or (not own and situation.forbidden("utak"))  # which door; it may go where he may not
         return replace(told, proved=False) if unsure else told
 
-    def _bolder(self, request: Request, haul: Haul, situation: Situation) -> Haul:
+    def _bolder(self, request: Request, haul: ManipulationPlan, situation: Situation) -> ManipulationPlan:
         """What planner/asp/boldness.lp chooses of a way that was found and of those over what is hoped to be floor.
 
         A way that is surely free is compared with bolder ones, if one may take fewer commands. One that is not is begun
@@ -169,7 +169,7 @@ class Hauler:
         answer = solve([ASP / "boldness.lp"], facts)
         return hauls[answer[0].arguments[0].number] if answer else haul
 
-    def _hoped(self, request: Request, situation: Situation) -> Iterator[Haul]:
+    def _hoped(self, request: Request, situation: Situation) -> Iterator[ManipulationPlan]:
         """Ways over squares that are hoped to be free, those beyond all that was seen among them: one for each end.
 
         There are none where nothing is hoped for. While it is open how the lattice lies they end in what was seen:
@@ -181,7 +181,7 @@ class Hauler:
         if (free == walk | own).all():
             return
         shape, (x, y) = in_view(node.polygon, situation), model.place_on_view
-        ground = Ground(Translate(BEYOND, BEYOND).carry(shape), (x + BEYOND, y + BEYOND), free, walk)
+        ground = CarryingFloor(Translate(BEYOND, BEYOND).carry(shape), (x + BEYOND, y + BEYOND), free, walk)
         ends = {**request.ends, **({} if is_open(model) else request.hoped())}
         for name, end in sorted(ends.items()):
             plan = self._plan(request, moved(end, BEYOND, BEYOND), ground, model)
@@ -189,7 +189,7 @@ class Hauler:
                 found = _haul(plan.shifted(-BEYOND, -BEYOND), shape, name, UNSEEN, situation, node)
                 yield replace(found, hopes=True)
 
-    def _plan(self, request: Request, end: End, ground: Ground, model: WorldModel) -> Carrying:
+    def _plan(self, request: Request, end: End, ground: CarryingFloor, model: WorldModel) -> CarryingPlan:
         """What geometry says of one end; from memory where it was asked before."""
         shape, utak, free, walk = ground
         held, turn, tight = request.held, request.turn, request.tight
@@ -201,7 +201,7 @@ class Hauler:
                 self._known.clear()
             margin = min(MARGIN * (tight + (not is_whole(shape))), WIDEST)
 
-            def ask(free: Mask, walls: Any = None) -> Carrying:
+            def ask(free: Mask, walls: Any = None) -> CarryingPlan:
                 return plan_carrying(
                     shape, free, utak, end, margin, self._pull, avoid, walk, walls=walls, held=held, turn=turn
                 )
@@ -279,17 +279,17 @@ def _choice(facts: Sequence[str]) -> tuple[str, int, str] | None:
     return str(name), level.number, str(aside)
 
 
-def _haul(plan: Carrying, shape: Any, name: str, level: int, situation: Situation, node: Node) -> Haul:
+def _haul(plan: CarryingPlan, shape: Any, name: str, level: int, situation: Situation, node: Node) -> ManipulationPlan:
     model = situation.model
     swept = swept_squares(plan, shape, model.labels.shape)
     # What seems to stand where the object itself is, is not in its way, nor is what may not be there at all.
     needed = swept & ~model.mask(node.patch) & ~situation.screens.free(level)
     others = (other for other in model.objects if other.name != node.name)
     aside = tuple(other.name for other in others if (model.mask(other.patch) & needed).any())
-    return Haul(plan, name, level, swept, aside)
+    return ManipulationPlan(plan, name, level, swept, aside)
 
 
-def swept_squares(plan: Carrying, shape: Any, size: tuple[int, ...]) -> Mask:
+def swept_squares(plan: CarryingPlan, shape: Any, size: tuple[int, ...]) -> Mask:
     """(rows, columns): the squares that an object, and Utak with it in his hand, cross on a plan."""
     rows, columns = size
     mask: Mask = squares(shape, columns, rows)

@@ -17,11 +17,11 @@ from kb.objects.held_object import is_whole
 from kb.perception.frame import CENTRE
 from kb.world.model import SPACE, Node, WorldModel
 from planner.advice import Act, Go, See
-from planner.carrying.infeasibility import Refusal
-from planner.carrying.manipulation_oracle import Haul, Hauler, Request
+from planner.carrying.infeasibility import Infeasibility
+from planner.carrying.manipulation_oracle import ManipulationOracle, ManipulationPlan, Request
 from planner.carrying.remaining_plan import (
-    Course,
     Place,
+    RemainingPlan,
     clear_part,
     course_of,
     followed,
@@ -33,10 +33,10 @@ from planner.carrying.remaining_plan import (
 from planner.goals.placement import SURELY, Ends, drawn_out, region_of
 from planner.screen.moves import is_open
 from planner.screen.projection import Squares, grown
-from planner.sights.frontiers import Lookout, by_touch, sight_of
+from planner.sights.frontiers import Viewpoint, by_touch, sight_of
 from planner.sights.viewpoints import TAKE, inspection
 from planner.situation import Situation
-from planner.skills.failed_grasps import FailedHolds
+from planner.skills.failed_grasps import FailedGrasps
 from planner.skills.take_along import by_way, lead, near, out
 from planner.skills.unjam import drawn_back
 
@@ -50,11 +50,11 @@ SIGHT = "sight"  # the target of a plan that brings a thing near to where he wan
 ABOUT = 2  # squares beside the way of a plan within which more room would help
 
 
-Advice = Act | Go | See | Refusal
+Advice = Act | Go | See | Infeasibility
 
 
 @dataclass
-class Carrier:
+class PlanExecutor:
     """Carries things, one plan after the other.
 
     failed : holds by which a thing did not move. missed : plans that did not lead where they should, with the thing in
@@ -62,14 +62,16 @@ class Carrier:
     """
 
     pull: bool = True
-    failed: FailedHolds = field(default_factory=FailedHolds)
+    failed: FailedGrasps = field(default_factory=FailedGrasps)
     missed: int = 0
 
     def __post_init__(self) -> None:
-        self._hauler = Hauler(self.pull)
-        self._leader = Hauler(self.pull)  # asks for ways to look: that there is none tells nothing of the goal
-        self._course: Course | None = None
-        self._led: Course | None = None  # the plan to bring a thing near to where he wants to look
+        self._hauler = ManipulationOracle(self.pull)
+        self._leader = ManipulationOracle(
+            self.pull
+        )  # asks for ways to look: that there is none tells nothing of the goal
+        self._course: RemainingPlan | None = None
+        self._led: RemainingPlan | None = None  # the plan to bring a thing near to where he wants to look
         self._plans = 0
         self._tight: dict[str, int] = {}  # how often a thing stood against something unawares
         self._pushed: Translate | None = None  # the last motion with what he holds, if it was a push, and not back
@@ -100,7 +102,7 @@ class Carrier:
         last = before.target if before is not None else ""
         while True:
             found = course or self._planned(self._request(node, ends, last, situation.model, hoped), situation)
-            if isinstance(found, See | Refusal):
+            if isinstance(found, See | Infeasibility):
                 return found
             advice = self._next(found, ends if found.name == node.name else {}, situation)
             if advice is not None:
@@ -108,10 +110,10 @@ class Carrier:
             self.failed.blame(situation.model.object(found.name), situation.model)
             course, self._course = None, None
 
-    def refused(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Refusal | None:
+    def refused(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Infeasibility | None:
         """Why an object cannot be carried to any of several ends, if it cannot."""
         found = self._hauler.find(self._request(node, ends, "", situation.model), situation)
-        return found if isinstance(found, Refusal) else None
+        return found if isinstance(found, Infeasibility) else None
 
     def given_up(self, model: WorldModel) -> Act:
         """What to do when that which he holds went round in circles: let go of it, and do not take it so again."""
@@ -189,7 +191,7 @@ class Carrier:
             course = followed(course, ends, situation) if course.name == node.name else None
         if course is None:
             haul = self._leader.find(self._request(node, ends, "", situation.model), situation)
-            if isinstance(haul, Refusal) or haul.level or haul.aside or not haul.short:
+            if isinstance(haul, Infeasibility) or haul.level or haul.aside or not haul.short:
                 return None
             self._plans += 1
             course = course_of(haul, node, situation.model)
@@ -199,7 +201,7 @@ class Carrier:
 
     # -- when it fails ---------------------------------------------------------------------------
 
-    def _failure(self, course: Course | None, model: WorldModel) -> Advice | None:
+    def _failure(self, course: RemainingPlan | None, model: WorldModel) -> Advice | None:
         """What to do when a motion with something in hand did not move it: try once more, then from elsewhere.
 
         A thing can hardly be pushed along what it touches by who slips, or believes the lattice a degree beside, for it
@@ -223,13 +225,13 @@ class Carrier:
 
     # -- making one ------------------------------------------------------------------------------
 
-    def _planned(self, request: Request, situation: Situation) -> Course | See | Refusal:
+    def _planned(self, request: Request, situation: Situation) -> RemainingPlan | See | Infeasibility:
         node, asked = request.node, request
         haul = self._hauler.find(request, situation)
-        if isinstance(haul, Refusal) and situation.model.held == node.name and not request.held:
+        if isinstance(haul, Infeasibility) and situation.model.held == node.name and not request.held:
             request = replace(request, held=True)  # to let go and take it otherwise does not help either
             haul = self._hauler.find(request, situation)
-        if isinstance(haul, Refusal):
+        if isinstance(haul, Infeasibility):
             again = not haul.proved and self.failed.forgiven(node)
             return self._planned(replace(asked, avoid=self.failed.of(node)), situation) if again else haul
         if haul.aside:
@@ -248,7 +250,7 @@ class Carrier:
                 if look is not None:
                     return look
                 why = f"{haul.aside[0]} is in the way of {node.name}, and cannot be cleared"
-                return Refusal(False, lambda: why)
+                return Infeasibility(False, lambda: why)
             node, haul = first
         seen = self._seen(haul, node, situation)
         if seen is not None:
@@ -257,11 +259,11 @@ class Carrier:
                 return seen
             haul = clear
         if not haul.plan.legs:
-            return Refusal(False, lambda: f"{node.name} seems to lie there already")
+            return Infeasibility(False, lambda: f"{node.name} seems to lie there already")
         self._went_on = situation.model.place if request.held else None
         self._plans += 1
         if self._plans > MOST_PLANS:
-            return Refusal(False, lambda: f"gave up after {MOST_PLANS} plans")
+            return Infeasibility(False, lambda: f"gave up after {MOST_PLANS} plans")
         return course_of(haul, node, situation.model)
 
     def _request(
@@ -273,16 +275,18 @@ class Carrier:
         tight = self._tight.get(node.name, 0) + (model.lattice.woke != CENTRE and max(model.leeway) > LOOSE)
         return Request(node, ends, self.failed.of(node), last, tight, held, _price_of_a_turn(model), hoped)
 
-    def _clearing(self, other: Node, haul: Haul, situation: Situation) -> tuple[Node, Haul] | None:
+    def _clearing(
+        self, other: Node, haul: ManipulationPlan, situation: Situation
+    ) -> tuple[Node, ManipulationPlan] | None:
         """A way to carry a thing off the squares that a plan needs, if it stands there and there is one."""
         if other.name not in haul.aside or other.polygon is None or other.movable == 0:
             return None
         room = situation.screens.free(0) | situation.model.mask(other.patch)
         end = drawn_out(other, haul.swept, situation) or Inside(region_of(room & ~haul.swept))
         found = self._hauler.find(self._request(other, {"away": end}, "", situation.model), situation)
-        return (other, found) if isinstance(found, Haul) and found.plan.legs and not found.aside else None
+        return (other, found) if isinstance(found, ManipulationPlan) and found.plan.legs and not found.aside else None
 
-    def _seen(self, haul: Haul, node: Node, situation: Situation) -> See | None:
+    def _seen(self, haul: ManipulationPlan, node: Node, situation: Situation) -> See | None:
         """What of the way of a plan must be looked at before it is begun, if a look may tell more of it.
 
         All that is believed floor is trusted: to be stopped now and then costs less than to look each time. And to let
@@ -304,7 +308,7 @@ class Carrier:
 
     # -- following it ----------------------------------------------------------------------------
 
-    def _next(self, course: Course, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
+    def _next(self, course: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
         """The next command of a plan, None when the thing is not felt there. ends : where it may lead, if known."""
         self._course = course
         leg, model = course.legs[0], situation.model
@@ -322,7 +326,9 @@ class Carrier:
         self._course = replace(course, legs=(rest, *course.legs[1:]), polygon=polygon, place=place)
         return Act(_command(motion, model), f"{course.name} is brought to {course.target}")
 
-    def _taking(self, course: Course, leg: Leg, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
+    def _taking(
+        self, course: RemainingPlan, leg: Leg, ends: Mapping[str, End], situation: Situation
+    ) -> Act | Go | None:
         """Walk to where the object is taken, and take it: from where he stands, if that does as well.
 
         None where nothing is felt that could be it: it lies otherwise than he believes, and he would grasp at air.
@@ -349,7 +355,7 @@ class Carrier:
         return Act(Grasp(direction), f"{course.name} is taken to be carried to {course.target}")
 
 
-def _first(looks: Iterable[Lookout]) -> See | None:
+def _first(looks: Iterable[Viewpoint]) -> See | None:
     """To see what the first of some looks shows for which there is a place."""
     return next((See(look) for look in looks if len(look.squares)), None)
 

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from geometry.manipulation.goals import End
 from geometry.manipulation.legs import shifted, verified
 from geometry.manipulation.plan_carrying import Leg
-from geometry.manipulation.workspace import Yard
+from geometry.manipulation.workspace import Workspace
 from geometry.motion.se2 import Motion, Translate
 from kb.body import DIRECTIONS
 from kb.mapping.patch import Patch
 from kb.world.model import Node, WorldModel
-from planner.carrying.manipulation_oracle import Haul, swept_squares
+from planner.carrying.manipulation_oracle import ManipulationPlan, swept_squares
 from planner.goals.placement import barred, in_view, lands_in_one
 from planner.screen.projection import Squares
 from planner.situation import Situation
@@ -31,7 +31,7 @@ FARTHER = 4.0  # squares that a plan must bring a thing on to be begun before al
 
 
 @dataclass(frozen=True)
-class Course:
+class RemainingPlan:
     """What is left of a plan, in the frame of the lattice.
 
     name : of the object. polygon, place : where it and Utak must be now for the plan to hold; place None while he
@@ -62,15 +62,15 @@ class Course:
         return polygon
 
 
-def course_of(haul: Haul, node: Node, model: WorldModel) -> Course:
+def course_of(haul: ManipulationPlan, node: Node, model: WorldModel) -> RemainingPlan:
     """The course of a plan that was just made."""
     west, south = model.view.west, model.view.south
     legs = tuple(shifted(leg, west, south) for leg in haul.plan.legs)
     needed = Patch(west, south, haul.swept)
-    return Course(node.name, haul.target, node.polygon, legs, needed, haul.level)
+    return RemainingPlan(node.name, haul.target, node.polygon, legs, needed, haul.level)
 
 
-def followed(course: Course, ends: Mapping[str, End] | None, situation: Situation) -> Course | None:
+def followed(course: RemainingPlan, ends: Mapping[str, End] | None, situation: Situation) -> RemainingPlan | None:
     """A course, if the world is still as it says; None if it is not.
 
     ends : where it must lead; None where it only clears the way for another thing.
@@ -99,7 +99,7 @@ def followed(course: Course, ends: Mapping[str, End] | None, situation: Situatio
     return replace(course, polygon=node.polygon)
 
 
-def from_here(course: Course, ends: Mapping[str, End], situation: Situation) -> Course | None:
+def from_here(course: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> RemainingPlan | None:
     """A course, begun where he stands and not in the middle of that square; None when it does not lead there so."""
     model = situation.model
     node = model.object(course.name)
@@ -111,7 +111,7 @@ def from_here(course: Course, ends: Mapping[str, End], situation: Situation) -> 
     return near if end is not None and lands_in_one(ends, end) else None
 
 
-def clear_part(haul: Haul, node: Node, situation: Situation) -> Haul | None:
+def clear_part(haul: ManipulationPlan, node: Node, situation: Situation) -> ManipulationPlan | None:
     """As much of a plan as needs no look first, when that brings the thing on; else None.
 
     From there he sees what he could only have seen after a walk there and back.
@@ -120,7 +120,7 @@ def clear_part(haul: Haul, node: Node, situation: Situation) -> Haul | None:
     pushes = [motion for motion in first.motions if isinstance(motion, Translate)]
     if others or len(pushes) < len(first.motions):  # turns and new holds depend on what is not seen
         return None
-    yard = Yard(situation.screens.safe | situation.model.mask(node.patch))
+    yard = Workspace(situation.screens.safe | situation.model.mask(node.patch))
     start = in_view(node.polygon, situation)
     shape, place = start, first.place
     clear: list[Motion] = []
@@ -150,7 +150,7 @@ def stands(model: WorldModel, place: Place) -> bool:
     return math.dist(model.place, place) < NEAR
 
 
-def _longest_push(yard: Yard, shape: Any, place: Place, push: Translate) -> Translate | None:
+def _longest_push(yard: Workspace, shape: Any, place: Place, push: Translate) -> Translate | None:
     """The longest part of a push by whole squares, or nearly the same way, that is free."""
     steps = math.floor(math.hypot(push.dx, push.dy))
     parts = ((round(push.dx * n / steps), round(push.dy * n / steps)) for n in range(steps - 1, 0, -1))
@@ -158,22 +158,22 @@ def _longest_push(yard: Yard, shape: Any, place: Place, push: Translate) -> Tran
     return next((part for part in pushes if yard.lets(shape, place, part)), None)
 
 
-def _room(course: Course, node: Node, situation: Situation) -> Mask:
+def _room(course: RemainingPlan, node: Node, situation: Situation) -> Mask:
     """(rows, columns): the squares over which a course may lead that was made before."""
     free = situation.screens.free(max(course.level, STILL)) | situation.model.mask(node.patch)
     return free & ~barred(node, situation)
 
 
-def _led(course: Course, node: Node, free: Mask, situation: Situation) -> Any:
+def _led(course: RemainingPlan, node: Node, free: Mask, situation: Situation) -> Any:
     """Where a course leads from where the object really lies, in the frame of the view; None when something is in the
     way."""
     west, south = situation.model.view.west, situation.model.view.south
     first, *others = course.legs
     legs = [first if course.place is None else replace(first, place=course.place), *others]
-    return verified(Yard(free), in_view(node.polygon, situation), [shifted(leg, -west, -south) for leg in legs])
+    return verified(Workspace(free), in_view(node.polygon, situation), [shifted(leg, -west, -south) for leg in legs])
 
 
-def grasp_direction(leg: Leg, course: Course, model: WorldModel) -> str | None:
+def grasp_direction(leg: Leg, course: RemainingPlan, model: WorldModel) -> str | None:
     """The compass point by which the object is taken: that of the plan, or another by which it is felt; else None."""
     node = model.object(course.name)
     assert node is not None

@@ -16,14 +16,14 @@ from kb.language.terms import Fact
 from kb.localisation.propose.larger_object import DEEPEST, SIDES
 from kb.world.model import Node, WorldModel
 from planner.advice import Act
-from planner.carrying.plan_executor import Carrier
+from planner.carrying.plan_executor import PlanExecutor
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.verification import Verifier
 from planner.decision import Decision
 from planner.goals.placement import LIKELY, SURELY, hidden_behind, leads_away, out_of_wall, region_of
-from planner.navigation.routes import Way, ways
-from planner.navigation.subgoals import Aim
-from planner.screen.projection import UNSEEN, Mask, Screens
+from planner.navigation.routes import PlannedRoute, ways
+from planner.navigation.subgoals import Subgoal
+from planner.screen.projection import UNSEEN, CostMaps, Mask
 from planner.sights.frontiers import by_touch
 from planner.situation import Situation
 from planner.stages import Stage
@@ -58,16 +58,16 @@ def obstacles(things: Sequence[Node], situation: Situation) -> Iterator[Obstacle
         yield from _in_doors(thing, depth, situation)
 
 
-def _ways(under: Mask, situation: Situation) -> list[Way]:
+def _ways(under: Mask, situation: Situation) -> list[PlannedRoute]:
     """The way to where he would come were some squares free, and cannot now; none where they shut off but a nook."""
-    without, screens = Screens(situation.model, under), situation.screens
+    without, screens = CostMaps(situation.model, under), situation.screens
     beyond = (without.distances[UNSEEN] != UNREACHED) & (screens.distances[UNSEEN] == UNREACHED) & ~under
     if not leads_away(beyond, under):
         return []
     return ways(without, UNSEEN, np.flatnonzero(beyond), "grid")
 
 
-def _first_on(way: Way, things: Sequence[Node], model: WorldModel) -> Node:
+def _first_on(way: PlannedRoute, things: Sequence[Node], model: WorldModel) -> Node:
     """The first of some things that a way over their squares comes to."""
     masks = [(thing, model.mask(thing.patch)) for thing in things]
     return next(thing for column, row in way.squares for thing, mask in masks if mask[row, column])
@@ -86,10 +86,10 @@ def _in_doors(thing: Node, depth: int, situation: Situation) -> Iterator[Obstacl
             yield Obstacle(thing, At(pose))
 
 
-class Clearer:
+class ObstacleClearer:
     """Moves things out of Utak's way, and remembers which one he is moving, and what is to stay meanwhile."""
 
-    def __init__(self, carrier: Carrier, pursuer: Pursuer, verifier: Verifier) -> None:
+    def __init__(self, carrier: PlanExecutor, pursuer: Pursuer, verifier: Verifier) -> None:
         self._carrier, self._pursuer, self._verifier = carrier, pursuer, verifier
         self._moving = ""
         self._stays: frozenset[str] = frozenset()
@@ -144,7 +144,7 @@ class Clearer:
         """The next command to move a thing aside, if it is one; None when none is known."""
         if node.confidence < SURELY:
             touch = by_touch(situation.screens, node)
-            look = self._pursuer.look(Aim("inspect", *touch), stage, situation)
+            look = self._pursuer.look(Subgoal("inspect", *touch), stage, situation)
             return None if look is None or look.command is None else look
         if node.polygon is None or node.vague:
             look = self._pursuer.look(self._verifier.inspection(node, situation), stage, situation)

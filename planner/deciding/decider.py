@@ -19,7 +19,7 @@ from kb.world.corners import Corner, corners
 from kb.world.model import WorldModel
 from kb.world.rooms import NOTHING, Rooms, rooms_of
 from planner.carrying.open_facts import qualified, verdict_if_missing
-from planner.deciding.clearing import Clearer
+from planner.deciding.clearing import ObstacleClearer
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.search import aims_towards
 from planner.deciding.transport import Transporter
@@ -28,9 +28,9 @@ from planner.decision import Decision
 from planner.goals.joint import opposite_corners
 from planner.goals.robot_goals import contains, destination, no_way
 from planner.navigation.encircle import pivot, ways_round, winding
-from planner.navigation.subgoals import Aim
+from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import next_move
-from planner.screen.projection import Screens, ways_to_objects
+from planner.screen.projection import CostMaps, ways_to_objects
 from planner.sights.viewpoints import ARRIVE
 from planner.situation import Situation
 from planner.skills.into_corner import IntoCorner, halted
@@ -61,13 +61,13 @@ class Decider:
         self._verifier = Verifier()
         self.pursuer = Pursuer(self.paths)
         self.transporter = Transporter(self.pull, self.pursuer, self._verifier)
-        self._clearer = Clearer(self.transporter.carrier, self.pursuer, self._verifier)
+        self._clearer = ObstacleClearer(self.transporter.carrier, self.pursuer, self._verifier)
         self._into_corner = IntoCorner()
         self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
         """What to do after an impression. track: the places where Utak has been, this one included."""
-        screens = Screens(model)
+        screens = CostMaps(model)
         self.rooms = rooms_of(model, self.rules)
         reconciled = self._reconcile(screens)
         self.corners = corners(model, self.rules)
@@ -136,7 +136,7 @@ class Decider:
         decision = self.pursuer.felt(ask, stage, situation)
         return replace(decision, command=halted(decision.command, stage, situation))
 
-    def _doubt(self, stage: Stage, situation: Situation) -> Aim | None:
+    def _doubt(self, stage: Stage, situation: Situation) -> Subgoal | None:
         """What to look at before a stage is held for attained."""
         model, doubt = situation.model, misgiving(situation)
         for goal in (goal for goal in stage.goals if goal.name in FROM_THE_START):
@@ -177,7 +177,7 @@ class Decider:
         kind = "attain" if way.level == 0 else "explore"
         return Decision(next_move(screens, way.squares, kind, about), f"the way round {name}; {stage}")
 
-    def _reconcile(self, screens: Screens) -> Reconciled:
+    def _reconcile(self, screens: CostMaps) -> Reconciled:
         carried = sorted({str(goal.args[0]) for stage in self.stages for goal in stage.carried})
         known = ways_to_objects(screens)
         reconciled = reconcile(self.task, screens.model, known, self.bound, self.rules, carried)

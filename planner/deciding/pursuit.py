@@ -13,10 +13,10 @@ from planner.carrying.plan_executor import Advice
 from planner.deciding.search import against_walls, perhaps_islands
 from planner.decision import Decision
 from planner.navigation.fewest_moves import FewestMoves
-from planner.navigation.loop_guard import Circles
-from planner.navigation.routes import Way, choose_way, ways
-from planner.navigation.sticky_route import Kept, lattice_squares
-from planner.navigation.subgoals import Aim, choose
+from planner.navigation.loop_guard import LoopGuard
+from planner.navigation.routes import PlannedRoute, choose_way, ways
+from planner.navigation.sticky_route import StickyRoute, lattice_squares
+from planner.navigation.subgoals import Subgoal, choose
 from planner.screen.moves import HURRY, STROLL, halting, next_move
 from planner.screen.projection import Squares
 from planner.situation import Situation
@@ -31,8 +31,8 @@ class Pursuer:
 
     def __init__(self, paths: str) -> None:
         self._paths = paths
-        self._kept = Kept()
-        self._circles = Circles()
+        self._kept = StickyRoute()
+        self._circles = LoopGuard()
         self._feeling = False  # is he about to feel what may stand against a wall?
 
     def noticed(self, model: WorldModel, command: Command) -> bool:
@@ -41,12 +41,12 @@ class Pursuer:
 
     def pursue(
         self,
-        aims: Sequence[Aim],
+        aims: Sequence[Subgoal],
         stage: Stage,
         situation: Situation,
         missing: Callable[[], str],
         verdict: str = "impossible",
-        along: Callable[[Aim], Decision | None] | None = None,
+        along: Callable[[Subgoal], Decision | None] | None = None,
     ) -> Decision:
         """The next command towards the best of some aims, or the verdict when none can be reached.
 
@@ -76,13 +76,13 @@ class Pursuer:
                 return decision
             self._circles.tire(lattice_squares(aim.squares, model))
 
-    def look(self, aim: Aim | None, stage: Stage, situation: Situation) -> Decision | None:
+    def look(self, aim: Subgoal | None, stage: Stage, situation: Situation) -> Decision | None:
         """The next command towards what he wants to make sure of, if there is anything."""
         return None if aim is None else self.pursue([aim], stage, situation, lambda: aim.what, "limit")
 
     def go(self, go: Go, stage: Stage, situation: Situation) -> Decision:
         """The next command on the way to where something is taken, to halt right there."""
-        walk = self.pursue([Aim("attain", go.square, go.why)], stage, situation, lambda: "no way leads there")
+        walk = self.pursue([Subgoal("attain", go.square, go.why)], stage, situation, lambda: "no way leads there")
         return replace(walk, command=halting(walk.command, go.place, situation.model))
 
     def prepared(self, advice: Advice, stage: Stage, situation: Situation) -> Decision | None:
@@ -90,7 +90,7 @@ class Pursuer:
         if isinstance(advice, Go):
             walk: Decision | None = self.go(advice, stage, situation)
         else:
-            walk = self.look(Aim("inspect", *advice.lookout), stage, situation) if isinstance(advice, See) else None
+            walk = self.look(Subgoal("inspect", *advice.lookout), stage, situation) if isinstance(advice, See) else None
         return None if walk is None or walk.command is None else walk
 
     def felt(self, ask: Callable[[], Decision], stage: Stage, situation: Situation) -> Decision:
@@ -106,7 +106,7 @@ class Pursuer:
             return felt[0] if self._feeling else decision or ask()
         return decision
 
-    def _walk(self, aim: Aim, stage: Stage, situation: Situation, fewest: FewestMoves | None) -> Decision:
+    def _walk(self, aim: Subgoal, stage: Stage, situation: Situation, fewest: FewestMoves | None) -> Decision:
         """The next command towards an aim. fewest : by the fewest moves where that is wanted."""
         model, screens = situation.model, situation.screens
         reached = screens.nearest(aim.squares)
@@ -122,16 +122,16 @@ class Pursuer:
         move = next_move(screens, way.squares, kind, pace=STROLL if fewest is None else HURRY)
         return Decision(move, f"{aim.what}; {stage}")
 
-    def _rest(self, aim: Aim, level: int, situation: Situation) -> Way | None:
+    def _rest(self, aim: Subgoal, level: int, situation: Situation) -> PlannedRoute | None:
         """Return what is left of the way that he is on, if it leads to an aim and through no forbidden door."""
         rest = self._kept.rest(aim, level, situation.model, situation.screens)
         return self.choose([rest], situation) if rest is not None and situation.forbidden("utak") else rest
 
-    def keep(self, way: Way, model: WorldModel, towards: Squares | None = None) -> None:
+    def keep(self, way: PlannedRoute, model: WorldModel, towards: Squares | None = None) -> None:
         """Remember the way that he is on. towards : flat indices of the squares aimed at; None when none is."""
         self._kept.keep(way, frozenset() if towards is None else lattice_squares(towards, model), model)
 
-    def choose(self, offered: Sequence[Way], situation: Situation) -> Way | None:
+    def choose(self, offered: Sequence[PlannedRoute], situation: Situation) -> PlannedRoute | None:
         """The way that planner/asp/routes.lp chooses of some, and not through a door that is forbidden; or None."""
         if not offered:
             return None

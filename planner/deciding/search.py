@@ -12,9 +12,9 @@ from kb.world.model import Node, WorldModel
 from kb.world.rooms import rooms_of
 from planner.goals.robot_goals import Destination
 from planner.navigation.fewest_moves import MOVE, WAY
-from planner.navigation.subgoals import Aim
+from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import one_move
-from planner.screen.projection import Screens, Squares, grown
+from planner.screen.projection import CostMaps, Squares, grown
 from planner.sights import frontiers
 from planner.sights.viewpoints import TAKE, Approach, inspection, sightings
 from planner.situation import Situation
@@ -31,12 +31,12 @@ class Candidate(NamedTuple):
     """Something seen that may be what is looked for: the squares (flat indices) where it lies, and a look at it."""
 
     squares: Squares
-    aim: Aim
+    aim: Subgoal
 
 
 def aims_towards(
     where: Sequence[Destination], situation: Situation, reconciled: Reconciled, to: Approach = TAKE
-) -> list[Aim]:
+) -> list[Subgoal]:
     """What is worth doing: go there, when it is known where; else look, first where just the missing thing may be.
 
     to : what he goes up to the missing thing for.
@@ -47,10 +47,10 @@ def aims_towards(
         squares: Squares = where[0].squares
         for other in where[1:]:
             squares = np.intersect1d(squares, other.squares)
-        return [Aim("attain", squares, "the way to the goal is known")]
+        return [Subgoal("attain", squares, "the way to the goal is known")]
     likely = _likely(situation, reconciled)
     things = _things(situation, reconciled, likely, to)
-    aims = [Aim("explore", *look) for d in missing for look in d.lookouts]
+    aims = [Subgoal("explore", *look) for d in missing for look in d.lookouts]
     if any(_surely_reached(aim, screens) for aim in aims):
         return [*aims, *(thing.aim for thing in things)]
     places = [] if likely is None else _places(screens, likely, to)
@@ -58,13 +58,13 @@ def aims_towards(
     return [*aims, *_beyond_all(screens, none_of([*things, *places]), to)]
 
 
-def against_walls(situation: Situation) -> list[Aim]:
+def against_walls(situation: Situation) -> list[Subgoal]:
     """What may be things that stand against a wall: where each can be felt."""
     looks = [frontiers.against_the_wall(situation.screens, mask) for mask in situation.model.protruding]
-    return [Aim("inspect", *look) for look in looks if len(look.squares)]
+    return [Subgoal("inspect", *look) for look in looks if len(look.squares)]
 
 
-def perhaps_islands(situation: Situation) -> list[Aim]:
+def perhaps_islands(situation: Situation) -> list[Subgoal]:
     """What stands free, and would make more doors were it a piece of wall: where each can be felt."""
     model = situation.model
     aims = []
@@ -73,7 +73,7 @@ def perhaps_islands(situation: Situation) -> list[Aim]:
             rooms = rooms_of(model, situation.rules, model.verge | model.mask(node.patch))
             if len(rooms.doors) > len(situation.rooms.doors):
                 look = frontiers.by_touch(situation.screens, node)
-                aims += [Aim("inspect", *look)] if len(look.squares) else []
+                aims += [Subgoal("inspect", *look)] if len(look.squares) else []
     return aims
 
 
@@ -89,7 +89,7 @@ def _things(situation: Situation, reconciled: Reconciled, likely: Heat | None, t
         look = inspection(screens, node, chance, to) if node.open else frontiers.by_touch(screens, node)
         what = f"{look.what}: it may be {x}"
         squares = np.flatnonzero(model.mask(node.patch))
-        found.append(Candidate(squares, Aim("inspect", look.squares, what, max(LEAST, round(100 * chance)))))
+        found.append(Candidate(squares, Subgoal("inspect", look.squares, what, max(LEAST, round(100 * chance)))))
     return [candidate for candidate in found if len(candidate.aim.squares)]
 
 
@@ -101,10 +101,10 @@ def _chance(node: Node, likely: Heat, model: WorldModel) -> float:
     return max(shown, float(seen_in_part(mask.sum()))) if cut else shown
 
 
-def _places(screens: Screens, likely: Heat, to: Approach) -> list[Candidate]:
+def _places(screens: CostMaps, likely: Heat, to: Approach) -> list[Candidate]:
     """Where pictures of what is not settled show what is looked for."""
     seen = sightings(screens, likely, "something may be meant there", to)
-    return [Candidate(squares, Aim("inspect", *look)) for squares, look in seen]
+    return [Candidate(squares, Subgoal("inspect", *look)) for squares, look in seen]
 
 
 def none_of(candidates: Sequence[Candidate]) -> float:
@@ -117,7 +117,7 @@ def none_of(candidates: Sequence[Candidate]) -> float:
     return none
 
 
-def _beyond_all(screens: Screens, unseen: float, to: Approach) -> list[Aim]:
+def _beyond_all(screens: CostMaps, unseen: float, to: Approach) -> list[Subgoal]:
     """Looks at what was never seen, and at what bounds the floor.
 
     unseen : that what is missing was not seen yet. to : as for `aims_towards`. Who is to carry what he finds counts
@@ -127,13 +127,13 @@ def _beyond_all(screens: Screens, unseen: float, to: Approach) -> list[Aim]:
     promise = unseen * (FROM_AFAR if to.take else 1.0)
     for apart in (frontiers.APART, 0):
         borders = [*views, *frontiers.promised(screens, frontiers.frontiers(screens, apart))]
-        explored = [Aim("explore", *look)._replace(chance=max(1, round(look.chance * promise))) for look in borders]
+        explored = [Subgoal("explore", *look)._replace(chance=max(1, round(look.chance * promise))) for look in borders]
         odd, plain = (frontiers.vague_places(screens, apart, odd=odd) for odd in (True, False))
-        settled = [Aim("settle", *look, price=ODD)._replace(chance=ODDLY) for look in odd]
-        settled += [Aim("settle", *look)._replace(chance=HARDLY) for look in plain]
+        settled = [Subgoal("settle", *look, price=ODD)._replace(chance=ODDLY) for look in odd]
+        settled += [Subgoal("settle", *look)._replace(chance=HARDLY) for look in plain]
         if explored or settled:
             break
-    passages = [Aim("pass", *look)._replace(chance=PERHAPS) for look in frontiers.rooms_beyond(screens)]
+    passages = [Subgoal("pass", *look)._replace(chance=PERHAPS) for look in frontiers.rooms_beyond(screens)]
     return [*explored, *settled, *passages]
 
 
@@ -149,6 +149,6 @@ def _likely(situation: Situation, reconciled: Reconciled) -> Heat | None:
     return situation.model.imagined.likely(wanted[0])
 
 
-def _surely_reached(aim: Aim, screens: Screens) -> bool:
+def _surely_reached(aim: Subgoal, screens: CostMaps) -> bool:
     reached = screens.nearest(aim.squares)
     return reached is not None and reached.level == 0

@@ -14,9 +14,9 @@ from kb.language.terms import Fact
 from kb.task.binding import Reconciled
 from kb.world.model import Node
 from planner.advice import Act, Go, See
-from planner.carrying.infeasibility import Refusal
+from planner.carrying.infeasibility import Infeasibility
 from planner.carrying.open_facts import verdict_if_missing
-from planner.carrying.plan_executor import Advice, Carrier
+from planner.carrying.plan_executor import Advice, PlanExecutor
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.search import aims_towards
 from planner.deciding.verification import Verifier, before_taking, more_of
@@ -24,13 +24,13 @@ from planner.decision import Decision
 from planner.goals.corner_goal import approach, may_move
 from planner.goals.joint import conflict
 from planner.goals.object_goals import landing
-from planner.goals.origins import Beginnings
-from planner.goals.placement import Landing, can_leave, in_view, lands_in_one
+from planner.goals.origins import Origins
+from planner.goals.placement import Placement, can_leave, in_view, lands_in_one
 from planner.goals.robot_goals import nowhere
-from planner.navigation.subgoals import Aim
+from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import is_open
 from planner.situation import Situation
-from planner.skills.measure_size import Sizer, least_outline
+from planner.skills.measure_size import SizeEstimator, least_outline
 from planner.skills.press import Presser
 from planner.stages import FROM_THE_START, Stage
 
@@ -43,9 +43,9 @@ class Transporter:
 
     def __init__(self, pull: bool, pursuer: Pursuer, verifier: Verifier) -> None:
         self.pursuer, self.verifier = pursuer, verifier
-        self.carrier = Carrier(pull)
-        self.beginnings = Beginnings()
-        self.sizer = Sizer()
+        self.carrier = PlanExecutor(pull)
+        self.beginnings = Origins()
+        self.sizer = SizeEstimator()
         self._looked = 0  # squares he had looked from when he went to see where it must end, until it is one more
         self.presser = Presser()
         self._led_along = False  # has he taken along what shut him in, to look?
@@ -74,11 +74,11 @@ class Transporter:
             self.presser.begin(goal, node, land, situation)
             return self._pressed_on(node, stage, situation)
         advice = self._advice(node, land, situation)
-        if isinstance(advice, Refusal) and land.loose:
+        if isinstance(advice, Infeasibility) and land.loose:
             if lands_in_one(land.loose, in_view(node.polygon, situation)):
                 return self._led_out(node, stage, situation) if stage.goes_on else None
             advice = self.carrier.advise(node, land.loose, situation)
-        if isinstance(advice, Refusal) and land.some:
+        if isinstance(advice, Infeasibility) and land.some:
             advice = replace(advice, proved=False)
         if isinstance(advice, Act):
             instead = self._by_the_way(node, land, stage, situation) if isinstance(advice.command, Push) else None
@@ -87,11 +87,11 @@ class Transporter:
             walk = self.pursuer.go(advice, stage, situation)
             if walk.command is not None:
                 return walk
-            advice = Refusal(False, lambda: f"{node.name} cannot be reached to be taken")
+            advice = Infeasibility(False, lambda: f"{node.name} cannot be reached to be taken")
         situation = situation.along_with(node.patch) if land.shut_in else situation
         if isinstance(advice, See):
             along = partial(self._taken_along, node, stage, situation)
-            return self.pursuer.pursue([Aim("inspect", *advice.lookout)], stage, situation, lambda: "", along=along)
+            return self.pursuer.pursue([Subgoal("inspect", *advice.lookout)], stage, situation, lambda: "", along=along)
         unknown = nowhere(land.missing or "no way is known to carry it there", land.lookouts)
         aims = aims_towards([unknown], situation, reconciled)
         decision = self._missing(advice, node, land, aims, stage, situation)
@@ -145,7 +145,7 @@ class Transporter:
         look = self.pursuer.look(more_of(node, situation), stage, situation)
         return None if look is None or look.command is None else look
 
-    def _by_the_way(self, node: Node, land: Landing, stage: Stage, situation: Situation) -> Decision | None:
+    def _by_the_way(self, node: Node, land: Placement, stage: Stage, situation: Situation) -> Decision | None:
         """Instead of a push of the plan, one by which he sees on the way what he would have to come back for."""
         for look in land.by_the_way():
             act = self.carrier.by_way_of(node, look.squares, situation)
@@ -167,7 +167,13 @@ class Transporter:
         return Decision(advice.command, f"{advice.why}; {stage}")
 
     def _missing(
-        self, refused: Refusal, node: Node, land: Landing, aims: Sequence[Aim], stage: Stage, situation: Situation
+        self,
+        refused: Infeasibility,
+        node: Node,
+        land: Placement,
+        aims: Sequence[Subgoal],
+        stage: Stage,
+        situation: Situation,
     ) -> Decision:
         """The next command to see what must be known of where a thing shall end, or of another way there.
 
@@ -191,7 +197,13 @@ class Transporter:
         return decision
 
     def _proved(
-        self, refused: Refusal, decision: Decision, node: Node, land: Landing, stage: Stage, situation: Situation
+        self,
+        refused: Infeasibility,
+        decision: Decision,
+        node: Node,
+        land: Placement,
+        stage: Stage,
+        situation: Situation,
     ) -> Decision:
         """What was decided; a verdict is "impossible" where a refusal proves that, and nothing is left to check."""
         must_reach = land.must_reach() if decision.verdict else {}
@@ -209,12 +221,12 @@ class Transporter:
         instead = self._sized(node, ends, stage, situation) if ends else None
         return instead or replace(decision, unless=refused.unless(), near=refused.neck())
 
-    def _advice(self, node: Node, land: Landing, situation: Situation) -> Advice:
+    def _advice(self, node: Node, land: Placement, situation: Situation) -> Advice:
         """What to do to carry something to where its goal holds; while that is not known, to near it."""
         looked = len(situation.model.looked_from)
         if land.lookouts and (looked == self._looked or (land.ends and self.carrier.missed >= MISSED)):
             self.carrier.missed, self._looked = 0, looked
-            return Refusal(not situation.model.shaken, lambda: land.missing)
+            return Infeasibility(not situation.model.shaken, lambda: land.missing)
         if land.ends:
             return self.carrier.advise(node, land.ends, situation, land.hoped)
         going_on = self.carrier.gone_on(node, situation)
@@ -225,10 +237,10 @@ class Transporter:
             if isinstance(advice, Act | Go):
                 return advice
         self._looked = looked
-        return Refusal(not situation.model.shaken, lambda: land.missing)
+        return Infeasibility(not situation.model.shaken, lambda: land.missing)
 
     def _taken_along(
-        self, node: Node, stage: Stage, situation: Situation, aim: Aim, fetched: bool = False
+        self, node: Node, stage: Stage, situation: Situation, aim: Subgoal, fetched: bool = False
     ) -> Decision | None:
         """The next command to take an object along to where he wants to look; None when he had better walk there.
 

@@ -15,9 +15,9 @@ from geometry.raster.components import edged
 from kb.world.doors import jamb
 from kb.world.model import Node, WorldModel
 from kb.world.rooms import SURE, Door, rooms_of
-from planner.carrying.infeasibility import Refusal
+from planner.carrying.infeasibility import Infeasibility
 from planner.goals.robot_goals import contains, out_of_sight
-from planner.navigation.subgoals import Aim
+from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import is_open
 from planner.sights import frontiers
 from planner.sights.viewpoints import TAKE, inspection
@@ -41,7 +41,7 @@ class Verifier:
         """Has he begun to look at an object that was not settled?"""
         return node.name in self._doubted
 
-    def inspection(self, node: Node, situation: Situation) -> Aim | None:
+    def inspection(self, node: Node, situation: Situation) -> Subgoal | None:
         """A look at an object that is not settled yet; None when no look is left that may tell more.
 
         Once begun it is gone on with.
@@ -53,9 +53,9 @@ class Verifier:
         if not len(look.squares):
             return None
         self._doubted.add(node.name)
-        return Aim("inspect", *look)
+        return Subgoal("inspect", *look)
 
-    def narrow_again(self, refusal: Refusal, situation: Situation) -> Aim | None:
+    def narrow_again(self, refusal: Infeasibility, situation: Situation) -> Subgoal | None:
         """A look at the passage that is said to be too narrow, from close by, before one says so who is not sure of his
         map: where looks were received he may misjudge, but how the squares of one look lie beside each other he knows.
         """
@@ -69,10 +69,10 @@ class Verifier:
             self._narrow.append(where)
         if any(math.dist(where, looked) <= frontiers.CLOSE for looked in self._narrow):
             return None
-        return Aim("inspect", near, "whether the passage is that narrow is not sure")
+        return Subgoal("inspect", near, "whether the passage is that narrow is not sure")
 
 
-def before_taking(node: Node, turns: bool, situation: Situation) -> Aim | None:
+def before_taking(node: Node, turns: bool, situation: Situation) -> Subgoal | None:
     """A look at how the squares lie before an object is taken to be turned, by who has looked but a few times.
 
     A thing that was turned askew, and the map with it, are hard to set right again; a push leaves it as it lies.
@@ -82,10 +82,10 @@ def before_taking(node: Node, turns: bool, situation: Situation) -> Aim | None:
     if not (is_open(model) and (turns or node.stuck) and len(model.looked_from) <= FEW + node.stuck):
         return None
     aside = frontiers.sight_of(situation.screens, model.mask(node.patch), "how the squares lie is not clear")
-    return Aim("inspect", *aside) if len(aside.squares) else None
+    return Subgoal("inspect", *aside) if len(aside.squares) else None
 
 
-def misgiving(situation: Situation) -> Aim | None:
+def misgiving(situation: Situation) -> Subgoal | None:
     """A look from elsewhere before a goal is held for attained, when the last look contradicts what is believed.
 
     What contradicts was withdrawn, so the new look agrees with the rest if that is right.
@@ -94,7 +94,7 @@ def misgiving(situation: Situation) -> Aim | None:
     if not model.contradicted:
         return None
     look = frontiers.sight_of(situation.screens, here(model), "what is seen is not as it is believed to be")
-    return Aim("inspect", *look)
+    return Subgoal("inspect", *look)
 
 
 def here(model: WorldModel) -> Mask:
@@ -102,7 +102,7 @@ def here(model: WorldModel) -> Mask:
     return model.squares([(math.floor(model.place[0]), math.floor(model.place[1]))])
 
 
-def more_of(node: Node, situation: Situation) -> Aim | None:
+def more_of(node: Node, situation: Situation) -> Subgoal | None:
     """Where to feel whether an object that stands against a wall goes on in what seems to be part of that."""
     model = situation.model
     beside = edged(model.mask(node.patch))
@@ -111,11 +111,11 @@ def more_of(node: Node, situation: Situation) -> Aim | None:
     for mask in () if alone else model.protruding:
         look = frontiers.against_the_wall(situation.screens, mask)
         if (mask & beside).any() and len(look.squares):
-            return Aim("inspect", *look)
+            return Subgoal("inspect", *look)
     return None
 
 
-def before_elsewhere(goal: str, began: Place, lying: Mask, situation: Situation) -> Aim | None:
+def before_elsewhere(goal: str, began: Place, lying: Mask, situation: Situation) -> Subgoal | None:
     """What to look at or to feel, before one says that something is elsewhere than it began.
 
     goal : in, through or around. began : where it began, a point of the lattice. lying : (rows, columns) where it lies.
@@ -123,7 +123,7 @@ def before_elsewhere(goal: str, began: Place, lying: Mask, situation: Situation)
     return unseen_beyond(goal, began, lying, situation) or unfelt_wall(goal, began, lying, situation)
 
 
-def unfelt_wall(goal: str, began: Place, lying: Mask, situation: Situation) -> Aim | None:
+def unfelt_wall(goal: str, began: Place, lying: Mask, situation: Situation) -> Subgoal | None:
     """Where to feel whether something is part of a wall, before one says that something is elsewhere than it began.
 
     If it were a thing that stands against the wall, the goal would hold no more. All as of before_elsewhere.
@@ -136,11 +136,11 @@ def unfelt_wall(goal: str, began: Place, lying: Mask, situation: Situation) -> A
         if not len(look.squares):  # whatever lies askew must be seen better before one can stand right beside it
             look = frontiers.sight_of(situation.screens, mask, look.what)
         if len(look.squares) and holds_by(mask):
-            return Aim("inspect", *look)
+            return Subgoal("inspect", *look)
     return None
 
 
-def unseen_beyond(goal: str, began: Place, lying: Mask, situation: Situation) -> Aim | None:
+def unseen_beyond(goal: str, began: Place, lying: Mask, situation: Situation) -> Subgoal | None:
     """Where to see how wide the floor is beyond a door, before one says that something is there.
 
     A door is a neck, and what was never seen counts as floor: behind an arm of the room there may be nothing but that.
@@ -155,12 +155,12 @@ def unseen_beyond(goal: str, began: Place, lying: Mask, situation: Situation) ->
         return None
     rows, columns = np.nonzero(lying)
 
-    def far(look: frontiers.Lookout) -> float:
+    def far(look: frontiers.Viewpoint) -> float:
         there = np.unravel_index(look.squares, lying.shape)
         return float(np.hypot(there[0] - rows.mean(), there[1] - columns.mean()).min())
 
     nearest = min(frontiers.frontiers(situation.screens, frontiers.APART), key=far, default=None)
-    return None if nearest is None else Aim("inspect", *nearest)
+    return None if nearest is None else Subgoal("inspect", *nearest)
 
 
 def _jambs_in_line(mask: Mask, door: Door, model: WorldModel) -> bool:

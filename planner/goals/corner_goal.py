@@ -16,10 +16,10 @@ from geometry.raster.components import components
 from geometry.raster.geodesic import UNREACHED, reach
 from kb.language.terms import Fact
 from kb.world.model import CLEAR, Node
-from planner.goals.placement import HAIR, Landing, Mask, can_leave, in_view, lands, lies_askew, region_of
+from planner.goals.placement import HAIR, Mask, Placement, can_leave, in_view, lands, lies_askew, region_of
 from planner.goals.robot_goals import corner_side, rooms_to_see, unknown_corner
 from planner.screen.projection import grown
-from planner.sights.frontiers import Lookout, short_of, sight_of
+from planner.sights.frontiers import Viewpoint, short_of, sight_of
 from planner.sights.viewpoints import TAKE, Approach
 from planner.situation import Situation
 
@@ -35,7 +35,7 @@ RATHER = 0.4  # that a square is occupied which is rather floor than not
 MOST_FURTHER, BROAD = 2, 3  # squares that a corner may lie further than what surely is floor, and as broad as that is
 
 
-def cornered(side: str, node: Node, situation: Situation) -> Landing:
+def cornered(side: str, node: Node, situation: Situation) -> Placement:
     """The corner that Utak would go to; how the floor goes on about it is not asked once the object lies in it.
 
     Whether there is another one in a room that is not seen he looks only then, for mostly there is none; or by the way
@@ -49,7 +49,7 @@ def cornered(side: str, node: Node, situation: Situation) -> Landing:
             near = _near(side, node, situation, floor)
             must_reach = partial(_must_reach, side, node, situation)
             hoped = partial(_further, side, next(iter(near), ""), situation)
-            return Landing({}, unknown.missing, unknown.lookouts, near, must_reach=must_reach, hoped=hoped)
+            return Placement({}, unknown.missing, unknown.lookouts, near, must_reach=must_reach, hoped=hoped)
     land = _in_corner(side, node, situation)
     if not land.holds:
         held = situation.model.held == node.name
@@ -60,7 +60,7 @@ def cornered(side: str, node: Node, situation: Situation) -> Landing:
         looks = _looks_into_rooms(side, situation.along_with(node.patch))
     if not looks:
         return land
-    return Landing({}, looks[0].what, looks, there=not shut_in, shut_in=shut_in)
+    return Placement({}, looks[0].what, looks, there=not shut_in, shut_in=shut_in)
 
 
 def may_move(goal: Fact, situation: Situation) -> bool:
@@ -79,7 +79,7 @@ def approach(goals: Iterable[Fact], situation: Situation) -> Approach:
     return TAKE
 
 
-def _looks_into_rooms(side: str, situation: Situation) -> tuple[Lookout, ...]:
+def _looks_into_rooms(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
     """Looks into rooms that may go further towards a side, for which it will do to come near.
 
     What lies behind their squares is seen from short of them, too.
@@ -88,7 +88,7 @@ def _looks_into_rooms(side: str, situation: Situation) -> tuple[Lookout, ...]:
     return tuple(r._replace(squares=np.union1d(r.squares, short_of(situation.screens, r.squares))) for r in rooms)
 
 
-def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
+def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
     """In a corner of the known floor, at the very corner.
 
     To be within a square of its walls is enough when they are settled; else they may be further away than he believes.
@@ -113,11 +113,11 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Landing:
     lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
     may_go_on = unclear & (view.probability < 1 - CLEAR)
     if len(lookout.squares) and (not view.sure or (may_go_on.any() and lands(near, shape))):
-        return Landing({}, lookout.what, (lookout,), there=True)
-    return Landing({side: near}, lookout.what, (lookout,), holds=lands(near, shape), hoped=hoped)
+        return Placement({}, lookout.what, (lookout,), there=True)
+    return Placement({side: near}, lookout.what, (lookout,), holds=lands(near, shape), hoped=hoped)
 
 
-def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Landing:
+def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Placement:
     """In a corner, and what was turned askew so that it reaches hardly further from the walls than it would straight.
 
     Where that cannot be it may lie there askew. What covers some squares in part looks larger than it is, on any side
@@ -127,16 +127,16 @@ def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Landing:
     close = replace(end, slack=ABOUT)
     if not lies_askew(node):
         if node.inexact:
-            return Landing({side: close}, holds=lands(close, shape), loose={side: end})
+            return Placement({side: close}, holds=lands(close, shape), loose={side: end})
         goals = [_pressed(end), replace(close, press=ABOUT), replace(end, slack=FLUSH, press=1.0)]
         goal = next((one for one in goals if not lands(one, shape)), goals[-1])
         holds = _surely(end, node, shape) or lands(goals[-1], shape)
-        return Landing({side: goal}, holds=holds, presses=_presses(end, node, shape) if holds else {})
+        return Placement({side: goal}, holds=holds, presses=_presses(end, node, shape) if holds else {})
     x0, y0, x1, y1 = placed(shape, Pose(0.0, 0.0, -node.turned % 90.0)).bounds
     near, far = sorted((x1 - x0, y1 - y0))
     flat = replace(close if node.inexact else end, within=(near + LEANING, far + LEANING))
     loose = {} if lands(flat, shape) else {side: close}
-    return Landing({side: replace(flat, slack=ABOUT)}, holds=lands(flat, shape), loose=loose)
+    return Placement({side: replace(flat, slack=ABOUT)}, holds=lands(flat, shape), loose=loose)
 
 
 def _between_walls(side: str, situation: Situation) -> Between | None:
@@ -145,7 +145,7 @@ def _between_walls(side: str, situation: Situation) -> Between | None:
     return None if corner.walls is None else Between(*corner.point, corner.walls)
 
 
-def _aslant(side: str, end: Between, shape: Any) -> Landing:
+def _aslant(side: str, end: Between, shape: Any) -> Placement:
     """Between walls that lie askew to the squares, at any angle: brought near to both, and then pressed on into there.
 
     They are seen as stairs, and lie somewhere behind these: only what is stopped tells where.
@@ -158,7 +158,7 @@ def _aslant(side: str, end: Between, shape: Any) -> Landing:
     }
     holds = lands(end, shape)
     presses = {name: Translate(*end.move(way)) for name, way in ways.items() if holds}
-    return Landing({side: end}, holds=holds, presses=presses)
+    return Placement({side: end}, holds=holds, presses=presses)
 
 
 def _pressed(end: InCorner) -> InCorner:

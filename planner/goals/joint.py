@@ -9,7 +9,7 @@ import shapely
 
 from geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, placed
 from kb.language.terms import Fact
-from planner.goals.placement import Landing
+from planner.goals.placement import Placement
 from planner.goals.robot_goals import corner_side
 from planner.situation import Situation
 
@@ -18,7 +18,7 @@ AT_CORNER = (1.0, 1.0)  # squares from a corner, east and north, within which Ut
 OPPOSITE = (("northeast", "southwest"), ("northwest", "southeast"))
 
 
-def conflict(lands: Sequence[Landing], shape: Any) -> tuple[int, int] | None:
+def conflict(lands: Sequence[Placement], shape: Any) -> tuple[int, int] | None:
     """Return which two of some goals cannot hold at once for a shape, as indices; None when each two may.
 
     lands : where each goal holds; one of which it is not known yet may hold anywhere. shape : in the frame of the
@@ -48,7 +48,7 @@ def opposite_corners(goals: Sequence[Fact], situation: Situation) -> str:
     return ""
 
 
-def _places(land: Landing) -> list[End]:
+def _places(land: Placement) -> list[End]:
     return [*land.ends.values(), *land.loose.values()]
 
 

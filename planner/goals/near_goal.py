@@ -12,7 +12,7 @@ from geometry.motion.se2 import Pose
 from kb.language.terms import Fact, Number, Text
 from kb.language.wkt import parse_wkt
 from kb.world.model import Node
-from planner.goals.placement import TURNED, Landing, in_view, region_of
+from planner.goals.placement import TURNED, Placement, in_view, region_of
 from planner.situation import Situation
 
 BESIDE = 1.0  # squares from a thing within which it is reached
@@ -20,22 +20,22 @@ NEAR = 0.7  # squares in each axis within which something surely is that near, a
 POSED = 0.25  # squares within which a pose is attained
 
 
-def around_start(node: Node, situation: Situation) -> Landing:
+def around_start(node: Node, situation: Situation) -> Placement:
     """At the place where Utak woke: within one square of it."""
     place = in_view(shapely.Point(*situation.model.lattice.woke), situation)
     return _touching(in_view(node.polygon, situation), place.buffer(0.5, cap_style="square"), "start")
 
 
-def beside(other: str, node: Node, situation: Situation) -> Landing:
+def beside(other: str, node: Node, situation: Situation) -> Placement:
     """Within one square of another object, on one of its four sides."""
     target = situation.model.object(situation.binding.get(other, ""))
     if target is None:
-        return Landing({}, f"nothing seen so far is {other}")
+        return Placement({}, f"nothing seen so far is {other}")
     squares = region_of(situation.model.mask(target.patch))
     return _touching(in_view(node.polygon, situation), squares, target.name)
 
 
-def _touching(shape: Any, target: Any, name: str) -> Landing:
+def _touching(shape: Any, target: Any, name: str) -> Placement:
     """Within one square of a target: best with the containing rectangles against each other, on one of four sides.
 
     Where it cannot be brought to any of these, anywhere near will do; further than by its own length it is nowhere so.
@@ -49,7 +49,7 @@ def _touching(shape: Any, target: Any, name: str) -> Landing:
     ends = {f"{name}_{side}": At(Pose(dx, dy, 0.0)) for side, (dx, dy) in shifts.items()}
     about = target.envelope.buffer(min(east - west, north - south) + NEAR, join_style="mitre")
     far = Inside(target.buffer(math.hypot(east - west, north - south) + BESIDE))
-    return Landing(
+    return Placement(
         ends,
         holds=shape.distance(target) <= BESIDE,
         loose={name: Inside(about)},
@@ -58,7 +58,7 @@ def _touching(shape: Any, target: Any, name: str) -> Landing:
     )
 
 
-def posed(goal: Fact, node: Node, situation: Situation) -> Landing:
+def posed(goal: Fact, node: Node, situation: Situation) -> Placement:
     """The middle at a point of Utak's frame, turned by so many degrees from how it lay at first."""
     place, degrees = goal.args[1:]
     assert isinstance(place, Text)
@@ -72,4 +72,4 @@ def posed(goal: Fact, node: Node, situation: Situation) -> Landing:
     lying = placed(in_view(node.polygon, situation), there)
     west, south, east, north = lying.bounds
     about = lying.buffer(POSED + math.hypot(east - west, north - south) * math.radians(TURNED), join_style="mitre")
-    return Landing({"pose": At(there)}, holds=holds, must_reach=lambda: {"pose": Inside(about)}, some=True)
+    return Placement({"pose": At(there)}, holds=holds, must_reach=lambda: {"pose": Inside(about)}, some=True)

@@ -15,7 +15,7 @@ from kb.world.rooms import Rooms
 from planner.goals.corner_goal import cornered
 from planner.goals.near_goal import around_start, beside, posed
 from planner.goals.optimistic import BEYOND, spread
-from planner.goals.placement import Landing, Mask, in_view, lands_in_one, region_of
+from planner.goals.placement import Mask, Placement, in_view, lands_in_one, region_of
 from planner.goals.robot_goals import corner_side, doorsteps, no_next_room, numbers, out_of_sight
 from planner.situation import Situation
 
@@ -23,7 +23,7 @@ Place = tuple[float, float]
 RIM = 1.0  # squares from the edge of a region within which he is not sure that something is in it
 
 
-def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
+def landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Placement:
     """Where an object must end. began : the point of the lattice where its middle lay at first."""
     found = _landing(goal, node, began, situation)
     if not situation.model.view.sure:
@@ -40,7 +40,7 @@ def _well_in(end: End) -> End:
     return end if inner.polygon.is_empty else inner
 
 
-def _landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Landing:
+def _landing(goal: Fact, node: Node, began: Place, situation: Situation) -> Placement:
     where = goal.args[1]
     if side := corner_side(goal):
         return cornered(side, node, situation)
@@ -62,7 +62,7 @@ def _lies_in(ends: Mapping[str, End], node: Node, situation: Situation) -> bool:
     return lands_in_one(ends, in_view(node.polygon, situation))
 
 
-def _next_room(began: Place, node: Node, situation: Situation) -> Landing:
+def _next_room(began: Place, node: Node, situation: Situation) -> Placement:
     """Beyond a door; one that is only likely will do to begin with, for the way there shows whether it is one.
 
     What goes on unseen, and might make other rooms of these, is only looked at when it is there.
@@ -72,14 +72,14 @@ def _next_room(began: Place, node: Node, situation: Situation) -> Landing:
     if beyond.any():
         ends = _insides(rooms, beyond)
         if looks and _lies_in(ends, node, situation):
-            return Landing({}, looks[0].what, looks, there=True)
-        return Landing(ends, hoped=partial(_insides, rooms, beyond, situation))
+            return Placement({}, looks[0].what, looks, there=True)
+        return Placement(ends, hoped=partial(_insides, rooms, beyond, situation))
     missing, lookouts = no_next_room(situation), doorsteps(situation)
     likely_rooms = situation.likely_beyond(began)
     likely = _insides(*likely_rooms)
     if _lies_in(likely, node, situation):
-        return Landing({}, missing, lookouts, there=True)
-    return Landing(likely, missing, lookouts, hoped=partial(_insides, *likely_rooms, situation))
+        return Placement({}, missing, lookouts, there=True)
+    return Placement(likely, missing, lookouts, hoped=partial(_insides, *likely_rooms, situation))
 
 
 def _hoped(mask: Mask, situation: Situation) -> End:
@@ -93,12 +93,12 @@ def _insides(rooms: Rooms, beyond: Mask, hoping: Situation | None = None) -> dic
     return {name: _hoped(part, hoping) if hoping else Inside(region_of(part)) for name, part in parts.items()}
 
 
-def _around_corner(began: Place, node: Node, situation: Situation) -> Landing:
+def _around_corner(began: Place, node: Node, situation: Situation) -> Placement:
     model = situation.model
     hidden = out_of_sight(model.verge, model, began) & (model.space | model.mask(node.patch))
     if hidden.sum() < node.polygon.area:
         # Where it ends it lies on what is hidden, as far as that is seen, and on what never was.
         rest = {"hidden": hidden | ~model.view.seen} if hidden.any() else {}
         missing = "no corner is seen yet that hides a place for it"
-        return Landing({}, missing, must_reach=lambda: {name: Inside(region_of(mask)) for name, mask in rest.items()})
-    return Landing({"hidden": Inside(region_of(hidden))}, hoped=lambda: {"hidden": _hoped(hidden, situation)})
+        return Placement({}, missing, must_reach=lambda: {name: Inside(region_of(mask)) for name, mask in rest.items()})
+    return Placement({"hidden": Inside(region_of(hidden))}, hoped=lambda: {"hidden": _hoped(hidden, situation)})

@@ -15,7 +15,7 @@ Place = tuple[float, float]
 SAME = 3.0  # squares that a door may have come to lie elsewhere
 
 
-class Beginning(NamedTuple):
+class Origin(NamedTuple):
     """Where the middle of something lay at first, in Utak's own frame.
 
     name : of its node. moved : has he moved it since? anew : had he been lost before then? doors : the middles of those
@@ -29,11 +29,11 @@ class Beginning(NamedTuple):
     doors: tuple[Place, ...] = ()
 
 
-class Beginnings:
+class Origins:
     """Remembers for each parameter of the task where what it means began."""
 
     def __init__(self) -> None:
-        self._known: dict[str, Beginning] = {}
+        self._known: dict[str, Origin] = {}
 
     def at(self, parameter: str, node: Node, situation: Situation) -> Place:
         """The point of the lattice where the middle of what a parameter means lay at first: noted now, or before.
@@ -44,7 +44,7 @@ class Beginnings:
         gone = known is not None and known.moved and model.object(known.name) is None
         if known is None or (known.name != node.name and not gone):
             place = model.lattice.place_to_utak(node.polygon.centroid.x, node.polygon.centroid.y)
-            known = Beginning(place, node.name, anew=model.anew, doors=() if known is None else known.doors)
+            known = Origin(place, node.name, anew=model.anew, doors=() if known is None else known.doors)
         began = model.lattice.place_from_utak(*known.place)
         doors = known.doors if node.moved else _doors_of_its_room(began, situation)
         self._known[parameter] = known._replace(name=node.name, moved=known.moved or node.moved, doors=doors)

@@ -18,12 +18,12 @@ from geometry.raster.rasterize import squares
 from kb.localisation.propose.larger_object import DEEPEST, SIDES
 from kb.world.model import Node, WorldModel
 from planner.screen.projection import grown, shifted
-from planner.sights.frontiers import Lookout
+from planner.sights.frontiers import Viewpoint
 from planner.situation import Situation
 
 Mask = NDArray[np.bool_]
 Ends = Callable[[], Mapping[str, End]]  # by their names, worked out when asked
-Looks = Callable[[], tuple[Lookout, ...]]  # worked out when asked
+Looks = Callable[[], tuple[Viewpoint, ...]]  # worked out when asked
 HAIR = 0.01  # squares that do not matter
 SURELY = 95  # percent: what is a thing with less may be a piece of wall, and is felt before it is taken
 LIKELY = 20  # percent: with less it is hardly one
@@ -32,7 +32,7 @@ TURNED = 2.0  # degrees within which a thing lies as it was meant to
 
 
 @dataclass(frozen=True)
-class Landing:
+class Placement:
     """Where a goal holds for an object.
 
     Attributes
@@ -54,7 +54,7 @@ class Landing:
 
     ends: Mapping[str, End]
     missing: str = ""
-    lookouts: tuple[Lookout, ...] = ()
+    lookouts: tuple[Viewpoint, ...] = ()
     approach: Mapping[str, End] = field(default_factory=dict)
     holds: bool = False
     there: bool = False

@@ -14,7 +14,7 @@ from kb.language.terms import Fact, Symbol, Term
 from kb.world.model import WorldModel
 from kb.world.rooms import Rooms
 from planner.screen.projection import Squares, grown
-from planner.sights.frontiers import APART, Lookout, frontiers, gaps, jambs, promised, rooms_beyond, short_of
+from planner.sights.frontiers import APART, Viewpoint, frontiers, gaps, jambs, promised, rooms_beyond, short_of
 from planner.situation import Situation
 
 Mask = NDArray[np.bool_]
@@ -43,7 +43,7 @@ class Destination:
 
     squares: Squares
     missing: str = ""
-    lookouts: tuple[Lookout, ...] = ()
+    lookouts: tuple[Viewpoint, ...] = ()
 
 
 def no_way(where: Sequence[Destination]) -> str:
@@ -52,7 +52,7 @@ def no_way(where: Sequence[Destination]) -> str:
     return "no way leads there" if set.intersection(*both) else "there is no place where all of it holds at once"
 
 
-def nowhere(missing: str, lookouts: tuple[Lookout, ...] = ()) -> Destination:
+def nowhere(missing: str, lookouts: tuple[Viewpoint, ...] = ()) -> Destination:
     """It is not known yet where."""
     return Destination(np.zeros(0, np.int64), missing, lookouts)
 
@@ -108,12 +108,12 @@ def unknown_corner(side: str, situation: Situation, floor: Mask) -> Destination 
         return nowhere(f"the floor towards the {side} lies beyond a passage that is not seen yet", rooms)
     around = (slice(max(row - 1, 0), row + 2), slice(max(column - 1, 0), column + 2))
     if not model.view.seen[around].all():
-        lookout = Lookout(short_of(screens, np.array([best])), f"the floor goes on to the {side}, unseen")
+        lookout = Viewpoint(short_of(screens, np.array([best])), f"the floor goes on to the {side}, unseen")
         return nowhere(lookout.what, (lookout,))
     return None
 
 
-def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
+def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
     """Rooms that are not seen and may go further towards a side than all that is.
 
     The floor goes on unseen behind what may be a door, or would be one if what may yet be an object is no wall; or
@@ -126,16 +126,16 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Lookout, ...]:
     best = np.array([row * model.labels.shape[1] + column])
     known = _towards(side, best, model)
 
-    def short(look: Lookout) -> float:
+    def short(look: Viewpoint) -> float:
         return known - _towards(side, look.squares, model)
 
-    def apart(look: Lookout) -> bool:
+    def apart(look: Viewpoint) -> bool:
         return any((labels[look.squares] != labels[best]).any() for labels in divided)
 
-    def narrow(look: Lookout) -> bool:
+    def narrow(look: Viewpoint) -> bool:
         return bool(max(np.ptp(v) for v in np.divmod(look.squares, model.labels.shape[1])) < WIDEST_DOOR)
 
-    def reach(look: Lookout, least: int, aside: int) -> float:
+    def reach(look: Viewpoint, least: int, aside: int) -> float:
         promise = max(A_PERCENT * (look.chance - BARE), least)
         onward = _onward(side, look.squares, model)
         sideways = math.sqrt(max(2 - onward**2, 0.0))
@@ -209,7 +209,7 @@ def beside(parameter: str, situation: Situation) -> Destination:
     squares = np.flatnonzero(near)
     if not len(squares):
         what = f"no way is seen yet that leads to {parameter}"
-        return nowhere(what, (Lookout(np.flatnonzero(about & situation.model.space), what),))
+        return nowhere(what, (Viewpoint(np.flatnonzero(about & situation.model.space), what),))
     if node.polygon is not None:
         rows, columns = np.divmod(squares, near.shape[1])
         view = situation.model.view
@@ -246,7 +246,7 @@ def no_next_room(situation: Situation) -> str:
     )
 
 
-def _likely_rooms(situation: Situation) -> list[Lookout]:
+def _likely_rooms(situation: Situation) -> list[Viewpoint]:
     """What lies beyond likely doors, until he has been there: on his way he sees whether they are some."""
     model = situation.model
     rooms, beyond = situation.likely_beyond(model.lattice.woke)
@@ -254,7 +254,7 @@ def _likely_rooms(situation: Situation) -> list[Lookout]:
     if (beyond & situation.screens.looked_from).any():
         return []
     found = [np.flatnonzero(beyond & (rooms.labels == n)) for n in numbers(rooms, beyond)]
-    return [Lookout(squares, "a door seems to lead there") for squares in found]
+    return [Viewpoint(squares, "a door seems to lead there") for squares in found]
 
 
 def numbers(rooms: Rooms, mask: Mask) -> list[int]:
@@ -262,7 +262,7 @@ def numbers(rooms: Rooms, mask: Mask) -> list[int]:
     return [int(number) for number in np.unique(rooms.labels[mask])]
 
 
-def doorsteps(situation: Situation, tried: bool = False) -> tuple[Lookout, ...]:
+def doorsteps(situation: Situation, tried: bool = False) -> tuple[Viewpoint, ...]:
     """Where to look for a door: at what may be one, and for a way to floor that is seen and cannot be reached yet.
 
     tried : likely doors are gone through, and not looked at.

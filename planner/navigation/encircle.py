@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from geometry.raster.winding import MOST, crossings, winding_way
 from kb.world.model import Node, WorldModel
-from planner.navigation.routes import Way
-from planner.screen.projection import UNSEEN, Screens
+from planner.navigation.routes import PlannedRoute
+from planner.screen.projection import UNSEEN, CostMaps
 from planner.screen.sweeps import Square
 
 Place = tuple[float, float]
@@ -25,7 +25,7 @@ def winding(track: Sequence[Place], node: Node) -> int:
     return crossings(_centred([*track, track[0]]), pivot(node))
 
 
-def ways_round(screens: Screens, track: Sequence[Place], node: Node) -> dict[int, Way]:
+def ways_round(screens: CostMaps, track: Sequence[Place], node: Node) -> dict[int, PlannedRoute]:
     """The ways, at the most certain level, that complete one turn about an object and end where the track began.
 
     By the sign of the turn: 1 counter-clockwise, -1 clockwise.
@@ -57,7 +57,7 @@ def _centred(track: Sequence[Place]) -> NDArray[np.float64]:
     return centres
 
 
-def _way(squares: Sequence[Square], level: int) -> Way:
+def _way(squares: Sequence[Square], level: int) -> PlannedRoute:
     """A way as an edge-connected path: a diagonal step is made by the square beside it."""
     path = [squares[0]]
     for column, row in squares[1:]:
@@ -65,7 +65,7 @@ def _way(squares: Sequence[Square], level: int) -> Way:
             path.append((column, path[-1][1]))
         path.append((column, row))
     length = float(np.hypot(*np.diff(np.array(squares), axis=0).T).sum())
-    return Way(tuple(path), length, 0.5, level)
+    return PlannedRoute(tuple(path), length, 0.5, level)
 
 
 def pivot(node: Node) -> Place:

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.raster.line_of_sight import straight
-from planner.navigation.routes import Way
-from planner.navigation.subgoals import Aim
+from planner.navigation.routes import PlannedRoute
+from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import HURRY, one_move
-from planner.screen.projection import Screens, Squares
+from planner.screen.projection import CostMaps, Squares
 from planner.screen.sweeps import Square
 
 MOVE, WAY = 20.0, 0.3  # what a move, and a square of way, cost
@@ -28,16 +28,16 @@ Mask = NDArray[np.bool_]
 class FewestMoves:
     """What straight moves lead to from where Utak stands, worked out when it is asked for."""
 
-    def __init__(self, screens: Screens) -> None:
+    def __init__(self, screens: CostMaps) -> None:
         self._screens = screens
         self._reached: dict[tuple[int, bool], Mask] = {}  # by how far a move leads at most, and whether up to a thing
         self._by_way: dict[tuple[str, bytes], Square | None] = {}
 
-    def priced(self, aims: Sequence[Aim]) -> list[Aim]:
+    def priced(self, aims: Sequence[Subgoal]) -> list[Subgoal]:
         """The aims: met at a square that one move leads to, where there is such a one; others dearer."""
         return [self._priced(aim) for aim in aims]
 
-    def way(self, aim: Aim) -> Way | None:
+    def way(self, aim: Subgoal) -> PlannedRoute | None:
         """The way to an aim that one or two moves lead to, as its first move; None for others.
 
         What clearance it has is not measured: 0.
@@ -47,14 +47,14 @@ class FewestMoves:
             there: Square | None = self._square(int(near[self._screens.far(near).argmin()]))
         else:
             there = self._turning(aim)
-        return None if there is None or there == here else Way((here, there), math.dist(here, there), 0.0, 0)
+        return None if there is None or there == here else PlannedRoute((here, there), math.dist(here, there), 0.0, 0)
 
     @property
     def _far(self) -> NDArray[np.int32]:
         """(squares,): the way to each square of the screen, in fifths of squares; -1 where none surely leads."""
         return self._screens.distances[0].ravel()
 
-    def _priced(self, aim: Aim) -> Aim:
+    def _priced(self, aim: Subgoal) -> Subgoal:
         """An aim whose way and price come to what its moves cost."""
         reached = self._screens.nearest(aim.squares) if len(aim.squares) else None
         if reached is None:
@@ -67,7 +67,7 @@ class FewestMoves:
             moves = 2 if turning else MANY_MOVES
         return aim._replace(price=aim.price + MOVE * moves - (1 - WAY) * reached.cost)
 
-    def _met(self, aim: Aim) -> Squares:
+    def _met(self, aim: Subgoal) -> Squares:
         """The squares of an aim to which one move leads."""
         near: Squares = aim.squares[self._first(aim.kind).ravel()[aim.squares]]
         return near
@@ -79,14 +79,14 @@ class FewestMoves:
             self._reached[key] = one_move(self._screens, kind)
         return self._reached[key]
 
-    def _turning(self, aim: Aim) -> Square | None:
+    def _turning(self, aim: Subgoal) -> Square | None:
         """Where the first of two moves to an aim ends, if two will do: on a short way, and where he sees more."""
         key = (aim.kind, aim.squares.tobytes())
         if key not in self._by_way:
             self._by_way[key] = self._found(aim)
         return self._by_way[key]
 
-    def _found(self, aim: Aim) -> Square | None:
+    def _found(self, aim: Subgoal) -> Square | None:
         screens, ground = self._screens, HURRY.ground(self._screens, aim.kind)
         sure = aim.squares[(self._far[aim.squares] >= 0) & ground.ravel()[aim.squares]]
         nearest = sure[np.argsort(self._far[sure], kind="stable")]

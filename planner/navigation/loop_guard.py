@@ -13,7 +13,7 @@ import numpy as np
 from kb.body import Command
 from kb.mapping.occupancy import OPEN
 from kb.world.model import WorldModel
-from planner.navigation.subgoals import Aim
+from planner.navigation.subgoals import Subgoal
 from planner.screen.sweeps import Square
 
 WEARY = 25.0  # squares that an aim gets dearer each time
@@ -22,7 +22,7 @@ DIGITS = 3  # of places and commands: what differs by less is the same
 State = tuple[object, ...]
 
 
-class Circles:
+class LoopGuard:
     """Remembers what was done in which state of belief, and which squares were aimed at in vain."""
 
     def __init__(self) -> None:
@@ -43,7 +43,7 @@ class Circles:
         """An aim at these squares of the lattice led in circles."""
         self._vain.update(squares)
 
-    def priced(self, aims: Sequence[Aim], model: WorldModel) -> list[Aim]:
+    def priced(self, aims: Sequence[Subgoal], model: WorldModel) -> list[Subgoal]:
         """The aims, dearer by what was aimed at in vain; without those that were so too often."""
         known = _known(model)
         if known != self._known:

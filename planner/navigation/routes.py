@@ -16,7 +16,7 @@ from geometry.pathfinders.visibility_graph import visibility_way
 from kb.reasoning.solver import solve
 from kb.world.rooms import Door, crosses
 from planner.navigation.subgoals import ASP
-from planner.screen.projection import Screens
+from planner.screen.projection import CostMaps
 from planner.screen.sweeps import Square, squares_along
 
 Mask = NDArray[np.bool_]
@@ -25,7 +25,7 @@ ROUTES = 4  # topologically distinct routes that are offered for a choice
 SHARED = 0.6  # of a way's squares: then it continues the one before
 
 
-class Way(NamedTuple):
+class PlannedRoute(NamedTuple):
     """A way that geometry found.
 
     squares : (column, row), edge-connected and free. length, clearance : in squares.
@@ -71,24 +71,24 @@ def _single(free: Mask, points: NDArray[np.float64] | None) -> list[Line]:
 FINDERS: Mapping[str, PathFinder] = {"skeleton": by_skeleton, "visibility": by_visibility, "grid": by_grid}
 
 
-def ways(screens: Screens, level: int, goals: NDArray[np.int64], finder: str) -> list[Way]:
+def ways(screens: CostMaps, level: int, goals: NDArray[np.int64], finder: str) -> list[PlannedRoute]:
     """Topologically distinct ways, at a level of certainty, to the nearest square that can be reached of some."""
     free, distances = screens.free(level), screens.distances[level].ravel()
     reached = goals[distances[goals] >= 0]
     row, column = divmod(int(reached[np.argmin(distances[reached])]), free.shape[1])
     if (column, row) == screens.here:
-        return [Way((screens.here,), 0.0, 0.0, level)]
+        return [PlannedRoute((screens.here,), 0.0, 0.0, level)]
     found = FINDERS[finder](free, screens.here, (column, row))
-    return [Way(tuple(squares_along(free, points)), length, clear, level) for points, length, clear in found]
+    return [PlannedRoute(tuple(squares_along(free, points)), length, clear, level) for points, length, clear in found]
 
 
 def choose_way(
-    offered: Sequence[Way],
-    screens: Screens,
+    offered: Sequence[PlannedRoute],
+    screens: CostMaps,
     before: frozenset[Square],
     doors: Sequence[Door],
     forbidden: frozenset[str],
-) -> Way | None:
+) -> PlannedRoute | None:
     """The way that kb rules prefer; None when every one of them is forbidden.
 
     before : the squares of the way chosen last time. doors : known doors. forbidden : those that the task forbids.
@@ -105,7 +105,7 @@ def choose_way(
     return offered[answer[0].arguments[0].number] if answer else None
 
 
-def leads_through(way: Way, door: Door) -> bool:
+def leads_through(way: PlannedRoute, door: Door) -> bool:
     """Does a way cross the neck of a door, and not come back?"""
     points = np.array(way.squares) + 0.5
     return bool(crosses(points, door) % 2)

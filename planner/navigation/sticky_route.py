@@ -3,13 +3,13 @@
 import numpy as np
 
 from kb.world.model import WorldModel
-from planner.navigation.routes import Way
-from planner.navigation.subgoals import Aim
-from planner.screen.projection import Screens, Squares
+from planner.navigation.routes import PlannedRoute
+from planner.navigation.subgoals import Subgoal
+from planner.screen.projection import CostMaps, Squares
 from planner.screen.sweeps import Square
 
 
-class Kept:
+class StickyRoute:
     """Remembers the squares of the lattice that were aimed at, and those of the way there."""
 
     def __init__(self) -> None:
@@ -17,7 +17,7 @@ class Kept:
         self._path: tuple[Square, ...] = ()
         self._level = 0  # of certainty of the way
 
-    def keep(self, way: Way, aimed: frozenset[Square], model: WorldModel) -> None:
+    def keep(self, way: PlannedRoute, aimed: frozenset[Square], model: WorldModel) -> None:
         """Remember a way, and the squares of the lattice that are aimed at by it."""
         view = model.view
         self._path = tuple((column + view.west, row + view.south) for column, row in way.squares)
@@ -33,7 +33,7 @@ class Kept:
         places = ((y - model.view.south, x - model.view.west) for x, y in self._aimed)
         return frozenset(row * columns + column for row, column in places if 0 <= row < rows and 0 <= column < columns)
 
-    def rest(self, aim: Aim, level: int, model: WorldModel, screens: Screens) -> Way | None:
+    def rest(self, aim: Subgoal, level: int, model: WorldModel, screens: CostMaps) -> PlannedRoute | None:
         """What is left of the way, when it still leads to an aim over squares believed free."""
         path = self.path(model)
         if level != self._level or screens.here not in path:
@@ -43,7 +43,7 @@ class Kept:
         end = rest[-1][1] * model.labels.shape[1] + rest[-1][0]
         if len(rest) < 2 or end not in aim.squares or not screens.free(level)[rows, columns].all():
             return None
-        return Way(tuple(rest), float(len(rest)), 0.0, level)
+        return PlannedRoute(tuple(rest), float(len(rest)), 0.0, level)
 
 
 def lattice_squares(squares: Squares, model: WorldModel) -> frozenset[Square]:

@@ -5,12 +5,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from kb.reasoning.solver import solve
-from planner.screen.projection import Screens, Squares
+from planner.screen.projection import CostMaps, Squares
 
 ASP = Path(__file__).resolve().parent.parent / "asp"
 
 
-class Aim(NamedTuple):
+class Subgoal(NamedTuple):
     """Somewhere to go and why.
 
     kind : attain, inspect, explore, pass or settle (planner/asp/aims.lp).
@@ -25,7 +25,7 @@ class Aim(NamedTuple):
     price: float = 0.0
 
 
-def choose(aims: Sequence[Aim], screens: Screens, last: frozenset[int]) -> Aim | None:
+def choose(aims: Sequence[Subgoal], screens: CostMaps, last: frozenset[int]) -> Subgoal | None:
     """The aim to pursue, or None when none can be reached.
 
     last: the squares (flat indices of this screen) of the aim chosen last time; an aim that shares one with it

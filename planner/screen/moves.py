@@ -16,7 +16,7 @@ from kb.body import Command, Move
 from kb.localisation.hypotheses.walk_outcomes import on_line
 from kb.perception.frame import turned
 from kb.world.model import WorldModel
-from planner.screen.projection import Screens, grown
+from planner.screen.projection import CostMaps, grown
 from planner.screen.sweeps import Square, clear, clear_line
 
 NARROW = 6  # squares of a move for which no more room is wanted than the way itself takes, however the lattice lies
@@ -55,7 +55,7 @@ class Pace(NamedTuple):
         """Rows and columns of a move now."""
         return min(self.longest[kind], self.unsure) if is_open(model) else self.longest[kind]
 
-    def ground(self, screens: Screens, kind: str) -> NDArray[np.bool_]:
+    def ground(self, screens: CostMaps, kind: str) -> NDArray[np.bool_]:
         """(rows, columns): the squares over which a move leads, by the kind of its aim."""
         if not self.bold:
             return screens.safe
@@ -67,7 +67,7 @@ HURRY = Pace({**STROLL.longest, "inspect": 48, "explore": 48}, 48, bold=True)
 
 
 def next_move(
-    screens: Screens,
+    screens: CostMaps,
     path: Sequence[Square],
     kind: str,
     about: tuple[float, float] | None = None,
@@ -94,7 +94,7 @@ def next_move(
     return move_to(screens.model, there, _aside(screens, there, kind if about is None else "attain"))
 
 
-def one_move(screens: Screens, kind: str, among: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
+def one_move(screens: CostMaps, kind: str, among: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
     """(rows, columns): the squares to which one straight move in a hurry leads from where Utak stands.
 
     among : the squares that are asked about; None for all.
@@ -102,7 +102,7 @@ def one_move(screens: Screens, kind: str, among: NDArray[np.bool_] | None = None
     return straight(HURRY.ground(screens, kind), *screens.here, HURRY.most(kind, screens.model), among)
 
 
-def _roomy(screens: Screens) -> NDArray[np.bool_] | None:
+def _roomy(screens: CostMaps) -> NDArray[np.bool_] | None:
     """(rows, columns): the squares that longer moves end over; None when it is settled how the lattice lies."""
     return ~grown(~screens.safe, 1) if is_open(screens.model) else None
 
@@ -136,7 +136,7 @@ def _straight_to(place: tuple[float, float], model: WorldModel) -> Move:
     return Move(round(east, DIGITS) + 0.0, round(north, DIGITS) + 0.0)
 
 
-def _aside(screens: Screens, square: Square, kind: str) -> tuple[float, float]:
+def _aside(screens: CostMaps, square: Square, kind: str) -> tuple[float, float]:
     """How far from the centre of a square he halts.
 
     As long as it is open within some degrees how the lattice lies, it is a little beside the centre where some turn by

@@ -37,7 +37,7 @@ class Reached(NamedTuple):
     cost: float
 
 
-class Screens:
+class CostMaps:
     """One world model, projected at every level of certainty.
 
     Arrays are (rows, columns), as those of the model's view. carried : the squares of what goes along with him, and so
@@ -131,7 +131,7 @@ class Screens:
 class Distances:
     """The ways to every square of a screen, by level; each is measured when it is first asked for."""
 
-    def __init__(self, screens: Screens) -> None:
+    def __init__(self, screens: CostMaps) -> None:
         self._screens = screens
         self._known: dict[int, NDArray[np.int32]] = {}
 
@@ -141,7 +141,7 @@ class Distances:
         return self._known[level]
 
 
-def ways_to_objects(screens: Screens) -> dict[str, float]:
+def ways_to_objects(screens: CostMaps) -> dict[str, float]:
     """How far it is to beside each object, in squares, by name; of those alone to which a way is known."""
     found = {}
     for node in screens.model.objects:

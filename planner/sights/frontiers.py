@@ -15,7 +15,7 @@ from geometry.raster.geodesic import UNREACHED
 from kb.mapping.occupancy import OPEN
 from kb.world.model import SPACE, Node
 from kb.world.rooms import Door
-from planner.screen.projection import WALL_LIKE, Screens, Squares, grown, marked
+from planner.screen.projection import WALL_LIKE, CostMaps, Squares, grown, marked
 from planner.screen.unseen_gain import BARREN
 
 FURTHER = 7  # squares from which a thing lies within the middle zone of the eye
@@ -31,7 +31,7 @@ GOES_ON = "the floor goes on unseen"
 Mask = NDArray[np.bool_]
 
 
-class Lookout(NamedTuple):
+class Viewpoint(NamedTuple):
     """Squares (flat indices) from each of which something is seen that is not known yet, and what it is.
 
     chance : percent of belief that it is what is looked for; 100 when it is not known to be less.
@@ -42,13 +42,13 @@ class Lookout(NamedTuple):
     chance: int = 100
 
 
-def frontiers(screens: Screens, apart: int) -> list[Lookout]:
-    """Floor that can be reached and borders on squares never seen, one Lookout for each connected stretch."""
+def frontiers(screens: CostMaps, apart: int) -> list[Viewpoint]:
+    """Floor that can be reached and borders on squares never seen, one Viewpoint for each connected stretch."""
     border = unlooked(screens, apart) & grown(~screens.model.view.seen, 1)
-    return [Lookout(squares, GOES_ON) for squares in groups(_stretches(border))]
+    return [Viewpoint(squares, GOES_ON) for squares in groups(_stretches(border))]
 
 
-def gaps(screens: Screens) -> list[Lookout]:
+def gaps(screens: CostMaps) -> list[Viewpoint]:
     """Likely gaps in what bounds the floor, through which it would go on unseen: the squares where it would.
 
     No stretch of them borders on floor that surely goes on; that is one of the frontiers.
@@ -58,11 +58,11 @@ def gaps(screens: Screens) -> list[Lookout]:
     border = edge & (screens.distances[GAPPING] != UNREACHED)
     surely = grown(edge & screens.floor, 1).ravel()
     stretches = [squares for squares in groups(_stretches(border)) if not surely[squares].any()]
-    return [Lookout(squares, "there may be a gap") for squares in stretches]
+    return [Viewpoint(squares, "there may be a gap") for squares in stretches]
 
 
-def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:
-    """Floor close to things beside it that were seen only coarsely, one Lookout for each connected stretch of them.
+def vague_places(screens: CostMaps, apart: int, odd: bool) -> list[Viewpoint]:
+    """Floor close to things beside it that were seen only coarsely, one Viewpoint for each connected stretch of them.
 
     odd : only those that may well be floor, and so part of a door or of the floor behind an object; else all of them.
     """
@@ -71,45 +71,47 @@ def vague_places(screens: Screens, apart: int, odd: bool) -> list[Lookout]:
     if odd:
         open_ &= view.probability < WALL_LIKE
     near = np.where(unlooked(screens, apart), _spread(_stretches(open_), CLOSE), 0)
-    return [Lookout(squares, "what bounds the floor is not clear") for squares in groups(near)]
+    return [Viewpoint(squares, "what bounds the floor is not clear") for squares in groups(near)]
 
 
-def by_touch(screens: Screens, node: Node) -> Lookout:
+def by_touch(screens: CostMaps, node: Node) -> Viewpoint:
     """Floor from which an object is felt."""
     beside = grown(screens.model.mask(node.patch), 1)
-    return Lookout(np.flatnonzero(unlooked(screens, 0) & beside), f"the colour of {node.name} is not known")
+    return Viewpoint(np.flatnonzero(unlooked(screens, 0) & beside), f"the colour of {node.name} is not known")
 
 
-def against_the_wall(screens: Screens, mask: Mask) -> Lookout:
+def against_the_wall(screens: CostMaps, mask: Mask) -> Viewpoint:
     """Floor from which it is felt whether something is part of a wall."""
     beside = np.flatnonzero(unlooked(screens, 0) & edged(mask))
-    return Lookout(beside, "what may stand against the wall was not felt")
+    return Viewpoint(beside, "what may stand against the wall was not felt")
 
 
-def sight_of(screens: Screens, mask: NDArray[np.bool_], what: str) -> Lookout:
+def sight_of(screens: CostMaps, mask: NDArray[np.bool_], what: str) -> Viewpoint:
     """Floor close to some squares, from which they are seen as well as can be; none when all of it was looked from."""
     for reach, apart in ((CLOSE, APART), (CLOSE, 0), (FURTHER, APART)):
         near = np.flatnonzero(unlooked(screens, apart) & grown(mask, reach))
         if len(near):
-            return Lookout(near, what)
-    return Lookout(np.zeros(0, np.int64), what)
+            return Viewpoint(near, what)
+    return Viewpoint(np.zeros(0, np.int64), what)
 
 
-def close_to(screens: Screens, x: float, y: float) -> Squares:
+def close_to(screens: CostMaps, x: float, y: float) -> Squares:
     """Floor from which all about a point of the lattice lies within the fovea, looked from or not."""
     mask = screens.model.squares([(math.floor(x), math.floor(y))])
     return np.flatnonzero(screens.floor & grown(mask, CLOSE - 1))
 
 
-def short_of(screens: Screens, squares: Squares) -> Squares:
+def short_of(screens: CostMaps, squares: Squares) -> Squares:
     """Floor from which it is seen what lies behind some squares: those that can be reached, or short of them."""
     mask = marked(squares, screens.floor.shape)
     near = unlooked(screens, APART) & grown(mask, SHORT_OF)
     return np.flatnonzero(near | (mask & screens.floor))
 
 
-def jambs(screens: Screens, doors: Iterable[Door]) -> list[Lookout]:
-    """Floor from which the walls beside what may be a door are seen closely, one Lookout for each that is not sure."""
+def jambs(screens: CostMaps, doors: Iterable[Door]) -> list[Viewpoint]:
+    """Floor from which the walls beside what may be a door are seen closely, one Viewpoint for each that is not
+    sure.
+    """
     view = screens.model.view
     vague = view.seen & (view.state == OPEN) & (view.probability > SPACE)
     found = []
@@ -124,14 +126,14 @@ def jambs(screens: Screens, doors: Iterable[Door]) -> list[Lookout]:
     return found
 
 
-def rooms_beyond(screens: Screens) -> list[Lookout]:
+def rooms_beyond(screens: CostMaps) -> list[Viewpoint]:
     """Floor that is seen and cannot be reached yet: all floor is connected, so some passage must lead there."""
     apart = components(screens.model.space & ~screens.floor).labels
     what = "floor is seen beyond, so a passage must lead there"
-    return [Lookout(squares, what) for squares in groups(apart) if len(squares) >= SMALLEST_ROOM]
+    return [Viewpoint(squares, what) for squares in groups(apart) if len(squares) >= SMALLEST_ROOM]
 
 
-def promised(screens: Screens, lookouts: list[Lookout]) -> list[Lookout]:
+def promised(screens: CostMaps, lookouts: list[Viewpoint]) -> list[Viewpoint]:
     """Frontiers, each with how likely it is that what is looked for comes into sight at its nearest square."""
     if not lookouts:
         return []
@@ -139,7 +141,7 @@ def promised(screens: Screens, lookouts: list[Lookout]) -> list[Lookout]:
     return [look._replace(chance=_chance(float(new[_nearest(screens, look.squares)]))) for look in lookouts]
 
 
-def best_views(screens: Screens, met: Mask, move: float, way: float) -> list[Lookout]:
+def best_views(screens: CostMaps, met: Mask, move: float, way: float) -> list[Viewpoint]:
     """Of squares that one straight move leads to those from which most comes into sight for what it costs.
 
     They need not border on what was never seen: a long move along it often shows more than a short one up to it.
@@ -153,14 +155,14 @@ def best_views(screens: Screens, met: Mask, move: float, way: float) -> list[Loo
     worth = new / (move + way * far)
     best = worth >= ALIKE * worth.max()
     chance = _chance(float(new[best][far[best].argmin()]))
-    return [Lookout(some[best], GOES_ON, chance)]
+    return [Viewpoint(some[best], GOES_ON, chance)]
 
 
 def _chance(squares: float) -> int:
     return max(1, min(90, round(100 * squares / HOMELY)))
 
 
-def _nearest(screens: Screens, squares: Squares) -> int:
+def _nearest(screens: CostMaps, squares: Squares) -> int:
     """Of some squares the one that is reached first, at the most certain level at which any is."""
     reached = screens.nearest(squares)
     if reached is None:
@@ -169,7 +171,7 @@ def _nearest(screens: Screens, squares: Squares) -> int:
     return int(squares[np.where(far < 0, far.max() + 1, far).argmin()])
 
 
-def unlooked(screens: Screens, apart: int) -> NDArray[np.bool_]:
+def unlooked(screens: CostMaps, apart: int) -> NDArray[np.bool_]:
     """Floor that can be reached and from which nothing was looked at yet.
 
     A second look from the same square tells nothing new.

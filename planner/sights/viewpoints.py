@@ -13,9 +13,9 @@ from geometry.raster.components import components, edged
 from kb.mapping.occupancy import OPEN
 from kb.world.model import Node
 from planner.screen.moves import one_move
-from planner.screen.projection import WALL_LIKE, Screens, Squares, grown, marked, shifted
+from planner.screen.projection import WALL_LIKE, CostMaps, Squares, grown, marked, shifted
 from planner.screen.unseen_gain import sums
-from planner.sights.frontiers import ALIKE, APART, CLOSE, FURTHER, Lookout, groups, unlooked
+from planner.sights.frontiers import ALIKE, APART, CLOSE, FURTHER, Viewpoint, groups, unlooked
 
 PROMISING = 0.1  # a place at which a thing is this likely is worth a look
 LIKELY = 0.5  # what is looked for as likely as this is gone up to
@@ -39,8 +39,10 @@ class Approach(NamedTuple):
 ARRIVE, TAKE = Approach(take=False), Approach(take=True)
 
 
-def sightings(screens: Screens, likely: NDArray[np.float64], what: str, to: Approach) -> list[tuple[Squares, Lookout]]:
-    """Floor close to where something is likely that is looked for: the squares of each such place, and its Lookout.
+def sightings(
+    screens: CostMaps, likely: NDArray[np.float64], what: str, to: Approach
+) -> list[tuple[Squares, Viewpoint]]:
+    """Floor close to where something is likely that is looked for: the squares of each such place, and its Viewpoint.
 
     likely : (rows, columns), how likely each square belongs to such a thing.
     """
@@ -54,17 +56,17 @@ def sightings(screens: Screens, likely: NDArray[np.float64], what: str, to: Appr
         chance = float(likely.ravel()[spot].max())
         near = close(screens, mask, chance, to)
         if len(near):
-            found.append((spot, Lookout(near, what, round(100 * chance))))
+            found.append((spot, Viewpoint(near, what, round(100 * chance))))
     return found
 
 
-def inspection(screens: Screens, node: Node, chance: float, to: Approach) -> Lookout:
+def inspection(screens: CostMaps, node: Node, chance: float, to: Approach) -> Viewpoint:
     """Floor from which an object is seen as well as can be. chance : that it is what is looked for."""
     squares = close(screens, screens.model.mask(node.patch), chance, to)
-    return Lookout(squares, f"what {node.name} is is not clear")
+    return Viewpoint(squares, f"what {node.name} is is not clear")
 
 
-def close(screens: Screens, mask: Mask, chance: float, to: Approach) -> Squares:
+def close(screens: CostMaps, mask: Mask, chance: float, to: Approach) -> Squares:
     """Floor from which something is seen better than it was.
 
     At first the floor at its sides. What is not to be taken and hardly is what is looked for is looked at from further
@@ -87,7 +89,7 @@ def close(screens: Screens, mask: Mask, chance: float, to: Approach) -> Squares:
     return _telling(screens, near, mask, chance, to)
 
 
-def _to_take(screens: Screens, mask: Mask, to: Approach) -> Squares:
+def _to_take(screens: CostMaps, mask: Mask, to: Approach) -> Squares:
     """Where a thing may be taken: squares at the sides of what surely belongs to it, for it may well be there that he
     is wanted, or else of all that may; of these those that one move leads to, if there are any.
     """
@@ -101,7 +103,7 @@ def _to_take(screens: Screens, mask: Mask, to: Approach) -> Squares:
     return near
 
 
-def _out_of_its_way(screens: Screens, surely: Mask, to: Approach) -> Mask:
+def _out_of_its_way(screens: CostMaps, surely: Mask, to: Approach) -> Mask:
     """The sides of a thing; not those where he would be in its way, if there is floor at others."""
     sides = edged(surely)
     if to.corner is None:
@@ -111,7 +113,7 @@ def _out_of_its_way(screens: Screens, surely: Mask, to: Approach) -> Mask:
     return free if (screens.floor & free).any() else sides
 
 
-def _telling(screens: Screens, near: Squares, mask: Mask, chance: float, to: Approach) -> Squares:
+def _telling(screens: CostMaps, near: Squares, mask: Mask, chance: float, to: Approach) -> Squares:
     """Of some floor the squares from which most of what is open of a thing is seen exactly, for the way there.
 
     chance : that it is what is looked for, and that who is not beside it must set out once more to be.

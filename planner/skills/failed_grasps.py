@@ -11,7 +11,7 @@ MOST = 3  # times that the holds of one thing are tried again
 Place = tuple[float, float]
 
 
-class FailedHolds:
+class FailedGrasps:
     """Remembers them in the thing's own frame: as it lay at first, from its middle."""
 
     def __init__(self) -> None:

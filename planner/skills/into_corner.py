@@ -13,7 +13,7 @@ from kb.body import Command, Move
 from kb.world.corners import Corner, known_floor
 from planner.goals.robot_goals import corner_side
 from planner.screen.moves import halting, is_open, move_by
-from planner.screen.projection import Screens
+from planner.screen.projection import CostMaps
 from planner.screen.sweeps import Square, squares_met
 from planner.situation import Situation
 from planner.stages import Stage
@@ -114,7 +114,7 @@ def _ways(corner: Corner) -> tuple[int, int]:
     return (1 if corner.point[0] > corner.square[0] else -1), (1 if corner.point[1] > corner.square[1] else -1)
 
 
-def _leads_to(place: Place, screens: Screens) -> bool:
+def _leads_to(place: Place, screens: CostMaps) -> bool:
     """Return whether the straight line from Utak to a point of the lattice stays on squares that are safe."""
     view, here = screens.model.view, screens.model.place_on_view
     there = (place[0] - view.west, place[1] - view.south)

@@ -11,7 +11,7 @@ from typing import Any
 
 from geometry.manipulation.goals import At, placed
 from geometry.motion.se2 import Pose
-from kb.objects.subcell_extent import Insets, depths, moved_in
+from kb.objects.subcell_extent import SubcellExtent, depths, moved_in
 from kb.world.model import Node
 
 FINE = 0.12  # squares up to which it is told how far in a side lies
@@ -22,7 +22,7 @@ ABOUT = 2  # squares aside at which a thing is turned back, at most
 NOTHING, AWAY = 0.02, 0.3  # squares: a push that is none, and one that only leads elsewhere
 
 
-class Sizer:
+class SizeEstimator:
     """Remembers how often he has pushed what only to tell its size."""
 
     def __init__(self) -> None:
@@ -83,7 +83,7 @@ def phases(node: Node) -> tuple[float | None, float | None] | None:
     return dx, dy
 
 
-def _wanted(insets: Insets, axis: int) -> float | None:
+def _wanted(insets: SubcellExtent, axis: int) -> float | None:
     """How much of its last row, on the side of greater numbers, a thing should cover to be told apart; None for told.
 
     axis : 0 for west and east, 2 for south and north.

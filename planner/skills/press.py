@@ -14,7 +14,7 @@ from kb.body import Push
 from kb.language.terms import Fact
 from kb.world.model import Node, WorldModel
 from planner.advice import Act
-from planner.goals.placement import Landing
+from planner.goals.placement import Placement
 from planner.goals.robot_goals import corner_side
 from planner.situation import Situation
 
@@ -46,7 +46,7 @@ class Presser:
             self.forget()
         return self._of is not None
 
-    def begin(self, goal: Fact, node: Node, land: Landing, situation: Situation) -> None:
+    def begin(self, goal: Fact, node: Node, land: Placement, situation: Situation) -> None:
         """Note the presses of a thing that by all that is believed lies where a goal holds, if he holds it."""
         if land.presses and situation.model.held == node.name:
             self._of, self._corner = (str(goal), node.name), _corner_of(goal, situation)

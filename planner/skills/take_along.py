@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.manipulation.plan_carrying import Inside
-from geometry.manipulation.workspace import Yard
-from geometry.motion.first_contact import Body
+from geometry.manipulation.workspace import Workspace
+from geometry.motion.first_contact import ContactBody
 from geometry.motion.se2 import Translate
 from geometry.raster.components import components
 from kb.world.model import Node
@@ -29,7 +29,7 @@ def lead(node: Node, squares: Squares, situation: Situation) -> Translate | None
     On the lattice; None when none is free.
     """
     pushes = _pushes_to(squares, situation)
-    body = Body(in_view(node.polygon, situation), [situation.model.place_on_view])
+    body = ContactBody(in_view(node.polygon, situation), [situation.model.place_on_view])
     free = pushes[_yard(node, situation).far(body, pushes)]
     return Translate(*free[0].tolist()) if len(free) else None
 
@@ -43,7 +43,7 @@ def by_way(node: Node, squares: Squares, end: tuple[float, float], situation: Si
     way = np.hypot(*pushes.T) + np.hypot(*(np.array(end) - pushes).T)
     pushes = pushes[np.argsort(way, kind="stable")]
     shape, yard = in_view(node.polygon, situation), _yard(node, situation)
-    for dx, dy in pushes[yard.far(Body(shape, [(x, y)]), pushes)].tolist():
+    for dx, dy in pushes[yard.far(ContactBody(shape, [(x, y)]), pushes)].tolist():
         push, on = Translate(dx, dy), Translate(end[0] - dx, end[1] - dy)
         if yard.lets(push.carry(shape), (x + dx, y + dy), on):
             return push
@@ -57,7 +57,7 @@ def out(node: Node, situation: Situation) -> Translate | None:
     steps = np.array([step for step in product(range(-OUT, OUT + 1), repeat=2) if any(step)])
     steps = steps[np.argsort(np.hypot(*steps.T), kind="stable")]
     lies, yard = model.mask(node.patch), _yard(node, situation)
-    within = yard.far(Body(in_view(node.polygon, situation), [(x, y)]), steps.astype(float))
+    within = yard.far(ContactBody(in_view(node.polygon, situation), [(x, y)]), steps.astype(float))
     for dx, dy in steps[within].tolist():
         here = math.floor(y) + dy, math.floor(x) + dx
         beside = np.roll(lies, (dy, dx), (0, 1))
@@ -86,10 +86,10 @@ def _pushes_to(squares: Squares, situation: Situation) -> Floats:
     return chosen
 
 
-def _yard(node: Node, situation: Situation) -> Yard:
+def _yard(node: Node, situation: Situation) -> Workspace:
     """What is surely free for a thing and him who holds it."""
     free = situation.screens.free(0) & ~barred(node, situation)
-    return Yard(free | situation.model.mask(node.patch))
+    return Workspace(free | situation.model.mask(node.patch))
 
 
 def near(squares: Squares, situation: Situation) -> Inside | None:

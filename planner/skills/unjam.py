@@ -6,7 +6,7 @@ import math
 import numpy as np
 import shapely
 
-from geometry.motion.first_contact import Body, Obstacles
+from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Translate
 from kb.mapping.occupancy import FULL
 from kb.world.model import Node, WorldModel
@@ -35,7 +35,7 @@ def drawn_back(node: Node, pushed: Translate, model: WorldModel, doubted: bool =
 
     if not (node.inexact or doubted):
         return way(0.0)
-    walls, body, onward = _walls(node, model), Body(node.polygon), pushed.steered(far + ONWARD, 0.0)
+    walls, body, onward = _walls(node, model), ContactBody(node.polygon), pushed.steered(far + ONWARD, 0.0)
 
     def passes(aside: float) -> bool:
         back = way(aside)

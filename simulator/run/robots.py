@@ -3,12 +3,12 @@
 from kb.body import Body
 from kb.task.task import Task
 from planner.stages import stages
-from simulator.run.session import Robot
+from simulator.run.session import RobotProtocol
 from simulator.run.warming import warm
 from simulator.scenario.settings import Settings
 
 
-def make_robot(body: Body, task: Task, settings: Settings) -> Robot:
+def make_robot(body: Body, task: Task, settings: Settings) -> RobotProtocol:
     """Return the robot of `planner.cycle` with a body and a task."""
     from planner.cycle import Options
     from planner.cycle import Robot as Mind

@@ -16,7 +16,7 @@ from simulator.world.physics import Tabletop
 from simulator.world.world import ring_of
 
 
-class StepReport(Protocol):
+class StepReportProtocol(Protocol):
     """What the robot says after an impression: the command that led to it (None on waking), his belief, and why."""
 
     @property
@@ -29,7 +29,7 @@ class StepReport(Protocol):
     def why(self) -> str: ...
 
 
-class Verdict(Protocol):
+class VerdictProtocol(Protocol):
     """How the robot judges the end: whether he believes that the task is done, the kind of verdict, and the reason."""
 
     @property
@@ -40,18 +40,18 @@ class Verdict(Protocol):
     def reason(self) -> str: ...
 
 
-class Robot(Protocol):
+class RobotProtocol(Protocol):
     """The mind: given a body and a task, it wakes and takes one step after the other."""
 
-    def wake(self) -> StepReport: ...
-    def step(self) -> StepReport: ...
+    def wake(self) -> StepReportProtocol: ...
+    def step(self) -> StepReportProtocol: ...
     @property
     def finished(self) -> bool: ...
     @property
-    def verdict(self) -> Verdict: ...
+    def verdict(self) -> VerdictProtocol: ...
 
 
-RobotMaker = Callable[[Body, Task, Settings], Robot]
+RobotMaker = Callable[[Body, Task, Settings], RobotProtocol]
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class Session:
             watch(self)
         return self.end()
 
-    def _record(self, report: StepReport) -> Line:
+    def _record(self, report: StepReportProtocol) -> Line:
         table, number = self.table, len(self._track)
         self._track.append(Snapshot(number, table.utak, dict(table.polygons)))
         self.line = {

@@ -13,7 +13,7 @@ from simulator.scenario.scenario import read_scenario
 from simulator.scenario.settings import Settings
 
 
-class Trial(NamedTuple):
+class ScenarioTrial(NamedTuple):
     """How a scenario's test went: whether it passed, what to say of it, and how the run ended."""
 
     passed: bool
@@ -21,7 +21,7 @@ class Trial(NamedTuple):
     result: Result
 
 
-def run_trial(folder: Path | str, settings: Settings | None = None) -> Trial:
+def run_trial(folder: Path | str, settings: Settings | None = None) -> ScenarioTrial:
     """Run a scenario and judge it by its expect.lp; raises CannotOpenError or BadInputError.
 
     A scenario that `fails` passes when Utak does not believe that he is done and gives a reason; any other passes when
@@ -35,7 +35,7 @@ def run_trial(folder: Path | str, settings: Settings | None = None) -> Trial:
     result = session.run()
     faults = list(_faults(result, should_fail(scenario.expectations)))
     told = f"{result.verdict} in {result.steps} steps: {result.reason}"
-    return Trial(not faults, "; ".join([*faults, told]), result)
+    return ScenarioTrial(not faults, "; ".join([*faults, told]), result)
 
 
 def _faults(result: Result, to_fail: bool) -> Iterator[str]:

@@ -208,7 +208,7 @@ def walk() -> None:
     import numpy as np
     import shapely
 
-    from geometry.motion.first_contact import Body, Obstacles
+    from geometry.motion.first_contact import ContactBody, Obstacles
     from geometry.motion.se2 import Translate
     from geometry.raster.line_of_sight import straight
     from geometry.raster.rasterize import squares
@@ -219,7 +219,7 @@ def walk() -> None:
     straight(free, 0, 0, 2)
     winding_way(free, (0, 0), (0, 0), (1.5, 1.5), 1)
     squares(shapely.box(0, 0, 1, 1), 1, 1)
-    Obstacles([shapely.box(10, 0, 11, 5)]).first_contact(Body(None, [(4.0, 1.0)]), Translate(8.0, 0.0))
+    Obstacles([shapely.box(10, 0, 11, 5)]).first_contact(ContactBody(None, [(4.0, 1.0)]), Translate(8.0, 0.0))
 
 
 def carry() -> None:
@@ -228,10 +228,10 @@ def carry() -> None:
     import shapely
 
     from geometry.manipulation.plan_carrying import Inside, plan_carrying
-    from geometry.motion.first_contact import Body, Obstacles
+    from geometry.motion.first_contact import ContactBody, Obstacles
     from geometry.motion.se2 import Rotate
 
-    body = Body(shapely.box(1, 1, 3, 3), [(4.0, 1.0)])
+    body = ContactBody(shapely.box(1, 1, 3, 3), [(4.0, 1.0)])
     wall = Obstacles([shapely.box(10, 0, 11, 5)])
     wall.first_contact(body, Rotate(30.0, (4.0, 1.0)))
     wall.pushes(body, np.array([[1.0, 0.0]]))

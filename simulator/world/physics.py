@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from geometry.motion.first_contact import Body, Obstacles
+from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Motion, Rotate, Translate, direction
 from simulator.world.senses import Senses
 from simulator.world.table import Table
@@ -113,7 +113,7 @@ class Tabletop:
         if self._obstacles is None:
             others = [self.polygons[name] for name in self.polygons if name != self.held]
             self._obstacles = Obstacles([*self._still, *others])
-        fraction = self._obstacles.first_contact(Body(carried, [self.utak]), wanted).fraction
+        fraction = self._obstacles.first_contact(ContactBody(carried, [self.utak]), wanted).fraction
         if fraction <= 0.0:
             return
         motion = wanted.part(fraction)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from benchmarks import bounded
-from benchmarks.bounded import Row, Run, report
+from benchmarks.bounded import BoundedRow, Run, report
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "go_northeast"
 
@@ -30,8 +30,8 @@ def test_a_run_that_does_not_end_is_ended_and_what_it_did_is_told(monkeypatch) -
 
 def test_the_longest_commands_and_false_claims_are_listed() -> None:
     rows = [
-        Row("slow", 0.02, 1, "done", True, False, [0.1, 3.0], [None, {"do": "release"}]),
-        Row("quick", 0.02, 2, "impossible", False, True, [0.1], [None], "no way"),
+        BoundedRow("slow", 0.02, 1, "done", True, False, [0.1, 3.0], [None, {"do": "release"}]),
+        BoundedRow("quick", 0.02, 2, "impossible", False, True, [0.1], [None], "no way"),
     ]
     told = "\n".join(report(rows))
     assert told.index("slow") < told.index("quick")

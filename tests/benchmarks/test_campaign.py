@@ -16,9 +16,9 @@ from benchmarks.harness.narrowness import Narrowness, narrowness
 from benchmarks.harness.stopwatch import Seconds
 from benchmarks.harness.tally import faults, table, verdicts
 from benchmarks.harness.tally import narrowness as told_right
-from benchmarks.harness.trial import Conditions, Trial, run_trial
+from benchmarks.harness.trial import CampaignTrial, Conditions, run_trial
 from benchmarks.worlds.makers import scenario, seeds
-from benchmarks.worlds.scenes import Scenario
+from benchmarks.worlds.scenes import RandomScenario
 from kb.body import Body, Command, Impression, Move
 from kb.perception.frame import turned
 from kb.task.task import Task
@@ -148,9 +148,9 @@ def times(*seconds: float) -> list[Seconds]:
 
 def test_the_table_counts() -> None:
     trials = [
-        Trial(1, 0, True, True, True, "done", "", 4, 12.0, 10.0, [], times(1.0, 0.01, 0.03), needed=2),
-        Trial(1, 1, True, False, False, "limit", "lost", 9, 3.0, 10.0, ["step 1: bad"], times(1.0, 0.02)),
-        Trial(1, 11, False, False, False, "impossible", "no way", 2, 0.0, math.nan, [], times(1.0, 0.02)),
+        CampaignTrial(1, 0, True, True, True, "done", "", 4, 12.0, 10.0, [], times(1.0, 0.01, 0.03), needed=2),
+        CampaignTrial(1, 1, True, False, False, "limit", "lost", 9, 3.0, 10.0, ["step 1: bad"], times(1.0, 0.02)),
+        CampaignTrial(1, 11, False, False, False, "impossible", "no way", 2, 0.0, math.nan, [], times(1.0, 0.02)),
     ]
     lines = table(trials).splitlines()
     assert lines[1].split() == [
@@ -190,7 +190,7 @@ def test_without_a_judge_it_says_so_loudly(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     monkeypatch.setenv("UTAK_JUDGE", str(tmp_path / "nowhere.py"))
-    monkeypatch.setattr(campaign, "run_trial", lambda t, s, *_: Trial(t, s, True, True, True, "done"))
+    monkeypatch.setattr(campaign, "run_trial", lambda t, s, *_: CampaignTrial(t, s, True, True, True, "done"))
     assert campaign.main(["--task", "1", "--count", "2", "-o", str(tmp_path / "r.jsonl")]) == 0
     told = capsys.readouterr()
     assert "NO JUDGE" in told.err and "none!" in told.out
@@ -200,9 +200,11 @@ def test_without_a_judge_it_says_so_loudly(
 def test_worlds_that_went_wrong_are_run_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     ran = []
 
-    def record(task: int, seed: int, *_: object) -> Trial:
+    def record(task: int, seed: int, *_: object) -> CampaignTrial:
         ran.append((task, seed))
-        return Trial(task, seed, True, True, seed != 1, "done", score=Score(0, 0, 0, 0, 9, int(seed == 2), 0, ()))
+        return CampaignTrial(
+            task, seed, True, True, seed != 1, "done", score=Score(0, 0, 0, 0, 9, int(seed == 2), 0, ())
+        )
 
     monkeypatch.setattr(campaign, "run_trial", record)
     results = tmp_path / "results.jsonl"
@@ -215,7 +217,7 @@ def test_worlds_that_went_wrong_are_run_again(monkeypatch: pytest.MonkeyPatch, t
 def test_one_world_is_drawn_at_each_step(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    def scripted(task: int, seed: int, conditions: Conditions, folder: Path, watch: Any) -> Trial:
+    def scripted(task: int, seed: int, conditions: Conditions, folder: Path, watch: Any) -> CampaignTrial:
         return run_trial(task, seed, conditions, folder, watch, maker([HERE, HERE], GIVES_UP))
 
     monkeypatch.setattr(campaign, "run_trial", scripted)
@@ -225,12 +227,12 @@ def test_one_world_is_drawn_at_each_step(
     assert (tmp_path / "task3-002" / "episode.jsonl").exists()
 
 
-def narrow_world() -> Scenario:
+def narrow_world() -> RandomScenario:
     """A world of task (vii) whose door is too narrow."""
     return scenario(7, seeds(0, 1, unable=True)[0])
 
 
-def said(world: Scenario, away: float, off: float) -> str:
+def said(world: RandomScenario, away: float, off: float) -> str:
     """The reason of a verdict that tells a place so far from the middle of the door, and a width so far off."""
     door = world.plan.doors[0]
     x, y = door.polygon.centroid.x - world.utak.x, door.polygon.centroid.y - world.utak.y
@@ -255,7 +257,7 @@ def test_what_is_said_of_a_passage_is_held_against_the_truth(away: float, off: f
     assert found is not None
     assert found.off == pytest.approx(off, abs=0.02)
     assert found.away == pytest.approx(max(away - world.plan.doors[0].width / 2, 0.0), abs=0.2)
-    trial = Trial(7, world.seed, False, verdict="impossible", reason="too narrow", narrow=found)
+    trial = CampaignTrial(7, world.seed, False, verdict="impossible", reason="too narrow", narrow=found)
     assert told_right([trial]).startswith(f"too narrow passages: {int(right)}/1 told right")
     assert ("told wrongly" in faults([trial])) != right
 
@@ -263,7 +265,10 @@ def test_what_is_said_of_a_passage_is_held_against_the_truth(away: float, off: f
 def test_a_verdict_that_tells_no_passage_is_not_right() -> None:
     found = narrowness(narrow_world(), "o cannot be carried there")
     assert found is not None and math.isnan(found.off) and math.isnan(found.away)
-    assert told_right([Trial(7, 11, False, narrow=found)]).startswith("too narrow passages: 0/1")
+    assert told_right([CampaignTrial(7, 11, False, narrow=found)]).startswith("too narrow passages: 0/1")
     assert narrowness(scenario(7, 0), "whatever") is None
-    assert told_right([Trial(7, 0, True, narrow=None)]) == ""
-    assert json.loads(json.dumps(Trial(7, 11, False, narrow=Narrowness(0.1, 0.0)).row()))["narrow"] == [0.1, 0.0]
+    assert told_right([CampaignTrial(7, 0, True, narrow=None)]) == ""
+    assert json.loads(json.dumps(CampaignTrial(7, 11, False, narrow=Narrowness(0.1, 0.0)).row()))["narrow"] == [
+        0.1,
+        0.0,
+    ]

@@ -13,7 +13,7 @@ from benchmarks.claims import child
 from benchmarks.claims.asked import Asked, all_kinds, named, worlds_of, written
 from benchmarks.claims.refute import Countersearch, refuted, trespassed
 from benchmarks.claims.report import report
-from benchmarks.claims.row import Row, percentile, read_rows
+from benchmarks.claims.row import ClaimRow, percentile, read_rows
 from benchmarks.claims.run import Limits, run_child, run_world
 from benchmarks.claims.table import table
 from benchmarks.worlds.odd.kinds import odd_world
@@ -58,10 +58,10 @@ class Claimant:
 
 
 @pytest.fixture
-def claiming(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[Asked, str], Row]:
+def claiming(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[Asked, str], ClaimRow]:
     """Return a function that runs a robot with a verdict in a world."""
 
-    def ran(asked: Asked, verdict: str) -> Row:
+    def ran(asked: Asked, verdict: str) -> ClaimRow:
         def make(body: Body, told: Task, settings: Settings) -> Claimant:
             return Claimant(body, Verdict(verdict == "done", verdict, "so it is"))
 
@@ -81,7 +81,7 @@ def test_the_worlds_of_these_tests_can_and_cannot_be_done() -> None:
 
 @pytest.mark.parametrize("asked", [ABLE, UNABLE])
 def test_a_planted_false_done_is_found_counted_and_kept(
-    claiming: Callable[[Asked, str], Row], asked: Asked, tmp_path: Path
+    claiming: Callable[[Asked, str], ClaimRow], asked: Asked, tmp_path: Path
 ) -> None:
     row = claiming(asked, "done")
     assert row.false_done and not row.false_impossible and row.refutation
@@ -92,7 +92,7 @@ def test_a_planted_false_done_is_found_counted_and_kept(
     assert f"`{asked.name}`" in report([row]).split("## Errors")[0]
 
 
-def test_a_planted_false_impossible_is_found_and_a_true_one_is_not(claiming: Callable[[Asked, str], Row]) -> None:
+def test_a_planted_false_impossible_is_found_and_a_true_one_is_not(claiming: Callable[[Asked, str], ClaimRow]) -> None:
     false, true = claiming(ABLE, "impossible"), claiming(UNABLE, "impossible")
     assert (false.false_impossible, true.false_impossible) == (True, False)
     assert "can be done" in false.refutation and not true.refutation
@@ -102,14 +102,14 @@ def test_a_planted_false_impossible_is_found_and_a_true_one_is_not(claiming: Cal
 
 @pytest.mark.parametrize("verdict", ["limit", "possible_if", "whatever"])
 def test_other_verdicts_claim_nothing_and_have_their_columns(
-    claiming: Callable[[Asked, str], Row], verdict: str
+    claiming: Callable[[Asked, str], ClaimRow], verdict: str
 ) -> None:
     row = claiming(ABLE, verdict)
     assert not row.faulty
     assert counted([row], verdict) == "1"
 
 
-def counted(rows: list[Row], column: str) -> str:
+def counted(rows: list[ClaimRow], column: str) -> str:
     """Return what the last line of the table says in a column; its head is split at two blanks or more."""
     lines = [[cell.strip() for cell in line.split("  ") if cell.strip()] for line in table(rows).splitlines()]
     return lines[-1][lines[0].index(column)]
@@ -151,7 +151,7 @@ def test_a_run_out_of_time_tells_how_long_its_last_command_took(tmp_path: Path) 
 
 
 def test_results_are_gone_on_with(
-    claiming: Callable[[Asked, str], Row], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    claiming: Callable[[Asked, str], ClaimRow], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rows = [claiming(ABLE, "limit")]
     results = tmp_path / "results.jsonl"

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from geometry.manipulation.plan_carrying import Carrying
+from geometry.manipulation.plan_carrying import CarryingPlan
 from geometry.motion.se2 import Rotate
 
 DEEP = 1e-6  # squares: how far anything may go into a wall
@@ -43,7 +43,7 @@ def reachable(walk: np.ndarray, start: tuple[int, int]) -> np.ndarray:
 
 
 def replay(
-    plan: Carrying, shape: Any, free: np.ndarray, utak: tuple[float, float], pull: bool = True, walls: Any = None
+    plan: CarryingPlan, shape: Any, free: np.ndarray, utak: tuple[float, float], pull: bool = True, walls: Any = None
 ) -> Any:
     """Do what a plan says and assert that it can be done; the shape as it ends."""
     solid = (walls_of(free) if walls is None else walls).buffer(-DEEP, join_style="mitre")

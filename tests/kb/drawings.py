@@ -7,9 +7,9 @@ import numpy as np
 
 from kb.body import Move
 from kb.knowledge import Knowledge
-from kb.mapping.occupancy import FREE, FULL, OPEN, Evidence, MapView
+from kb.mapping.occupancy import FREE, FULL, OPEN, MapView, OccupancyMap
 from kb.mapping.patch import patch_of
-from kb.perception.frame import Lattice
+from kb.perception.frame import Frame
 from kb.perception.interpretation import interpret
 from kb.perception.regions import label_of, map_regions
 from kb.perception.retina import count_ranges
@@ -28,10 +28,10 @@ def drawing(east: int, north: int, wide: int, high: int) -> list[str]:
     return ["".join(row) for row in rows]
 
 
-def looked(rows: list[str], squares: list[tuple[int, int]]) -> Evidence:
+def looked(rows: list[str], squares: list[tuple[int, int]]) -> OccupancyMap:
     """The evidence of looks from some squares; the first one is (0, 0) of the lattice."""
-    occupied, evidence = world_of(rows), Evidence()
-    samples = Lattice().samples()
+    occupied, evidence = world_of(rows), OccupancyMap()
+    samples = Frame().samples()
     for number, (x, y) in enumerate(squares):
         seen = count_ranges(impression(occupied, (x, y), 0).retina)
         at = (x - squares[0][0], y - squares[0][1])
@@ -52,12 +52,12 @@ def seen_whole(rows: list[str], objects: bool = True) -> WorldModel:
     x, y = utak_in(rows)
     view = MapView(-x, -y, probability, state, seen, np.where(seen, 0, -1).astype(np.int16))
     percept, labels = map_regions(occupied & seen, seen, seen)
-    model = WorldModel(Lattice(), (0.5, 0.5), view, labels, percept, interpret(percept), ())
+    model = WorldModel(Frame(), (0.5, 0.5), view, labels, percept, interpret(percept), ())
     nodes = [
         Node(f"o{n}", "object", 95, region.name, patch_of(labels == label_of(region.name), view), 0)
         for n, region in enumerate((r for r in percept.regions if model.kinds.of(r.name, "object") == 95), 1)
     ]
-    return WorldModel(Lattice(), (0.5, 0.5), view, labels, percept, model.kinds, tuple(nodes) if objects else ())
+    return WorldModel(Frame(), (0.5, 0.5), view, labels, percept, model.kinds, tuple(nodes) if objects else ())
 
 
 def unclear(model: WorldModel, rows: slice, columns: slice, chance: float) -> WorldModel:

@@ -6,7 +6,7 @@ from kb.task.task import Task
 from kb.world.corners import corners
 from kb.world.model import WorldModel
 from kb.world.rooms import rooms_of
-from planner.screen.projection import Screens
+from planner.screen.projection import CostMaps
 from planner.situation import Situation
 
 NO_TASK = Task({}, (), ())
@@ -23,4 +23,4 @@ BESIDE_A_THING = [  # a room, and Utak right beside the one thing in it
 
 def situation_of(model: WorldModel, bound: Mapping[str, str] | None = None, task: Task = NO_TASK) -> Situation:
     """What a planner is told of a world model. bound : what the task's parameters mean."""
-    return Situation(model, Screens(model), bound or {}, rooms_of(model), corners(model), task)
+    return Situation(model, CostMaps(model), bound or {}, rooms_of(model), corners(model), task)

@@ -18,7 +18,7 @@ from kb.world.corners import corners
 from kb.world.rooms import rooms_of
 from planner.cycle import Options, Robot
 from planner.deciding.decider import Decider
-from planner.screen.projection import Screens
+from planner.screen.projection import CostMaps
 from planner.stages import constraints, stages
 from tests.kb.drawings import seen_whole
 from tests.kb.eyes import colours_of, impression, utak_in, world_of
@@ -291,7 +291,7 @@ def test_the_destination_of_a_thing_is_beside_it() -> None:
     for square in found.squares:
         r, c = divmod(int(square), model.labels.shape[1])
         assert np.abs(np.argwhere(mask) - (r, c)).sum(1).min() == 1
-        assert Screens(model).floor[r, c]
+        assert CostMaps(model).floor[r, c]
     missing = destination(SQUARE.goals[0], _situation(Situation, model, {}))
     assert missing.missing
     assert len(missing.squares) == 0
@@ -299,14 +299,14 @@ def test_the_destination_of_a_thing_is_beside_it() -> None:
 
 def _situation(kind, model, binding):  # type: ignore[no-untyped-def]
     """A situation, with whatever fields it has."""
-    known = {"model": model, "screens": Screens(model), "binding": binding, "rooms": rooms_of(model)}
+    known = {"model": model, "screens": CostMaps(model), "binding": binding, "rooms": rooms_of(model)}
     known |= {"corners": corners(model), "task": SQUARE, "rules": (), "track": ()}
     return kind(**{name: known[name] for name in kind.__dataclass_fields__})
 
 
 def test_a_window_that_begins_elsewhere_changes_nothing() -> None:
     model = seen_whole(THINGS)
-    one = Screens(model)
+    one = CostMaps(model)
     shift, view = ((0, 0), (3, 0)), model.view
     padded = view._replace(
         west=view.west - 3,
@@ -315,7 +315,7 @@ def test_a_window_that_begins_elsewhere_changes_nothing() -> None:
         settled_by=np.pad(view.settled_by, shift, constant_values=-1),
         probability=np.pad(view.probability, shift, constant_values=0.5),
     )
-    other = Screens(replace(model, view=padded, labels=np.pad(model.labels, ((0, 0), (3, 0)))))
+    other = CostMaps(replace(model, view=padded, labels=np.pad(model.labels, ((0, 0), (3, 0)))))
     assert np.array_equal(one.floor, other.floor[:, 3:])
     assert other.here == (one.here[0] + 3, one.here[1])
 

@@ -6,7 +6,7 @@ import numpy as np
 from shapely import Polygon
 
 from benchmarks.worlds.odd import tasks
-from benchmarks.worlds.odd.houses import House, Neck, two_rooms
+from benchmarks.worlds.odd.houses import House, OddNeck, two_rooms
 from benchmarks.worlds.odd.offgrid import furnished, load, squeezed
 from benchmarks.worlds.odd.tasks import OddWorld
 
@@ -37,7 +37,7 @@ def circles(rng: np.random.Generator, door: float) -> House:
     far = depth[0] + float(rng.uniform(1.5, 4.5))
     second = far + depth[1]
     rooms = [_round(0, radii[0], sides), _round(second, radii[1], sides)]
-    neck = Neck((depth[0], -door / 2), (depth[0], door / 2), (far, -door / 2), (far, door / 2))
+    neck = OddNeck((depth[0], -door / 2), (depth[0], door / 2), (far, -door / 2), (far, door / 2))
     return two_rooms(rooms[0], rooms[1], [neck], float(rng.uniform(0, 360)))
 
 

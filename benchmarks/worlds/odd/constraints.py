@@ -7,12 +7,12 @@ from shapely import Polygon, box
 
 from benchmarks.worlds.furniture import ell
 from benchmarks.worlds.odd import tasks
-from benchmarks.worlds.odd.houses import House, Neck, one_room, straight, two_rooms
+from benchmarks.worlds.odd.houses import House, OddNeck, one_room, straight, two_rooms
 from benchmarks.worlds.odd.lying import place, stand
 from benchmarks.worlds.odd.offgrid import doorways
-from benchmarks.worlds.odd.tasks import OddWorld, Scene
+from benchmarks.worlds.odd.tasks import OddScene, OddWorld
 from benchmarks.worlds.placing import colour
-from benchmarks.worlds.scenes import Task, Thing, wkt
+from benchmarks.worlds.scenes import PlacedThing, TaskTexts, wkt
 
 KIND = "constraint"
 X, DOOR = "object(x).\nshape(x, square).\n", "door(d).\n"
@@ -21,7 +21,7 @@ MARGIN = 0.1  # squares: who goes so far beyond the middle of a door went throug
 OTHERS: dict[str, Polygon] = {"brick": box(0, 0, 6, 2), "l_shape": ell(6, 6, 2)}  # nothing that looks like a square
 
 
-class Question(NamedTuple):
+class ConstraintQuestion(NamedTuple):
     """A task: how many doors (0: one room), whether x is there, its facts, the answer, and why it cannot be done."""
 
     doors: int
@@ -35,23 +35,25 @@ class Question(NamedTuple):
 ONLY_DOOR = "the only door must not be used"
 NO_SQUARE = "there is no square"
 QUESTIONS = {
-    "walk_one_door": Question(1, False, DOOR, NEXT + "not_through(utak, d).\n", tasks.NO, ONLY_DOOR),
-    "walk_two_doors": Question(2, False, DOOR, NEXT + "not_through(utak, d).\n", tasks.UNKNOWN),
-    "carry_one_door": Question(1, True, X + DOOR, CARRIED + "not_through(x, d).\n", tasks.NO, ONLY_DOOR),
-    "carry_two_doors": Question(2, True, X + DOOR, CARRIED + "not_through(x, d).\n", tasks.UNKNOWN),
-    "walk_at_home": Question(1, True, X + DOOR, "at(utak, x).\nnot_through(utak, d).\n", tasks.YES),
-    "carry_on_foot": Question(1, True, X + DOOR, CARRIED + "not_through(utak, d).\n", tasks.UNKNOWN),
-    "walk_two_corners": Question(
+    "walk_one_door": ConstraintQuestion(1, False, DOOR, NEXT + "not_through(utak, d).\n", tasks.NO, ONLY_DOOR),
+    "walk_two_doors": ConstraintQuestion(2, False, DOOR, NEXT + "not_through(utak, d).\n", tasks.UNKNOWN),
+    "carry_one_door": ConstraintQuestion(1, True, X + DOOR, CARRIED + "not_through(x, d).\n", tasks.NO, ONLY_DOOR),
+    "carry_two_doors": ConstraintQuestion(2, True, X + DOOR, CARRIED + "not_through(x, d).\n", tasks.UNKNOWN),
+    "walk_at_home": ConstraintQuestion(1, True, X + DOOR, "at(utak, x).\nnot_through(utak, d).\n", tasks.YES),
+    "carry_on_foot": ConstraintQuestion(1, True, X + DOOR, CARRIED + "not_through(utak, d).\n", tasks.UNKNOWN),
+    "walk_two_corners": ConstraintQuestion(
         0, False, "", "at(utak, corner(northeast)).\nat(utak, corner(southwest)).\n", tasks.NO, "two corners at once"
     ),
-    "carry_two_corners": Question(
+    "carry_two_corners": ConstraintQuestion(
         0, True, X, "at(x, corner(northeast)).\nat(x, corner(southwest)).\n", tasks.NO, "two corners at once"
     ),
-    "two_places": Question(1, False, "", NEXT + "at(utak, start).\n", tasks.NO, "the start is not in the next room"),
-    "walk_nothing": Question(0, False, X, "at(utak, x).\n", tasks.NO, NO_SQUARE),
-    "circle_nothing": Question(0, False, X, "circled(utak, x).\nat(utak, start).\n", tasks.NO, NO_SQUARE),
-    "carry_nothing": Question(1, False, X, CARRIED, tasks.NO, NO_SQUARE),
-    "corner_nothing": Question(0, False, X, "at(x, corner(northeast)).\n", tasks.NO, NO_SQUARE),
+    "two_places": ConstraintQuestion(
+        1, False, "", NEXT + "at(utak, start).\n", tasks.NO, "the start is not in the next room"
+    ),
+    "walk_nothing": ConstraintQuestion(0, False, X, "at(utak, x).\n", tasks.NO, NO_SQUARE),
+    "circle_nothing": ConstraintQuestion(0, False, X, "circled(utak, x).\nat(utak, start).\n", tasks.NO, NO_SQUARE),
+    "carry_nothing": ConstraintQuestion(1, False, X, CARRIED, tasks.NO, NO_SQUARE),
+    "corner_nothing": ConstraintQuestion(0, False, X, "at(x, corner(northeast)).\n", tasks.NO, NO_SQUARE),
 }
 
 
@@ -66,7 +68,7 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
         x = place(rng, box(0, 0, 3, 3), plan.rooms[home], taken, True)
         if x is None:
             return None
-        things.append(Thing("t1", colour(rng), "square", x))
+        things.append(PlacedThing("t1", colour(rng), "square", x))
     for number in range(1, int(rng.integers(0, 3)) + 1):
         shape = str(rng.choice(sorted(OTHERS)))
         room = plan.rooms[int(rng.integers(len(plan.rooms)))]
@@ -74,21 +76,21 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
             rng, OTHERS[shape], room, [*taken, *(t.polygon for t in things)], True, 90.0 * int(rng.integers(4))
         )
         if other is not None:
-            things.append(Thing(f"d{number}", colour(rng), shape, other))
+            things.append(PlacedThing(f"d{number}", colour(rng), shape, other))
     blocked = [*(thing.polygon for thing in things), *([] if variant != "two_places" else taken)]
     utak = stand(rng, plan.rooms[home], blocked, True, 3.0 if variant == "two_places" else 1.5)
     if utak is None:
         return None
     facing = tasks.heading(rng, True)
-    scene = Scene(plan, home, tuple(things), utak, facing)
+    scene = OddScene(plan, home, tuple(things), utak, facing)
     expect = "fails.\n" if question.possible == tasks.NO else _expected(variant, scene)
-    texts = Task(question.start, question.goal, expect, question.why)
+    texts = TaskTexts(question.start, question.goal, expect, question.why)
     shut = question.doors == 1 and "not_through(utak, d)" in question.goal
     avoid = plan.beyond(home).buffer(-MARGIN) if shut else tasks.NOWHERE
     return OddWorld(KIND, seed, variant, variant, plan, scene.things, utak, facing, texts, question.possible, avoid)
 
 
-def _expected(variant: str, scene: Scene) -> str:
+def _expected(variant: str, scene: OddScene) -> str:
     """Return what is true at the end of the questions that can be answered."""
     if variant == "walk_at_home":
         return f'inside(utak, "{wkt(tasks.beside([scene.things[0].polygon], scene.plan))}").\n'
@@ -106,5 +108,5 @@ def _plan(rng: np.random.Generator, doors: int) -> House:
     first, second, neck = straight((sizes[0], sizes[1]), (high, high), 2.0, wide, at)
     far = sizes[0] + 2.0
     top = high - 2.0 - wide
-    other = Neck((sizes[0], top), (sizes[0], high - 2.0), (far, top), (far, high - 2.0))
+    other = OddNeck((sizes[0], top), (sizes[0], high - 2.0), (far, top), (far, high - 2.0))
     return two_rooms(first, second, [neck, other][:doors], 90.0 * int(rng.integers(2)))

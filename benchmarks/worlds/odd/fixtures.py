@@ -8,9 +8,9 @@ from benchmarks.worlds.odd import tasks
 from benchmarks.worlds.odd.houses import one_room, straight, two_rooms
 from benchmarks.worlds.odd.lying import place, stand
 from benchmarks.worlds.odd.offgrid import doorways
-from benchmarks.worlds.odd.tasks import OddWorld, Scene
+from benchmarks.worlds.odd.tasks import OddScene, OddWorld
 from benchmarks.worlds.placing import colour
-from benchmarks.worlds.scenes import Thing, wkt
+from benchmarks.worlds.scenes import PlacedThing, wkt
 
 KIND = "fixed"
 VARIANTS = ("both", "both", "only_fixed", "two_fixed", "both")
@@ -39,13 +39,13 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
         if polygon is None:
             return None
         fixed = number >= movable
-        things.append(Thing(f"{'f' if fixed else 't'}{number + 1}", colour(rng), shape, polygon, fixed))
+        things.append(PlacedThing(f"{'f' if fixed else 't'}{number + 1}", colour(rng), shape, polygon, fixed))
     utak = stand(rng, plan.rooms[home], [thing.polygon for thing in things], True)
     facing = tasks.heading(rng, True)
     compass = tasks.choose_corner(rng, plan, facing) if task in tasks.TO_CORNER else ""
     if utak is None or compass is None:
         return None
-    scene = Scene(plan, home, tuple(things), utak, facing)
+    scene = OddScene(plan, home, tuple(things), utak, facing)
     stays = not movable and task != "at_x"
     why = "nothing of that shape can be moved" if stays else ""
     made = tasks.given(KIND, seed, task, variant, scene, tasks.NO if stays else tasks.YES, why, compass)

@@ -21,7 +21,7 @@ Pair = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Neck:
+class OddNeck:
     """A door: corners `a0, a1` on the first room's wall and `b0, b1` opposite them on the second room's wall."""
 
     a0: Pair
@@ -64,7 +64,7 @@ class House:
     width: int
     height: int
     rooms: tuple[Polygon, ...]
-    necks: tuple[Neck, ...]
+    necks: tuple[OddNeck, ...]
     floor: Polygon
 
     @property
@@ -104,7 +104,7 @@ def one_room(room: Polygon, angle: float = 0.0, margin: Pair = (2, 2)) -> House:
 
 
 def two_rooms(
-    first: Polygon, second: Polygon, necks: Sequence[Neck], angle: float = 0.0, margin: Pair = (2, 2)
+    first: Polygon, second: Polygon, necks: Sequence[OddNeck], angle: float = 0.0, margin: Pair = (2, 2)
 ) -> House:
     """Lay a floor of two rooms with doors between them on a table."""
     return _laid([first, second], list(necks), angle, margin)
@@ -112,7 +112,7 @@ def two_rooms(
 
 def straight(
     depths: Pair, heights: Pair, wall: float, door: float, at: float, shift: float = 0.0
-) -> tuple[Polygon, Polygon, Neck]:
+) -> tuple[Polygon, Polygon, OddNeck]:
     """Return two rectangular rooms beside each other and the door between them, in the house's own frame.
 
     depths, heights : of the rooms, across and along the wall between them. at : where the door begins along the wall.
@@ -121,10 +121,10 @@ def straight(
     far = depths[0] + wall
     first = box(0, 0, depths[0], heights[0])
     second = box(far, shift, far + depths[1], shift + heights[1])
-    return first, second, Neck((depths[0], at), (depths[0], at + door), (far, at), (far, at + door))
+    return first, second, OddNeck((depths[0], at), (depths[0], at + door), (far, at), (far, at + door))
 
 
-def _laid(rooms: list[Polygon], necks: list[Neck], angle: float, margin: Pair) -> House:
+def _laid(rooms: list[Polygon], necks: list[OddNeck], angle: float, margin: Pair) -> House:
     floor = union_all([*rooms, *(neck.drawn_on(OVERLAP) for neck in necks)])
     low = rotate(floor, angle, origin=(0, 0)).bounds
     by = (margin[0] - low[0], margin[1] - low[1])
@@ -139,5 +139,5 @@ def _laid(rooms: list[Polygon], necks: list[Neck], angle: float, margin: Pair) -
 
     laid = put(floor).simplify(0)
     size = (math.ceil(laid.bounds[2] + 1 - GRAIN), math.ceil(laid.bounds[3] + 1 - GRAIN))
-    moved = [Neck(corner(n.a0), corner(n.a1), corner(n.b0), corner(n.b1)) for n in necks]
+    moved = [OddNeck(corner(n.a0), corner(n.a1), corner(n.b0), corner(n.b1)) for n in necks]
     return House(*size, tuple(put(room) for room in rooms), tuple(moved), laid)

@@ -8,11 +8,11 @@ import numpy as np
 from shapely import Polygon, box
 
 from benchmarks.worlds.odd import tasks
-from benchmarks.worlds.odd.houses import House, Neck, one_room, straight, two_rooms
+from benchmarks.worlds.odd.houses import House, OddNeck, one_room, straight, two_rooms
 from benchmarks.worlds.odd.lying import place, stand
-from benchmarks.worlds.odd.tasks import OddWorld, Scene
+from benchmarks.worlds.odd.tasks import OddScene, OddWorld
 from benchmarks.worlds.placing import colour
-from benchmarks.worlds.scenes import Thing
+from benchmarks.worlds.scenes import PlacedThing
 
 KIND = "off_grid"
 TASKS = ("carry_next", "next", "carry_corner", "carry_door", "corner", "carry_next", "at_x", "slit", "circle", "both")
@@ -86,13 +86,13 @@ def furnished(
         polygon = place(rng, outline, room, doorways(plan), whole, angle)
         if polygon is None:
             return None
-        things = (Thing("t1", colour(rng), shape, polygon),)
+        things = (PlacedThing("t1", colour(rng), shape, polygon),)
     utak = stand(rng, room, [thing.polygon for thing in things], whole or bool(rng.random() < 0.7))
     facing = tasks.heading(rng, quarter)
     compass = tasks.choose_corner(rng, plan, facing) if task in tasks.TO_CORNER else ""
     if utak is None or compass is None:
         return None
-    scene = Scene(plan, home, things, utak, facing)
+    scene = OddScene(plan, home, things, utak, facing)
     why = "the door is too narrow" if possible == tasks.NO else ""
     return tasks.given(kind, seed, task, variant, scene, possible, why, compass)
 
@@ -102,7 +102,7 @@ def doorways(plan: House) -> list[Polygon]:
     return [neck.polygon for neck in plan.necks]
 
 
-def squeezed(neck: Neck, least: float) -> str:
+def squeezed(neck: OddNeck, least: float) -> str:
     """Return whether a convex thing of a least width passes a door, where that is beyond doubt."""
     if neck.gap < least - 1e-6:
         return tasks.NO

@@ -5,12 +5,12 @@ from shapely import Polygon, box, union_all
 from shapely.affinity import affine_transform
 
 from benchmarks.worlds.odd import tasks
-from benchmarks.worlds.odd.houses import House, Neck, straight, two_rooms
+from benchmarks.worlds.odd.houses import House, OddNeck, straight, two_rooms
 from benchmarks.worlds.odd.lying import place, rounded, stand
 from benchmarks.worlds.odd.offgrid import real
-from benchmarks.worlds.odd.tasks import OddWorld, Scene
+from benchmarks.worlds.odd.tasks import OddScene, OddWorld
 from benchmarks.worlds.placing import colour
-from benchmarks.worlds.scenes import Thing
+from benchmarks.worlds.scenes import PlacedThing
 
 KIND = "plugged"
 VARIANTS = ("flush", "recessed", "out", "two", "flush", "fixed", "two_apart", "off_grid", "anchor", "out")
@@ -31,24 +31,24 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     plan = two_rooms(first, second, [neck], 90.0 * int(rng.integers(2)))
     home = int(rng.integers(2))
     plugs = tuple(
-        Thing(f"p{n}", colour(rng), "polygon", polygon, variant == "fixed")
+        PlacedThing(f"p{n}", colour(rng), "polygon", polygon, variant == "fixed")
         for n, polygon in enumerate(_plugs(rng, plan, variant, wall, home), 1)
     )
     room = plan.rooms[1 - home] if task == "at_x" else plan.rooms[home]
     taken = [thing.polygon for thing in plugs] + [neck.polygon.buffer(1.0) for neck in plan.necks]
-    things: tuple[Thing, ...] = ()
+    things: tuple[PlacedThing, ...] = ()
     if task != "next":
         side = 2.0 if door < 4 else 3.0
         triangle = Polygon([(0, 0), (side, 0), (0, side)])
         polygon = place(rng, triangle, room, taken, True, 90.0 * int(rng.integers(4)))
         if polygon is None:
             return None
-        things = (Thing("t1", colour(rng), "triangle", polygon),)
+        things = (PlacedThing("t1", colour(rng), "triangle", polygon),)
     utak = stand(rng, plan.rooms[home], [*taken, *(thing.polygon for thing in things)], True)
     if utak is None:
         return None
     shut = variant in ("fixed", "anchor")
-    scene = Scene(plan, home, things + plugs, utak, tasks.heading(rng, True))
+    scene = OddScene(plan, home, things + plugs, utak, tasks.heading(rng, True))
     why = "what fills the door cannot be moved out of it" if shut else ""
     return tasks.given(KIND, seed, task, variant, scene, tasks.NO if shut else tasks.YES, why)
 
@@ -72,7 +72,7 @@ def _plugs(rng: np.random.Generator, plan: House, variant: str, wall: float, hom
     return [_across(neck, wall, *span) for span in spans]
 
 
-def _across(neck: Neck, wall: float, low: float, high: float, wider: float = 0.0) -> Polygon:
+def _across(neck: OddNeck, wall: float, low: float, high: float, wider: float = 0.0) -> Polygon:
     """Return the box that fills a door from one distance from the first room's wall to another."""
     width = float(np.hypot(*np.subtract(neck.a1, neck.a0)))
     along, aside = np.subtract(neck.b0, neck.a0) / wall, np.subtract(neck.a1, neck.a0) / width
@@ -80,7 +80,7 @@ def _across(neck: Neck, wall: float, low: float, high: float, wider: float = 0.0
     return rounded(affine_transform(part, [along[0], aside[0], along[1], aside[1], *neck.a0]))
 
 
-def _anchor(neck: Neck, wall: float) -> Polygon:
+def _anchor(neck: OddNeck, wall: float) -> Polygon:
     """Return an I whose stem fills the door and whose ends, on both sides of the wall, are wider than it."""
     ends = [_across(neck, wall, -1.0, 0.0, FLANGE), _across(neck, wall, wall, wall + 1.0, FLANGE)]
     return rounded(union_all([_across(neck, wall, -0.5, wall + 0.5), *ends]).simplify(0))

@@ -6,7 +6,7 @@ import numpy as np
 from shapely import Polygon, box
 
 from benchmarks.worlds.odd import tasks
-from benchmarks.worlds.odd.houses import House, Neck, one_room, two_rooms
+from benchmarks.worlds.odd.houses import House, OddNeck, one_room, two_rooms
 from benchmarks.worlds.odd.offgrid import furnished, load, squeezed
 from benchmarks.worlds.odd.tasks import OddWorld
 
@@ -58,6 +58,6 @@ def askew(rng: np.random.Generator, door: float, leaning: bool, angle: float) ->
     along = door * math.hypot(wall, skew * wall) / wall  # so that the jambs' lines are as far apart as the door is wide
     at = float(rng.uniform(2 + abs(skew * wall), high - along - 2 - abs(skew * wall)))
     low, top = at + skew * wall, at + along + skew * wall
-    neck = Neck((west + lean * at, at), (west + lean * (at + along), at + along), (0, 0), (0, 0))
-    neck = Neck(neck.a0, neck.a1, (far + lean * low, low), (far + lean * top, top))
+    neck = OddNeck((west + lean * at, at), (west + lean * (at + along), at + along), (0, 0), (0, 0))
+    neck = OddNeck(neck.a0, neck.a1, (far + lean * low, low), (far + lean * top, top))
     return two_rooms(first, second, [neck], angle)

@@ -12,7 +12,7 @@ from shapely.geometry.base import BaseGeometry
 
 from benchmarks.worlds.odd.houses import COMPASS, House
 from benchmarks.worlds.placing import digital
-from benchmarks.worlds.scenes import Task, Thing, wkt, world_text
+from benchmarks.worlds.scenes import PlacedThing, TaskTexts, wkt, world_text
 
 NOWHERE = Polygon()
 YES, NO, UNKNOWN = "yes", "no", "unknown"
@@ -47,10 +47,10 @@ class OddWorld:
     task: str
     variant: str
     plan: House
-    things: tuple[Thing, ...]
+    things: tuple[PlacedThing, ...]
     utak: Point
     heading: int
-    texts: Task
+    texts: TaskTexts
     possible: str
     avoid: BaseGeometry = NOWHERE
 
@@ -66,30 +66,39 @@ class OddWorld:
 
 
 @dataclass(frozen=True)
-class Scene:
+class OddScene:
     """What a kind has made: a floor, the room (0 or 1) where it all begins, things (the first one is x), the robot."""
 
     plan: House
     home: int
-    things: tuple[Thing, ...]
+    things: tuple[PlacedThing, ...]
     utak: Point
     heading: int
 
 
 def given(
-    kind: str, seed: int, task: str, variant: str, scene: Scene, possible: str = YES, why: str = "", compass: str = ""
+    kind: str,
+    seed: int,
+    task: str,
+    variant: str,
+    scene: OddScene,
+    possible: str = YES,
+    why: str = "",
+    compass: str = "",
 ) -> OddWorld:
     """Return a scene as a world with one of the tasks; a corner task needs the compass corner meant."""
     start = "" if task in WITHOUT_THING else f"object(x).\nshape(x, {scene.things[0].shape}).\n"
     start += "door(d).\n" if task == "carry_door" else ""
     expect = "fails.\n" if possible == NO else _expected(task, scene, compass)
-    texts = Task(start, GOALS[task].format(compass=compass), expect, why)
+    texts = TaskTexts(start, GOALS[task].format(compass=compass), expect, why)
     return OddWorld(kind, seed, task, variant, scene.plan, scene.things, scene.utak, scene.heading, texts, possible)
 
 
 def asked(world: OddWorld, start: str, goal: str, expect: str, possible: str, why: str = "") -> OddWorld:
     """Return a world with other texts; of an impossible task nothing is expected but that it fails."""
-    return replace(world, texts=Task(start, goal, "fails.\n" if possible == NO else expect, why), possible=possible)
+    return replace(
+        world, texts=TaskTexts(start, goal, "fails.\n" if possible == NO else expect, why), possible=possible
+    )
 
 
 def choose_corner(rng: np.random.Generator, plan: House, heading: int) -> str | None:
@@ -114,7 +123,7 @@ def beside(things: Sequence[Polygon], plan: House) -> BaseGeometry:
     return union_all(squares).buffer(AT_THING, quad_segs=4)
 
 
-def _expected(task: str, scene: Scene, compass: str) -> str:
+def _expected(task: str, scene: OddScene, compass: str) -> str:
     plan = scene.plan
     who = "t1" if task.startswith("carry") or task == "both" else "utak"
     back = f'near(utak, "{wkt(scene.utak)}", 2).\n'

@@ -9,9 +9,9 @@ from benchmarks.worlds.odd import tasks
 from benchmarks.worlds.odd.houses import House, one_room, straight, two_rooms
 from benchmarks.worlds.odd.lying import own_square, place, rounded, stand
 from benchmarks.worlds.odd.offgrid import doorways
-from benchmarks.worlds.odd.tasks import OddWorld, Scene
+from benchmarks.worlds.odd.tasks import OddScene, OddWorld
 from benchmarks.worlds.placing import colour
-from benchmarks.worlds.scenes import Thing
+from benchmarks.worlds.scenes import PlacedThing
 
 KIND = "touching"
 VARIANTS = ("pair", "same_colour", "row", "robot", "wall", "corner", "pair", "robot_pair")
@@ -34,13 +34,13 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     if x is None or any(x.distance(door) < 3 for door in doorways(plan)):
         return None
     tint = colour(rng)
-    things = [Thing("t1", tint, "square", x)]
+    things = [PlacedThing("t1", tint, "square", x)]
     if variant in ("pair", "same_colour", "row", "robot_pair"):
         for number, side in enumerate((1, -1) if variant == "row" else (int(rng.choice([1, -1])),), 1):
             shape = str(rng.choice(sorted(OTHERS)))
             other = _against(rng, x, OTHERS[shape], side)
             paint = tint if variant == "same_colour" else _another(rng, tint)
-            things.append(Thing(f"d{number}", paint, shape, other))
+            things.append(PlacedThing(f"d{number}", paint, shape, other))
     utak = _by(rng, things, room) if variant.startswith("robot") else None
     if utak is None:
         utak = stand(rng, room, [thing.polygon for thing in things], True, 2.0)
@@ -50,7 +50,7 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     compass = tasks.choose_corner(rng, plan, facing) if task in tasks.TO_CORNER else ""
     if compass is None:
         return None
-    return tasks.given(KIND, seed, task, variant, Scene(plan, home, tuple(things), utak, facing), compass=compass)
+    return tasks.given(KIND, seed, task, variant, OddScene(plan, home, tuple(things), utak, facing), compass=compass)
 
 
 def _plan(rng: np.random.Generator, task: str) -> House:
@@ -88,7 +88,7 @@ def _another(rng: np.random.Generator, tint: str) -> str:
     return other
 
 
-def _by(rng: np.random.Generator, things: list[Thing], room: Polygon) -> Point | None:
+def _by(rng: np.random.Generator, things: list[PlacedThing], room: Polygon) -> Point | None:
     """Return a place for the robot in a square that touches a thing, one of whose squares is beside it."""
     west, south, east, north = things[0].polygon.bounds
     ways = [(west - 0.5, south + 1.5), (east + 0.5, south + 1.5), (west + 1.5, south - 0.5), (west + 1.5, north + 0.5)]

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from geometry.motion.first_contact import Body, Obstacles
+from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Motion, Rotate, Translate
-from kb.objects.subcell_extent import Insets
+from kb.objects.subcell_extent import SubcellExtent
 
 Place = tuple[float, float]
 STRIDE = 0.25  # squares between places at which a motion may have ended
@@ -39,7 +39,7 @@ class Outcome(NamedTuple):
     degrees: float
     distance: float
     against: frozenset[tuple[int, int]] = frozenset()
-    insets: Insets | None = None
+    insets: SubcellExtent | None = None
 
     @property
     def as_commanded(self) -> bool:
@@ -59,7 +59,7 @@ def predicted(place: Place, polygon: Any, motion: Motion) -> Outcome:
 
 def arrested(place: Place, polygon: Any, motion: Motion, walls: Obstacles) -> Outcome | None:
     """The motion as far as what is known to stand in the way lets it go; None when nothing does."""
-    fraction = walls.first_contact(Body(polygon, [place]), motion).fraction
+    fraction = walls.first_contact(ContactBody(polygon, [place]), motion).fraction
     return part_way(place, polygon, motion, fraction) if fraction < 1.0 else None
 
 

@@ -10,14 +10,14 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
-from geometry.motion.first_contact import Body, Obstacles
+from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Motion, Rotate
 from kb.localisation.hypotheses.carry_outcomes import Outcome, ahead, length_of, part_way
-from kb.mapping.completions import Pictures
-from kb.mapping.obstacle_chance import Outlook
-from kb.mapping.occupancy import FULL, OPEN, Evidence
+from kb.mapping.completions import Completions
+from kb.mapping.obstacle_chance import ObstacleChance
+from kb.mapping.occupancy import FULL, OPEN, OccupancyMap
 from kb.mapping.patch import covered
-from kb.objects.held_object import Load, Square
+from kb.objects.held_object import HeldObject, Square
 
 Place = tuple[float, float]
 
@@ -29,7 +29,7 @@ ROOM = 3  # squares about a motion in which something may stop it
 NOTHING: frozenset[Square] = frozenset()
 
 
-class Stop(NamedTuple):
+class ContactHypothesis(NamedTuple):
     """That a motion ended where it met something.
 
     part : of the motion, 0 to 1, that was gone. chance : how likely it is that it went so far, and no further.
@@ -41,30 +41,30 @@ class Stop(NamedTuple):
     against: frozenset[Square] = NOTHING
 
 
-class Hindrances:
+class Obstructions:
     """What stands, or may stand, where a thing and Utak come on a motion.
 
     evidence : of the squares about. place, polygon : of Utak and of the thing before it. pictures : of the map.
     """
 
     def __init__(
-        self, evidence: Evidence, place: Place, polygon: Any, motion: Motion, pictures: Pictures | None = None
+        self, evidence: OccupancyMap, place: Place, polygon: Any, motion: Motion, pictures: Completions | None = None
     ) -> None:
         known, self._squares = (_there(evidence, place, polygon, motion, state) for state in (FULL, OPEN))
         self.walls = _obstacles(tuple(known))
-        self._outlook = Outlook(evidence, pictures)
+        self._outlook = ObstacleChance(evidence, pictures)
 
     @cached_property
     def _open(self) -> list[tuple[Square, Obstacles]]:
         """Each open square as an obstacle of its own."""
         return [(square, _obstacles((square,))) for square in self._squares]
 
-    def stops(self, place: Place, polygon: Any, motion: Motion) -> list[Stop]:
+    def stops(self, place: Place, polygon: Any, motion: Motion) -> list[ContactHypothesis]:
         """Where the motion may have been stopped, in its order, and what speaks for each.
 
         place, polygon : where it began, about as this was made for.
         """
-        body = Body(polygon, [place])
+        body = ContactBody(polygon, [place])
         end = self.walls.first_contact(body, motion).fraction
         near = _reachable(self._squares, place, polygon, motion)
         open_ = ((square, obstacle) for (square, obstacle), reached in zip(self._open, near, strict=True) if reached)
@@ -73,31 +73,35 @@ class Hindrances:
         together = [[*group] for _, group in itertools.groupby(ordered, lambda m: round(m[0] / TOGETHER))]
         chances = self._outlook.met([[square for _, square in group] for group in together])
         stops = [
-            Stop(group[0][0], chance, _likeliest({square: self._outlook.odds(square) for _, square in group}))
+            ContactHypothesis(
+                group[0][0], chance, _likeliest({square: self._outlook.odds(square) for _, square in group})
+            )
             for group, chance in zip(together, chances, strict=True)
         ]
-        return [*stops, Stop(end, max(1.0 - sum(chances), 0.0))] if end < 1.0 else stops
+        return [*stops, ContactHypothesis(end, max(1.0 - sum(chances), 0.0))] if end < 1.0 else stops
 
     def ends(self, place: Place, polygon: Any, motion: Motion) -> list[Outcome]:
         """What the stops would have led to, the likeliest first."""
         return led_to(self.stops(place, polygon, motion), place, polygon, motion)
 
 
-def near(stops: Iterable[Stop], place: Place, polygon: Any, motion: Motion, part: float) -> Stop | None:
+def near(
+    stops: Iterable[ContactHypothesis], place: Place, polygon: Any, motion: Motion, part: float
+) -> ContactHypothesis | None:
     """The likeliest of some stops about where a motion seems to have ended; None when there is nothing near."""
     far = NEARLY / length_of(place, polygon, motion)
     about = [stop for stop in stops if abs(stop.part - part) < far]
     return max(about, key=lambda stop: stop.chance, default=None)
 
 
-def led_to(stops: Iterable[Stop], place: Place, polygon: Any, motion: Motion) -> list[Outcome]:
+def led_to(stops: Iterable[ContactHypothesis], place: Place, polygon: Any, motion: Motion) -> list[Outcome]:
     """What stops of a motion would have led to, the likeliest first."""
     likely = sorted(stops, key=lambda stop: -stop.chance)
     return [part_way(place, polygon, motion, stop.part, stop.against) for stop in likely]
 
 
 def suspects(
-    outcome: Outcome | None, motion: Motion, load: Load, others: Iterable[Load], evidence: Evidence
+    outcome: Outcome | None, motion: Motion, load: HeldObject, others: Iterable[HeldObject], evidence: OccupancyMap
 ) -> frozenset[Square]:
     """The open squares (of the lattice) one of which likely stopped a load, or Utak with it; the likeliest ones alone.
 
@@ -143,7 +147,7 @@ def _obstacles(squares: tuple[Square, ...]) -> Obstacles:
     return Obstacles([box_of(square) for square in squares])
 
 
-def _there(evidence: Evidence, place: Place, polygon: Any, motion: Motion, state: int) -> list[Square]:
+def _there(evidence: OccupancyMap, place: Place, polygon: Any, motion: Motion, state: int) -> list[Square]:
     """The squares of a state to which a thing and Utak may come on a motion."""
     corners = np.array([*shapely.get_coordinates(polygon), place])
     if isinstance(motion, Rotate):

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kb.localisation.hypotheses.carry_outcomes import Outcome
-from kb.localisation.hypotheses.frames import Hypothesis, Look
-from kb.localisation.hypotheses.walk_outcomes import Retold
-from kb.mapping.occupancy import OPEN, Evidence
-from kb.objects.held_object import Load, Square
-from kb.perception.frame import CENTRE, Lattice, Samples
+from kb.localisation.hypotheses.frames import FrameHypothesis, Observation
+from kb.localisation.hypotheses.walk_outcomes import ReestimatedWalk
+from kb.mapping.occupancy import OPEN, OccupancyMap
+from kb.objects.held_object import HeldObject, Square
+from kb.perception.frame import CENTRE, Frame, Samples
 from kb.perception.retina import FIELDS
 from kb.reasoning.solver import KB, solve
 
@@ -45,17 +45,17 @@ class Explanation(NamedTuple):
 
     how: str
     place: Place
-    lattice: Lattice
+    lattice: Frame
     misfits: int
     distance: float
     outcome: Outcome | None = None
-    hypotheses: tuple[Hypothesis, ...] = ()
-    retold: Retold | None = None
+    hypotheses: tuple[FrameHypothesis, ...] = ()
+    retold: ReestimatedWalk | None = None
     chance: float | None = None
     crooked: float = 0.0
     against: frozenset[Square] = frozenset()
     weighed: bool = False
-    larger: Load | None = None
+    larger: HeldObject | None = None
 
     @property
     def anew(self) -> bool:
@@ -80,7 +80,9 @@ class Accommodated(NamedTuple):
     cells: tuple[CellStatus, ...]
 
 
-def statuses(evidence: Evidence, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> tuple[CellStatus, ...]:
+def statuses(
+    evidence: OccupancyMap, samples: Samples, ranges: NDArray[np.int16], x: int, y: int
+) -> tuple[CellStatus, ...]:
     """How each field of a look from square (x, y) is accounted for, before it is taken in as evidence."""
     noise = evidence.misfits(samples, ranges, x, y)
     row, column = evidence.index(x, y)
@@ -92,7 +94,7 @@ def statuses(evidence: Evidence, samples: Samples, ranges: NDArray[np.int16], x:
     )
 
 
-def misled(look: Look, told: Iterable[Iterable[Retold]]) -> list[Explanation]:
+def misled(look: Observation, told: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
     """The lattices to believe instead on which one of some motions was stopped, or an earlier one was not.
 
     look : the new one, as predicted. told : of each motion what else may have come of it.
@@ -106,7 +108,7 @@ def misled(look: Look, told: Iterable[Iterable[Retold]]) -> list[Explanation]:
     return [told_again(one, left) for one in ordered]
 
 
-def told_again(one: Retold, left: tuple[Hypothesis, ...]) -> Explanation:
+def told_again(one: ReestimatedWalk, left: tuple[FrameHypothesis, ...]) -> Explanation:
     """What came of a motion as it was told again. left : how the lattice may lie then."""
     lattice, far = one.hypothesis.lattice, math.hypot(*one.correction.shift)
     place = lattice.place_from_utak(*one.newest)

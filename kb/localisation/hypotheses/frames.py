@@ -13,14 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.counts.contradictions import contradicting
-from kb.perception.frame import CENTRE, Lattice
+from kb.perception.frame import CENTRE, Frame
 
 Box = tuple[float, float, float, float]  # west, south, east, north
 MEMORY = 12  # looks by which angles are judged: those that contradict older looks are gone already
 ANGLES = tuple(sorted(range(-44, 46), key=lambda angle: (abs(angle), angle)))
 
 
-class Hypothesis(NamedTuple):
+class FrameHypothesis(NamedTuple):
     """How the lattice may lie.
 
     Its angle in degrees, and a box (west, south, east, north) within the square, in which Utak woke. dear : by how many
@@ -32,15 +32,15 @@ class Hypothesis(NamedTuple):
     dear: float = 0.0
 
     @property
-    def lattice(self) -> Lattice:
+    def lattice(self) -> Frame:
         """The lattice, with the middle of the box for the point where he woke.
 
         The square's centre where that will do.
         """
         west, south, east, north = self.box
         if west <= CENTRE[0] <= east and south <= CENTRE[1] <= north:
-            return Lattice(self.angle)
-        return Lattice(self.angle, ((west + east) / 2, (south + north) / 2))
+            return Frame(self.angle)
+        return Frame(self.angle, ((west + east) / 2, (south + north) / 2))
 
     @property
     def is_point(self) -> bool:
@@ -63,39 +63,39 @@ class Hypothesis(NamedTuple):
         west, south, east, north = self.box
         return (east - west) * (north - south)
 
-    def holds(self, lattice: Lattice) -> bool:
+    def holds(self, lattice: Frame) -> bool:
         """Does it say that a lattice may be the true one?"""
         west, south, east, north = self.box
         (x, y), point = lattice.woke, self.is_point
         within = (x, y) == self.box[:2] if point else west <= x < east and south <= y < north
         return self.angle == lattice.angle and within
 
-    def split(self, place: tuple[float, float]) -> "list[Hypothesis]":
+    def split(self, place: tuple[float, float]) -> "list[FrameHypothesis]":
         """Cut the box where the square changes on which he stands at a place of his own frame.
 
         The part with the centre first.
         """
         west, south, east, north = self.box
-        dx, dy = Lattice(self.angle).to_lattice(*place)
+        dx, dy = Frame(self.angle).to_lattice(*place)
         columns = _cut(west, east, math.ceil(dx) - dx)
         rows = _cut(south, north, math.ceil(dy) - dy)
         return [self._replace(box=(w, s, e, n)) for w, e in columns for s, n in rows]
 
 
-def exactly(lattice: Lattice) -> Hypothesis:
+def exactly(lattice: Frame) -> FrameHypothesis:
     """That it is just this lattice, and he woke just there."""
-    return Hypothesis(lattice.angle, lattice.woke + lattice.woke)
+    return FrameHypothesis(lattice.angle, lattice.woke + lattice.woke)
 
 
-CENTRED = tuple(Hypothesis(angle, CENTRE + CENTRE) for angle in ANGLES)
-ANYWHERE = tuple(Hypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in ANGLES)
+CENTRED = tuple(FrameHypothesis(angle, CENTRE + CENTRE) for angle in ANGLES)
+ANYWHERE = tuple(FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in ANGLES)
 DOUBTED = 5.0  # edges by which the simplest picture may cost more on a lattice that is likely yet
 ELSEWHERE = 2.5  # log odds against having woken elsewhere than amid his square
 ODD = 0.1  # of the side of the square that looks leave of it on average, below which they left suspiciously little
 GRID = 11  # points along either side of what is left of the square in which he woke
 
 
-class Laid(NamedTuple):
+class PlacedObservation(NamedTuple):
     """Where a thing lay that Utak has moved, or was to move later, when he looked.
 
     middle : of its outline, in his own frame. degrees : by which it was turned since he first held it. slack : squares
@@ -109,7 +109,7 @@ class Laid(NamedTuple):
     taken: tuple[float, float]
 
 
-class Look(NamedTuple):
+class Observation(NamedTuple):
     """One impression's count ranges (160, 2), and where it was received: (east, north) of Utak's own frame.
 
     moved : where the things lay that he had moved by then.
@@ -117,17 +117,17 @@ class Look(NamedTuple):
 
     ranges: NDArray[np.int16]
     place: tuple[float, float]
-    moved: tuple[Laid, ...] = ()
+    moved: tuple[PlacedObservation, ...] = ()
 
 
-class Disc(NamedTuple):
+class OriginDisc(NamedTuple):
     """A part of the table, in Utak's own frame, of which looks need not agree, for things were moved there."""
 
     middle: tuple[float, float]
     reach: float
 
 
-def contradictions(lattice: Lattice, looks: Sequence[Look], unsettled: Sequence[Disc] = ()) -> int:
+def contradictions(lattice: Frame, looks: Sequence[Observation], unsettled: Sequence[OriginDisc] = ()) -> int:
     """How many squares and fields contradict each other if the lattice lies like this.
 
     Squares under fields that are quite full or quite empty are compared with each other, and other fields with them;
@@ -136,13 +136,13 @@ def contradictions(lattice: Lattice, looks: Sequence[Look], unsettled: Sequence[
     return clashing(lattice, fallen(lattice, looks), stacked(looks), unsettled)
 
 
-def stacked(looks: Sequence[Look]) -> NDArray[np.int16]:
+def stacked(looks: Sequence[Observation]) -> NDArray[np.int16]:
     """(looks, 160, 2): the count ranges of some looks."""
     return np.stack([look.ranges for look in looks])
 
 
 def clashing(
-    lattice: Lattice, squares: NDArray[np.int64], ranges: NDArray[np.int16], unsettled: Sequence[Disc] = ()
+    lattice: Frame, squares: NDArray[np.int64], ranges: NDArray[np.int16], unsettled: Sequence[OriginDisc] = ()
 ) -> int:
     """The same of looks with these count ranges, (looks, 160, 2), that were received on these squares, (looks, 2)."""
     apart = [(*lattice.place_from_utak(*disc.middle), disc.reach) for disc in unsettled]
@@ -151,8 +151,8 @@ def clashing(
 
 
 def standing(
-    hypotheses: Iterable[Hypothesis], looks: Sequence[Look], unsettled: Sequence[Disc] = ()
-) -> tuple[Hypothesis, ...]:
+    hypotheses: Iterable[FrameHypothesis], looks: Sequence[Observation], unsettled: Sequence[OriginDisc] = ()
+) -> tuple[FrameHypothesis, ...]:
     """What is left of the hypotheses when the last of these looks is taken into account, in order of preference.
 
     Hypotheses by which every look fell on the same squares stand or fall together.
@@ -170,8 +170,8 @@ def standing(
 
 
 def search(
-    looks: Sequence[Look], hypotheses: Iterable[Hypothesis] = ANYWHERE, unsettled: Sequence[Disc] = ()
-) -> tuple[Hypothesis, ...]:
+    looks: Sequence[Observation], hypotheses: Iterable[FrameHypothesis] = ANYWHERE, unsettled: Sequence[OriginDisc] = ()
+) -> tuple[FrameHypothesis, ...]:
     """All that these looks leave of some hypotheses: of all that there are, wherever in his square Utak woke."""
     left = tuple(hypotheses)
     for number in range(1, len(looks) + 1):
@@ -179,24 +179,24 @@ def search(
     return left
 
 
-def anywhere(angles: Iterable[int]) -> tuple[Hypothesis, ...]:
+def anywhere(angles: Iterable[int]) -> tuple[FrameHypothesis, ...]:
     """The hypotheses of some angles, wherever in his square Utak woke."""
-    return tuple(Hypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in angles)
+    return tuple(FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in angles)
 
 
-def fallen(lattice: Lattice, looks: Sequence[Look]) -> NDArray[np.int64]:
+def fallen(lattice: Frame, looks: Sequence[Observation]) -> NDArray[np.int64]:
     """(looks, 2): the squares of the lattice on which looks were received."""
     return squares_of(lattice, np.array([look.place for look in looks]).reshape(-1, 2))
 
 
-def squares_of(lattice: Lattice, places: NDArray[np.float64]) -> NDArray[np.int64]:
+def squares_of(lattice: Frame, places: NDArray[np.float64]) -> NDArray[np.int64]:
     """(n, 2): the squares of the lattice in which places (n, 2) of his own frame lie."""
     x, y = lattice.places_from_utak(places[:, 0], places[:, 1])
     squares: NDArray[np.int64] = np.floor(np.stack((x, y), 1)).astype(np.int64)
     return squares
 
 
-def within(lattice: Lattice, looks: Sequence[Look]) -> Box:
+def within(lattice: Frame, looks: Sequence[Observation]) -> Box:
     """Where Utak may have woken if every look fell on the square that it is believed to have fallen on.
 
     Wherever in it that was, all that stands looked the same.
@@ -208,7 +208,7 @@ def within(lattice: Lattice, looks: Sequence[Look]) -> Box:
     return west, south, east, north
 
 
-def leeway(lattice: Lattice, looks: Sequence[Look], hypotheses: Sequence[Hypothesis]) -> Box:
+def leeway(lattice: Frame, looks: Sequence[Observation], hypotheses: Sequence[FrameHypothesis]) -> Box:
     """How far from where he believes it Utak may have woken: to the west and south (not above 0), east and north.
 
     That he woke amid his square he only assumes.
@@ -222,15 +222,15 @@ def leeway(lattice: Lattice, looks: Sequence[Look], hypotheses: Sequence[Hypothe
     return min(west - x, 0.0), min(south - y, 0.0), max(east - x, 0.0), max(north - y, 0.0)
 
 
-def points(lattice: Lattice, looks: Sequence[Look]) -> tuple[Hypothesis, ...]:
+def points(lattice: Frame, looks: Sequence[Observation]) -> tuple[FrameHypothesis, ...]:
     """GRID by GRID points at which Utak may have woken if every look fell on the square that it is believed to."""
     west, south, east, north = within(lattice, looks)
     steps = (np.arange(GRID) + 0.5) / GRID
     places = ((float(west + (east - west) * i), float(south + (north - south) * j)) for i in steps for j in steps)
-    return tuple(Hypothesis(lattice.angle, place + place) for place in places)
+    return tuple(FrameHypothesis(lattice.angle, place + place) for place in places)
 
 
-def cramped(hypotheses: Sequence[Hypothesis], looks: int) -> bool:
+def cramped(hypotheses: Sequence[FrameHypothesis], looks: int) -> bool:
     """Is less room left for where he woke than so many looks leave by chance?
 
     Each look cuts either side of his square in two, anywhere. Then a side of what he truly woke in is shorter than
@@ -242,14 +242,14 @@ def cramped(hypotheses: Sequence[Hypothesis], looks: int) -> bool:
     return bool(min((east - west).max(), (north - south).max()) < ODD / max(looks, 1))
 
 
-def cells(where: Sequence[Hypothesis]) -> tuple[float, float]:
+def cells(where: Sequence[FrameHypothesis]) -> tuple[float, float]:
     """How wide and how high a cell of a grid is for which each of some of its points stands."""
     lines = [np.unique(np.round([point.box[axis] for point in where], 9)) for axis in (0, 1)]
     width, height = (float(np.diff(line).min()) if len(line) > 1 else 0.0 for line in lines)
     return width, height
 
 
-def candidates(hypotheses: Sequence[Hypothesis], held: Lattice) -> list[Lattice]:
+def candidates(hypotheses: Sequence[FrameHypothesis], held: Frame) -> list[Frame]:
     """The lattices to try, the likeliest first: those on which the table is plainest, the one held, one along his own
     axes, then from the middle outwards.
 

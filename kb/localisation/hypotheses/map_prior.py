@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.counts.gibbs import DRAWN, EDGE, FULL, costs, pictures
-from kb.localisation.hypotheses.frames import ELSEWHERE, Hypothesis, Look, fallen
+from kb.localisation.hypotheses.frames import ELSEWHERE, FrameHypothesis, Observation, fallen
 from kb.localisation.hypotheses.remap import relaid
-from kb.mapping.completions import SEED, Image, Scene, Told, ground_of, scenes
-from kb.mapping.occupancy import Evidence
-from kb.perception.frame import Lattice
+from kb.mapping.completions import SEED, CompletionTask, Image, Told, ground_of, scenes
+from kb.mapping.occupancy import OccupancyMap
+from kb.perception.frame import Frame
 
 LESS_LIKELY = 0.8  # by this power of e a picture is the less likely that costs more by 1
 HOT = 0.5  # the inverse temperature at which drawing begins
@@ -41,13 +41,13 @@ Drawn = dict[Told, tuple[float, Image]]
 Key = tuple[int, bytes]
 
 
-class Sketch:
+class MapDescription:
     """A map, and the simplest picture of it that was drawn so far, scene by scene.
 
     price : what that picture costs, as log odds against it.
     """
 
-    def __init__(self, evidence: Evidence, drawn: Drawn | None = None) -> None:
+    def __init__(self, evidence: OccupancyMap, drawn: Drawn | None = None) -> None:
         """Drawn : what was drawn of scenes before, of this map or of others; it is added to."""
         self._view = evidence.view()
         self._ground = ground_of(self._view)
@@ -84,7 +84,7 @@ class Sketch:
         return bends / max(self.price - bends, LESS_LIKELY)
 
 
-def _simplest(scene: Scene, effort: Effort, seed: int) -> tuple[float, Image]:
+def _simplest(scene: CompletionTask, effort: Effort, seed: int) -> tuple[float, Image]:
     """What the simplest of some pictures of a scene costs, and the picture."""
     number, sweeps = effort
     images = pictures(scene.ground, scene.counts, np.repeat(scene.first[None], number, axis=0), sweeps, HOT, seed)
@@ -92,10 +92,10 @@ def _simplest(scene: Scene, effort: Effort, seed: int) -> tuple[float, Image]:
     return float(prices.min()), images[prices.argmin()]
 
 
-class Trial(Sketch):
+class FrameTrial(MapDescription):
     """The same of some looks on a lattice, which lies askew less likely than along his own axes."""
 
-    def __init__(self, lattice: Lattice, looks: Sequence[Look]) -> None:
+    def __init__(self, lattice: Frame, looks: Sequence[Observation]) -> None:
         super().__init__(relaid(lattice, lattice, looks, ()).evidence)
         self._askew = ALONG * (lattice.angle != 0)
 
@@ -105,7 +105,7 @@ class Trial(Sketch):
         return self.price + self._askew
 
 
-def plainness(sketches: Sequence[tuple[Sketch, float]]) -> list[float]:
+def plainness(sketches: Sequence[tuple[MapDescription, float]]) -> list[float]:
     """What the simplest picture of each map costs beside that of the plainest one, as log odds.
 
     Edges are not counted, for maps may differ in size. sketches : each with the log odds against its map by all else;
@@ -128,18 +128,18 @@ class Alike(NamedTuple):
     against : log odds against having woken in that part of his square.
     """
 
-    lattice: Lattice
+    lattice: Frame
     dear: float
     against: float
 
 
-def weighed(hypotheses: Sequence[Hypothesis], looks: Sequence[Look]) -> tuple[Hypothesis, ...]:
+def weighed(hypotheses: Sequence[FrameHypothesis], looks: Sequence[Observation]) -> tuple[FrameHypothesis, ...]:
     """The same hypotheses, each with how much less likely it is than the one on which the table looks plainest.
 
     Of those weighed before the likely ones alone are weighed again, with the new look, and the angles beside them.
     """
     keys = [_key(hypothesis, looks) for hypothesis in hypotheses]
-    same: dict[Key, list[Hypothesis]] = {}
+    same: dict[Key, list[FrameHypothesis]] = {}
     for hypothesis, key in zip(hypotheses, keys, strict=True):
         same.setdefault(key, []).append(hypothesis)
     alike = {key: _alike(own) for key, own in same.items()}
@@ -163,13 +163,13 @@ def weighed(hypotheses: Sequence[Hypothesis], looks: Sequence[Look]) -> tuple[Hy
     return tuple(h._replace(dear=dear[key]) for h, key in zip(hypotheses, keys, strict=True))
 
 
-def _key(hypothesis: Hypothesis, looks: Sequence[Look]) -> Key:
+def _key(hypothesis: FrameHypothesis, looks: Sequence[Observation]) -> Key:
     """The angle, and on which squares the looks fell beside the last one."""
     squares = fallen(hypothesis.lattice, looks)
     return hypothesis.angle, (squares - squares[-1]).tobytes()
 
 
-def _alike(same: Sequence[Hypothesis]) -> Alike:
+def _alike(same: Sequence[FrameHypothesis]) -> Alike:
     likeliest = max(same, key=lambda one: (one.is_centred, one.area))
     area = sum(one.area for one in same)
     against = 0.0 if likeliest.is_centred or not area else ELSEWHERE - math.log(area)
@@ -187,7 +187,7 @@ def _likely(alike: Mapping[Key, Alike], least: float) -> list[Key]:
     return sorted(near, key=lambda key: (alike[key].dear, alike[key].against, key))
 
 
-def _first_tried(alike: Mapping[Key, Alike], looks: Sequence[Look]) -> dict[Key, Trial]:
+def _first_tried(alike: Mapping[Key, Alike], looks: Sequence[Observation]) -> dict[Key, FrameTrial]:
     """Trials of those that may be the best: of each angle the likeliest part of his square, of the best ones others."""
     parts: dict[int, list[Key]] = {}
     for key in sorted(alike, key=lambda key: (alike[key].against, key)):
@@ -200,20 +200,20 @@ def _first_tried(alike: Mapping[Key, Alike], looks: Sequence[Look]) -> dict[Key,
     }
 
 
-def _drawn(one: Alike, looks: Sequence[Look]) -> Trial:
-    trial = Trial(one.lattice, looks)
+def _drawn(one: Alike, looks: Sequence[Observation]) -> FrameTrial:
+    trial = FrameTrial(one.lattice, looks)
     trial.draw()
     return trial
 
 
-def _competing(lattices: dict[int, Lattice], looks: Sequence[Look]) -> dict[int, Trial]:
+def _competing(lattices: dict[int, Frame], looks: Sequence[Observation]) -> dict[int, FrameTrial]:
     """Trials of those lattices that may be the best, by angle: most effort is spent on the likeliest."""
-    trials: dict[int, Trial] = {}
+    trials: dict[int, FrameTrial] = {}
 
     def enter(angles: Iterable[int]) -> None:
         for angle in angles:
             if angle in lattices and angle not in trials:
-                trials[angle] = Trial(lattices[angle], looks)
+                trials[angle] = FrameTrial(lattices[angle], looks)
                 trials[angle].draw(ROUGH)
 
     def leading(most: int, behind: float) -> list[int]:

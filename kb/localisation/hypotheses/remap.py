@@ -17,12 +17,12 @@ import shapely
 from geometry.motion.se2 import Rotate, Translate
 from geometry.raster.components import components, edged
 from geometry.shapes.fit import fit_shapes
-from kb.localisation.hypotheses.frames import Laid, Look, fallen
-from kb.mapping.occupancy import FREE, FULL, OPEN, Evidence
+from kb.localisation.hypotheses.frames import Observation, PlacedObservation, fallen
+from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
 from kb.mapping.patch import Patch, covered
-from kb.objects.held_object import Load, discounted, is_whole, whole
-from kb.objects.subcell_extent import Insets
-from kb.perception.frame import Lattice
+from kb.objects.held_object import HeldObject, discounted, is_whole, whole
+from kb.objects.subcell_extent import SubcellExtent
+from kb.perception.frame import Frame
 
 ASKEW = 8.0  # degrees from one lattice to another from where on an outline that was measured on the one is not right
 UNTOLD = 0.25  # of the squares of a thing, so many may be open when it is measured anew
@@ -31,22 +31,24 @@ EVERY = 16  # looks after which what they say is kept, to go on from there
 STEPS = sorted(((x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)), key=lambda step: (math.hypot(*step), step))
 
 
-class Relaid(NamedTuple):
+class RemappedMap(NamedTuple):
     """What all looks say on a lattice.
 
     loads : as they lie after the last look, by name. misfits : fields that contradict it. cut : were looks left out,
     as the first of them were contradicted? Then the loads are left out, too, and misfits may be too few, though not 0.
     """
 
-    evidence: Evidence
-    loads: Mapping[str, Load]
+    evidence: OccupancyMap
+    loads: Mapping[str, HeldObject]
     misfits: int
     cut: bool = False
 
 
-def laid(load: Load, lattice: Lattice) -> Laid:
+def laid(load: HeldObject, lattice: Frame) -> PlacedObservation:
     """Where a load lies, told in Utak's own frame."""
-    return Laid(load.name, _middle(load.polygon, lattice), load.turned, load.slack, _middle(load.first, lattice))
+    return PlacedObservation(
+        load.name, _middle(load.polygon, lattice), load.turned, load.slack, _middle(load.first, lattice)
+    )
 
 
 class Replay:
@@ -55,10 +57,10 @@ class Replay:
     new, old : that lattice, and the one on which the loads lie. number : how many looks are taken in.
     """
 
-    def __init__(self, new: Lattice, old: Lattice) -> None:
+    def __init__(self, new: Frame, old: Frame) -> None:
         self.new, self.old, self.number = new, old, 0
-        self._evidence, self._misfits = Evidence(), 0
-        self._taken: dict[str, Load] = {}  # as they lay when they were first held, on the new lattice
+        self._evidence, self._misfits = OccupancyMap(), 0
+        self._taken: dict[str, HeldObject] = {}  # as they lay when they were first held, on the new lattice
 
     def copy(self) -> "Replay":
         """The same, to go on with."""
@@ -66,7 +68,9 @@ class Replay:
         other._evidence, other._taken = self._evidence.copy(), dict(self._taken)
         return other
 
-    def go_on(self, looks: Sequence[Look], loads: Mapping[str, Load], to: int, whether: bool = False) -> "Replay":
+    def go_on(
+        self, looks: Sequence[Observation], loads: Mapping[str, HeldObject], to: int, whether: bool = False
+    ) -> "Replay":
         """Take in the looks before that number; what was taken in already must be the first of them.
 
         whether : it is asked only whether anything contradicts: then no looks are taken in after the first that do.
@@ -92,16 +96,16 @@ class Replay:
         """Does anything contradict the lattice, of the looks that were taken in?"""
         return self._misfits > 0
 
-    def end(self, looks: Sequence[Look], loads: Mapping[str, Load], whether: bool = False) -> Relaid:
+    def end(self, looks: Sequence[Observation], loads: Mapping[str, HeldObject], whether: bool = False) -> RemappedMap:
         """What all looks say in the end. It cannot be gone on with. whether : as for `go_on`."""
         self.go_on(looks, loads, len(looks), whether)
         if whether and self._misfits:
-            return Relaid(self._evidence, {}, self._misfits, cut=True)
+            return RemappedMap(self._evidence, {}, self._misfits, cut=True)
         self._take([load for load in loads.values() if load.since >= len(looks)], len(looks))
         now = {name: _carried(self._taken[name], load, laid(load, self.old), self.new) for name, load in loads.items()}
-        return Relaid(self._evidence, now, self._misfits)
+        return RemappedMap(self._evidence, now, self._misfits)
 
-    def _take(self, taken: Iterable[Load], number: int) -> None:
+    def _take(self, taken: Iterable[HeldObject], number: int) -> None:
         """Take out of the map what was first held before look `number`."""
         for load in taken:
             lay = self._taken[load.name] = _taken(load, self.new, self.old, self._evidence)
@@ -112,13 +116,13 @@ class Replay:
 
 
 def relaid(
-    new: Lattice,
-    old: Lattice,
-    looks: Sequence[Look],
-    loads: Iterable[Load],
+    new: Frame,
+    old: Frame,
+    looks: Sequence[Observation],
+    loads: Iterable[HeldObject],
     begun: Replay | None = None,
     whether: bool = False,
-) -> Relaid:
+) -> RemappedMap:
     """All that was seen, and where the loads are, if the lattice lies otherwise.
 
     old : the lattice on which the loads lie. begun : the first of the looks, taken in already, with loads taken as
@@ -128,7 +132,7 @@ def relaid(
     return replay.end(looks, {load.name: load for load in loads}, whether)
 
 
-class Layings:
+class RemapCache:
     """What all looks say on any lattice.
 
     Lattices on which every look falls on the same squares are told the same: all is laid on the first of them that is
@@ -136,19 +140,23 @@ class Layings:
     lattice, evidence, loads : as they are believed.
     """
 
-    def __init__(self, lattice: Lattice, evidence: Evidence, looks: Sequence[Look], loads: Mapping[str, Load]) -> None:
+    def __init__(
+        self, lattice: Frame, evidence: OccupancyMap, looks: Sequence[Observation], loads: Mapping[str, HeldObject]
+    ) -> None:
         self._lattice, self._looks, self._loads = lattice, looks, loads
-        believed = Relaid(evidence, loads, 0)
-        self._known: dict[tuple[int, bytes], tuple[Lattice | None, Relaid]] = {self._fallen(lattice): (None, believed)}
-        self._on: dict[Lattice, Relaid] = {}
+        believed = RemappedMap(evidence, loads, 0)
+        self._known: dict[tuple[int, bytes], tuple[Frame | None, RemappedMap]] = {
+            self._fallen(lattice): (None, believed)
+        }
+        self._on: dict[Frame, RemappedMap] = {}
 
-    def on(self, lattice: Lattice, whether: bool = False) -> Relaid:
+    def on(self, lattice: Frame, whether: bool = False) -> RemappedMap:
         """What they say on a lattice. whether : as for `relaid`."""
         if lattice not in self._on or (self._on[lattice].cut and not whether):
             self._on[lattice] = self._laid(lattice, whether)
         return self._on[lattice]
 
-    def _laid(self, lattice: Lattice, whether: bool) -> Relaid:
+    def _laid(self, lattice: Frame, whether: bool) -> RemappedMap:
         fallen_ = self._fallen(lattice)
         if fallen_ not in self._known or (self._known[fallen_][1].cut and not whether):
             found = relaid(lattice, self._lattice, self._looks, self._loads.values(), whether=whether)
@@ -159,7 +167,7 @@ class Layings:
         loads = {name: shifted(load, lattice, first or self._lattice) for name, load in under.loads.items()}
         return under._replace(loads=loads)
 
-    def _fallen(self, lattice: Lattice) -> tuple[int, bytes]:
+    def _fallen(self, lattice: Frame) -> tuple[int, bytes]:
         return lattice.angle, fallen(lattice, self._looks).tobytes()
 
 
@@ -169,7 +177,7 @@ class Prefixes:
     loads : as they lie on that lattice.
     """
 
-    def __init__(self, lattice: Lattice, looks: Sequence[Look], loads: Mapping[str, Load]) -> None:
+    def __init__(self, lattice: Frame, looks: Sequence[Observation], loads: Mapping[str, HeldObject]) -> None:
         self._looks, self._loads = looks, loads
         self._known = {0: Replay(lattice, lattice)}
 
@@ -183,7 +191,7 @@ class Prefixes:
         return self._known[number]
 
 
-def shifted(load: Load, new: Lattice, old: Lattice) -> Load:
+def shifted(load: HeldObject, new: Frame, old: Frame) -> HeldObject:
     """Where a load is if Utak woke elsewhere in his square, and every look fell on the squares that it is believed to.
 
     Then it was taken where it was believed to lie, but every turn since was about another point.
@@ -191,12 +199,12 @@ def shifted(load: Load, new: Lattice, old: Lattice) -> Load:
     return _carried(load, load, laid(load, old), new)
 
 
-def lain(load: Load, was: Laid, lattice: Lattice) -> Load:
+def lain(load: HeldObject, was: PlacedObservation, lattice: Frame) -> HeldObject:
     """A load where it lay at some time, on the lattice that is believed."""
     return _carried(load, load, was, lattice)
 
 
-def _taken(load: Load, new: Lattice, old: Lattice, evidence: Evidence) -> Load:
+def _taken(load: HeldObject, new: Frame, old: Frame, evidence: OccupancyMap) -> HeldObject:
     """A load as it lay when it was first held, on the new lattice, of which so much was seen then."""
     skew = new.angle - old.angle
     askew = 90 * round(skew / 90) - skew
@@ -209,11 +217,11 @@ def _taken(load: Load, new: Lattice, old: Lattice, evidence: Evidence) -> Load:
     elif straight:
         first = _straightened(Rotate(askew, middle).carry(first), evidence)
     lying = load.lying(first)
-    insets = load.insets if skew == 0.0 and seen is None else Insets() if is_whole(lying.polygon) else None
+    insets = load.insets if skew == 0.0 and seen is None else SubcellExtent() if is_whole(lying.polygon) else None
     return replace(lying, first=lying.polygon, skewed=skewed, insets=insets)
 
 
-def _straightened(polygon: Any, evidence: Evidence) -> Any:
+def _straightened(polygon: Any, evidence: OccupancyMap) -> Any:
     """A thing with sides along the lattice, on corners of it: where what was seen speaks least against that."""
     x0, y0 = polygon.bounds[:2]
     nearest = Translate(round(x0) - x0, round(y0) - y0).carry(polygon)
@@ -221,7 +229,7 @@ def _straightened(polygon: Any, evidence: Evidence) -> Any:
     return min(lying, key=lambda other: _unlike(other, evidence))
 
 
-def _outline(patch: Patch, evidence: Evidence) -> Any:
+def _outline(patch: Patch, evidence: OccupancyMap) -> Any:
     """The outline of what was seen where a thing is said to lie, if nearly all of it was told by then; None else."""
     own = np.pad(patch.mask, REACH)
     state = evidence.window(patch.west - REACH, patch.south - REACH, own.shape)
@@ -238,7 +246,7 @@ def _outline(patch: Patch, evidence: Evidence) -> Any:
     return shapely.transform(best.polygon, lambda points: points + np.array([patch.west - REACH, patch.south - REACH]))
 
 
-def _unlike(polygon: Any, evidence: Evidence) -> int:
+def _unlike(polygon: Any, evidence: OccupancyMap) -> int:
     """How many squares speak against a thing where it is said to lie: free ones under it, occupied ones beside it."""
     patch = covered(polygon)
     own = np.pad(patch.mask, 1)
@@ -247,7 +255,7 @@ def _unlike(polygon: Any, evidence: Evidence) -> int:
     return int(((state == FREE) & own).sum() + ((state == FULL) & about & ~own).sum())
 
 
-def _carried(taken: Load, load: Load, was: Laid, new: Lattice) -> Load:
+def _carried(taken: HeldObject, load: HeldObject, was: PlacedObservation, new: Frame) -> HeldObject:
     """A load where it lay at some time, carried there from where it was taken. taken : on the new lattice."""
     began = np.array([_middle(taken.first, new)]) - was.taken
     aside = Rotate(was.degrees, (0.0, 0.0)).points(began)[0]
@@ -263,7 +271,7 @@ def _put(polygon: Any, degrees: float, middle: tuple[float, float]) -> Any:
     return Translate(middle[0] - centre.x, middle[1] - centre.y).carry(turned)
 
 
-def _middle(polygon: Any, lattice: Lattice) -> tuple[float, float]:
+def _middle(polygon: Any, lattice: Frame) -> tuple[float, float]:
     """The middle of a polygon of the lattice, in Utak's own frame."""
     centre = polygon.centroid
     return lattice.place_to_utak(centre.x, centre.y)

@@ -18,19 +18,19 @@ from numpy.typing import NDArray
 from geometry.motion.se2 import Translate
 from kb.localisation.hypotheses.frames import (
     MEMORY,
-    Disc,
-    Hypothesis,
-    Laid,
-    Look,
+    FrameHypothesis,
+    Observation,
+    OriginDisc,
+    PlacedObservation,
     clashing,
     fallen,
     squares_of,
     stacked,
 )
-from kb.localisation.hypotheses.remap import Prefixes, Relaid, Replay, relaid
-from kb.mapping.occupancy import FREE, FULL, OPEN, Evidence
-from kb.objects.held_object import Load, Square
-from kb.perception.frame import Lattice
+from kb.localisation.hypotheses.remap import Prefixes, RemappedMap, Replay, relaid
+from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
+from kb.objects.held_object import HeldObject, Square
+from kb.perception.frame import Frame
 
 Place = tuple[float, float]
 MOST = 90  # hypotheses on which a motion is told again: as many as there are angles
@@ -51,7 +51,7 @@ class Crossing(NamedTuple):
     entered: tuple[int, int]
 
 
-class Moved(NamedTuple):
+class MotionHypothesis(NamedTuple):
     """A straight motion as it was commanded.
 
     number : of the look that followed. shift : east and north, of Utak's own frame. hypotheses : how the lattice might
@@ -61,7 +61,7 @@ class Moved(NamedTuple):
 
     number: int
     shift: Place
-    hypotheses: tuple[Hypothesis, ...]
+    hypotheses: tuple[FrameHypothesis, ...]
     stopped: bool = False
     load: str | None = None
     doubts: tuple[tuple[Place, float], ...] = ()
@@ -76,7 +76,7 @@ class Moved(NamedTuple):
         return max(near, default=None)
 
 
-class Correction(NamedTuple):
+class WalkCorrection(NamedTuple):
     """That all looks from one on were received elsewhere than is believed, and what lay elsewhere by that.
 
     since : the number of that look. shift : east and north of where it is believed to have been received, in Utak's own
@@ -93,7 +93,7 @@ class Correction(NamedTuple):
         """A place of his own frame where he is believed to have been since."""
         return plus(place, self.shift)
 
-    def looks(self, looks: Sequence[Look]) -> list[Look]:
+    def looks(self, looks: Sequence[Observation]) -> list[Observation]:
         """All looks, where they were received."""
         since = [
             look._replace(place=self.place(look.place), moved=tuple(map(self._lain, look.moved)))
@@ -101,17 +101,17 @@ class Correction(NamedTuple):
         ]
         return [*looks[: self.since], *since]
 
-    def loads(self, loads: Mapping[str, Load], lattice: Lattice) -> dict[str, Load]:
+    def loads(self, loads: Mapping[str, HeldObject], lattice: Frame) -> dict[str, HeldObject]:
         """What was moved, where it lies and lay. lattice : on which it is believed to."""
         return {name: self._load(load, lattice) for name, load in loads.items()}
 
-    def _lain(self, was: Laid) -> Laid:
+    def _lain(self, was: PlacedObservation) -> PlacedObservation:
         aside = self._aside(was.name)
         if was.name != self.hauled:
             was = was._replace(taken=plus(was.taken, aside))
         return was._replace(middle=plus(was.middle, aside))
 
-    def _load(self, load: Load, lattice: Lattice) -> Load:
+    def _load(self, load: HeldObject, lattice: Frame) -> HeldObject:
         aside = Translate(*lattice.to_lattice(*self._aside(load.name)))
         if not any(aside):
             return load
@@ -123,15 +123,15 @@ class Correction(NamedTuple):
         return self.shift if name == self.hauled else dict(self.seen).get(name, (0.0, 0.0))
 
 
-class Retold(NamedTuple):
+class ReestimatedWalk(NamedTuple):
     """That the lattice lies as a hypothesis says, and a motion had been stopped where it is not believed to have been.
 
     correction : of the looks since. known : does something stand there that stopped him? misfits : fields that
     contradict it, of all looks. newest : where the newest look was received then, in his own frame.
     """
 
-    hypothesis: Hypothesis
-    correction: Correction
+    hypothesis: FrameHypothesis
+    correction: WalkCorrection
     known: bool
     misfits: int
     newest: Place = (0.0, 0.0)
@@ -190,7 +190,7 @@ def views(place: Place) -> tuple[Place, ...]:
     return tuple((x, y) for x in columns for y in rows)
 
 
-def _seen_from(place: Place, lattice: Lattice) -> list[Place]:
+def _seen_from(place: Place, lattice: Frame) -> list[Place]:
     """The places of his own frame from which he may look who stands at one of them."""
     return [lattice.place_to_utak(*view) for view in views(lattice.place_from_utak(*place))]
 
@@ -209,8 +209,8 @@ def next_square(place: Place, towards: Place) -> tuple[int, int]:
 
 
 def retold(
-    motion: Moved, held: Lattice, looks: Sequence[Look], laid: Callable[[Lattice], Prefixes] | None = None
-) -> Iterator[Retold]:
+    motion: MotionHypothesis, held: Frame, looks: Sequence[Observation], laid: Callable[[Frame], Prefixes] | None = None
+) -> Iterator[ReestimatedWalk]:
     """What else may have come of a motion, and how the lattice lies then, so that no look contradicts another.
 
     held : the lattice that is believed. looks : all, where they are believed to have been received, the newest where it
@@ -229,7 +229,7 @@ def retold(
             yield from (one for one in found if one.known == surest)
 
 
-def _likeliest(hypotheses: tuple[Hypothesis, ...]) -> tuple[Hypothesis, ...]:
+def _likeliest(hypotheses: tuple[FrameHypothesis, ...]) -> tuple[FrameHypothesis, ...]:
     """Of hypotheses the MOST that are the least dear, in their order."""
     if len(hypotheses) <= MOST:
         return hypotheses
@@ -237,17 +237,19 @@ def _likeliest(hypotheses: tuple[Hypothesis, ...]) -> tuple[Hypothesis, ...]:
     return tuple(hypotheses[number] for number in sorted(likely))
 
 
-def _otherwise(motion: Moved, hypothesis: Hypothesis, looks: Sequence[Look], begun: Prefixes) -> Iterator[Retold]:
+def _otherwise(
+    motion: MotionHypothesis, hypothesis: FrameHypothesis, looks: Sequence[Observation], begun: Prefixes
+) -> Iterator[ReestimatedWalk]:
     """What else may have come of one motion on one lattice."""
     lattice, number = hypothesis.lattice, motion.number
     believed, walk = looks[number].place, Walk(motion, lattice, looks)
-    judged: dict[bytes, Relaid | None] = {}
+    judged: dict[bytes, RemappedMap | None] = {}
     ranges, places = stacked(looks), np.array([look.place for look in looks])
     for end in walk.ends:
         shift = end.place[0] - believed[0], end.place[1] - believed[1]
         if math.hypot(*shift) < HAIR:  # as is believed
             continue
-        correction = Correction(number, shift)
+        correction = WalkCorrection(number, shift)
         newest = correction.place(looks[-1].place)
         there = places.copy()
         there[number:] += shift
@@ -262,10 +264,12 @@ def _otherwise(motion: Moved, hypothesis: Hypothesis, looks: Sequence[Look], beg
                     judged[key] = relaid(lattice, lattice, [*before, last._replace(place=place)], (), begun.of(number))
             under = judged[key]
             if under is not None and (ahead := walk.ahead(end, under.evidence)) != FREE:
-                yield Retold(hypothesis, correction, ahead == FULL, under.misfits, place)
+                yield ReestimatedWalk(hypothesis, correction, ahead == FULL, under.misfits, place)
 
 
-def retold_both(motion: Moved, newest: Moved, hypothesis: Hypothesis, looks: Sequence[Look]) -> Iterator[Retold]:
+def retold_both(
+    motion: MotionHypothesis, newest: MotionHypothesis, hypothesis: FrameHypothesis, looks: Sequence[Observation]
+) -> Iterator[ReestimatedWalk]:
     """That both an earlier motion and the newest were stopped by what is known, so that no look contradicts another.
 
     looks : as for `retold`. Who goes on against what stopped him does not move at all.
@@ -274,7 +278,7 @@ def retold_both(motion: Moved, newest: Moved, hypothesis: Hypothesis, looks: Seq
     walk = Walk(motion, lattice, looks)
     against = sum(a * b for a, b in zip(motion.shift, newest.shift, strict=True)) > 0
     for end in walk.ends[:-1]:
-        correction = Correction(motion.number, (end.place[0] - believed[0], end.place[1] - believed[1]))
+        correction = WalkCorrection(motion.number, (end.place[0] - believed[0], end.place[1] - believed[1]))
         there = correction.looks(before)
         so_far = agreed(lattice, there, recent=MEMORY, whether=False)
         if so_far is None or walk.ahead(end, so_far.evidence) == FREE:
@@ -286,18 +290,18 @@ def retold_both(motion: Moved, newest: Moved, hypothesis: Hypothesis, looks: Seq
             if under is None or under.misfits or walk.ahead(end, under.evidence) != FULL:
                 continue
             if halt in still or onward.ahead(halt, under.evidence) == FULL:
-                yield Retold(hypothesis, correction, True, 0, halt.place)
+                yield ReestimatedWalk(hypothesis, correction, True, 0, halt.place)
 
 
 def agreed(
-    lattice: Lattice,
-    looks: Sequence[Look],
-    loads: Iterable[Load] = (),
-    unsettled: Sequence[Disc] = (),
+    lattice: Frame,
+    looks: Sequence[Observation],
+    loads: Iterable[HeldObject] = (),
+    unsettled: Sequence[OriginDisc] = (),
     recent: int = MEMORY + 1,
     begun: Replay | None = None,
     whether: bool = True,
-) -> Relaid | None:
+) -> RemappedMap | None:
     """What all looks say on the lattice on which the loads lie; None when two of the last contradict each other.
 
     unsettled : where looks need not agree. recent : how many of them are compared. begun : the first, taken in already.
@@ -309,10 +313,10 @@ def agreed(
 
 
 def _agree(
-    lattice: Lattice,
+    lattice: Frame,
     squares: NDArray[np.int64],
     ranges: NDArray[np.int16],
-    unsettled: Sequence[Disc] = (),
+    unsettled: Sequence[OriginDisc] = (),
     recent: int = MEMORY + 1,
 ) -> bool:
     """Does none of the last looks contradict another? squares, ranges : of all looks, as for
@@ -338,13 +342,13 @@ class Walk:
     ends : where he may have been stopped, in the order of the way, and its end; gone counts the crossings before it.
     """
 
-    def __init__(self, motion: Moved, lattice: Lattice, looks: Sequence[Look]) -> None:
+    def __init__(self, motion: MotionHypothesis, lattice: Frame, looks: Sequence[Observation]) -> None:
         x, y = looks[motion.number - 1].place
         self._met = met = crossings(lattice.place_from_utak(x, y), lattice.to_lattice(*motion.shift))
         halts = [End(lattice.place_to_utak(*place), at) for at in range(len(met)) for place in views(met[at].before)]
         self.ends = (*halts, End((x + motion.shift[0], y + motion.shift[1]), len(met)))
 
-    def ahead(self, end: End, evidence: Evidence, things: Set[Square] = frozenset()) -> int:
+    def ahead(self, end: End, evidence: OccupancyMap, things: Set[Square] = frozenset()) -> int:
         """What stands where he would have been stopped; FREE, too, where something would have stopped him before.
 
         things : squares on which something stood then that was moved since.
@@ -362,6 +366,6 @@ def plus(place: Place, shift: Place) -> Place:
     return place[0] + shift[0], place[1] + shift[1]
 
 
-def _state(evidence: Evidence, square: tuple[int, int]) -> int:
+def _state(evidence: OccupancyMap, square: tuple[int, int]) -> int:
     row, column = evidence.index(*square)
     return int(evidence.state[row, column])

@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 from geometry.motion.se2 import Motion, Rotate, Translate
 from kb.body import Command, Move, Push, Turn
 from kb.localisation.hypotheses.carry_outcomes import STRIDE, Outcome, arrested, otherwise, predicted
-from kb.localisation.hypotheses.contacts import Hindrances
-from kb.localisation.hypotheses.frames import Disc, Hypothesis, Look, cells, search
-from kb.localisation.hypotheses.remap import Layings, Prefixes, Relaid
-from kb.mapping.completions import Pictures
-from kb.mapping.occupancy import Evidence
-from kb.objects.held_object import Load, discounted
-from kb.perception.frame import Lattice
+from kb.localisation.hypotheses.contacts import Obstructions
+from kb.localisation.hypotheses.frames import FrameHypothesis, Observation, OriginDisc, cells, search
+from kb.localisation.hypotheses.remap import Prefixes, RemapCache, RemappedMap
+from kb.mapping.completions import Completions
+from kb.mapping.occupancy import OccupancyMap
+from kb.objects.held_object import HeldObject, discounted
+from kb.perception.frame import Frame
 
 Place = tuple[float, float]
 Ranges = NDArray[np.int16]
@@ -32,15 +32,15 @@ RECENT = 24  # looks by which lattices are judged
 BESIDE = 1.5  # squares about a thing that was moved in which looks need not agree
 
 
-class Supposed(NamedTuple):
+class WhatIf(NamedTuple):
     """A lattice that may be the true one.
 
     hypotheses : all that are left then. place : where Utak is on it. outcome : what came of the motion of the thing in
     hand. misfits : fields that contradict it, of all looks. searched : were hypotheses taken up that had been given up?
     """
 
-    lattice: Lattice
-    hypotheses: tuple[Hypothesis, ...]
+    lattice: Frame
+    hypotheses: tuple[FrameHypothesis, ...]
     place: Place
     outcome: Outcome | None
     misfits: int
@@ -57,14 +57,14 @@ class Surprise:
 
     command: Command
     ranges: Ranges
-    lattice: Lattice
+    lattice: Frame
     place: Place
-    evidence: Evidence
-    looks: Sequence[Look]
-    loads: Mapping[str, Load]
+    evidence: OccupancyMap
+    looks: Sequence[Observation]
+    loads: Mapping[str, HeldObject]
     held: str | None
-    hypotheses: tuple[Hypothesis, ...]
-    pictures: Pictures | None = None
+    hypotheses: tuple[FrameHypothesis, ...]
+    pictures: Completions | None = None
 
     # -- what is known of it ---------------------------------------------------------------------
 
@@ -94,17 +94,17 @@ class Surprise:
         return east, north
 
     @cached_property
-    def before(self) -> tuple[Hypothesis, ...]:
+    def before(self) -> tuple[FrameHypothesis, ...]:
         """The hypotheses that stood before the command."""
         return search(self.looks[-RECENT:], self.hypotheses, self.unsettled)
 
     @cached_property
-    def recent(self) -> list[Look]:
+    def recent(self) -> list[Observation]:
         """The looks by which lattices are judged, the new one last."""
-        return [*self.looks[-RECENT:], Look(self.ranges, self.own)]
+        return [*self.looks[-RECENT:], Observation(self.ranges, self.own)]
 
     @cached_property
-    def unsettled(self) -> list[Disc]:
+    def unsettled(self) -> list[OriginDisc]:
         """Where things were moved, wherever they lay meanwhile."""
         discs = set()
         for load in self.loads.values():
@@ -115,7 +115,7 @@ class Surprise:
             middles += [was.middle for look in self.looks for was in look.moved if was.name == load.name]
             corners = shapely.get_coordinates(load.polygon) - shapely.get_coordinates(load.polygon.centroid)
             reach = float(np.hypot(*corners.T).max()) + BESIDE
-            discs |= {Disc(middle, reach) for middle in middles}
+            discs |= {OriginDisc(middle, reach) for middle in middles}
         return sorted(discs)
 
     @cached_property
@@ -127,13 +127,13 @@ class Surprise:
 
     def tried(
         self,
-        lattice: Lattice,
-        hypotheses: tuple[Hypothesis, ...],
+        lattice: Frame,
+        hypotheses: tuple[FrameHypothesis, ...],
         searched: bool = False,
         cut_short: bool = False,
         far: float = 0.0,
         whether: bool = False,
-    ) -> Supposed:
+    ) -> WhatIf:
         """What contradicts a lattice.
 
         cut_short : the motion may have ended early, for whatever reason. far : squares from where he woke, at most.
@@ -144,7 +144,7 @@ class Surprise:
         if self.moving is None:  # it went as said
             place = lattice.place_from_utak(*self.own)
             misfits = self._misfits(lattice, self.laid(lattice).loads.values(), place, far, whether)
-            return Supposed(lattice, hypotheses, place, None, misfits, searched)
+            return WhatIf(lattice, hypotheses, place, None, misfits, searched)
         tried = []
         for outcome in self._outcomes(lattice, cut_short):
             slack = STRIDE / 2 if cut_short and outcome.how != "predicted" else 0.0
@@ -153,22 +153,22 @@ class Surprise:
                 break
         return min(tried, key=lambda one: one.misfits)
 
-    def refused(self, lattice: Lattice, hypotheses: tuple[Hypothesis, ...]) -> Supposed | None:
+    def refused(self, lattice: Frame, hypotheses: tuple[FrameHypothesis, ...]) -> WhatIf | None:
         """That earlier looks contradict a lattice, whatever came of the motion; None when none does."""
         misfits = self.laid(lattice, whether=True).misfits
         place = lattice.place_from_utak(*self.own)
-        return Supposed(lattice, hypotheses, place, None, misfits, False) if misfits else None
+        return WhatIf(lattice, hypotheses, place, None, misfits, False) if misfits else None
 
     def judged(
         self,
-        lattice: Lattice,
-        hypotheses: tuple[Hypothesis, ...],
+        lattice: Frame,
+        hypotheses: tuple[FrameHypothesis, ...],
         outcome: Outcome,
         slack: float = 0.0,
         far: float = 0.0,
         searched: bool = False,
         whether: bool = False,
-    ) -> Supposed:
+    ) -> WhatIf:
         """What contradicts a lattice, and an outcome of the motion of what was in his hand.
 
         slack : squares by which it may have ended elsewhere. far : squares from where he woke, at most. whether : it is
@@ -179,9 +179,11 @@ class Surprise:
         slack, commanded = max(loads[held].slack, slack), outcome.as_commanded
         moved = loads[held].moved(outcome.polygon, slack, outcome.degrees, commanded)
         misfits = self._misfits(lattice, {**loads, held: moved}.values(), outcome.place, far, whether)
-        return Supposed(lattice, hypotheses, outcome.place, outcome, misfits, searched)
+        return WhatIf(lattice, hypotheses, outcome.place, outcome, misfits, searched)
 
-    def _misfits(self, lattice: Lattice, loads: Iterable[Load], place: Place, far: float, whether: bool = False) -> int:
+    def _misfits(
+        self, lattice: Frame, loads: Iterable[HeldObject], place: Place, far: float, whether: bool = False
+    ) -> int:
         """How many fields contradict a lattice, of this look, with the loads where they lie then, and of all others."""
         under = self.laid(lattice)
         if whether and under.misfits:
@@ -189,22 +191,22 @@ class Surprise:
         lying = [load.woken(far) if far else load for load in loads]
         return under.misfits + clashes(lattice, under.evidence, lying, place, self.ranges, whether)
 
-    def begun(self, lattice: Lattice) -> tuple[Place, Any, Motion]:
+    def begun(self, lattice: Frame) -> tuple[Place, Any, Motion]:
         """Where he stood before the motion, and what was in his hand, if the lattice lies so; and the motion."""
         assert self.moving is not None
         held, command = self.moving
         place = lattice.place_from_utak(*self.lattice.place_to_utak(*self.place))
         return place, self.laid(lattice).loads[held].polygon, as_motion(command, lattice, place)
 
-    def laid(self, lattice: Lattice, whether: bool = False) -> Relaid:
+    def laid(self, lattice: Frame, whether: bool = False) -> RemappedMap:
         """What all looks say on a lattice. whether : as for kb.localisation.hypotheses.remap.relaid."""
         return self._layings.on(lattice, whether)
 
     @cached_property
-    def _layings(self) -> Layings:
-        return Layings(self.lattice, self.evidence, self.looks, self.loads)
+    def _layings(self) -> RemapCache:
+        return RemapCache(self.lattice, self.evidence, self.looks, self.loads)
 
-    def _outcomes(self, lattice: Lattice, cut_short: bool) -> Iterator[Outcome]:
+    def _outcomes(self, lattice: Frame, cut_short: bool) -> Iterator[Outcome]:
         """The motion, as far as what is known to stand in the way lets it go; and as it was commanded."""
         place, polygon, motion = self.begun(lattice)
         if cut_short:
@@ -212,27 +214,27 @@ class Surprise:
             return
         evidence = self.laid(lattice).evidence
         same = evidence is self.evidence
-        hindrances = self.hindrances if same else Hindrances(evidence, place, polygon, motion)
+        hindrances = self.hindrances if same else Obstructions(evidence, place, polygon, motion)
         stopped = arrested(place, polygon, motion, hindrances.walls)
         if stopped is not None:
             yield stopped
         yield predicted(place, polygon, motion)
 
     @cached_property
-    def hindrances(self) -> Hindrances:
+    def hindrances(self) -> Obstructions:
         """What stands, or may stand, about the motion on the lattice that is believed."""
-        return Hindrances(self.evidence, *self.begun(self.lattice), self.pictures)
+        return Obstructions(self.evidence, *self.begun(self.lattice), self.pictures)
 
     # -- after it ---------------------------------------------------------------------------------
 
-    def lying(self, outcome: Outcome) -> list[Load]:
+    def lying(self, outcome: Outcome) -> list[HeldObject]:
         """All loads where they lie on the lattice that is believed, if the motion of the one in hand came out so."""
         return [
             load.moved(outcome.polygon, load.slack, commanded=outcome.as_commanded) if name == self.held else load
             for name, load in self.loads.items()
         ]
 
-    def looked(self, loads: Sequence[Load], place: Place) -> Evidence:
+    def looked(self, loads: Sequence[HeldObject], place: Place) -> OccupancyMap:
         """What is settled together with the look, if it was received at a place, with the loads where they lie."""
         x, y = (math.floor(v) for v in place)
         samples, counts = discounted(self.lattice.samples(), self.ranges, x, y, loads)
@@ -242,20 +244,20 @@ class Surprise:
 
 
 def agreeing(
-    hypotheses: Sequence[Hypothesis],
-    lattice: Lattice,
+    hypotheses: Sequence[FrameHypothesis],
+    lattice: Frame,
     place: Place,
-    evidence: Evidence,
-    looks: Sequence[Look],
-    loads: Mapping[str, Load],
+    evidence: OccupancyMap,
+    looks: Sequence[Observation],
+    loads: Mapping[str, HeldObject],
     ranges: Ranges,
-) -> tuple[Hypothesis, ...]:
+) -> tuple[FrameHypothesis, ...]:
     """Of points at which he may have woken those that agree with a look at what he turned; all when none does.
 
     lattice, place, evidence, loads : as they are believed, the motion before the look included.
     """
     own, far = lattice.place_to_utak(*place), math.hypot(*cells(hypotheses)) / 2
-    agree, layings = [], Layings(lattice, evidence, looks, loads)
+    agree, layings = [], RemapCache(lattice, evidence, looks, loads)
     for hypothesis in hypotheses:
         other = hypothesis.lattice
         under = layings.on(other)
@@ -265,7 +267,7 @@ def agreeing(
     return tuple(agree or hypotheses)
 
 
-def as_motion(command: Push | Turn, lattice: Lattice, place: Place) -> Motion:
+def as_motion(command: Push | Turn, lattice: Frame, place: Place) -> Motion:
     """A command as a motion on the lattice. place : of Utak, when he gives it."""
     if isinstance(command, Turn):
         return Rotate(command.degrees, place)
@@ -273,7 +275,12 @@ def as_motion(command: Push | Turn, lattice: Lattice, place: Place) -> Motion:
 
 
 def clashes(
-    lattice: Lattice, evidence: Evidence, loads: Iterable[Load], place: Place, ranges: Ranges, whether: bool = False
+    lattice: Frame,
+    evidence: OccupancyMap,
+    loads: Iterable[HeldObject],
+    place: Place,
+    ranges: Ranges,
+    whether: bool = False,
 ) -> int:
     """How many fields cannot be right if a look was received at a place, with the loads where they lie.
 

@@ -13,24 +13,24 @@ from typing import NamedTuple, TypeVar
 
 from geometry.motion.se2 import Motion, Translate
 from kb.localisation.hypotheses.carry_outcomes import Outcome, part_way, predicted
-from kb.localisation.hypotheses.contacts import Stop
+from kb.localisation.hypotheses.contacts import ContactHypothesis
 from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.map_prior import Drawn, Sketch, plainness
+from kb.localisation.hypotheses.map_prior import Drawn, MapDescription, plainness
 from kb.localisation.hypotheses.walk_outcomes import crossings, views
 from kb.localisation.hypotheses.what_if import Place, Surprise, clashes
-from kb.mapping.obstacle_chance import Outlook
-from kb.mapping.occupancy import FREE, FULL, OPEN, Evidence
-from kb.objects.held_object import Load, Square
+from kb.mapping.obstacle_chance import ObstacleChance
+from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
+from kb.objects.held_object import HeldObject, Square
 
 RISK = 0.02  # how likely a motion may be stopped before it is asked where
 UNLIKELY = 1e-4  # how likely a halt is at least that is thought of
 MOST = 24  # such halts
 
 
-T = TypeVar("T", "Halt", Stop)
+T = TypeVar("T", "BlockedMotion", ContactHypothesis)
 
 
-class Halt(NamedTuple):
+class BlockedMotion(NamedTuple):
     """An end of a motion: the place that Utak looks from then, and how likely it was before the look.
 
     how : predicted, if it is that of the whole motion; else blocked. against : the open squares one of which would have
@@ -44,7 +44,7 @@ class Halt(NamedTuple):
     outcome: Outcome | None = None
 
 
-def halts(surprise: Surprise, load: Load | None, motion: Motion) -> list[Halt]:
+def halts(surprise: Surprise, load: HeldObject | None, motion: Motion) -> list[BlockedMotion]:
     """The whole of a straight motion, first, and where else it may have ended; none when there is nothing to ask.
 
     That is so when it hardly came upon anything and ended amid a square. Who ends on a line between squares may look
@@ -55,7 +55,9 @@ def halts(surprise: Surprise, load: Load | None, motion: Motion) -> list[Halt]:
     stops = _of_a_walk(surprise, motion) if load is None else _of_a_push(surprise, load, motion)
     x, y = surprise.place
     end = None if load is None else predicted(surprise.place, load.polygon, motion)
-    whole = _seen(Halt("predicted", (x + motion.dx, y + motion.dy), 1.0 - sum(s.chance for s in stops), outcome=end))
+    whole = _seen(
+        BlockedMotion("predicted", (x + motion.dx, y + motion.dy), 1.0 - sum(s.chance for s in stops), outcome=end)
+    )
     if len(whole) == 1 and whole[0].chance >= 1.0 - RISK:
         return []
     return [*whole, *likeliest(stops)]
@@ -66,7 +68,7 @@ def likeliest(stops: Iterable[T]) -> list[T]:
     return sorted((stop for stop in stops if stop.chance > UNLIKELY), key=lambda stop: -stop.chance)[:MOST]
 
 
-def _seen(halt: Halt) -> list[Halt]:
+def _seen(halt: BlockedMotion) -> list[BlockedMotion]:
     """The same from each of the places from which he may look there."""
     found = views(halt.place)
     ends = (halt.outcome and halt.outcome._replace(place=view) for view in found)
@@ -76,23 +78,23 @@ def _seen(halt: Halt) -> list[Halt]:
     ]
 
 
-def _of_a_walk(surprise: Surprise, motion: Translate) -> list[Halt]:
+def _of_a_walk(surprise: Surprise, motion: Translate) -> list[BlockedMotion]:
     way, evidence = crossings(surprise.place, (motion.dx, motion.dy)), surprise.evidence
-    chances = Outlook(evidence, surprise.pictures).met([[crossing.entered] for crossing in way])
+    chances = ObstacleChance(evidence, surprise.pictures).met([[crossing.entered] for crossing in way])
     found = []
     for crossing, chance in zip(way, chances, strict=True):
         open_ = evidence.state[evidence.index(*crossing.entered)] == OPEN
         against = frozenset([crossing.entered]) if open_ else frozenset[Square]()
-        found += [Halt("blocked", view, chance / 2, against) for view in (crossing.after, crossing.before)]
+        found += [BlockedMotion("blocked", view, chance / 2, against) for view in (crossing.after, crossing.before)]
     return found
 
 
-def _of_a_push(surprise: Surprise, load: Load, motion: Translate) -> list[Halt]:
+def _of_a_push(surprise: Surprise, load: HeldObject, motion: Translate) -> list[BlockedMotion]:
     place, polygon = surprise.place, load.polygon
     found = []
     for stop in surprise.hindrances.stops(place, polygon, motion):
         end = part_way(place, polygon, motion, stop.part, stop.against)
-        found += _seen(Halt("blocked", end.place, stop.chance, stop.against, end))
+        found += _seen(BlockedMotion("blocked", end.place, stop.chance, stop.against, end))
     return found
 
 
@@ -101,18 +103,18 @@ def borne_out(surprise: Surprise, explanations: Iterable[Explanation]) -> list[E
 
     By none of them anything that was settled before is otherwise.
     """
-    found: list[tuple[Sketch, Explanation]] = []
+    found: list[tuple[MapDescription, Explanation]] = []
     drawn: Drawn = {}
     for one in explanations:
         loads = list(surprise.loads.values()) if one.outcome is None else surprise.lying(one.outcome)
         after = surprise.looked(loads, one.place)
         if _can_stand(after, one) and not clashes(surprise.lattice, after, loads, one.place, surprise.ranges):
-            found.append((Sketch(after, drawn), one))
+            found.append((MapDescription(after, drawn), one))
     prices = plainness([(sketch, -math.log(max(one.chance or 0.0, UNLIKELY))) for sketch, one in found])
     return [one._replace(crooked=price) for price, (_, one) in zip(prices, found, strict=True)]
 
 
-def _can_stand(evidence: Evidence, explanation: Explanation) -> bool:
+def _can_stand(evidence: OccupancyMap, explanation: Explanation) -> bool:
     """Whether something can stand against which he was stopped, and he himself where he is: so it is settled then.
 
     Who looks from beyond the line on which he was stopped looks from the square of what stopped him. Who just came to a

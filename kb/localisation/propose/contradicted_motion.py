@@ -14,13 +14,13 @@ from kb.localisation.hypotheses.carry_outcomes import STRIDE, Outcome, otherwise
 from kb.localisation.hypotheses.what_if import Place, Surprise, clashes
 from kb.mapping.occupancy import FULL
 from kb.mapping.patch import covered
-from kb.objects.held_object import WHOLE, Load
+from kb.objects.held_object import WHOLE, HeldObject
 
 CROWDED = 4  # squares that seem to stand right about a thing since it was turned, of which nothing told
 BESIDE = 1.0  # squares about a thing
 
 
-def overlooked(surprise: Surprise, load: Load, motion: Motion) -> Outcome | None:
+def overlooked(surprise: Surprise, load: HeldObject, motion: Motion) -> Outcome | None:
     """Where the motion of a load in hand was stopped, if the look after it belies the whole of it; None else.
 
     Nothing settled before disagrees with the whole motion.
@@ -40,7 +40,7 @@ def belied(surprise: Surprise, outcome: Outcome) -> bool:
     return clashes(surprise.lattice, evidence, loads, outcome.place, surprise.ranges) > 0
 
 
-def likeliest_stop(surprise: Surprise, load: Load, motion: Motion) -> Outcome | None:
+def likeliest_stop(surprise: Surprise, load: HeldObject, motion: Motion) -> Outcome | None:
     """Where the motion of a load in hand was likeliest stopped so that the look contradicts nothing, if anywhere."""
     for end in surprise.hindrances.ends(surprise.place, load.polygon, motion):
         there = surprise.lying(end)
@@ -50,7 +50,7 @@ def likeliest_stop(surprise: Surprise, load: Load, motion: Motion) -> Outcome | 
     return None
 
 
-def rather_short(surprise: Surprise, load: Load, motion: Rotate) -> Outcome | None:
+def rather_short(surprise: Surprise, load: HeldObject, motion: Rotate) -> Outcome | None:
     """Where a turn rather ended short, if that explains what seems to stand right about the thing since it was turned.
 
     No look contradicts the whole turn. But where the thing lay before, nothing can have come to stand meanwhile. Of
@@ -74,7 +74,7 @@ def rather_short(surprise: Surprise, load: Load, motion: Rotate) -> Outcome | No
     return fitting[len(fitting) // 2][2] if 2 * fewest < seem else None
 
 
-def _turned(load: Load, polygon: Any, slack: float, degrees: float) -> Load:
+def _turned(load: HeldObject, polygon: Any, slack: float, degrees: float) -> HeldObject:
     """A thing after a turn. It is the less astray the less it is turned in all, wherever in his square Utak stands."""
     moved = load.moved(polygon, slack, degrees)
     before, after = (abs(math.sin(math.radians(one.turned / 2))) for one in (load, moved))
@@ -82,7 +82,7 @@ def _turned(load: Load, polygon: Any, slack: float, degrees: float) -> Load:
     return moved if whole else replace(moved, astray=load.astray * after / before)
 
 
-def _crowded(surprise: Surprise, load: Load, others: Sequence[Load], place: Place) -> int:
+def _crowded(surprise: Surprise, load: HeldObject, others: Sequence[HeldObject], place: Place) -> int:
     """How many squares right about a thing are occupied of which no look told before, if it came to lie so."""
     before, after = surprise.evidence, surprise.looked([*others, load], place)
     about = covered(load.polygon.buffer(BESIDE, join_style="mitre")).squares()

@@ -10,47 +10,47 @@ from collections.abc import Iterator, Sequence, Set
 from dataclasses import replace
 from typing import NamedTuple
 
-from geometry.motion.first_contact import Body, Obstacles
+from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Translate
-from kb.localisation.hypotheses.contacts import TOGETHER, Hindrances, box_of
-from kb.localisation.hypotheses.frames import Look, anywhere, candidates, exactly, fallen, search
-from kb.localisation.hypotheses.remap import Relaid, lain, relaid
+from kb.localisation.hypotheses.contacts import TOGETHER, Obstructions, box_of
+from kb.localisation.hypotheses.frames import Observation, anywhere, candidates, exactly, fallen, search
+from kb.localisation.hypotheses.remap import RemappedMap, lain, relaid
 from kb.localisation.hypotheses.walk_outcomes import (
     HAIR,
-    Correction,
     End,
-    Moved,
+    MotionHypothesis,
     Place,
-    Retold,
+    ReestimatedWalk,
     Walk,
+    WalkCorrection,
     agreed,
     plus,
     views,
 )
-from kb.localisation.hypotheses.what_if import Supposed, Surprise
-from kb.mapping.occupancy import FREE, FULL, OPEN, Evidence
+from kb.localisation.hypotheses.what_if import Surprise, WhatIf
+from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
 from kb.mapping.patch import covered
-from kb.objects.held_object import Load, Square, is_whole
-from kb.perception.frame import Lattice
+from kb.objects.held_object import HeldObject, Square, is_whole
+from kb.perception.frame import Frame
 
 LAST = 4  # motions that are told again together with where he woke
 FEW = 3  # lattices on which each is tried
 
 
-class Recalled(NamedTuple):
+class ReestimatedMotion(NamedTuple):
     """What may have come of an earlier motion, and what is to be believed then of all else."""
 
-    retold: Retold
-    supposed: Supposed
+    retold: ReestimatedWalk
+    supposed: WhatIf
 
 
-class Haul:
+class CarriedMotion:
     """A straight motion with a thing in hand, on the lattice that is believed.
 
     ends : where it may have been stopped, the likeliest first by what was seen before, and its end.
     """
 
-    def __init__(self, motion: Moved, surprise: Surprise) -> None:
+    def __init__(self, motion: MotionHypothesis, surprise: Surprise) -> None:
         assert motion.load is not None
         lattice, looks, loads = surprise.lattice, surprise.looks[: motion.number], surprise.loads
         was = next(was for was in looks[-1].moved if was.name == motion.load)
@@ -67,12 +67,12 @@ class Haul:
         """Where Utak is after a part of the motion."""
         return self._place[0] + part * self._motion.dx, self._place[1] + part * self._motion.dy
 
-    def ahead(self, end: End, evidence: Evidence, things: Set[Square]) -> int:
+    def ahead(self, end: End, evidence: OccupancyMap, things: Set[Square]) -> int:
         """What stands where it would have been stopped; FREE, too, where something would have stopped it before.
 
         things : squares on which something stood then that was moved since.
         """
-        body, hindrances = Body(self._polygon, [self._place]), self._hindrances(evidence)
+        body, hindrances = ContactBody(self._polygon, [self._place]), self._hindrances(evidence)
         known = hindrances.walls.first_contact(body, self._motion).fraction
         if things:
             stood = Obstacles([box_of(square) for square in things])
@@ -84,11 +84,11 @@ class Haul:
         stops = hindrances.stops(self._place, self._polygon, self._motion)
         return OPEN if end.gone == 1.0 or any(abs(stop.part - end.gone) < TOGETHER for stop in stops) else FREE
 
-    def _hindrances(self, evidence: Evidence) -> Hindrances:
-        return Hindrances(evidence, self._place, self._polygon, self._motion)
+    def _hindrances(self, evidence: OccupancyMap) -> Obstructions:
+        return Obstructions(evidence, self._place, self._polygon, self._motion)
 
 
-def recalled(surprise: Surprise, motions: Sequence[Moved]) -> list[Recalled]:
+def recalled(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
     """All that may have come of earlier motions by which nothing is contradicted any more, on the lattice believed.
 
     Those come first by which something known stopped him.
@@ -98,7 +98,7 @@ def recalled(surprise: Surprise, motions: Sequence[Moved]) -> list[Recalled]:
     return sorted(found, key=lambda one: not one.retold.known)
 
 
-def recalled_elsewhere(surprise: Surprise, motions: Sequence[Moved]) -> list[Recalled]:
+def recalled_elsewhere(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
     """The same of the last motion of a thing that explains all, if he woke elsewhere in his square besides.
 
     Neither is told without the other: where a thing was stopped depends on where it lay, which is known in squares;
@@ -109,20 +109,20 @@ def recalled_elsewhere(surprise: Surprise, motions: Sequence[Moved]) -> list[Rec
     return sorted(next(filter(None, found), []), key=lambda one: not one.retold.known)
 
 
-def _held_then(motion: Moved, surprise: Surprise) -> bool:
+def _held_then(motion: MotionHypothesis, surprise: Surprise) -> bool:
     """Is it told where the thing lay that was in hand on a motion, if one was?"""
     before = surprise.looks[motion.number - 1].moved
     return motion.load is None or any(was.name == motion.load for was in before)
 
 
-def _otherwise(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
+def _otherwise(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
     """What else may have come of one motion."""
     looks, lattice = surprise.looks, surprise.lattice
     believed, first = looks[motion.number].place, surprise.prefixes.of(motion.number)
     if first.contradicted:  # whatever came of the motion
         return
-    way = Walk(motion, lattice, looks) if motion.load is None else Haul(motion, surprise)
-    judged: dict[Place, Relaid | None] = {}  # by the shift
+    way = Walk(motion, lattice, looks) if motion.load is None else CarriedMotion(motion, surprise)
+    judged: dict[Place, RemappedMap | None] = {}  # by the shift
     for end in way.ends:
         shift = end.place[0] - believed[0], end.place[1] - believed[1]
         if math.hypot(*shift) < HAIR:  # as is believed
@@ -140,13 +140,13 @@ def _otherwise(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
             lattice, surprise.hypotheses, whether=True
         )
         if not supposed.misfits:
-            yield Recalled(Retold(exactly(lattice), correction, ahead == FULL, 0), supposed)
+            yield ReestimatedMotion(ReestimatedWalk(exactly(lattice), correction, ahead == FULL, 0), supposed)
 
 
-def _elsewhere(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
+def _elsewhere(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
     """What else may have come of one motion of a thing, if he woke elsewhere in his square."""
     anywhere_in_it = anywhere((surprise.lattice.angle,))
-    for end in Haul(motion, surprise).ends:
+    for end in CarriedMotion(motion, surprise).ends:
         anew, correction = _corrected(surprise, motion, end)
         left = search(anew.recent, anywhere_in_it, anew.unsettled)
         if not left:
@@ -160,25 +160,25 @@ def _elsewhere(surprise: Surprise, motion: Moved) -> Iterator[Recalled]:
                 continue
             under = anew.laid(lattice)
             there = replace(anew, lattice=lattice, evidence=under.evidence, loads=under.loads)
-            way = Haul(motion, there)
+            way = CarriedMotion(motion, there)
             ahead = way.ahead(end, under.evidence, _stood(under, anew.looks, motion, lattice))
             if ahead != FREE:
-                yield Recalled(Retold(exactly(lattice), correction, ahead == FULL, 0), supposed)
+                yield ReestimatedMotion(ReestimatedWalk(exactly(lattice), correction, ahead == FULL, 0), supposed)
 
 
-def _corrected(surprise: Surprise, motion: Moved, end: End) -> tuple[Surprise, Correction]:
+def _corrected(surprise: Surprise, motion: MotionHypothesis, end: End) -> tuple[Surprise, WalkCorrection]:
     """A surprise as it is if an earlier motion ended elsewhere, and what is corrected by that."""
     lattice, believed = surprise.lattice, surprise.looks[motion.number].place
     shift = end.place[0] - believed[0], end.place[1] - believed[1]
     since = [load for load in surprise.loads.values() if load.since > motion.number]
     seen = tuple((load.name, _aside(load, shift, surprise)) for load in since)
-    correction = Correction(motion.number, shift, seen, motion.load)
+    correction = WalkCorrection(motion.number, shift, seen, motion.load)
     there, loads = correction.looks(surprise.looks), correction.loads(surprise.loads, lattice)
     place = lattice.place_from_utak(*correction.place(lattice.place_to_utak(*surprise.place)))
     return replace(surprise, place=place, looks=there, loads=loads), correction
 
 
-def _aside(load: Load, shift: Place, surprise: Surprise) -> Place:
+def _aside(load: HeldObject, shift: Place, surprise: Surprise) -> Place:
     """How far a thing lies from where it was seen to, if Utak stood aside: so many squares when its sides lie on lines.
 
     For the eye tells squares, wherever in his own he stands.
@@ -191,7 +191,9 @@ def _aside(load: Load, shift: Place, surprise: Surprise) -> Place:
     return lattice.to_utak(float(east - west), float(north - south))
 
 
-def _stood(under: Relaid, looks: Sequence[Look], motion: Moved, lattice: Lattice) -> frozenset[Square]:
+def _stood(
+    under: RemappedMap, looks: Sequence[Observation], motion: MotionHypothesis, lattice: Frame
+) -> frozenset[Square]:
     """The squares on which things stood when a motion was made that he has moved since, or before."""
     before = {was.name: was for was in looks[motion.number - 1].moved}
     squares: frozenset[Square] = frozenset()

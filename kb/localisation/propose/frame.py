@@ -8,15 +8,15 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from kb.localisation.hypotheses.carry_outcomes import part_way
-from kb.localisation.hypotheses.contacts import Hindrances
-from kb.localisation.hypotheses.frames import ELSEWHERE, Hypothesis, anywhere, candidates, exactly, search
+from kb.localisation.hypotheses.contacts import Obstructions
+from kb.localisation.hypotheses.frames import ELSEWHERE, FrameHypothesis, anywhere, candidates, exactly, search
 from kb.localisation.hypotheses.walk_outcomes import views
-from kb.localisation.hypotheses.what_if import Supposed, Surprise
+from kb.localisation.hypotheses.what_if import Surprise, WhatIf
 from kb.localisation.propose.blocked import likeliest
 from kb.localisation.propose.origin import lattices, odds_against
 from kb.localisation.propose.origin_from_turns import pivoted
 from kb.objects.held_object import Square
-from kb.perception.frame import CENTRE, Lattice
+from kb.perception.frame import CENTRE, Frame
 
 ABOUT = 2  # degrees by which the lattice may lie otherwise than any that was left
 WIDEST = 8  # degrees between those that were left, for more to be thought of
@@ -27,7 +27,7 @@ BEST = 3  # of those, on which the motion may have been stopped by what was not 
 SLIVER = 0.02  # squares^2: where there is no more room for where he woke, he was rather stopped
 
 
-def explained(surprise: Surprise, anew: bool, simple: bool) -> Supposed | None:
+def explained(surprise: Surprise, anew: bool, simple: bool) -> WhatIf | None:
     """The lattice that explains a look best; None when none is left.
 
     anew : may hypotheses that were given up before be taken up again? simple : is it explained if the motion ended
@@ -40,7 +40,7 @@ def explained(surprise: Surprise, anew: bool, simple: bool) -> Supposed | None:
     return _laid_otherwise(surprise, anew)
 
 
-def _otherwise_turned(surprise: Surprise) -> Supposed | None:
+def _otherwise_turned(surprise: Surprise) -> WhatIf | None:
     """A lattice turned otherwise than believed that was never given up, and on which nothing contradicts.
 
     That he woke amid his square is assumed as long as that explains all.
@@ -52,9 +52,9 @@ def _otherwise_turned(surprise: Surprise) -> Supposed | None:
     return next((one for one in tried if not one.misfits), None)
 
 
-def _laid_otherwise(surprise: Surprise, anew: bool) -> Supposed | None:
+def _laid_otherwise(surprise: Surprise, anew: bool) -> WhatIf | None:
     """The lattice on which, when all is laid on it, the fewest fields contradict."""
-    found: list[Supposed] = []
+    found: list[WhatIf] = []
     few = max(LEAST, min(FEW, MOST_REPLAYS // (len(surprise.looks) + 1)))
     for hypotheses, searched in _by_turns(surprise, anew):
         if searched and sum(hypothesis.area for hypothesis in hypotheses) < SLIVER:
@@ -75,7 +75,7 @@ def _laid_otherwise(surprise: Surprise, anew: bool) -> Supposed | None:
     return min(found, key=lambda one: one.misfits, default=None)
 
 
-def _by_turns(surprise: Surprise, anew: bool) -> Iterator[tuple[tuple[Hypothesis, ...], bool]]:
+def _by_turns(surprise: Surprise, anew: bool) -> Iterator[tuple[tuple[FrameHypothesis, ...], bool]]:
     """Hypotheses to try one after the other, the likeliest first, each time with whether they had been given up.
 
     That he woke elsewhere in his square is thought of before angles at which the table looks less plain.
@@ -91,7 +91,7 @@ def _by_turns(surprise: Surprise, anew: bool) -> Iterator[tuple[tuple[Hypothesis
         yield _searched(surprise), True
 
 
-def _searched(surprise: Surprise) -> tuple[Hypothesis, ...]:
+def _searched(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
     """All that may be, of angles near to those that were left."""
     angles = [surprise.lattice.angle, *(h.angle for h in surprise.hypotheses)]
     if max(angles) - min(angles) > WIDEST:
@@ -100,7 +100,7 @@ def _searched(surprise: Surprise) -> tuple[Hypothesis, ...]:
     return search(surprise.recent, about, surprise.unsettled)
 
 
-def _cut_short(surprise: Surprise, few: int) -> Supposed | None:
+def _cut_short(surprise: Surprise, few: int) -> WhatIf | None:
     """A lattice that stood before the thing in hand was moved, on which that was stopped, and nothing contradicts.
 
     Rather where something is known that stopped it; of angles that do as well, the middle one.
@@ -122,7 +122,7 @@ class HaltedElsewhere(NamedTuple):
     against : log odds against it, by the part of his square in which he woke then.
     """
 
-    supposed: Supposed
+    supposed: WhatIf
     chance: float
     against: float
 
@@ -132,7 +132,7 @@ def halted_elsewhere(surprise: Surprise) -> list[HaltedElsewhere]:
 
     Where he himself runs against something depends on where he woke. Once a thing was turned that tells where he woke.
     """
-    alike: dict[tuple[int, int, frozenset[Square]], list[tuple[Supposed, float]]] = {}
+    alike: dict[tuple[int, int, frozenset[Square]], list[tuple[WhatIf, float]]] = {}
     for lattice in lattices(surprise.lattice) if surprise.moving is not None and not surprise.turned else ():
         for supposed, chance in _halts(surprise, lattice):
             assert supposed.outcome is not None
@@ -148,13 +148,13 @@ def halted_elsewhere(surprise: Surprise) -> list[HaltedElsewhere]:
     return found
 
 
-def _halts(surprise: Surprise, lattice: Lattice) -> Iterator[tuple[Supposed, float]]:
+def _halts(surprise: Surprise, lattice: Frame) -> Iterator[tuple[WhatIf, float]]:
     """How a push may have been stopped on a lattice on which nothing contradicts then, with how likely that was."""
     under = surprise.laid(lattice, whether=True)
     if under.misfits:
         return
     place, polygon, motion = surprise.begun(lattice)
-    held, hindrances = (exactly(lattice),), Hindrances(under.evidence, place, polygon, motion)
+    held, hindrances = (exactly(lattice),), Obstructions(under.evidence, place, polygon, motion)
     for stop in likeliest(hindrances.stops(place, polygon, motion)):
         end = part_way(place, polygon, motion, stop.part, stop.against)
         for view in views(end.place):

@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
-from geometry.motion.first_contact import Body, Obstacles
+from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Motion, Translate
 from kb.localisation.hypotheses.carry_outcomes import Outcome
-from kb.objects.held_object import Load, slack_of
+from kb.objects.held_object import HeldObject, slack_of
 
 OFTEN = 2  # times that a thing did not move for no reason, before it rather lies elsewhere
 NOWHERE = 0.2  # squares: what was stopped sooner than this did not move
@@ -21,7 +21,7 @@ STEP = 0.1  # squares between the places that are tried
 TOUCHING = 0.02  # squares from what stopped it
 
 
-def after(load: Load, outcome: Outcome | None, misfits: int, suspected: bool = False) -> Load:
+def after(load: HeldObject, outcome: Outcome | None, misfits: int, suspected: bool = False) -> HeldObject:
     """A thing after a motion with it in hand.
 
     misfits : fields that the motion, as it is believed, leaves as noise. suspected : is there something that may have
@@ -40,7 +40,7 @@ def after(load: Load, outcome: Outcome | None, misfits: int, suspected: bool = F
     return replace(moved, stuck=load.stuck + 1) if nowhere else moved
 
 
-def leaning(load: Load, motion: Motion, walls: Obstacles, clashes: Callable[[Load], int]) -> Load:
+def leaning(load: HeldObject, motion: Motion, walls: Obstacles, clashes: Callable[[HeldObject], int]) -> HeldObject:
     """A thing that was stopped on a straight motion, where it touches what is known to stand in its way.
 
     clashes : how much of what is seen contradicts where it lies. It stays where it is when that is so of every place
@@ -66,7 +66,7 @@ def _touching(polygon: Any, motion: Translate, walls: Obstacles) -> Iterator[tup
     for step in range(-round(FURTHEST / STEP), round(FURTHEST / STEP) + 1):
         aside = step * STEP
         back = motion.steered(-FURTHEST, aside).carry(polygon)
-        part = walls.first_contact(Body(back), onward).fraction
+        part = walls.first_contact(ContactBody(back), onward).fraction
         far = math.hypot(aside, (2 * part - 1) * FURTHEST)
         if 0 < part < 1 and far <= FURTHEST:
             yield far, onward.part(part).carry(back)

@@ -15,13 +15,13 @@ from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.what_if import Surprise, clashes
 from kb.mapping.occupancy import FREE
 from kb.mapping.patch import covered, patch_of_squares
-from kb.objects.held_object import Load, is_whole
+from kb.objects.held_object import HeldObject, is_whole
 
 DEEPEST = 3  # squares by which a thing goes on in what seems to be wall, at most
 SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))
 
 
-def larger(surprise: Surprise, load: Load, motion: Motion) -> Iterator[Explanation]:
+def larger(surprise: Surprise, load: HeldObject, motion: Motion) -> Iterator[Explanation]:
     """That a thing in hand that never moved before went as commanded, and more of it than was seen: the least first."""
     if load.proven or not isinstance(motion, Translate) or not is_whole(load.polygon):
         return
@@ -41,7 +41,7 @@ def larger(surprise: Surprise, load: Load, motion: Motion) -> Iterator[Explanati
                 yield Explanation("larger", outcome.place, surprise.lattice, 0, float(depth), outcome, larger=whole)
 
 
-def _going_on(load: Load, side: tuple[int, int], depth: int) -> Load:
+def _going_on(load: HeldObject, side: tuple[int, int], depth: int) -> HeldObject:
     """A load that goes on to one side by so many squares: what shape it has is not known then."""
     steps = (Translate(step * side[0], step * side[1]) for step in range(depth + 1))
     polygon = shapely.union_all([step.carry(load.polygon) for step in steps])

@@ -10,28 +10,28 @@ from dataclasses import replace
 from functools import cache
 
 from kb.localisation.hypotheses.explanation import Explanation, told_again
-from kb.localisation.hypotheses.frames import ELSEWHERE, Look, exactly, fallen
-from kb.localisation.hypotheses.map_prior import Drawn, Sketch, plainness
+from kb.localisation.hypotheses.frames import ELSEWHERE, Observation, exactly, fallen
+from kb.localisation.hypotheses.map_prior import Drawn, MapDescription, plainness
 from kb.localisation.hypotheses.remap import Prefixes, relaid
-from kb.localisation.hypotheses.walk_outcomes import Moved, Retold, retold
-from kb.perception.frame import CENTRE, Lattice
+from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis, ReestimatedWalk, retold
+from kb.perception.frame import CENTRE, Frame
 
 LAST = 3  # motions one of which may have been stopped where nobody thought so
 GRID = 7  # points along either side of the square in which he woke
 PLACES = tuple(((i + 0.5) / GRID, (j + 0.5) / GRID) for i in range(GRID) for j in range(GRID))
 
 
-def lattices(held: Lattice) -> list[Lattice]:
+def lattices(held: Frame) -> list[Frame]:
     """The lattices that are turned like the one held, if he woke at one of PLACES."""
     return [replace(held, woke=place) for place in PLACES]
 
 
-def odds_against(held: Lattice, places: int) -> float:
+def odds_against(held: Frame, places: int) -> float:
     """Log odds against having woken at one of so many of PLACES, rather than where he is believed to."""
     return ELSEWHERE * (held.woke == CENTRE) - math.log(places / len(PLACES))
 
 
-def misplaced(motions: Sequence[Moved], held: Lattice, looks: Sequence[Look]) -> list[Explanation]:
+def misplaced(motions: Sequence[MotionHypothesis], held: Frame, looks: Sequence[Observation]) -> list[Explanation]:
     """That one of the last motions was stopped, and he woke elsewhere, by which no look contradicts another.
 
     Those that say the same of every look are told as one, each with what speaks against it: how plain the table looks
@@ -39,7 +39,7 @@ def misplaced(motions: Sequence[Moved], held: Lattice, looks: Sequence[Look]) ->
     where they are believed to have been received, the newest where it was commanded.
     """
     places = tuple(exactly(lattice) for lattice in lattices(held))
-    alike: dict[tuple[int, bytes], list[Retold]] = {}
+    alike: dict[tuple[int, bytes], list[ReestimatedWalk]] = {}
     begun = cache(lambda lattice: Prefixes(lattice, looks, {}))
     for motion in motions[-LAST:]:
         for told in retold(motion._replace(hypotheses=places), held, looks, begun):
@@ -56,18 +56,18 @@ def misplaced(motions: Sequence[Moved], held: Lattice, looks: Sequence[Look]) ->
     ]
 
 
-def _received(told: Retold, looks: Sequence[Look]) -> list[Look]:
+def _received(told: ReestimatedWalk, looks: Sequence[Observation]) -> list[Observation]:
     """All looks where they were received then."""
     *before, newest = told.correction.looks(looks)
     return [*before, newest._replace(place=told.newest)]
 
 
-def _sketch(told: Retold, looks: Sequence[Look], drawn: Drawn) -> Sketch:
+def _sketch(told: ReestimatedWalk, looks: Sequence[Observation], drawn: Drawn) -> MapDescription:
     lattice = told.hypothesis.lattice
-    return Sketch(relaid(lattice, lattice, _received(told, looks), ()).evidence, drawn)
+    return MapDescription(relaid(lattice, lattice, _received(told, looks), ()).evidence, drawn)
 
 
-def _explanation(alike: Sequence[Retold]) -> Explanation:
+def _explanation(alike: Sequence[ReestimatedWalk]) -> Explanation:
     """What says the same, as one explanation: by the likeliest of them."""
     told = min(alike, key=lambda one: (not one.known, math.dist(one.hypothesis.lattice.woke, CENTRE)))
     return told_again(told, tuple(one.hypothesis for one in alike))

@@ -15,9 +15,9 @@ import shapely
 
 from kb.localisation.hypotheses.carry_outcomes import length_of, part_way
 from kb.localisation.hypotheses.contacts import near
-from kb.localisation.hypotheses.frames import Box, Hypothesis, cells, exactly, points
-from kb.localisation.hypotheses.what_if import Place, Supposed, Surprise
-from kb.perception.frame import Lattice
+from kb.localisation.hypotheses.frames import Box, FrameHypothesis, cells, exactly, points
+from kb.localisation.hypotheses.what_if import Place, Surprise, WhatIf
+from kb.perception.frame import Frame
 
 COARSE = 0.5  # squares that a thing goes in parts of a turn that are tried first
 CUTS = 4  # parts of either side of his square that are tried first
@@ -54,7 +54,7 @@ class Part(NamedTuple):
         return [Part(*spans) for spans in itertools.product(*map(itertools.pairwise, sides))]
 
 
-def pivoted(surprise: Surprise, simple: bool) -> Supposed | None:
+def pivoted(surprise: Surprise, simple: bool) -> WhatIf | None:
     """The point of his square at which he woke, and what came of a turn, so that nothing contradicts; None if none.
 
     The lattice is turned as it is believed to be. A turn went to its end, or as far as what is known to stand in its
@@ -70,13 +70,13 @@ def pivoted(surprise: Surprise, simple: bool) -> Supposed | None:
     return _middle(fitting) if fitting else None
 
 
-def _points(surprise: Surprise) -> tuple[Hypothesis, ...]:
+def _points(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
     """The points that are left; if there is but one, all of them that looks leave."""
     given = tuple(h for h in surprise.hypotheses if h.angle == surprise.lattice.angle and h.is_point)
     return given if len(given) > 1 else points(surprise.lattice, surprise.looks)
 
 
-def _halted(surprise: Surprise, room: Box) -> list[Supposed]:
+def _halted(surprise: Surprise, room: Box) -> list[WhatIf]:
     """What fits, if a turn of what is in his hand ended early; nothing, if there was none.
 
     Parts of his square, and of the turn, are cut smaller as long as nothing contradicts them, and they are not too
@@ -98,9 +98,9 @@ def _halted(surprise: Surprise, room: Box) -> list[Supposed]:
     return _stoppable(surprise, fitting, length)
 
 
-def _ended(surprise: Surprise, part: Part, length: float) -> Supposed:
+def _ended(surprise: Surprise, part: Part, length: float) -> WhatIf:
     """What contradicts that he woke in a part of his square, and that a turn ended in a part of it."""
-    lattice = Lattice(surprise.lattice.angle, part.woke)
+    lattice = Frame(surprise.lattice.angle, part.woke)
     refused = surprise.refused(lattice, (exactly(lattice),))
     if refused is not None:
         return refused
@@ -109,7 +109,7 @@ def _ended(surprise: Surprise, part: Part, length: float) -> Supposed:
     return surprise.judged(lattice, (exactly(lattice),), outcome, _slack(part, length), part.far, whether=True)
 
 
-def _stoppable(surprise: Surprise, fitting: Sequence[tuple[Part, Supposed]], length: float) -> list[Supposed]:
+def _stoppable(surprise: Surprise, fitting: Sequence[tuple[Part, WhatIf]], length: float) -> list[WhatIf]:
     """Of turns that ended early those that something stopped about there, the likelier, ended where it did.
 
     All, when nothing is known that may have stopped any.
@@ -133,7 +133,7 @@ def _slack(part: Part, length: float) -> float:
     return length * (end - begin) / 2
 
 
-def _room(where: Sequence[Hypothesis]) -> Box:
+def _room(where: Sequence[FrameHypothesis]) -> Box:
     """The box about some points of a grid at which he may have woken, each of which stands for a cell of it."""
     corners, half = np.array([point.box for point in where]), np.array(cells(where)) / 2
     west, south = np.maximum(corners[:, :2].min(0) - half, 0.0).tolist()
@@ -141,7 +141,7 @@ def _room(where: Sequence[Hypothesis]) -> Box:
     return west, south, east, north
 
 
-def _middle(fitting: Sequence[Supposed]) -> Supposed:
+def _middle(fitting: Sequence[WhatIf]) -> WhatIf:
     """Of what fits that where Utak woke amid where he may have, and the thing in hand lies amid where it may.
 
     All points are left.
@@ -152,7 +152,7 @@ def _middle(fitting: Sequence[Supposed]) -> Supposed:
     return fitting[nearest]._replace(hypotheses=tuple(left))
 
 
-def _corners(one: Supposed) -> list[Place]:
+def _corners(one: WhatIf) -> list[Place]:
     """The corners of the thing in hand, if there is one."""
     if one.outcome is None:
         return []

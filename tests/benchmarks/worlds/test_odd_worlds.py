@@ -13,7 +13,7 @@ from shapely.affinity import translate
 from shapely.geometry.base import BaseGeometry
 
 from benchmarks.worlds.odd import constraints, openings, plugged, touching
-from benchmarks.worlds.odd.houses import Neck
+from benchmarks.worlds.odd.houses import OddNeck
 from benchmarks.worlds.odd.kinds import KINDS, odd_world
 from benchmarks.worlds.odd.lying import own_square
 from benchmarks.worlds.odd.tasks import GOALS, NO, UNKNOWN, YES, OddWorld
@@ -189,9 +189,9 @@ def test_constraints_ask_every_question_and_nothing_is_square_where_nothing_is_m
 
 
 def test_a_necks_gap_and_clear_width() -> None:
-    straight = Neck((0, 0), (0, 3), (2, 0), (2, 3))
+    straight = OddNeck((0, 0), (0, 3), (2, 0), (2, 3))
     assert straight.gap == straight.clear == 3
-    askew = Neck((0, 0), (0, 3), (2, 2), (2, 5))
+    askew = OddNeck((0, 0), (0, 3), (2, 2), (2, 5))
     assert askew.clear == pytest.approx(3 / np.sqrt(2))
     assert askew.gap == pytest.approx(LineString([(0, 0), (2, 2)]).distance(LineString([(0, 3), (2, 5)])))
     assert box(0, 0, 1, 3).equals(straight.half(False)) and box(1, 0, 2, 3).equals(straight.half(True))

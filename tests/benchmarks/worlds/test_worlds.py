@@ -17,7 +17,7 @@ from benchmarks.worlds.carrying import ELLS
 from benchmarks.worlds.floorplans import is_simple_row
 from benchmarks.worlds.makers import MAKERS, scenario
 from benchmarks.worlds.placing import digital
-from benchmarks.worlds.scenes import Scenario, write
+from benchmarks.worlds.scenes import RandomScenario, write
 from benchmarks.worlds.walking import CORNERS
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -29,14 +29,14 @@ print("".join(scenario(t, s).world + scenario(t, s).texts.expect for t in range(
 """
 
 
-def occupied(world: Scenario) -> np.ndarray:
+def occupied(world: RandomScenario) -> np.ndarray:
     """All squares that something covers."""
     plan = world.plan
     shapes = [plan.verge, *(thing.polygon for thing in world.things)]
     return np.logical_or.reduce([digital(shape, plan.width, plan.height) for shape in shapes])
 
 
-def wide_reach(world: Scenario) -> np.ndarray:
+def wide_reach(world: RandomScenario) -> np.ndarray:
     """Squares that a body of 2 x 2 squares can get to from near Utak: bool (height, width)."""
     free = ~occupied(world)
     blocks = free[:-1, :-1] & free[1:, :-1] & free[:-1, 1:] & free[1:, 1:]

@@ -9,10 +9,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from shapely import affinity, box
 
-from geometry.cspace.bottleneck import NEARLY, Neck, helps, missing_width, neck_near
+from geometry.cspace.bottleneck import NEARLY, Bottleneck, helps, missing_width, neck_near
 from geometry.cspace.plan_motion import plan_motion
 from geometry.manipulation.goals import Inside
-from geometry.motion.obstacle_field import Floor
+from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Pose
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
@@ -22,7 +22,7 @@ BRICK = box(0, 0, 6, 4)
 @pytest.mark.parametrize("came_to", [(12.0, 20.0), (12.0, 40.0), (20.0, 48.0)])
 def test_where_there_is_room_all_round_nothing_stopped_it(came_to: tuple[float, float]) -> None:
     rooms = shapely.union_all([box(2, 2, 25, 52), box(27, 2, 48, 52), box(25, 47, 27, 50)])
-    floor = Floor(box(-2, -2, 52, 56).difference(rooms), (-2.0, -2.0, 52.0, 56.0))
+    floor = ObstacleField(box(-2, -2, 52, 56).difference(rooms), (-2.0, -2.0, 52.0, 56.0))
     rows, columns = floor.raster.shape
     across = floor.frame[0] + (np.arange(columns) + 0.5) * floor.frame[2]
     goals = np.broadcast_to(across > 35.0, (rows, columns)) & (floor.raster > 0.0)
@@ -78,7 +78,7 @@ def test_the_passage_between_two_rooms_is_the_door(
 @pytest.mark.parametrize("lacking", [0.4, 1.3, 2.6])
 def test_what_a_few_cells_do_not_decide_is_asked_at_length(lacking: float) -> None:
     solid, gap, radius = box(0, 0, 30, 10).union(box(0, 12, 30, 22)), 2.0, 3.0
-    neck = Neck((15.0, 11.0), ((15.0, 10.0), (15.0, 12.0)), gap)
+    neck = Bottleneck((15.0, 11.0), ((15.0, 10.0), (15.0, 12.0)), gap)
     asked = []
 
     def answer(walls: shapely.Geometry, at_length: bool) -> str:

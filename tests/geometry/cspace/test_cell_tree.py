@@ -8,20 +8,20 @@ import numpy as np
 import pytest
 from shapely import box
 
-from geometry.cspace.cell_tree import WHOLE, Tree, leaf_at, new_tree, next_neighbour, split, splittable
+from geometry.cspace.cell_tree import WHOLE, CellTree, leaf_at, new_tree, next_neighbour, split, splittable
 from geometry.cspace.channel import find_chain, new_hunt
 from geometry.motion.body import new_mover
 from geometry.motion.cell_clearance import FULL
-from geometry.motion.obstacle_field import Floor
+from geometry.motion.obstacle_field import ObstacleField
 
 BODY = box(-2, -0.5, 2, 0.5)
 WALLS = box(-1, -1, 11, 11).difference(box(0, 0, 10, 10)).union(box(4.5, 0, 5.5, 7.5))
-FLOOR = Floor(WALLS, (0, 0, 10, 10))
+FLOOR = ObstacleField(WALLS, (0, 0, 10, 10))
 MOVER = new_mover(BODY)
 GROUND = FLOOR.ground(MOVER)
 
 
-def grown(seed: int, splits: int) -> Tree:
+def grown(seed: int, splits: int) -> CellTree:
     """A tree in which leaves were split at random."""
     rng = np.random.default_rng(seed)
     tree = new_tree(0.0, 0.0, 10.0, MOVER.radius, 0.05, 5000)
@@ -32,11 +32,11 @@ def grown(seed: int, splits: int) -> Tree:
     return tree
 
 
-def leaves(tree: Tree) -> list[int]:
+def leaves(tree: CellTree) -> list[int]:
     return [n for n in range(tree.used[0]) if tree.child[n] < 0 and tree.kind[n] != FULL]
 
 
-def share_a_face(tree: Tree, a: int, b: int) -> bool:
+def share_a_face(tree: CellTree, a: int, b: int) -> bool:
     """Two boxes that touch along more than an edge; angles wrap."""
     common = []
     for k in range(3):
@@ -47,7 +47,7 @@ def share_a_face(tree: Tree, a: int, b: int) -> bool:
     return min(common) >= 0 and sum(c == 0 for c in common) <= 1
 
 
-def linked(tree: Tree, cell: int) -> set[int]:
+def linked(tree: CellTree, cell: int) -> set[int]:
     found, link = set(), next_neighbour(tree.child, tree.head, tree.link, cell, -1)
     while link >= 0:
         found.add(int(tree.link[link, 0]))

@@ -7,9 +7,9 @@ import pytest
 import shapely
 from shapely import affinity, box
 
-from geometry.cspace.plan_motion import Inside, Plan, plan_motion
-from geometry.motion.first_contact import Body, Obstacles
-from geometry.motion.obstacle_field import Floor
+from geometry.cspace.plan_motion import Inside, MotionPlan, plan_motion
+from geometry.motion.first_contact import ContactBody, Obstacles
+from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Pose, Rotate
 
 BRICK = box(-3, -1, 3, 1)
@@ -21,7 +21,7 @@ def two_rooms(door: float, thick: float = 1.0) -> shapely.Polygon:
     return box(-1, -1, 25 + thick, 13).difference(rooms.union(box(12, 6 - door / 2, 12 + thick, 6 + door / 2)))
 
 
-def check(plan: Plan, shape: shapely.Geometry, walls: shapely.Geometry, start: Pose, goal: Pose | None) -> None:
+def check(plan: MotionPlan, shape: shapely.Geometry, walls: shapely.Geometry, start: Pose, goal: Pose | None) -> None:
     """The motions lead from start to goal and no pose of 257 a motion overlaps a wall."""
     assert plan.status == "found"
     solid = walls.buffer(-1e-6, join_style="mitre")
@@ -147,7 +147,7 @@ def test_points_move_with_the_body() -> None:
 
 def test_a_floor_is_prepared_once() -> None:
     walls = two_rooms(3.0)
-    floor = Floor(walls, (0, 0, 25, 12))
+    floor = ObstacleField(walls, (0, 0, 25, 12))
     plans = [plan_motion(BRICK, floor, Pose(5, 6, 90), Pose(19, 7, degrees)) for degrees in (0, 90, 200)]
     assert [plan.status for plan in plans] == ["found"] * 3
     assert plans[0] == plan_motion(BRICK, walls, Pose(5, 6, 90), Pose(19, 7, 0), bounds=(0, 0, 25, 12))
@@ -240,7 +240,7 @@ def test_a_body_however_small_is_decided_where_its_discs_decide(size: float, tim
     assert plan.status == status
     at = Pose(3, 3, 0)
     for motion in plan.motions:
-        assert Obstacles(slotted(times * size)).first_contact(Body(at.place(body)), motion).fraction == 1.0
+        assert Obstacles(slotted(times * size)).first_contact(ContactBody(at.place(body)), motion).fraction == 1.0
         at = motion.pose(at)
     assert status != "found" or (at.x, at.y, at.degrees) == pytest.approx((17, 3, 90), abs=1e-9)
 

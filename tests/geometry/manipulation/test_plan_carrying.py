@@ -1,4 +1,4 @@
-"""Carrying plans: done again with shapely alone, and refused where closed forms say so."""
+"""CarryingPlan plans: done again with shapely alone, and refused where closed forms say so."""
 
 import math
 
@@ -12,7 +12,7 @@ from shapely import affinity, box
 from benchmarks.errands import faults, free_squares, goal_of
 from benchmarks.worlds.makers import scenario
 from geometry.manipulation.goals import Roomy, met, moved
-from geometry.manipulation.plan_carrying import At, Between, Carrying, InCorner, Inside, Pose, plan_carrying
+from geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, Pose, plan_carrying
 from geometry.motion.se2 import Rotate, Translate
 from tests.geometry.replay import replay, walls_of
 
@@ -307,7 +307,7 @@ def test_the_body_is_taken_again_from_the_other_side() -> None:
     replay(plan, brick, free, (4.5, 1.5))
 
 
-def turns_of(plan: Carrying) -> int:
+def turns_of(plan: CarryingPlan) -> int:
     return sum(isinstance(motion, Rotate) for leg in plan.legs for motion in leg.motions)
 
 

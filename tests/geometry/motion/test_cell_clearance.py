@@ -9,7 +9,7 @@ from shapely import affinity, box
 
 from geometry.motion.body import new_mover
 from geometry.motion.cell_clearance import FREE, FULL, OPEN, classify, distance_at
-from geometry.motion.obstacle_field import Floor
+from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Pose
 
 HORSESHOE = shapely.Polygon([(0, 0), (6, 0), (6, 5), (4.8, 5), (4.8, 1.2), (1.2, 1.2), (1.2, 5), (0, 5)])
@@ -30,7 +30,7 @@ def test_a_verdict_holds_all_through_the_cell(body: shapely.Geometry) -> None:
     mover, seen = new_mover(body), []
     for _ in range(12):
         walls = random_walls(rng)
-        floor = Floor(walls, (0, 0, 16, 16))
+        floor = ObstacleField(walls, (0, 0, 16, 16))
         ground = floor.ground(mover)
         for _ in range(60):
             x, y, angle = *rng.uniform(1, 15, 2), rng.uniform(0, 2 * math.pi)
@@ -65,7 +65,7 @@ def test_distances_are_shapelys() -> None:
         middle = affinity.translate(body, *mover.reference)
         for _ in range(40):
             walls = random_walls(rng)
-            ground = Floor(walls, (0, 0, 16, 16)).ground(mover)
+            ground = ObstacleField(walls, (0, 0, 16, 16)).ground(mover)
             x, y, angle = *rng.uniform(0, 16, 2), rng.uniform(0, 2 * math.pi)
             want = Pose(x, y, math.degrees(angle)).place(middle).distance(walls)
             found = distance_at(mover, ground, x, y, math.cos(angle), math.sin(angle))

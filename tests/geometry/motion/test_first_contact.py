@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely import affinity, box
 
-from geometry.motion.first_contact import Body, Contact, Obstacles
+from geometry.motion.first_contact import Contact, ContactBody, Obstacles
 from geometry.motion.se2 import Motion, Pose, Rotate, Translate
 
 DEPTH = 1e-6  # squares: deeper than this is penetration
@@ -61,7 +61,7 @@ def test_it_goes_as_far_as_a_sweep_and_no_further(body: shapely.Geometry, still:
     assume(all(apart(body, obstacle) for obstacle in still))
     obstacles = Obstacles(still)
     for motion in way:
-        contact = obstacles.first_contact(Body(body), motion)
+        contact = obstacles.first_contact(ContactBody(body), motion)
         travelled = motion.part(contact.fraction)
         assert max(overlap(pose, o) for pose in swept(body, travelled) for o in still) == 0.0
         if contact.fraction < 1.0:
@@ -89,7 +89,7 @@ def check_stopped(body: shapely.Geometry, motion: Motion, contact: Contact, stil
 def test_a_point_stops_where_its_line_enters(point: tuple, still: list, push: Translate) -> None:
     assume(all(not obstacle.contains(shapely.Point(point)) for obstacle in still))
     assume(math.hypot(*push) > 0.1)
-    contact = Obstacles(still).first_contact(Body(points=[point]), push)
+    contact = Obstacles(still).first_contact(ContactBody(points=[point]), push)
     end = (point[0] + push.dx * contact.fraction, point[1] + push.dy * contact.fraction)
     for obstacle in still:
         assert shapely.LineString([point, end]).intersection(obstacle.buffer(-DEPTH)).length == 0.0
@@ -122,7 +122,7 @@ ROOM = Obstacles([FLOOR, WALL])
     ],
 )
 def test_a_square_on_the_floor(motion: Motion, fraction: float) -> None:
-    assert ROOM.first_contact(Body(box(0, 0, 2, 2)), motion).fraction == pytest.approx(fraction, abs=1e-12)
+    assert ROOM.first_contact(ContactBody(box(0, 0, 2, 2)), motion).fraction == pytest.approx(fraction, abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -136,7 +136,7 @@ def test_a_square_on_the_floor(motion: Motion, fraction: float) -> None:
     ],
 )
 def test_utak_on_the_floor(motion: Motion, fraction: float) -> None:
-    assert ROOM.first_contact(Body(points=[(0, 0)]), motion).fraction == pytest.approx(fraction, abs=1e-12)
+    assert ROOM.first_contact(ContactBody(points=[(0, 0)]), motion).fraction == pytest.approx(fraction, abs=1e-12)
 
 
 def test_no_point_slips_into_a_seam() -> None:
@@ -145,7 +145,7 @@ def test_no_point_slips_into_a_seam() -> None:
     wall, chest = turn.carry(box(-20, -2, 20, 0)), turn.carry(box(5, 0, 7, 2))
     along = turn.points(np.array([[0.0, 0.0], [9.0, 0.0]]))
     push = Translate(*(along[1] - along[0]).tolist())
-    contact = Obstacles([wall, chest]).first_contact(Body(points=[tuple(along[0])]), push)
+    contact = Obstacles([wall, chest]).first_contact(ContactBody(points=[tuple(along[0])]), push)
     assert contact.fraction == pytest.approx(5 / 9, abs=1e-9)
     assert contact.obstacle == 1
 
@@ -153,18 +153,18 @@ def test_no_point_slips_into_a_seam() -> None:
 @pytest.mark.parametrize("first", [0, 1])
 def test_a_turn_that_begins_along_an_edge_is_stopped_by_that_edge(first: int) -> None:
     walls = [box(-2, 0, 0, 2), box(0, -1, 2, 1)]
-    contact = Obstacles(walls[::-1] if first else walls).first_contact(Body(box(1, 1, 2, 5)), Rotate(90, (1, 0)))
+    contact = Obstacles(walls[::-1] if first else walls).first_contact(ContactBody(box(1, 1, 2, 5)), Rotate(90, (1, 0)))
     assert contact == Contact(0.0, (1.0, 1.0), 1 - first, (0.0, 1.0))
 
 
 def test_a_corridor_as_wide_as_the_body_lets_it_pass_and_no_wider_body() -> None:
     corridor = Obstacles([box(-9, -2, 9, 0), box(-9, 2, 9, 4)])
-    assert corridor.first_contact(Body(box(-12, 0, -10, 2)), Translate(30, 0)).fraction == 1.0
-    assert corridor.first_contact(Body(box(-12, 0, -10, 2.001)), Translate(30, 0)).fraction < 0.1
+    assert corridor.first_contact(ContactBody(box(-12, 0, -10, 2)), Translate(30, 0)).fraction == 1.0
+    assert corridor.first_contact(ContactBody(box(-12, 0, -10, 2.001)), Translate(30, 0)).fraction < 0.1
 
 
 def test_body_and_utak_move_as_one() -> None:
-    both = Body(box(0, 0, 2, 2), points=[(5, 1)])
+    both = ContactBody(box(0, 0, 2, 2), points=[(5, 1)])
     contact = ROOM.first_contact(both, Translate(20, 0))
     assert contact == Contact(0.25, (10.0, 1.0), 1, (-1.0, 0.0))
 
@@ -176,16 +176,16 @@ def test_body_and_utak_move_as_one() -> None:
 )
 def test_a_motion_of_no_length_that_is_a_number_is_an_error(motion: Motion) -> None:
     with pytest.raises(ValueError, match="must be finite"):
-        ROOM.first_contact(Body(box(0, 0, 2, 2)), motion)
+        ROOM.first_contact(ContactBody(box(0, 0, 2, 2)), motion)
     with pytest.raises(ValueError, match="must be finite"):
         if isinstance(motion, Translate):
-            ROOM.pushes(Body(box(0, 0, 2, 2)), np.array([motion]))
+            ROOM.pushes(ContactBody(box(0, 0, 2, 2)), np.array([motion]))
         else:
-            ROOM.turns(Body(box(0, 0, 2, 2)), np.array([motion.degrees]), np.array([motion.about]))
+            ROOM.turns(ContactBody(box(0, 0, 2, 2)), np.array([motion.degrees]), np.array([motion.about]))
 
 
 def test_many_at_once_are_the_same_as_one_by_one() -> None:
-    body = Body(box(0, 0.5, 2, 2))
+    body = ContactBody(box(0, 0.5, 2, 2))
     vectors = np.array([[20.0, 0.0], [0.0, -3.0], [1.0, 1.0]])
     singly = [ROOM.first_contact(body, Translate(*v)).fraction for v in vectors.tolist()]
     assert ROOM.pushes(body, vectors).tolist() == singly
@@ -196,7 +196,7 @@ def test_many_at_once_are_the_same_as_one_by_one() -> None:
 
 def test_a_body_after_a_motion_is_the_moved_shape() -> None:
     motion = Rotate(37.0, (1.0, 2.0))
-    np.testing.assert_allclose(Body(ELL).after(motion).edges, Body(motion.carry(ELL)).edges, atol=1e-12)
+    np.testing.assert_allclose(ContactBody(ELL).after(motion).edges, ContactBody(motion.carry(ELL)).edges, atol=1e-12)
 
 
 def test_a_thousand_jostles_stay_outside() -> None:
@@ -208,10 +208,10 @@ def test_a_thousand_jostles_stay_outside() -> None:
         motion: Motion = Translate(*rng.normal(0, 2, 2).tolist())
         if rng.random() < 0.5:
             motion = Rotate(float(rng.normal(0, 60)), tuple(rng.uniform(0, 5, 2).tolist()))
-        body = motion.part(den.first_contact(Body(body), motion).fraction).carry(body)
+        body = motion.part(den.first_contact(ContactBody(body), motion).fraction).carry(body)
         assert body.difference(box(0, 0, 5, 5)).area < 1e-7
     home = [Translate(0, 9), Translate(9, 0), Translate(0, -9), Translate(-9, 0)]
-    fractions = [den.first_contact(Body(body), motion).fraction for motion in home]
+    fractions = [den.first_contact(ContactBody(body), motion).fraction for motion in home]
     assert max(fractions) > 0.0
 
 
@@ -227,7 +227,7 @@ def test_the_same_without_numba() -> None:
     """The kernels are plain Python too."""
     code = (
         "from shapely import box; from geometry.motion.first_contact import *; from geometry.motion.se2 import *;"
-        "o = Obstacles([box(5, 0, 6, 9)]); b = Body(box(0, 0, 1, 4));"
+        "o = Obstacles([box(5, 0, 6, 9)]); b = ContactBody(box(0, 0, 1, 4));"
         "print(o.first_contact(b, Translate(9, 1)), o.first_contact(b, Rotate(-170, (1, 4))))"
     )
     runs = [
@@ -252,7 +252,7 @@ def test_a_contour_told_by_points_however_near_is_met_where_it_is(bump_on: str, 
     above, below = (bumpy, plain) if bump_on == "body" else (plain, bumpy)
     end = Rotate(180, (0, 0)).carry(above)  # face to face: moved back, then on, it meets the bump alone
     start = motion.part(-0.5).carry(Translate(0, radius).carry(end))
-    contact = Obstacles([below]).first_contact(Body(start), motion)
+    contact = Obstacles([below]).first_contact(ContactBody(start), motion)
     at = motion.part(contact.fraction).carry(start)
     assert contact.obstacle == 0
     assert contact.fraction == pytest.approx(0.5, abs=1e-3)

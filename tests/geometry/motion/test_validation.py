@@ -8,7 +8,7 @@ import pytest
 import shapely
 from shapely import MultiPolygon, Polygon, box
 
-from geometry.cspace.plan_motion import Inside, Plan, plan_motion
+from geometry.cspace.plan_motion import Inside, MotionPlan, plan_motion
 from geometry.manipulation.plan_carrying import At, InCorner, plan_carrying
 from geometry.motion.se2 import Pose
 from geometry.motion.validation import sound
@@ -31,7 +31,7 @@ with np.errstate(invalid="ignore"):
 BOWTIE = [(14, 1), (24, 11), (24, 1), (14, 11)]
 
 
-def moved(shape: Any = BRICK, walls: Any = WALLS, start: Pose = START, goal: Any = GOAL, **more: Any) -> Plan:
+def moved(shape: Any = BRICK, walls: Any = WALLS, start: Pose = START, goal: Any = GOAL, **more: Any) -> MotionPlan:
     """A plan of the brick through the door, but for what is given."""
     return plan_motion(shape, walls, start, goal, **more)
 

@@ -10,11 +10,11 @@ from shapely.affinity import rotate, translate
 from kb.body import Move, Push, Turn
 from kb.localisation.accommodation import Memory
 from kb.localisation.hypotheses.explanation import CellStatus, Explanation, cheapest
-from kb.localisation.hypotheses.frames import CENTRED, Hypothesis
-from kb.localisation.hypotheses.walk_outcomes import Correction, Retold
+from kb.localisation.hypotheses.frames import CENTRED, FrameHypothesis
+from kb.localisation.hypotheses.walk_outcomes import ReestimatedWalk, WalkCorrection
 from kb.mapping.occupancy import FREE, OPEN
-from kb.objects.held_object import Load
-from kb.perception.frame import CENTRE, Lattice, turned
+from kb.objects.held_object import HeldObject
+from kb.perception.frame import CENTRE, Frame, turned
 from tests.kb.drawings import LARGE_ROOM, walked
 from tests.kb.eyes import Occupied, impression, random_room, utak_in, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
@@ -121,16 +121,16 @@ def test_what_was_told_wrongly_is_told_again_by_the_next_looks(seed: int) -> Non
 
 
 @pytest.mark.parametrize("known", [True, False])
-@pytest.mark.parametrize("other", [Lattice(0, (0.97, 0.97)), Lattice(7)])
-def test_a_stop_at_what_is_known_is_believed_rather_than_another_lattice(known: bool, other: Lattice) -> None:
+@pytest.mark.parametrize("other", [Frame(0, (0.97, 0.97)), Frame(7)])
+def test_a_stop_at_what_is_known_is_believed_rather_than_another_lattice(known: bool, other: Frame) -> None:
     """Just where an earlier motion would have been stopped something stands, and all looks agree then."""
-    told = Retold(CENTRED[0], Correction(1, (0.5, -0.5)), known, 0)
+    told = ReestimatedWalk(CENTRED[0], WalkCorrection(1, (0.5, -0.5)), known, 0)
     explanations = [
-        Explanation("predicted", (9.5, 0.5), Lattice(), 6, 0.0),
+        Explanation("predicted", (9.5, 0.5), Frame(), 6, 0.0),
         Explanation("turned", (9.5, 0.5), other, 0, 0.0),
-        Explanation("misled", (10.0, 0.0), Lattice(), 0, 0.7, retold=told),
+        Explanation("misled", (10.0, 0.0), Frame(), 0, 0.7, retold=told),
     ]
-    numbers = [number for number, one in enumerate(explanations) if one.met and one.lattice == Lattice()]
+    numbers = [number for number, one in enumerate(explanations) if one.met and one.lattice == Frame()]
     chosen = cheapest(explanations, ["trust(3)", *(f"met({number})" for number in numbers)])
     assert chosen.how == ("misled" if known else "turned")
 
@@ -204,7 +204,7 @@ def holding(thing: shapely.Polygon, place: tuple[float, float], room: Occupied =
     memory, square = Memory(), (math.floor(place[0]), math.floor(place[1]))
     memory.wake(impression(around(thing, room), square))
     lies = translate(thing, -square[0], -square[1])
-    memory.grasp(Load("o1", lies, lies, proven=True))
+    memory.grasp(HeldObject("o1", lies, lies, proven=True))
     return memory
 
 
@@ -232,7 +232,7 @@ def test_where_a_turn_leaves_a_thing_tells_where_in_his_square_he_stands(place: 
 def test_what_looks_as_before_after_a_push_did_not_move() -> None:
     thing = translate(ELL, 38, 18)  # it stands against the wall already
     memory = holding(thing, (37.5, 20.5))
-    memory.hypotheses, memory.trust = (Hypothesis(0.0, CENTRE + CENTRE),), 20  # how the lattice lies is known
+    memory.hypotheses, memory.trust = (FrameHypothesis(0.0, CENTRE + CENTRE),), 20  # how the lattice lies is known
     found = memory.accommodate(Push(1.0, 0.0), impression(around(thing, PLAIN), (37, 20)))
     assert found.explanation.outcome is not None and found.explanation.outcome.stopped
     assert memory.place == CENTRE

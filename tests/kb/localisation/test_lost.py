@@ -11,11 +11,11 @@ from kb.knowledge import Knowledge
 from kb.localisation.accommodation import Memory
 from kb.localisation.holding import ASTRAY, LOST
 from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.frames import Hypothesis
+from kb.localisation.hypotheses.frames import FrameHypothesis
 from kb.mapping.occupancy import FULL, OPEN
 from kb.mapping.patch import Patch
-from kb.objects.held_object import Load
-from kb.perception.frame import Lattice, turned
+from kb.objects.held_object import HeldObject
+from kb.perception.frame import Frame, turned
 from kb.task.task import Task
 from kb.world.model import Names
 from planner.deciding.decider import Decider
@@ -122,7 +122,7 @@ def test_misfits_of_a_single_look_are_no_reason_to_forget() -> None:
 
 def test_who_has_moved_a_thing_forgets_less_readily() -> None:
     thing = shapely.box(4, 2, 8, 4)
-    held, moved = Load("o1", thing, thing), Load("o1", thing, thing).moved(thing, 0.0)
+    held, moved = HeldObject("o1", thing, thing), HeldObject("o1", thing, thing).moved(thing, 0.0)
     assert Memory(unfit=(1, LOST), loads={"o1": held}).lost
     assert not Memory(unfit=(1, LOST), loads={"o1": moved}).lost
     assert Memory(unfit=(1, ASTRAY), loads={"o1": moved}).lost
@@ -132,7 +132,7 @@ def test_what_he_holds_he_lets_go_before_he_forgets() -> None:
     knowledge = lost_in(ROOM)
     x, y = utak_in(ROOM)
     thing = shapely.box(4, 2, 8, 4)
-    knowledge.memory.grasp(Load("o1", thing, thing))
+    knowledge.memory.grasp(HeldObject("o1", thing, thing))
     sees = impression(world_of(ROOM), (x + 2, y + 3))
     model, accommodated = knowledge.perceive(Turn(5.0), sees)
     assert model.lost
@@ -152,12 +152,12 @@ def test_on_another_lattice_what_never_moved_stands_where_it_is_seen() -> None:
     for moved, held in ((False, False), (True, False), (False, True)):
         memory = walked(ROOM, [(2, 0), (0, 3)]).knowledge.memory
         before = memory.evidence.state.copy()
-        memory.grasp(Load("o1", thing, thing, proven=moved))
+        memory.grasp(HeldObject("o1", thing, thing, proven=moved))
         memory.held = "o1" if held else None
         memory._lie(Explanation("predicted", memory.place, memory.lattice, 0, 0.0))
         assert list(memory.loads) == ["o1"]
-        other = Lattice(woke=(0.4, 0.6))  # on which he saw the same
-        memory._lie(Explanation("turned", memory.place, other, 0, 0.0, None, (Hypothesis(0, other.woke * 2),)))
+        other = Frame(woke=(0.4, 0.6))  # on which he saw the same
+        memory._lie(Explanation("turned", memory.place, other, 0, 0.0, None, (FrameHypothesis(0, other.woke * 2),)))
         assert memory.lattice == other
         assert list(memory.loads) == ["o1"] * (moved or held)
         assert (memory.evidence.state == before).all() == (not moved and not held)
@@ -183,7 +183,7 @@ def test_one_look_tells_how_the_lattice_lies_whatever_he_believed() -> None:
     off = []
     for seed in range(20):
         stroll = Stroll(seed)
-        memory = Memory(lattice=Lattice((stroll.heading + 60) % 90 - 44)).anew()
+        memory = Memory(lattice=Frame((stroll.heading + 60) % 90 - 44)).anew()
         memory.wake(stroll.sees())
         off.append(abs((memory.lattice.angle - stroll.heading + 45) % 90 - 45))
     assert sum(angle <= 2 for angle in off) >= 18

@@ -8,14 +8,14 @@ import pytest
 
 from kb.localisation.accommodation import Memory
 from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.frames import CENTRED, Look
-from kb.localisation.hypotheses.walk_outcomes import Correction, Moved, Retold
-from kb.localisation.hypotheses.what_if import Supposed, Surprise
-from kb.localisation.propose.earlier_motion import Recalled
-from kb.perception.frame import CENTRE, Lattice
+from kb.localisation.hypotheses.frames import CENTRED, Observation
+from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis, ReestimatedWalk, WalkCorrection
+from kb.localisation.hypotheses.what_if import Surprise, WhatIf
+from kb.localisation.propose.earlier_motion import ReestimatedMotion
+from kb.perception.frame import CENTRE, Frame
 
 HELD = CENTRED[0]
-STUCK = Explanation("stuck", CENTRE, Lattice(), 0, 0.5)
+STUCK = Explanation("stuck", CENTRE, Frame(), 0, 0.5)
 NO_SURPRISE = cast(Surprise, None)
 
 
@@ -32,15 +32,16 @@ NO_SURPRISE = cast(Surprise, None)
 def test_what_likely_was_otherwise_is_thought_of_where_something_odd_explains_a_look(
     likely: float, simple: Explanation, asked: list[int] | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    memory = Memory(looks=[Look(np.zeros((160, 2), np.int16), (float(n), 0.0)) for n in range(3)])
+    memory = Memory(looks=[Observation(np.zeros((160, 2), np.int16), (float(n), 0.0)) for n in range(3)])
     doubts = (((0.75, 0.5), likely), ((0.0, 0.0), 0.001))
-    memory.moved = (Moved(1, (1.0, 0.0), (HELD,), doubts=doubts), Moved(2, (1.0, 0.0), (HELD,)))
-    told = Recalled(
-        Retold(HELD, Correction(1, (-0.25, 0.5)), True, 0), Supposed(Lattice(), (HELD,), CENTRE, None, 0, False)
+    memory.moved = (MotionHypothesis(1, (1.0, 0.0), (HELD,), doubts=doubts), MotionHypothesis(2, (1.0, 0.0), (HELD,)))
+    told = ReestimatedMotion(
+        ReestimatedWalk(HELD, WalkCorrection(1, (-0.25, 0.5)), True, 0),
+        WhatIf(Frame(), (HELD,), CENTRE, None, 0, False),
     )
     calls: list[list[int]] = []
 
-    def recalled(_: Surprise, motions: Sequence[Moved]) -> list[Recalled]:
+    def recalled(_: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
         calls.append([motion.number for motion in motions])
         return [told] * bool(motions)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from geometry.counts.gibbs import DRAWN, FULL
-from kb.mapping.completions import DRAWINGS, NO_PICTURES, PICTURES, Pictures, _kept, ground_of, pictured, scenes
+from kb.mapping.completions import DRAWINGS, NO_PICTURES, PICTURES, Completions, _kept, ground_of, pictured, scenes
 from kb.mapping.occupancy import MapView
 from tests.kb.drawings import LARGE_ROOM, drawing, looked
 
@@ -61,7 +61,7 @@ def test_a_scene_stays_the_same_when_only_others_change() -> None:
     assert all(after[corner] == scene for corner, scene in before.items())
 
 
-def by_square(pictures: Pictures) -> dict[tuple[int, int], bytes]:
+def by_square(pictures: Completions) -> dict[tuple[int, int], bytes]:
     """What the pictures show of each square that is drawn, by its place on the lattice."""
     rows, columns = np.nonzero(pictures.ground == DRAWN)
     shown = pictures.images[:, rows, columns].T

@@ -8,26 +8,26 @@ from hypothesis.extra.numpy import arrays
 
 from geometry.counts import gibbs
 from geometry.counts.gibbs import DRAWN
-from kb.mapping.completions import PICTURES, Pictures
-from kb.mapping.obstacle_chance import BESIDE, HARDLY, UNSEEN, Outlook
-from kb.mapping.occupancy import FREE, FULL, OPEN, Evidence
+from kb.mapping.completions import PICTURES, Completions
+from kb.mapping.obstacle_chance import BESIDE, HARDLY, UNSEEN, ObstacleChance
+from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
 
 SIDE = 5
 images = arrays(np.int8, (PICTURES, SIDE, SIDE), elements=st.integers(0, 1))
 squares = st.tuples(st.integers(0, SIDE - 1), st.integers(0, SIDE - 1))
 
 
-def of(shown: np.ndarray, unseen: list[tuple[int, int]] = []) -> Pictures:  # noqa: B006
-    """Pictures of the squares (0, 0) to (4, 4) of the lattice, of all of which it is open what stands there."""
+def of(shown: np.ndarray, unseen: list[tuple[int, int]] = []) -> Completions:  # noqa: B006
+    """Completions of the squares (0, 0) to (4, 4) of the lattice, of all of which it is open what stands there."""
     ground = np.full((SIDE, SIDE), DRAWN, np.int8)
     for x, y in unseen:
         ground[y, x] = gibbs.UNSEEN
-    return Pictures(0, 0, ground, shown, {})
+    return Completions(0, 0, ground, shown, {})
 
 
 @given(images, st.lists(squares, min_size=1, max_size=6, unique=True))
 def test_how_likely_it_is_stopped_somewhere_is_no_more_than_one(shown: np.ndarray, way: list[tuple[int, int]]) -> None:
-    met = Outlook(Evidence(), of(shown)).met([[square] for square in way])
+    met = ObstacleChance(OccupancyMap(), of(shown)).met([[square] for square in way])
     assert all(0 <= chance <= 1 for chance in met)
     free = 1 - np.mean([any(image[y, x] for x, y in way) for image in shown])  # in which no picture shows anything
     assert 1 - sum(met) == pytest.approx(free, abs=1.01 * BESIDE * len(way))
@@ -36,24 +36,26 @@ def test_how_likely_it_is_stopped_somewhere_is_no_more_than_one(shown: np.ndarra
 def test_what_pictures_show_goes_together() -> None:
     shown = np.zeros((PICTURES, SIDE, SIDE), np.int8)
     shown[: PICTURES // 2, 2, :] = 1  # a wall, in half of them
-    along = Outlook(Evidence(), of(shown)).met([[(x, 2)] for x in range(SIDE)])
+    along = ObstacleChance(OccupancyMap(), of(shown)).met([[(x, 2)] for x in range(SIDE)])
     assert along[0] == pytest.approx(0.5, abs=0.02)
     assert sum(along[1:]) < 0.05
-    assert Outlook(Evidence(), of(shown)).met([[(x, 2) for x in range(SIDE)]])[0] == pytest.approx(0.5, abs=0.06)
+    assert ObstacleChance(OccupancyMap(), of(shown)).met([[(x, 2) for x in range(SIDE)]])[0] == pytest.approx(
+        0.5, abs=0.06
+    )
 
 
 def test_what_is_settled_is_asked_of_no_picture() -> None:
-    evidence, shown = Evidence(), np.ones((PICTURES, SIDE, SIDE), np.int8)
+    evidence, shown = OccupancyMap(), np.ones((PICTURES, SIDE, SIDE), np.int8)
     evidence.state[evidence.index(1, 1)] = FREE
     evidence.state[evidence.index(3, 3)] = FULL
-    assert Outlook(evidence, of(shown * 0)).met([[(1, 1)], [(3, 3)]]) == [0.0, 1.0]
-    assert Outlook(evidence, of(shown)).met([[(1, 1)], [(3, 3)]]) == [0.0, 1.0]
+    assert ObstacleChance(evidence, of(shown * 0)).met([[(1, 1)], [(3, 3)]]) == [0.0, 1.0]
+    assert ObstacleChance(evidence, of(shown)).met([[(1, 1)], [(3, 3)]]) == [0.0, 1.0]
 
 
 def test_what_no_picture_shows_is_hardly_there_but_beside_what_one_shows() -> None:
     shown = np.zeros((PICTURES, SIDE, SIDE), np.int8)
     shown[0, 2, 2] = 1
-    outlook = Outlook(Evidence(), of(shown, [(4, 4)]))
+    outlook = ObstacleChance(OccupancyMap(), of(shown, [(4, 4)]))
     assert outlook.occupied((0, 0)).tolist() == [HARDLY] * PICTURES
     assert outlook.occupied((1, 2)).tolist() == [BESIDE] * PICTURES
     assert outlook.occupied((4, 4)).tolist() == outlook.occupied((40, 40)).tolist() == UNSEEN.tolist()
@@ -61,17 +63,17 @@ def test_what_no_picture_shows_is_hardly_there_but_beside_what_one_shows() -> No
 
 
 def test_without_pictures_the_counts_alone_tell() -> None:
-    evidence = Evidence()
+    evidence = OccupancyMap()
     at = evidence.index(2, 1)
     assert evidence.state[at] == OPEN
     evidence.logit[at] = 1.5
-    outlook = Outlook(evidence)
+    outlook = ObstacleChance(evidence)
     assert outlook.odds((2, 1)) == pytest.approx(1.5)
     assert outlook.met([[(2, 1)]]) == [pytest.approx(1 / (1 + np.exp(-1.5)))]
 
 
 def test_what_was_never_seen_is_one_wall_or_none() -> None:
-    outlook = Outlook(Evidence(), of(np.zeros((PICTURES, SIDE, SIDE), np.int8)))
+    outlook = ObstacleChance(OccupancyMap(), of(np.zeros((PICTURES, SIDE, SIDE), np.int8)))
     one, four = outlook.met([[(9, 0)]]), outlook.met([[(9, y) for y in range(4)]])
     assert one == four == UNSEEN.tolist()
     assert outlook.met([[(9, 0)], [(10, 0)]])[1] == pytest.approx(float(UNSEEN[0] * (1 - UNSEEN[0])))

@@ -7,20 +7,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kb.mapping.occupancy import FREE, FULL, OPEN, Evidence
-from kb.perception.frame import MOST, Lattice, Samples
+from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
+from kb.perception.frame import MOST, Frame, Samples
 from kb.perception.retina import OWN, count_ranges
 from tests.kb.eyes import Occupied, random_room, retina, world_of
 
 seeds = st.integers(0, 2**32 - 1)
 
 
-def look(evidence: Evidence, occupied: Occupied, square: tuple[int, int], number: int) -> None:
+def look(evidence: OccupancyMap, occupied: Occupied, square: tuple[int, int], number: int) -> None:
     """One look along the axes; the lattice is the table's own."""
-    evidence.look(Lattice(0).samples(), count_ranges(retina(occupied, square)), *square, number)
+    evidence.look(Frame(0).samples(), count_ranges(retina(occupied, square)), *square, number)
 
 
-def settled(evidence: Evidence) -> dict[tuple[int, int], int]:
+def settled(evidence: OccupancyMap) -> dict[tuple[int, int], int]:
     """Settled squares (x, y) and their states."""
     rows, columns = np.nonzero(evidence.state != OPEN)
     return {
@@ -40,7 +40,7 @@ def free_squares(rows: list[str], rng: np.random.Generator, count: int) -> list[
 def test_what_is_settled_is_true(seed: int) -> None:
     rng = np.random.default_rng(seed)
     rows = random_room(rng, *rng.integers(8, 40, 2), things=rng.integers(0, 9))
-    occupied, evidence = world_of(rows), Evidence()
+    occupied, evidence = world_of(rows), OccupancyMap()
     for number, square in enumerate(free_squares(rows, rng, 4)):
         look(evidence, occupied, square, number)
         evidence.stand(*square, number)
@@ -93,7 +93,7 @@ def consistent(case) -> list[tuple[int, ...]]:
 @given(tiny_cases())
 def test_what_is_settled_follows_from_the_counts(case) -> None:
     _, fields, weights, slack, ranges = case
-    evidence = Evidence()
+    evidence = OccupancyMap()
     evidence.look(tiny(fields, weights, slack), np.array(ranges, np.int16), 0, 0, 0)
     worlds = consistent(case)
     assert worlds
@@ -102,7 +102,7 @@ def test_what_is_settled_follows_from_the_counts(case) -> None:
 
 
 def test_single_fields_and_full_counts_settle() -> None:
-    evidence = Evidence()
+    evidence = OccupancyMap()
     evidence.look(
         tiny([[0], [1, 2], [3, 4]], [[1], [1, 1], [1, 1]], [0] * 3), np.array([(1, 1), (0, 0), (2, 2)]), 0, 0, 0
     )
@@ -110,7 +110,7 @@ def test_single_fields_and_full_counts_settle() -> None:
 
 
 def test_the_difference_of_two_fields_settles() -> None:
-    evidence = Evidence()
+    evidence = OccupancyMap()
     evidence.look(tiny([[0, 1], [1, 2]], [[1, 1]] * 2, [0, 0]), np.array([(1, 1), (1, 1)]), 0, 0, 0)
     assert settled(evidence) == {}
     evidence.look(tiny([[0, 1, 2]], [[1, 1, 1]], [0]), np.array([(2, 2)]), 0, 0, 1)
@@ -118,7 +118,7 @@ def test_the_difference_of_two_fields_settles() -> None:
 
 
 def test_what_falls_between_two_squares_settles_nothing() -> None:
-    evidence = Evidence()
+    evidence = OccupancyMap()
     evidence.look(tiny([[0, 1]], [[1, 1]], [1]), np.array([(2, 2)]), 0, 0, 0)
     assert settled(evidence) == {}
 
@@ -129,7 +129,7 @@ def test_the_order_of_looks_hardly_matters(seed: int, order: list[int]) -> None:
     rng = np.random.default_rng(seed)
     rows = random_room(rng, *rng.integers(10, 30, 2), things=6)
     occupied, squares = world_of(rows), free_squares(rows, rng, 4)
-    one, other = Evidence(), Evidence()
+    one, other = OccupancyMap(), OccupancyMap()
     for n in range(4):
         look(one, occupied, squares[n], n)
         look(other, occupied, squares[order[n]], n)
@@ -142,7 +142,7 @@ def test_the_order_of_looks_hardly_matters(seed: int, order: list[int]) -> None:
 @given(st.integers(-300, 300), st.integers(-300, 300))
 def test_growing_keeps_everything(x: int, y: int) -> None:
     rows = random_room(np.random.default_rng(7), 20, 20, things=5)
-    occupied, evidence = world_of(rows), Evidence()
+    occupied, evidence = world_of(rows), OccupancyMap()
     look(evidence, occupied, (9, 9), 0)
     before, view = settled(evidence), evidence.view()
     known = dict.fromkeys(before, 0)
@@ -157,7 +157,7 @@ def test_growing_keeps_everything(x: int, y: int) -> None:
 
 
 def test_the_view_says_where_it_lies() -> None:
-    occupied, evidence = world_of(random_room(np.random.default_rng(3), 12, 9, things=2)), Evidence()
+    occupied, evidence = world_of(random_room(np.random.default_rng(3), 12, 9, things=2)), OccupancyMap()
     look(evidence, occupied, (4, 4), 0)
     view = evidence.view()
     for (x, y), state in settled(evidence).items():
@@ -170,7 +170,7 @@ def test_the_view_says_where_it_lies() -> None:
 
 
 def test_open_squares_are_as_likely_as_their_field_says() -> None:
-    evidence = Evidence()
+    evidence = OccupancyMap()
     evidence.look(tiny([[0, 1, 2, 3]], [[1] * 4], [0]), np.array([(1, 1)]), 0, 0, 0)
     view = evidence.view()
     likely = [view.probability[view.locate(x, 0)] for x in range(4)]
@@ -179,8 +179,8 @@ def test_open_squares_are_as_likely_as_their_field_says() -> None:
 
 def test_true_looks_clash_with_nothing_and_false_ones_do() -> None:
     rows = ["b" * 24, *["b" + "." * 22 + "b"] * 10, "b.......ggg............b", *["b" + "." * 22 + "b"] * 8, "b" * 24]
-    occupied, evidence = world_of(rows), Evidence()
-    samples = Lattice(0).samples()
+    occupied, evidence = world_of(rows), OccupancyMap()
+    samples = Frame(0).samples()
     look(evidence, occupied, (12, 8), 0)
     ranges = count_ranges(retina(occupied, (10, 6)))
     assert evidence.clashes(samples, ranges, 10, 6) == 0
@@ -194,7 +194,7 @@ def test_true_looks_clash_with_nothing_and_false_ones_do() -> None:
 def test_what_is_seen_now_counts() -> None:
     rows = ["b" * 24, *["b" + "." * 22 + "b"] * 18, "b" * 24]
     changed = [row[:12] + "gg" + row[14:] if n in (9, 10) else row for n, row in enumerate(rows)]
-    evidence = Evidence()
+    evidence = OccupancyMap()
     look(evidence, world_of(rows), (10, 9), 0)
     look(evidence, world_of(changed), (10, 9), 1)
     assert evidence.overruled > 0
@@ -204,7 +204,7 @@ def test_what_is_seen_now_counts() -> None:
 
 def test_a_second_look_from_the_same_place_tells_nothing_new() -> None:
     rows = ["b" * 24, *["b" + "." * 22 + "b"] * 10, "b.......ggg............b", *["b" + "." * 22 + "b"] * 8, "b" * 24]
-    occupied, evidence = world_of(rows), Evidence()
+    occupied, evidence = world_of(rows), OccupancyMap()
     for number, place in enumerate([(12, 8), (5, 5)]):
         look(evidence, occupied, place, number)
     before = evidence.view()
@@ -216,7 +216,7 @@ def test_a_second_look_from_the_same_place_tells_nothing_new() -> None:
 
 
 def test_after_a_withdrawal_the_same_look_counts_again() -> None:
-    evidence = Evidence()
+    evidence = OccupancyMap()
     counts = tiny([[0], [1, 2]], [[1], [1, 1]], [0] * 2), np.array([(1, 1), (0, 0)])
     evidence.look(*counts, 0, 0, 0)
     evidence.withdraw(np.array([evidence.index(1, 0)[0] * evidence.state.shape[1] + evidence.index(1, 0)[1]], np.int32))
@@ -226,7 +226,7 @@ def test_after_a_withdrawal_the_same_look_counts_again() -> None:
 
 
 def test_withdrawn_squares_are_open_and_their_fields_forgotten() -> None:
-    evidence = Evidence()
+    evidence = OccupancyMap()
     fields = tiny([[0], [0, 1, 2], [2, 3]], [[1], [1] * 3, [1] * 2], [0] * 3)
     evidence.look(fields, np.array([(1, 1), (2, 2), (1, 1)]), 0, 0, 0)
     row, column = evidence.index(1, 0)
@@ -236,7 +236,7 @@ def test_withdrawn_squares_are_open_and_their_fields_forgotten() -> None:
 
 
 def test_standing_does_not_overrule_and_declaring_does() -> None:
-    occupied, evidence = world_of(["....", ".gg.", ".gg.", "...."]), Evidence()
+    occupied, evidence = world_of(["....", ".gg.", ".gg.", "...."]), OccupancyMap()
     look(evidence, occupied, (0, 0), 0)
     evidence.stand(1, 1, 1)
     evidence.stand(0, 0, 1)

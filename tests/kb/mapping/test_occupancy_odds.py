@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from kb.mapping.occupancy import Evidence
-from kb.perception.frame import Lattice
+from kb.mapping.occupancy import OccupancyMap
+from kb.perception.frame import Frame
 from kb.perception.retina import count_ranges
 from tests.kb.eyes import random_room, retina, world_of
 
@@ -13,15 +13,15 @@ from tests.kb.eyes import random_room, retina, world_of
 def test_when_odds_are_asked_for_does_not_matter(seed: int) -> None:
     rng = np.random.default_rng(seed)
     rows = random_room(rng, 60, 12, things=6)
-    occupied, late, soon = world_of(rows), Evidence(), Evidence()
+    occupied, late, soon = world_of(rows), OccupancyMap(), OccupancyMap()
     for number, square in enumerate([(5, 5), (9, 6), (50, 5), (12, 4)]):  # the map grows on the way
         for evidence in (late, soon):
-            evidence.look(Lattice(0).samples(), count_ranges(retina(occupied, square)), *square, number)
+            evidence.look(Frame(0).samples(), count_ranges(retina(occupied, square)), *square, number)
         if number == 1:
             for evidence in (late, soon):
                 evidence.withdraw(np.flatnonzero(evidence.seen)[::7].astype(np.int32))
         assert soon.logit.any()
     other = late.copy()
-    other.look(Lattice(0).samples(), count_ranges(retina(occupied, (20, 5))), 20, 5, 4)
+    other.look(Frame(0).samples(), count_ranges(retina(occupied, (20, 5))), 20, 5, 4)
     assert (late.logit == soon.logit).all()
     assert not np.array_equal(other.logit, late.logit)

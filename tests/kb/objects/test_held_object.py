@@ -12,10 +12,10 @@ from shapely.affinity import rotate, translate
 
 from geometry.motion.se2 import Rotate, Translate
 from kb.localisation.hypotheses.carry_outcomes import otherwise, predicted
-from kb.mapping.occupancy import Evidence
+from kb.mapping.occupancy import OccupancyMap
 from kb.mapping.patch import covered
-from kb.objects.held_object import Load, discounted, slack_of, whole
-from kb.perception.frame import Lattice
+from kb.objects.held_object import HeldObject, discounted, slack_of, whole
+from kb.perception.frame import Frame
 from kb.perception.retina import FIELDS, OWN, count_ranges
 from tests.kb.eyes import impression, random_room, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
@@ -24,8 +24,8 @@ BRICK = shapely.box(0, 0, 4, 2)
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
 
 
-def load(polygon: shapely.Polygon, slack: float = 0.0) -> Load:
-    return Load("o1", polygon, polygon, slack)
+def load(polygon: shapely.Polygon, slack: float = 0.0) -> HeldObject:
+    return HeldObject("o1", polygon, polygon, slack)
 
 
 def squares_of(polygon: shapely.Polygon) -> set[tuple[int, int]]:
@@ -64,7 +64,7 @@ def test_a_look_without_the_load_says_what_it_would_say_if_the_load_were_not_the
         return
     others = {tuple(square) for square in np.random.default_rng(seed).integers(-14, 14, (80, 2)).tolist()} - own
     with_load = impression(lambda i, j: (i, j) in others or (i, j) in own, (0, 0), angle)
-    samples, ranges = discounted(Lattice(angle).samples(), count_ranges(with_load.retina), 0, 0, [load(polygon)])
+    samples, ranges = discounted(Frame(angle).samples(), count_ranges(with_load.retina), 0, 0, [load(polygon)])
     for number in range(len(FIELDS)):
         if number == OWN:
             continue
@@ -76,7 +76,7 @@ def test_a_look_without_the_load_says_what_it_would_say_if_the_load_were_not_the
 
 def test_where_a_load_is_not_a_look_says_less_than_nothing() -> None:
     empty = impression(lambda i, j: False, (0, 0))
-    _, ranges = discounted(Lattice().samples(), count_ranges(empty.retina), 0, 0, [load(translate(BRICK, 1, 1))])
+    _, ranges = discounted(Frame().samples(), count_ranges(empty.retina), 0, 0, [load(translate(BRICK, 1, 1))])
     assert (ranges[:, 1] < 0).any()
 
 
@@ -87,7 +87,7 @@ def test_a_load_that_lies_askew_leaves_its_rim_open_until_it_is_seen() -> None:
     assert before.sure.squares() < covered(askew).squares() < before.possible.squares()
     true = squares_of(askew)
     look = impression(lambda i, j: (i, j) in true, (2, -1))
-    after = before.seen(Lattice().samples(), count_ranges(look.retina), 2, -1)
+    after = before.seen(Frame().samples(), count_ranges(look.retina), 2, -1)
     near = {(i, j) for i in range(-2, 6) for j in range(-5, 3)}
     assert after.sure.squares() & near == after.possible.squares() & near == true & near
 
@@ -121,9 +121,9 @@ def test_a_turn_leaves_utak_and_may_have_been_about_another_point_of_his_square(
 def test_a_look_at_what_is_so_never_clashes(seed: int, heading: int, degrees: float, whole_: bool) -> None:
     rng = np.random.default_rng(seed)
     rows = random_room(rng, 24, 24, 4)
-    lattice = Lattice((heading + 45) % 90 - 45)
+    lattice = Frame((heading + 45) % 90 - 45)
     free = [(i, j) for j, row in enumerate(reversed(rows)) for i, mark in enumerate(row) if mark == "."]
-    evidence, occupied = Evidence(), world_of(rows)
+    evidence, occupied = OccupancyMap(), world_of(rows)
     quarters = round((heading - lattice.angle) / 90)
     for number, at in enumerate(rng.choice(len(free), 3)):
         there = free[at]

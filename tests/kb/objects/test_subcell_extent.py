@@ -13,8 +13,8 @@ from shapely.affinity import rotate, translate
 
 from geometry.motion.se2 import Rotate, Translate
 from kb.mapping.patch import covered
-from kb.objects.held_object import Load, seen_insets
-from kb.objects.subcell_extent import NONE, TELLING, WHOLE, Insets, Sides, further, moved_in, told, turned
+from kb.objects.held_object import HeldObject, seen_insets
+from kb.objects.subcell_extent import NONE, TELLING, WHOLE, Sides, SubcellExtent, further, moved_in, told, turned
 from kb.world.model import Node
 from planner.skills.measure_size import FINE, least_outline, phases
 
@@ -36,7 +36,7 @@ def looks_like(thing: Any) -> Callable[[Any], bool]:
     return lambda outline: covered(outline).squares() == covered(thing).squares()
 
 
-def lies_within(insets: Insets, seen: Any, thing: Any) -> bool:
+def lies_within(insets: SubcellExtent, seen: Any, thing: Any) -> bool:
     """Is each side of a thing as far within its image as insets allow?"""
     (x0, y0, x1, y1), (a0, b0, a1, b1) = seen.bounds, thing.bounds
     far = a0 - x0, x1 - a1, b0 - y0, y1 - b1
@@ -48,8 +48,8 @@ def lies_within(insets: Insets, seen: Any, thing: Any) -> bool:
 def test_what_pushes_tell_is_true(name: str, x: float, y: float, pushes: list[tuple[float, float]]) -> None:
     thing = translate(SHAPES[name], x, y)
     seen = image(thing)
-    load = Load("o1", seen, seen, insets=seen_insets(seen), proven=True)
-    assert load.insets == Insets(NONE, WHOLE)
+    load = HeldObject("o1", seen, seen, insets=seen_insets(seen), proven=True)
+    assert load.insets == SubcellExtent(NONE, WHOLE)
     for dx, dy in pushes:
         push = Translate(dx, dy)
         thing, seen = push.carry(thing), push.carry(seen)
@@ -70,7 +70,7 @@ def test_what_pushes_tell_is_true(name: str, x: float, y: float, pushes: list[tu
 def test_pushes_by_parts_of_a_square_tell_how_large_a_thing_is(name: str, x: float, y: float, quarters: int) -> None:
     thing = translate(rotate(SHAPES[name], 90 * quarters, origin=(0, 0)), 20 + x, 20 + y)
     seen = image(thing)
-    load = Load("o1", seen, seen, insets=seen_insets(seen), proven=True)
+    load = HeldObject("o1", seen, seen, insets=seen_insets(seen), proven=True)
     for _ in range(14):
         wanted = phases(node_of(load))
         if wanted is None:
@@ -88,7 +88,7 @@ def test_pushes_by_parts_of_a_square_tell_how_large_a_thing_is(name: str, x: flo
 
 @pytest.mark.parametrize("quarters", [0, 1, 2, 3])
 def test_a_thing_of_whole_squares_is_told_by_two_pushes(quarters: int) -> None:
-    load = Load("o1", ELL, ELL, insets=seen_insets(ELL), proven=True)
+    load = HeldObject("o1", ELL, ELL, insets=seen_insets(ELL), proven=True)
     turn = Rotate(90.0 * quarters, (3.0, 3.0))
     load = load.moved(turn.carry(ELL), 0.0, 90.0 * quarters, commanded=True)
     thing = load.polygon
@@ -103,12 +103,12 @@ def test_a_thing_of_whole_squares_is_told_by_two_pushes(quarters: int) -> None:
 
 
 def test_what_agrees_with_nothing_is_told_so() -> None:
-    assert told(Insets(), translate(ELL, 0.25, 0.25), lambda outline: False) is None
+    assert told(SubcellExtent(), translate(ELL, 0.25, 0.25), lambda outline: False) is None
 
 
 def test_what_was_stopped_may_lie_beside_a_line() -> None:
     seen = shapely.box(0, 0, 4, 4)
-    load = Load("o1", seen, seen, insets=Insets(), proven=True)
+    load = HeldObject("o1", seen, seen, insets=SubcellExtent(), proven=True)
     there = shapely.box(0.25, 0, 4.25, 4)
     exact, stopped = (load.moved(there, 0.0, commanded=commanded) for commanded in (True, False))
     assert exact.possible.squares() == covered(there).squares()
@@ -151,7 +151,7 @@ def test_an_arm_that_would_be_gone_is_no_outline() -> None:
 def test_what_is_believed_is_among_what_may_be(west: float, east: float, wide: float, narrow: float) -> None:
     least, most = (west, east, 0.0, 0.0), (min(west + wide, 1.0), min(east + narrow, 1.0), 1.0, 1.0)
     assume(all(high - low > 0.01 for low, high in zip(least, most, strict=True)))
-    insets = Insets(least, most)
+    insets = SubcellExtent(least, most)
     here = insets.believed
     assert all(low - 1e-9 <= at <= high + 1e-9 for low, at, high in zip(least, here, most, strict=True))
     assert all(short >= -1e-9 for short in insets.short)
@@ -160,15 +160,15 @@ def test_what_is_believed_is_among_what_may_be(west: float, east: float, wide: f
     assert further(insets, insets) == NONE
 
 
-def node_of(load: Load) -> Node:
+def node_of(load: HeldObject) -> Node:
     """A node with what is known of a load."""
     node = Node(load.name, "object", 100, "part1", covered(load.polygon), 0, polygon=load.polygon)
     return replace(node, short=load.short, insets=load.lying_insets, moved=True)
 
 
 def test_what_is_known_of_its_sides_but_for_a_hair_may_lie_on_whole_squares_and_is_not_whole() -> None:
-    insets = Insets((0.395, 0.595, 0.0, 0.0), (0.405, 0.605, 1.0, 1.0))
-    thing = Load("o1", shapely.box(3.1, 2, 6.1, 5), shapely.box(3.1, 2, 6.1, 5), 0.01, insets=insets, proven=True)
+    insets = SubcellExtent((0.395, 0.595, 0.0, 0.0), (0.405, 0.605, 1.0, 1.0))
+    thing = HeldObject("o1", shapely.box(3.1, 2, 6.1, 5), shapely.box(3.1, 2, 6.1, 5), 0.01, insets=insets, proven=True)
     aligned = thing.moved(shapely.box(3, 2, 6, 5), 0.01, commanded=True)
     assert aligned.play
     for less in (-0.005, 0.0, 0.005):

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kb.body import DIRECTIONS
-from kb.perception.frame import MOST, TIE, Lattice, turned
+from kb.perception.frame import MOST, TIE, Frame, turned
 from kb.perception.retina import FIELDS, OWN
 from simulator.world.senses import Senses
 from tests.kb.eyes import sampled
@@ -17,7 +17,7 @@ from tests.kb.eyes import sampled
 length = st.floats(-100, 100).map(lambda v: round(v, 6))
 vector = st.tuples(length, length)
 degrees = st.integers(-720, 720)
-lattices = st.builds(Lattice, st.integers(-44, 45), st.tuples(st.floats(0, 1), st.floats(0, 1)))
+lattices = st.builds(Frame, st.integers(-44, 45), st.tuples(st.floats(0, 1), st.floats(0, 1)))
 
 
 @given(vector, degrees, degrees)
@@ -39,13 +39,13 @@ def test_quarter_turns_are_exact(x: int, y: int, quarters: int) -> None:
 
 
 @given(vector, lattices)
-def test_there_and_back(v: tuple[float, float], lattice: Lattice) -> None:
+def test_there_and_back(v: tuple[float, float], lattice: Frame) -> None:
     assert lattice.to_utak(*lattice.to_lattice(*v)) == pytest.approx(v, abs=1e-9)
     assert lattice.place_to_utak(*lattice.place_from_utak(*v)) == pytest.approx(v, abs=1e-9)
 
 
 @given(vector, vector, lattices)
-def test_places_differ_by_vectors(p: tuple[float, float], v: tuple[float, float], lattice: Lattice) -> None:
+def test_places_differ_by_vectors(p: tuple[float, float], v: tuple[float, float], lattice: Frame) -> None:
     x, y = lattice.place_from_utak(*p)
     dx, dy = lattice.to_lattice(*v)
     assert lattice.place_from_utak(p[0] + v[0], p[1] + v[1]) == pytest.approx((x + dx, y + dy), abs=1e-9)
@@ -60,7 +60,7 @@ def is_tie(east: int, north: int, angle: int) -> bool:
 
 @pytest.mark.parametrize("angle", range(-44, 46))
 def test_samples_are_those_of_the_senses(angle: int) -> None:
-    samples = Lattice(angle).samples()
+    samples = Frame(angle).samples()
     for number, (east, north, side) in enumerate(FIELDS):
         offsets = [(e, n) for e in range(east, east + side) for n in range(north, north + side)]
         ties = [offset for offset in offsets if is_tie(*offset, angle)]
@@ -73,7 +73,7 @@ def test_samples_are_those_of_the_senses(angle: int) -> None:
 
 @pytest.mark.parametrize("angle", [0, 45, -30])
 def test_every_field_is_accounted_for(angle: int) -> None:
-    samples = Lattice(angle).samples()
+    samples = Frame(angle).samples()
     assert samples.columns.shape == samples.rows.shape == samples.weight.shape == (160, MOST)
     area = np.array([field.side**2 for field in FIELDS])
     area[OWN] = 0
@@ -81,14 +81,14 @@ def test_every_field_is_accounted_for(angle: int) -> None:
 
 
 def test_along_the_axes_every_square_is_sampled_once() -> None:
-    samples = Lattice(0).samples()
+    samples = Frame(0).samples()
     assert samples.weight.max() == 1
     assert samples.weight.sum() == 32 * 32 - 1
 
 
 @pytest.mark.parametrize("angle", range(-44, 46))
 def test_a_direction_names_the_square_that_the_senses_mean_however_the_table_lies(angle: int) -> None:
-    lattice = Lattice(angle)
+    lattice = Frame(angle)
     for direction in DIRECTIONS:
         meant = set()
         for quarters in range(4):

@@ -13,9 +13,9 @@ from kb.body import Grasp, Move, Release
 from kb.knowledge import _laid
 from kb.mapping.occupancy import FREE, FULL, OPEN, MapView
 from kb.mapping.patch import Patch, covered, patch_of
-from kb.objects.held_object import Load
+from kb.objects.held_object import HeldObject
 from kb.objects.shape_fit import Measurer
-from kb.perception.frame import Lattice
+from kb.perception.frame import Frame
 from kb.world.corners import corners
 from kb.world.facts import Places, model_facts
 from kb.world.model import SPACE, Names, unsettled
@@ -166,7 +166,7 @@ def test_a_load_that_reaches_into_his_own_square_leaves_it_open() -> None:
 
 def test_who_walks_goes_right_beside_a_load_that_may_lie_otherwise() -> None:
     empty = [row.replace("g", ".") for row in ROOM]
-    model, _ = _laid(seen_whole(empty), Load("o1", shapely.box(-3, 1.3, 0, 4.3), None, slack=0.2, proven=True))
+    model, _ = _laid(seen_whole(empty), HeldObject("o1", shapely.box(-3, 1.3, 0, 4.3), None, slack=0.2, proven=True))
 
     def chances(squares: set[tuple[int, int]]) -> list[float]:
         return [float(model.view.probability[model.view.locate(x + 0.5, y + 0.5)]) for x, y in squares]
@@ -182,7 +182,9 @@ def test_a_load_that_may_lie_otherwise_leaves_walls_what_they_are() -> None:
     beside_wall = [row.replace("g", ".") for row in ROOM]
     before = seen_whole(beside_wall)
     x = before.view.west + 1  # the first square of floor in the west
-    model, patch = _laid(before, Load("o1", shapely.box(x + 0.1, 1.3, x + 3.1, 4.3), None, slack=0.2, proven=True))
+    model, patch = _laid(
+        before, HeldObject("o1", shapely.box(x + 0.1, 1.3, x + 3.1, 4.3), None, slack=0.2, proven=True)
+    )
     wall = model.view.locate(x - 0.5, 2.5)
     assert model.view.state[wall] == FULL
     assert model.view.probability[wall] == 1.0
@@ -197,7 +199,7 @@ def test_what_he_feels_is_in_his_hand_when_he_grasps_there() -> None:
         seen = replace(impression(world_of(ROOM), (x - 2, y), colour="g"), touch=(felt, *[None] * 7))
         knowledge.perceive(Move(0.0, 0.0), seen)
         memory = knowledge.memory
-        memory.lattice = Lattice(angle, memory.lattice.woke)
+        memory.lattice = Frame(angle, memory.lattice.woke)
         thing, (i, j) = walk.model.objects[0], memory.square
         polygon = shapely.box(i + aside, j + 1, i + aside + 3, j + 4)
         knowledge.objects = (replace(thing, polygon=polygon, patch=covered(polygon), colour="g"),)
@@ -213,7 +215,7 @@ def test_what_he_feels_is_in_his_hand_when_he_grasps_there() -> None:
     assert grasped(1, None) is None
     assert grasped(1, "r") is None
     assert grasped(3, "g") is None
-    assert Lattice(-30).beside("north") is None
+    assert Frame(-30).beside("north") is None
     assert grasped(0, "g", angle=-30) == name
     assert grasped(0, None, angle=-30) is None
 

@@ -16,7 +16,7 @@ from benchmarks.harness.trial import Conditions, run_trial
 from geometry.motion.se2 import Translate
 from kb.body import Command, Grasp, Move, Push, Release, Turn
 from kb.world.model import Node, WorldModel
-from planner.carrying.manipulation_oracle import Haul
+from planner.carrying.manipulation_oracle import ManipulationPlan
 from planner.carrying.remaining_plan import clear_part
 from planner.deciding.decider import Decider
 from planner.decision import Decision
@@ -228,7 +228,7 @@ def test_what_is_clear_of_a_plan_is_done_before_the_rest_is_seen(
 ) -> None:
     begun = []
 
-    def watched(haul: Haul, node: Node, situation: Situation) -> Haul | None:
+    def watched(haul: ManipulationPlan, node: Node, situation: Situation) -> ManipulationPlan | None:
         part = clear_part(haul, node, situation)
         if part is not None:
             own = situation.model.mask(node.patch)

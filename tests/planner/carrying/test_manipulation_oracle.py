@@ -9,16 +9,16 @@ import pytest
 import shapely
 import shapely.affinity
 
-from geometry.cspace.bottleneck import Neck
-from geometry.manipulation.plan_carrying import Carrying, Inside
+from geometry.cspace.bottleneck import Bottleneck
+from geometry.manipulation.plan_carrying import CarryingPlan, Inside
 from kb.language.reader import facts_of
 from kb.mapping.occupancy import FULL
 from kb.mapping.patch import covered
 from kb.task.task import Task
 from kb.world.model import Node
 from kb.world.rooms import SURE
-from planner.carrying.infeasibility import Refusal, nearest_to_done, refusal
-from planner.carrying.manipulation_oracle import KEPT, OFTEN, Haul, Hauler, Request
+from planner.carrying.infeasibility import Infeasibility, nearest_to_done, refusal
+from planner.carrying.manipulation_oracle import KEPT, OFTEN, ManipulationOracle, ManipulationPlan, Request
 from planner.goals.placement import LIKELY
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
@@ -46,7 +46,9 @@ STOPPED_UP = [  # a square in the door leaves it too narrow
 ]
 
 
-def asked(west: float, turned: float = 0.0, dubious: bool = False, stuck: int = 0, sure: bool = True) -> Haul | Refusal:
+def asked(
+    west: float, turned: float = 0.0, dubious: bool = False, stuck: int = 0, sure: bool = True
+) -> ManipulationPlan | Infeasibility:
     """The way through a door two squares wide for a thing four wide with its west side there; it was drawn at 4."""
     model = seen_whole(PARTED)
     (node,) = model.objects
@@ -55,12 +57,12 @@ def asked(west: float, turned: float = 0.0, dubious: bool = False, stuck: int = 
     left, bottom = view.west + west, view.south + 5
     square = shapely.box(left, bottom, left + 4, bottom + 4)
     node = replace(node, polygon=square, moved=turned != 0.0, turned=turned, dubious=dubious, stuck=stuck)
-    return Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}), situation_of(model))
+    return ManipulationOracle().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}), situation_of(model))
 
 
 def test_a_passage_that_is_too_narrow_is_a_proof() -> None:
     answer = asked(4)
-    assert isinstance(answer, Refusal)
+    assert isinstance(answer, Infeasibility)
     assert answer.proved
     assert "too narrow by 2.00" in answer.reason()
 
@@ -68,7 +70,7 @@ def test_a_passage_that_is_too_narrow_is_a_proof() -> None:
 @pytest.mark.parametrize("west", [-0.5, 0.5, 9.0])
 def test_what_seems_to_lie_in_a_wall_proves_nothing(west: float) -> None:
     answer = asked(west)
-    assert isinstance(answer, Refusal)
+    assert isinstance(answer, Infeasibility)
     assert not answer.proved
     assert "overlap a wall" in answer.reason()
 
@@ -76,7 +78,7 @@ def test_what_seems_to_lie_in_a_wall_proves_nothing(west: float) -> None:
 @pytest.mark.parametrize(("turned", "proved"), [(0.0, True), (-90.0, True), (181.0, True), (75.0, False)])
 def test_what_he_has_turned_askew_proves_nothing(turned: float, proved: bool) -> None:
     answer = asked(4, turned)
-    assert isinstance(answer, Refusal)
+    assert isinstance(answer, Infeasibility)
     assert answer.proved == proved
     assert ("askew" in answer.reason()) != proved
 
@@ -95,8 +97,8 @@ def test_what_was_stopped_amid_squares_and_no_wider_passage_would_let_on_proves_
 ) -> None:
     shape = shapely.box(west, 5, west + 4, 9)
     node = Node("o1", "object", 60, "part1", covered(shape), 0, polygon=shape, moved=moved)
-    plan = Carrying("impossible", reason="body")
-    neck = Neck((9.0, 7.0), ((9.0, 6.0), (9.0, 8.0)), 2.0)
+    plan = CarryingPlan("impossible", reason="body")
+    neck = Bottleneck((9.0, 7.0), ((9.0, 6.0), (9.0, 8.0)), 2.0)
     plan.__dict__.update(passage=neck, opens=opens, missing=0.5 if opens else math.inf)  # as if it had been worked out
     answer = refusal(node, [(2, plan)], seen_whole(PARTED))
     assert answer.proved == proved
@@ -110,8 +112,8 @@ def test_what_lies_askew_proves_nothing_once_all_was_forgotten(anew: bool, askew
     shape = shapely.affinity.rotate(shapely.box(4, 5, 8, 9), askew)
     west, south = model.view.west, model.view.south
     node = replace(node, polygon=shapely.affinity.translate(shape, west, south), moved=False)
-    answer = Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}), situation_of(model))
-    assert isinstance(answer, Refusal)
+    answer = ManipulationOracle().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}), situation_of(model))
+    assert isinstance(answer, Infeasibility)
     assert answer.proved == proved
     assert ("forgotten" in answer.reason()) != proved
 
@@ -119,7 +121,7 @@ def test_what_lies_askew_proves_nothing_once_all_was_forgotten(anew: bool, askew
 @pytest.mark.parametrize("dubious", [False, True])
 def test_what_is_seen_to_agree_ill_with_where_it_lies_proves_nothing(dubious: bool) -> None:
     answer = asked(4, dubious=dubious)
-    assert isinstance(answer, Refusal)
+    assert isinstance(answer, Infeasibility)
     assert answer.proved != dubious
     assert ("agree" in answer.reason()) == dubious
 
@@ -127,7 +129,7 @@ def test_what_is_seen_to_agree_ill_with_where_it_lies_proves_nothing(dubious: bo
 @pytest.mark.parametrize(("stuck", "sure"), [(0, True), (0, False), (1, True), (1, False)])
 def test_what_did_not_move_proves_nothing_for_who_is_not_sure_of_his_map(stuck: int, sure: bool) -> None:
     answer = asked(4, stuck=stuck, sure=sure)
-    assert isinstance(answer, Refusal)
+    assert isinstance(answer, Infeasibility)
     assert answer.proved == (sure or not stuck)
     assert ("did not move" in answer.reason()) != answer.proved
 
@@ -141,9 +143,9 @@ def test_what_may_be_part_of_what_is_carried_proves_nothing(inexact: bool, apart
     beside = Node("o1", "object", LIKELY - 1, "part1", covered(small), 0, polygon=small)
     node = Node("o2", "object", 99, "part2", covered(square), 0, polygon=square, moved=True, inexact=inexact)
     model = replace(model, objects=(beside, node))
-    answer = Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 11))}), situation_of(model))
-    assert isinstance(answer, Refusal) == proved
-    assert not isinstance(answer, Refusal) or answer.proved
+    answer = ManipulationOracle().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 11))}), situation_of(model))
+    assert isinstance(answer, Infeasibility) == proved
+    assert not isinstance(answer, Infeasibility) or answer.proved
 
 
 @pytest.mark.parametrize(("movable", "thick", "proved"), [(0, 1, False), (0, 3, True), (50, 1, False)])
@@ -162,9 +164,9 @@ def test_what_cannot_be_moved_may_cover_the_squares_at_its_rim_in_part(movable: 
     other = Node("o1", "object", 60, "part1", covered(fixed), 0, polygon=fixed, movable=movable)
     node = Node("o2", "object", 99, "part2", covered(square), 0, polygon=square)
     model = replace(model, objects=(other, node))
-    answer = Hauler().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 12))}), situation_of(model))
-    assert isinstance(answer, Refusal) == proved
-    assert answer.proved if isinstance(answer, Refusal) else answer.aside == ("o1",)
+    answer = ManipulationOracle().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 12))}), situation_of(model))
+    assert isinstance(answer, Infeasibility) == proved
+    assert answer.proved if isinstance(answer, Infeasibility) else answer.aside == ("o1",)
 
 
 @pytest.mark.parametrize(
@@ -172,7 +174,7 @@ def test_what_cannot_be_moved_may_cover_the_squares_at_its_rim_in_part(movable: 
     [([(4, 1.0), (4, math.inf)], 0), ([(0, 1.0), (4, math.inf)], 1), ([(4, 2.0), (4, 1.0)], 1), ([(4, math.nan)], 0)],
 )
 def test_the_passage_told_is_one_that_could_be_widened(plans: list[tuple[int, float]], told: int) -> None:
-    asked_for = [(level, cast(Carrying, SimpleNamespace(opens=math.isfinite(missing)))) for level, missing in plans]
+    asked_for = [(level, cast(CarryingPlan, SimpleNamespace(opens=math.isfinite(missing)))) for level, missing in plans]
     assert nearest_to_done(asked_for) is asked_for[told][1]
 
 
@@ -197,8 +199,8 @@ def test_what_stood_against_something_often_keeps_its_distance(tight: int, kept:
     ell = [(0, 0), (5, 0), (5, 2), (2, 2), (2, 4), (0, 4)]
     node = replace(node, polygon=shapely.Polygon([(x + west, y + south) for x, y in ell]))
     room = Inside(shapely.box(16, 1, 29, 15))
-    found = Hauler().find(Request(node, {"r": room}, tight=tight), situation_of(model))
-    assert isinstance(found, Haul)
+    found = ManipulationOracle().find(Request(node, {"r": room}, tight=tight), situation_of(model))
+    assert isinstance(found, ManipulationPlan)
     walls = shapely.union_all(
         [shapely.box(c, r, c + 1, r + 1) for r, c in zip(*(model.view.state == FULL).nonzero(), strict=True)]
     ).difference(shapely.box(5, 6, 10, 10))
@@ -227,9 +229,9 @@ def test_nothing_is_carried_through_a_door_that_the_task_forbids(who: str, found
     situation = situation_of(model, {"x": node.name}, task)
     assert len(situation.rooms.sure) == 1
     request = Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}, held=True)
-    answer = Hauler().find(request, situation)
-    assert isinstance(answer, Haul) == found
-    assert not isinstance(answer, Refusal) or answer.proved == proved
+    answer = ManipulationOracle().find(request, situation)
+    assert isinstance(answer, ManipulationPlan) == found
+    assert not isinstance(answer, Infeasibility) or answer.proved == proved
     (door,) = situation.rooms.doors
     likely = replace(situation, rooms=replace(situation.rooms, doors=(replace(door, confidence=SURE - 1),)))
     assert bool(likely.forbidden(node.name)) == (who == "x")  # a thing is kept from what may be a door

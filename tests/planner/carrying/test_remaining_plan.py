@@ -13,20 +13,20 @@ from benchmarks.harness.trial import Conditions, run_trial
 from geometry.manipulation.goals import End
 from geometry.motion.se2 import Rotate
 from kb.world.model import Node, WorldModel
-from planner.carrying.manipulation_oracle import Haul
-from planner.carrying.remaining_plan import ALIKE, Course, course_of, followed, from_here
+from planner.carrying.manipulation_oracle import ManipulationPlan
+from planner.carrying.remaining_plan import ALIKE, RemainingPlan, course_of, followed, from_here
 from planner.goals.placement import in_view, lands
 from planner.situation import Situation
 
 
-def turns(course: Course) -> bool:
+def turns(course: RemainingPlan) -> bool:
     return any(isinstance(motion, Rotate) for leg in course.legs for motion in leg.motions)
 
 
 def test_a_course_leads_where_its_plan_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     turned = []
 
-    def watched(haul: Haul, node: Node, model: WorldModel) -> Course:
+    def watched(haul: ManipulationPlan, node: Node, model: WorldModel) -> RemainingPlan:
         course = course_of(haul, node, model)
         end = translate(haul.plan.polygon, model.view.west, model.view.south)
         if haul.plan.legs and not haul.level:
@@ -43,7 +43,7 @@ def test_a_course_leads_where_its_plan_does(tmp_path: Path, monkeypatch: pytest.
 def test_what_was_turned_lies_as_the_course_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     off = []
 
-    def watched(course: Course, ends: Mapping[str, End] | None, situation: Situation) -> Course | None:
+    def watched(course: RemainingPlan, ends: Mapping[str, End] | None, situation: Situation) -> RemainingPlan | None:
         node = situation.model.object(course.name)
         if course.grasped and node is not None and node.turned:
             off.append(shapely.symmetric_difference(node.polygon, course.polygon).area)
@@ -59,7 +59,7 @@ def test_what_was_turned_lies_as_the_course_says(tmp_path: Path, monkeypatch: py
 def test_a_thing_is_taken_from_where_he_stands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     begun = []
 
-    def watched(course: Course, ends: Mapping[str, End], situation: Situation) -> Course | None:
+    def watched(course: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> RemainingPlan | None:
         near = from_here(course, ends, situation)
         model = situation.model
         if near is not None:

@@ -15,8 +15,8 @@ from kb.body import Grasp, Move, Push, Turn
 from kb.language.reader import facts_of
 from kb.mapping.patch import Patch
 from kb.world.model import Node
-from planner.carrying.plan_executor import Carrier
-from planner.deciding.clearing import Clearer, Obstacle, obstacles
+from planner.carrying.plan_executor import PlanExecutor
+from planner.deciding.clearing import Obstacle, ObstacleClearer, obstacles
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.verification import Verifier
 from planner.decision import Decision
@@ -58,12 +58,12 @@ def known(rows: list[str], moved: bool = False, movable: int = 50, held: str | N
     return situation_of(replace(model, objects=tuple(nodes), held=held))
 
 
-def cleared(clearer: Clearer, decision: Decision, stage: Stage, situation: Situation) -> Decision:
+def cleared(clearer: ObstacleClearer, decision: Decision, stage: Stage, situation: Situation) -> Decision:
     return clearer.cleared(decision, stage.goals, stage, situation)
 
 
-def deciding() -> Clearer:
-    return Clearer(Carrier(), Pursuer("skeleton"), Verifier())
+def deciding() -> ObstacleClearer:
+    return ObstacleClearer(PlanExecutor(), Pursuer("skeleton"), Verifier())
 
 
 def found_in(situation: Situation) -> list[Obstacle]:

@@ -6,7 +6,7 @@ from typing import cast
 import shapely
 
 from kb.body import Command, Impression, Move, Release
-from kb.objects.held_object import Load
+from kb.objects.held_object import HeldObject
 from kb.world.corners import Corner
 from kb.world.model import WorldModel
 from kb.world.rooms import rooms_of
@@ -47,7 +47,7 @@ def at_a_loss(slipped: bool) -> tuple[Robot, Undecided]:
     robot.knowledge.memory.slipped = slipped
     if slipped:
         thing = shapely.box(4, 2, 8, 4)
-        robot.knowledge.memory.grasp(Load("o1", thing, thing))
+        robot.knowledge.memory.grasp(HeldObject("o1", thing, thing))
     robot.step()
     return robot, undecided
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from geometry.raster.components import edged
 from planner.deciding.search import Candidate, none_of
-from planner.navigation.subgoals import Aim
+from planner.navigation.subgoals import Subgoal
 from planner.screen.projection import grown, marked
 from planner.sights.frontiers import SHORT_OF, short_of
 from tests.planner.sights.test_viewpoints import distance_from, room
@@ -23,7 +23,7 @@ def test_edged_is_what_shares_an_edge(rows: int, columns: int, seed: int) -> Non
 
 
 def candidate(squares: list[int], chance: int) -> Candidate:
-    return Candidate(np.array(squares), Aim("inspect", np.array([0]), "", chance))
+    return Candidate(np.array(squares), Subgoal("inspect", np.array([0]), "", chance))
 
 
 @given(st.lists(st.integers(1, 100), max_size=6))

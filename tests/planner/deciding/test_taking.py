@@ -9,7 +9,7 @@ import shapely
 
 import planner.carrying.plan_executor
 import planner.carrying.remaining_plan
-from geometry.manipulation.plan_carrying import Carrying, Inside, Leg
+from geometry.manipulation.plan_carrying import CarryingPlan, Inside, Leg
 from geometry.motion.se2 import Rotate, Translate
 from kb.body import Command, Grasp, Move, Push, Release
 from kb.language.reader import facts_of
@@ -17,13 +17,13 @@ from kb.mapping.occupancy import OPEN
 from kb.task.binding import Reconciled
 from kb.world.model import Node, WorldModel
 from planner.advice import Act, Go
-from planner.carrying.infeasibility import Refusal
-from planner.carrying.manipulation_oracle import Haul, Hauler, Request
-from planner.carrying.plan_executor import Carrier
-from planner.carrying.remaining_plan import Course
+from planner.carrying.infeasibility import Infeasibility
+from planner.carrying.manipulation_oracle import ManipulationOracle, ManipulationPlan, Request
+from planner.carrying.plan_executor import PlanExecutor
+from planner.carrying.remaining_plan import RemainingPlan
 from planner.deciding import transport
 from planner.deciding.decider import Decider
-from planner.goals.placement import Landing
+from planner.goals.placement import Placement
 from planner.sights.frontiers import CLOSE
 from planner.situation import Situation
 from planner.stages import Stage
@@ -48,7 +48,7 @@ def beside(touch: tuple[str | None, ...], place: tuple[float, float] = (0.5, 0.5
     return situation_of(model, {"x": node.name})
 
 
-def advice(carrier: Carrier, situation: Situation) -> planner.carrying.plan_executor.Advice:
+def advice(carrier: PlanExecutor, situation: Situation) -> planner.carrying.plan_executor.Advice:
     """What to do to bring the thing to the eastern end of the room."""
     (node,) = situation.model.objects
     return carrier.advise(node, {"r": Inside(shapely.box(14, 2, 19, 14))}, situation)
@@ -63,20 +63,20 @@ def doubtful(situation: Situation, x: float, y: float, chance: float) -> Situati
     return situation_of(replace(model, view=view._replace(state=state, probability=probability)), situation.binding)
 
 
-def haul_over(situation: Situation, x: float, y: float, pushes: int, taken: bool = False) -> Haul:
+def haul_over(situation: Situation, x: float, y: float, pushes: int, taken: bool = False) -> ManipulationPlan:
     """A plan of so many pushes that needs the square of a point. taken : it goes on with the hold he has."""
     view = situation.model.view
     swept = np.zeros(view.state.shape, np.bool_)
     swept[view.locate(x, y)] = True
     legs = (Leg((0.5, 0.5), (1, 0), (Translate(1.0, 0.0),) * pushes, taken=taken),)
-    return Haul(Carrying("found", legs, held=taken), "r", 0, swept)
+    return ManipulationPlan(CarryingPlan("found", legs, held=taken), "r", 0, swept)
 
 
 def way_of(situation: Situation) -> str | None:
     """The direction of a grasp that was planned towards the east."""
     (node,) = situation.model.objects
     leg = Leg(situation.model.place, (1, 0), ())
-    course = Course(node.name, "r", node.polygon, (leg,), node.patch, 0)
+    course = RemainingPlan(node.name, "r", node.polygon, (leg,), node.patch, 0)
     return planner.carrying.remaining_plan.grasp_direction(leg, course, situation.model)
 
 
@@ -107,10 +107,10 @@ def test_while_its_colour_is_not_known_it_is_only_taken_where_it_is_believed() -
 
 
 def test_who_feels_it_takes_it_and_who_does_not_goes_elsewhere() -> None:
-    felt = advice(Carrier(), beside(touching({EAST - 1: "g", EAST: "g", EAST + 1: "g"})))
+    felt = advice(PlanExecutor(), beside(touching({EAST - 1: "g", EAST: "g", EAST + 1: "g"})))
     assert isinstance(felt, Act)
     assert felt.command == Grasp("east")
-    carrier = Carrier()
+    carrier = PlanExecutor()
     unfelt = advice(carrier, beside(NOTHING))
     assert isinstance(unfelt, Go)
     assert math.dist(unfelt.place, (0.5, 0.5)) >= 1
@@ -119,7 +119,7 @@ def test_who_feels_it_takes_it_and_who_does_not_goes_elsewhere() -> None:
 
 @pytest.mark.parametrize("place", [(0.5, 0.5), (0.8, 0.3), (0.1, 0.9)])
 def test_where_it_failed_he_does_not_take_it_again_wherever_in_the_square_he_stands(place: tuple[float, float]) -> None:
-    carrier, situation = Carrier(), beside(touching({EAST: "g"}), place)
+    carrier, situation = PlanExecutor(), beside(touching({EAST: "g"}), place)
     first = advice(carrier, situation)
     assert isinstance(first, Act)
     model: WorldModel = situation.model
@@ -136,14 +136,14 @@ def test_he_goes_on_with_a_hold_that_brought_him_nowhere_when_nothing_else_helps
     situation = beside(touching({EAST: "g"}))
     (node,) = situation.model.objects
     held = situation_of(replace(situation.model, held=node.name), situation.binding)
-    carrier, find, asked = Carrier(), Hauler.find, []
+    carrier, find, asked = PlanExecutor(), ManipulationOracle.find, []
     carrier._went_on = held.model.place
 
-    def grudging(self: Hauler, request: Request, situation: Situation) -> Haul | Refusal:
+    def grudging(self: ManipulationOracle, request: Request, situation: Situation) -> ManipulationPlan | Infeasibility:
         asked.append(request.held)
-        return find(self, request, situation) if request.held or not refused else Refusal(False, lambda: "no way")
+        return find(self, request, situation) if request.held or not refused else Infeasibility(False, lambda: "no way")
 
-    monkeypatch.setattr(Hauler, "find", grudging)
+    monkeypatch.setattr(ManipulationOracle, "find", grudging)
     found = advice(carrier, held)
     assert isinstance(found, Act)
     assert asked == ([False, True] if refused else [False])
@@ -157,9 +157,9 @@ def test_what_he_would_take_again_from_where_he_stands_he_does_not_let_go(aside:
     held = situation_of(replace(situation.model, held=node.name), situation.binding)
     push = Translate(10.0, 0.0)
     leg = Leg((0.5, 0.5 - aside), (1, 0), (push,))
-    course = Course(node.name, "r", node.polygon, (leg,), node.patch, 0)
+    course = RemainingPlan(node.name, "r", node.polygon, (leg,), node.patch, 0)
     ends = {"r": Inside(shapely.box(14, 2, 19, 14))}
-    advice = Carrier()._taking(course, leg, ends, held)
+    advice = PlanExecutor()._taking(course, leg, ends, held)
     assert isinstance(advice, Act)
     assert advice.command == (Push(10.0, 0.0) if goes_on else Release())
 
@@ -168,7 +168,7 @@ def test_what_he_would_take_again_from_where_he_stands_he_does_not_let_go(aside:
 def test_what_takes_away_the_room_of_a_tedious_way_is_looked_at(pushes: int, chance: float, looks: bool) -> None:
     situation = doubtful(beside(()), 8.5, 3.5, chance)
     view, (node,) = situation.model.view, situation.model.objects
-    see = Carrier()._seen(haul_over(situation, 8.5, 1.5, pushes), node, situation)
+    see = PlanExecutor()._seen(haul_over(situation, 8.5, 1.5, pushes), node, situation)
     assert (see is not None) == looks
     if see is not None:
         place = view.locate(8.5, 3.5)
@@ -183,7 +183,7 @@ def test_he_does_not_let_go_of_a_thing_to_look_at_its_way_unless_that_is_tedious
     situation = doubtful(beside(()), 8.5, 1.5, 0.2)
     (node,) = situation.model.objects
     haul = haul_over(situation, 8.5, 1.5, pushes, taken)
-    assert (Carrier()._seen(haul, node, situation) is not None) == looks
+    assert (PlanExecutor()._seen(haul, node, situation) is not None) == looks
 
 
 @pytest.mark.parametrize("lost", [False, True])
@@ -194,7 +194,7 @@ def test_who_was_lost_does_not_say_that_a_thing_is_in_the_next_room(
     (node,) = situation.model.objects
     decider, stage = Decider(NO_TASK, bound=situation.binding), Stage(facts_of("through(x, d)."))
     decider.transporter.beginnings.at("x", node, situation)
-    monkeypatch.setattr("planner.deciding.transport.landing", lambda *_: Landing({}, holds=True))
+    monkeypatch.setattr("planner.deciding.transport.landing", lambda *_: Placement({}, holds=True))
     after = situation_of(replace(situation.model, anew=lost), situation.binding)
     decision = decider.transporter.towards(stage.goals[0], stage, after, Reconciled({}, (), (), ()))
     if lost:
@@ -213,14 +213,14 @@ def about_to_turn(spread: float, turn: float, looks: int) -> tuple[Situation, De
     motions = (Rotate(turn, (0.5, 0.5)),) if turn else (Translate(3.0, 0.0),)
     decider = Decider(NO_TASK, bound=situation.binding)
     leg = Leg((0.5, 0.5), (1, 0), motions)
-    decider.transporter.carrier._course = Course(node.name, "r", node.polygon, (leg,), node.patch, 0)
+    decider.transporter.carrier._course = RemainingPlan(node.name, "r", node.polygon, (leg,), node.patch, 0)
     return situation, decider, node, Stage(facts_of("at(x, corner(northeast))."))
 
 
 @pytest.mark.parametrize("command", [Move(0.2, 0.0), Grasp("east"), Push(1.0, 0.0)])
 def test_he_looks_before_he_makes_ready_to_take_it(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     situation, decider, _, stage = about_to_turn(math.pi, 90.0, 2)
-    monkeypatch.setattr(Carrier, "advise", lambda *_: Act(command, "so"))
+    monkeypatch.setattr(PlanExecutor, "advise", lambda *_: Act(command, "so"))
     decision = decider.transporter.towards(stage.goals[0], stage, situation, Reconciled({}, (), (), ()))
     assert decision is not None
     assert decision.why.startswith("so" if isinstance(command, Push) else "how the squares lie")
@@ -263,7 +263,7 @@ def test_what_stands_against_something_is_first_drawn_back_from_it(
     model = beside(()).model
     node = replace(model.objects[0], moved=moved, stuck=stuck)
     model = replace(model, objects=(node,), held=node.name)
-    carrier = Carrier(pull)
+    carrier = PlanExecutor(pull)
     carrier._pushed = pushed
     found = carrier._failure(None, model)
     assert isinstance(found, Act)

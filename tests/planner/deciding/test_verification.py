@@ -14,8 +14,8 @@ from kb.language.reader import facts_of
 from kb.task.binding import Reconciled
 from kb.world.model import WorldModel
 from kb.world.rooms import SURE
-from planner.carrying.infeasibility import Refusal
-from planner.carrying.manipulation_oracle import Hauler, Request
+from planner.carrying.infeasibility import Infeasibility
+from planner.carrying.manipulation_oracle import ManipulationOracle, Request
 from planner.carrying.open_facts import qualified
 from planner.deciding.decider import Decider
 from planner.deciding.verification import (
@@ -88,8 +88,8 @@ def test_who_is_not_sure_of_his_map_looks_at_a_narrow_passage_from_close_by_befo
     (node,) = model.objects
     node = replace(node, polygon=shapely.box(-20, 0, -16, 4), colour="g", shape={"square": 99})
     model = replace(model, objects=(node,), view=model.view._replace(sure=sure))
-    refusal = Hauler().find(Request(node, {"r": Inside(shapely.box(16, 1, 29, 15))}), situation_of(model))
-    assert isinstance(refusal, Refusal)
+    refusal = ManipulationOracle().find(Request(node, {"r": Inside(shapely.box(16, 1, 29, 15))}), situation_of(model))
+    assert isinstance(refusal, Infeasibility)
     neck = refusal.neck()
     assert refusal.proved
     assert neck == pytest.approx((15, 7), abs=1.0)

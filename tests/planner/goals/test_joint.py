@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from geometry.manipulation.goals import At, End, InCorner, Inside, met, placed
 from geometry.motion.se2 import Pose
 from planner.goals.joint import confines, conflict, opposite_corners
-from planner.goals.placement import Landing
+from planner.goals.placement import Placement
 from tests.kb.drawings import seen_whole
 from tests.planner.goals.test_object_goals import facts_of
 from tests.planner.situations import BESIDE_A_THING, situation_of
@@ -18,8 +18,8 @@ NORTHEAST, SOUTHWEST = InCorner(20.0, 16.0, 1, 1), InCorner(0.0, 0.0, -1, -1)
 EVERYWHERE = Inside(shapely.box(0, 0, 20, 16))
 
 
-def land(*ends: End, missing: str = "") -> Landing:
-    return Landing({f"e{number}": end for number, end in enumerate(ends)}, missing)
+def land(*ends: End, missing: str = "") -> Placement:
+    return Placement({f"e{number}": end for number, end in enumerate(ends)}, missing)
 
 
 @pytest.mark.parametrize(
@@ -35,7 +35,7 @@ def land(*ends: End, missing: str = "") -> Landing:
         ([land(At(Pose(0.0, 0.0, 0.0))), land(At(Pose(0.0, 2.5, 0.0)))], (0, 1)),
     ],
 )
-def test_goals_whose_places_lie_apart_are_told(lands: list[Landing], found: tuple[int, int] | None) -> None:
+def test_goals_whose_places_lie_apart_are_told(lands: list[Placement], found: tuple[int, int] | None) -> None:
     assert conflict(lands, THING) == found
 
 

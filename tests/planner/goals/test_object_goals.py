@@ -11,9 +11,9 @@ import shapely.affinity
 from kb.language.reader import facts_of
 from kb.mapping.patch import covered
 from kb.world.model import Node, WorldModel
-from planner.carrying.plan_executor import Carrier
+from planner.carrying.plan_executor import PlanExecutor
 from planner.goals.object_goals import landing
-from planner.goals.placement import Landing, lands
+from planner.goals.placement import Placement, lands
 from tests.kb.drawings import seen_whole, unclear
 from tests.planner.situations import situation_of
 
@@ -29,7 +29,7 @@ SHUT_IN = [
 NORTHEAST = facts_of("at(x, corner(northeast)).")[0]
 
 
-def landing_of(model: WorldModel, held: bool) -> Landing:
+def landing_of(model: WorldModel, held: bool) -> Placement:
     """Where the ring about him must end, and whether he has hold of it."""
     ring = shapely.box(-1, -1, 4, 2) - shapely.box(0, 0, 1, 1) - shapely.box(-1, 0, 0, 1)
     node = Node("o1", "object", 95, "part1", covered(ring), 0, polygon=ring, moved=held)
@@ -64,7 +64,7 @@ def test_what_stands_before_a_door_is_too_wide_for_it_or_may_pass_whatever_lies_
     situation = situation_of(replace(model, objects=(node,)), {"x": node.name})
     found = landing(NORTHEAST, node, (0.0, 0.0), situation)
     assert not found.ends
-    refusal = Carrier().refused(node, found.must_reach(), situation)
+    refusal = PlanExecutor().refused(node, found.must_reach(), situation)
     if wide > 3:
         assert refusal is None
         return
@@ -235,10 +235,10 @@ def test_that_a_thing_can_be_brought_to_none_of_some_ends_proves_nothing(goal: s
     situation = situation_of(replace(model, objects=(node,)), {"x": node.name})
     found = landing(facts_of(goal)[0], node, (0.0, 0.0), situation)
     assert found.some
-    refused = Carrier().refused(node, found.ends, situation)
+    refused = PlanExecutor().refused(node, found.ends, situation)
     assert refused is not None
     assert refused.proved
-    assert Carrier().refused(node, found.must_reach(), situation) is None
+    assert PlanExecutor().refused(node, found.must_reach(), situation) is None
 
 
 def test_what_lies_loosely_near_to_something_is_near_to_it() -> None:

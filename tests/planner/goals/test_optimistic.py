@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import Inside
 from kb.world.model import Node, WorldModel
-from planner.carrying.manipulation_oracle import Haul, Hauler, Request
+from planner.carrying.manipulation_oracle import ManipulationOracle, ManipulationPlan, Request
 from planner.goals.optimistic import BEYOND, hoped_floor, spread
 from planner.screen.projection import UNSEEN, marked
 from planner.situation import Situation
@@ -82,12 +82,12 @@ def thing(model: WorldModel) -> Node:
 
 def found(
     model: WorldModel, ends: dict[str, End], hoped: dict[str, End] | None = None, open_: bool = False
-) -> tuple[Haul, Situation]:
+) -> tuple[ManipulationPlan, Situation]:
     """The way that is chosen. open_ : is it open how the lattice lies?"""
     model = replace(model, likely_spread=0.3) if open_ else model
     situation = situation_of(model)
-    answer = Hauler().find(Request(thing(model), ends, hoped=lambda: hoped or {}), situation)
-    assert isinstance(answer, Haul)
+    answer = ManipulationOracle().find(Request(thing(model), ends, hoped=lambda: hoped or {}), situation)
+    assert isinstance(answer, ManipulationPlan)
     return answer, situation
 
 

@@ -7,7 +7,7 @@ import shapely
 import shapely.affinity
 
 from kb.world.rooms import Rooms
-from planner.goals.origins import Beginnings
+from planner.goals.origins import Origins
 from planner.situation import Situation
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import BESIDE_A_THING, situation_of
@@ -33,7 +33,7 @@ def now(shaken: bool, rooms: Rooms | None = None, moved: bool = True) -> Situati
     return replace(found, rooms=rooms or found.rooms)
 
 
-def missed(beginnings: Beginnings, situation: Situation) -> bool:
+def missed(beginnings: Origins, situation: Situation) -> bool:
     (node,) = situation.model.objects
     beginnings.at("x", node, situation)
     return bool(beginnings.lost("x", node, situation))
@@ -41,7 +41,7 @@ def missed(beginnings: Beginnings, situation: Situation) -> bool:
 
 @pytest.mark.parametrize("shaken", [False, True])
 def test_a_door_that_is_lost_when_looks_contradict_is_missed(shaken: bool) -> None:
-    beginnings, before = Beginnings(), now(shaken=False, moved=False)
+    beginnings, before = Origins(), now(shaken=False, moved=False)
     (door,) = before.rooms.doors
     assert door.sure
     assert not missed(beginnings, before)
@@ -52,7 +52,7 @@ def test_a_door_that_is_lost_when_looks_contradict_is_missed(shaken: bool) -> No
 
 
 def test_doors_are_remembered_as_they_are_when_a_thing_is_taken() -> None:
-    none, beginnings = replace(now(shaken=False).rooms, doors=()), Beginnings()
+    none, beginnings = replace(now(shaken=False).rooms, doors=()), Origins()
     assert not missed(beginnings, now(shaken=True, rooms=none))
     assert not missed(beginnings, now(shaken=True, moved=False))
     assert missed(beginnings, now(shaken=True, rooms=none))
@@ -62,7 +62,7 @@ def test_doors_are_remembered_as_they_are_when_a_thing_is_taken() -> None:
 
 @pytest.mark.parametrize(("aside", "lost"), [(2.0, False), (5.0, True)])
 def test_a_door_may_come_to_lie_a_little_elsewhere(aside: float, lost: bool) -> None:
-    beginnings, before = Beginnings(), now(shaken=False, moved=False)
+    beginnings, before = Origins(), now(shaken=False, moved=False)
     missed(beginnings, before)
     (door,) = before.rooms.doors
     (ax, ay), (bx, by) = door.a, door.b
@@ -71,7 +71,7 @@ def test_a_door_may_come_to_lie_a_little_elsewhere(aside: float, lost: bool) -> 
 
 
 def test_where_a_thing_began_is_remembered_though_its_name_is_not() -> None:
-    beginnings, situation = Beginnings(), situation_of(seen_whole(BESIDE_A_THING))
+    beginnings, situation = Origins(), situation_of(seen_whole(BESIDE_A_THING))
     (node,) = situation.model.objects
 
     def began(name: str, east: int, moved: bool, others: tuple[str, ...] = ()) -> float:
@@ -91,7 +91,7 @@ def test_where_a_thing_began_is_remembered_though_its_name_is_not() -> None:
 
 @pytest.mark.parametrize(("before", "lost"), [(False, "he was lost"), (True, "")])
 def test_who_was_lost_does_not_know_where_a_thing_began_that_he_took_before(before: bool, lost: str) -> None:
-    beginnings, model = Beginnings(), situation_of(seen_whole(BESIDE_A_THING)).model
+    beginnings, model = Origins(), situation_of(seen_whole(BESIDE_A_THING)).model
     (node,) = model.objects
     node = replace(node, polygon=shapely.box(5, 0, 7, 2))
     beginnings.at("x", node, situation_of(replace(model, anew=before)))
@@ -107,7 +107,7 @@ def test_who_was_lost_does_not_know_where_a_thing_began_that_he_took_before(befo
 
 
 def test_what_lies_in_another_room_has_left_its_own() -> None:
-    beginnings, before = Beginnings(), now(shaken=False, moved=False)
+    beginnings, before = Origins(), now(shaken=False, moved=False)
     (node,) = before.model.objects
     beginnings.at("x", node, before)
     assert not beginnings.left("x", node, before)

@@ -12,9 +12,9 @@ from kb.task.task import Task
 from kb.world.rooms import rooms_of
 from planner.deciding.decider import Decider
 from planner.navigation.fewest_moves import MANY_MOVES, MOVE, WAY, FewestMoves
-from planner.navigation.subgoals import Aim
+from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import one_move
-from planner.screen.projection import Screens
+from planner.screen.projection import CostMaps
 from planner.screen.sweeps import clear
 from planner.screen.unseen_gain import REACH
 from planner.sights.frontiers import best_views
@@ -41,9 +41,9 @@ def flat(column: int, line: int) -> int:
     return (len(WALLS) - 1 - line) * len(WALLS[0]) + column
 
 
-def aim(*squares: tuple[int, int]) -> Aim:
+def aim(*squares: tuple[int, int]) -> Subgoal:
     """An aim at squares (column, line) of the drawing."""
-    return Aim("explore", np.array([flat(*square) for square in squares]), "there", 50)
+    return Subgoal("explore", np.array([flat(*square) for square in squares]), "there", 50)
 
 
 def symbol(name: str, *args: Symbol) -> Symbol:
@@ -51,11 +51,11 @@ def symbol(name: str, *args: Symbol) -> Symbol:
 
 
 @pytest.fixture
-def screens() -> Screens:
-    return Screens(seen_whole(WALLS))
+def screens() -> CostMaps:
+    return CostMaps(seen_whole(WALLS))
 
 
-def test_of_an_aim_what_one_move_leads_to_counts(screens: Screens) -> None:
+def test_of_an_aim_what_one_move_leads_to_counts(screens: CostMaps) -> None:
     behind, open_ = (31, 12), (29, 15)
     assert one_move(screens, "explore").ravel()[[flat(*behind), flat(*open_)]].tolist() == [False, True]
     fewest = FewestMoves(screens)
@@ -68,26 +68,26 @@ def test_of_an_aim_what_one_move_leads_to_counts(screens: Screens) -> None:
 
 def test_a_move_is_saved_by_a_long_detour() -> None:
     rows = ["b" * 40, *["b" + "." * 38 + "b"] * 11, "b..U........b" + "." * 26 + "b", "b" * 40]
-    screens = Screens(seen_whole(rows))
+    screens = CostMaps(seen_whole(rows))
     width = len(rows[0])
     behind, far = width + 14, 12 * width + 37
     assert one_move(screens, "explore").ravel()[[behind, far]].tolist() == [False, True]
     ways = screens.distances[0].ravel()[[behind, far]] / 5
     assert ways[0] + 2 < ways[1]
-    (priced,) = FewestMoves(screens).priced([Aim("explore", np.array([behind, far]), "there")])
+    (priced,) = FewestMoves(screens).priced([Subgoal("explore", np.array([behind, far]), "there")])
     assert priced.squares.tolist() == [far]
 
 
 @pytest.mark.parametrize(("square", "moves"), [((29, 15), 1), ((33, 9), 2), ((3, 2), MANY_MOVES)])
 def test_an_aim_costs_what_its_moves_cost_and_a_share_of_its_way(
-    screens: Screens, square: tuple[int, int], moves: int
+    screens: CostMaps, square: tuple[int, int], moves: int
 ) -> None:
     far = screens.distances[0].ravel()[flat(*square)] / 5
     (priced,) = FewestMoves(screens).priced([aim(square)._replace(price=7.0)])
     assert far + priced.price == pytest.approx(7.0 + moves * MOVE + WAY * far)
 
 
-def test_the_first_of_two_moves_ends_where_the_second_can_begin(screens: Screens) -> None:
+def test_the_first_of_two_moves_ends_where_the_second_can_begin(screens: CostMaps) -> None:
     met = aim((33, 9))
     way = FewestMoves(screens).way(met)
     assert way is not None
@@ -106,19 +106,19 @@ def test_he_turns_where_he_sees_what_he_has_not_seen(unseen: str) -> None:
     model = seen_whole(["b" * 60, *[hall] * 9, *[block] * 4, here, *[block] * 4, *[hall] * 9, "b" * 60])
     seen = model.view.seen.copy()
     seen[slice(-4, None) if unseen == "north" else slice(4)] = False
-    screens = Screens(replace(model, view=model.view._replace(seen=seen)))
+    screens = CostMaps(replace(model, view=model.view._replace(seen=seen)))
     row = screens.here[1]
-    way = FewestMoves(screens).way(Aim("explore", np.array([row * 60 + 56]), "there"))
+    way = FewestMoves(screens).way(Subgoal("explore", np.array([row * 60 + 56]), "there"))
     assert way is not None
     assert (way.squares[1][1] > row) == (unseen == "north")
 
 
-def half_seen(shown: int) -> Screens:
+def half_seen(shown: int) -> CostMaps:
     """A hall of which so many columns were seen, from its west, where he stands."""
     model = seen_whole(["b" * 60, *["b" + "." * 58 + "b"] * 17, "b..U" + "." * 55 + "b", "b" * 60])
     seen = model.view.seen.copy()
     seen[:, shown:] = False
-    return Screens(replace(model, view=model.view._replace(seen=seen)))
+    return CostMaps(replace(model, view=model.view._replace(seen=seen)))
 
 
 def test_the_best_view_is_had_where_most_comes_into_sight_for_its_way() -> None:
@@ -139,7 +139,7 @@ def test_there_is_no_view_where_nothing_new_comes_into_sight() -> None:
     amid = np.zeros_like(one_move(screens, "explore"))
     assert best_views(screens, amid, MOVE, WAY) == []
     hall = seen_whole(["b" * 70, *["b" + "." * 68 + "b"] * 40, "b..U" + "." * 65 + "b", "b" * 70])
-    screens = Screens(hall)
+    screens = CostMaps(hall)
     amid = np.zeros(hall.view.seen.shape, bool)
     amid[20:23, 30:40] = True
     assert best_views(screens, amid, MOVE, WAY) == []
@@ -147,10 +147,10 @@ def test_there_is_no_view_where_nothing_new_comes_into_sight() -> None:
 
 def test_every_first_move_is_one_that_may_be_made() -> None:
     for spread in (0.0, math.pi):
-        screens = Screens(replace(seen_whole(WALLS), likely_spread=spread))
+        screens = CostMaps(replace(seen_whole(WALLS), likely_spread=spread))
         reached = one_move(screens, "explore")
         for square in np.flatnonzero(screens.floor)[::7].tolist():
-            way = FewestMoves(screens).way(Aim("explore", np.array([square]), "there"))
+            way = FewestMoves(screens).way(Subgoal("explore", np.array([square]), "there"))
             if way is not None:
                 column, row = way.squares[-1]
                 assert reached[row, column]
@@ -163,7 +163,7 @@ def test_no_straight_move_leads_through_a_forbidden_door() -> None:
     assert len(rooms_of(model).doors) == 1
     carried = symbol("at", symbol("x"), symbol("corner", symbol("northeast")))
     never = symbol("not_through", symbol("utak"), symbol("d"))
-    screens, beyond = Screens(model), Aim("explore", np.array([7 * 30 + 25]), "there")
+    screens, beyond = CostMaps(model), Subgoal("explore", np.array([7 * 30 + 25]), "there")
     assert FewestMoves(screens).way(beyond) is not None
     for goals, moves in (((carried,), True), ((carried, never), False)):
         task = Task({}, (), goals)

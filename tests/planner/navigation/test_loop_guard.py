@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from kb.body import Move, Push, Release
-from planner.navigation.loop_guard import WEARY, Circles
-from planner.navigation.subgoals import Aim
+from planner.navigation.loop_guard import WEARY, LoopGuard
+from planner.navigation.subgoals import Subgoal
 from tests.kb.drawings import seen_whole
 from tests.planner.screen.test_projection import HALL
 
@@ -14,7 +14,7 @@ MODEL = seen_whole(HALL)
 
 
 def test_the_same_command_in_the_same_state_is_noticed() -> None:
-    circles = Circles()
+    circles = LoopGuard()
     assert not circles.noticed(MODEL, Move(1.0, 0.0))
     assert not circles.noticed(MODEL, Move(0.0, 1.0))
     assert circles.noticed(MODEL, Move(1.0, 0.0))
@@ -24,7 +24,7 @@ def test_the_same_command_in_the_same_state_is_noticed() -> None:
 
 
 def test_who_knows_more_or_is_elsewhere_does_not_go_in_circles() -> None:
-    circles = Circles()
+    circles = LoopGuard()
     circles.noticed(MODEL, Move(1.0, 0.0))
     assert not circles.noticed(replace(MODEL, place=(1.5, 0.5)), Move(1.0, 0.0))
     assert not circles.noticed(replace(MODEL, held="o1"), Move(1.0, 0.0))
@@ -35,10 +35,10 @@ def test_who_knows_more_or_is_elsewhere_does_not_go_in_circles() -> None:
 
 
 def test_an_aim_in_vain_gets_dearer_and_is_given_up() -> None:
-    circles = Circles()
+    circles = LoopGuard()
     row, column = MODEL.view.locate(2.5, 0.5)
-    there = Aim("explore", np.array([row * MODEL.labels.shape[1] + column]), "")
-    other = Aim("explore", there.squares + 1, "")
+    there = Subgoal("explore", np.array([row * MODEL.labels.shape[1] + column]), "")
+    other = Subgoal("explore", there.squares + 1, "")
     assert circles.priced([there, other], MODEL) == [there, other]
     circles.tire(frozenset({(2, 0)}))
     dearer, same = circles.priced([there, other], MODEL)

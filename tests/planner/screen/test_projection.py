@@ -13,9 +13,9 @@ from kb.mapping.occupancy import FREE, OPEN
 from kb.world.model import WorldModel
 from planner.navigation.encircle import pivot, ways_round, winding
 from planner.navigation.routes import choose_way, ways
-from planner.navigation.subgoals import Aim, choose
+from planner.navigation.subgoals import Subgoal, choose
 from planner.screen.moves import HURRY, LOOSE, NARROW, STROLL, Pace, next_move, one_move
-from planner.screen.projection import TRUSTED, UNSEEN, WARY, Screens, grown
+from planner.screen.projection import TRUSTED, UNSEEN, WARY, CostMaps, grown
 from planner.screen.sweeps import clear_line, swept
 from planner.sights import frontiers
 from tests.kb.drawings import seen_whole, walked
@@ -41,7 +41,7 @@ def random_walk(seed: int) -> WorldModel:
 @settings(max_examples=12, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_the_projection_is_monotone(seed: int) -> None:
-    screens = Screens(random_walk(seed))
+    screens = CostMaps(random_walk(seed))
     for level in range(UNSEEN):
         assert not (screens.free(level) & ~screens.free(level + 1)).any()
         before, after = screens.distances[level], screens.distances[level + 1]
@@ -55,7 +55,7 @@ def test_the_projection_is_monotone(seed: int) -> None:
 @given(st.integers(0, 2**32 - 1))
 def test_safe_squares_are_settled_or_far_from_doubt(seed: int) -> None:
     model = random_walk(seed)
-    safe, view = Screens(model).safe, model.view
+    safe, view = CostMaps(model).safe, model.view
     row, column = model.view.locate(*model.place)
     for r, c in np.argwhere(safe).tolist():
         if view.state[r, c] == FREE or (r, c) == (row, column):
@@ -96,7 +96,7 @@ def flat(model: WorldModel, x: int, y: int) -> np.ndarray:
 @pytest.mark.parametrize("kind", sorted(STROLL.longest))
 def test_a_move_sweeps_safe_squares_alone(kind: str, pace: Pace) -> None:
     model = seen_whole(HALL)
-    screens = Screens(model)
+    screens = CostMaps(model)
     for goal in ((11, 0), (11, -2), (6, 5), (-4, 5), (0, 1)):
         for way in ways(screens, 0, flat(model, *goal), "skeleton"):
             move = next_move(screens, way.squares, kind, pace=pace)
@@ -111,7 +111,7 @@ def test_a_move_sweeps_safe_squares_alone(kind: str, pace: Pace) -> None:
 @given(st.integers(0, 2**32 - 1))
 def test_longer_moves_than_a_step_are_safe_in_random_models(seed: int) -> None:
     model = random_walk(seed)
-    screens = Screens(model)
+    screens = CostMaps(model)
     squares = np.flatnonzero(screens.floor)
     rng = np.random.default_rng(seed)
     for goal in rng.choice(squares, size=min(4, len(squares)), replace=False):
@@ -126,7 +126,7 @@ def test_longer_moves_than_a_step_are_safe_in_random_models(seed: int) -> None:
 
 def test_ways_are_free_connected_and_distinct() -> None:
     model = seen_whole(HALL)
-    screens = Screens(model)
+    screens = CostMaps(model)
     found = ways(screens, 0, flat(model, 12, -1), "skeleton")
     assert len(found) >= 2
     for way in found:
@@ -142,7 +142,7 @@ def test_ways_are_free_connected_and_distinct() -> None:
 
 def test_who_is_there_has_a_way_of_one_square() -> None:
     model = seen_whole(HALL)
-    screens = Screens(model)
+    screens = CostMaps(model)
     (way,) = ways(screens, 0, flat(model, 0, 0), "skeleton")
     assert way.squares == (screens.here,)
     assert way.length == 0
@@ -151,7 +151,7 @@ def test_who_is_there_has_a_way_of_one_square() -> None:
 def test_nearest_is_by_level_first() -> None:
     rows = ["b" * 12, "b..........b", "b.U..?...?.b", "b..........b", "b" * 12]
     model = seen_whole(rows)
-    screens = Screens(model)
+    screens = CostMaps(model)
     reached = screens.nearest(np.concatenate([flat(model, 3, 0), flat(model, 8, 0)]))
     assert reached is not None
     assert reached.level == 0  # the further one is floor, the nearer one was never seen
@@ -164,12 +164,12 @@ def test_nearest_is_by_level_first() -> None:
 
 def test_the_choice_of_an_aim() -> None:
     model = seen_whole(HALL)
-    screens = Screens(model)
-    near, far = Aim("explore", flat(model, 1, 0), "near"), Aim("explore", flat(model, 12, 0), "far")
-    goal = Aim("attain", flat(model, 12, 3), "there")
+    screens = CostMaps(model)
+    near, far = Subgoal("explore", flat(model, 1, 0), "near"), Subgoal("explore", flat(model, 12, 0), "far")
+    goal = Subgoal("attain", flat(model, 12, 3), "there")
     assert choose([near, far], screens, frozenset()) == near
     assert choose([near, far, goal], screens, frozenset()) == goal
-    wall = Aim("attain", flat(model, 14, 0), "in the wall")
+    wall = Subgoal("attain", flat(model, 14, 0), "in the wall")
     assert choose([wall, far], screens, frozenset()) == far
     assert choose([wall], screens, frozenset()) is None
     assert choose([near._replace(price=30.0), far], screens, frozenset()) == far
@@ -179,11 +179,11 @@ def test_the_choice_of_an_aim() -> None:
 def test_frontiers_border_on_what_was_never_seen() -> None:
     rows = ["bbbbb?????", "b....?????", "b.U..?????", "b.........", "bbbbb....?"]
     model = seen_whole(rows)
-    screens = Screens(model)
+    screens = CostMaps(model)
     found = np.unique(np.concatenate([look.squares for look in frontiers.frontiers(screens, 0)]))
     near = grown(~model.view.seen, 1)
     assert np.array_equal(found, np.flatnonzero(screens.floor & near))
-    closed = Screens(seen_whole(HALL))
+    closed = CostMaps(seen_whole(HALL))
     assert frontiers.frontiers(closed, 0) == []
     assert frontiers.vague_places(closed, 0, odd=False) == []
     assert frontiers.rooms_beyond(closed) == []
@@ -191,21 +191,21 @@ def test_frontiers_border_on_what_was_never_seen() -> None:
 
 def test_floor_seen_over_a_wall_is_a_room_beyond() -> None:
     rows = ["bbbbbbbbbbb", "b....b....b", "b.U..b....b", "b....b....b", "bbbbbbbbbbb"]
-    screens = Screens(seen_whole(rows))
+    screens = CostMaps(seen_whole(rows))
     (room,) = frontiers.rooms_beyond(screens)
     assert len(room.squares) == 12
     assert not screens.floor.ravel()[room.squares].any()
     small = ["bbbbbbbbbbb", "b....b...bb", "b.U..b..bbb", "b....bbbbbb", "bbbbbbbbbbb"]
-    assert frontiers.rooms_beyond(Screens(seen_whole(small))) == []
+    assert frontiers.rooms_beyond(CostMaps(seen_whole(small))) == []
 
 
 def test_a_second_look_from_the_same_square_is_not_worth_it() -> None:
     rows = ["bbbbb????", "b.U..????", "bbbbb????"]
     model = seen_whole(rows)
-    (border,) = frontiers.frontiers(Screens(model), 0)
+    (border,) = frontiers.frontiers(CostMaps(model), 0)
     looked = replace(model, looked_from=frozenset({(2, 0)}))
-    assert frontiers.frontiers(Screens(looked), 0) == []
-    beside = Screens(replace(model, looked_from=frozenset({(0, 0)})))
+    assert frontiers.frontiers(CostMaps(looked), 0) == []
+    beside = CostMaps(replace(model, looked_from=frozenset({(0, 0)})))
     assert len(frontiers.frontiers(beside, 0)[0].squares) == len(border.squares)
     assert frontiers.frontiers(beside, 2) == []
 
@@ -213,7 +213,7 @@ def test_a_second_look_from_the_same_square_is_not_worth_it() -> None:
 def test_circling_winds_once() -> None:
     model = seen_whole(HALL)
     (node,) = model.objects
-    screens = Screens(model)
+    screens = CostMaps(model)
     track = [model.place]
     offered = ways_round(screens, track, node)
     assert len(offered) == 2
@@ -233,8 +233,8 @@ def test_where_in_his_square_he_halts_changes_no_way_round(aside: float) -> None
     (node,) = model.objects
     x, y = pivot(node)
     moved = replace(model, place=(x + 6, y + aside))
-    offered = ways_round(Screens(moved), [model.place, (x, y + 5), moved.place], node)
-    amid = ways_round(Screens(moved), [model.place, (x, y + 5), (x + 6, y)], node)
+    offered = ways_round(CostMaps(moved), [model.place, (x, y + 5), moved.place], node)
+    amid = ways_round(CostMaps(moved), [model.place, (x, y + 5), (x + 6, y)], node)
     assert {turn: way.squares for turn, way in offered.items()} == {turn: way.squares for turn, way in amid.items()}
 
 
@@ -244,7 +244,7 @@ def test_half_a_turn_leaves_the_other_half() -> None:
     x, y = pivot(node)
     over = [model.place, (x, y + 5), (x + 6, y + 0.5)]
     moved = replace(model, place=over[-1])
-    offered = ways_round(Screens(moved), over, node)
+    offered = ways_round(CostMaps(moved), over, node)
     whole_turns = set()
     for turn, way in offered.items():
         rest = [(c + 0.5 + model.view.west, r + 0.5 + model.view.south) for c, r in way.squares]
@@ -265,7 +265,7 @@ def test_the_pivot_lies_within_the_object() -> None:
 @settings(max_examples=8, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_what_no_wall_explains_is_part_of_what_is_vague(seed: int) -> None:
-    screens = Screens(random_walk(seed))
+    screens = CostMaps(random_walk(seed))
 
     def squares(odd: bool) -> set[int]:
         return {int(s) for look in frontiers.vague_places(screens, 0, odd=odd) for s in look.squares}
@@ -276,7 +276,7 @@ def test_what_no_wall_explains_is_part_of_what_is_vague(seed: int) -> None:
 @pytest.mark.parametrize("leeway", [(-0.5, -0.5, 0.5, 0.5), (-0.5, 0.0, 0.0, 0.5), (-0.05, -0.05, 0.05, 0.05)])
 def test_he_halts_near_the_edge_of_a_square_while_he_may_have_woken_elsewhere(leeway: tuple[float, ...]) -> None:
     model = replace(seen_whole(HALL), leeway=leeway)
-    screens = Screens(model)
+    screens = CostMaps(model)
     for goal in ((4, 3), (-3, -2), (5, -4)):
         way = ways(screens, 0, flat(model, *goal), "skeleton")[0]
         move = next_move(screens, way.squares, "explore")
@@ -297,7 +297,7 @@ def test_he_halts_near_the_edge_of_a_square_while_he_may_have_woken_elsewhere(le
 
 def test_while_it_is_open_how_the_lattice_lies_no_turn_leads_to_the_line_between_two_squares() -> None:
     model = replace(seen_whole(HALL), likely_spread=math.pi)
-    screens = Screens(model)
+    screens = CostMaps(model)
     plain = 0
     for goal in np.flatnonzero(screens.floor).tolist():
         for way in ways(screens, 0, np.array([goal]), "skeleton")[:1]:
@@ -317,7 +317,7 @@ def test_while_it_is_open_how_the_lattice_lies_no_turn_leads_to_the_line_between
 @pytest.mark.parametrize("pace", [STROLL, HURRY])
 def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear_unless_they_are_bold(pace: Pace) -> None:
     model = replace(seen_whole(HALL), likely_spread=math.pi)
-    screens = Screens(model)
+    screens = CostMaps(model)
     clear_of = ~grown(~screens.safe, 1)
     longest, near = 0.0, []
     for goal in np.flatnonzero(screens.floor).tolist():
@@ -337,7 +337,7 @@ def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear_unless_th
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_the_bold_go_right_up_to_what_is_not_settled_but_not_to_what_was_never_seen(seed: int) -> None:
-    screens = Screens(random_walk(seed))
+    screens = CostMaps(random_walk(seed))
     view = screens.model.view
     more = screens.believed & ~screens.safe
     assert (screens.believed & screens.safe == screens.safe).all()
@@ -349,7 +349,7 @@ def test_the_bold_go_right_up_to_what_is_not_settled_but_not_to_what_was_never_s
 
 @pytest.mark.parametrize("spread", [0.0, math.pi])
 def test_who_hurries_is_bold_and_who_strolls_is_not(spread: float) -> None:
-    screens = Screens(replace(random_walk(3), likely_spread=spread))
+    screens = CostMaps(replace(random_walk(3), likely_spread=spread))
     for kind in STROLL.longest:
         assert (HURRY.ground(screens, kind) == (screens.approached if kind == "inspect" else screens.believed)).all()
         assert (STROLL.ground(screens, kind) == screens.safe).all()
@@ -359,7 +359,7 @@ def test_who_hurries_is_bold_and_who_strolls_is_not(spread: float) -> None:
 @pytest.mark.parametrize("spread", [0.0, math.pi])
 @pytest.mark.parametrize("kind", sorted(STROLL.longest))
 def test_one_move_leads_just_where_the_next_move_may_end(kind: str, spread: float) -> None:
-    screens = Screens(replace(seen_whole(HALL), likely_spread=spread))
+    screens = CostMaps(replace(seen_whole(HALL), likely_spread=spread))
     reached = one_move(screens, kind)
     ended = np.zeros_like(reached)
     ended[screens.here[1], screens.here[0]] = True
@@ -375,7 +375,7 @@ def test_one_move_leads_just_where_the_next_move_may_end(kind: str, spread: floa
 
 def test_he_does_not_halt_near_an_edge_where_what_lies_beyond_it_may_stop_him() -> None:
     model = replace(seen_whole(HALL), leeway=(-0.5, -0.5, 0.5, 0.5))
-    screens = Screens(model)
+    screens = CostMaps(model)
     for goal in np.flatnonzero(screens.floor).tolist():
         for way in ways(screens, 0, np.array([goal]), "skeleton")[:1]:
             if len(way.squares) > 1:

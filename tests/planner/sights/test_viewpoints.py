@@ -11,9 +11,9 @@ from kb.mapping.occupancy import FULL, OPEN
 from kb.world.corners import Corner
 from planner.goals.corner_goal import approach
 from planner.navigation.fewest_moves import FewestMoves
-from planner.navigation.subgoals import Aim
+from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import HURRY, one_move
-from planner.screen.projection import LEVELS, WALL_LIKE, Screens, grown
+from planner.screen.projection import LEVELS, WALL_LIKE, CostMaps, grown
 from planner.sights.frontiers import CLOSE, FURTHER
 from planner.sights.viewpoints import ARRIVE, LIKELY, TAKE, Approach, close
 from tests.kb.drawings import drawing, seen_whole
@@ -29,10 +29,10 @@ def distance_from(squares: np.ndarray, mask: np.ndarray) -> np.ndarray:
     return np.asarray(apart.min(1))
 
 
-def room(looked_from: frozenset[tuple[int, int]] = frozenset()) -> tuple[Screens, np.ndarray]:
-    """Screens of a room with one thing, and the squares of that. looked_from : squares of the lattice."""
+def room(looked_from: frozenset[tuple[int, int]] = frozenset()) -> tuple[CostMaps, np.ndarray]:
+    """CostMaps of a room with one thing, and the squares of that. looked_from : squares of the lattice."""
     model = replace(seen_whole(ROOM), looked_from=looked_from)
-    return Screens(model), model.mask(model.objects[0].patch)
+    return CostMaps(model), model.mask(model.objects[0].patch)
 
 
 def test_what_is_hardly_what_is_looked_for_is_seen_from_afar_first() -> None:
@@ -61,19 +61,19 @@ def test_what_he_shall_take_is_gone_up_to_where_it_surely_is() -> None:
     rim = mask & (np.arange(mask.shape[1]) == column)[None]  # may be part of the thing, and may be floor
     view = screens.model.view
     doubtful = np.where(rim, 0.5, view.probability).astype(np.float32)
-    screens = Screens(replace(screens.model, view=view._replace(probability=doubtful)))
+    screens = CostMaps(replace(screens.model, view=view._replace(probability=doubtful)))
     squares = close(screens, mask, 0.8, TAKE)
     assert edged(mask & ~rim).ravel()[squares].all()
-    only = Screens(replace(screens.model, view=view._replace(probability=np.where(mask, 0.5, doubtful))))
+    only = CostMaps(replace(screens.model, view=view._replace(probability=np.where(mask, 0.5, doubtful))))
     assert edged(mask).ravel()[close(only, mask, 0.8, TAKE)].all()
 
 
-def looking(screens: Screens, squares: np.ndarray, probability: float, state: int) -> Screens:
+def looking(screens: CostMaps, squares: np.ndarray, probability: float, state: int) -> CostMaps:
     """The same, but for squares that are occupied with another probability, and settled or open."""
     view = screens.model.view
     chance = np.where(squares, probability, view.probability).astype(np.float32)
     states = np.where(squares, state, view.state).astype(view.state.dtype)
-    return Screens(replace(screens.model, view=view._replace(probability=chance, state=states)))
+    return CostMaps(replace(screens.model, view=view._replace(probability=chance, state=states)))
 
 
 def sides(mask: np.ndarray) -> dict[str, np.ndarray]:
@@ -135,7 +135,7 @@ def test_who_goes_up_to_a_thing_goes_over_what_may_well_be_floor_beside_it() -> 
     assert (screens.approached & ~screens.believed == edged(mask) & ring).all()
     squares = close(screens, mask, 1.0, TAKE)
     assert edged(mask).ravel()[squares].all()
-    fewest, aim = FewestMoves(screens), Aim("inspect", squares, "a thing")
+    fewest, aim = FewestMoves(screens), Subgoal("inspect", squares, "a thing")
     way, dear = fewest.way(aim), fewest.priced([aim])[0]
     assert way is not None
     assert (np.flatnonzero(ring) == way.squares[-1][1] * mask.shape[1] + way.squares[-1][0]).any()

@@ -10,9 +10,9 @@ from shapely import affinity
 from benchmarks.harness.trial import Conditions, run_trial
 from geometry.manipulation.goals import At
 from kb.mapping.patch import Patch
-from kb.objects.subcell_extent import Insets
+from kb.objects.subcell_extent import SubcellExtent
 from kb.world.model import Node
-from planner.skills.measure_size import MOST, Sizer
+from planner.skills.measure_size import MOST, SizeEstimator
 
 
 @pytest.mark.parametrize(
@@ -35,13 +35,15 @@ def test_how_large_it_is_is_told_before_he_says_what_is_missing(
 
 def node_of(polygon: shapely.Polygon, turned: float, astray: bool) -> Node:
     patch = Patch(0, 0, np.ones((1, 1), np.bool_))
-    return Node("o1", "object", 100, "", patch, 0, polygon=polygon, turned=turned, astray=astray, insets=Insets())
+    return Node(
+        "o1", "object", 100, "", patch, 0, polygon=polygon, turned=turned, astray=astray, insets=SubcellExtent()
+    )
 
 
 @pytest.mark.parametrize("turned", [90.0, -90.0, 180.0, 270.0])
 def test_what_lies_astray_by_a_turn_is_turned_back_first(turned: float) -> None:
     brick = shapely.box(3.3, 4.1, 5.3, 9.1)
-    ends = list(Sizer().poses(node_of(brick, turned, True)))
+    ends = list(SizeEstimator().poses(node_of(brick, turned, True)))
     assert len(ends) > 1
     assert len(set(ends)) == len(ends)
     for end in ends:
@@ -55,7 +57,7 @@ def test_what_lies_astray_by_a_turn_is_turned_back_first(turned: float) -> None:
 
 
 def test_what_does_not_lie_astray_is_pushed_only_and_not_for_ever() -> None:
-    sizer = Sizer()
+    sizer = SizeEstimator()
     tries = [list(sizer.poses(node_of(shapely.box(3, 4, 5, 9), 90.0, False))) for _ in range(MOST + 1)]
     assert all(end.pose.degrees == 0 for ends in tries for end in ends)
     assert all(tries[:MOST])

@@ -10,7 +10,7 @@ from geometry.motion.se2 import Translate
 from kb.body import Push
 from kb.world.model import Node
 from planner.goals.corner_goal import WALL, _presses
-from planner.goals.placement import Landing
+from planner.goals.placement import Placement
 from planner.situation import Situation
 from planner.skills.press import Presser
 from tests.kb.drawings import seen_whole
@@ -19,7 +19,7 @@ from tests.planner.situations import BESIDE_A_THING, situation_of
 
 (GOAL,) = facts_of("at(x, corner(northeast)).")
 ACROSS, UP = Translate(1.0, 0.0), Translate(0.0, 1.5)
-LAND = Landing({}, holds=True, presses={"across": ACROSS, "up": UP})
+LAND = Placement({}, holds=True, presses={"across": ACROSS, "up": UP})
 
 
 def holding() -> tuple[Situation, Node]:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import planner.deciding.pursuit
 import planner.deciding.transport
 from geometry.manipulation.plan_carrying import Leg
-from geometry.manipulation.workspace import Yard
+from geometry.manipulation.workspace import Workspace
 from geometry.motion.se2 import Motion, Rotate, Translate
 from kb.body import Grasp, Move, Push, Release
 from kb.language.reader import facts_of
@@ -20,16 +20,16 @@ from kb.mapping.patch import Patch
 from kb.task.binding import Reconciled
 from kb.world.model import Node
 from planner.advice import Act, See
-from planner.carrying.infeasibility import Refusal
-from planner.carrying.plan_executor import Carrier
-from planner.carrying.remaining_plan import Course
+from planner.carrying.infeasibility import Infeasibility
+from planner.carrying.plan_executor import PlanExecutor
+from planner.carrying.remaining_plan import RemainingPlan
 from planner.deciding.decider import Decider
 from planner.deciding.transport import Transporter
 from planner.decision import Decision
-from planner.goals.placement import Landing, in_view
-from planner.navigation.subgoals import Aim
+from planner.goals.placement import Placement, in_view
+from planner.navigation.subgoals import Subgoal
 from planner.screen.projection import Squares
-from planner.sights.frontiers import Lookout
+from planner.sights.frontiers import Viewpoint
 from planner.situation import Situation
 from planner.skills.take_along import NEARBY, by_way, lead, near, out
 from planner.stages import Stage
@@ -81,7 +81,7 @@ def test_what_the_thing_would_run_into_is_no_way() -> None:
 
 def to_be_seen(decider: Decider, situation: Situation, squares: Squares, monkeypatch: pytest.MonkeyPatch) -> object:
     """What he does who must look from some squares before he can go on with what he holds."""
-    monkeypatch.setattr(Carrier, "advise", lambda *_: See(Lookout(squares, "the way is not clear")))
+    monkeypatch.setattr(PlanExecutor, "advise", lambda *_: See(Viewpoint(squares, "the way is not clear")))
     (goal,) = facts_of("at(x, corner(northeast)).")
     decision = decider.transporter.towards(goal, Stage((goal,)), situation, Reconciled({}, (), (), ()))
     assert decision is not None
@@ -110,11 +110,11 @@ def exploring(situation: Situation, squares: Squares, lookouts: bool, monkeypatc
 
     lookouts : it is just there that he must look; else anywhere.
     """
-    looks = (Lookout(squares, "what may be a door is not clear"),)
-    nowhere = Landing({}, "it is not seen yet", looks if lookouts else ())
+    looks = (Viewpoint(squares, "what may be a door is not clear"),)
+    nowhere = Placement({}, "it is not seen yet", looks if lookouts else ())
     monkeypatch.setattr(planner.deciding.transport, "landing", lambda *_: nowhere)
     monkeypatch.setattr(
-        planner.deciding.transport, "aims_towards", lambda *_: [Aim("explore", squares, "it goes on unseen")]
+        planner.deciding.transport, "aims_towards", lambda *_: [Subgoal("explore", squares, "it goes on unseen")]
     )
     (goal,) = facts_of("around(x, corner).")
     decision = Decider(NO_TASK, bound=situation.binding).transporter.towards(
@@ -194,7 +194,7 @@ def test_what_cannot_be_led_out_stays() -> None:
 
 def test_what_did_not_move_is_not_led_out_again() -> None:
     situation, node = in_a_nook([*NOOK, *["b" + "." * 14 + "b"] * 6, "b" * 16])
-    carrier = Carrier(pull=True)
+    carrier = PlanExecutor(pull=True)
     led = carrier.led_out(node, situation)
     assert led is not None
     assert isinstance(led.command, Push)
@@ -203,7 +203,7 @@ def test_what_did_not_move_is_not_led_out_again() -> None:
 
 def at_a_loss(situation: Situation, monkeypatch: pytest.MonkeyPatch) -> Decision:
     """What he does with something in hand who knows no way for it, and nothing to look at."""
-    monkeypatch.setattr(Transporter, "_advice", lambda *_: Refusal(False, lambda: "it is not seen yet"))
+    monkeypatch.setattr(Transporter, "_advice", lambda *_: Infeasibility(False, lambda: "it is not seen yet"))
     monkeypatch.setattr(planner.deciding.pursuit, "against_walls", lambda _: [])
     return exploring(situation, at(situation), lookouts=False, monkeypatch=monkeypatch)
 
@@ -220,9 +220,9 @@ def test_what_shuts_him_in_is_taken_along_once(monkeypatch: pytest.MonkeyPatch) 
     """Who comes back, and must look once more, leads it out and takes it from elsewhere: so he is shut in no more."""
     drawn = ["b" * 16, "b...........ggUb", "b...........gggb", *["b" + "." * 14 + "b"] * 6, "b" * 16]
     situation, _ = in_a_nook(drawn)
-    looks = (Lookout(at(situation, (-5, -5)), "a room is not seen"),)
-    land = Landing({}, "a room is not seen", looks, shut_in=True)
-    aims = [Aim("inspect", looks[0].squares, looks[0].what)]
+    looks = (Viewpoint(at(situation, (-5, -5)), "a room is not seen"),)
+    land = Placement({}, "a room is not seen", looks, shut_in=True)
+    aims = [Subgoal("inspect", looks[0].squares, looks[0].what)]
     monkeypatch.setattr(planner.deciding.transport, "landing", lambda *_: land)
     monkeypatch.setattr(planner.deciding.transport, "aims_towards", lambda *_: aims)
     decider, (goal,) = Decider(NO_TASK, bound=situation.binding), facts_of("at(x, corner(northeast)).")
@@ -236,8 +236,8 @@ def test_who_is_not_shut_in_and_at_a_loss_gives_up(monkeypatch: pytest.MonkeyPat
     assert decision.command is None and decision.verdict == "limit"
 
 
-def surely_free(situation: Situation, node: Node) -> Yard:
-    return Yard(situation.screens.free(0) | situation.model.mask(node.patch))
+def surely_free(situation: Situation, node: Node) -> Workspace:
+    return Workspace(situation.screens.free(0) | situation.model.mask(node.patch))
 
 
 @given(st.integers(-3, 14), st.integers(-2, 6), st.integers(-3, 14), st.integers(-2, 6))
@@ -275,9 +275,11 @@ def test_he_sees_by_the_way_of_a_push_what_he_would_have_to_come_back_for(
     motions: tuple[Motion, ...], taken: bool, pull: bool
 ) -> None:
     situation, node = holding()
-    carrier = Carrier(pull)
+    carrier = PlanExecutor(pull)
     leg = Leg((0.5, 0.5), (1, 0), motions)
-    carrier._course = Course(node.name, "northeast", node.polygon, (leg,), node.patch, 0, (0.5, 0.5), grasped=True)
+    carrier._course = RemainingPlan(
+        node.name, "northeast", node.polygon, (leg,), node.patch, 0, (0.5, 0.5), grasped=True
+    )
     assert isinstance(carrier.gone_on(node, situation), Act)
     act = carrier.by_way_of(node, at(situation, (4, 5)), situation)
     assert (act is not None) == (taken and pull)
@@ -291,6 +293,6 @@ def test_he_sees_by_the_way_of_a_push_what_he_would_have_to_come_back_for(
 def test_what_he_has_not_got_hold_of_he_takes_first() -> None:
     situation, node = holding()
     leg = Leg((0.5, 0.5), (1, 0), (Translate(9.0, 4.0),))
-    carrier = Carrier()
-    carrier._course = Course(node.name, "northeast", node.polygon, (leg,), node.patch, 0)
+    carrier = PlanExecutor()
+    carrier._course = RemainingPlan(node.name, "northeast", node.polygon, (leg,), node.patch, 0)
     assert carrier.by_way_of(node, at(situation, (4, 5)), situation) is None

@@ -13,7 +13,7 @@ from geometry.motion.se2 import Translate
 from kb.mapping.occupancy import FULL
 from kb.mapping.patch import covered
 from kb.world.model import Node, WorldModel
-from planner.skills.failed_grasps import MOST, FailedHolds
+from planner.skills.failed_grasps import MOST, FailedGrasps
 from planner.skills.unjam import BACK, ONWARD, ROOM, drawn_back
 from tests.kb.drawings import seen_whole
 
@@ -107,7 +107,7 @@ def test_what_is_wider_than_the_door_is_only_drawn_back() -> None:
 
 def test_holds_that_failed_are_tried_again_when_no_other_is_left_but_not_for_ever() -> None:
     node, model = before_the_door(WEST, 4.0)
-    failed = FailedHolds()
+    failed = FailedGrasps()
     assert not failed
     assert not failed.forgiven(node)
     for _ in range(MOST):

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
 from geometry.motion.se2 import Motion, Rotate, Translate
-from kb.localisation.hypotheses.contacts import Hindrances, near
-from kb.mapping.occupancy import FREE, FULL, OPEN, Evidence
+from kb.localisation.hypotheses.contacts import Obstructions, near
+from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
 
 ELL = shapely.Polygon([(1, 0), (6, 0), (6, 2), (3, 2), (3, 5), (1, 5)])
 UTAK = (0.5, 1.5)
@@ -19,9 +19,9 @@ STEPS = 400
 Square = tuple[int, int]
 
 
-def evidence_of(open_: dict[Square, float], full: list[Square]) -> Evidence:
+def evidence_of(open_: dict[Square, float], full: list[Square]) -> OccupancyMap:
     """A map on which all is free but some squares, of which it is open (with their log odds) or known."""
-    evidence = Evidence()
+    evidence = OccupancyMap()
     evidence.state[:] = FREE
     for square, odds in open_.items():
         evidence.state[evidence.index(*square)] = OPEN
@@ -65,7 +65,7 @@ def test_a_motion_may_end_where_it_meets_what_is_not_free(
     motion: Motion, open_: dict[Square, float], full: list[Square]
 ) -> None:
     open_ = {square: odds for square, odds in open_.items() if square not in full}
-    stops = Hindrances(evidence_of(open_, full), UTAK, ELL, motion).stops(UTAK, ELL, motion)
+    stops = Obstructions(evidence_of(open_, full), UTAK, ELL, motion).stops(UTAK, ELL, motion)
     end = min((met_by_steps(square, motion) for square in full), default=1.0)
     for stop in stops:
         for square in stop.against:
@@ -89,7 +89,7 @@ def test_a_motion_may_end_where_it_meets_what_is_not_free(
 def test_the_likelier_square_comes_first() -> None:
     squares = {(8, 0): -2.0, (9, 1): 2.0}
     motion = Translate(6.0, 0.0)
-    hindrances = Hindrances(evidence_of(squares, []), UTAK, ELL, motion)
+    hindrances = Obstructions(evidence_of(squares, []), UTAK, ELL, motion)
     first, second = hindrances.ends(UTAK, ELL, motion)
     assert (first.against, second.against) == (frozenset({(9, 1)}), frozenset({(8, 0)}))
     assert first.polygon.bounds[2] == pytest.approx(9.0)
@@ -100,18 +100,18 @@ def test_the_likelier_square_comes_first() -> None:
 
 def test_what_stops_nearby_is_known_by_the_place() -> None:
     motion = Translate(6.0, 0.0)
-    hindrances = Hindrances(evidence_of({(8, 0): -2.0, (9, 1): 2.0}, []), UTAK, ELL, motion)
+    hindrances = Obstructions(evidence_of({(8, 0): -2.0, (9, 1): 2.0}, []), UTAK, ELL, motion)
     for part, square in ((2 / 6, (8, 0)), (2.2 / 6, (8, 0)), (2.8 / 6, (9, 1))):
         stop = near(hindrances.stops(UTAK, ELL, motion), UTAK, ELL, motion, part)
         assert stop is not None
         assert stop.against == {square}
     assert near(hindrances.stops(UTAK, ELL, motion), UTAK, ELL, motion, 2.5 / 6) is None
-    assert Hindrances(evidence_of({}, []), UTAK, ELL, motion).stops(UTAK, ELL, motion) == []
+    assert Obstructions(evidence_of({}, []), UTAK, ELL, motion).stops(UTAK, ELL, motion) == []
 
 
 def test_squares_that_are_met_at_once_are_told_together() -> None:
     flush = {(8, y): 0.0 for y in (0, 1)} | {(8, 5): 0.0}
     motion = Translate(3.0, 0.0)
-    stops = Hindrances(evidence_of(flush, []), UTAK, ELL, motion).stops(UTAK, ELL, motion)
+    stops = Obstructions(evidence_of(flush, []), UTAK, ELL, motion).stops(UTAK, ELL, motion)
     assert [(stop.against, stop.chance) for stop in stops] == [(frozenset({(8, 0), (8, 1)}), pytest.approx(0.75))]
     assert all(a.part < b.part for a, b in itertools.pairwise(stops))

@@ -11,9 +11,9 @@ from kb.localisation.hypotheses.frames import (
     ANGLES,
     CENTRED,
     GRID,
-    Disc,
-    Hypothesis,
-    Look,
+    FrameHypothesis,
+    Observation,
+    OriginDisc,
     anywhere,
     candidates,
     cells,
@@ -24,7 +24,7 @@ from kb.localisation.hypotheses.frames import (
     standing,
     within,
 )
-from kb.perception.frame import CENTRE, Lattice, turned
+from kb.perception.frame import CENTRE, Frame, turned
 from kb.perception.retina import count_ranges
 from tests.kb.eyes import random_room, retina, world_of
 
@@ -36,13 +36,13 @@ def angle_of(heading: int) -> int:
     return (heading + 44) % 90 - 44
 
 
-def looks_of(rows: list[str], heading: int, points: list[Point]) -> list[Look]:
+def looks_of(rows: list[str], heading: int, points: list[Point]) -> list[Observation]:
     """The looks of one who wakes at the first point (table frame) and goes exactly to the others."""
     occupied = world_of(rows)
     looks = []
     for x, y in points:
         seen = retina(occupied, (math.floor(x), math.floor(y)), heading)
-        looks.append(Look(count_ranges(seen), turned(x - points[0][0], y - points[0][1], -heading)))
+        looks.append(Observation(count_ranges(seen), turned(x - points[0][0], y - points[0][1], -heading)))
     return looks
 
 
@@ -53,7 +53,7 @@ def woke(heading: int, point: Point) -> Point:
     return x + 0.5, y + 0.5
 
 
-def holds(hypothesis: Hypothesis, angle: int, point: Point) -> bool:
+def holds(hypothesis: FrameHypothesis, angle: int, point: Point) -> bool:
     """Is the truth among what a hypothesis says?"""
     west, south, east, north = hypothesis.box
     slack = 1e-9
@@ -91,7 +91,7 @@ def test_who_wakes_in_the_middle_keeps_the_middle(seed: int) -> None:
     for number in range(1, len(looks) + 1):
         hypotheses = standing(hypotheses, looks[:number])
         assert angle_of(heading) in {h.angle for h in hypotheses}
-        assert contradictions(Lattice(angle_of(heading)), looks[:number]) == 0
+        assert contradictions(Frame(angle_of(heading)), looks[:number]) == 0
 
 
 ROOM = [
@@ -106,7 +106,7 @@ ROOM = [
 @pytest.mark.parametrize("heading", [20, 117, 300])
 def test_wrong_angles_are_given_up(heading: int) -> None:
     looks = looks_of(ROOM, heading, [(12.5, 10.5), (14.7, 6.2), (5.5, 15.5), (20.1, 4.4)])
-    assert contradictions(Lattice(0), looks) > 0
+    assert contradictions(Frame(0), looks) > 0
     hypotheses = CENTRED
     for number in range(1, len(looks) + 1):
         hypotheses = standing(hypotheses, looks[:number])
@@ -118,20 +118,20 @@ def test_one_look_at_an_edge_that_runs_askew_gives_the_axes_up() -> None:
     looks = looks_of(ROOM, 27, [(4.5, 4.5)])
     assert 0 in {h.angle for h in CENTRED}
     later = looks_of(ROOM, 27, [(4.5, 4.5), (7.5, 4.5), (4.5, 7.5)])
-    assert contradictions(Lattice(0), later) > 0
-    assert contradictions(Lattice(27), looks) == 0
+    assert contradictions(Frame(0), later) > 0
+    assert contradictions(Frame(27), looks) == 0
 
 
 def test_a_false_place_is_a_contradiction() -> None:
     honest = looks_of(ROOM, 0, [(12.5, 10.5), (12.5, 8.5)])
-    moved = [honest[0], Look(honest[1].ranges, (3.0, 0.0))]
-    assert contradictions(Lattice(0), honest) == 0
-    assert contradictions(Lattice(0), moved) > 0
+    moved = [honest[0], Observation(honest[1].ranges, (3.0, 0.0))]
+    assert contradictions(Frame(0), honest) == 0
+    assert contradictions(Frame(0), moved) > 0
 
 
 @given(st.integers(-44, 45), st.tuples(st.floats(-40, 40), st.floats(-40, 40)))
 def test_a_split_covers_the_box_and_tells_squares_apart(angle: int, place: Point) -> None:
-    whole = Hypothesis(angle, (0.0, 0.0, 1.0, 1.0))
+    whole = FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0))
     parts = whole.split(place)
     area = sum(part.area for part in parts)
     assert area == pytest.approx(1.0)
@@ -139,26 +139,26 @@ def test_a_split_covers_the_box_and_tells_squares_apart(angle: int, place: Point
         squares = set()
         for fx, fy in ((0.01, 0.01), (0.5, 0.5), (0.99, 0.99), (0.01, 0.99)):
             point = (w + fx * (e - w), s + fy * (n - s))
-            x, y = Lattice(angle, point).place_from_utak(*place)
+            x, y = Frame(angle, point).place_from_utak(*place)
             squares.add((math.floor(x), math.floor(y)))
         if min(e - w, n - s) > 1e-6:
             assert len(squares) == 1
 
 
 def test_the_held_lattice_is_tried_first_then_the_axes() -> None:
-    held = Lattice(3)
+    held = Frame(3)
     tried = candidates(CENTRED, held)
-    assert tried[:2] == [held, Lattice(0)]
+    assert tried[:2] == [held, Frame(0)]
     assert sorted(lattice.angle for lattice in tried) == list(range(-44, 46))
 
 
 def test_of_the_others_the_middle_is_tried_first() -> None:
     others = tuple(h for h in CENTRED if h.angle > 10)
-    tried = candidates(others, Lattice(3))
+    tried = candidates(others, Frame(3))
     assert tried[0].angle == 28  # the middle of 11 to 45
     away = [abs(lattice.angle - 28) for lattice in tried]
     assert away == sorted(away)
-    assert candidates((), Lattice(3)) == []
+    assert candidates((), Frame(3)) == []
 
 
 def test_every_angle_is_tried_once_the_axes_first() -> None:
@@ -172,7 +172,7 @@ def test_every_angle_is_tried_once_the_axes_first() -> None:
 def test_wherever_within_he_woke_every_look_fell_on_the_same_square(seed: int) -> None:
     rows, heading, places = scene(seed, 4)
     looks = looks_of(rows, heading, places)
-    true = Lattice(angle_of(heading), woke(heading, places[0]))
+    true = Frame(angle_of(heading), woke(heading, places[0]))
     west, south, east, north = within(true, looks)
     assert west <= true.woke[0] <= east
     assert south <= true.woke[1] <= north
@@ -181,36 +181,36 @@ def test_wherever_within_he_woke_every_look_fell_on_the_same_square(seed: int) -
         other = point.lattice
         assert {tuple(math.floor(v) for v in other.place_from_utak(*look.place)) for look in looks} == squares
     if east < 1:
-        other = Lattice(true.angle, (east + 1e-6, true.woke[1]))
+        other = Frame(true.angle, (east + 1e-6, true.woke[1]))
         assert {tuple(math.floor(v) for v in other.place_from_utak(*look.place)) for look in looks} != squares
 
 
 def test_looks_need_not_agree_where_a_thing_was_moved() -> None:
     gone = [row.replace("ggg", "...") for row in ROOM]
     looks = [*looks_of(ROOM, 0, [(12.5, 10.5)]), *looks_of(gone, 0, [(12.5, 10.5)])]
-    assert contradictions(Lattice(), looks) > 0
-    away = Disc((7.5 - 12.5, 11.5 - 10.5), 4.0)
-    assert contradictions(Lattice(), looks, [away]) == 0
-    assert contradictions(Lattice(), looks, [Disc((9.0, -7.0), 2.0)]) > 0
+    assert contradictions(Frame(), looks) > 0
+    away = OriginDisc((7.5 - 12.5, 11.5 - 10.5), 4.0)
+    assert contradictions(Frame(), looks, [away]) == 0
+    assert contradictions(Frame(), looks, [OriginDisc((9.0, -7.0), 2.0)]) > 0
     turned_looks = looks_of(ROOM, 3, [(12.5, 10.5), (14.7, 6.2), (5.5, 15.5), (20.1, 4.4)])
     assert 0 not in {h.angle for h in search(turned_looks, anywhere((0,)), [away])}
     assert 3 in {h.angle for h in search(turned_looks, anywhere((0, 3)), [away])}
 
 
 def test_a_hypothesis_holds_what_lies_in_its_box() -> None:
-    half = Hypothesis(2, (0.0, 0.0, 0.5, 1.0))
-    assert half.holds(Lattice(2, (0.2, 0.9)))
-    assert not half.holds(Lattice(2, (0.7, 0.9)))
-    assert not half.holds(Lattice(1, (0.2, 0.9)))
-    point = Hypothesis(0, CENTRE + CENTRE)
+    half = FrameHypothesis(2, (0.0, 0.0, 0.5, 1.0))
+    assert half.holds(Frame(2, (0.2, 0.9)))
+    assert not half.holds(Frame(2, (0.7, 0.9)))
+    assert not half.holds(Frame(1, (0.2, 0.9)))
+    point = FrameHypothesis(0, CENTRE + CENTRE)
     assert point.is_point
-    assert point.holds(Lattice())
-    assert not point.holds(Lattice(0, (0.5, 0.6)))
+    assert point.holds(Frame())
+    assert not point.holds(Frame(0, (0.5, 0.6)))
 
 
 def test_of_one_angle_the_widest_box_is_tried_first() -> None:
-    boxes = (Hypothesis(0, (0.0, 0.0, 0.1, 0.1)), Hypothesis(0, (0.6, 0.0, 1.0, 1.0)))
-    assert candidates(boxes, Lattice())[0].woke == (0.8, 0.5)
+    boxes = (FrameHypothesis(0, (0.0, 0.0, 0.1, 0.1)), FrameHypothesis(0, (0.6, 0.0, 1.0, 1.0)))
+    assert candidates(boxes, Frame())[0].woke == (0.8, 0.5)
 
 
 def test_looks_rarely_leave_less_room_than_that_he_could_have_woken_there() -> None:
@@ -223,21 +223,21 @@ def test_looks_rarely_leave_less_room_than_that_he_could_have_woken_there() -> N
             at = int(np.searchsorted(cuts, woke))
             box.append((cuts[at - 1], cuts[at]))
         (west, east), (south, north) = box
-        found += cramped([Hypothesis(3, (west, south, east, north))], looks)
+        found += cramped([FrameHypothesis(3, (west, south, east, north))], looks)
     assert found / tried < 0.02
 
 
 def test_a_sliver_of_his_square_is_little_room_whatever_its_length() -> None:
-    assert cramped([Hypothesis(1, (0.1, 0.4, 0.9, 0.402))], 3)
-    assert not cramped([Hypothesis(1, (0.1, 0.4, 0.9, 0.402)), Hypothesis(2, (0.1, 0.4, 0.2, 0.6))], 3)
+    assert cramped([FrameHypothesis(1, (0.1, 0.4, 0.9, 0.402))], 3)
+    assert not cramped([FrameHypothesis(1, (0.1, 0.4, 0.9, 0.402)), FrameHypothesis(2, (0.1, 0.4, 0.2, 0.6))], 3)
     assert not cramped(CENTRED[:2], 3)
     assert not cramped([], 3)
 
 
 def test_points_stand_for_the_cells_of_their_grid() -> None:
     looks = looks_of(ROOM, 0, [(12.5, 10.5), (14.5, 6.25)])
-    west, south, east, north = within(Lattice(), looks)
-    where = points(Lattice(), looks)
+    west, south, east, north = within(Frame(), looks)
+    where = points(Frame(), looks)
     assert cells(where) == pytest.approx(((east - west) / GRID, (north - south) / GRID))
     assert cells(where[3:40]) == pytest.approx(cells(where))
     assert cells(where[:1]) == (0.0, 0.0)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from geometry.counts.gibbs import CORNER
-from kb.localisation.hypotheses.frames import ANYWHERE, CENTRED, Hypothesis, Look, search, standing
-from kb.localisation.hypotheses.map_prior import BESIDE, LESS_LIKELY, UNTRIED, Sketch, plainness, weighed
-from kb.mapping.occupancy import Evidence
-from kb.perception.frame import CENTRE, Lattice
+from kb.localisation.hypotheses.frames import ANYWHERE, CENTRED, FrameHypothesis, Observation, search, standing
+from kb.localisation.hypotheses.map_prior import BESIDE, LESS_LIKELY, UNTRIED, MapDescription, plainness, weighed
+from kb.mapping.occupancy import OccupancyMap
+from kb.perception.frame import CENTRE, Frame
 from kb.perception.retina import count_ranges
 from tests.kb.drawings import LARGE_ROOM, drawing, looked
 from tests.kb.eyes import impression, random_room, world_of
@@ -19,20 +19,20 @@ LONG_ROOM = ["b" * 80, *["b" * 2 + "." * 76 + "b" * 2] * 20, "b" * 80]
 Point = tuple[float, float]
 
 
-def a_look(rng: np.random.Generator, heading: int) -> Look:
+def a_look(rng: np.random.Generator, heading: int) -> Observation:
     occupied = world_of(random_room(rng, 36, 36, 6))
     free = [(i, j) for i in range(8, 28) for j in range(8, 28) if not occupied(i, j)]
     square = free[int(rng.integers(len(free)))]
-    return Look(count_ranges(impression(occupied, square, heading).retina), (0.0, 0.0))
+    return Observation(count_ranges(impression(occupied, square, heading).retina), (0.0, 0.0))
 
 
-def cost(evidence: Evidence) -> float:
-    sketch = Sketch(evidence)
+def cost(evidence: OccupancyMap) -> float:
+    sketch = MapDescription(evidence)
     sketch.draw()
     return sketch.cost(0.0)
 
 
-def likeliest(hypotheses: tuple[Hypothesis, ...]) -> int:
+def likeliest(hypotheses: tuple[FrameHypothesis, ...]) -> int:
     return min(hypotheses, key=lambda h: h.dear).angle
 
 
@@ -66,15 +66,15 @@ def test_only_the_likely_ones_are_weighed_again_until_they_are_given_up() -> Non
     assert abs(likeliest(weighed(without, [look])) + 20) <= 2
 
 
-def strolled(heading: int, woke: Point, seed: int) -> list[Look]:
+def strolled(heading: int, woke: Point, seed: int) -> list[Observation]:
     """Looks from here and there in a long room. woke : where in his square."""
     room, rng = world_of(LONG_ROOM), np.random.default_rng(seed)
-    true = Lattice(heading, woke)
+    true = Frame(heading, woke)
     places = [(0.0, 0.0), *(true.place_to_utak(*rng.uniform((-34, -8), (34, 8))) for _ in range(9))]
     looks = []
     for place in places:
         i, j = (math.floor(v) for v in true.place_from_utak(*place))
-        looks.append(Look(count_ranges(impression(room, (i + 40, j + 11), heading).retina), place))
+        looks.append(Observation(count_ranges(impression(room, (i + 40, j + 11), heading).retina), place))
     return looks
 
 
@@ -82,7 +82,7 @@ def strolled(heading: int, woke: Point, seed: int) -> list[Look]:
 def test_a_degree_shows_by_and_by_however_sure_he_was_at_first(heading: int) -> None:
     for seed in range(3):
         looks = strolled(heading, CENTRE, seed)
-        left: tuple[Hypothesis, ...] = tuple(h._replace(dear=40.0 * (h.angle != 0)) for h in CENTRED)
+        left: tuple[FrameHypothesis, ...] = tuple(h._replace(dear=40.0 * (h.angle != 0)) for h in CENTRED)
         for number in range(1, len(looks) + 1):
             left = weighed(standing(left, looks[:number]), looks[:number])
         assert likeliest(left) == heading
@@ -100,8 +100,10 @@ def test_where_in_his_square_he_woke_is_nothing_to_a_single_look() -> None:
 
 def test_the_less_is_left_of_his_square_the_less_likely_he_woke_elsewhere_than_amid_it() -> None:
     looks = strolled(1, CENTRE, 0)[:4]
-    own = Hypothesis(1, CENTRE * 2, dear=1.0)
-    half, whole = (weighed([Hypothesis(0, (0.4, 0.4, east, 0.6), dear=1.0), own], looks)[0].dear for east in (0.5, 0.6))
+    own = FrameHypothesis(1, CENTRE * 2, dear=1.0)
+    half, whole = (
+        weighed([FrameHypothesis(0, (0.4, 0.4, east, 0.6), dear=1.0), own], looks)[0].dear for east in (0.5, 0.6)
+    )
     assert half == pytest.approx(whole + math.log(2))
 
 
@@ -119,8 +121,8 @@ def test_a_look_from_elsewhere_than_believed_makes_a_table_crooked() -> None:
     sketches = []
     for aside in (0, 1, 2):
         evidence = looked(room, LOOKS[:2])
-        evidence.look(Lattice().samples(), seen, 5 + aside, 2, 2)
-        sketches.append((Sketch(evidence), 0.0))
+        evidence.look(Frame().samples(), seen, 5 + aside, 2, 2)
+        sketches.append((MapDescription(evidence), 0.0))
     prices = plainness(sketches)
     assert prices[0] == 0.0
     assert min(prices[1:]) > 2

@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
-from kb.localisation.hypotheses.frames import Laid, Look
-from kb.localisation.hypotheses.remap import Layings, Prefixes, laid, relaid, shifted
-from kb.objects.held_object import Load, whole
-from kb.perception.frame import CENTRE, Lattice
+from kb.localisation.hypotheses.frames import Observation, PlacedObservation
+from kb.localisation.hypotheses.remap import Prefixes, RemapCache, laid, relaid, shifted
+from kb.objects.held_object import HeldObject, whole
+from kb.perception.frame import CENTRE, Frame
 from kb.perception.retina import count_ranges
 from tests.kb.eyes import Occupied, retina, world_of
 
@@ -51,8 +51,8 @@ def test_what_was_turned_lies_elsewhere_by_where_he_woke(
         believed, true = translate(believed, dx, dy), translate(true, dx, dy)
         here, truly = (here[0] + dx, here[1] + dy), (truly[0] + dx, truly[1] + dy)
         turned += degrees
-    load = Load("o1", believed, translate(ELL, 2, -1), turned=turned)
-    found = shifted(load, Lattice(0, (fx, fy)), Lattice())
+    load = HeldObject("o1", believed, translate(ELL, 2, -1), turned=turned)
+    found = shifted(load, Frame(0, (fx, fy)), Frame())
     assert found.polygon.hausdorff_distance(true) < MOST_ASIDE
 
 
@@ -62,23 +62,21 @@ def test_a_thing_that_was_carried_lies_right_on_the_true_lattice(heading: int, f
     """He holds the lattice for one along his own axes, a degree or two amiss, and carries a thing."""
     start, thing = (9 + fx, 9 + fy), translate(ELL, 11, 8)
     looks, load, new, truth = carried(thing, _felt(thing, start, heading), start, heading)
-    found = relaid(new, Lattice(), looks, [load])
+    found = relaid(new, Frame(), looks, [load])
     assert found.misfits == 0
     told = [new.place_to_utak(x, y) for x, y in found.loads["o1"].polygon.exterior.coords]
     assert shapely.Polygon(told).hausdorff_distance(truth) < MOST_ASIDE
 
 
 @pytest.mark.parametrize("heading", [1, 2, 358, 359])
-@pytest.mark.parametrize("other", [Lattice(0, (0.8, 0.2)), Lattice(-1), Lattice(1, (0.1, 0.9))])
-def test_what_is_laid_on_one_lattice_after_another_lies_as_if_it_were_laid_at_once(
-    heading: int, other: Lattice
-) -> None:
+@pytest.mark.parametrize("other", [Frame(0, (0.8, 0.2)), Frame(-1), Frame(1, (0.1, 0.9))])
+def test_what_is_laid_on_one_lattice_after_another_lies_as_if_it_were_laid_at_once(heading: int, other: Frame) -> None:
     start, thing = (9.3, 9.8), translate(ELL, 11, 8)
     straight = rotate(_felt(thing, start, heading), heading)
     x0, y0 = straight.bounds[:2]
     looks, load, new, truth = carried(thing, whole(translate(straight, round(x0) - x0, round(y0) - y0)), start, heading)
-    at_once = relaid(new, Lattice(), looks, [load])
-    later = relaid(new, other, looks, relaid(other, Lattice(), looks, [load]).loads.values())
+    at_once = relaid(new, Frame(), looks, [load])
+    later = relaid(new, other, looks, relaid(other, Frame(), looks, [load]).loads.values())
     for found in (at_once, later):
         lies = [new.place_to_utak(x, y) for x, y in found.loads["o1"].polygon.exterior.coords]
         assert shapely.Polygon(lies).hausdorff_distance(truth) < MOST_ASIDE
@@ -94,7 +92,7 @@ def test_an_outline_from_a_lattice_quite_askew_is_measured_anew_where_the_thing_
     start, thing = (9.5, 9.5), shapely.box(east, 6, east + 3, 9)
     believed = rotate(_felt(thing.buffer(-0.65, join_style="mitre"), start, heading), 10)
     looks, load, new, truth = carried(thing, believed, start, heading)
-    load = relaid(new, Lattice(), looks, [load]).loads["o1"]
+    load = relaid(new, Frame(), looks, [load]).loads["o1"]
     assert load.skewed == (not told)
     assert load.dubious == load.skewed
     if told:
@@ -104,35 +102,35 @@ def test_an_outline_from_a_lattice_quite_askew_is_measured_anew_where_the_thing_
 
 def carried(
     thing: shapely.Polygon, believed: shapely.Polygon, start: tuple[float, float], heading: int
-) -> tuple[list[Look], Load, Lattice, shapely.Polygon]:
+) -> tuple[list[Observation], HeldObject, Frame, shapely.Polygon]:
     """The looks of one who wakes, walks, and carries a thing, and where he believes it; the true lattice; the truth.
 
     believed : its outline on a lattice along his own axes. The last is in his own frame.
     """
     room = world_of(ROOM)
     angle = (heading + 44) % 90 - 44
-    looks, now, moved, lay = [], start, False, Load("o1", believed, believed, since=2)
+    looks, now, moved, lay = [], start, False, HeldObject("o1", believed, believed, since=2)
     for step, (dx, dy) in enumerate([(0, 0), (1.0, -2.0), (3.0, 4.0)]):
         away = _turned((dx, dy), heading)
         if step == 2:  # with the thing in hand
             moved, thing = True, translate(thing, *away)
-            lay = Load("o1", translate(lay.polygon, dx, dy), lay.first, since=2)
+            lay = HeldObject("o1", translate(lay.polygon, dx, dy), lay.first, since=2)
         now = (now[0] + away[0], now[1] + away[1])
         seen = retina(around(thing, room), (math.floor(now[0]), math.floor(now[1])), heading)
         own = _turned((now[0] - start[0], now[1] - start[1]), -heading)
-        there = (laid(lay, Lattice()),) if moved else ()
-        looks.append(Look(count_ranges(seen), own, there))
+        there = (laid(lay, Frame()),) if moved else ()
+        looks.append(Observation(count_ranges(seen), own, there))
     woke = _turned((start[0] % 1 - 0.5, start[1] % 1 - 0.5), angle - heading)
-    new = Lattice(angle, (woke[0] + 0.5, woke[1] + 0.5))
+    new = Frame(angle, (woke[0] + 0.5, woke[1] + 0.5))
     truth = translate(_felt(thing, start, heading), -0.5, -0.5)
     return looks, lay, new, truth
 
 
 def test_where_a_load_lies_is_told_in_his_own_frame() -> None:
-    lattice = Lattice(30, (0.2, 0.7))
-    load = Load("o1", translate(ELL, 3, 4), ELL, slack=0.3, turned=90.0)
+    lattice = Frame(30, (0.2, 0.7))
+    load = HeldObject("o1", translate(ELL, 3, 4), ELL, slack=0.3, turned=90.0)
     told = laid(load, lattice)
-    assert told == Laid("o1", told.middle, 90.0, 0.3, told.taken)
+    assert told == PlacedObservation("o1", told.middle, 90.0, 0.3, told.taken)
     middle = load.polygon.centroid
     assert lattice.place_from_utak(*told.middle) == pytest.approx((middle.x, middle.y))
     first = load.first.centroid
@@ -184,8 +182,8 @@ def test_lattices_on_which_looks_fall_alike_are_told_the_same(aside: float) -> N
     looks, load, believed, _ = carried(thing, _felt(thing, start, 0), start, 0)
     looks = [look._replace(place=(look.place[0] + 0.1, look.place[1])) for look in looks]
     evidence = relaid(believed, believed, looks, [load]).evidence
-    layings = Layings(believed, evidence, looks, {"o1": load})
-    one, other = (Lattice(3, (CENTRE[0] + part, CENTRE[1])) for part in (aside, aside * 1.01))
+    layings = RemapCache(believed, evidence, looks, {"o1": load})
+    one, other = (Frame(3, (CENTRE[0] + part, CENTRE[1])) for part in (aside, aside * 1.01))
     assert layings.on(believed).evidence is evidence
     found = layings.on(one)
     assert found.evidence is not evidence
@@ -197,8 +195,8 @@ def test_what_was_cut_is_laid_in_full_when_more_is_asked() -> None:
     start, thing = (9.5, 9.5), translate(ELL, 11, 8)
     looks, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
     contradicted = [looks[0], looks[0]._replace(ranges=looks[0].ranges * 0, moved=()), *looks[1:]]
-    layings = Layings(new, relaid(new, new, contradicted, [load]).evidence, contradicted, {"o1": load})
-    askew = Lattice(5)
+    layings = RemapCache(new, relaid(new, new, contradicted, [load]).evidence, contradicted, {"o1": load})
+    askew = Frame(5)
     assert layings.on(askew, whether=True).cut
     assert layings.on(askew).loads.keys() == {"o1"}
     assert not layings.on(askew, whether=True).cut

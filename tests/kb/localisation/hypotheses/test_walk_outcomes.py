@@ -7,10 +7,10 @@ import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from kb.localisation.hypotheses.frames import CENTRED, Look, contradictions
-from kb.localisation.hypotheses.walk_outcomes import HAIR, Moved, crossings, next_square, retold, retold_both
-from kb.mapping.occupancy import FULL, Evidence
-from kb.perception.frame import Lattice, turned
+from kb.localisation.hypotheses.frames import CENTRED, Observation, contradictions
+from kb.localisation.hypotheses.walk_outcomes import HAIR, MotionHypothesis, crossings, next_square, retold, retold_both
+from kb.mapping.occupancy import FULL, OccupancyMap
+from kb.perception.frame import Frame, turned
 from kb.perception.retina import count_ranges
 from tests.kb.eyes import Occupied, impression, random_room, world_of
 
@@ -77,7 +77,7 @@ def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
     stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
     assume(stop is not None and not passes_corner(0.5, 0.5, *turned(*way, heading)))
     assert stop is not None
-    lattice = Lattice(heading)
+    lattice = Frame(heading)
     own = lattice.place_to_utak(stop.before[0] - x, stop.before[1] - y)  # of a lattice whose origin is where he woke
     back = (-own[0], -own[1])
     truth = [(0.0, 0.0), own, (own[0] + 0.5 * back[0], own[1] + 0.5 * back[1])]
@@ -85,9 +85,9 @@ def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
     for place, shift in zip(truth, [(0.0, 0.0), *[(way[0] - own[0], way[1] - own[1])] * 2], strict=True):
         i, j = (math.floor(v) for v in lattice.place_from_utak(*place))
         seen = count_ranges(impression(occupied, (i + x, j + y), heading).retina)
-        looks.append(Look(seen, (place[0] + shift[0], place[1] + shift[1])))
+        looks.append(Observation(seen, (place[0] + shift[0], place[1] + shift[1])))
     assume(math.dist(own, way) > 2 * HAIR)
-    found = list(retold(Moved(1, way, CENTRED), Lattice(), looks))
+    found = list(retold(MotionHypothesis(1, way, CENTRED), Frame(), looks))
     right = [
         one
         for one in found
@@ -104,8 +104,8 @@ def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
 def test_who_met_nothing_has_nothing_to_tell_otherwise() -> None:
     occupied = world_of(["." * 80] * 80)
     seen = [count_ranges(impression(occupied, (x, 40)).retina) for x in (30, 35)]
-    looks = [Look(seen[0], (0.0, 0.0)), Look(seen[1], (5.0, 0.0))]
-    told = list(retold(Moved(1, (5.0, 0.0), CENTRED[:1]), Lattice(), looks))
+    looks = [Observation(seen[0], (0.0, 0.0)), Observation(seen[1], (5.0, 0.0))]
+    told = list(retold(MotionHypothesis(1, (5.0, 0.0), CENTRED[:1]), Frame(), looks))
     assert told == []
 
 
@@ -144,15 +144,15 @@ def test_two_stops_in_a_row_are_told_together(seed: int) -> None:
     assume(math.dist(away, way) > 0.3)
     into = (stop.entered[0] + 0.5 - stop.before[0], stop.entered[1] + 0.5 - stop.before[1])
     here = math.floor(stop.before[0]), math.floor(stop.before[1])
-    first = Look(count_ranges(impression(occupied, (x, y)).retina), (0.0, 0.0))
-    beside = Look(count_ranges(impression(occupied, here).retina), way)
+    first = Observation(count_ranges(impression(occupied, (x, y)).retina), (0.0, 0.0))
+    beside = Observation(count_ranges(impression(occupied, here).retina), way)
     looks = [first, beside, beside._replace(place=(way[0] + into[0], way[1] + into[1]))]
-    motions = Moved(1, way, CENTRED[:1]), Moved(2, into, CENTRED[:1])
+    motions = MotionHypothesis(1, way, CENTRED[:1]), MotionHypothesis(2, into, CENTRED[:1])
     found = list(retold_both(*motions, CENTRED[0], looks))
     for one in found:
         told = [*one.correction.looks(looks)[:2], looks[2]._replace(place=one.newest)]
         assert one.known
-        assert not contradictions(Lattice(), told)
+        assert not contradictions(Frame(), told)
     known = known_to_be_occupied(occupied, (x, y), here, stop.entered)
     short = away[0] - way[0], away[1] - way[1]
     assert not known or any(
@@ -164,8 +164,8 @@ def known_to_be_occupied(
     occupied: Occupied, start: tuple[int, int], here: tuple[int, int], wall: tuple[int, int]
 ) -> bool:
     """Is a square known to be occupied by all that is seen from two others?"""
-    evidence = Evidence()
+    evidence = OccupancyMap()
     for number, (i, j) in enumerate((start, here)):
-        samples = Lattice().samples()
+        samples = Frame().samples()
         evidence.look(samples, count_ranges(impression(occupied, (i, j)).retina), i, j, number)
     return bool(evidence.state[evidence.index(*wall)] == FULL)

@@ -13,7 +13,7 @@ from kb.localisation.hypotheses.frames import CENTRED
 from kb.localisation.propose.blocked import RISK, halts
 from kb.mapping.completions import NO_PICTURES, ground_of, pictured
 from kb.mapping.occupancy import FREE
-from kb.objects.held_object import Load
+from kb.objects.held_object import HeldObject
 from kb.perception.retina import count_ranges
 from tests.kb.drawings import LARGE_ROOM
 from tests.kb.eyes import Occupied, impression, world_of
@@ -30,7 +30,7 @@ def looking(room: Occupied, square: tuple[int, int], thing: shapely.Polygon | No
     memory.wake(impression(occupied, square))
     if thing is not None:
         lies = translate(thing, -square[0], -square[1])
-        memory.grasp(Load("o1", lies, lies, proven=True))
+        memory.grasp(HeldObject("o1", lies, lies, proven=True))
     view = memory.evidence.view()
     memory.pictures = pictured(view, ground_of(view), NO_PICTURES)
     return memory

@@ -9,14 +9,14 @@ from shapely.affinity import rotate, translate
 
 from geometry.motion.se2 import Rotate
 from kb.body import Turn
-from kb.localisation.hypotheses.frames import CENTRED, Look
+from kb.localisation.hypotheses.frames import CENTRED, Observation
 from kb.localisation.hypotheses.remap import laid, relaid
 from kb.localisation.hypotheses.what_if import Surprise
 from kb.localisation.propose.contradicted_motion import rather_short
 from kb.mapping.occupancy import OPEN
 from kb.mapping.patch import covered
-from kb.objects.held_object import Load
-from kb.perception.frame import CENTRE, Lattice
+from kb.objects.held_object import HeldObject
+from kb.perception.frame import CENTRE, Frame
 from kb.perception.retina import count_ranges
 from tests.kb.eyes import retina, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
@@ -27,20 +27,20 @@ HERE, FAR = (60.5, 15.5), 40.0  # of the table; how far he has brought it east
 HALL = world_of(["b" * 90, *["b" + "." * 88 + "b"] * 30, "b" * 90])
 
 
-def turned_by(commanded: float, truly: float) -> tuple[Surprise, Load, Rotate]:
+def turned_by(commanded: float, truly: float) -> tuple[Surprise, HeldObject, Rotate]:
     """One who turned a thing the other way and brought it to where he was never before, and is commanded to turn it
     back; and what he sees of it. It lies exactly where he believes, which he does not know.
     """
-    lattice = Lattice()
+    lattice = Frame()
     thing = translate(ELL, HERE[0] - HOLD[0], HERE[1] - HOLD[1])
     lies = translate(thing, CENTRE[0] - HERE[0], CENTRE[1] - HERE[1])
     first = translate(rotate(lies, commanded, origin=CENTRE), -FAR)
-    taken = Load("o1", first, first, since=1)
+    taken = HeldObject("o1", first, first, since=1)
     load = replace(taken, polygon=lies, turned=-commanded, proven=True, astray=0.4)
     began = around(translate(rotate(thing, commanded, origin=HERE), -FAR), HALL)
-    look = Look(count_ranges(retina(began, (math.floor(HERE[0] - FAR), math.floor(HERE[1])))), (-FAR, 0.0))
+    look = Observation(count_ranges(retina(began, (math.floor(HERE[0] - FAR), math.floor(HERE[1])))), (-FAR, 0.0))
     here = math.floor(HERE[0]), math.floor(HERE[1])
-    brought = Look(count_ranges(retina(around(thing, HALL), here)), (0.0, 0.0), (laid(load, lattice),))
+    brought = Observation(count_ranges(retina(around(thing, HALL), here)), (0.0, 0.0), (laid(load, lattice),))
     looks = [look, look._replace(moved=(laid(taken, lattice),)), brought]
     evidence, loads = relaid(lattice, lattice, looks, [load]).evidence, {"o1": load}
     for square in covered(rotate(lies, commanded, origin=CENTRE).buffer(1.5)).squares():

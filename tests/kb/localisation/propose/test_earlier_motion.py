@@ -9,16 +9,16 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely.affinity import translate
 
-from geometry.motion.first_contact import Body, Obstacles
+from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Translate
 from kb.body import Move, Push
-from kb.localisation.hypotheses.frames import CENTRED, Look
+from kb.localisation.hypotheses.frames import CENTRED, Observation
 from kb.localisation.hypotheses.remap import laid, relaid
-from kb.localisation.hypotheses.walk_outcomes import Moved
+from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
 from kb.localisation.hypotheses.what_if import Surprise
-from kb.localisation.propose.earlier_motion import Recalled, recalled, recalled_elsewhere
-from kb.objects.held_object import Load
-from kb.perception.frame import CENTRE, Lattice
+from kb.localisation.propose.earlier_motion import ReestimatedMotion, recalled, recalled_elsewhere
+from kb.objects.held_object import HeldObject
+from kb.perception.frame import CENTRE, Frame
 from kb.perception.retina import count_ranges
 from tests.kb.eyes import Occupied, random_room, retina, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
@@ -27,7 +27,9 @@ from tests.kb.localisation.test_accommodation import ran
 SIDE = 34
 BRICK = shapely.box(0, 0, 3, 2)
 Point = tuple[float, float]
-Told = tuple[Surprise, Moved, Point, shapely.Polygon]  # what surprises, what is told again, and the truth of it
+Told = tuple[
+    Surprise, MotionHypothesis, Point, shapely.Polygon
+]  # what surprises, what is told again, and the truth of it
 seeds = st.integers(0, 2**32 - 1)
 
 
@@ -37,9 +39,9 @@ def free_about(occupied: Occupied, x: float, y: float, reach: int) -> bool:
     return not any(occupied(math.floor(x) + i, math.floor(y) + j) for i in about for j in about)
 
 
-def look(occupied: Occupied, here: Point, own: Point) -> Look:
+def look(occupied: Occupied, here: Point, own: Point) -> Observation:
     """What is seen from a point of the table, believed to be seen from a place of his own frame."""
-    return Look(count_ranges(retina(occupied, square_of(here))), own)
+    return Observation(count_ranges(retina(occupied, square_of(here))), own)
 
 
 def plus(point: Point, way: Point) -> Point:
@@ -52,11 +54,11 @@ def square_of(point: Point) -> tuple[int, int]:
 
 def right(
     surprise: Surprise,
-    motion: Moved,
+    motion: MotionHypothesis,
     shift: Point,
     thing: shapely.Polygon,
-    told: Callable[[Surprise, list[Moved]], list[Recalled]] = recalled,
-) -> list[Recalled]:
+    told: Callable[[Surprise, list[MotionHypothesis]], list[ReestimatedMotion]] = recalled,
+) -> list[ReestimatedMotion]:
     """What is told that is right of both: by how much he was elsewhere, and where the thing is."""
     found = told(surprise, [motion])
     for one in found:
@@ -72,8 +74,10 @@ def right(
     return [one for one, polygon in loads if polygon.hausdorff_distance(thing) < 5e-3]
 
 
-def surprised(command: Move | Push, after: Look, looks: list[Look], load: Load, held: bool) -> Surprise:
-    lattice = Lattice()
+def surprised(
+    command: Move | Push, after: Observation, looks: list[Observation], load: HeldObject, held: bool
+) -> Surprise:
+    lattice = Frame()
     evidence = relaid(lattice, lattice, looks, [load]).evidence
     place = lattice.place_from_utak(*looks[-1].place)
     name = load.name if held else None
@@ -117,16 +121,16 @@ def walked_and_pushed(rng: np.random.Generator) -> Told | None:
     truly = plus(stopped, onward)
     if not 0.2 < math.hypot(*shift) < 6 or occupied(*square_of(truly)):
         return None
-    lattice, believed = Lattice(), plus(way, onward)
+    lattice, believed = Frame(), plus(way, onward)
     place = square_of(lattice.place_from_utak(*believed))
     lies = translate(thing, place[0] - math.floor(truly[0]), place[1] - math.floor(truly[1]))
-    load = Load("o1", lies, lies, since=3, proven=True)
+    load = HeldObject("o1", lies, lies, since=3, proven=True)
     looks = [look(occupied, woke, (0.0, 0.0)), look(occupied, stopped, way), look(occupied, truly, believed)]
     looks.append(looks[-1]._replace(moved=(laid(load, lattice),)))
     after = look(around(translate(thing, *far), room), plus(truly, far), plus(believed, far))
     surprise = surprised(Push(*far), after, looks, load, held=True)
     true = translate(thing, far[0] + CENTRE[0] - woke[0], far[1] + CENTRE[1] - woke[1])
-    return surprise, Moved(1, way, CENTRED[:1]), shift, true
+    return surprise, MotionHypothesis(1, way, CENTRED[:1]), shift, true
 
 
 @settings(max_examples=15, deadline=None)
@@ -162,19 +166,19 @@ def pushed_and_walked(rng: np.random.Generator, beside: Point = CENTRE) -> Told 
     if not free_about(room, x + 1, y + 1, 3) or not any(way):
         return None
     walls = [shapely.box(i, j, i + 1, j + 1) for i in range(SIDE) for j in range(SIDE) if room(i, j)]
-    part = Obstacles(walls).first_contact(Body(thing, [woke]), Translate(*way)).fraction
-    alone = Obstacles(walls).first_contact(Body(thing, []), Translate(*way)).fraction
+    part = Obstacles(walls).first_contact(ContactBody(thing, [woke]), Translate(*way)).fraction
+    alone = Obstacles(walls).first_contact(ContactBody(thing, []), Translate(*way)).fraction
     went = way[0] * part, way[1] * part
     shift = went[0] - way[0], went[1] - way[1]
     there = around(translate(thing, *went), room)
     end = plus(plus(woke, went), walk)
     if not 0.2 < math.hypot(*shift) < 6 or part == 0 or there(*square_of(end)) or (beside != CENTRE and part != alone):
         return None
-    lattice = Lattice()
+    lattice = Frame()
     lies = translate(thing, -math.floor(woke[0]), -math.floor(woke[1]))
-    load = Load("o1", translate(lies, *way), lies, since=1, proven=True)
+    load = HeldObject("o1", translate(lies, *way), lies, since=1, proven=True)
     first = look(around(thing, room), woke, (0.0, 0.0))
-    taken = first._replace(moved=(laid(Load("o1", lies, lies, since=1), lattice),))
+    taken = first._replace(moved=(laid(HeldObject("o1", lies, lies, since=1), lattice),))
     pushed = look(there, plus(woke, went), way)._replace(moved=(laid(load, lattice),))
     surprise = surprised(Move(*walk), look(there, end, plus(way, walk)), [first, taken, pushed], load, held=False)
-    return surprise, Moved(2, way, CENTRED[:1], load="o1"), shift, translate(lies, *went)
+    return surprise, MotionHypothesis(2, way, CENTRED[:1], load="o1"), shift, translate(lies, *went)

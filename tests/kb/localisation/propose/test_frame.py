@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import translate
 
-from geometry.motion.first_contact import Body, Obstacles
+from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Translate
 from kb.body import Move, Push, Turn
 from kb.localisation.hypotheses.frames import ELSEWHERE
@@ -17,8 +17,8 @@ from kb.localisation.hypotheses.remap import laid
 from kb.localisation.hypotheses.what_if import Surprise
 from kb.localisation.propose.frame import halted_elsewhere
 from kb.localisation.propose.origin import PLACES
-from kb.objects.held_object import Load
-from kb.perception.frame import CENTRE, Lattice
+from kb.objects.held_object import HeldObject
+from kb.perception.frame import CENTRE, Frame
 from tests.kb.localisation.hypotheses.test_remap import around
 from tests.kb.localisation.propose.test_earlier_motion import (
     SIDE,
@@ -44,14 +44,14 @@ def stopped_himself(rng: np.random.Generator, beside: Point) -> tuple[Surprise, 
     if not free_about(room, x + 1, y + 1, 3) or not any(way):
         return None
     walls = Obstacles([shapely.box(i, j, i + 1, j + 1) for i in range(SIDE) for j in range(SIDE) if room(i, j)])
-    part = walls.first_contact(Body(thing, [woke]), Translate(*way)).fraction
-    if part in (0.0, 1.0) or part == walls.first_contact(Body(thing, []), Translate(*way)).fraction:
+    part = walls.first_contact(ContactBody(thing, [woke]), Translate(*way)).fraction
+    if part in (0.0, 1.0) or part == walls.first_contact(ContactBody(thing, []), Translate(*way)).fraction:
         return None
     went = way[0] * part, way[1] * part
     lies = translate(thing, -math.floor(woke[0]), -math.floor(woke[1]))
-    load = Load("o1", lies, lies, since=1, proven=True)
+    load = HeldObject("o1", lies, lies, since=1, proven=True)
     first = look(around(thing, room), woke, (0.0, 0.0))
-    looks = [first, first._replace(moved=(laid(load, Lattice()),))]
+    looks = [first, first._replace(moved=(laid(load, Frame()),))]
     after = look(around(translate(thing, *went), room), plus(woke, went), way)
     there = plus(beside, went)
     return surprised(Push(*way), after, looks, load, held=True), there, translate(lies, *went)

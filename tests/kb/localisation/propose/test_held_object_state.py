@@ -13,7 +13,7 @@ from geometry.motion.first_contact import Obstacles
 from geometry.motion.se2 import Rotate, Translate
 from kb.localisation.hypotheses.carry_outcomes import predicted
 from kb.localisation.propose.held_object_state import FURTHEST, after, leaning
-from kb.objects.held_object import SLIGHT, Load
+from kb.objects.held_object import SLIGHT, HeldObject
 
 JAMBS = [shapely.box(-6, 4, 0, 6), shapely.box(6, 4, 12, 6)]
 WALLS = Obstacles(JAMBS)
@@ -21,11 +21,11 @@ BOTH = shapely.union_all(JAMBS)
 NORTH = Translate(0.0, 5.0)
 
 
-def load(polygon: shapely.Polygon) -> Load:
-    return Load("o1", polygon, polygon, SLIGHT, proven=True, inexact=True)
+def load(polygon: shapely.Polygon) -> HeldObject:
+    return HeldObject("o1", polygon, polygon, SLIGHT, proven=True, inexact=True)
 
 
-def anywhere(_: Load) -> int:
+def anywhere(_: HeldObject) -> int:
     return 0
 
 

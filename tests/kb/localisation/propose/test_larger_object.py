@@ -8,7 +8,7 @@ from kb.body import Move, Push
 from kb.knowledge import Knowledge
 from kb.localisation.accommodation import Memory
 from kb.mapping.occupancy import FREE, FULL
-from kb.objects.held_object import Load
+from kb.objects.held_object import HeldObject
 from tests.kb.eyes import Occupied, impression, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
 
@@ -34,7 +34,7 @@ def drawn(room: Occupied, deep: int, by: float) -> tuple[Memory, str]:
     memory.accommodate(Move(0.0, 1.0), impression(around(thing, room), (HERE[0], HERE[1] + 1)))
     memory.accommodate(Move(0.0, -1.0), impression(around(thing, room), HERE))
     felt = translate(shapely.box(18, 10, 20, 15), -HERE[0], -HERE[1])
-    memory.grasp(Load("o1", felt, felt))
+    memory.grasp(HeldObject("o1", felt, felt))
     after = around(translate(thing, -by), room)
     found = memory.accommodate(Push(-by, 0.0), impression(after, (round(HERE[0] - by), HERE[1])))
     return memory, found.explanation.how
@@ -75,7 +75,7 @@ def test_its_shape_is_told_anew() -> None:
     here = (14, 12)
     knowledge.wake(impression(before, here, colour="g"))
     felt = translate(shapely.box(15, 10, 20, 15), -here[0], -here[1])
-    knowledge.memory.grasp(Load("o1", felt, felt, shape={"square": 62, "brick": 30}))
+    knowledge.memory.grasp(HeldObject("o1", felt, felt, shape={"square": 62, "brick": 30}))
     model, accommodated = knowledge.perceive(Push(-3.0, 0.0), impression(after, (11, 12), colour="g"))
     assert accommodated.explanation.how == "larger"
     node = model.object("o1")

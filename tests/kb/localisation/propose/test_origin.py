@@ -8,10 +8,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.frames import CENTRED, ELSEWHERE, Look, contradictions, fallen
-from kb.localisation.hypotheses.walk_outcomes import HAIR, Moved, crossings
+from kb.localisation.hypotheses.frames import CENTRED, ELSEWHERE, Observation, contradictions, fallen
+from kb.localisation.hypotheses.walk_outcomes import HAIR, MotionHypothesis, crossings
 from kb.localisation.propose.origin import PLACES, misplaced
-from kb.perception.frame import Lattice, turned
+from kb.perception.frame import Frame, turned
 from kb.perception.retina import count_ranges
 from tests.kb.eyes import impression, random_room, world_of
 from tests.kb.localisation.hypotheses.test_walk_outcomes import passes_corner
@@ -19,7 +19,7 @@ from tests.kb.localisation.hypotheses.test_walk_outcomes import passes_corner
 Point = tuple[float, float]
 
 
-def received(one: Explanation, looks: list[Look]) -> list[Look]:
+def received(one: Explanation, looks: list[Observation]) -> list[Observation]:
     """The looks where they were received by an explanation."""
     assert one.retold is not None
     *before, newest = one.retold.correction.looks(looks)
@@ -39,7 +39,7 @@ def test_of_what_is_told_the_truth_is_one(seed: int, woke: Point) -> None:
     stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
     assume(stop is not None and not passes_corner(*woke, *turned(*way, heading)))
     assert stop is not None
-    true, held = Lattice(heading, woke), Lattice(heading)
+    true, held = Frame(heading, woke), Frame(heading)
     own = true.place_to_utak(stop.before[0] - x, stop.before[1] - y)
     assume(math.dist(own, way) > 2 * HAIR)
     places = [(0.0, 0.0), own, (0.5 * own[0], 0.5 * own[1])]
@@ -47,8 +47,8 @@ def test_of_what_is_told_the_truth_is_one(seed: int, woke: Point) -> None:
     for place, (east, north) in zip(places, [(0.0, 0.0), astray, astray], strict=True):
         i, j = (math.floor(v) for v in true.place_from_utak(*place))
         seen = count_ranges(impression(occupied, (i + x, j + y), heading).retina)
-        looks.append(Look(seen, (place[0] + east, place[1] + north)))
-    found = misplaced([Moved(1, way, CENTRED)], held, looks)
+        looks.append(Observation(seen, (place[0] + east, place[1] + north)))
+    found = misplaced([MotionHypothesis(1, way, CENTRED)], held, looks)
     squares = [fallen(one.lattice, received(one, looks)).tolist() for one in found]
     assert (
         fallen(true, [look._replace(place=place) for look, place in zip(looks, places, strict=True)]).tolist()
@@ -64,18 +64,22 @@ def test_the_larger_part_of_his_square_is_the_likelier_one() -> None:
     """A wall stopped him two squares too early; whether he looks from this row or the next one, nothing tells."""
     room = world_of(["b" * 40, *["b" + "." * 30 + "b" * 9] * 70, "b" * 40])
     seen = [count_ranges(impression(room, square).retina) for square in ((20, 35), (30, 35), (26, 35))]
-    looks = [Look(ranges, place) for ranges, place in zip(seen, [(0.0, 0.0), (12.0, 0.0), (7.6, 0.3)], strict=True)]
-    found = misplaced([Moved(1, (12.0, 0.0), CENTRED)], Lattice(), looks)
+    looks = [
+        Observation(ranges, place) for ranges, place in zip(seen, [(0.0, 0.0), (12.0, 0.0), (7.6, 0.3)], strict=True)
+    ]
+    found = misplaced([MotionHypothesis(1, (12.0, 0.0), CENTRED)], Frame(), looks)
     shares = [len(one.hypotheses) / len(PLACES) for one in found]
     assert len(set(shares)) > 1
     for one, share in zip(found, shares, strict=True):
         assert one.crooked == pytest.approx(ELSEWHERE - math.log(share))
-    again = misplaced([Moved(1, (12.0, 0.0), CENTRED)], Lattice(0, (0.4, 0.5)), looks)  # that he woke there is known
+    again = misplaced(
+        [MotionHypothesis(1, (12.0, 0.0), CENTRED)], Frame(0, (0.4, 0.5)), looks
+    )  # that he woke there is known
     assert [one.crooked for one in again] == pytest.approx([one.crooked - ELSEWHERE for one in found])
 
 
 def test_who_met_nothing_has_nothing_to_tell() -> None:
     occupied = world_of(["." * 80] * 80)
     seen = [count_ranges(impression(occupied, (x, 40)).retina) for x in (30, 35)]
-    looks = [Look(seen[0], (0.0, 0.0)), Look(seen[1], (5.0, 0.0))]
-    assert misplaced([Moved(1, (5.0, 0.0), CENTRED[:1])], Lattice(), looks) == []
+    looks = [Observation(seen[0], (0.0, 0.0)), Observation(seen[1], (5.0, 0.0))]
+    assert misplaced([MotionHypothesis(1, (5.0, 0.0), CENTRED[:1])], Frame(), looks) == []

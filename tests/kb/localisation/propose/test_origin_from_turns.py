@@ -14,8 +14,8 @@ from kb.localisation.hypotheses.frames import CENTRED, points
 from kb.localisation.propose.origin_from_turns import Part
 from kb.localisation.score import MOST_SEARCHES
 from kb.mapping.occupancy import OPEN
-from kb.objects.held_object import Load
-from kb.perception.frame import CENTRE, Lattice
+from kb.objects.held_object import HeldObject
+from kb.perception.frame import CENTRE, Frame
 from tests.kb.drawings import LARGE_ROOM
 from tests.kb.eyes import impression, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
@@ -52,7 +52,7 @@ def test_a_turn_that_was_stopped_tells_where_he_woke_and_how_far_it_went(
     memory = Memory()
     memory.wake(impression(around(thing, room), (20, 20)))
     lies = translate(thing, -20, -20)
-    memory.grasp(Load("o1", lies, lies, proven=True))
+    memory.grasp(HeldObject("o1", lies, lies, proven=True))
     memory.hypotheses, memory.searches = CENTRED[:1], MOST_SEARCHES  # how the lattice is turned is known
     for i, j in ((x, y), (x - 1, y), (x, y + 1), (x + 1, y + 1)):  # not looked at closely
         memory.evidence.state[memory.evidence.index(i - 20, j - 20)] = OPEN
@@ -78,7 +78,7 @@ def test_who_was_stopped_a_hair_beside_a_line_turns_things_a_hair_aside() -> Non
     memory.wake(impression(around(thing, PLAIN), (20, 20)))
     memory.hypotheses = CENTRED[:1]
     lies = translate(thing, -20, -20)
-    memory.grasp(Load("o1", lies, lies, proven=True))
+    memory.grasp(HeldObject("o1", lies, lies, proven=True))
     memory.looks[0] = memory.looks[0]._replace(place=(0.5 - 1e-6, 0.0))  # there he was stopped
     found = memory.accommodate(Turn(90.0), impression(around(after, PLAIN), (20, 20))).explanation
     assert found.how == "predicted"
@@ -103,5 +103,5 @@ def test_a_part_is_cut_into_parts_that_fill_it() -> None:
 def test_points_of_a_grid_lie_amid_his_square() -> None:
     memory = Memory()
     memory.wake(impression(PLAIN, (20, 20)))
-    where = points(Lattice(), memory.looks)
+    where = points(Frame(), memory.looks)
     assert all(0 < point.box[0] < 1 and 0 < point.box[1] < 1 for point in where)
