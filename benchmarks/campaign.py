@@ -142,8 +142,8 @@ def _watched(task: int, seed: int, conditions: Conditions, folder: Path) -> Camp
         moved = {name: Polygon(shape) for name, shape in at.table.polygons.items()}
         picture = drawing(world, at.table.utak, moved, {"+": world.target})
         line = at.line
-        woke, mind = (world.utak.x, world.utak.y), getattr(at.robot, "robot", None)
-        drift = beliefs(mind, woke, at.table.utak, world.heading).drift
+        origin, mind = (world.utak.x, world.utak.y), getattr(at.robot, "robot", None)
+        drift = beliefs(mind, origin, at.table.utak, world.heading).drift
         print(
             f"step {line['step']}: {line['action']} why: {line['why']}; slipped by {drift}\n{picture}", file=sys.stderr
         )

@@ -74,7 +74,7 @@ class Knowledge:
     def _grasp(self, direction: str) -> None:
         """Believe that the thing on an adjacent square is in hand, if one of known outline lies or is felt there."""
         x, y = self.memory.square
-        beside = self.memory.lattice.beside(direction)
+        beside = self.memory.frame.beside(direction)
         square = None if beside is None else (x + beside[0], y + beside[1])
         there = [n for n in self.objects if square in n.patch.squares()] or self._felt_at(direction)
         node = min(there, key=lambda n: n.name not in self.memory.loads, default=None)
@@ -96,8 +96,8 @@ class Knowledge:
         """The objects one of which he may feel in a direction: those that lie about there, if that may be no wall."""
         colour = self._touch[DIRECTIONS.index(direction)] if self._touch else None
         x, y = self.memory.square
-        named = [(x + i, y + j) for i, j in self.memory.lattice.may_name(direction)]
-        known = [self.memory.evidence.state[self.memory.evidence.index(*square)] for square in named]
+        named = [(x + i, y + j) for i, j in self.memory.frame.may_name(direction)]
+        known = [self.memory.occupancy.state[self.memory.occupancy.index(*square)] for square in named]
         if colour is None or all(state == FULL for state in known):
             return []
         about = {(i + dx, j + dy) for i, j in named for dx, dy in (*AROUND, (0, 0))}
@@ -108,7 +108,7 @@ class Knowledge:
             self.felt.clear()  # its squares were those of another lattice
             self._imagined = NOTHING_IMAGINED
         self._feel(impression)
-        counted = self.memory.evidence.view(self.memory.track[: len(self.memory.been)])
+        counted = self.memory.occupancy.view(self.memory.track[: len(self.memory.been)])
         self._imagined = imagined = imagine(counted, self._imagined)
         view = counted._replace(
             probability=imagined.probability(counted.probability), by_counts=counted.probability, sure=self.memory.sure
@@ -120,7 +120,7 @@ class Knowledge:
         kinds = interpret(percept, touched, self.rules)
         percept, labels, kinds = self._told_apart(percept, labels, kinds, view)
         model = WorldModel(
-            self.memory.lattice,
+            self.memory.frame,
             self.memory.place,
             view,
             labels,
@@ -176,7 +176,7 @@ class Knowledge:
         x, y = self.memory.square
         loaded = {square for load in self.memory.loads.values() for square in load.possible.squares()}
         for direction, colour in zip(DIRECTIONS, impression.touch, strict=True):
-            beside = self.memory.lattice.beside(direction)
+            beside = self.memory.frame.beside(direction)
             if beside is None:
                 continue
             square = x + beside[0], y + beside[1]

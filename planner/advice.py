@@ -31,4 +31,4 @@ class Go:
 class See:
     """Squares that must be seen before the way over them is relied upon."""
 
-    lookout: Viewpoint
+    viewpoint: Viewpoint

@@ -27,7 +27,7 @@ class Situation:
     """
 
     model: WorldModel
-    screens: CostMaps
+    cost_maps: CostMaps
     binding: Mapping[str, str]
     rooms: Rooms
     corners: Mapping[str, Corner]
@@ -44,7 +44,7 @@ class Situation:
 
     def along_with(self, patch: Patch) -> "Situation":
         """The same for who takes something along wherever he goes, from its squares on."""
-        return replace(self, screens=CostMaps(self.model, self.model.mask(patch)))
+        return replace(self, cost_maps=CostMaps(self.model, self.model.mask(patch)))
 
     def beyond(self, place: tuple[float, float]) -> tuple[Bools, tuple[Viewpoint, ...]]:
         """(rows, columns) what shares a door with the room of a point, and what to look at before that is believed.
@@ -97,5 +97,5 @@ def loose_ends(situation: Situation) -> tuple[Viewpoint, ...]:
     model = situation.model
     pieces = model.verge & ~model.walls & grown(~model.view.seen, 1)
     labels = np.where(pieces, model.labels, 0)
-    looks = (sight_of(situation.screens, labels == n, "it may be no wall") for n in np.unique(labels[pieces]))
+    looks = (sight_of(situation.cost_maps, labels == n, "it may be no wall") for n in np.unique(labels[pieces]))
     return tuple(look for look in looks if len(look.squares))

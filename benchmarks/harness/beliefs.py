@@ -69,7 +69,7 @@ class Frame(NamedTuple):
         return affine_transform(shape, [c, -s, s, c, x, y])
 
 
-def beliefs(robot: Any, woke: tuple[float, float], now: tuple[float, float], heading: int) -> SeenBeliefs:
+def beliefs(robot: Any, origin: tuple[float, float], now: tuple[float, float], heading: int) -> SeenBeliefs:
     """What a robot believes at the end; empty when he exposes no model.
 
     Parameters
@@ -80,11 +80,12 @@ def beliefs(robot: Any, woke: tuple[float, float], now: tuple[float, float], hea
     model = getattr(robot, "model", None)
     if model is None:
         return SeenBeliefs([], [])
-    quarters = round((heading - model.lattice.angle) / 90) % 4
+    quarters = round((heading - model.frame.angle) / 90) % 4
     x, y = Frame(quarters, 0, 0).square(*(math.floor(v) for v in model.place))
     frames = [Frame(quarters, east - x, north - y) for east, north in _beside(now)]
     drift, frame = min(
-        (max(abs(frame.east - math.floor(woke[0])), abs(frame.north - math.floor(woke[1]))), frame) for frame in frames
+        (max(abs(frame.east - math.floor(origin[0])), abs(frame.north - math.floor(origin[1]))), frame)
+        for frame in frames
     )
     objects = [(_class(node.shape), frame.polygon(_outline(node))) for node in model.objects]
     rows, columns = np.nonzero(model.certain)

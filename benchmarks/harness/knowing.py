@@ -45,9 +45,9 @@ class Informed(Knowledge):
         angle = world.heading - 90 * quarters
         x, y = math.floor(world.utak.x), math.floor(world.utak.y)
         within = turned(world.utak.x - x - 0.5, world.utak.y - y - 0.5, -90 * quarters)
-        woke = (within[0] + 0.5, within[1] + 0.5)
-        memory.lattice, memory.place = Frame(angle, woke), woke
-        memory.hypotheses = (FrameHypothesis(angle, woke + woke),)
+        origin = (within[0] + 0.5, within[1] + 0.5)
+        memory.frame, memory.place = Frame(angle, origin), origin
+        memory.hypotheses = (FrameHypothesis(angle, origin + origin),)
         width, height = world.plan.width, world.plan.height
         occupied = np.logical_or.reduce(
             [digital(shape, width, height) for shape in (world.plan.verge, *(thing.polygon for thing in world.things))]
@@ -56,12 +56,12 @@ class Informed(Knowledge):
         rows, columns = np.indices(occupied.shape).reshape(2, -1)
         offsets = [turned(c - BEYOND - x, r - BEYOND - y, -90 * quarters) for r, c in zip(rows, columns, strict=True)]
         squares = np.rint(offsets).astype(int)
-        evidence = memory.evidence
+        occupancy = memory.occupancy
         for corner in (squares.min(0), squares.max(0)):
-            evidence.make_room(*corner.tolist())
-        where = squares[:, 1] - evidence.south, squares[:, 0] - evidence.west
-        evidence.state[where] = np.where(occupied.ravel(), FULL, FREE)
-        evidence.seen[where], evidence.settled_by[where] = True, 0
+            occupancy.make_room(*corner.tolist())
+        where = squares[:, 1] - occupancy.south, squares[:, 0] - occupancy.west
+        occupancy.state[where] = np.where(occupied.ravel(), FULL, FREE)
+        occupancy.seen[where], occupancy.settled_by[where] = True, 0
 
 
 def knowing(world: RandomScenario) -> RobotMaker:

@@ -39,8 +39,8 @@ class Memory(Walked, Carried):
         In his own frame he goes on from where he believes himself, so that he knows about where he came from. That he
         slips he takes no longer from what he has forgotten.
         """
-        been = (*self.been, *(look.place for look in self.looks[:-1]))
-        return Memory(OccupancyMap(), self.lattice, self.place, hypotheses=ANYWHERE, been=been)
+        been = (*self.been, *(observation.place for observation in self.observations[:-1]))
+        return Memory(OccupancyMap(), self.frame, self.place, hypotheses=ANYWHERE, been=been)
 
     def wake(self, impression: Impression) -> Accommodated:
         """Take in the first impression."""
@@ -55,7 +55,7 @@ class Memory(Walked, Carried):
             self.held = None
         shift = (0.0, 0.0)
         if isinstance(command, Move) and self.held is None:
-            shift = self.lattice.to_lattice(command.east, command.north)
+            shift = self.frame.to_lattice(command.east, command.north)
         x, y = self.place
         return self._accommodate(impression, (x + shift[0], y + shift[1]), ends((x, y), shift), command)
 
@@ -66,17 +66,19 @@ class Memory(Walked, Carried):
         """
         if load.name not in self.loads:
             self._take_out(load)
-        self.loads.setdefault(load.name, replace(load, since=len(self.looks)))
+        self.loads.setdefault(load.name, replace(load, since=len(self.observations)))
         self.held = load.name
 
     def _take_out(self, load: HeldObject) -> None:
         """Believe that there is floor where a load lies."""
         patch = load.possible
-        self.evidence.declare(self.evidence.squares(patch.west, patch.south, patch.mask), FREE, len(self.looks) - 1)
+        self.occupancy.declare(
+            self.occupancy.squares(patch.west, patch.south, patch.mask), FREE, len(self.observations) - 1
+        )
 
     def _carry(self, impression: Impression, load: HeldObject, command: Push | Turn) -> Accommodated:
         """Take in the impression that followed a push or a turn with a load in hand."""
-        ranges, motion = count_ranges(impression.retina), as_motion(command, self.lattice, self.place)
+        ranges, motion = count_ranges(impression.retina), as_motion(command, self.frame, self.place)
         if isinstance(command, Turn) and self._beside_line:
             load = self.loads[load.name] = replace(load, astray=max(load.astray, ROUNDING))
         chosen = self._came_of(self._surprise(command, ranges), load, motion)
@@ -87,7 +89,7 @@ class Memory(Walked, Carried):
         if chosen.larger is not None:
             self._take_out(chosen.larger)
             self.loads[load.name] = chosen.larger
-        self._carried(self.loads[load.name], chosen, as_motion(command, self.lattice, self.place), ranges)
+        self._carried(self.loads[load.name], chosen, as_motion(command, self.frame, self.place), ranges)
         self.place = chosen.place
         if chosen.outcome is not None and chosen.outcome.as_commanded:
             carried = self.loads[load.name]
@@ -108,7 +110,7 @@ class Memory(Walked, Carried):
         if explanation.how == "slipped":
             self.slipped, self.moved = True, ()
         elif explanation.how in ("blocked", "misled"):
-            since = len(self.looks) if explanation.retold is None else explanation.retold.correction.since
+            since = len(self.observations) if explanation.retold is None else explanation.retold.correction.since
             self.moved = tuple(m._replace(stopped=True) if m.number == since else m for m in self.moved)
         if explanation.how == "blocked" or explanation.place == self.place != predicted:
             self.barred |= explanation.against or {next_square(explanation.place, predicted)}
@@ -118,28 +120,28 @@ class Memory(Walked, Carried):
         """Where he stands who looks from a place: on the near side of the line on which something stopped him."""
         sides = [place, *views(place)]
         squares = [(math.floor(x), math.floor(y)) for x, y in sides]
-        free = (self.evidence.state[self.evidence.index(*s)] != FULL and s not in self.barred for s in squares)
+        free = (self.occupancy.state[self.occupancy.index(*s)] != FULL and s not in self.barred for s in squares)
         return amid(next((side for side, can_stand in zip(sides, free, strict=True) if can_stand), place))
 
     def _remember(self, command: Move | Push, load: str | None = None) -> None:
         """A motion that is looked at next may turn out to have ended otherwise. load : the name of what is in hand."""
-        motion = MotionHypothesis(len(self.looks), (command.east, command.north), self.hypotheses, load=load)
+        motion = MotionHypothesis(len(self.observations), (command.east, command.north), self.hypotheses, load=load)
         self.moved = (*self.moved[1 - REMEMBERED :], motion)
 
     def _take_in(self, explanation: Explanation, ranges: NDArray[np.int16]) -> Accommodated:
         """Take an explained impression into the evidence, freed of what the loads show."""
         x, y = math.floor(explanation.place[0]), math.floor(explanation.place[1])
         for name, load in self.loads.items():
-            self.loads[name] = load.seen(self.lattice.samples(), ranges, x, y)
-        samples, counts = discounted(self.lattice.samples(), ranges, x, y, self.loads.values())
-        cells = statuses(self.evidence, samples, counts, x, y)
+            self.loads[name] = load.seen(self.frame.samples(), ranges, x, y)
+        samples, counts = discounted(self.frame.samples(), ranges, x, y, self.loads.values())
+        cells = statuses(self.occupancy, samples, counts, x, y)
         self.place = explanation.place
-        moved = tuple(laid(load, self.lattice) for load in self.loads.values())
-        self.looks.append(Observation(ranges, self.lattice.place_to_utak(*self.place), moved))
-        self.evidence.look(samples, counts, x, y, len(self.looks) - 1)
-        self.evidence.overruled += explanation.misfits  # also where two looks contradict, and nothing that was settled
-        if len(self.looks) == 1:
-            self.evidence.stand(x, y, 0)
+        moved = tuple(laid(load, self.frame) for load in self.loads.values())
+        self.observations.append(Observation(ranges, self.frame.place_to_utak(*self.place), moved))
+        self.occupancy.observe(samples, counts, x, y, len(self.observations) - 1)
+        self.occupancy.overruled += explanation.misfits  # also where two looks contradict, and nothing that was settled
+        if len(self.observations) == 1:
+            self.occupancy.stand(x, y, 0)
         self.unfit = (*self.unfit[1 - RECENT :], explanation.misfits)
         self.place = self._standing(self.place)
         return Accommodated(explanation, cells)

@@ -50,7 +50,10 @@ class Carried(Judging):
         if not any(map(self._simple, explanations)):
             explanations += self._halted_elsewhere(surprise)
         clear = sum(stop.chance for stop in stops) <= CLEAR
-        unchanged, uneven = np.array_equal(ranges, self.looks[-1].ranges), load.insets and any(load.insets.believed)
+        unchanged, uneven = (
+            np.array_equal(ranges, self.observations[-1].ranges),
+            load.insets and any(load.insets.believed),
+        )
         told = {"unchanged": unchanged, "clear": clear, "uneven": uneven}
         return self._choose(explanations, [fact for fact, so in told.items() if so])
 
@@ -66,12 +69,12 @@ class Carried(Judging):
         """Believe what came of a motion with a load in hand."""
         self.slipped |= chosen.how == "slipped"
         others, place = self._others(load), chosen.place
-        suspected = suspects(chosen.outcome, motion, load, others, self.evidence)
+        suspected = suspects(chosen.outcome, motion, load, others, self.occupancy)
         self.suspected |= suspected
         load = replace(load, inexact=load.inexact or self.slipped)
         carried = after(load, chosen.outcome, chosen.misfits, bool(suspected))
         if carried.inexact and carried.proven and not suspected and chosen.outcome and chosen.outcome.stopped:
-            walls = Obstructions(self.evidence, place, carried.polygon, motion).walls
+            walls = Obstructions(self.occupancy, place, carried.polygon, motion).walls
             carried = leaning(carried, motion, walls, lambda lying: self._clashes(ranges, place, [*others, lying]))
         self.loads[load.name] = carried
 
@@ -91,12 +94,12 @@ class Carried(Judging):
 
         Where the thing may lie there is rather floor than something that happens to fill what the thing leaves free.
         """
-        lattice, others, nothing = self.lattice, self._others(load), frozenset[tuple[int, int]]()
-        rather = self.evidence.supposing(covered(load.polygon).squares())
+        frame, others, nothing = self.frame, self._others(load), frozenset[tuple[int, int]]()
+        rather = self.occupancy.supposing(covered(load.polygon).squares())
 
         def agrees(outline: Any) -> bool:
             lying = replace(load, polygon=outline, slack=0.0, full=nothing, empty=nothing)
-            return not clashes(lattice, rather, [*others, lying], place, ranges)
+            return not clashes(frame, rather, [*others, lying], place, ranges)
 
         return load.told(agrees)
 
@@ -106,11 +109,11 @@ class Carried(Judging):
 
     def _stray(self, ranges: NDArray[np.int16]) -> None:
         """How far what was turned may lie from where it is believed to, as it is open where in his square he woke."""
-        within = tuple(h for h in self.hypotheses if h.angle == self.lattice.angle and h.is_point)
+        within = tuple(h for h in self.hypotheses if h.angle == self.frame.angle and h.is_point)
         if len(within) > 1:
-            within = agreeing(within, self.lattice, self.place, self.evidence, self.looks, self.loads, ranges)
+            within = agreeing(within, self.frame, self.place, self.occupancy, self.observations, self.loads, ranges)
             self.hypotheses = within
-        away = np.array([h.lattice.woke for h in within]).reshape(-1, 2) - np.array(self.lattice.woke)
+        away = np.array([h.frame.origin for h in within]).reshape(-1, 2) - np.array(self.frame.origin)
         for name, load in self.loads.items():
             far = np.hypot(*(away - Rotate(load.turned, (0.0, 0.0)).points(away)).T)
             least = ROUNDING if self._beside_line and load.turned % 360 else 0.0
@@ -118,4 +121,4 @@ class Carried(Judging):
 
     def _outcome(self, surprise: Surprise, outcome: Outcome) -> Explanation:
         misfits = self._clashes(surprise.ranges, outcome.place, surprise.lying(outcome))
-        return Explanation(outcome.how, outcome.place, self.lattice, misfits, outcome.distance, outcome)
+        return Explanation(outcome.how, outcome.place, self.frame, misfits, outcome.distance, outcome)

@@ -51,22 +51,22 @@ class Walked(Judging):
         ahead = [self._explanation("predicted", place, ranges, predicted) for place in views(predicted)]
         first = min(ahead, key=lambda one: one.misfits)
         predicted = first.place
-        look = Observation(ranges, self.lattice.place_to_utak(*predicted))
+        observation = Observation(ranges, self.frame.place_to_utak(*predicted))
         halted = self._halted_walk(command, ranges) if stops and command is not None else []
         if halted and not whole_first(halted) and not first.misfits:
             first = first._replace(misfits=CONTRADICTED)
-        looks = [*self.looks, look]
-        begun = lru_cache(KEPT)(lambda lattice: Prefixes(lattice, looks, {}))
-        told = cache(lambda motion: tuple(retold(motion, self.lattice, looks, begun)))
+        observations = [*self.observations, observation]
+        begun = lru_cache(KEPT)(lambda frame: Prefixes(frame, observations, {}))
+        told = cache(lambda motion: tuple(retold(motion, self.frame, observations, begun)))
         stopped = [motion for motion in self.earlier if motion.stopped]
         if first.misfits and not self.loads and any(not one.misfits for motion in stopped for one in told(motion)):
-            turned = self._stopped(look, map(told, stopped))
+            turned = self._stopped(observation, map(told, stopped))
         elif not self.loads:
-            recent = [*self.looks[-MEMORY:], look]
+            recent = [*self.observations[-MEMORY:], observation]
             left = weighed(standing(self.hypotheses, recent), recent)
-            if not first.misfits and any(hypothesis.holds(self.lattice) for hypothesis in left):
-                return self._plainest(halted or [first], look, left)
-            turned = self._turned(look, left, recent)
+            if not first.misfits and any(hypothesis.holds(self.frame) for hypothesis in left):
+                return self._plainest(halted or [first], observation, left)
+            turned = self._turned(observation, left, recent)
         elif first.misfits and command is not None:
             turned = self._elsewhere(self._surprise(command, ranges), first.misfits)
         elif halted:
@@ -85,23 +85,25 @@ class Walked(Judging):
         if self.loads and command is not None:
             explanations += self._recalled(self._surprise(command, ranges), explanations)
         elif stops:
-            explanations += self._misled(look, told, turned, explanations)
+            explanations += self._misled(observation, told, turned, explanations)
             if not any(map(self._simple, explanations)):
-                explanations += self._at_length(lambda: misplaced(self.tellable, self.lattice, [*self.looks, look]))
+                explanations += self._at_length(
+                    lambda: misplaced(self.tellable, self.frame, [*self.observations, observation])
+                )
         return self._choose(explanations)
 
     def _halted_walk(self, command: Command, ranges: NDArray[np.int16]) -> list[Explanation]:
         """Where a walk came to a halt that may have been stopped, of the halts that the look bears out."""
         assert isinstance(command, Move)
         surprise = self._surprise(command, ranges)
-        motion = Translate(*self.lattice.to_lattice(command.east, command.north))
+        motion = Translate(*self.frame.to_lattice(command.east, command.north))
         found = halts(surprise, None, motion)
         ended = [(halt, self._explanation(halt.how, halt.place, ranges, found[0].place)) for halt in found]
         return self._halted(surprise, ended)
 
     def _misled(
         self,
-        look: Observation,
+        observation: Observation,
         told: Callable[[MotionHypothesis], Iterable[ReestimatedWalk]],
         turned: list[Explanation],
         others: list[Explanation],
@@ -113,87 +115,87 @@ class Walked(Judging):
         """
         if all(e.misfits for e in turned):
             simple = any(not e.misfits for e in others if e.how != "slipped" or self.slipped)
-            return self._stopped(look, map(told, self.earlier if simple else self.tellable))
-        met = [e for e in self._stopped(look, map(told, self.tellable)) if e.met or e.chance]
+            return self._stopped(observation, map(told, self.earlier if simple else self.tellable))
+        met = [e for e in self._stopped(observation, map(told, self.tellable)) if e.met or e.chance]
         if self._off_middle or not all(e.odd for e in turned):
-            met = [e for e in met if e.lattice == self.lattice]
-        return met or self._stopped_twice(look)
+            met = [e for e in met if e.frame == self.frame]
+        return met or self._stopped_twice(observation)
 
-    def _stopped(self, look: Observation, told: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
+    def _stopped(self, observation: Observation, told: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
         """That one of some motions was stopped, as it was told. look : as predicted.
 
         Where the newest one came to a halt on the lattice held is judged already, if it may have been stopped at all.
         """
-        judged = len(self.looks) if self.ended else None
-        found = ((e, e.retold) for e in misled(look, told) if e.retold is not None)
+        judged = len(self.observations) if self.ended else None
+        found = ((e, e.retold) for e in misled(observation, told) if e.retold is not None)
         return [
             self._doubted(e._replace(crooked=one.hypothesis.dear))
             for e, one in found
-            if one.correction.since != judged or e.lattice != self.lattice
+            if one.correction.since != judged or e.frame != self.frame
         ]
 
-    def _stopped_twice(self, look: Observation) -> list[Explanation]:
+    def _stopped_twice(self, observation: Observation) -> list[Explanation]:
         """That the newest motion was stopped, and one before it unnoticed, on the lattice held. look : as predicted."""
-        looks, newest, found = [*self.looks, look], self.moved[-1], []
-        held = [hypothesis for hypothesis in newest.hypotheses if hypothesis.lattice == self.lattice][:1]
+        observations, newest, found = [*self.observations, observation], self.moved[-1], []
+        held = [hypothesis for hypothesis in newest.hypotheses if hypothesis.frame == self.frame][:1]
         pairs = [(motion, hypothesis) for hypothesis in held for motion in reversed(self.earlier)]
-        for told in (one for motion, h in pairs for one in retold_both(motion, newest, h, looks)):
-            far = math.hypot(*told.correction.shift) + math.dist(told.newest, look.place)
-            place = self.lattice.place_from_utak(*told.newest)
-            found.append(Explanation("misled", place, self.lattice, 0, far, None, self.hypotheses, told))
+        for told in (one for motion, h in pairs for one in retold_both(motion, newest, h, observations)):
+            far = math.hypot(*told.correction.shift) + math.dist(told.newest, observation.place)
+            place = self.frame.place_from_utak(*told.newest)
+            found.append(Explanation("misled", place, self.frame, 0, far, None, self.hypotheses, told))
         return found
 
     def _plainest(
-        self, ended: Sequence[Explanation], look: Observation, left: tuple[FrameHypothesis, ...]
+        self, ended: Sequence[Explanation], observation: Observation, left: tuple[FrameHypothesis, ...]
     ) -> Explanation:
         """The lattice held, on which nothing contradicts, or another one on which the table looks plainer.
 
         ended : explanations of a look on the lattice held. left : the hypotheses that stand, weighed.
         """
         self.hypotheses = left
-        dear = next(h.dear for h in left if h.holds(self.lattice))
+        dear = next(h.dear for h in left if h.holds(self.frame))
         explanations = [one._replace(crooked=one.crooked + dear) for one in ended]
         if dear > 0:
-            plainest = candidates(left, self.lattice)[0]
-            place = plainest.place_from_utak(*look.place)
+            plainest = candidates(left, self.frame)[0]
+            place = plainest.place_from_utak(*observation.place)
             explanations.append(Explanation("turned", place, plainest, 0, 0.0, None, left))
         return self._choose(explanations, ["stands"])
 
     def _turned(
-        self, look: Observation, left: tuple[FrameHypothesis, ...], recent: list[Observation]
+        self, observation: Observation, left: tuple[FrameHypothesis, ...], recent: list[Observation]
     ) -> list[Explanation]:
         """The lattice to believe instead of the one held, on which looks contradict.
 
         look : the new one, as predicted, recent : the last ones with it. left : the hypotheses that stand.
         """
         if self.likely_spread <= SETTLED:  # rather he woke elsewhere in his square than that the angle is another one
-            beside = search(recent, anywhere((self.lattice.angle,)))
-            left = weighed((*beside, *(h for h in left if h.angle != self.lattice.angle)), recent)
-        lattice, misfits = self._borne_out(left, look)
-        if (misfits or self._dear(lattice.angle) > DOUBTED) and self.searches < MOST_SEARCHES:
+            beside = search(recent, anywhere((self.frame.angle,)))
+            left = weighed((*beside, *(h for h in left if h.angle != self.frame.angle)), recent)
+        frame, misfits = self._borne_out(left, observation)
+        if (misfits or self._dear(frame.angle) > DOUBTED) and self.searches < MOST_SEARCHES:
             self.searches += 1
             found = tuple(one._replace(dear=self._dear(one.angle)) for one in search(recent))
-            another, fewer = self._borne_out(found, look)
-            if (fewer, self._dear(another.angle)) < (misfits, self._dear(lattice.angle)):
-                left, lattice, misfits = found, another, fewer
-        place = lattice.place_from_utak(*look.place)
-        misfits += cramped(left, len(self.looks))
-        crooked = self._dear(lattice.angle)
-        return [Explanation("turned", place, lattice, misfits, 0.0, None, left, crooked=crooked)] * bool(left)
+            another, fewer = self._borne_out(found, observation)
+            if (fewer, self._dear(another.angle)) < (misfits, self._dear(frame.angle)):
+                left, frame, misfits = found, another, fewer
+        place = frame.place_from_utak(*observation.place)
+        misfits += cramped(left, len(self.observations))
+        crooked = self._dear(frame.angle)
+        return [Explanation("turned", place, frame, misfits, 0.0, None, left, crooked=crooked)] * bool(left)
 
-    def _borne_out(self, left: tuple[FrameHypothesis, ...], look: Observation) -> tuple[Frame, int]:
+    def _borne_out(self, left: tuple[FrameHypothesis, ...], observation: Observation) -> tuple[Frame, int]:
         """Of the lattices left, the one that all looks bear out best, and how many fields it leaves as noise."""
         if not left:
-            return self.lattice, NONE_FITS
+            return self.frame, NONE_FITS
         tried: list[tuple[int, int]] = []
-        lattices = candidates(left, self.lattice)[: max(6, MOST_REPLAYS // (len(self.looks) + 1))]
-        for number, lattice in enumerate(lattices):
-            tried.append((relaid(lattice, self.lattice, [*self.looks, look], ()).misfits, number))
+        frames = candidates(left, self.frame)[: max(6, MOST_REPLAYS // (len(self.observations) + 1))]
+        for number, frame in enumerate(frames):
+            tried.append((relaid(frame, self.frame, [*self.observations, observation], ()).misfits, number))
             if tried[-1][0] == 0:
                 break
         misfits, number = min(tried)
-        return lattices[number], misfits
+        return frames[number], misfits
 
     def _explanation(self, how: str, place: Place, ranges: NDArray[np.int16], predicted: Place) -> Explanation:
         misfits = self._clashes(ranges, place, self.loads.values())
-        return Explanation(how, place, self.lattice, misfits, math.dist(place, predicted))
+        return Explanation(how, place, self.frame, misfits, math.dist(place, predicted))

@@ -34,10 +34,10 @@ class Holding:
     look after it, if it came upon anything. pictures : the last ones of the map on this lattice, if any were drawn.
     """
 
-    evidence: OccupancyMap = field(default_factory=OccupancyMap)
-    lattice: Frame = field(default_factory=Frame)
+    occupancy: OccupancyMap = field(default_factory=OccupancyMap)
+    frame: Frame = field(default_factory=Frame)
     place: Place = CENTRE
-    looks: list[Observation] = field(default_factory=list)
+    observations: list[Observation] = field(default_factory=list)
     hypotheses: tuple[FrameHypothesis, ...] = CENTRED
     trust: int = 0
     barred: set[tuple[int, int]] = field(default_factory=set)
@@ -66,7 +66,10 @@ class Holding:
     @property
     def track(self) -> list[Place]:
         """Where he has been, as points of the lattice."""
-        return [self.lattice.place_from_utak(*place) for place in (*self.been, *(look.place for look in self.looks))]
+        return [
+            self.frame.place_from_utak(*place)
+            for place in (*self.been, *(observation.place for observation in self.observations))
+        ]
 
     @property
     def looked_from(self) -> frozenset[tuple[int, int]]:
@@ -84,7 +87,7 @@ class Holding:
         return self._spread(other for other in self.hypotheses if other.is_plausible)
 
     def _spread(self, hypotheses: Iterable[FrameHypothesis]) -> float:
-        return math.radians(max((abs(other.angle - self.lattice.angle) for other in hypotheses), default=0))
+        return math.radians(max((abs(other.angle - self.frame.angle) for other in hypotheses), default=0))
 
     @property
     def closed(self) -> frozenset[tuple[int, int]]:
@@ -95,18 +98,18 @@ class Holding:
         """
         sure = set() if self.slipped else {square for square in self.barred if not self._free_about(*square)}
         doubted = (self.barred | self.suspected) - sure
-        return frozenset((*sure, *(s for s in doubted if self.evidence.state[self.evidence.index(*s)] == OPEN)))
+        return frozenset((*sure, *(s for s in doubted if self.occupancy.state[self.occupancy.index(*s)] == OPEN)))
 
     def _free_about(self, x: int, y: int) -> bool:
         """Are a square of the lattice and the eight about it seen to be free?"""
-        row, column = self.evidence.index(x, y)
-        about = self.evidence.state[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
+        row, column = self.occupancy.index(x, y)
+        about = self.occupancy.state[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
         return bool((about == FREE).all())
 
     @property
     def _off_middle(self) -> bool:
         """Has it turned out that he did not wake amid his square?"""
-        return self.lattice.woke != CENTRE
+        return self.frame.origin != CENTRE
 
     @property
     def _beside_line(self) -> bool:
@@ -116,7 +119,7 @@ class Holding:
     @property
     def leeway(self) -> Box:
         """How far from where he believes it he may have woken: to the west and south (not above 0), east and north."""
-        return leeway(self.lattice, self.looks, self.hypotheses)
+        return leeway(self.frame, self.observations, self.hypotheses)
 
     @property
     def sure(self) -> bool:
@@ -126,21 +129,21 @@ class Holding:
         one of his last motions ended, while several places in his square are left at which he may have woken, or
         several angles none of which is that of his own axes.
         """
-        along = self.lattice.angle == 0 and all(other.is_centred for other in self.hypotheses)
+        along = self.frame.angle == 0 and all(other.is_centred for other in self.hypotheses)
         told = not (self.shaken or any(map(self._elsewhere_likely, self.moved)))
         return told and (along or len(self.hypotheses) == 1)
 
     @property
     def shaken(self) -> bool:
         """Did a look contradict another one, or a motion end beside where it should?"""
-        return self.slipped or self.evidence.overruled > 0
+        return self.slipped or self.occupancy.overruled > 0
 
     def _elsewhere_likely(self, motion: MotionHypothesis) -> bool:
         """Did a motion likely end in another square than is believed, by the look after it?"""
-        if motion.number >= len(self.looks):
+        if motion.number >= len(self.observations):
             return False
-        places = [self.looks[motion.number].place, *motion.likely(DOUBTED)]
-        squares = {(math.floor(x), math.floor(y)) for x, y in (self.lattice.place_from_utak(*own) for own in places)}
+        places = [self.observations[motion.number].place, *motion.likely(DOUBTED)]
+        squares = {(math.floor(x), math.floor(y)) for x, y in (self.frame.place_from_utak(*own) for own in places)}
         return len(squares) > 1
 
     @property
@@ -156,4 +159,4 @@ class Holding:
     @property
     def earlier(self) -> tuple[MotionHypothesis, ...]:
         """Those of them after which a look was taken in already."""
-        return tuple(motion for motion in self.tellable if motion.number < len(self.looks))
+        return tuple(motion for motion in self.tellable if motion.number < len(self.observations))

@@ -33,10 +33,10 @@ class Judging(Holding):
         return Surprise(
             command,
             ranges,
-            self.lattice,
+            self.frame,
             self.place,
-            self.evidence,
-            self.looks,
+            self.occupancy,
+            self.observations,
             self.loads,
             self.held,
             self.hypotheses,
@@ -65,22 +65,22 @@ class Judging(Holding):
         self.searches += found.searched
         outcome = found.outcome
         pushed = outcome is not None and outcome.stopped and surprise.degrees == 0.0
-        if simple and pushed and found.lattice == self.lattice:  # where that was is judged more finely already
+        if simple and pushed and found.frame == self.frame:  # where that was is judged more finely already
             return []
-        if found.lattice != self.lattice or set(found.hypotheses) != set(self.hypotheses):
+        if found.frame != self.frame or set(found.hypotheses) != set(self.hypotheses):
             far = 0.0 if outcome is None else outcome.distance
-            turned = Explanation("turned", found.place, found.lattice, found.misfits, far, outcome, found.hypotheses)
-            return [turned._replace(crooked=self._dear(found.lattice.angle))]
+            turned = Explanation("turned", found.place, found.frame, found.misfits, far, outcome, found.hypotheses)
+            return [turned._replace(crooked=self._dear(found.frame.angle))]
         if outcome is None or outcome.how == "predicted":  # as is judged already
             return []
-        return [Explanation(outcome.how, outcome.place, self.lattice, found.misfits, outcome.distance, outcome)]
+        return [Explanation(outcome.how, outcome.place, self.frame, found.misfits, outcome.distance, outcome)]
 
     def _halted_elsewhere(self, surprise: Surprise) -> list[Explanation]:
         """That a push was stopped, and he woke elsewhere in his square: each the likelier the more of that is left."""
         found = []
         for one, chance, against in self._at_length(lambda: halted_elsewhere(surprise)):
             far = 0.0 if one.outcome is None else one.outcome.distance
-            turned = Explanation("turned", one.place, one.lattice, 0, far, one.outcome, one.hypotheses)
+            turned = Explanation("turned", one.place, one.frame, 0, far, one.outcome, one.hypotheses)
             found.append(turned._replace(chance=chance, crooked=against, weighed=True))
         return found
 
@@ -92,7 +92,7 @@ class Judging(Holding):
         simple explains it on any other lattice either.
         """
         simple = [other for other in others if self._simple(other)]
-        here = [other for other in simple if other.lattice == self.lattice]
+        here = [other for other in simple if other.frame == self.frame]
         if here:
             known = any(other.chance is not None for other in here)
             likely = [] if known else [self._told_again(one) for one in recalled(surprise, self.in_doubt)]
@@ -113,13 +113,13 @@ class Judging(Holding):
     def _simple(self, explanation: Explanation) -> bool:
         """Does an explanation leave nothing as noise, and say neither that he slipped nor that the angle is another?"""
         likely = explanation.how != "slipped" or self.slipped
-        return likely and not explanation.misfits and explanation.lattice.angle == self.lattice.angle
+        return likely and not explanation.misfits and explanation.frame.angle == self.frame.angle
 
     def _told_again(self, recalled: ReestimatedMotion) -> Explanation:
         """That an earlier motion ended elsewhere than is believed, as it was told again."""
         told, one = recalled
         far = math.hypot(*told.correction.shift)
-        misled = Explanation("misled", one.place, one.lattice, 0, far, one.outcome, one.hypotheses, told)
+        misled = Explanation("misled", one.place, one.frame, 0, far, one.outcome, one.hypotheses, told)
         return self._doubted(misled)
 
     def _doubted(self, explanation: Explanation) -> Explanation:
@@ -127,36 +127,34 @@ class Judging(Holding):
         assert explanation.retold is not None
         correction = explanation.retold.correction
         motion = next((motion for motion in self.moved if motion.number == correction.since), None)
-        if motion is None or motion.number >= len(self.looks) or explanation.lattice != self.lattice:
+        if motion is None or motion.number >= len(self.observations) or explanation.frame != self.frame:
             return explanation
-        return explanation._replace(chance=motion.doubt(correction.place(self.looks[motion.number].place)))
+        return explanation._replace(chance=motion.doubt(correction.place(self.observations[motion.number].place)))
 
     def _doubt(self, chosen: Explanation) -> None:
         """Remember where else the newest motion may have ended than an explanation says that is believed."""
-        if not self.ended or chosen.lattice != self.lattice or self.moved[-1].number != len(self.looks):
+        if not self.ended or chosen.frame != self.frame or self.moved[-1].number != len(self.observations):
             return
         weights = [(one, (one.chance or 0.0) * math.exp(-one.crooked)) for one in self.ended]
         total = sum(weight for _, weight in weights)
-        others = [
-            (self.lattice.place_to_utak(*one.place), w / total) for one, w in weights if one.place != chosen.place
-        ]
+        others = [(self.frame.place_to_utak(*one.place), w / total) for one, w in weights if one.place != chosen.place]
         self.moved = (*self.moved[:-1], self.moved[-1]._replace(doubts=tuple(others)))
 
     def _dear(self, angle: int) -> float:
         """How much less plain the table looked at an angle than at the one believed, by all looks before."""
-        if angle == self.lattice.angle:
+        if angle == self.frame.angle:
             return 0.0
         return min((one.dear for one in self.hypotheses if one.angle == angle), default=UNTRIED)
 
     def _clashes(self, ranges: NDArray[np.int16], place: Place, loads: Iterable[HeldObject]) -> int:
         """How many fields cannot be right if the impression was received at a place, with the loads where they lie."""
-        return clashes(self.lattice, self.evidence, loads, place, ranges)
+        return clashes(self.frame, self.occupancy, loads, place, ranges)
 
     def _choose(self, explanations: list[Explanation], told: Iterable[str] = ()) -> Explanation:
         """The explanation to believe. told : facts about the motion and the look."""
         facts = [f"trust({0 if self._off_middle else self.trust})", *["slips"] * self.slipped]
         facts += ["off_middle"] * self._off_middle
-        facts += [f"met({n})" for n, e in enumerate(explanations) if e.met and e.lattice == self.lattice]
+        facts += [f"met({n})" for n, e in enumerate(explanations) if e.met and e.frame == self.frame]
         facts += ["proven"] * (self.held is not None and self.loads[self.held].proven)
         return cheapest(explanations, [*facts, *told])
 
@@ -168,15 +166,15 @@ class Judging(Holding):
             loads = borne_out(loads, self.held)
         if chosen.retold is not None:
             correction = chosen.retold.correction
-            own = self.lattice.place_to_utak(*self.place)
-            self.place = self.lattice.place_from_utak(*correction.place(own))
-            self.looks, loads = correction.looks(self.looks), correction.loads(loads, self.lattice)
-        elif chosen.lattice == self.lattice:
+            own = self.frame.place_to_utak(*self.place)
+            self.place = self.frame.place_from_utak(*correction.place(own))
+            self.observations, loads = correction.observations(self.observations), correction.loads(loads, self.frame)
+        elif chosen.frame == self.frame:
             return
         if chosen.retold is not None or len(loads) < len(self.loads):
-            under = relaid(chosen.lattice, self.lattice, self.looks, loads.values())
+            under = relaid(chosen.frame, self.frame, self.observations, loads.values())
         else:
-            under = RemapCache(self.lattice, self.evidence, self.looks, loads).on(chosen.lattice)
-        if under.evidence is not self.evidence:
+            under = RemapCache(self.frame, self.occupancy, self.observations, loads).on(chosen.frame)
+        if under.occupancy is not self.occupancy:
             self.barred, self.suspected, self.pictures = set(), set(), None
-        self.lattice, self.evidence, self.loads = chosen.lattice, under.evidence, dict(under.loads)
+        self.frame, self.occupancy, self.loads = chosen.frame, under.occupancy, dict(under.loads)

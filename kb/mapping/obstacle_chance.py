@@ -22,8 +22,8 @@ UNSEEN = np.array([0.12])  # how likely something stands on a square never seen:
 class ObstacleChance:
     """What may stand on the squares of a map. pictures : of it; by counts alone without."""
 
-    def __init__(self, evidence: OccupancyMap, pictures: Completions | None = None) -> None:
-        self._evidence = evidence
+    def __init__(self, occupancy: OccupancyMap, pictures: Completions | None = None) -> None:
+        self._occupancy = occupancy
         self._pictures = pictures
         self._known: dict[Square, Floats] = {}
 
@@ -34,13 +34,13 @@ class ObstacleChance:
         return self._known[square]
 
     def _asked(self, square: Square) -> Floats:
-        self._evidence.make_room(*square)
-        index = self._evidence.index(*square)
-        state = self._evidence.state[index]
+        self._occupancy.make_room(*square)
+        index = self._occupancy.index(*square)
+        state = self._occupancy.state[index]
         if state != OPEN:
             return np.array([float(state == FULL)])
         if self._pictures is None:
-            return np.array([1.0 / (1.0 + math.exp(-float(self._evidence.logit[index])))])
+            return np.array([1.0 / (1.0 + math.exp(-float(self._occupancy.logit[index])))])
         shown = self._pictures.at(*square)
         if shown is None:
             return UNSEEN

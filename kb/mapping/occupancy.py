@@ -102,7 +102,7 @@ class OccupancyMap:
         self._high = np.zeros(0, np.int16)
         self._fresh = np.zeros(0, np.bool_)
         self.overruled = 0
-        self._looks: set[Told] = set()  # after which nothing was withdrawn
+        self._observations: set[Told] = set()  # after which nothing was withdrawn
 
     @property
     def logit(self) -> Logits:
@@ -113,7 +113,11 @@ class OccupancyMap:
         """The same, to be told more."""
         other = copy(self)
         other.state, other.seen = self.state.copy(), self.seen.copy()
-        other.settled_by, other._looks, other._fresh = self.settled_by.copy(), self._looks.copy(), self._fresh.copy()
+        other.settled_by, other._observations, other._fresh = (
+            self.settled_by.copy(),
+            self._observations.copy(),
+            self._fresh.copy(),
+        )
         return other
 
     def view(self, places: Iterable[tuple[float, float]] = (), margin: int = 2) -> MapView:
@@ -180,14 +184,14 @@ class OccupancyMap:
         state[where[told, left]] = np.where(ranges[told, 0] > 0, FULL, FREE)
         return new + misfits(state, *self._fields, np.zeros(len(self._low), np.bool_))
 
-    def look(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, number: int) -> None:
+    def observe(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, number: int) -> None:
         """Take in one impression, received on square (x, y), as impression `number`.
 
         Where it contradicts what was settled, what is seen now counts: older settlements under the contradicting
         fields, and the fields that led to them, are withdrawn. What was seen before, from there, tells nothing new.
         """
         seen_here: Told = (x, y, *(told.tobytes() for told in (samples.columns, samples.rows, samples.weight, ranges)))
-        if seen_here in self._looks:
+        if seen_here in self._observations:
             return
         wrong = self.misfits(samples, ranges, x, y)
         where = self._under(samples, x, y)
@@ -203,11 +207,11 @@ class OccupancyMap:
         settle(self.state.ravel(), self.settled_by.ravel(), *self._fields, self._fresh, number)
         self._keep(self._informative())
         self._odds = self._odds.after(Fields(self.state.copy().ravel(), *self._fields))
-        self._looks.add(seen_here)
+        self._observations.add(seen_here)
 
     def withdraw(self, squares: Squares) -> None:
         """Forget what was settled of these squares (flat indices), and every field that covers one of them."""
-        self._looks.clear()
+        self._observations.clear()
         doubtful = np.zeros(self.state.size, np.bool_)
         doubtful[squares] = True
         self.state.ravel()[squares] = OPEN

@@ -51,7 +51,7 @@ class Frame:
     """
 
     angle: int = 0
-    woke: tuple[float, float] = CENTRE
+    origin: tuple[float, float] = CENTRE
 
     def to_lattice(self, east: float, north: float) -> tuple[float, float]:
         """A vector of Utak's frame as a vector of the lattice."""
@@ -63,17 +63,17 @@ class Frame:
 
     def place_to_utak(self, x: float, y: float) -> tuple[float, float]:
         """A point of the lattice as a point of Utak's frame."""
-        return self.to_utak(x - self.woke[0], y - self.woke[1])
+        return self.to_utak(x - self.origin[0], y - self.origin[1])
 
     def place_from_utak(self, east: float, north: float) -> tuple[float, float]:
         """A point of Utak's frame as a point of the lattice."""
         x, y = self.to_lattice(east, north)
-        return x + self.woke[0], y + self.woke[1]
+        return x + self.origin[0], y + self.origin[1]
 
     def places_from_utak(self, east: Floats, north: Floats) -> tuple[Floats, Floats]:
         """Points of Utak's frame as points of the lattice."""
         x, y = turned(east, north, self.angle)
-        return x + self.woke[0], y + self.woke[1]
+        return x + self.origin[0], y + self.origin[1]
 
     def beside(self, direction: str) -> tuple[int, int] | None:
         """The adjacent square, as (columns, rows), in one of the eight directions of Utak's frame.

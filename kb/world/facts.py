@@ -41,10 +41,10 @@ def belief(model: WorldModel, places: Places, accommodated: Accommodated, bound:
     were predicted, explained or noise. bound: what the parameters of the task mean. facts: the world model.
     """
     cells = Counter(str(status) for status in accommodated.cells)
-    east, north = model.lattice.place_to_utak(*model.place)
+    east, north = model.frame.place_to_utak(*model.place)
     return {
         "place": [round(east, 6) + 0.0, round(north, 6) + 0.0],
-        "lattice": model.lattice.angle,
+        "lattice": model.frame.angle,
         "pose": accommodated.explanation.how,
         "cells": {status: cells[status] for status in sorted(cells)},
         "bound": dict(sorted(bound.items())),
@@ -66,7 +66,7 @@ def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
 
 
 def _root(model: WorldModel) -> Iterator[str]:
-    east, north = model.lattice.place_to_utak(*model.place)
+    east, north = model.frame.place_to_utak(*model.place)
     yield f"node({ORG})"
     yield f"kind({ORG},utak,100)"
     yield f"offset({ORG},{_hundredths(east)},{_hundredths(north)})"
@@ -97,7 +97,7 @@ def _object(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
     yield f"kind({name},object,{node.confidence})"
     if node.confidence < 100:
         yield f"kind({name},verge,{model.kinds.of(node.region, 'verge')})"
-    east, north = model.lattice.place_to_utak(*node.patch.centre)
+    east, north = model.frame.place_to_utak(*node.patch.centre)
     yield f"offset({name},{_hundredths(east)},{_hundredths(north)})"
     for shape, confidence in sorted(node.shape.items()):
         yield f"shape({name},{shape},{confidence})"
@@ -161,7 +161,7 @@ def _outlined(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel) -> 
 
 def _in_hundredths(points: Floats, model: WorldModel) -> NDArray[np.int64]:
     """(n, 2): points of the lattice in hundredths of squares of Utak's frame."""
-    placed: Floats = np.column_stack(model.lattice.place_to_utak(*points.T))
+    placed: Floats = np.column_stack(model.frame.place_to_utak(*points.T))
     answer: NDArray[np.int64] = np.rint(HUNDREDTHS * placed).astype(np.int64)
     return answer
 

@@ -105,7 +105,7 @@ class WorldModel:
     contradicted : is there a part of the impression that agrees with nothing that is believed?
     """
 
-    lattice: Frame
+    frame: Frame
     place: tuple[float, float]
     view: MapView
     labels: NDArray[np.int32]
@@ -137,7 +137,7 @@ class WorldModel:
         """
         mask: Mask = (self.view.state != OPEN) & self.view.sure
         if 0 < self.spread <= NEARLY:
-            x, y = self.lattice.woke[0] - self.view.west, self.lattice.woke[1] - self.view.south
+            x, y = self.frame.origin[0] - self.view.west, self.frame.origin[1] - self.view.south
             rows, columns = np.ogrid[: mask.shape[0], : mask.shape[1]]
             mask &= np.hypot(columns + 0.5 - x, rows + 0.5 - y) * self.spread <= SHIFTED
         return mask
@@ -200,7 +200,7 @@ class WorldModel:
 
     def place_to_utak(self, x: float, y: float) -> tuple[float, float]:
         """A point of the frame of the view's arrays, in Utak's own: east and north of where he woke."""
-        return self.lattice.place_to_utak(x + self.view.west, y + self.view.south)
+        return self.frame.place_to_utak(x + self.view.west, y + self.view.south)
 
     def point_in_words(self, place: tuple[float, float]) -> str:
         """Return a point of the frame of the view's arrays as one of Utak's own frame, in words."""

@@ -145,7 +145,7 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), verge: Mask | None
     doorways = np.zeros(verge.shape, np.bool_)
     for neck, _ in possible:
         doorways |= _doorway(neck.passage, verge.shape) | found.narrow(neck)
-    order = _first(int(labels.max()), int(labels[model.view.locate(*model.lattice.woke)]))
+    order = _first(int(labels.max()), int(labels[model.view.locate(*model.frame.origin)]))
     doors = tuple(
         Door(f"d{number}", *neck.line, (int(order[one]), int(order[other])), confidence)
         for number, ((neck, confidence), (one, other)) in enumerate(zip(possible, sides, strict=True), 1)

@@ -131,7 +131,7 @@ class ManipulationOracle:
             if choice is None:
                 break
             name, level, aside = choice
-            ground = CarryingFloor(shape, utak, floors[level, aside], situation.screens.free(level))
+            ground = CarryingFloor(shape, utak, floors[level, aside], situation.cost_maps.free(level))
             plan = self._plan(request, request.ends[name], ground, situation.model)
             if plan.status == "found" and self._hopeless:
                 self._hopeless = False  # what was hopeless is no more: now the best way is asked for
@@ -176,7 +176,7 @@ class ManipulationOracle:
         beyond it no look tells well where he was stopped.
         """
         model, node = situation.model, request.node
-        own, walk = framed(model.mask(node.patch)), framed(situation.screens.free(0))
+        own, walk = framed(model.mask(node.patch)), framed(situation.cost_maps.free(0))
         free = (hoped_floor(situation) | own) & ~framed(barred(node, situation))
         if (free == walk | own).all():
             return
@@ -221,7 +221,7 @@ def _with_room(free: Mask, shape: Any) -> tuple[Mask, Any]:
 
 def _untouchable(node: Node, model: WorldModel) -> Iterator[tuple[float, float]]:
     """Holds by which no direction of his frame surely names a square of an object: at a corner, as the lattice lies."""
-    covered, ways, middle = node.patch.squares(), model.lattice.directions(), node.polygon.centroid
+    covered, ways, middle = node.patch.squares(), model.frame.directions(), node.polygon.centroid
     about = {(x + dx, y + dy) for x, y in covered for dx, dy in AROUND} - covered
     for x, y in about:
         if not any((x + dx, y + dy) in covered for dx, dy in ways):
@@ -243,7 +243,7 @@ def _free(node: Node, situation: Situation, level: int, aside: str) -> Mask:
     """
     model = situation.model
     own = model.mask(node.patch)
-    free = situation.screens.free(level) | own
+    free = situation.cost_maps.free(level) | own
     if level == UNSEEN:
         for other in (other for other in model.objects if other.name != node.name):
             mask = model.mask(other.patch)
@@ -283,7 +283,7 @@ def _haul(plan: CarryingPlan, shape: Any, name: str, level: int, situation: Situ
     model = situation.model
     swept = swept_squares(plan, shape, model.labels.shape)
     # What seems to stand where the object itself is, is not in its way, nor is what may not be there at all.
-    needed = swept & ~model.mask(node.patch) & ~situation.screens.free(level)
+    needed = swept & ~model.mask(node.patch) & ~situation.cost_maps.free(level)
     others = (other for other in model.objects if other.name != node.name)
     aside = tuple(other.name for other in others if (model.mask(other.patch) & needed).any())
     return ManipulationPlan(plan, name, level, swept, aside)

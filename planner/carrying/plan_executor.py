@@ -66,7 +66,7 @@ class PlanExecutor:
     missed: int = 0
 
     def __post_init__(self) -> None:
-        self._hauler = ManipulationOracle(self.pull)
+        self._oracle = ManipulationOracle(self.pull)
         self._leader = ManipulationOracle(
             self.pull
         )  # asks for ways to look: that there is none tells nothing of the goal
@@ -112,7 +112,7 @@ class PlanExecutor:
 
     def refused(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Infeasibility | None:
         """Why an object cannot be carried to any of several ends, if it cannot."""
-        found = self._hauler.find(self._request(node, ends, "", situation.model), situation)
+        found = self._oracle.find(self._request(node, ends, "", situation.model), situation)
         return found if isinstance(found, Infeasibility) else None
 
     def given_up(self, model: WorldModel) -> Act:
@@ -227,16 +227,16 @@ class PlanExecutor:
 
     def _planned(self, request: Request, situation: Situation) -> RemainingPlan | See | Infeasibility:
         node, asked = request.node, request
-        haul = self._hauler.find(request, situation)
+        haul = self._oracle.find(request, situation)
         if isinstance(haul, Infeasibility) and situation.model.held == node.name and not request.held:
             request = replace(request, held=True)  # to let go and take it otherwise does not help either
-            haul = self._hauler.find(request, situation)
+            haul = self._oracle.find(request, situation)
         if isinstance(haul, Infeasibility):
             again = not haul.proved and self.failed.forgiven(node)
             return self._planned(replace(asked, avoid=self.failed.of(node)), situation) if again else haul
         if haul.aside:
             things = (thing for thing in situation.model.objects if thing.name in haul.aside)
-            touch = _first(by_touch(situation.screens, thing) for thing in things if thing.confidence < SURELY)
+            touch = _first(by_touch(situation.cost_maps, thing) for thing in things if thing.confidence < SURELY)
             if touch is not None:
                 return touch
             cleared = (self._clearing(other, haul, situation) for other in situation.model.objects)
@@ -244,7 +244,7 @@ class PlanExecutor:
             if first is None:
                 unclear = (situation.model.object(name) for name in haul.aside)
                 looks = (
-                    inspection(situation.screens, o, chance=1.0, to=TAKE) for o in unclear if o is not None and o.open
+                    inspection(situation.cost_maps, o, chance=1.0, to=TAKE) for o in unclear if o is not None and o.open
                 )
                 look = _first(looks)
                 if look is not None:
@@ -272,7 +272,7 @@ class PlanExecutor:
         """What to ask for. He goes on with the hold he has, but not where doing so has brought him nowhere."""
         nowhere = self._went_on is not None and math.dist(self._went_on, model.place) < NOWHERE
         held = model.held == node.name and not nowhere
-        tight = self._tight.get(node.name, 0) + (model.lattice.woke != CENTRE and max(model.leeway) > LOOSE)
+        tight = self._tight.get(node.name, 0) + (model.frame.origin != CENTRE and max(model.leeway) > LOOSE)
         return Request(node, ends, self.failed.of(node), last, tight, held, _price_of_a_turn(model), hoped)
 
     def _clearing(
@@ -281,9 +281,9 @@ class PlanExecutor:
         """A way to carry a thing off the squares that a plan needs, if it stands there and there is one."""
         if other.name not in haul.aside or other.polygon is None or other.movable == 0:
             return None
-        room = situation.screens.free(0) | situation.model.mask(other.patch)
+        room = situation.cost_maps.free(0) | situation.model.mask(other.patch)
         end = drawn_out(other, haul.swept, situation) or Inside(region_of(room & ~haul.swept))
-        found = self._hauler.find(self._request(other, {"away": end}, "", situation.model), situation)
+        found = self._oracle.find(self._request(other, {"away": end}, "", situation.model), situation)
         return (other, found) if isinstance(found, ManipulationPlan) and found.plan.legs and not found.aside else None
 
     def _seen(self, haul: ManipulationPlan, node: Node, situation: Situation) -> See | None:
@@ -297,14 +297,14 @@ class PlanExecutor:
         model, tedious = situation.model, haul.plan.commands > TEDIOUS
         if haul.hopes or (haul.plan.goes_on and not tedious):
             return None
-        unsure = haul.swept & ~situation.screens.free(0)
+        unsure = haul.swept & ~situation.cost_maps.free(0)
         if tedious:
             unsure |= grown(haul.swept, ABOUT) & (model.view.state == OPEN) & (model.view.probability > SPACE)
         unsure &= ~model.mask(node.patch)
         if not unsure.any():
             return None
-        lookout = sight_of(situation.screens, unsure, f"the way for {node.name} is not clear")
-        return See(lookout) if len(lookout.squares) else None
+        viewpoint = sight_of(situation.cost_maps, unsure, f"the way for {node.name} is not clear")
+        return See(viewpoint) if len(viewpoint.squares) else None
 
     # -- following it ----------------------------------------------------------------------------
 
@@ -347,7 +347,7 @@ class PlanExecutor:
             return Go(square_of(leg.place, model), leg.place, f"{course.name} can be taken from there")
         if begun is None:
             dx, dy = leg.place[0] - model.place[0], leg.place[1] - model.place[1]
-            return Act(Move(*model.lattice.to_utak(dx, dy)), "to the middle of the square")
+            return Act(Move(*model.frame.to_utak(dx, dy)), "to the middle of the square")
         direction = grasp_direction(leg, course, model)
         if direction is None:
             return None
@@ -377,4 +377,4 @@ def _departing(push: Translate, why: str, model: WorldModel) -> Act:
 def _command(motion: Motion, model: WorldModel) -> Command:
     if isinstance(motion, Rotate):
         return Turn(motion.degrees)
-    return Push(*model.lattice.to_utak(motion.dx, motion.dy))
+    return Push(*model.frame.to_utak(motion.dx, motion.dy))

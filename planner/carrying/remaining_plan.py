@@ -83,7 +83,7 @@ def followed(course: RemainingPlan, ends: Mapping[str, End] | None, situation: S
         return None
     if course.grasped and model.held != course.name:
         return None
-    if not course.grasped and situation.screens.nearest(square_of(course.legs[0].place, model)) is None:
+    if not course.grasped and situation.cost_maps.nearest(square_of(course.legs[0].place, model)) is None:
         return None
     free = _room(course, node, situation)
     if not free[model.mask_within(course.needed)].all():
@@ -120,7 +120,7 @@ def clear_part(haul: ManipulationPlan, node: Node, situation: Situation) -> Mani
     pushes = [motion for motion in first.motions if isinstance(motion, Translate)]
     if others or len(pushes) < len(first.motions):  # turns and new holds depend on what is not seen
         return None
-    yard = Workspace(situation.screens.safe | situation.model.mask(node.patch))
+    yard = Workspace(situation.cost_maps.safe | situation.model.mask(node.patch))
     start = in_view(node.polygon, situation)
     shape, place = start, first.place
     clear: list[Motion] = []
@@ -160,7 +160,7 @@ def _longest_push(yard: Workspace, shape: Any, place: Place, push: Translate) ->
 
 def _room(course: RemainingPlan, node: Node, situation: Situation) -> Mask:
     """(rows, columns): the squares over which a course may lead that was made before."""
-    free = situation.screens.free(max(course.level, STILL)) | situation.model.mask(node.patch)
+    free = situation.cost_maps.free(max(course.level, STILL)) | situation.model.mask(node.patch)
     return free & ~barred(node, situation)
 
 
@@ -178,7 +178,7 @@ def grasp_direction(leg: Leg, course: RemainingPlan, model: WorldModel) -> str |
     node = model.object(course.name)
     assert node is not None
     x, y = math.floor(leg.place[0]), math.floor(leg.place[1])
-    ways, covered = model.lattice.directions(), node.patch.squares()
+    ways, covered = model.frame.directions(), node.patch.squares()
     planned = ways.get(leg.direction_square)
     others = [direction for (dx, dy), direction in ways.items() if (x + dx, y + dy) in covered]
     directions = [planned, *others] if planned is not None else others

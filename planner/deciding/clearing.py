@@ -51,7 +51,7 @@ def obstacles(things: Sequence[Node], situation: Situation) -> Iterator[Obstacle
         found = [(_first_on(way, things, model), way) for way in _ways(np.any(under, axis=0), situation)]
     for thing, way in sorted(found, key=lambda pair: pair[1].length):
         columns, rows = np.array(way.squares).T
-        room = situation.screens.free(0) | model.mask(thing.patch)
+        room = situation.cost_maps.free(0) | model.mask(thing.patch)
         room[rows, columns] = False
         yield Obstacle(thing, Inside(region_of(room)))
     for depth, thing in product(range(1, 1 + DEEPEST), things if not found else []):
@@ -60,8 +60,8 @@ def obstacles(things: Sequence[Node], situation: Situation) -> Iterator[Obstacle
 
 def _ways(under: Mask, situation: Situation) -> list[PlannedRoute]:
     """The way to where he would come were some squares free, and cannot now; none where they shut off but a nook."""
-    without, screens = CostMaps(situation.model, under), situation.screens
-    beyond = (without.distances[UNSEEN] != UNREACHED) & (screens.distances[UNSEEN] == UNREACHED) & ~under
+    without, cost_maps = CostMaps(situation.model, under), situation.cost_maps
+    beyond = (without.distances[UNSEEN] != UNREACHED) & (cost_maps.distances[UNSEEN] == UNREACHED) & ~under
     if not leads_away(beyond, under):
         return []
     return ways(without, UNSEEN, np.flatnonzero(beyond), "grid")
@@ -143,7 +143,7 @@ class ObstacleClearer:
     def _moved_aside(self, node: Node, aside: End, stage: Stage, situation: Situation) -> Decision | None:
         """The next command to move a thing aside, if it is one; None when none is known."""
         if node.confidence < SURELY:
-            touch = by_touch(situation.screens, node)
+            touch = by_touch(situation.cost_maps, node)
             look = self._pursuer.look(Subgoal("inspect", *touch), stage, situation)
             return None if look is None or look.command is None else look
         if node.polygon is None or node.vague:

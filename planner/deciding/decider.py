@@ -67,14 +67,14 @@ class Decider:
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
         """What to do after an impression. track: the places where Utak has been, this one included."""
-        screens = CostMaps(model)
+        cost_maps = CostMaps(model)
         self.rooms = rooms_of(model, self.rules)
-        reconciled = self._reconcile(screens)
+        reconciled = self._reconcile(cost_maps)
         self.corners = corners(model, self.rules)
         if model.lost and model.held is not None:
             return Decision(Release(), f"{model.held} is let go, for nothing looks as it should")
         places = tuple((float(x), float(y)) for x, y in track)
-        situation = Situation(model, screens, self.bound, self.rooms, self.corners, self.task, self.rules, places)
+        situation = Situation(model, cost_maps, self.bound, self.rooms, self.corners, self.task, self.rules, places)
         while self.attained < len(self.stages):
             stage = self.stages[self.attained]
             decision = self._clearer.going_on(stage, situation)
@@ -129,10 +129,10 @@ class Decider:
         if at_odds := opposite_corners(goals, situation):
             return Decision(None, f"{stage} cannot be attained: {at_odds}", "impossible", unless=None)
         missing = "; ".join(d.missing for d in where if d.missing) or no_way(where)
-        aims = aims_towards(where, situation, reconciled, ARRIVE)
+        subgoals = aims_towards(where, situation, reconciled, ARRIVE)
         unseen = any(str(goal.args[1]) in reconciled.hypothesised for goal in goals)
         verdict = verdict_if_missing(situation.model) if unseen else "impossible"
-        ask = partial(self.pursuer.pursue, aims, stage, situation, lambda: missing, verdict)
+        ask = partial(self.pursuer.pursue, subgoals, stage, situation, lambda: missing, verdict)
         decision = self.pursuer.felt(ask, stage, situation)
         return replace(decision, command=halted(decision.command, stage, situation))
 
@@ -142,7 +142,7 @@ class Decider:
         for goal in (goal for goal in stage.goals if goal.name in FROM_THE_START):
             x = str(goal.args[0])
             node = model.object(self.bound.get(x, ""))
-            began = model.lattice.woke if node is None else self.transporter.beginnings.at(x, node, situation)
+            began = model.frame.origin if node is None else self.transporter.beginnings.at(x, node, situation)
             lying = here(model) if node is None else model.mask(node.patch)
             doubt = doubt or before_elsewhere(goal.name, began, lying, situation)
         return doubt
@@ -159,13 +159,13 @@ class Decider:
 
     def _round(self, stage: Stage, name: str, situation: Situation, track: Sequence[Place]) -> Decision | None:
         """The next command on the way round an object."""
-        model, screens = situation.model, situation.screens
+        model, cost_maps = situation.model, situation.cost_maps
         node = model.object(name)
         assert node is not None
         home = (np.floor(track[0]) == np.floor(model.place)).all()
         if home and abs(winding(track, node)) == 1:
             return None
-        offered = ways_round(screens, track, node)
+        offered = ways_round(cost_maps, track, node)
         begun = [offered[self._turn]] if self._turn in offered else list(offered.values())
         way = self.pursuer.choose(begun, situation)
         if way is None:
@@ -175,11 +175,11 @@ class Decider:
         x, y = pivot(node)
         about = (x - model.view.west, y - model.view.south)
         kind = "attain" if way.level == 0 else "explore"
-        return Decision(next_move(screens, way.squares, kind, about), f"the way round {name}; {stage}")
+        return Decision(next_move(cost_maps, way.squares, kind, about), f"the way round {name}; {stage}")
 
-    def _reconcile(self, screens: CostMaps) -> Reconciled:
+    def _reconcile(self, cost_maps: CostMaps) -> Reconciled:
         carried = sorted({str(goal.args[0]) for stage in self.stages for goal in stage.carried})
-        known = ways_to_objects(screens)
-        reconciled = reconcile(self.task, screens.model, known, self.bound, self.rules, carried)
+        known = ways_to_objects(cost_maps)
+        reconciled = reconcile(self.task, cost_maps.model, known, self.bound, self.rules, carried)
         self.bound = reconciled.binding
         return reconciled

@@ -41,7 +41,7 @@ class Pursuer:
 
     def pursue(
         self,
-        aims: Sequence[Subgoal],
+        subgoals: Sequence[Subgoal],
         stage: Stage,
         situation: Situation,
         missing: Callable[[], str],
@@ -54,31 +54,31 @@ class Pursuer:
         if he can.
         """
         model = situation.model
-        fewest = FewestMoves(situation.screens) if stage.carried else None
+        fewest = FewestMoves(situation.cost_maps) if stage.carried else None
         while True:
-            offered = self._circles.priced(aims, model)
+            offered = self._circles.priced(subgoals, model)
             if fewest is not None:
                 offered = fewest.priced(offered)
-            aim = choose(offered, situation.screens, self._kept.aim(model))
-            if aim is None:
-                circles = len(offered) < len(aims)
+            subgoal = choose(offered, situation.cost_maps, self._kept.subgoal(model))
+            if subgoal is None:
+                circles = len(offered) < len(subgoals)
                 end = "he goes round in circles" if circles else "nothing is left to look at"
                 return Decision(
                     None, f"{stage} cannot be attained: {missing()}, and {end}", "limit" if circles else verdict
                 )
-            taken = None if along is None else along(aim)
+            taken = None if along is None else along(subgoal)
             if taken is not None:
                 return taken
             if model.held is not None:
                 return Decision(Release(), f"{model.held} is let go, to walk; {stage}")
-            decision = self._walk(aim, stage, situation, fewest)
+            decision = self._walk(subgoal, stage, situation, fewest)
             if decision.command is None or not self._circles.noticed(model, decision.command):
                 return decision
-            self._circles.tire(lattice_squares(aim.squares, model))
+            self._circles.tire(lattice_squares(subgoal.squares, model))
 
-    def look(self, aim: Subgoal | None, stage: Stage, situation: Situation) -> Decision | None:
+    def look(self, subgoal: Subgoal | None, stage: Stage, situation: Situation) -> Decision | None:
         """The next command towards what he wants to make sure of, if there is anything."""
-        return None if aim is None else self.pursue([aim], stage, situation, lambda: aim.what, "limit")
+        return None if subgoal is None else self.pursue([subgoal], stage, situation, lambda: subgoal.what, "limit")
 
     def go(self, go: Go, stage: Stage, situation: Situation) -> Decision:
         """The next command on the way to where something is taken, to halt right there."""
@@ -90,7 +90,9 @@ class Pursuer:
         if isinstance(advice, Go):
             walk: Decision | None = self.go(advice, stage, situation)
         else:
-            walk = self.look(Subgoal("inspect", *advice.lookout), stage, situation) if isinstance(advice, See) else None
+            walk = (
+                self.look(Subgoal("inspect", *advice.viewpoint), stage, situation) if isinstance(advice, See) else None
+            )
         return None if walk is None or walk.command is None else walk
 
     def felt(self, ask: Callable[[], Decision], stage: Stage, situation: Situation) -> Decision:
@@ -100,31 +102,31 @@ class Pursuer:
         """
         decision = None if self._feeling else ask()
         if decision is None or decision.verdict:
-            aims = against_walls(situation) or perhaps_islands(situation)
-            felt = [self.pursue(aims, stage, situation, lambda: "")] if aims else []
+            subgoals = against_walls(situation) or perhaps_islands(situation)
+            felt = [self.pursue(subgoals, stage, situation, lambda: "")] if subgoals else []
             self._feeling = any(not instead.verdict for instead in felt)
             return felt[0] if self._feeling else decision or ask()
         return decision
 
-    def _walk(self, aim: Subgoal, stage: Stage, situation: Situation, fewest: FewestMoves | None) -> Decision:
+    def _walk(self, subgoal: Subgoal, stage: Stage, situation: Situation, fewest: FewestMoves | None) -> Decision:
         """The next command towards an aim. fewest : by the fewest moves where that is wanted."""
-        model, screens = situation.model, situation.screens
-        reached = screens.nearest(aim.squares)
+        model, cost_maps = situation.model, situation.cost_maps
+        reached = cost_maps.nearest(subgoal.squares)
         assert reached is not None
-        straight = None if fewest is None else fewest.way(aim)
+        straight = None if fewest is None else fewest.way(subgoal)
         way = None if straight is None else self.choose([straight], situation)
-        way = way or self._rest(aim, reached.level, situation)
-        way = way or self.choose(ways(screens, reached.level, aim.squares, self._paths), situation)
+        way = way or self._rest(subgoal, reached.level, situation)
+        way = way or self.choose(ways(cost_maps, reached.level, subgoal.squares, self._paths), situation)
         if way is None:
             return Decision(None, f"{stage} cannot be attained: every way there is forbidden", "impossible")
-        self.keep(way, model, aim.squares)
-        kind = aim.kind if straight is not None or reached.level == 0 else "pass"
-        move = next_move(screens, way.squares, kind, pace=STROLL if fewest is None else HURRY)
-        return Decision(move, f"{aim.what}; {stage}")
+        self.keep(way, model, subgoal.squares)
+        kind = subgoal.kind if straight is not None or reached.level == 0 else "pass"
+        move = next_move(cost_maps, way.squares, kind, pace=STROLL if fewest is None else HURRY)
+        return Decision(move, f"{subgoal.what}; {stage}")
 
-    def _rest(self, aim: Subgoal, level: int, situation: Situation) -> PlannedRoute | None:
+    def _rest(self, subgoal: Subgoal, level: int, situation: Situation) -> PlannedRoute | None:
         """Return what is left of the way that he is on, if it leads to an aim and through no forbidden door."""
-        rest = self._kept.rest(aim, level, situation.model, situation.screens)
+        rest = self._kept.rest(subgoal, level, situation.model, situation.cost_maps)
         return self.choose([rest], situation) if rest is not None and situation.forbidden("utak") else rest
 
     def keep(self, way: PlannedRoute, model: WorldModel, towards: Squares | None = None) -> None:
@@ -137,4 +139,4 @@ class Pursuer:
             return None
         before = frozenset(self._kept.path(situation.model))
         forbidden = frozenset(door.name for door in situation.forbidden("utak"))
-        return choose_way(offered, situation.screens, before, situation.rooms.doors, forbidden)
+        return choose_way(offered, situation.cost_maps, before, situation.rooms.doors, forbidden)

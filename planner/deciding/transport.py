@@ -91,10 +91,12 @@ class Transporter:
         situation = situation.along_with(node.patch) if land.shut_in else situation
         if isinstance(advice, See):
             along = partial(self._taken_along, node, stage, situation)
-            return self.pursuer.pursue([Subgoal("inspect", *advice.lookout)], stage, situation, lambda: "", along=along)
-        unknown = nowhere(land.missing or "no way is known to carry it there", land.lookouts)
-        aims = aims_towards([unknown], situation, reconciled)
-        decision = self._missing(advice, node, land, aims, stage, situation)
+            return self.pursuer.pursue(
+                [Subgoal("inspect", *advice.viewpoint)], stage, situation, lambda: "", along=along
+            )
+        unknown = nowhere(land.missing or "no way is known to carry it there", land.viewpoints)
+        subgoals = aims_towards([unknown], situation, reconciled)
+        decision = self._missing(advice, node, land, subgoals, stage, situation)
         return self._proved(advice, decision, node, land, stage, situation)
 
     def at_odds(self, stage: Stage, situation: Situation) -> Decision | None:
@@ -124,9 +126,9 @@ class Transporter:
         fixed = dict(reconciled.unmovable).get(x)
         unseen = nowhere(f"{fixed} cannot be moved" if fixed else f"nothing seen so far is {x}")
         goals = [goal for goal in stage.goals if str(goal.args[0]) == x]
-        aims = aims_towards([unseen], situation, reconciled, approach(goals, situation))
+        subgoals = aims_towards([unseen], situation, reconciled, approach(goals, situation))
         verdict = verdict_if_missing(situation.model, bool(fixed))
-        ask = partial(self.pursuer.pursue, aims, stage, situation, lambda: unseen.missing, verdict)
+        ask = partial(self.pursuer.pursue, subgoals, stage, situation, lambda: unseen.missing, verdict)
         decision = self.pursuer.felt(ask, stage, situation)
         if fixed and decision.verdict:
             unless = f"{fixed} is more than one thing, or moves another way than it was pushed"
@@ -171,7 +173,7 @@ class Transporter:
         refused: Infeasibility,
         node: Node,
         land: Placement,
-        aims: Sequence[Subgoal],
+        subgoals: Sequence[Subgoal],
         stage: Stage,
         situation: Situation,
     ) -> Decision:
@@ -181,12 +183,12 @@ class Transporter:
         where it shall end, another way there is looked for without it; and what is taken while it is open how the
         squares lie keeps the outline that it seems to have then. What shuts him in he takes along.
         """
-        fetched = land.shut_in or not (land.lookouts or land.ends or is_open(situation.model))
+        fetched = land.shut_in or not (land.viewpoints or land.ends or is_open(situation.model))
         again = land.shut_in and self._led_along  # he has taken it along, and brought it back
         along = partial(self._taken_along, node, stage, situation, fetched=fetched)
         brought = None if land.there or again else along
         verdict = "impossible" if refused.proved else "limit"
-        ask = partial(self.pursuer.pursue, aims, stage, situation, refused.reason, verdict, brought)
+        ask = partial(self.pursuer.pursue, subgoals, stage, situation, refused.reason, verdict, brought)
         decision = self.pursuer.felt(ask, stage, situation)
         self._led_along |= land.shut_in and isinstance(decision.command, Push)
         if land.shut_in and not isinstance(decision.command, Push | Turn):
@@ -224,7 +226,7 @@ class Transporter:
     def _advice(self, node: Node, land: Placement, situation: Situation) -> Advice:
         """What to do to carry something to where its goal holds; while that is not known, to near it."""
         looked = len(situation.model.looked_from)
-        if land.lookouts and (looked == self._looked or (land.ends and self.carrier.missed >= MISSED)):
+        if land.viewpoints and (looked == self._looked or (land.ends and self.carrier.missed >= MISSED)):
             self.carrier.missed, self._looked = 0, looked
             return Infeasibility(not situation.model.shaken, lambda: land.missing)
         if land.ends:
@@ -240,17 +242,17 @@ class Transporter:
         return Infeasibility(not situation.model.shaken, lambda: land.missing)
 
     def _taken_along(
-        self, node: Node, stage: Stage, situation: Situation, aim: Subgoal, fetched: bool = False
+        self, node: Node, stage: Stage, situation: Situation, subgoal: Subgoal, fetched: bool = False
     ) -> Decision | None:
         """The next command to take an object along to where he wants to look; None when he had better walk there.
 
         fetched : also one that he has not got hold of.
         """
-        advice = self.carrier.taken_along(node, aim.squares, fetched, situation)
+        advice = self.carrier.taken_along(node, subgoal.squares, fetched, situation)
         if isinstance(advice, Go):
-            walk = self.pursuer.go(replace(advice, why=f"{node.name} is taken along: {aim.what}"), stage, situation)
+            walk = self.pursuer.go(replace(advice, why=f"{node.name} is taken along: {subgoal.what}"), stage, situation)
             return None if walk.command is None else walk
-        return self._led(advice, aim.what, stage, situation)
+        return self._led(advice, subgoal.what, stage, situation)
 
     def _pressed_on(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
         """The next push by which what he holds comes to touch a wall that may be further away, or what is left to do

@@ -49,7 +49,7 @@ class Verifier:
         self._doubted.discard(node.name)
         if node.polygon is not None and not node.open:
             return None
-        look = inspection(situation.screens, node, chance=1.0, to=TAKE)
+        look = inspection(situation.cost_maps, node, chance=1.0, to=TAKE)
         if not len(look.squares):
             return None
         self._doubted.add(node.name)
@@ -64,7 +64,7 @@ class Verifier:
         if neck is None:
             return None
         where = (neck[0] + model.view.west, neck[1] + model.view.south)
-        near = frontiers.close_to(situation.screens, *where)
+        near = frontiers.close_to(situation.cost_maps, *where)
         if contains(near, model):
             self._narrow.append(where)
         if any(math.dist(where, looked) <= frontiers.CLOSE for looked in self._narrow):
@@ -81,7 +81,7 @@ def before_taking(node: Node, turns: bool, situation: Situation) -> Subgoal | No
     model = situation.model
     if not (is_open(model) and (turns or node.stuck) and len(model.looked_from) <= FEW + node.stuck):
         return None
-    aside = frontiers.sight_of(situation.screens, model.mask(node.patch), "how the squares lie is not clear")
+    aside = frontiers.sight_of(situation.cost_maps, model.mask(node.patch), "how the squares lie is not clear")
     return Subgoal("inspect", *aside) if len(aside.squares) else None
 
 
@@ -93,7 +93,7 @@ def misgiving(situation: Situation) -> Subgoal | None:
     model = situation.model
     if not model.contradicted:
         return None
-    look = frontiers.sight_of(situation.screens, here(model), "what is seen is not as it is believed to be")
+    look = frontiers.sight_of(situation.cost_maps, here(model), "what is seen is not as it is believed to be")
     return Subgoal("inspect", *look)
 
 
@@ -109,7 +109,7 @@ def more_of(node: Node, situation: Situation) -> Subgoal | None:
     standing = [model.verge, *(model.mask(other.patch) for other in model.objects if other.name != node.name)]
     alone = node.moved or model.held == node.name or not any((beside & mask).any() for mask in standing)
     for mask in () if alone else model.protruding:
-        look = frontiers.against_the_wall(situation.screens, mask)
+        look = frontiers.against_the_wall(situation.cost_maps, mask)
         if (mask & beside).any() and len(look.squares):
             return Subgoal("inspect", *look)
     return None
@@ -132,9 +132,9 @@ def unfelt_wall(goal: str, began: Place, lying: Mask, situation: Situation) -> S
     for mask in situation.model.protruding:
         if any(_jambs_in_line(mask, door, situation.model) for door in situation.rooms.sure):
             continue
-        look = frontiers.against_the_wall(situation.screens, mask)
+        look = frontiers.against_the_wall(situation.cost_maps, mask)
         if not len(look.squares):  # whatever lies askew must be seen better before one can stand right beside it
-            look = frontiers.sight_of(situation.screens, mask, look.what)
+            look = frontiers.sight_of(situation.cost_maps, mask, look.what)
         if len(look.squares) and holds_by(mask):
             return Subgoal("inspect", *look)
     return None
@@ -159,7 +159,7 @@ def unseen_beyond(goal: str, began: Place, lying: Mask, situation: Situation) ->
         there = np.unravel_index(look.squares, lying.shape)
         return float(np.hypot(there[0] - rows.mean(), there[1] - columns.mean()).min())
 
-    nearest = min(frontiers.frontiers(situation.screens, frontiers.APART), key=far, default=None)
+    nearest = min(frontiers.frontiers(situation.cost_maps, frontiers.APART), key=far, default=None)
     return None if nearest is None else Subgoal("inspect", *nearest)
 
 

@@ -49,7 +49,7 @@ def cornered(side: str, node: Node, situation: Situation) -> Placement:
             near = _near(side, node, situation, floor)
             must_reach = partial(_must_reach, side, node, situation)
             hoped = partial(_further, side, next(iter(near), ""), situation)
-            return Placement({}, unknown.missing, unknown.lookouts, near, must_reach=must_reach, hoped=hoped)
+            return Placement({}, unknown.missing, unknown.viewpoints, near, must_reach=must_reach, hoped=hoped)
     land = _in_corner(side, node, situation)
     if not land.holds:
         held = situation.model.held == node.name
@@ -85,7 +85,7 @@ def _looks_into_rooms(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
     What lies behind their squares is seen from short of them, too.
     """
     rooms = rooms_to_see(side, situation)
-    return tuple(r._replace(squares=np.union1d(r.squares, short_of(situation.screens, r.squares))) for r in rooms)
+    return tuple(r._replace(squares=np.union1d(r.squares, short_of(situation.cost_maps, r.squares))) for r in rooms)
 
 
 def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
@@ -110,11 +110,11 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
     if not unclear.any():
         return replace(_flat(side, end, node, shape), hoped=hoped)
     near = replace(end, slack=FLUSH if view.sure else ABOUT)
-    lookout = sight_of(situation.screens, unclear, f"where just the {side} corner is is not clear")
+    viewpoint = sight_of(situation.cost_maps, unclear, f"where just the {side} corner is is not clear")
     may_go_on = unclear & (view.probability < 1 - CLEAR)
-    if len(lookout.squares) and (not view.sure or (may_go_on.any() and lands(near, shape))):
-        return Placement({}, lookout.what, (lookout,), there=True)
-    return Placement({side: near}, lookout.what, (lookout,), holds=lands(near, shape), hoped=hoped)
+    if len(viewpoint.squares) and (not view.sure or (may_go_on.any() and lands(near, shape))):
+        return Placement({}, viewpoint.what, (viewpoint,), there=True)
+    return Placement({side: near}, viewpoint.what, (viewpoint,), holds=lands(near, shape), hoped=hoped)
 
 
 def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Placement:
@@ -251,6 +251,6 @@ def _about(side: str, squares: int, situation: Situation) -> Mask:
 
 def _floor(node: Node, situation: Situation) -> Mask:
     """(rows, columns): the squares that Utak can reach; what is to be carried does not shut him in: it goes along."""
-    screens = situation.screens
-    mask: Mask = reach(screens.free(0) | situation.model.mask(node.patch), *screens.here) != UNREACHED
+    cost_maps = situation.cost_maps
+    mask: Mask = reach(cost_maps.free(0) | situation.model.mask(node.patch), *cost_maps.here) != UNREACHED
     return mask

@@ -22,7 +22,7 @@ POSED = 0.25  # squares within which a pose is attained
 
 def around_start(node: Node, situation: Situation) -> Placement:
     """At the place where Utak woke: within one square of it."""
-    place = in_view(shapely.Point(*situation.model.lattice.woke), situation)
+    place = in_view(shapely.Point(*situation.model.frame.origin), situation)
     return _touching(in_view(node.polygon, situation), place.buffer(0.5, cap_style="square"), "start")
 
 
@@ -64,7 +64,7 @@ def posed(goal: Fact, node: Node, situation: Situation) -> Placement:
     assert isinstance(place, Text)
     assert isinstance(degrees, Number)
     point = parse_wkt(place.value)
-    x, y = situation.model.lattice.place_from_utak(point.x, point.y)
+    x, y = situation.model.frame.place_from_utak(point.x, point.y)
     middle = node.polygon.centroid
     left = (degrees.value - node.turned + 180.0) % 360.0 - 180.0
     holds = math.dist((x, y), (middle.x, middle.y)) <= POSED and abs(left) <= TURNED

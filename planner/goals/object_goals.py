@@ -74,12 +74,12 @@ def _next_room(began: Place, node: Node, situation: Situation) -> Placement:
         if looks and _lies_in(ends, node, situation):
             return Placement({}, looks[0].what, looks, there=True)
         return Placement(ends, hoped=partial(_insides, rooms, beyond, situation))
-    missing, lookouts = no_next_room(situation), doorsteps(situation)
+    missing, viewpoints = no_next_room(situation), doorsteps(situation)
     likely_rooms = situation.likely_beyond(began)
     likely = _insides(*likely_rooms)
     if _lies_in(likely, node, situation):
-        return Placement({}, missing, lookouts, there=True)
-    return Placement(likely, missing, lookouts, hoped=partial(_insides, *likely_rooms, situation))
+        return Placement({}, missing, viewpoints, there=True)
+    return Placement(likely, missing, viewpoints, hoped=partial(_insides, *likely_rooms, situation))
 
 
 def _hoped(mask: Mask, situation: Situation) -> End:

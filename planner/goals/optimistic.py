@@ -30,4 +30,4 @@ def spread(mask: Mask, situation: Situation) -> Mask:
 
 def hoped_floor(situation: Situation) -> Mask:
     """All squares that are hoped to be free, with the frame."""
-    return spread(situation.screens.free(BOLD), situation)
+    return spread(situation.cost_maps.free(BOLD), situation)

@@ -43,9 +43,9 @@ class Origins:
         model, known = situation.model, self._known.get(parameter)
         gone = known is not None and known.moved and model.object(known.name) is None
         if known is None or (known.name != node.name and not gone):
-            place = model.lattice.place_to_utak(node.polygon.centroid.x, node.polygon.centroid.y)
+            place = model.frame.place_to_utak(node.polygon.centroid.x, node.polygon.centroid.y)
             known = Origin(place, node.name, anew=model.anew, doors=() if known is None else known.doors)
-        began = model.lattice.place_from_utak(*known.place)
+        began = model.frame.place_from_utak(*known.place)
         doors = known.doors if node.moved else _doors_of_its_room(began, situation)
         self._known[parameter] = known._replace(name=node.name, moved=known.moved or node.moved, doors=doors)
         return began
@@ -66,7 +66,7 @@ class Origins:
     def left(self, parameter: str, node: Node, situation: Situation) -> bool:
         """Does what a parameter means lie in another room than where it was noted?"""
         rooms, view = situation.rooms.labels, situation.model.view
-        began = situation.model.lattice.place_from_utak(*self._known[parameter].place)
+        began = situation.model.frame.place_from_utak(*self._known[parameter].place)
         now = node.polygon.centroid.x, node.polygon.centroid.y
         return bool(rooms[view.locate(*began)] != rooms[view.locate(*now)])
 

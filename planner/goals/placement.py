@@ -54,7 +54,7 @@ class Placement:
 
     ends: Mapping[str, End]
     missing: str = ""
-    lookouts: tuple[Viewpoint, ...] = ()
+    viewpoints: tuple[Viewpoint, ...] = ()
     approach: Mapping[str, End] = field(default_factory=dict)
     holds: bool = False
     there: bool = False
@@ -127,7 +127,7 @@ def out_of_wall(node: Node, side: tuple[int, int], depth: int, situation: Situat
     seen whole; None where it cannot be moved so.
     """
     mask, (dx, dy) = situation.model.mask(node.patch), side
-    room = np.pad(situation.screens.free(0) | mask, depth + 1)
+    room = np.pad(situation.cost_maps.free(0) | mask, depth + 1)
     rows, columns = np.nonzero(np.pad(mask, depth + 1))
     out = (step for step in range(1, depth + 2) if not room[rows - step * dy, columns - step * dx].all())
     far = next(out, depth + 2) - 1
@@ -147,7 +147,7 @@ def drawn_out(node: Node, needed: Mask, situation: Situation) -> At | None:
 def can_leave(node: Node, situation: Situation) -> bool:
     """Does Utak, if he has an object in hand, not stand in a nook between that and the walls?"""
     held = situation.model.held == node.name
-    return not held or leads_away(situation.screens.floor, situation.model.mask(node.patch))
+    return not held or leads_away(situation.cost_maps.floor, situation.model.mask(node.patch))
 
 
 def leads_away(floor: Mask, thing: Mask) -> bool:

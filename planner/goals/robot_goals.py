@@ -43,7 +43,7 @@ class Destination:
 
     squares: Squares
     missing: str = ""
-    lookouts: tuple[Viewpoint, ...] = ()
+    viewpoints: tuple[Viewpoint, ...] = ()
 
 
 def no_way(where: Sequence[Destination]) -> str:
@@ -52,9 +52,9 @@ def no_way(where: Sequence[Destination]) -> str:
     return "no way leads there" if set.intersection(*both) else "there is no place where all of it holds at once"
 
 
-def nowhere(missing: str, lookouts: tuple[Viewpoint, ...] = ()) -> Destination:
+def nowhere(missing: str, viewpoints: tuple[Viewpoint, ...] = ()) -> Destination:
     """It is not known yet where."""
-    return Destination(np.zeros(0, np.int64), missing, lookouts)
+    return Destination(np.zeros(0, np.int64), missing, viewpoints)
 
 
 def corner_side(goal: Fact) -> str:
@@ -70,7 +70,7 @@ def destination(goal: Fact, situation: Situation) -> Destination:
     if side := corner_side(goal):
         return corner(side, situation)
     if goal.name == "at" and str(where) == "start":
-        return Destination(_within(situation.model, situation.model.lattice.woke, 1.0))
+        return Destination(_within(situation.model, situation.model.frame.origin, 1.0))
     if goal.name in ("at", "beside", "circled"):
         return beside(str(where), situation)
     if goal.name in ("in", "through"):
@@ -85,7 +85,7 @@ def corner(side: str, situation: Situation) -> Destination:
 
     Where a room is not seen that may go further, it may be another one.
     """
-    unknown = unknown_corner(side, situation, situation.screens.floor)
+    unknown = unknown_corner(side, situation, situation.cost_maps.floor)
     if unknown is not None:
         return unknown
     column, row = situation.corners[side].square
@@ -100,16 +100,16 @@ def unknown_corner(side: str, situation: Situation, floor: Mask) -> Destination 
     It is not where the floor goes on unseen at its furthest, or is seen beyond walls. floor : (rows, columns) that can
     be reached.
     """
-    model, screens = situation.model, situation.screens
+    model, cost_maps = situation.model, situation.cost_maps
     column, row = situation.corners[side].square
     best = row * model.labels.shape[1] + column
     if not floor[row, column]:
-        rooms = tuple(room for room in rooms_beyond(screens) if best in room.squares)
+        rooms = tuple(room for room in rooms_beyond(cost_maps) if best in room.squares)
         return nowhere(f"the floor towards the {side} lies beyond a passage that is not seen yet", rooms)
     around = (slice(max(row - 1, 0), row + 2), slice(max(column - 1, 0), column + 2))
     if not model.view.seen[around].all():
-        lookout = Viewpoint(short_of(screens, np.array([best])), f"the floor goes on to the {side}, unseen")
-        return nowhere(lookout.what, (lookout,))
+        viewpoint = Viewpoint(short_of(cost_maps, np.array([best])), f"the floor goes on to the {side}, unseen")
+        return nowhere(viewpoint.what, (viewpoint,))
     return None
 
 
@@ -119,7 +119,7 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
     The floor goes on unseen behind what may be a door, or would be one if what may yet be an object is no wall; or
     behind what is likely a gap; or it is seen where no way leads yet, but one may.
     """
-    screens, model = situation.screens, situation.model
+    cost_maps, model = situation.cost_maps, situation.model
     divided = [rooms.labels.ravel() for rooms in (situation.rooms, situation.supposed) if rooms.doors]
     doorways = (situation.rooms.doorways | situation.supposed.doorways).ravel()
     column, row = situation.corners[side].square
@@ -141,11 +141,11 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
         sideways = math.sqrt(max(2 - onward**2, 0.0))
         return min(promise, FURTHEST, ONWARD * max(onward, 0.0) + aside * sideways)
 
-    cut_off = [look for look in rooms_beyond(screens) if short(look) <= CUT_OFF]
-    looks = [look for look in cut_off if screens.nearest(look.squares) is not None]
-    open_ends = [look for look in frontiers(screens, APART) if short(look) <= FURTHEST]
-    likely_ends = [look for look in gaps(screens) if short(look) <= FURTHEST and narrow(look)]
-    ends = promised(screens, [*open_ends, *likely_ends])
+    cut_off = [look for look in rooms_beyond(cost_maps) if short(look) <= CUT_OFF]
+    looks = [look for look in cut_off if cost_maps.nearest(look.squares) is not None]
+    open_ends = [look for look in frontiers(cost_maps, APART) if short(look) <= FURTHEST]
+    likely_ends = [look for look in gaps(cost_maps) if short(look) <= FURTHEST and narrow(look)]
+    ends = promised(cost_maps, [*open_ends, *likely_ends])
     for look in ends[: len(open_ends)]:
         if doorways[look.squares].any():
             least, aside = FURTHEST, BESIDE_DOOR
@@ -158,7 +158,7 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
         if short(look) <= reach(look, least, aside):
             looks.append(look)
     for look in ends[len(open_ends) :]:
-        near = short_of(screens, look.squares)
+        near = short_of(cost_maps, look.squares)
         if len(near) and short(look) <= reach(look, FURTHEST, BESIDE_DOOR):
             looks.append(look._replace(squares=near))
     what = f"a room is not seen that may go further to the {side}"
@@ -175,7 +175,7 @@ def _onward(side: str, squares: Squares, model: WorldModel) -> float:
     steps = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)])
     x, y = np.array([unseen[rows + 1 + y, columns + 1 + x].sum() for x, y in steps]) @ steps
     far = math.hypot(x, y)
-    return float(_measured(side, *model.lattice.to_utak(x / far, y / far))) if far else 1.0
+    return float(_measured(side, *model.frame.to_utak(x / far, y / far))) if far else 1.0
 
 
 def _measured(side: str, east: Any, north: Any) -> Any:
@@ -187,7 +187,7 @@ def _towards(side: str, squares: Squares, model: WorldModel) -> float:
     """How far the furthest of some squares lies towards a corner of Utak's frame: east and north added."""
     rows, columns = np.divmod(squares, model.labels.shape[1])
     points = np.stack([columns + model.view.west + 0.5, rows + model.view.south + 0.5])
-    east, north = np.column_stack(model.lattice.place_to_utak(*points)).T
+    east, north = np.column_stack(model.frame.place_to_utak(*points)).T
     return float(_measured(side, east, north).max())
 
 
@@ -202,7 +202,7 @@ def beside(parameter: str, situation: Situation) -> Destination:
         return nowhere(f"nothing seen so far is {parameter}")
     mask = situation.model.mask(node.patch)
     about = grown(mask, 1)
-    near = about & situation.screens.floor
+    near = about & situation.cost_maps.floor
     touching = near & edged(mask)
     if touching.any():
         near = touching
@@ -219,10 +219,10 @@ def beside(parameter: str, situation: Situation) -> Destination:
 
 
 def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
-    beyond, looks = situation.beyond(situation.model.lattice.woke)
+    beyond, looks = situation.beyond(situation.model.frame.origin)
     if looks:
         return nowhere(looks[0].what, looks)
-    squares = np.flatnonzero(beyond & situation.screens.floor)
+    squares = np.flatnonzero(beyond & situation.cost_maps.floor)
     if len(squares):
         return Destination(squares)
     what = no_next_room(situation)
@@ -237,8 +237,8 @@ def no_next_room(situation: Situation) -> str:
         return "no next room is seen yet that can be reached"
     if opening is None:
         return "no door is seen yet"
-    woke = model.lattice.woke[0] - model.view.west, model.lattice.woke[1] - model.view.south
-    where = "behind" if math.dist(woke, opening.narrow) > math.dist(woke, opening.wide) else "before"
+    origin = model.frame.origin[0] - model.view.west, model.frame.origin[1] - model.view.south
+    where = "behind" if math.dist(origin, opening.narrow) > math.dist(origin, opening.wide) else "before"
     at = model.point_in_words(opening.place)
     return (
         f"no door is seen yet: the opening {opening.width:.1f} squares wide at {at} is none, "
@@ -249,9 +249,9 @@ def no_next_room(situation: Situation) -> str:
 def _likely_rooms(situation: Situation) -> list[Viewpoint]:
     """What lies beyond likely doors, until he has been there: on his way he sees whether they are some."""
     model = situation.model
-    rooms, beyond = situation.likely_beyond(model.lattice.woke)
-    beyond &= situation.screens.floor
-    if (beyond & situation.screens.looked_from).any():
+    rooms, beyond = situation.likely_beyond(model.frame.origin)
+    beyond &= situation.cost_maps.floor
+    if (beyond & situation.cost_maps.looked_from).any():
         return []
     found = [np.flatnonzero(beyond & (rooms.labels == n)) for n in numbers(rooms, beyond)]
     return [Viewpoint(squares, "a door seems to lead there") for squares in found]
@@ -267,14 +267,14 @@ def doorsteps(situation: Situation, tried: bool = False) -> tuple[Viewpoint, ...
 
     tried : likely doors are gone through, and not looked at.
     """
-    doubtful = jambs(situation.screens, [door for door in situation.rooms.doors if not (tried and door.likely)])
-    return (*doubtful, *rooms_beyond(situation.screens))
+    doubtful = jambs(situation.cost_maps, [door for door in situation.rooms.doors if not (tried and door.likely)])
+    return (*doubtful, *rooms_beyond(situation.cost_maps))
 
 
 def around_corner(situation: Situation) -> Destination:
     """The squares wholly out of sight of the place where Utak woke: a corner of the verge lies in between."""
     model = situation.model
-    squares = np.flatnonzero(out_of_sight(model.verge, model, model.lattice.woke) & situation.screens.floor)
+    squares = np.flatnonzero(out_of_sight(model.verge, model, model.frame.origin) & situation.cost_maps.floor)
     return Destination(squares) if len(squares) else nowhere("no corner is seen yet that hides a place")
 
 

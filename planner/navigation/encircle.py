@@ -25,25 +25,27 @@ def winding(track: Sequence[Place], node: Node) -> int:
     return crossings(_centred([*track, track[0]]), pivot(node))
 
 
-def ways_round(screens: CostMaps, track: Sequence[Place], node: Node) -> dict[int, PlannedRoute]:
+def ways_round(cost_maps: CostMaps, track: Sequence[Place], node: Node) -> dict[int, PlannedRoute]:
     """The ways, at the most certain level, that complete one turn about an object and end where the track began.
 
     By the sign of the turn: 1 counter-clockwise, -1 clockwise.
     """
-    model = screens.model
+    model = cost_maps.model
     x, y = pivot(node)
     about = (x - model.view.west, y - model.view.south)
     goal = _square(track[0], model)
     done = crossings(_centred(track), (x, y))
     for level in range(UNSEEN + 1):
-        free = screens.free(level) & ~model.mask(node.patch)
-        free[screens.here[1], screens.here[0]] = True  # a thing seen coarsely may seem to reach as far as his square
+        free = cost_maps.free(level) & ~model.mask(node.patch)
+        free[cost_maps.here[1], cost_maps.here[0]] = (
+            True  # a thing seen coarsely may seem to reach as far as his square
+        )
         if not free[goal[1], goal[0]]:
             continue
         found = {}
         for turn in (1, -1):
             number = turn - done
-            squares = winding_way(free, screens.here, goal, about, number) if abs(number) <= MOST else None
+            squares = winding_way(free, cost_maps.here, goal, about, number) if abs(number) <= MOST else None
             if squares and len(squares) > 1:
                 found[turn] = _way(squares, level)
         if found:

@@ -43,14 +43,14 @@ class LoopGuard:
         """An aim at these squares of the lattice led in circles."""
         self._vain.update(squares)
 
-    def priced(self, aims: Sequence[Subgoal], model: WorldModel) -> list[Subgoal]:
+    def priced(self, subgoals: Sequence[Subgoal], model: WorldModel) -> list[Subgoal]:
         """The aims, dearer by what was aimed at in vain; without those that were so too often."""
         known = _known(model)
         if known != self._known:
             self._known = known
             self._vain.clear()
         if not self._vain:
-            return list(aims)
+            return list(subgoals)
         rows, columns = model.labels.shape
         vain = np.zeros((rows, columns), np.int64)
         for (x, y), times in self._vain.items():
@@ -58,10 +58,10 @@ class LoopGuard:
             if 0 <= row < rows and 0 <= column < columns:
                 vain[row, column] = times
         found = []
-        for aim in aims:
-            times = int(vain.ravel()[aim.squares].max(initial=0))
+        for subgoal in subgoals:
+            times = int(vain.ravel()[subgoal.squares].max(initial=0))
             if times < MOST:
-                found.append(aim._replace(price=aim.price + WEARY * times))
+                found.append(subgoal._replace(price=subgoal.price + WEARY * times))
         return found
 
 

@@ -71,20 +71,20 @@ def _single(free: Mask, points: NDArray[np.float64] | None) -> list[Line]:
 FINDERS: Mapping[str, PathFinder] = {"skeleton": by_skeleton, "visibility": by_visibility, "grid": by_grid}
 
 
-def ways(screens: CostMaps, level: int, goals: NDArray[np.int64], finder: str) -> list[PlannedRoute]:
+def ways(cost_maps: CostMaps, level: int, goals: NDArray[np.int64], finder: str) -> list[PlannedRoute]:
     """Topologically distinct ways, at a level of certainty, to the nearest square that can be reached of some."""
-    free, distances = screens.free(level), screens.distances[level].ravel()
+    free, distances = cost_maps.free(level), cost_maps.distances[level].ravel()
     reached = goals[distances[goals] >= 0]
     row, column = divmod(int(reached[np.argmin(distances[reached])]), free.shape[1])
-    if (column, row) == screens.here:
-        return [PlannedRoute((screens.here,), 0.0, 0.0, level)]
-    found = FINDERS[finder](free, screens.here, (column, row))
+    if (column, row) == cost_maps.here:
+        return [PlannedRoute((cost_maps.here,), 0.0, 0.0, level)]
+    found = FINDERS[finder](free, cost_maps.here, (column, row))
     return [PlannedRoute(tuple(squares_along(free, points)), length, clear, level) for points, length, clear in found]
 
 
 def choose_way(
     offered: Sequence[PlannedRoute],
-    screens: CostMaps,
+    cost_maps: CostMaps,
     before: frozenset[Square],
     doors: Sequence[Door],
     forbidden: frozenset[str],
@@ -96,7 +96,7 @@ def choose_way(
     facts = [f"not_through({door})" for door in sorted(forbidden)]
     for number, way in enumerate(offered):
         columns, rows = np.array(way.squares).T
-        risk = round(100 * float(screens.model.view.probability[rows[1:], columns[1:]].sum()))
+        risk = round(100 * float(cost_maps.model.view.probability[rows[1:], columns[1:]].sum()))
         facts.append(f"route({number},{round(10 * way.length)},{round(10 * way.clearance)},{risk})")
         facts += [f"through({number},{door.name})" for door in doors if leads_through(way, door)]
         if len(before.intersection(way.squares)) > SHARED * len(way.squares):

@@ -27,21 +27,21 @@ class StickyRoute:
         """The squares (column, row) of the way, on the arrays of the view."""
         return [(x - model.view.west, y - model.view.south) for x, y in self._path]
 
-    def aim(self, model: WorldModel) -> frozenset[int]:
+    def subgoal(self, model: WorldModel) -> frozenset[int]:
         """The squares aimed at last time, as flat indices of this view."""
         rows, columns = model.labels.shape
         places = ((y - model.view.south, x - model.view.west) for x, y in self._aimed)
         return frozenset(row * columns + column for row, column in places if 0 <= row < rows and 0 <= column < columns)
 
-    def rest(self, aim: Subgoal, level: int, model: WorldModel, screens: CostMaps) -> PlannedRoute | None:
+    def rest(self, subgoal: Subgoal, level: int, model: WorldModel, cost_maps: CostMaps) -> PlannedRoute | None:
         """What is left of the way, when it still leads to an aim over squares believed free."""
         path = self.path(model)
-        if level != self._level or screens.here not in path:
+        if level != self._level or cost_maps.here not in path:
             return None
-        rest = path[path.index(screens.here) :]
+        rest = path[path.index(cost_maps.here) :]
         columns, rows = np.array(rest).T
         end = rest[-1][1] * model.labels.shape[1] + rest[-1][0]
-        if len(rest) < 2 or end not in aim.squares or not screens.free(level)[rows, columns].all():
+        if len(rest) < 2 or end not in subgoal.squares or not cost_maps.free(level)[rows, columns].all():
             return None
         return PlannedRoute(tuple(rest), float(len(rest)), 0.0, level)
 

@@ -25,19 +25,19 @@ class Subgoal(NamedTuple):
     price: float = 0.0
 
 
-def choose(aims: Sequence[Subgoal], screens: CostMaps, last: frozenset[int]) -> Subgoal | None:
+def choose(subgoals: Sequence[Subgoal], cost_maps: CostMaps, last: frozenset[int]) -> Subgoal | None:
     """The aim to pursue, or None when none can be reached.
 
     last: the squares (flat indices of this screen) of the aim chosen last time; an aim that shares one with it
     continues it.
     """
     facts = []
-    for number, aim in enumerate(aims):
-        reached = screens.nearest(aim.squares) if len(aim.squares) else None
+    for number, subgoal in enumerate(subgoals):
+        reached = cost_maps.nearest(subgoal.squares) if len(subgoal.squares) else None
         if reached is not None:
-            kind = "pass" if reached.level and aim.kind == "explore" else aim.kind
-            facts.append(f"aim({number},{kind},{round(10 * (reached.cost + aim.price))})")
-            facts.append(f"chance({number},{aim.chance})")
-            facts += [f"last({number})"] * bool(last and not last.isdisjoint(aim.squares.tolist()))
+            kind = "pass" if reached.level and subgoal.kind == "explore" else subgoal.kind
+            facts.append(f"aim({number},{kind},{round(10 * (reached.cost + subgoal.price))})")
+            facts.append(f"chance({number},{subgoal.chance})")
+            facts += [f"last({number})"] * bool(last and not last.isdisjoint(subgoal.squares.tolist()))
     answer = solve([ASP / "aims.lp"], facts) if facts else None
-    return aims[answer[0].arguments[0].number] if answer else None
+    return subgoals[answer[0].arguments[0].number] if answer else None

@@ -55,11 +55,11 @@ class Pace(NamedTuple):
         """Rows and columns of a move now."""
         return min(self.longest[kind], self.unsure) if is_open(model) else self.longest[kind]
 
-    def ground(self, screens: CostMaps, kind: str) -> NDArray[np.bool_]:
+    def ground(self, cost_maps: CostMaps, kind: str) -> NDArray[np.bool_]:
         """(rows, columns): the squares over which a move leads, by the kind of its aim."""
         if not self.bold:
-            return screens.safe
-        return screens.approached if kind == "inspect" else screens.believed
+            return cost_maps.safe
+        return cost_maps.approached if kind == "inspect" else cost_maps.believed
 
 
 STROLL = Pace({"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}, 9, bold=False)
@@ -67,7 +67,7 @@ HURRY = Pace({**STROLL.longest, "inspect": 48, "explore": 48}, 48, bold=True)
 
 
 def next_move(
-    screens: CostMaps,
+    cost_maps: CostMaps,
     path: Sequence[Square],
     kind: str,
     about: tuple[float, float] | None = None,
@@ -81,8 +81,8 @@ def next_move(
     path : edge-connected squares, the first is Utak's. kind : of the aim.
     about : a point (of the view's frame) about which the move must wind as the way does, when that matters.
     """
-    here, most = path[0], pace.most(kind, screens.model)
-    ground, roomy = pace.ground(screens, kind), None if pace.bold else _roomy(screens)
+    here, most = path[0], pace.most(kind, cost_maps.model)
+    ground, roomy = pace.ground(cost_maps, kind), None if pace.bold else _roomy(cost_maps)
     there = path[1]
     for number in range(len(path) - 1, 1, -1):
         square = path[number]
@@ -91,20 +91,20 @@ def next_move(
         if free and _same_side(path[: number + 1], about):
             there = square
             break
-    return move_to(screens.model, there, _aside(screens, there, kind if about is None else "attain"))
+    return move_to(cost_maps.model, there, _aside(cost_maps, there, kind if about is None else "attain"))
 
 
-def one_move(screens: CostMaps, kind: str, among: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
+def one_move(cost_maps: CostMaps, kind: str, among: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
     """(rows, columns): the squares to which one straight move in a hurry leads from where Utak stands.
 
     among : the squares that are asked about; None for all.
     """
-    return straight(HURRY.ground(screens, kind), *screens.here, HURRY.most(kind, screens.model), among)
+    return straight(HURRY.ground(cost_maps, kind), *cost_maps.here, HURRY.most(kind, cost_maps.model), among)
 
 
-def _roomy(screens: CostMaps) -> NDArray[np.bool_] | None:
+def _roomy(cost_maps: CostMaps) -> NDArray[np.bool_] | None:
     """(rows, columns): the squares that longer moves end over; None when it is settled how the lattice lies."""
-    return ~grown(~screens.safe, 1) if is_open(screens.model) else None
+    return ~grown(~cost_maps.safe, 1) if is_open(cost_maps.model) else None
 
 
 def _is_roomy(roomy: NDArray[np.bool_] | None, here: Square, there: Square) -> bool:
@@ -132,11 +132,11 @@ def move_by(model: WorldModel, dx: float, dy: float) -> Move:
 def _straight_to(place: tuple[float, float], model: WorldModel) -> Move:
     """The move to a place (of the lattice)."""
     here = on_line(model.place)
-    east, north = model.lattice.to_utak(place[0] - here[0], place[1] - here[1])
+    east, north = model.frame.to_utak(place[0] - here[0], place[1] - here[1])
     return Move(round(east, DIGITS) + 0.0, round(north, DIGITS) + 0.0)
 
 
-def _aside(screens: CostMaps, square: Square, kind: str) -> tuple[float, float]:
+def _aside(cost_maps: CostMaps, square: Square, kind: str) -> tuple[float, float]:
     """How far from the centre of a square he halts.
 
     As long as it is open within some degrees how the lattice lies, it is a little beside the centre where some turn by
@@ -144,14 +144,14 @@ def _aside(screens: CostMaps, square: Square, kind: str) -> tuple[float, float]:
     of them he sees himself, could never be explained. After that he halts, where it costs nothing, near to that line:
     if he woke elsewhere in his square than he thinks, he sees himself in the next one.
     """
-    model = screens.model
+    model = cost_maps.model
     if is_open(model):
         return ASIDE if _may_halt_between(model, square) else (0.0, 0.0)
     west, south, east, north = model.leeway
     test = tuple(EDGE if up > LOOSE else -EDGE if -down > LOOSE else 0.0 for down, up in ((west, east), (south, north)))
     here = model.place_on_view
     there = (square[0] + 0.5 + test[0], square[1] + 0.5 + test[1])
-    if kind not in TESTING or not clear_line(screens.safe, here, there):
+    if kind not in TESTING or not clear_line(cost_maps.safe, here, there):
         return (0.0, 0.0)
     return test[0], test[1]
 
@@ -167,7 +167,7 @@ def halting(command: Command | None, place: tuple[float, float], model: WorldMod
     """A command that halts right at a place (of the lattice), if it is a move into the square of that place."""
     if not isinstance(command, Move):
         return command
-    dx, dy = model.lattice.to_lattice(command.east, command.north)
+    dx, dy = model.frame.to_lattice(command.east, command.north)
     if model.view.locate(model.place[0] + dx, model.place[1] + dy) != model.view.locate(*place):
         return command
     return _straight_to(place, model)

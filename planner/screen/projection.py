@@ -131,21 +131,21 @@ class CostMaps:
 class Distances:
     """The ways to every square of a screen, by level; each is measured when it is first asked for."""
 
-    def __init__(self, screens: CostMaps) -> None:
-        self._screens = screens
+    def __init__(self, cost_maps: CostMaps) -> None:
+        self._cost_maps = cost_maps
         self._known: dict[int, NDArray[np.int32]] = {}
 
     def __getitem__(self, level: int) -> NDArray[np.int32]:
         if level not in self._known:
-            self._known[level] = reach(self._screens.free(level), *self._screens.here)
+            self._known[level] = reach(self._cost_maps.free(level), *self._cost_maps.here)
         return self._known[level]
 
 
-def ways_to_objects(screens: CostMaps) -> dict[str, float]:
+def ways_to_objects(cost_maps: CostMaps) -> dict[str, float]:
     """How far it is to beside each object, in squares, by name; of those alone to which a way is known."""
     found = {}
-    for node in screens.model.objects:
-        reached = screens.nearest(_vicinity(screens.model, node.patch))
+    for node in cost_maps.model.objects:
+        reached = cost_maps.nearest(_vicinity(cost_maps.model, node.patch))
         if reached is not None:
             found[node.name] = reached.cost
     return found

@@ -42,77 +42,77 @@ class Viewpoint(NamedTuple):
     chance: int = 100
 
 
-def frontiers(screens: CostMaps, apart: int) -> list[Viewpoint]:
+def frontiers(cost_maps: CostMaps, apart: int) -> list[Viewpoint]:
     """Floor that can be reached and borders on squares never seen, one Viewpoint for each connected stretch."""
-    border = unlooked(screens, apart) & grown(~screens.model.view.seen, 1)
+    border = unlooked(cost_maps, apart) & grown(~cost_maps.model.view.seen, 1)
     return [Viewpoint(squares, GOES_ON) for squares in groups(_stretches(border))]
 
 
-def gaps(screens: CostMaps) -> list[Viewpoint]:
+def gaps(cost_maps: CostMaps) -> list[Viewpoint]:
     """Likely gaps in what bounds the floor, through which it would go on unseen: the squares where it would.
 
     No stretch of them borders on floor that surely goes on; that is one of the frontiers.
     """
-    view = screens.model.view
+    view = cost_maps.model.view
     edge = view.seen & grown(~view.seen, 1)
-    border = edge & (screens.distances[GAPPING] != UNREACHED)
-    surely = grown(edge & screens.floor, 1).ravel()
+    border = edge & (cost_maps.distances[GAPPING] != UNREACHED)
+    surely = grown(edge & cost_maps.floor, 1).ravel()
     stretches = [squares for squares in groups(_stretches(border)) if not surely[squares].any()]
     return [Viewpoint(squares, "there may be a gap") for squares in stretches]
 
 
-def vague_places(screens: CostMaps, apart: int, odd: bool) -> list[Viewpoint]:
+def vague_places(cost_maps: CostMaps, apart: int, odd: bool) -> list[Viewpoint]:
     """Floor close to things beside it that were seen only coarsely, one Viewpoint for each connected stretch of them.
 
     odd : only those that may well be floor, and so part of a door or of the floor behind an object; else all of them.
     """
-    view = screens.model.view
-    open_ = view.seen & (view.state == OPEN) & (view.probability > SPACE) & grown(screens.floor, 1)
+    view = cost_maps.model.view
+    open_ = view.seen & (view.state == OPEN) & (view.probability > SPACE) & grown(cost_maps.floor, 1)
     if odd:
         open_ &= view.probability < WALL_LIKE
-    near = np.where(unlooked(screens, apart), _spread(_stretches(open_), CLOSE), 0)
+    near = np.where(unlooked(cost_maps, apart), _spread(_stretches(open_), CLOSE), 0)
     return [Viewpoint(squares, "what bounds the floor is not clear") for squares in groups(near)]
 
 
-def by_touch(screens: CostMaps, node: Node) -> Viewpoint:
+def by_touch(cost_maps: CostMaps, node: Node) -> Viewpoint:
     """Floor from which an object is felt."""
-    beside = grown(screens.model.mask(node.patch), 1)
-    return Viewpoint(np.flatnonzero(unlooked(screens, 0) & beside), f"the colour of {node.name} is not known")
+    beside = grown(cost_maps.model.mask(node.patch), 1)
+    return Viewpoint(np.flatnonzero(unlooked(cost_maps, 0) & beside), f"the colour of {node.name} is not known")
 
 
-def against_the_wall(screens: CostMaps, mask: Mask) -> Viewpoint:
+def against_the_wall(cost_maps: CostMaps, mask: Mask) -> Viewpoint:
     """Floor from which it is felt whether something is part of a wall."""
-    beside = np.flatnonzero(unlooked(screens, 0) & edged(mask))
+    beside = np.flatnonzero(unlooked(cost_maps, 0) & edged(mask))
     return Viewpoint(beside, "what may stand against the wall was not felt")
 
 
-def sight_of(screens: CostMaps, mask: NDArray[np.bool_], what: str) -> Viewpoint:
+def sight_of(cost_maps: CostMaps, mask: NDArray[np.bool_], what: str) -> Viewpoint:
     """Floor close to some squares, from which they are seen as well as can be; none when all of it was looked from."""
     for reach, apart in ((CLOSE, APART), (CLOSE, 0), (FURTHER, APART)):
-        near = np.flatnonzero(unlooked(screens, apart) & grown(mask, reach))
+        near = np.flatnonzero(unlooked(cost_maps, apart) & grown(mask, reach))
         if len(near):
             return Viewpoint(near, what)
     return Viewpoint(np.zeros(0, np.int64), what)
 
 
-def close_to(screens: CostMaps, x: float, y: float) -> Squares:
+def close_to(cost_maps: CostMaps, x: float, y: float) -> Squares:
     """Floor from which all about a point of the lattice lies within the fovea, looked from or not."""
-    mask = screens.model.squares([(math.floor(x), math.floor(y))])
-    return np.flatnonzero(screens.floor & grown(mask, CLOSE - 1))
+    mask = cost_maps.model.squares([(math.floor(x), math.floor(y))])
+    return np.flatnonzero(cost_maps.floor & grown(mask, CLOSE - 1))
 
 
-def short_of(screens: CostMaps, squares: Squares) -> Squares:
+def short_of(cost_maps: CostMaps, squares: Squares) -> Squares:
     """Floor from which it is seen what lies behind some squares: those that can be reached, or short of them."""
-    mask = marked(squares, screens.floor.shape)
-    near = unlooked(screens, APART) & grown(mask, SHORT_OF)
-    return np.flatnonzero(near | (mask & screens.floor))
+    mask = marked(squares, cost_maps.floor.shape)
+    near = unlooked(cost_maps, APART) & grown(mask, SHORT_OF)
+    return np.flatnonzero(near | (mask & cost_maps.floor))
 
 
-def jambs(screens: CostMaps, doors: Iterable[Door]) -> list[Viewpoint]:
+def jambs(cost_maps: CostMaps, doors: Iterable[Door]) -> list[Viewpoint]:
     """Floor from which the walls beside what may be a door are seen closely, one Viewpoint for each that is not
     sure.
     """
-    view = screens.model.view
+    view = cost_maps.model.view
     vague = view.seen & (view.state == OPEN) & (view.probability > SPACE)
     found = []
     for door in doors:
@@ -121,37 +121,37 @@ def jambs(screens: CostMaps, doors: Iterable[Door]) -> list[Viewpoint]:
             row, column = round(y), round(x)
             reach = slice(max(row - JAMB, 0), row + JAMB), slice(max(column - JAMB, 0), column + JAMB)
             ends[reach] = True
-        look = sight_of(screens, vague & ends, "what may be a door is not clear")
+        look = sight_of(cost_maps, vague & ends, "what may be a door is not clear")
         found += [look] * bool(not door.sure and len(look.squares))
     return found
 
 
-def rooms_beyond(screens: CostMaps) -> list[Viewpoint]:
+def rooms_beyond(cost_maps: CostMaps) -> list[Viewpoint]:
     """Floor that is seen and cannot be reached yet: all floor is connected, so some passage must lead there."""
-    apart = components(screens.model.space & ~screens.floor).labels
+    apart = components(cost_maps.model.space & ~cost_maps.floor).labels
     what = "floor is seen beyond, so a passage must lead there"
     return [Viewpoint(squares, what) for squares in groups(apart) if len(squares) >= SMALLEST_ROOM]
 
 
-def promised(screens: CostMaps, lookouts: list[Viewpoint]) -> list[Viewpoint]:
+def promised(cost_maps: CostMaps, viewpoints: list[Viewpoint]) -> list[Viewpoint]:
     """Frontiers, each with how likely it is that what is looked for comes into sight at its nearest square."""
-    if not lookouts:
+    if not viewpoints:
         return []
-    new = screens.gain.ravel()
-    return [look._replace(chance=_chance(float(new[_nearest(screens, look.squares)]))) for look in lookouts]
+    new = cost_maps.gain.ravel()
+    return [look._replace(chance=_chance(float(new[_nearest(cost_maps, look.squares)]))) for look in viewpoints]
 
 
-def best_views(screens: CostMaps, met: Mask, move: float, way: float) -> list[Viewpoint]:
+def best_views(cost_maps: CostMaps, met: Mask, move: float, way: float) -> list[Viewpoint]:
     """Of squares that one straight move leads to those from which most comes into sight for what it costs.
 
     They need not border on what was never seen: a long move along it often shows more than a short one up to it.
     met : (rows, columns), the squares that one move leads to. move, way : what a move, and a square of way, cost.
     """
-    some = np.flatnonzero(met & unlooked(screens, APART))
-    new = screens.gain.ravel()[some]
+    some = np.flatnonzero(met & unlooked(cost_maps, APART))
+    new = cost_maps.gain.ravel()[some]
     if new.max(initial=0.0) < BARREN:
         return []
-    far = screens.distances[0].ravel()[some] / 5
+    far = cost_maps.distances[0].ravel()[some] / 5
     worth = new / (move + way * far)
     best = worth >= ALIKE * worth.max()
     chance = _chance(float(new[best][far[best].argmin()]))
@@ -162,21 +162,21 @@ def _chance(squares: float) -> int:
     return max(1, min(90, round(100 * squares / HOMELY)))
 
 
-def _nearest(screens: CostMaps, squares: Squares) -> int:
+def _nearest(cost_maps: CostMaps, squares: Squares) -> int:
     """Of some squares the one that is reached first, at the most certain level at which any is."""
-    reached = screens.nearest(squares)
+    reached = cost_maps.nearest(squares)
     if reached is None:
         return int(squares[0])
-    far = screens.distances[reached.level].ravel()[squares]
+    far = cost_maps.distances[reached.level].ravel()[squares]
     return int(squares[np.where(far < 0, far.max() + 1, far).argmin()])
 
 
-def unlooked(screens: CostMaps, apart: int) -> NDArray[np.bool_]:
+def unlooked(cost_maps: CostMaps, apart: int) -> NDArray[np.bool_]:
     """Floor that can be reached and from which nothing was looked at yet.
 
     A second look from the same square tells nothing new.
     """
-    mask: NDArray[np.bool_] = screens.floor & ~grown(screens.looked_from, apart)
+    mask: NDArray[np.bool_] = cost_maps.floor & ~grown(cost_maps.looked_from, apart)
     return mask
 
 

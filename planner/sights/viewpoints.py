@@ -40,13 +40,13 @@ ARRIVE, TAKE = Approach(take=False), Approach(take=True)
 
 
 def sightings(
-    screens: CostMaps, likely: NDArray[np.float64], what: str, to: Approach
+    cost_maps: CostMaps, likely: NDArray[np.float64], what: str, to: Approach
 ) -> list[tuple[Squares, Viewpoint]]:
     """Floor close to where something is likely that is looked for: the squares of each such place, and its Viewpoint.
 
     likely : (rows, columns), how likely each square belongs to such a thing.
     """
-    view = screens.model.view
+    view = cost_maps.model.view
     spots = groups(components(likely >= PROMISING).labels)
     found = []
     for spot in spots:
@@ -54,79 +54,79 @@ def sightings(
         if not (view.state.ravel()[spot] == OPEN).any():
             continue
         chance = float(likely.ravel()[spot].max())
-        near = close(screens, mask, chance, to)
+        near = close(cost_maps, mask, chance, to)
         if len(near):
             found.append((spot, Viewpoint(near, what, round(100 * chance))))
     return found
 
 
-def inspection(screens: CostMaps, node: Node, chance: float, to: Approach) -> Viewpoint:
+def inspection(cost_maps: CostMaps, node: Node, chance: float, to: Approach) -> Viewpoint:
     """Floor from which an object is seen as well as can be. chance : that it is what is looked for."""
-    squares = close(screens, screens.model.mask(node.patch), chance, to)
+    squares = close(cost_maps, cost_maps.model.mask(node.patch), chance, to)
     return Viewpoint(squares, f"what {node.name} is is not clear")
 
 
-def close(screens: CostMaps, mask: Mask, chance: float, to: Approach) -> Squares:
+def close(cost_maps: CostMaps, mask: Mask, chance: float, to: Approach) -> Squares:
     """Floor from which something is seen better than it was.
 
     At first the floor at its sides. What is not to be taken and hardly is what is looked for is looked at from further
     away first, where most of it is told already. Else he goes where most of it can be told.
     """
     beside = grown(mask, 1)
-    near = _to_take(screens, mask, to) if to.take else np.flatnonzero(screens.floor & edged(mask))
-    if (chance >= LIKELY or to.take) and len(near) and not (beside & screens.looked_from).any():
-        return _telling(screens, near, mask, chance, to) if to.take else near
+    near = _to_take(cost_maps, mask, to) if to.take else np.flatnonzero(cost_maps.floor & edged(mask))
+    if (chance >= LIKELY or to.take) and len(near) and not (beside & cost_maps.looked_from).any():
+        return _telling(cost_maps, near, mask, chance, to) if to.take else near
     if not to.take:
         far = grown(mask, FURTHER)
-        near = np.flatnonzero(screens.floor & far)
-        if len(near) and not (far & screens.looked_from).any():
+        near = np.flatnonzero(cost_maps.floor & far)
+        if len(near) and not (far & cost_maps.looked_from).any():
             return near
     about = grown(mask, CLOSE)
     for apart in (APART, 0):
-        near = np.flatnonzero(unlooked(screens, apart) & about)
+        near = np.flatnonzero(unlooked(cost_maps, apart) & about)
         if len(near):
             break
-    return _telling(screens, near, mask, chance, to)
+    return _telling(cost_maps, near, mask, chance, to)
 
 
-def _to_take(screens: CostMaps, mask: Mask, to: Approach) -> Squares:
+def _to_take(cost_maps: CostMaps, mask: Mask, to: Approach) -> Squares:
     """Where a thing may be taken: squares at the sides of what surely belongs to it, for it may well be there that he
     is wanted, or else of all that may; of these those that one move leads to, if there are any.
     """
-    surely = mask & (screens.model.view.probability >= WALL_LIKE)
-    sides = _out_of_its_way(screens, surely, to)
+    surely = mask & (cost_maps.model.view.probability >= WALL_LIKE)
+    sides = _out_of_its_way(cost_maps, surely, to)
     for some in (sides, edged(mask)):
-        met = np.flatnonzero(one_move(screens, "inspect", some))
-        near = met if len(met) else np.flatnonzero(screens.floor & some)
+        met = np.flatnonzero(one_move(cost_maps, "inspect", some))
+        near = met if len(met) else np.flatnonzero(cost_maps.floor & some)
         if len(near):
             break
     return near
 
 
-def _out_of_its_way(screens: CostMaps, surely: Mask, to: Approach) -> Mask:
+def _out_of_its_way(cost_maps: CostMaps, surely: Mask, to: Approach) -> Mask:
     """The sides of a thing; not those where he would be in its way, if there is floor at others."""
     sides = edged(surely)
     if to.corner is None:
         return sides
     east, north = to.corner
     free = sides & ~(shifted(surely, east, 0) | shifted(surely, 0, north))
-    return free if (screens.floor & free).any() else sides
+    return free if (cost_maps.floor & free).any() else sides
 
 
-def _telling(screens: CostMaps, near: Squares, mask: Mask, chance: float, to: Approach) -> Squares:
+def _telling(cost_maps: CostMaps, near: Squares, mask: Mask, chance: float, to: Approach) -> Squares:
     """Of some floor the squares from which most of what is open of a thing is seen exactly, for the way there.
 
     chance : that it is what is looked for, and that who is not beside it must set out once more to be.
     """
     beside = grown(mask, 1)
-    open_ = beside & ~screens.model.told
+    open_ = beside & ~cost_maps.model.told
     if len(near) < 2 or not open_.any():
         return near
     seen = sums(np.pad(open_, CLOSE).astype(np.float64), CLOSE).ravel()[near]
     if to.take:
-        seen = seen + ANEW * screens.gain.ravel()[near]
+        seen = seen + ANEW * cost_maps.gain.ravel()[near]
     apart = ~beside.ravel()[near]
     setting_out = DEAR_LOOK if to.take else SETTING_OUT
-    value = (seen + 1) / (screens.far(near) + setting_out * (1 + chance * apart))
+    value = (seen + 1) / (cost_maps.far(near) + setting_out * (1 + chance * apart))
     best: Squares = near[value >= ALIKE * value.max()]
     return best

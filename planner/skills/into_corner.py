@@ -95,7 +95,7 @@ def halted(command: Command | None, stage: Stage, situation: Situation) -> Comma
     if not isinstance(command, Move) or not side or side not in situation.corners or is_open(situation.model):
         return command
     place = halting_place(situation.corners[side], situation)
-    return halting(command, place, situation.model) if _leads_to(place, situation.screens) else command
+    return halting(command, place, situation.model) if _leads_to(place, situation.cost_maps) else command
 
 
 def lies_straight(corner: Corner, situation: Situation) -> bool:
@@ -114,8 +114,8 @@ def _ways(corner: Corner) -> tuple[int, int]:
     return (1 if corner.point[0] > corner.square[0] else -1), (1 if corner.point[1] > corner.square[1] else -1)
 
 
-def _leads_to(place: Place, screens: CostMaps) -> bool:
+def _leads_to(place: Place, cost_maps: CostMaps) -> bool:
     """Return whether the straight line from Utak to a point of the lattice stays on squares that are safe."""
-    view, here = screens.model.view, screens.model.place_on_view
+    view, here = cost_maps.model.view, cost_maps.model.place_on_view
     there = (place[0] - view.west, place[1] - view.south)
-    return all(screens.safe[row, column] for column, row in squares_met(here, there))
+    return all(cost_maps.safe[row, column] for column, row in squares_met(here, there))

@@ -59,7 +59,7 @@ class Presser:
         push = self._left.pop(0)
         self._last = push, (node.polygon.centroid.x, node.polygon.centroid.y)
         why = f"{node.name} is pressed against the wall, to be sure that it is there"
-        return Act(Push(*model.lattice.to_utak(push.dx, push.dy)), why, push)
+        return Act(Push(*model.frame.to_utak(push.dx, push.dy)), why, push)
 
 
 def _corner_of(goal: Fact, situation: Situation) -> Place:

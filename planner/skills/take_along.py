@@ -88,11 +88,11 @@ def _pushes_to(squares: Squares, situation: Situation) -> Floats:
 
 def _yard(node: Node, situation: Situation) -> Workspace:
     """What is surely free for a thing and him who holds it."""
-    free = situation.screens.free(0) & ~barred(node, situation)
+    free = situation.cost_maps.free(0) & ~barred(node, situation)
     return Workspace(free | situation.model.mask(node.patch))
 
 
 def near(squares: Squares, situation: Situation) -> Inside | None:
     """What is free near to some squares (flat indices), as an end for what is carried; None when nothing is."""
-    free = situation.screens.free(0) & grown(marked(squares, situation.model.labels.shape), NEARBY)
+    free = situation.cost_maps.free(0) & grown(marked(squares, situation.model.labels.shape), NEARBY)
     return Inside(region_of(free)) if free.any() else None

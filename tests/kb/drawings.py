@@ -30,14 +30,14 @@ def drawing(east: int, north: int, wide: int, high: int) -> list[str]:
 
 def looked(rows: list[str], squares: list[tuple[int, int]]) -> OccupancyMap:
     """The evidence of looks from some squares; the first one is (0, 0) of the lattice."""
-    occupied, evidence = world_of(rows), OccupancyMap()
+    occupied, occupancy = world_of(rows), OccupancyMap()
     samples = Frame().samples()
     for number, (x, y) in enumerate(squares):
         seen = count_ranges(impression(occupied, (x, y), 0).retina)
         at = (x - squares[0][0], y - squares[0][1])
-        evidence.look(samples, seen, *at, number)
-        evidence.stand(*at, number)
-    return evidence
+        occupancy.observe(samples, seen, *at, number)
+        occupancy.stand(*at, number)
+    return occupancy
 
 
 def seen_whole(rows: list[str], objects: bool = True) -> WorldModel:

@@ -48,11 +48,11 @@ class Obstructions:
     """
 
     def __init__(
-        self, evidence: OccupancyMap, place: Place, polygon: Any, motion: Motion, pictures: Completions | None = None
+        self, occupancy: OccupancyMap, place: Place, polygon: Any, motion: Motion, pictures: Completions | None = None
     ) -> None:
-        known, self._squares = (_there(evidence, place, polygon, motion, state) for state in (FULL, OPEN))
+        known, self._squares = (_there(occupancy, place, polygon, motion, state) for state in (FULL, OPEN))
         self.walls = _obstacles(tuple(known))
-        self._outlook = ObstacleChance(evidence, pictures)
+        self._outlook = ObstacleChance(occupancy, pictures)
 
     @cached_property
     def _open(self) -> list[tuple[Square, Obstacles]]:
@@ -101,7 +101,7 @@ def led_to(stops: Iterable[ContactHypothesis], place: Place, polygon: Any, motio
 
 
 def suspects(
-    outcome: Outcome | None, motion: Motion, load: HeldObject, others: Iterable[HeldObject], evidence: OccupancyMap
+    outcome: Outcome | None, motion: Motion, load: HeldObject, others: Iterable[HeldObject], occupancy: OccupancyMap
 ) -> frozenset[Square]:
     """The open squares (of the lattice) one of which likely stopped a load, or Utak with it; the likeliest ones alone.
 
@@ -116,10 +116,10 @@ def suspects(
     there = covered(polygon).squares() | {(math.floor(place[0]), math.floor(place[1]))}
     there -= replace(load, polygon=outcome.polygon, full=NOTHING, empty=NOTHING).possible.squares()
     there.discard((math.floor(outcome.place[0]), math.floor(outcome.place[1])))
-    state = {square: evidence.state[evidence.index(*square)] for square in there}
+    state = {square: occupancy.state[occupancy.index(*square)] for square in there}
     if FULL in state.values() or any(there & other.possible.squares() for other in others):
         return NOTHING
-    odds = {square: float(evidence.logit[evidence.index(*square)]) for square in there if state[square] == OPEN}
+    odds = {square: float(occupancy.logit[occupancy.index(*square)]) for square in there if state[square] == OPEN}
     return _likeliest(odds)
 
 
@@ -147,7 +147,7 @@ def _obstacles(squares: tuple[Square, ...]) -> Obstacles:
     return Obstacles([box_of(square) for square in squares])
 
 
-def _there(evidence: OccupancyMap, place: Place, polygon: Any, motion: Motion, state: int) -> list[Square]:
+def _there(occupancy: OccupancyMap, place: Place, polygon: Any, motion: Motion, state: int) -> list[Square]:
     """The squares of a state to which a thing and Utak may come on a motion."""
     corners = np.array([*shapely.get_coordinates(polygon), place])
     if isinstance(motion, Rotate):
@@ -156,11 +156,11 @@ def _there(evidence: OccupancyMap, place: Place, polygon: Any, motion: Motion, s
     else:
         ends = np.concatenate([corners, motion.points(corners)])
         low, high = ends.min(0), ends.max(0)
-    row, column = evidence.index(*(math.floor(v) - ROOM for v in low))
-    top, right = evidence.index(*(math.ceil(v) + ROOM for v in high))
+    row, column = occupancy.index(*(math.floor(v) - ROOM for v in low))
+    top, right = occupancy.index(*(math.ceil(v) + ROOM for v in high))
     row, column = max(row, 0), max(column, 0)
-    rows, columns = np.nonzero(evidence.state[row:top, column:right] == state)
-    west, south = columns + column + evidence.west, rows + row + evidence.south
+    rows, columns = np.nonzero(occupancy.state[row:top, column:right] == state)
+    west, south = columns + column + occupancy.west, rows + row + occupancy.south
     return list(zip(west.tolist(), south.tolist(), strict=True))
 
 

@@ -45,7 +45,7 @@ class Explanation(NamedTuple):
 
     how: str
     place: Place
-    lattice: Frame
+    frame: Frame
     misfits: int
     distance: float
     outcome: Outcome | None = None
@@ -70,7 +70,7 @@ class Explanation(NamedTuple):
     @property
     def odd(self) -> bool:
         """Does it say both that the lattice lies askew and that he did not wake amid his square, and weighs neither?"""
-        return self.lattice.angle != 0 and self.lattice.woke != CENTRE and not self.weighed
+        return self.frame.angle != 0 and self.frame.origin != CENTRE and not self.weighed
 
 
 class Accommodated(NamedTuple):
@@ -81,12 +81,12 @@ class Accommodated(NamedTuple):
 
 
 def statuses(
-    evidence: OccupancyMap, samples: Samples, ranges: NDArray[np.int16], x: int, y: int
+    occupancy: OccupancyMap, samples: Samples, ranges: NDArray[np.int16], x: int, y: int
 ) -> tuple[CellStatus, ...]:
     """How each field of a look from square (x, y) is accounted for, before it is taken in as evidence."""
-    noise = evidence.misfits(samples, ranges, x, y)
-    row, column = evidence.index(x, y)
-    state = evidence.state[samples.rows + row, samples.columns + column]
+    noise = occupancy.misfits(samples, ranges, x, y)
+    row, column = occupancy.index(x, y)
+    state = occupancy.state[samples.rows + row, samples.columns + column]
     new = ((state == OPEN) & (samples.weight > 0)).any(1)
     return tuple(
         CellStatus.NOISE if noise[i] else CellStatus.EXPLAINED if new[i] else CellStatus.PREDICTED
@@ -94,7 +94,7 @@ def statuses(
     )
 
 
-def misled(look: Observation, told: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
+def misled(observation: Observation, told: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
     """The lattices to believe instead on which one of some motions was stopped, or an earlier one was not.
 
     look : the new one, as predicted. told : of each motion what else may have come of it.
@@ -110,9 +110,9 @@ def misled(look: Observation, told: Iterable[Iterable[ReestimatedWalk]]) -> list
 
 def told_again(one: ReestimatedWalk, left: tuple[FrameHypothesis, ...]) -> Explanation:
     """What came of a motion as it was told again. left : how the lattice may lie then."""
-    lattice, far = one.hypothesis.lattice, math.hypot(*one.correction.shift)
-    place = lattice.place_from_utak(*one.newest)
-    return Explanation("misled", place, lattice, one.misfits, far, None, left, one)
+    frame, far = one.hypothesis.frame, math.hypot(*one.correction.shift)
+    place = frame.place_from_utak(*one.newest)
+    return Explanation("misled", place, frame, one.misfits, far, None, left, one)
 
 
 def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Explanation:

@@ -32,7 +32,7 @@ class FrameHypothesis(NamedTuple):
     dear: float = 0.0
 
     @property
-    def lattice(self) -> Frame:
+    def frame(self) -> Frame:
         """The lattice, with the middle of the box for the point where he woke.
 
         The square's centre where that will do.
@@ -63,12 +63,12 @@ class FrameHypothesis(NamedTuple):
         west, south, east, north = self.box
         return (east - west) * (north - south)
 
-    def holds(self, lattice: Frame) -> bool:
+    def holds(self, frame: Frame) -> bool:
         """Does it say that a lattice may be the true one?"""
         west, south, east, north = self.box
-        (x, y), point = lattice.woke, self.is_point
+        (x, y), point = frame.origin, self.is_point
         within = (x, y) == self.box[:2] if point else west <= x < east and south <= y < north
-        return self.angle == lattice.angle and within
+        return self.angle == frame.angle and within
 
     def split(self, place: tuple[float, float]) -> "list[FrameHypothesis]":
         """Cut the box where the square changes on which he stands at a place of his own frame.
@@ -82,9 +82,9 @@ class FrameHypothesis(NamedTuple):
         return [self._replace(box=(w, s, e, n)) for w, e in columns for s, n in rows]
 
 
-def exactly(lattice: Frame) -> FrameHypothesis:
+def exactly(frame: Frame) -> FrameHypothesis:
     """That it is just this lattice, and he woke just there."""
-    return FrameHypothesis(lattice.angle, lattice.woke + lattice.woke)
+    return FrameHypothesis(frame.angle, frame.origin + frame.origin)
 
 
 CENTRED = tuple(FrameHypothesis(angle, CENTRE + CENTRE) for angle in ANGLES)
@@ -127,31 +127,31 @@ class OriginDisc(NamedTuple):
     reach: float
 
 
-def contradictions(lattice: Frame, looks: Sequence[Observation], unsettled: Sequence[OriginDisc] = ()) -> int:
+def contradictions(frame: Frame, observations: Sequence[Observation], unsettled: Sequence[OriginDisc] = ()) -> int:
     """How many squares and fields contradict each other if the lattice lies like this.
 
     Squares under fields that are quite full or quite empty are compared with each other, and other fields with them;
     those on an unsettled part of the table with nothing.
     """
-    return clashing(lattice, fallen(lattice, looks), stacked(looks), unsettled)
+    return clashing(frame, fallen(frame, observations), stacked(observations), unsettled)
 
 
-def stacked(looks: Sequence[Observation]) -> NDArray[np.int16]:
+def stacked(observations: Sequence[Observation]) -> NDArray[np.int16]:
     """(looks, 160, 2): the count ranges of some looks."""
-    return np.stack([look.ranges for look in looks])
+    return np.stack([observation.ranges for observation in observations])
 
 
 def clashing(
-    lattice: Frame, squares: NDArray[np.int64], ranges: NDArray[np.int16], unsettled: Sequence[OriginDisc] = ()
+    frame: Frame, squares: NDArray[np.int64], ranges: NDArray[np.int16], unsettled: Sequence[OriginDisc] = ()
 ) -> int:
     """The same of looks with these count ranges, (looks, 160, 2), that were received on these squares, (looks, 2)."""
-    apart = [(*lattice.place_from_utak(*disc.middle), disc.reach) for disc in unsettled]
+    apart = [(*frame.place_from_utak(*disc.middle), disc.reach) for disc in unsettled]
     discs = np.array(apart, np.float64).reshape(-1, 3)
-    return contradicting(*lattice.samples(), np.ascontiguousarray(squares), np.ascontiguousarray(ranges), discs)
+    return contradicting(*frame.samples(), np.ascontiguousarray(squares), np.ascontiguousarray(ranges), discs)
 
 
 def standing(
-    hypotheses: Iterable[FrameHypothesis], looks: Sequence[Observation], unsettled: Sequence[OriginDisc] = ()
+    hypotheses: Iterable[FrameHypothesis], observations: Sequence[Observation], unsettled: Sequence[OriginDisc] = ()
 ) -> tuple[FrameHypothesis, ...]:
     """What is left of the hypotheses when the last of these looks is taken into account, in order of preference.
 
@@ -159,23 +159,25 @@ def standing(
     """
     judged: dict[tuple[int, bytes], bool] = {}
     left = []
-    for part in (part for hypothesis in hypotheses for part in hypothesis.split(looks[-1].place)):
-        lattice = part.lattice
-        key = (part.angle, fallen(lattice, looks).tobytes())
+    for part in (part for hypothesis in hypotheses for part in hypothesis.split(observations[-1].place)):
+        frame = part.frame
+        key = (part.angle, fallen(frame, observations).tobytes())
         if key not in judged:
-            judged[key] = not contradictions(lattice, looks, unsettled)
+            judged[key] = not contradictions(frame, observations, unsettled)
         if judged[key]:
             left.append(part)
     return tuple(left)
 
 
 def search(
-    looks: Sequence[Observation], hypotheses: Iterable[FrameHypothesis] = ANYWHERE, unsettled: Sequence[OriginDisc] = ()
+    observations: Sequence[Observation],
+    hypotheses: Iterable[FrameHypothesis] = ANYWHERE,
+    unsettled: Sequence[OriginDisc] = (),
 ) -> tuple[FrameHypothesis, ...]:
     """All that these looks leave of some hypotheses: of all that there are, wherever in his square Utak woke."""
     left = tuple(hypotheses)
-    for number in range(1, len(looks) + 1):
-        left = standing(left, looks[:number], unsettled)
+    for number in range(1, len(observations) + 1):
+        left = standing(left, observations[:number], unsettled)
     return left
 
 
@@ -184,53 +186,53 @@ def anywhere(angles: Iterable[int]) -> tuple[FrameHypothesis, ...]:
     return tuple(FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in angles)
 
 
-def fallen(lattice: Frame, looks: Sequence[Observation]) -> NDArray[np.int64]:
+def fallen(frame: Frame, observations: Sequence[Observation]) -> NDArray[np.int64]:
     """(looks, 2): the squares of the lattice on which looks were received."""
-    return squares_of(lattice, np.array([look.place for look in looks]).reshape(-1, 2))
+    return squares_of(frame, np.array([observation.place for observation in observations]).reshape(-1, 2))
 
 
-def squares_of(lattice: Frame, places: NDArray[np.float64]) -> NDArray[np.int64]:
+def squares_of(frame: Frame, places: NDArray[np.float64]) -> NDArray[np.int64]:
     """(n, 2): the squares of the lattice in which places (n, 2) of his own frame lie."""
-    x, y = lattice.places_from_utak(places[:, 0], places[:, 1])
+    x, y = frame.places_from_utak(places[:, 0], places[:, 1])
     squares: NDArray[np.int64] = np.floor(np.stack((x, y), 1)).astype(np.int64)
     return squares
 
 
-def within(lattice: Frame, looks: Sequence[Observation]) -> Box:
+def within(frame: Frame, observations: Sequence[Observation]) -> Box:
     """Where Utak may have woken if every look fell on the square that it is believed to have fallen on.
 
     Wherever in it that was, all that stands looked the same.
     """
-    away = np.array([lattice.to_lattice(*look.place) for look in looks]).reshape(-1, 2)
-    corners = fallen(lattice, looks)
+    away = np.array([frame.to_lattice(*observation.place) for observation in observations]).reshape(-1, 2)
+    corners = fallen(frame, observations)
     west, south = np.maximum((corners - away).max(0), 0.0).tolist()
     east, north = np.minimum((corners + 1 - away).min(0), 1.0).tolist()
     return west, south, east, north
 
 
-def leeway(lattice: Frame, looks: Sequence[Observation], hypotheses: Sequence[FrameHypothesis]) -> Box:
+def leeway(frame: Frame, observations: Sequence[Observation], hypotheses: Sequence[FrameHypothesis]) -> Box:
     """How far from where he believes it Utak may have woken: to the west and south (not above 0), east and north.
 
     That he woke amid his square he only assumes.
     """
-    west, south, east, north = within(lattice, looks)
-    boxes = np.array([h.box for h in hypotheses if h.angle == lattice.angle and not h.is_centred])
+    west, south, east, north = within(frame, observations)
+    boxes = np.array([h.box for h in hypotheses if h.angle == frame.angle and not h.is_centred])
     if len(boxes):
         west, south = max(west, boxes[:, 0].min()), max(south, boxes[:, 1].min())
         east, north = min(east, boxes[:, 2].max()), min(north, boxes[:, 3].max())
-    x, y = lattice.woke
+    x, y = frame.origin
     return min(west - x, 0.0), min(south - y, 0.0), max(east - x, 0.0), max(north - y, 0.0)
 
 
-def points(lattice: Frame, looks: Sequence[Observation]) -> tuple[FrameHypothesis, ...]:
+def points(frame: Frame, observations: Sequence[Observation]) -> tuple[FrameHypothesis, ...]:
     """GRID by GRID points at which Utak may have woken if every look fell on the square that it is believed to."""
-    west, south, east, north = within(lattice, looks)
+    west, south, east, north = within(frame, observations)
     steps = (np.arange(GRID) + 0.5) / GRID
     places = ((float(west + (east - west) * i), float(south + (north - south) * j)) for i in steps for j in steps)
-    return tuple(FrameHypothesis(lattice.angle, place + place) for place in places)
+    return tuple(FrameHypothesis(frame.angle, place + place) for place in places)
 
 
-def cramped(hypotheses: Sequence[FrameHypothesis], looks: int) -> bool:
+def cramped(hypotheses: Sequence[FrameHypothesis], observations: int) -> bool:
     """Is less room left for where he woke than so many looks leave by chance?
 
     Each look cuts either side of his square in two, anywhere. Then a side of what he truly woke in is shorter than
@@ -239,7 +241,7 @@ def cramped(hypotheses: Sequence[FrameHypothesis], looks: int) -> bool:
     if not hypotheses or any(hypothesis.is_centred for hypothesis in hypotheses):
         return False
     west, south, east, north = np.array([hypothesis.box for hypothesis in hypotheses]).T
-    return bool(min((east - west).max(), (north - south).max()) < ODD / max(looks, 1))
+    return bool(min((east - west).max(), (north - south).max()) < ODD / max(observations, 1))
 
 
 def cells(where: Sequence[FrameHypothesis]) -> tuple[float, float]:
@@ -258,8 +260,8 @@ def candidates(hypotheses: Sequence[FrameHypothesis], held: Frame) -> list[Frame
     angles = sorted({h.angle for h in hypotheses})
     middle = (len(angles) - 1) / 2
     outwards = sorted(angles, key=lambda angle: (angle != 0, abs(angles.index(angle) - middle)))
-    ordered = sorted(hypotheses, key=lambda h: (h.dear, h.lattice != held, outwards.index(h.angle), -h.area, h.box))
-    return list(dict.fromkeys(h.lattice for h in ordered))
+    ordered = sorted(hypotheses, key=lambda h: (h.dear, h.frame != held, outwards.index(h.angle), -h.area, h.box))
+    return list(dict.fromkeys(h.frame for h in ordered))
 
 
 def _cut(low: float, high: float, at: float) -> list[tuple[float, float]]:

@@ -47,9 +47,9 @@ class MapDescription:
     price : what that picture costs, as log odds against it.
     """
 
-    def __init__(self, evidence: OccupancyMap, drawn: Drawn | None = None) -> None:
+    def __init__(self, occupancy: OccupancyMap, drawn: Drawn | None = None) -> None:
         """Drawn : what was drawn of scenes before, of this map or of others; it is added to."""
-        self._view = evidence.view()
+        self._view = occupancy.view()
         self._ground = ground_of(self._view)
         self._scenes = list(scenes(self._view, self._ground))
         self._least = [np.inf] * len(self._scenes)
@@ -95,9 +95,9 @@ def _simplest(scene: CompletionTask, effort: Effort, seed: int) -> tuple[float, 
 class FrameTrial(MapDescription):
     """The same of some looks on a lattice, which lies askew less likely than along his own axes."""
 
-    def __init__(self, lattice: Frame, looks: Sequence[Observation]) -> None:
-        super().__init__(relaid(lattice, lattice, looks, ()).evidence)
-        self._askew = ALONG * (lattice.angle != 0)
+    def __init__(self, frame: Frame, observations: Sequence[Observation]) -> None:
+        super().__init__(relaid(frame, frame, observations, ()).occupancy)
+        self._askew = ALONG * (frame.angle != 0)
 
     @property
     def odds(self) -> float:
@@ -128,17 +128,17 @@ class Alike(NamedTuple):
     against : log odds against having woken in that part of his square.
     """
 
-    lattice: Frame
+    frame: Frame
     dear: float
     against: float
 
 
-def weighed(hypotheses: Sequence[FrameHypothesis], looks: Sequence[Observation]) -> tuple[FrameHypothesis, ...]:
+def weighed(hypotheses: Sequence[FrameHypothesis], observations: Sequence[Observation]) -> tuple[FrameHypothesis, ...]:
     """The same hypotheses, each with how much less likely it is than the one on which the table looks plainest.
 
     Of those weighed before the likely ones alone are weighed again, with the new look, and the angles beside them.
     """
-    keys = [_key(hypothesis, looks) for hypothesis in hypotheses]
+    keys = [_key(hypothesis, observations) for hypothesis in hypotheses]
     same: dict[Key, list[FrameHypothesis]] = {}
     for hypothesis, key in zip(hypotheses, keys, strict=True):
         same.setdefault(key, []).append(hypothesis)
@@ -148,9 +148,9 @@ def weighed(hypotheses: Sequence[FrameHypothesis], looks: Sequence[Observation])
     if len(likely) < 2:
         return tuple(h._replace(dear=h.dear - least) for h in hypotheses)
     if least < UNTRIED and any(one.dear for one in alike.values()):
-        trials = {key: _drawn(alike[key], looks) for key in likely[:FEW]}
+        trials = {key: _drawn(alike[key], observations) for key in likely[:FEW]}
     else:  # for the first time, or all that were likely are given up
-        trials = _first_tried(alike, looks)
+        trials = _first_tried(alike, observations)
     odds = {key: trial.odds + alike[key].against for key, trial in trials.items()}
     best = min(odds.values())
     close = [key for key in odds if odds[key] <= best + CLOSE]
@@ -163,9 +163,9 @@ def weighed(hypotheses: Sequence[FrameHypothesis], looks: Sequence[Observation])
     return tuple(h._replace(dear=dear[key]) for h, key in zip(hypotheses, keys, strict=True))
 
 
-def _key(hypothesis: FrameHypothesis, looks: Sequence[Observation]) -> Key:
+def _key(hypothesis: FrameHypothesis, observations: Sequence[Observation]) -> Key:
     """The angle, and on which squares the looks fell beside the last one."""
-    squares = fallen(hypothesis.lattice, looks)
+    squares = fallen(hypothesis.frame, observations)
     return hypothesis.angle, (squares - squares[-1]).tobytes()
 
 
@@ -173,7 +173,7 @@ def _alike(same: Sequence[FrameHypothesis]) -> Alike:
     likeliest = max(same, key=lambda one: (one.is_centred, one.area))
     area = sum(one.area for one in same)
     against = 0.0 if likeliest.is_centred or not area else ELSEWHERE - math.log(area)
-    return Alike(likeliest.lattice, min(one.dear for one in same), against)
+    return Alike(likeliest.frame, min(one.dear for one in same), against)
 
 
 def _likely(alike: Mapping[Key, Alike], least: float) -> list[Key]:
@@ -187,33 +187,33 @@ def _likely(alike: Mapping[Key, Alike], least: float) -> list[Key]:
     return sorted(near, key=lambda key: (alike[key].dear, alike[key].against, key))
 
 
-def _first_tried(alike: Mapping[Key, Alike], looks: Sequence[Observation]) -> dict[Key, FrameTrial]:
+def _first_tried(alike: Mapping[Key, Alike], observations: Sequence[Observation]) -> dict[Key, FrameTrial]:
     """Trials of those that may be the best: of each angle the likeliest part of his square, of the best ones others."""
     parts: dict[int, list[Key]] = {}
     for key in sorted(alike, key=lambda key: (alike[key].against, key)):
         parts.setdefault(key[0], []).append(key)
-    trials = _competing({angle: alike[own[0]].lattice for angle, own in parts.items()}, looks)
+    trials = _competing({angle: alike[own[0]].frame for angle, own in parts.items()}, observations)
     leading = sorted(trials, key=lambda angle: trials[angle].odds)
     others = [key for angle in leading for key in parts[angle][1:]][:FEW]
     return {parts[angle][0]: trial for angle, trial in trials.items()} | {
-        key: _drawn(alike[key], looks) for key in others
+        key: _drawn(alike[key], observations) for key in others
     }
 
 
-def _drawn(one: Alike, looks: Sequence[Observation]) -> FrameTrial:
-    trial = FrameTrial(one.lattice, looks)
+def _drawn(one: Alike, observations: Sequence[Observation]) -> FrameTrial:
+    trial = FrameTrial(one.frame, observations)
     trial.draw()
     return trial
 
 
-def _competing(lattices: dict[int, Frame], looks: Sequence[Observation]) -> dict[int, FrameTrial]:
+def _competing(frames: dict[int, Frame], observations: Sequence[Observation]) -> dict[int, FrameTrial]:
     """Trials of those lattices that may be the best, by angle: most effort is spent on the likeliest."""
     trials: dict[int, FrameTrial] = {}
 
     def enter(angles: Iterable[int]) -> None:
         for angle in angles:
-            if angle in lattices and angle not in trials:
-                trials[angle] = FrameTrial(lattices[angle], looks)
+            if angle in frames and angle not in trials:
+                trials[angle] = FrameTrial(frames[angle], observations)
                 trials[angle].draw(ROUGH)
 
     def leading(most: int, behind: float) -> list[int]:
@@ -223,8 +223,8 @@ def _competing(lattices: dict[int, Frame], looks: Sequence[Observation]) -> dict
 
     enter([0])
     if 0 in trials and trials[0].draw() and trials[0].bends < STRAIGHT:
-        lattices = {angle: lattice for angle, lattice in lattices.items() if abs(angle) <= NEAR}
-    enter([angle for angle in lattices if angle % STEP == 0] or lattices)
+        frames = {angle: frame for angle, frame in frames.items() if abs(angle) <= NEAR}
+    enter([angle for angle in frames if angle % STEP == 0] or frames)
     enter(angle + step for angle in leading(SOME, BEHIND) for step in range(1 - STEP, STEP))
     for most, behind, effort in ROUNDS:
         for angle in dict.fromkeys([*leading(most, behind), *([0] if 0 in trials else [])]):

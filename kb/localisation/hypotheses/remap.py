@@ -38,16 +38,16 @@ class RemappedMap(NamedTuple):
     as the first of them were contradicted? Then the loads are left out, too, and misfits may be too few, though not 0.
     """
 
-    evidence: OccupancyMap
+    occupancy: OccupancyMap
     loads: Mapping[str, HeldObject]
     misfits: int
     cut: bool = False
 
 
-def laid(load: HeldObject, lattice: Frame) -> PlacedObservation:
+def laid(load: HeldObject, frame: Frame) -> PlacedObservation:
     """Where a load lies, told in Utak's own frame."""
     return PlacedObservation(
-        load.name, _middle(load.polygon, lattice), load.turned, load.slack, _middle(load.first, lattice)
+        load.name, _middle(load.polygon, frame), load.turned, load.slack, _middle(load.first, frame)
     )
 
 
@@ -59,17 +59,17 @@ class Replay:
 
     def __init__(self, new: Frame, old: Frame) -> None:
         self.new, self.old, self.number = new, old, 0
-        self._evidence, self._misfits = OccupancyMap(), 0
+        self._occupancy, self._misfits = OccupancyMap(), 0
         self._taken: dict[str, HeldObject] = {}  # as they lay when they were first held, on the new lattice
 
     def copy(self) -> "Replay":
         """The same, to go on with."""
         other = copy(self)
-        other._evidence, other._taken = self._evidence.copy(), dict(self._taken)
+        other._occupancy, other._taken = self._occupancy.copy(), dict(self._taken)
         return other
 
     def go_on(
-        self, looks: Sequence[Observation], loads: Mapping[str, HeldObject], to: int, whether: bool = False
+        self, observations: Sequence[Observation], loads: Mapping[str, HeldObject], to: int, whether: bool = False
     ) -> "Replay":
         """Take in the looks before that number; what was taken in already must be the first of them.
 
@@ -79,15 +79,15 @@ class Replay:
             if whether and self._misfits:
                 break
             self._take([load for load in loads.values() if load.since == number], number)
-            look = looks[number]
-            moved = [(self._taken[was.name], was) for was in look.moved if was.name in self._taken]
+            observation = observations[number]
+            moved = [(self._taken[was.name], was) for was in observation.moved if was.name in self._taken]
             there = [_carried(taken, loads[was.name], was, self.new) for taken, was in moved]
-            x, y = (math.floor(v) for v in self.new.place_from_utak(*look.place))
-            freed = discounted(self.new.samples(), look.ranges, x, y, there)
-            self._misfits += self._evidence.clashes(*freed, x, y)
-            self._evidence.look(*freed, x, y, number)
+            x, y = (math.floor(v) for v in self.new.place_from_utak(*observation.place))
+            freed = discounted(self.new.samples(), observation.ranges, x, y, there)
+            self._misfits += self._occupancy.clashes(*freed, x, y)
+            self._occupancy.observe(*freed, x, y, number)
             if number == 0:
-                self._evidence.stand(x, y, 0)
+                self._occupancy.stand(x, y, 0)
             self.number = number + 1
         return self
 
@@ -96,29 +96,31 @@ class Replay:
         """Does anything contradict the lattice, of the looks that were taken in?"""
         return self._misfits > 0
 
-    def end(self, looks: Sequence[Observation], loads: Mapping[str, HeldObject], whether: bool = False) -> RemappedMap:
+    def end(
+        self, observations: Sequence[Observation], loads: Mapping[str, HeldObject], whether: bool = False
+    ) -> RemappedMap:
         """What all looks say in the end. It cannot be gone on with. whether : as for `go_on`."""
-        self.go_on(looks, loads, len(looks), whether)
+        self.go_on(observations, loads, len(observations), whether)
         if whether and self._misfits:
-            return RemappedMap(self._evidence, {}, self._misfits, cut=True)
-        self._take([load for load in loads.values() if load.since >= len(looks)], len(looks))
+            return RemappedMap(self._occupancy, {}, self._misfits, cut=True)
+        self._take([load for load in loads.values() if load.since >= len(observations)], len(observations))
         now = {name: _carried(self._taken[name], load, laid(load, self.old), self.new) for name, load in loads.items()}
-        return RemappedMap(self._evidence, now, self._misfits)
+        return RemappedMap(self._occupancy, now, self._misfits)
 
     def _take(self, taken: Iterable[HeldObject], number: int) -> None:
         """Take out of the map what was first held before look `number`."""
         for load in taken:
-            lay = self._taken[load.name] = _taken(load, self.new, self.old, self._evidence)
+            lay = self._taken[load.name] = _taken(load, self.new, self.old, self._occupancy)
             patch = lay.possible
-            self._evidence.make_room(patch.west, patch.south)
-            squares = self._evidence.squares(patch.west, patch.south, patch.mask)
-            self._evidence.declare(squares, FREE, number - 1)
+            self._occupancy.make_room(patch.west, patch.south)
+            squares = self._occupancy.squares(patch.west, patch.south, patch.mask)
+            self._occupancy.declare(squares, FREE, number - 1)
 
 
 def relaid(
     new: Frame,
     old: Frame,
-    looks: Sequence[Observation],
+    observations: Sequence[Observation],
     loads: Iterable[HeldObject],
     begun: Replay | None = None,
     whether: bool = False,
@@ -129,7 +131,7 @@ def relaid(
     these were. whether : it is asked only whether anything contradicts; if so, what is told is cut.
     """
     replay = Replay(new, old) if begun is None else begun.copy()
-    return replay.end(looks, {load.name: load for load in loads}, whether)
+    return replay.end(observations, {load.name: load for load in loads}, whether)
 
 
 class RemapCache:
@@ -141,34 +143,36 @@ class RemapCache:
     """
 
     def __init__(
-        self, lattice: Frame, evidence: OccupancyMap, looks: Sequence[Observation], loads: Mapping[str, HeldObject]
+        self,
+        frame: Frame,
+        occupancy: OccupancyMap,
+        observations: Sequence[Observation],
+        loads: Mapping[str, HeldObject],
     ) -> None:
-        self._lattice, self._looks, self._loads = lattice, looks, loads
-        believed = RemappedMap(evidence, loads, 0)
-        self._known: dict[tuple[int, bytes], tuple[Frame | None, RemappedMap]] = {
-            self._fallen(lattice): (None, believed)
-        }
+        self._frame, self._observations, self._loads = frame, observations, loads
+        believed = RemappedMap(occupancy, loads, 0)
+        self._known: dict[tuple[int, bytes], tuple[Frame | None, RemappedMap]] = {self._fallen(frame): (None, believed)}
         self._on: dict[Frame, RemappedMap] = {}
 
-    def on(self, lattice: Frame, whether: bool = False) -> RemappedMap:
+    def on(self, frame: Frame, whether: bool = False) -> RemappedMap:
         """What they say on a lattice. whether : as for `relaid`."""
-        if lattice not in self._on or (self._on[lattice].cut and not whether):
-            self._on[lattice] = self._laid(lattice, whether)
-        return self._on[lattice]
+        if frame not in self._on or (self._on[frame].cut and not whether):
+            self._on[frame] = self._laid(frame, whether)
+        return self._on[frame]
 
-    def _laid(self, lattice: Frame, whether: bool) -> RemappedMap:
-        fallen_ = self._fallen(lattice)
+    def _laid(self, frame: Frame, whether: bool) -> RemappedMap:
+        fallen_ = self._fallen(frame)
         if fallen_ not in self._known or (self._known[fallen_][1].cut and not whether):
-            found = relaid(lattice, self._lattice, self._looks, self._loads.values(), whether=whether)
-            self._known[fallen_] = lattice, found
+            found = relaid(frame, self._frame, self._observations, self._loads.values(), whether=whether)
+            self._known[fallen_] = frame, found
         first, under = self._known[fallen_]
-        if lattice == first or under.cut:
+        if frame == first or under.cut:
             return under
-        loads = {name: shifted(load, lattice, first or self._lattice) for name, load in under.loads.items()}
+        loads = {name: shifted(load, frame, first or self._frame) for name, load in under.loads.items()}
         return under._replace(loads=loads)
 
-    def _fallen(self, lattice: Frame) -> tuple[int, bytes]:
-        return lattice.angle, fallen(lattice, self._looks).tobytes()
+    def _fallen(self, frame: Frame) -> tuple[int, bytes]:
+        return frame.angle, fallen(frame, self._observations).tobytes()
 
 
 class Prefixes:
@@ -177,9 +181,9 @@ class Prefixes:
     loads : as they lie on that lattice.
     """
 
-    def __init__(self, lattice: Frame, looks: Sequence[Observation], loads: Mapping[str, HeldObject]) -> None:
-        self._looks, self._loads = looks, loads
-        self._known = {0: Replay(lattice, lattice)}
+    def __init__(self, frame: Frame, observations: Sequence[Observation], loads: Mapping[str, HeldObject]) -> None:
+        self._observations, self._loads = observations, loads
+        self._known = {0: Replay(frame, frame)}
 
     def of(self, number: int) -> Replay:
         """The first `number` looks, to be copied."""
@@ -187,7 +191,7 @@ class Prefixes:
             near = max(n for n in self._known if n < number)
             replay = self._known[near].copy()
             for stop in (*range(near + 1 + EVERY - (near + 1) % EVERY, number, EVERY), number):
-                self._known[stop] = replay.go_on(self._looks, self._loads, stop).copy()
+                self._known[stop] = replay.go_on(self._observations, self._loads, stop).copy()
         return self._known[number]
 
 
@@ -199,40 +203,40 @@ def shifted(load: HeldObject, new: Frame, old: Frame) -> HeldObject:
     return _carried(load, load, laid(load, old), new)
 
 
-def lain(load: HeldObject, was: PlacedObservation, lattice: Frame) -> HeldObject:
+def lain(load: HeldObject, was: PlacedObservation, frame: Frame) -> HeldObject:
     """A load where it lay at some time, on the lattice that is believed."""
-    return _carried(load, load, was, lattice)
+    return _carried(load, load, was, frame)
 
 
-def _taken(load: HeldObject, new: Frame, old: Frame, evidence: OccupancyMap) -> HeldObject:
+def _taken(load: HeldObject, new: Frame, old: Frame, occupancy: OccupancyMap) -> HeldObject:
     """A load as it lay when it was first held, on the new lattice, of which so much was seen then."""
     skew = new.angle - old.angle
     askew = 90 * round(skew / 90) - skew
     middle = new.place_from_utak(*_middle(load.first, old))
     first, skewed = _put(load.first, skew, middle), load.skewed or abs(askew) > ASKEW
     straight = is_whole(load.first)
-    seen = None if straight and abs(askew) <= ASKEW else _outline(covered(first), evidence)
+    seen = None if straight and abs(askew) <= ASKEW else _outline(covered(first), occupancy)
     if seen is not None:
         first, skewed = seen, False
     elif straight:
-        first = _straightened(Rotate(askew, middle).carry(first), evidence)
+        first = _straightened(Rotate(askew, middle).carry(first), occupancy)
     lying = load.lying(first)
     insets = load.insets if skew == 0.0 and seen is None else SubcellExtent() if is_whole(lying.polygon) else None
     return replace(lying, first=lying.polygon, skewed=skewed, insets=insets)
 
 
-def _straightened(polygon: Any, evidence: OccupancyMap) -> Any:
+def _straightened(polygon: Any, occupancy: OccupancyMap) -> Any:
     """A thing with sides along the lattice, on corners of it: where what was seen speaks least against that."""
     x0, y0 = polygon.bounds[:2]
     nearest = Translate(round(x0) - x0, round(y0) - y0).carry(polygon)
     lying = [whole(shapely.transform(nearest, lambda points, s=step: points + np.array(s))) for step in STEPS]
-    return min(lying, key=lambda other: _unlike(other, evidence))
+    return min(lying, key=lambda other: _unlike(other, occupancy))
 
 
-def _outline(patch: Patch, evidence: OccupancyMap) -> Any:
+def _outline(patch: Patch, occupancy: OccupancyMap) -> Any:
     """The outline of what was seen where a thing is said to lie, if nearly all of it was told by then; None else."""
     own = np.pad(patch.mask, REACH)
-    state = evidence.window(patch.west - REACH, patch.south - REACH, own.shape)
+    state = occupancy.window(patch.west - REACH, patch.south - REACH, own.shape)
     labels = components(state != FREE).labels
     met = np.bincount(labels[own & (labels > 0)], minlength=1)
     part = labels == met.argmax()
@@ -246,12 +250,12 @@ def _outline(patch: Patch, evidence: OccupancyMap) -> Any:
     return shapely.transform(best.polygon, lambda points: points + np.array([patch.west - REACH, patch.south - REACH]))
 
 
-def _unlike(polygon: Any, evidence: OccupancyMap) -> int:
+def _unlike(polygon: Any, occupancy: OccupancyMap) -> int:
     """How many squares speak against a thing where it is said to lie: free ones under it, occupied ones beside it."""
     patch = covered(polygon)
     own = np.pad(patch.mask, 1)
     about = edged(own)
-    state = evidence.window(patch.west - 1, patch.south - 1, own.shape)
+    state = occupancy.window(patch.west - 1, patch.south - 1, own.shape)
     return int(((state == FREE) & own).sum() + ((state == FULL) & about & ~own).sum())
 
 
@@ -271,7 +275,7 @@ def _put(polygon: Any, degrees: float, middle: tuple[float, float]) -> Any:
     return Translate(middle[0] - centre.x, middle[1] - centre.y).carry(turned)
 
 
-def _middle(polygon: Any, lattice: Frame) -> tuple[float, float]:
+def _middle(polygon: Any, frame: Frame) -> tuple[float, float]:
     """The middle of a polygon of the lattice, in Utak's own frame."""
     centre = polygon.centroid
-    return lattice.place_to_utak(centre.x, centre.y)
+    return frame.place_to_utak(centre.x, centre.y)

@@ -93,17 +93,17 @@ class WalkCorrection(NamedTuple):
         """A place of his own frame where he is believed to have been since."""
         return plus(place, self.shift)
 
-    def looks(self, looks: Sequence[Observation]) -> list[Observation]:
+    def observations(self, observations: Sequence[Observation]) -> list[Observation]:
         """All looks, where they were received."""
         since = [
-            look._replace(place=self.place(look.place), moved=tuple(map(self._lain, look.moved)))
-            for look in looks[self.since :]
+            observation._replace(place=self.place(observation.place), moved=tuple(map(self._lain, observation.moved)))
+            for observation in observations[self.since :]
         ]
-        return [*looks[: self.since], *since]
+        return [*observations[: self.since], *since]
 
-    def loads(self, loads: Mapping[str, HeldObject], lattice: Frame) -> dict[str, HeldObject]:
+    def loads(self, loads: Mapping[str, HeldObject], frame: Frame) -> dict[str, HeldObject]:
         """What was moved, where it lies and lay. lattice : on which it is believed to."""
-        return {name: self._load(load, lattice) for name, load in loads.items()}
+        return {name: self._load(load, frame) for name, load in loads.items()}
 
     def _lain(self, was: PlacedObservation) -> PlacedObservation:
         aside = self._aside(was.name)
@@ -111,8 +111,8 @@ class WalkCorrection(NamedTuple):
             was = was._replace(taken=plus(was.taken, aside))
         return was._replace(middle=plus(was.middle, aside))
 
-    def _load(self, load: HeldObject, lattice: Frame) -> HeldObject:
-        aside = Translate(*lattice.to_lattice(*self._aside(load.name)))
+    def _load(self, load: HeldObject, frame: Frame) -> HeldObject:
+        aside = Translate(*frame.to_lattice(*self._aside(load.name)))
         if not any(aside):
             return load
         first = load.first if load.name == self.hauled else aside.carry(load.first)
@@ -190,9 +190,9 @@ def views(place: Place) -> tuple[Place, ...]:
     return tuple((x, y) for x in columns for y in rows)
 
 
-def _seen_from(place: Place, lattice: Frame) -> list[Place]:
+def _seen_from(place: Place, frame: Frame) -> list[Place]:
     """The places of his own frame from which he may look who stands at one of them."""
-    return [lattice.place_to_utak(*view) for view in views(lattice.place_from_utak(*place))]
+    return [frame.place_to_utak(*view) for view in views(frame.place_from_utak(*place))]
 
 
 def _crossing(line: int, across: float, axis: int, hair: float) -> Crossing:
@@ -209,7 +209,10 @@ def next_square(place: Place, towards: Place) -> tuple[int, int]:
 
 
 def retold(
-    motion: MotionHypothesis, held: Frame, looks: Sequence[Observation], laid: Callable[[Frame], Prefixes] | None = None
+    motion: MotionHypothesis,
+    held: Frame,
+    observations: Sequence[Observation],
+    laid: Callable[[Frame], Prefixes] | None = None,
 ) -> Iterator[ReestimatedWalk]:
     """What else may have come of a motion, and how the lattice lies then, so that no look contradicts another.
 
@@ -220,12 +223,12 @@ def retold(
     Until he was stopped he came over no square that is occupied, and into none that is free; rather before one that is
     occupied than before one of which it is open.
     """
-    newest = motion.number == len(looks) - 1
+    newest = motion.number == len(observations) - 1
     for hypothesis in _likeliest(motion.hypotheses):
-        begun = Prefixes(hypothesis.lattice, looks, {}) if laid is None else laid(hypothesis.lattice)
-        found = list(_otherwise(motion, hypothesis, looks, begun))
+        begun = Prefixes(hypothesis.frame, observations, {}) if laid is None else laid(hypothesis.frame)
+        found = list(_otherwise(motion, hypothesis, observations, begun))
         surest = any(one.known for one in found)
-        if surest or not (newest and hypothesis.lattice == held):
+        if surest or not (newest and hypothesis.frame == held):
             yield from (one for one in found if one.known == surest)
 
 
@@ -238,64 +241,64 @@ def _likeliest(hypotheses: tuple[FrameHypothesis, ...]) -> tuple[FrameHypothesis
 
 
 def _otherwise(
-    motion: MotionHypothesis, hypothesis: FrameHypothesis, looks: Sequence[Observation], begun: Prefixes
+    motion: MotionHypothesis, hypothesis: FrameHypothesis, observations: Sequence[Observation], begun: Prefixes
 ) -> Iterator[ReestimatedWalk]:
     """What else may have come of one motion on one lattice."""
-    lattice, number = hypothesis.lattice, motion.number
-    believed, walk = looks[number].place, Walk(motion, lattice, looks)
+    frame, number = hypothesis.frame, motion.number
+    believed, walk = observations[number].place, Walk(motion, frame, observations)
     judged: dict[bytes, RemappedMap | None] = {}
-    ranges, places = stacked(looks), np.array([look.place for look in looks])
+    ranges, places = stacked(observations), np.array([observation.place for observation in observations])
     for end in walk.ends:
         shift = end.place[0] - believed[0], end.place[1] - believed[1]
         if math.hypot(*shift) < HAIR:  # as is believed
             continue
         correction = WalkCorrection(number, shift)
-        newest = correction.place(looks[-1].place)
+        newest = correction.place(observations[-1].place)
         there = places.copy()
         there[number:] += shift
-        for place in _seen_from(newest, lattice) if number < len(looks) - 1 else [newest]:
+        for place in _seen_from(newest, frame) if number < len(observations) - 1 else [newest]:
             there[-1] = place
-            squares = squares_of(lattice, there)
+            squares = squares_of(frame, there)
             key = squares.tobytes()
             if key not in judged:
                 judged[key] = None
-                if _agree(lattice, squares, ranges):
-                    *before, last = correction.looks(looks)
-                    judged[key] = relaid(lattice, lattice, [*before, last._replace(place=place)], (), begun.of(number))
+                if _agree(frame, squares, ranges):
+                    *before, last = correction.observations(observations)
+                    judged[key] = relaid(frame, frame, [*before, last._replace(place=place)], (), begun.of(number))
             under = judged[key]
-            if under is not None and (ahead := walk.ahead(end, under.evidence)) != FREE:
+            if under is not None and (ahead := walk.ahead(end, under.occupancy)) != FREE:
                 yield ReestimatedWalk(hypothesis, correction, ahead == FULL, under.misfits, place)
 
 
 def retold_both(
-    motion: MotionHypothesis, newest: MotionHypothesis, hypothesis: FrameHypothesis, looks: Sequence[Observation]
+    motion: MotionHypothesis, newest: MotionHypothesis, hypothesis: FrameHypothesis, observations: Sequence[Observation]
 ) -> Iterator[ReestimatedWalk]:
     """That both an earlier motion and the newest were stopped by what is known, so that no look contradicts another.
 
     looks : as for `retold`. Who goes on against what stopped him does not move at all.
     """
-    lattice, before, believed = hypothesis.lattice, looks[:-1], looks[motion.number].place
-    walk = Walk(motion, lattice, looks)
+    frame, before, believed = hypothesis.frame, observations[:-1], observations[motion.number].place
+    walk = Walk(motion, frame, observations)
     against = sum(a * b for a, b in zip(motion.shift, newest.shift, strict=True)) > 0
     for end in walk.ends[:-1]:
         correction = WalkCorrection(motion.number, (end.place[0] - believed[0], end.place[1] - believed[1]))
-        there = correction.looks(before)
-        so_far = agreed(lattice, there, recent=MEMORY, whether=False)
-        if so_far is None or walk.ahead(end, so_far.evidence) == FREE:
+        there = correction.observations(before)
+        so_far = agreed(frame, there, recent=MEMORY, whether=False)
+        if so_far is None or walk.ahead(end, so_far.occupancy) == FREE:
             continue
-        onward = Walk(newest, lattice, [*there, looks[-1]])
+        onward = Walk(newest, frame, [*there, observations[-1]])
         still = [End(there[-1].place, 0)] * (against and motion.number == newest.number - 1)
         for halt in (*still, *onward.ends[:-1]):
-            under = agreed(lattice, [*there, looks[-1]._replace(place=halt.place)])
-            if under is None or under.misfits or walk.ahead(end, under.evidence) != FULL:
+            under = agreed(frame, [*there, observations[-1]._replace(place=halt.place)])
+            if under is None or under.misfits or walk.ahead(end, under.occupancy) != FULL:
                 continue
-            if halt in still or onward.ahead(halt, under.evidence) == FULL:
+            if halt in still or onward.ahead(halt, under.occupancy) == FULL:
                 yield ReestimatedWalk(hypothesis, correction, True, 0, halt.place)
 
 
 def agreed(
-    lattice: Frame,
-    looks: Sequence[Observation],
+    frame: Frame,
+    observations: Sequence[Observation],
     loads: Iterable[HeldObject] = (),
     unsettled: Sequence[OriginDisc] = (),
     recent: int = MEMORY + 1,
@@ -307,13 +310,13 @@ def agreed(
     unsettled : where looks need not agree. recent : how many of them are compared. begun : the first, taken in already.
     whether : as for kb.localisation.hypotheses.remap.relaid.
     """
-    if not _agree(lattice, fallen(lattice, looks), stacked(looks), unsettled, recent):
+    if not _agree(frame, fallen(frame, observations), stacked(observations), unsettled, recent):
         return None
-    return relaid(lattice, lattice, looks, loads, begun, whether)
+    return relaid(frame, frame, observations, loads, begun, whether)
 
 
 def _agree(
-    lattice: Frame,
+    frame: Frame,
     squares: NDArray[np.int64],
     ranges: NDArray[np.int16],
     unsettled: Sequence[OriginDisc] = (),
@@ -324,9 +327,9 @@ def _agree(
     """
     squares, ranges = squares[-recent:], ranges[-recent:]
     apart = len(squares) // FEW
-    if apart > 1 and clashing(lattice, squares[::-apart], ranges[::-apart], unsettled):  # the newest one among them
+    if apart > 1 and clashing(frame, squares[::-apart], ranges[::-apart], unsettled):  # the newest one among them
         return False
-    return not clashing(lattice, squares, ranges, unsettled)
+    return not clashing(frame, squares, ranges, unsettled)
 
 
 class End(NamedTuple):
@@ -342,20 +345,20 @@ class Walk:
     ends : where he may have been stopped, in the order of the way, and its end; gone counts the crossings before it.
     """
 
-    def __init__(self, motion: MotionHypothesis, lattice: Frame, looks: Sequence[Observation]) -> None:
-        x, y = looks[motion.number - 1].place
-        self._met = met = crossings(lattice.place_from_utak(x, y), lattice.to_lattice(*motion.shift))
-        halts = [End(lattice.place_to_utak(*place), at) for at in range(len(met)) for place in views(met[at].before)]
+    def __init__(self, motion: MotionHypothesis, frame: Frame, observations: Sequence[Observation]) -> None:
+        x, y = observations[motion.number - 1].place
+        self._met = met = crossings(frame.place_from_utak(x, y), frame.to_lattice(*motion.shift))
+        halts = [End(frame.place_to_utak(*place), at) for at in range(len(met)) for place in views(met[at].before)]
         self.ends = (*halts, End((x + motion.shift[0], y + motion.shift[1]), len(met)))
 
-    def ahead(self, end: End, evidence: OccupancyMap, things: Set[Square] = frozenset()) -> int:
+    def ahead(self, end: End, occupancy: OccupancyMap, things: Set[Square] = frozenset()) -> int:
         """What stands where he would have been stopped; FREE, too, where something would have stopped him before.
 
         things : squares on which something stood then that was moved since.
         """
         at = int(end.gone)
         entered = [crossing.entered for crossing in self._met[: at + 1]]
-        states = (FULL if square in things else _state(evidence, square) for square in entered)
+        states = (FULL if square in things else _state(occupancy, square) for square in entered)
         if FULL in itertools.islice(states, at):
             return FREE
         return next(states, OPEN)
@@ -366,6 +369,6 @@ def plus(place: Place, shift: Place) -> Place:
     return place[0] + shift[0], place[1] + shift[1]
 
 
-def _state(evidence: OccupancyMap, square: tuple[int, int]) -> int:
-    row, column = evidence.index(*square)
-    return int(evidence.state[row, column])
+def _state(occupancy: OccupancyMap, square: tuple[int, int]) -> int:
+    row, column = occupancy.index(*square)
+    return int(occupancy.state[row, column])

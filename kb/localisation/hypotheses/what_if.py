@@ -39,7 +39,7 @@ class WhatIf(NamedTuple):
     hand. misfits : fields that contradict it, of all looks. searched : were hypotheses taken up that had been given up?
     """
 
-    lattice: Frame
+    frame: Frame
     hypotheses: tuple[FrameHypothesis, ...]
     place: Place
     outcome: Outcome | None
@@ -57,10 +57,10 @@ class Surprise:
 
     command: Command
     ranges: Ranges
-    lattice: Frame
+    frame: Frame
     place: Place
-    evidence: OccupancyMap
-    looks: Sequence[Observation]
+    occupancy: OccupancyMap
+    observations: Sequence[Observation]
     loads: Mapping[str, HeldObject]
     held: str | None
     hypotheses: tuple[FrameHypothesis, ...]
@@ -88,7 +88,7 @@ class Surprise:
     @property
     def own(self) -> Place:
         """Where the command leads, in his own frame."""
-        east, north = self.lattice.place_to_utak(*self.place)
+        east, north = self.frame.place_to_utak(*self.place)
         if isinstance(self.command, Move if self.held is None else Push):
             return east + self.command.east, north + self.command.north
         return east, north
@@ -96,12 +96,12 @@ class Surprise:
     @cached_property
     def before(self) -> tuple[FrameHypothesis, ...]:
         """The hypotheses that stood before the command."""
-        return search(self.looks[-RECENT:], self.hypotheses, self.unsettled)
+        return search(self.observations[-RECENT:], self.hypotheses, self.unsettled)
 
     @cached_property
     def recent(self) -> list[Observation]:
         """The looks by which lattices are judged, the new one last."""
-        return [*self.looks[-RECENT:], Observation(self.ranges, self.own)]
+        return [*self.observations[-RECENT:], Observation(self.ranges, self.own)]
 
     @cached_property
     def unsettled(self) -> list[OriginDisc]:
@@ -110,9 +110,11 @@ class Surprise:
         for load in self.loads.values():
             lying = [load.polygon, load.first]
             if self.moving is not None and load.name == self.moving[0]:
-                lying.append(as_motion(self.moving[1], self.lattice, self.place).carry(load.polygon))
-            middles = [self.lattice.place_to_utak(lain.centroid.x, lain.centroid.y) for lain in lying]
-            middles += [was.middle for look in self.looks for was in look.moved if was.name == load.name]
+                lying.append(as_motion(self.moving[1], self.frame, self.place).carry(load.polygon))
+            middles = [self.frame.place_to_utak(lain.centroid.x, lain.centroid.y) for lain in lying]
+            middles += [
+                was.middle for observation in self.observations for was in observation.moved if was.name == load.name
+            ]
             corners = shapely.get_coordinates(load.polygon) - shapely.get_coordinates(load.polygon.centroid)
             reach = float(np.hypot(*corners.T).max()) + BESIDE
             discs |= {OriginDisc(middle, reach) for middle in middles}
@@ -121,13 +123,13 @@ class Surprise:
     @cached_property
     def prefixes(self) -> Prefixes:
         """The first of the looks, on the lattice that is believed."""
-        return Prefixes(self.lattice, self.looks, self.loads)
+        return Prefixes(self.frame, self.observations, self.loads)
 
     # -- trying a lattice ------------------------------------------------------------------------
 
     def tried(
         self,
-        lattice: Frame,
+        frame: Frame,
         hypotheses: tuple[FrameHypothesis, ...],
         searched: bool = False,
         cut_short: bool = False,
@@ -139,29 +141,29 @@ class Surprise:
         cut_short : the motion may have ended early, for whatever reason. far : squares from where he woke, at most.
         whether : as for `judged`.
         """
-        if whether and (refused := self.refused(lattice, hypotheses)) is not None:
+        if whether and (refused := self.refused(frame, hypotheses)) is not None:
             return refused._replace(searched=searched)
         if self.moving is None:  # it went as said
-            place = lattice.place_from_utak(*self.own)
-            misfits = self._misfits(lattice, self.laid(lattice).loads.values(), place, far, whether)
-            return WhatIf(lattice, hypotheses, place, None, misfits, searched)
+            place = frame.place_from_utak(*self.own)
+            misfits = self._misfits(frame, self.laid(frame).loads.values(), place, far, whether)
+            return WhatIf(frame, hypotheses, place, None, misfits, searched)
         tried = []
-        for outcome in self._outcomes(lattice, cut_short):
+        for outcome in self._outcomes(frame, cut_short):
             slack = STRIDE / 2 if cut_short and outcome.how != "predicted" else 0.0
-            tried.append(self.judged(lattice, hypotheses, outcome, slack, far, searched, whether))
+            tried.append(self.judged(frame, hypotheses, outcome, slack, far, searched, whether))
             if not tried[-1].misfits:
                 break
         return min(tried, key=lambda one: one.misfits)
 
-    def refused(self, lattice: Frame, hypotheses: tuple[FrameHypothesis, ...]) -> WhatIf | None:
+    def refused(self, frame: Frame, hypotheses: tuple[FrameHypothesis, ...]) -> WhatIf | None:
         """That earlier looks contradict a lattice, whatever came of the motion; None when none does."""
-        misfits = self.laid(lattice, whether=True).misfits
-        place = lattice.place_from_utak(*self.own)
-        return WhatIf(lattice, hypotheses, place, None, misfits, False) if misfits else None
+        misfits = self.laid(frame, whether=True).misfits
+        place = frame.place_from_utak(*self.own)
+        return WhatIf(frame, hypotheses, place, None, misfits, False) if misfits else None
 
     def judged(
         self,
-        lattice: Frame,
+        frame: Frame,
         hypotheses: tuple[FrameHypothesis, ...],
         outcome: Outcome,
         slack: float = 0.0,
@@ -175,46 +177,46 @@ class Surprise:
         asked only whether anything contradicts; misfits may then be too few, though not 0.
         """
         assert self.moving is not None
-        held, loads = self.moving[0], self.laid(lattice).loads
+        held, loads = self.moving[0], self.laid(frame).loads
         slack, commanded = max(loads[held].slack, slack), outcome.as_commanded
         moved = loads[held].moved(outcome.polygon, slack, outcome.degrees, commanded)
-        misfits = self._misfits(lattice, {**loads, held: moved}.values(), outcome.place, far, whether)
-        return WhatIf(lattice, hypotheses, outcome.place, outcome, misfits, searched)
+        misfits = self._misfits(frame, {**loads, held: moved}.values(), outcome.place, far, whether)
+        return WhatIf(frame, hypotheses, outcome.place, outcome, misfits, searched)
 
     def _misfits(
-        self, lattice: Frame, loads: Iterable[HeldObject], place: Place, far: float, whether: bool = False
+        self, frame: Frame, loads: Iterable[HeldObject], place: Place, far: float, whether: bool = False
     ) -> int:
         """How many fields contradict a lattice, of this look, with the loads where they lie then, and of all others."""
-        under = self.laid(lattice)
+        under = self.laid(frame)
         if whether and under.misfits:
             return under.misfits
         lying = [load.woken(far) if far else load for load in loads]
-        return under.misfits + clashes(lattice, under.evidence, lying, place, self.ranges, whether)
+        return under.misfits + clashes(frame, under.occupancy, lying, place, self.ranges, whether)
 
-    def begun(self, lattice: Frame) -> tuple[Place, Any, Motion]:
+    def begun(self, frame: Frame) -> tuple[Place, Any, Motion]:
         """Where he stood before the motion, and what was in his hand, if the lattice lies so; and the motion."""
         assert self.moving is not None
         held, command = self.moving
-        place = lattice.place_from_utak(*self.lattice.place_to_utak(*self.place))
-        return place, self.laid(lattice).loads[held].polygon, as_motion(command, lattice, place)
+        place = frame.place_from_utak(*self.frame.place_to_utak(*self.place))
+        return place, self.laid(frame).loads[held].polygon, as_motion(command, frame, place)
 
-    def laid(self, lattice: Frame, whether: bool = False) -> RemappedMap:
+    def laid(self, frame: Frame, whether: bool = False) -> RemappedMap:
         """What all looks say on a lattice. whether : as for kb.localisation.hypotheses.remap.relaid."""
-        return self._layings.on(lattice, whether)
+        return self._layings.on(frame, whether)
 
     @cached_property
     def _layings(self) -> RemapCache:
-        return RemapCache(self.lattice, self.evidence, self.looks, self.loads)
+        return RemapCache(self.frame, self.occupancy, self.observations, self.loads)
 
-    def _outcomes(self, lattice: Frame, cut_short: bool) -> Iterator[Outcome]:
+    def _outcomes(self, frame: Frame, cut_short: bool) -> Iterator[Outcome]:
         """The motion, as far as what is known to stand in the way lets it go; and as it was commanded."""
-        place, polygon, motion = self.begun(lattice)
+        place, polygon, motion = self.begun(frame)
         if cut_short:
             yield from (outcome for outcome in otherwise(place, polygon, motion) if outcome.how in ("stuck", "blocked"))
             return
-        evidence = self.laid(lattice).evidence
-        same = evidence is self.evidence
-        hindrances = self.hindrances if same else Obstructions(evidence, place, polygon, motion)
+        occupancy = self.laid(frame).occupancy
+        same = occupancy is self.occupancy
+        hindrances = self.hindrances if same else Obstructions(occupancy, place, polygon, motion)
         stopped = arrested(place, polygon, motion, hindrances.walls)
         if stopped is not None:
             yield stopped
@@ -223,7 +225,7 @@ class Surprise:
     @cached_property
     def hindrances(self) -> Obstructions:
         """What stands, or may stand, about the motion on the lattice that is believed."""
-        return Obstructions(self.evidence, *self.begun(self.lattice), self.pictures)
+        return Obstructions(self.occupancy, *self.begun(self.frame), self.pictures)
 
     # -- after it ---------------------------------------------------------------------------------
 
@@ -237,18 +239,18 @@ class Surprise:
     def looked(self, loads: Sequence[HeldObject], place: Place) -> OccupancyMap:
         """What is settled together with the look, if it was received at a place, with the loads where they lie."""
         x, y = (math.floor(v) for v in place)
-        samples, counts = discounted(self.lattice.samples(), self.ranges, x, y, loads)
-        evidence = self.evidence.copy()
-        evidence.look(samples, counts, x, y, len(self.looks))
-        return evidence
+        samples, counts = discounted(self.frame.samples(), self.ranges, x, y, loads)
+        occupancy = self.occupancy.copy()
+        occupancy.observe(samples, counts, x, y, len(self.observations))
+        return occupancy
 
 
 def agreeing(
     hypotheses: Sequence[FrameHypothesis],
-    lattice: Frame,
+    frame: Frame,
     place: Place,
-    evidence: OccupancyMap,
-    looks: Sequence[Observation],
+    occupancy: OccupancyMap,
+    observations: Sequence[Observation],
     loads: Mapping[str, HeldObject],
     ranges: Ranges,
 ) -> tuple[FrameHypothesis, ...]:
@@ -256,27 +258,27 @@ def agreeing(
 
     lattice, place, evidence, loads : as they are believed, the motion before the look included.
     """
-    own, far = lattice.place_to_utak(*place), math.hypot(*cells(hypotheses)) / 2
-    agree, layings = [], RemapCache(lattice, evidence, looks, loads)
+    own, far = frame.place_to_utak(*place), math.hypot(*cells(hypotheses)) / 2
+    agree, layings = [], RemapCache(frame, occupancy, observations, loads)
     for hypothesis in hypotheses:
-        other = hypothesis.lattice
+        other = hypothesis.frame
         under = layings.on(other)
         lying = [load.woken(far) for load in under.loads.values()]
-        if not clashes(other, under.evidence, lying, other.place_from_utak(*own), ranges):
+        if not clashes(other, under.occupancy, lying, other.place_from_utak(*own), ranges):
             agree.append(hypothesis)
     return tuple(agree or hypotheses)
 
 
-def as_motion(command: Push | Turn, lattice: Frame, place: Place) -> Motion:
+def as_motion(command: Push | Turn, frame: Frame, place: Place) -> Motion:
     """A command as a motion on the lattice. place : of Utak, when he gives it."""
     if isinstance(command, Turn):
         return Rotate(command.degrees, place)
-    return Translate(*lattice.to_lattice(command.east, command.north))
+    return Translate(*frame.to_lattice(command.east, command.north))
 
 
 def clashes(
-    lattice: Frame,
-    evidence: OccupancyMap,
+    frame: Frame,
+    occupancy: OccupancyMap,
     loads: Iterable[HeldObject],
     place: Place,
     ranges: Ranges,
@@ -287,4 +289,4 @@ def clashes(
     whether : it is asked only whether there are any; too few may be told then, though not 0.
     """
     x, y = math.floor(place[0]), math.floor(place[1])
-    return evidence.clashes(*discounted(lattice.samples(), ranges, x, y, loads), x, y, whether)
+    return occupancy.clashes(*discounted(frame.samples(), ranges, x, y, loads), x, y, whether)

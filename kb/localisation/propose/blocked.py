@@ -79,11 +79,11 @@ def _seen(halt: BlockedMotion) -> list[BlockedMotion]:
 
 
 def _of_a_walk(surprise: Surprise, motion: Translate) -> list[BlockedMotion]:
-    way, evidence = crossings(surprise.place, (motion.dx, motion.dy)), surprise.evidence
-    chances = ObstacleChance(evidence, surprise.pictures).met([[crossing.entered] for crossing in way])
+    way, occupancy = crossings(surprise.place, (motion.dx, motion.dy)), surprise.occupancy
+    chances = ObstacleChance(occupancy, surprise.pictures).met([[crossing.entered] for crossing in way])
     found = []
     for crossing, chance in zip(way, chances, strict=True):
-        open_ = evidence.state[evidence.index(*crossing.entered)] == OPEN
+        open_ = occupancy.state[occupancy.index(*crossing.entered)] == OPEN
         against = frozenset([crossing.entered]) if open_ else frozenset[Square]()
         found += [BlockedMotion("blocked", view, chance / 2, against) for view in (crossing.after, crossing.before)]
     return found
@@ -108,13 +108,13 @@ def borne_out(surprise: Surprise, explanations: Iterable[Explanation]) -> list[E
     for one in explanations:
         loads = list(surprise.loads.values()) if one.outcome is None else surprise.lying(one.outcome)
         after = surprise.looked(loads, one.place)
-        if _can_stand(after, one) and not clashes(surprise.lattice, after, loads, one.place, surprise.ranges):
+        if _can_stand(after, one) and not clashes(surprise.frame, after, loads, one.place, surprise.ranges):
             found.append((MapDescription(after, drawn), one))
     prices = plainness([(sketch, -math.log(max(one.chance or 0.0, UNLIKELY))) for sketch, one in found])
     return [one._replace(crooked=price) for price, (_, one) in zip(prices, found, strict=True)]
 
 
-def _can_stand(evidence: OccupancyMap, explanation: Explanation) -> bool:
+def _can_stand(occupancy: OccupancyMap, explanation: Explanation) -> bool:
     """Whether something can stand against which he was stopped, and he himself where he is: so it is settled then.
 
     Who looks from beyond the line on which he was stopped looks from the square of what stopped him. Who just came to a
@@ -122,15 +122,15 @@ def _can_stand(evidence: OccupancyMap, explanation: Explanation) -> bool:
     """
     against, (x, y) = explanation.against, explanation.place
     own = (math.floor(x), math.floor(y))
-    if against and all(evidence.state[evidence.index(*square)] == FREE for square in against):
+    if against and all(occupancy.state[occupancy.index(*square)] == FREE for square in against):
         return False
     if not against and (explanation.how != "predicted" or len(views(explanation.place)) > 1):
         return True
-    here = evidence.index(*own)
+    here = occupancy.index(*own)
     state = FULL if own in against else FREE
-    if evidence.state[here] == OPEN:
-        evidence.state[here] = state
-    return bool(evidence.state[here] == state)
+    if occupancy.state[here] == OPEN:
+        occupancy.state[here] = state
+    return bool(occupancy.state[here] == state)
 
 
 def whole_first(explanations: Sequence[Explanation]) -> bool:

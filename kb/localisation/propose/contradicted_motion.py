@@ -36,15 +36,15 @@ def belied(surprise: Surprise, outcome: Outcome) -> bool:
     outcome : of the command that the look followed, with which nothing settled before it disagrees.
     """
     loads = surprise.lying(outcome)
-    evidence = surprise.looked(loads, outcome.place)
-    return clashes(surprise.lattice, evidence, loads, outcome.place, surprise.ranges) > 0
+    occupancy = surprise.looked(loads, outcome.place)
+    return clashes(surprise.frame, occupancy, loads, outcome.place, surprise.ranges) > 0
 
 
 def likeliest_stop(surprise: Surprise, load: HeldObject, motion: Motion) -> Outcome | None:
     """Where the motion of a load in hand was likeliest stopped so that the look contradicts nothing, if anywhere."""
     for end in surprise.hindrances.ends(surprise.place, load.polygon, motion):
         there = surprise.lying(end)
-        fits = not clashes(surprise.lattice, surprise.evidence, there, end.place, surprise.ranges)
+        fits = not clashes(surprise.frame, surprise.occupancy, there, end.place, surprise.ranges)
         if fits and not belied(surprise, end):
             return end
     return None
@@ -67,7 +67,7 @@ def rather_short(surprise: Surprise, load: HeldObject, motion: Rotate) -> Outcom
     stand: list[tuple[int, float, Outcome]] = []
     for end in ends:
         there = _turned(load, end.polygon, STRIDE, end.degrees)
-        if not clashes(surprise.lattice, surprise.evidence, [*others, there], place, surprise.ranges):
+        if not clashes(surprise.frame, surprise.occupancy, [*others, there], place, surprise.ranges):
             stand.append((_crowded(surprise, there, others, place), end.degrees, end))
     fewest = min((many for many, *_ in stand), default=seem)
     fitting = sorted((one for one in stand if one[0] == fewest), key=lambda one: one[1])
@@ -84,7 +84,7 @@ def _turned(load: HeldObject, polygon: Any, slack: float, degrees: float) -> Hel
 
 def _crowded(surprise: Surprise, load: HeldObject, others: Sequence[HeldObject], place: Place) -> int:
     """How many squares right about a thing are occupied of which no look told before, if it came to lie so."""
-    before, after = surprise.evidence, surprise.looked([*others, load], place)
+    before, after = surprise.occupancy, surprise.looked([*others, load], place)
     about = covered(load.polygon.buffer(BESIDE, join_style="mitre")).squares()
     new = [square for square in about if before.state[before.index(*square)] != FULL]
     return sum(after.state[after.index(*square)] == FULL for square in new)

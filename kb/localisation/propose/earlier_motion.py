@@ -52,27 +52,27 @@ class CarriedMotion:
 
     def __init__(self, motion: MotionHypothesis, surprise: Surprise) -> None:
         assert motion.load is not None
-        lattice, looks, loads = surprise.lattice, surprise.looks[: motion.number], surprise.loads
-        was = next(was for was in looks[-1].moved if was.name == motion.load)
-        self._place = lattice.place_from_utak(*looks[-1].place)
-        self._polygon = lain(loads[motion.load], was, lattice).polygon
-        self._motion = Translate(*lattice.to_lattice(*motion.shift))
-        before = relaid(lattice, lattice, looks, loads.values(), surprise.prefixes.of(motion.number)).evidence
+        frame, observations, loads = surprise.frame, surprise.observations[: motion.number], surprise.loads
+        was = next(was for was in observations[-1].moved if was.name == motion.load)
+        self._place = frame.place_from_utak(*observations[-1].place)
+        self._polygon = lain(loads[motion.load], was, frame).polygon
+        self._motion = Translate(*frame.to_lattice(*motion.shift))
+        before = relaid(frame, frame, observations, loads.values(), surprise.prefixes.of(motion.number)).occupancy
         stops = self._hindrances(before).stops(self._place, self._polygon, self._motion)
         parts = dict.fromkeys((*(stop.part for stop in sorted(stops, key=lambda stop: -stop.chance)), 1.0))
         halts = [(part, view) for part in parts for view in views(self._after(part))]
-        self.ends = tuple(End(lattice.place_to_utak(*view), part) for part, view in halts)
+        self.ends = tuple(End(frame.place_to_utak(*view), part) for part, view in halts)
 
     def _after(self, part: float) -> Place:
         """Where Utak is after a part of the motion."""
         return self._place[0] + part * self._motion.dx, self._place[1] + part * self._motion.dy
 
-    def ahead(self, end: End, evidence: OccupancyMap, things: Set[Square]) -> int:
+    def ahead(self, end: End, occupancy: OccupancyMap, things: Set[Square]) -> int:
         """What stands where it would have been stopped; FREE, too, where something would have stopped it before.
 
         things : squares on which something stood then that was moved since.
         """
-        body, hindrances = ContactBody(self._polygon, [self._place]), self._hindrances(evidence)
+        body, hindrances = ContactBody(self._polygon, [self._place]), self._hindrances(occupancy)
         known = hindrances.walls.first_contact(body, self._motion).fraction
         if things:
             stood = Obstacles([box_of(square) for square in things])
@@ -84,8 +84,8 @@ class CarriedMotion:
         stops = hindrances.stops(self._place, self._polygon, self._motion)
         return OPEN if end.gone == 1.0 or any(abs(stop.part - end.gone) < TOGETHER for stop in stops) else FREE
 
-    def _hindrances(self, evidence: OccupancyMap) -> Obstructions:
-        return Obstructions(evidence, self._place, self._polygon, self._motion)
+    def _hindrances(self, occupancy: OccupancyMap) -> Obstructions:
+        return Obstructions(occupancy, self._place, self._polygon, self._motion)
 
 
 def recalled(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
@@ -111,17 +111,17 @@ def recalled_elsewhere(surprise: Surprise, motions: Sequence[MotionHypothesis]) 
 
 def _held_then(motion: MotionHypothesis, surprise: Surprise) -> bool:
     """Is it told where the thing lay that was in hand on a motion, if one was?"""
-    before = surprise.looks[motion.number - 1].moved
+    before = surprise.observations[motion.number - 1].moved
     return motion.load is None or any(was.name == motion.load for was in before)
 
 
 def _otherwise(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
     """What else may have come of one motion."""
-    looks, lattice = surprise.looks, surprise.lattice
-    believed, first = looks[motion.number].place, surprise.prefixes.of(motion.number)
+    observations, frame = surprise.observations, surprise.frame
+    believed, first = observations[motion.number].place, surprise.prefixes.of(motion.number)
     if first.contradicted:  # whatever came of the motion
         return
-    way = Walk(motion, lattice, looks) if motion.load is None else CarriedMotion(motion, surprise)
+    way = Walk(motion, frame, observations) if motion.load is None else CarriedMotion(motion, surprise)
     judged: dict[Place, RemappedMap | None] = {}  # by the shift
     for end in way.ends:
         shift = end.place[0] - believed[0], end.place[1] - believed[1]
@@ -129,53 +129,53 @@ def _otherwise(surprise: Surprise, motion: MotionHypothesis) -> Iterator[Reestim
             continue
         anew, correction = _corrected(surprise, motion, end)
         if shift not in judged:
-            judged[shift] = agreed(lattice, anew.looks, anew.loads.values(), anew.unsettled, begun=first)
+            judged[shift] = agreed(frame, anew.observations, anew.loads.values(), anew.unsettled, begun=first)
         under = judged[shift]
         if under is None or under.misfits:
             continue
-        ahead = way.ahead(end, under.evidence, _stood(under, anew.looks, motion, lattice))
+        ahead = way.ahead(end, under.occupancy, _stood(under, anew.observations, motion, frame))
         if ahead == FREE:
             continue
-        supposed = replace(anew, evidence=under.evidence, loads=under.loads).tried(
-            lattice, surprise.hypotheses, whether=True
+        supposed = replace(anew, occupancy=under.occupancy, loads=under.loads).tried(
+            frame, surprise.hypotheses, whether=True
         )
         if not supposed.misfits:
-            yield ReestimatedMotion(ReestimatedWalk(exactly(lattice), correction, ahead == FULL, 0), supposed)
+            yield ReestimatedMotion(ReestimatedWalk(exactly(frame), correction, ahead == FULL, 0), supposed)
 
 
 def _elsewhere(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
     """What else may have come of one motion of a thing, if he woke elsewhere in his square."""
-    anywhere_in_it = anywhere((surprise.lattice.angle,))
+    anywhere_in_it = anywhere((surprise.frame.angle,))
     for end in CarriedMotion(motion, surprise).ends:
         anew, correction = _corrected(surprise, motion, end)
         left = search(anew.recent, anywhere_in_it, anew.unsettled)
         if not left:
             continue
         first = surprise.prefixes.of(motion.number)
-        under = relaid(surprise.lattice, surprise.lattice, anew.looks, anew.loads.values(), first)
-        anew = replace(anew, evidence=under.evidence, loads=under.loads)
-        for lattice in candidates(left, surprise.lattice)[:FEW]:
-            supposed = anew.tried(lattice, left, whether=True)
+        under = relaid(surprise.frame, surprise.frame, anew.observations, anew.loads.values(), first)
+        anew = replace(anew, occupancy=under.occupancy, loads=under.loads)
+        for frame in candidates(left, surprise.frame)[:FEW]:
+            supposed = anew.tried(frame, left, whether=True)
             if supposed.misfits:
                 continue
-            under = anew.laid(lattice)
-            there = replace(anew, lattice=lattice, evidence=under.evidence, loads=under.loads)
+            under = anew.laid(frame)
+            there = replace(anew, frame=frame, occupancy=under.occupancy, loads=under.loads)
             way = CarriedMotion(motion, there)
-            ahead = way.ahead(end, under.evidence, _stood(under, anew.looks, motion, lattice))
+            ahead = way.ahead(end, under.occupancy, _stood(under, anew.observations, motion, frame))
             if ahead != FREE:
-                yield ReestimatedMotion(ReestimatedWalk(exactly(lattice), correction, ahead == FULL, 0), supposed)
+                yield ReestimatedMotion(ReestimatedWalk(exactly(frame), correction, ahead == FULL, 0), supposed)
 
 
 def _corrected(surprise: Surprise, motion: MotionHypothesis, end: End) -> tuple[Surprise, WalkCorrection]:
     """A surprise as it is if an earlier motion ended elsewhere, and what is corrected by that."""
-    lattice, believed = surprise.lattice, surprise.looks[motion.number].place
+    frame, believed = surprise.frame, surprise.observations[motion.number].place
     shift = end.place[0] - believed[0], end.place[1] - believed[1]
     since = [load for load in surprise.loads.values() if load.since > motion.number]
     seen = tuple((load.name, _aside(load, shift, surprise)) for load in since)
     correction = WalkCorrection(motion.number, shift, seen, motion.load)
-    there, loads = correction.looks(surprise.looks), correction.loads(surprise.loads, lattice)
-    place = lattice.place_from_utak(*correction.place(lattice.place_to_utak(*surprise.place)))
-    return replace(surprise, place=place, looks=there, loads=loads), correction
+    there, loads = correction.observations(surprise.observations), correction.loads(surprise.loads, frame)
+    place = frame.place_from_utak(*correction.place(frame.place_to_utak(*surprise.place)))
+    return replace(surprise, place=place, observations=there, loads=loads), correction
 
 
 def _aside(load: HeldObject, shift: Place, surprise: Surprise) -> Place:
@@ -185,20 +185,20 @@ def _aside(load: HeldObject, shift: Place, surprise: Surprise) -> Place:
     """
     if not is_whole(load.first):
         return shift
-    lattice, look = surprise.lattice, surprise.looks[load.since - 1]
-    elsewhere = look._replace(place=plus(look.place, shift))
-    (west, south), (east, north) = fallen(lattice, [look, elsewhere])
-    return lattice.to_utak(float(east - west), float(north - south))
+    frame, observation = surprise.frame, surprise.observations[load.since - 1]
+    elsewhere = observation._replace(place=plus(observation.place, shift))
+    (west, south), (east, north) = fallen(frame, [observation, elsewhere])
+    return frame.to_utak(float(east - west), float(north - south))
 
 
 def _stood(
-    under: RemappedMap, looks: Sequence[Observation], motion: MotionHypothesis, lattice: Frame
+    under: RemappedMap, observations: Sequence[Observation], motion: MotionHypothesis, frame: Frame
 ) -> frozenset[Square]:
     """The squares on which things stood when a motion was made that he has moved since, or before."""
-    before = {was.name: was for was in looks[motion.number - 1].moved}
+    before = {was.name: was for was in observations[motion.number - 1].moved}
     squares: frozenset[Square] = frozenset()
     for load in under.loads.values():
         if load.name != motion.load:
-            lying = lain(load, before[load.name], lattice).polygon if load.name in before else load.first
+            lying = lain(load, before[load.name], frame).polygon if load.name in before else load.first
             squares |= covered(lying).squares()
     return squares

@@ -13,7 +13,7 @@ from kb.localisation.hypotheses.frames import ELSEWHERE, FrameHypothesis, anywhe
 from kb.localisation.hypotheses.walk_outcomes import views
 from kb.localisation.hypotheses.what_if import Surprise, WhatIf
 from kb.localisation.propose.blocked import likeliest
-from kb.localisation.propose.origin import lattices, odds_against
+from kb.localisation.propose.origin import frames, odds_against
 from kb.localisation.propose.origin_from_turns import pivoted
 from kb.objects.held_object import Square
 from kb.perception.frame import CENTRE, Frame
@@ -45,33 +45,33 @@ def _otherwise_turned(surprise: Surprise) -> WhatIf | None:
 
     That he woke amid his square is assumed as long as that explains all.
     """
-    angle = surprise.lattice.angle
+    angle = surprise.frame.angle
     others = [other for other in surprise.hypotheses if other.is_centred and other.angle != angle]
     left = search(surprise.recent, others, surprise.unsettled)
-    tried = (surprise.tried(lattice, left, whether=True) for lattice in candidates(left, surprise.lattice)[:FEW])
+    tried = (surprise.tried(frame, left, whether=True) for frame in candidates(left, surprise.frame)[:FEW])
     return next((one for one in tried if not one.misfits), None)
 
 
 def _laid_otherwise(surprise: Surprise, anew: bool) -> WhatIf | None:
     """The lattice on which, when all is laid on it, the fewest fields contradict."""
     found: list[WhatIf] = []
-    few = max(LEAST, min(FEW, MOST_REPLAYS // (len(surprise.looks) + 1)))
+    few = max(LEAST, min(FEW, MOST_REPLAYS // (len(surprise.observations) + 1)))
     for hypotheses, searched in _by_turns(surprise, anew):
         if searched and sum(hypothesis.area for hypothesis in hypotheses) < SLIVER:
             short = _cut_short(surprise, few)
             if short is not None:
                 return short
-        for lattice in candidates(hypotheses, surprise.lattice)[:few]:
-            found.append(surprise.tried(lattice, hypotheses, searched))
+        for frame in candidates(hypotheses, surprise.frame)[:few]:
+            found.append(surprise.tried(frame, hypotheses, searched))
             if not found[-1].misfits:
                 return found[-1]
     if found or surprise.moving is None:
         found.sort(key=lambda one: one.misfits)
-        others = [one for one in found if one.lattice != surprise.lattice][:BEST]
-        found += [surprise.tried(one.lattice, one.hypotheses, one.searched, cut_short=True) for one in others]
+        others = [one for one in found if one.frame != surprise.frame][:BEST]
+        found += [surprise.tried(one.frame, one.hypotheses, one.searched, cut_short=True) for one in others]
     else:  # on none of them the motion went on to its end
-        for lattice in candidates(surprise.before, surprise.lattice)[:few]:
-            found += [surprise.tried(lattice, surprise.before, cut_short=cut_short) for cut_short in (False, True)]
+        for frame in candidates(surprise.before, surprise.frame)[:few]:
+            found += [surprise.tried(frame, surprise.before, cut_short=cut_short) for cut_short in (False, True)]
     return min(found, key=lambda one: one.misfits, default=None)
 
 
@@ -85,7 +85,7 @@ def _by_turns(surprise: Surprise, anew: bool) -> Iterator[tuple[tuple[FrameHypot
     yield plainest, False
     if len(plainest) < len(left):
         if anew:
-            yield search(surprise.recent, anywhere((surprise.lattice.angle,)), surprise.unsettled), True
+            yield search(surprise.recent, anywhere((surprise.frame.angle,)), surprise.unsettled), True
         yield tuple(hypothesis for hypothesis in left if hypothesis.dear > ELSEWHERE), False
     if anew:
         yield _searched(surprise), True
@@ -93,9 +93,9 @@ def _by_turns(surprise: Surprise, anew: bool) -> Iterator[tuple[tuple[FrameHypot
 
 def _searched(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
     """All that may be, of angles near to those that were left."""
-    angles = [surprise.lattice.angle, *(h.angle for h in surprise.hypotheses)]
+    angles = [surprise.frame.angle, *(h.angle for h in surprise.hypotheses)]
     if max(angles) - min(angles) > WIDEST:
-        angles = [surprise.lattice.angle]
+        angles = [surprise.frame.angle]
     about = anywhere(range(min(angles) - ABOUT, max(angles) + ABOUT + 1))
     return search(surprise.recent, about, surprise.unsettled)
 
@@ -107,10 +107,10 @@ def _cut_short(surprise: Surprise, few: int) -> WhatIf | None:
     """
     if surprise.moving is None:
         return None
-    lattices = candidates(surprise.before, surprise.lattice)[:few]
+    frames = candidates(surprise.before, surprise.frame)[:few]
     for cut_short in (False, True):
-        tried = [surprise.tried(lattice, surprise.before, cut_short=cut_short, whether=True) for lattice in lattices]
-        fitting = sorted((one for one in tried if not one.misfits), key=lambda one: one.lattice.angle)
+        tried = [surprise.tried(frame, surprise.before, cut_short=cut_short, whether=True) for frame in frames]
+        fitting = sorted((one for one in tried if not one.misfits), key=lambda one: one.frame.angle)
         if fitting:
             return fitting[(len(fitting) - 1) // 2]
     return None
@@ -133,31 +133,31 @@ def halted_elsewhere(surprise: Surprise) -> list[HaltedElsewhere]:
     Where he himself runs against something depends on where he woke. Once a thing was turned that tells where he woke.
     """
     alike: dict[tuple[int, int, frozenset[Square]], list[tuple[WhatIf, float]]] = {}
-    for lattice in lattices(surprise.lattice) if surprise.moving is not None and not surprise.turned else ():
-        for supposed, chance in _halts(surprise, lattice):
+    for frame in frames(surprise.frame) if surprise.moving is not None and not surprise.turned else ():
+        for supposed, chance in _halts(surprise, frame):
             assert supposed.outcome is not None
             x, y = supposed.place
             key = math.floor(x), math.floor(y), supposed.outcome.against
             alike.setdefault(key, []).append((supposed, chance))
     found = []
     for same in alike.values():
-        supposed, chance = min(same, key=lambda one: math.dist(one[0].lattice.woke, CENTRE))
+        supposed, chance = min(same, key=lambda one: math.dist(one[0].frame.origin, CENTRE))
         left = tuple(dict.fromkeys(hypothesis for one, _ in same for hypothesis in one.hypotheses))
-        against = odds_against(surprise.lattice, len(left))
+        against = odds_against(surprise.frame, len(left))
         found.append(HaltedElsewhere(supposed._replace(hypotheses=left), chance, against))
     return found
 
 
-def _halts(surprise: Surprise, lattice: Frame) -> Iterator[tuple[WhatIf, float]]:
+def _halts(surprise: Surprise, frame: Frame) -> Iterator[tuple[WhatIf, float]]:
     """How a push may have been stopped on a lattice on which nothing contradicts then, with how likely that was."""
-    under = surprise.laid(lattice, whether=True)
+    under = surprise.laid(frame, whether=True)
     if under.misfits:
         return
-    place, polygon, motion = surprise.begun(lattice)
-    held, hindrances = (exactly(lattice),), Obstructions(under.evidence, place, polygon, motion)
+    place, polygon, motion = surprise.begun(frame)
+    held, hindrances = (exactly(frame),), Obstructions(under.occupancy, place, polygon, motion)
     for stop in likeliest(hindrances.stops(place, polygon, motion)):
         end = part_way(place, polygon, motion, stop.part, stop.against)
         for view in views(end.place):
-            supposed = surprise.judged(lattice, held, end._replace(place=view), whether=True)
+            supposed = surprise.judged(frame, held, end._replace(place=view), whether=True)
             if not supposed.misfits:
                 yield supposed, stop.chance

@@ -25,20 +25,20 @@ def larger(surprise: Surprise, load: HeldObject, motion: Motion) -> Iterator[Exp
     """That a thing in hand that never moved before went as commanded, and more of it than was seen: the least first."""
     if load.proven or not isinstance(motion, Translate) or not is_whole(load.polygon):
         return
-    evidence, seen = surprise.evidence, covered(load.polygon).squares()
+    occupancy, seen = surprise.occupancy, covered(load.polygon).squares()
     others = [other for other in surprise.loads.values() if other.name != load.name]
     for depth in range(1, DEEPEST + 1):
         for side in SIDES:
             whole = _going_on(load, side, depth)
             hidden = covered(whole.polygon).squares() - seen
-            if any(evidence.state[evidence.index(*square)] == FREE for square in hidden):
+            if any(occupancy.state[occupancy.index(*square)] == FREE for square in hidden):
                 continue
             outcome = predicted(surprise.place, whole.polygon, motion)._replace(how="larger")
-            patch, floor = patch_of_squares(hidden), evidence.copy()
-            floor.declare(floor.squares(patch.west, patch.south, patch.mask), FREE, len(surprise.looks) - 1)
+            patch, floor = patch_of_squares(hidden), occupancy.copy()
+            floor.declare(floor.squares(patch.west, patch.south, patch.mask), FREE, len(surprise.observations) - 1)
             loads = [*others, whole.moved(outcome.polygon, whole.slack, commanded=True)]
-            if not clashes(surprise.lattice, floor, loads, outcome.place, surprise.ranges):
-                yield Explanation("larger", outcome.place, surprise.lattice, 0, float(depth), outcome, larger=whole)
+            if not clashes(surprise.frame, floor, loads, outcome.place, surprise.ranges):
+                yield Explanation("larger", outcome.place, surprise.frame, 0, float(depth), outcome, larger=whole)
 
 
 def _going_on(load: HeldObject, side: tuple[int, int], depth: int) -> HeldObject:

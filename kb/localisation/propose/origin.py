@@ -21,33 +21,35 @@ GRID = 7  # points along either side of the square in which he woke
 PLACES = tuple(((i + 0.5) / GRID, (j + 0.5) / GRID) for i in range(GRID) for j in range(GRID))
 
 
-def lattices(held: Frame) -> list[Frame]:
+def frames(held: Frame) -> list[Frame]:
     """The lattices that are turned like the one held, if he woke at one of PLACES."""
-    return [replace(held, woke=place) for place in PLACES]
+    return [replace(held, origin=place) for place in PLACES]
 
 
 def odds_against(held: Frame, places: int) -> float:
     """Log odds against having woken at one of so many of PLACES, rather than where he is believed to."""
-    return ELSEWHERE * (held.woke == CENTRE) - math.log(places / len(PLACES))
+    return ELSEWHERE * (held.origin == CENTRE) - math.log(places / len(PLACES))
 
 
-def misplaced(motions: Sequence[MotionHypothesis], held: Frame, looks: Sequence[Observation]) -> list[Explanation]:
+def misplaced(
+    motions: Sequence[MotionHypothesis], held: Frame, observations: Sequence[Observation]
+) -> list[Explanation]:
     """That one of the last motions was stopped, and he woke elsewhere, by which no look contradicts another.
 
     Those that say the same of every look are told as one, each with what speaks against it: how plain the table looks
     then, and how small the part of the square is in which he woke. held : the lattice that is believed. looks : all,
     where they are believed to have been received, the newest where it was commanded.
     """
-    places = tuple(exactly(lattice) for lattice in lattices(held))
+    places = tuple(exactly(frame) for frame in frames(held))
     alike: dict[tuple[int, bytes], list[ReestimatedWalk]] = {}
-    begun = cache(lambda lattice: Prefixes(lattice, looks, {}))
+    begun = cache(lambda frame: Prefixes(frame, observations, {}))
     for motion in motions[-LAST:]:
-        for told in retold(motion._replace(hypotheses=places), held, looks, begun):
+        for told in retold(motion._replace(hypotheses=places), held, observations, begun):
             if not told.misfits:
-                key = motion.number, fallen(told.hypothesis.lattice, _received(told, looks)).tobytes()
+                key = motion.number, fallen(told.hypothesis.frame, _received(told, observations)).tobytes()
                 alike.setdefault(key, []).append(told)
     drawn, against = Drawn(), [odds_against(held, len(told)) for told in alike.values()]
-    sketches = [_sketch(told[0], looks, drawn) for told in alike.values()]
+    sketches = [_sketch(told[0], observations, drawn) for told in alike.values()]
     prices = plainness([*zip(sketches, against, strict=True)])
     found = map(_explanation, alike.values())
     return [
@@ -56,18 +58,18 @@ def misplaced(motions: Sequence[MotionHypothesis], held: Frame, looks: Sequence[
     ]
 
 
-def _received(told: ReestimatedWalk, looks: Sequence[Observation]) -> list[Observation]:
+def _received(told: ReestimatedWalk, observations: Sequence[Observation]) -> list[Observation]:
     """All looks where they were received then."""
-    *before, newest = told.correction.looks(looks)
+    *before, newest = told.correction.observations(observations)
     return [*before, newest._replace(place=told.newest)]
 
 
-def _sketch(told: ReestimatedWalk, looks: Sequence[Observation], drawn: Drawn) -> MapDescription:
-    lattice = told.hypothesis.lattice
-    return MapDescription(relaid(lattice, lattice, _received(told, looks), ()).evidence, drawn)
+def _sketch(told: ReestimatedWalk, observations: Sequence[Observation], drawn: Drawn) -> MapDescription:
+    frame = told.hypothesis.frame
+    return MapDescription(relaid(frame, frame, _received(told, observations), ()).occupancy, drawn)
 
 
 def _explanation(alike: Sequence[ReestimatedWalk]) -> Explanation:
     """What says the same, as one explanation: by the likeliest of them."""
-    told = min(alike, key=lambda one: (not one.known, math.dist(one.hypothesis.lattice.woke, CENTRE)))
+    told = min(alike, key=lambda one: (not one.known, math.dist(one.hypothesis.frame.origin, CENTRE)))
     return told_again(told, tuple(one.hypothesis for one in alike))

@@ -38,7 +38,7 @@ class Part(NamedTuple):
     rows: Span
 
     @property
-    def woke(self) -> Place:
+    def origin(self) -> Place:
         """The middle of that part of his square."""
         return sum(self.columns) / 2, sum(self.rows) / 2
 
@@ -63,7 +63,7 @@ def pivoted(surprise: Surprise, simple: bool) -> WhatIf | None:
     """
     where = _points(surprise)
     far = math.hypot(*cells(where)) / 2
-    tried = (surprise.tried(point.lattice, (point,), far=far, whether=True) for point in where)
+    tried = (surprise.tried(point.frame, (point,), far=far, whether=True) for point in where)
     fitting = [one for one in tried if not one.misfits]
     if not fitting and not (simple and len(surprise.hypotheses) == 1):
         fitting = _halted(surprise, _room(where))
@@ -72,8 +72,8 @@ def pivoted(surprise: Surprise, simple: bool) -> WhatIf | None:
 
 def _points(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
     """The points that are left; if there is but one, all of them that looks leave."""
-    given = tuple(h for h in surprise.hypotheses if h.angle == surprise.lattice.angle and h.is_point)
-    return given if len(given) > 1 else points(surprise.lattice, surprise.looks)
+    given = tuple(h for h in surprise.hypotheses if h.angle == surprise.frame.angle and h.is_point)
+    return given if len(given) > 1 else points(surprise.frame, surprise.observations)
 
 
 def _halted(surprise: Surprise, room: Box) -> list[WhatIf]:
@@ -84,7 +84,7 @@ def _halted(surprise: Surprise, room: Box) -> list[WhatIf]:
     """
     if surprise.degrees == 0.0:
         return []
-    place, polygon, motion = surprise.begun(surprise.lattice)
+    place, polygon, motion = surprise.begun(surprise.frame)
     length, (west, south, east, north) = length_of(place, polygon, motion), room
     parts = Part((0.0, 1.0), (west, east), (south, north)).cut(math.ceil(length / COARSE), CUTS, CUTS)
     for number in range(FINER + 1):
@@ -100,13 +100,13 @@ def _halted(surprise: Surprise, room: Box) -> list[WhatIf]:
 
 def _ended(surprise: Surprise, part: Part, length: float) -> WhatIf:
     """What contradicts that he woke in a part of his square, and that a turn ended in a part of it."""
-    lattice = Frame(surprise.lattice.angle, part.woke)
-    refused = surprise.refused(lattice, (exactly(lattice),))
+    frame = Frame(surprise.frame.angle, part.origin)
+    refused = surprise.refused(frame, (exactly(frame),))
     if refused is not None:
         return refused
-    place, polygon, motion = surprise.begun(lattice)
+    place, polygon, motion = surprise.begun(frame)
     outcome = part_way(place, polygon, motion, sum(part.turn) / 2)
-    return surprise.judged(lattice, (exactly(lattice),), outcome, _slack(part, length), part.far, whether=True)
+    return surprise.judged(frame, (exactly(frame),), outcome, _slack(part, length), part.far, whether=True)
 
 
 def _stoppable(surprise: Surprise, fitting: Sequence[tuple[Part, WhatIf]], length: float) -> list[WhatIf]:
@@ -114,13 +114,13 @@ def _stoppable(surprise: Surprise, fitting: Sequence[tuple[Part, WhatIf]], lengt
 
     All, when nothing is known that may have stopped any.
     """
-    stopped, stops = [], cache(lambda lattice: surprise.hindrances.stops(*surprise.begun(lattice)))
+    stopped, stops = [], cache(lambda frame: surprise.hindrances.stops(*surprise.begun(frame)))
     for part, one in fitting:
-        place, polygon, motion = surprise.begun(one.lattice)
-        stop = near(stops(one.lattice), place, polygon, motion, sum(part.turn) / 2)
+        place, polygon, motion = surprise.begun(one.frame)
+        stop = near(stops(one.frame), place, polygon, motion, sum(part.turn) / 2)
         if stop is not None:
             there = part_way(place, polygon, motion, stop.part, stop.against)
-            judged = surprise.judged(one.lattice, one.hypotheses, there, _slack(part, length), part.far, whether=True)
+            judged = surprise.judged(one.frame, one.hypotheses, there, _slack(part, length), part.far, whether=True)
             if not judged.misfits:
                 stopped.append((stop.chance, judged))
     best = max((chance for chance, _ in stopped), default=0.0)
@@ -146,7 +146,7 @@ def _middle(fitting: Sequence[WhatIf]) -> WhatIf:
 
     All points are left.
     """
-    fits = np.array([[one.lattice.woke, *_corners(one)] for one in fitting])
+    fits = np.array([[one.frame.origin, *_corners(one)] for one in fitting])
     nearest = int(np.linalg.norm(fits - fits.mean(0), axis=2).max(1).argmin())
     left = dict.fromkeys(hypothesis for one in fitting for hypothesis in one.hypotheses)
     return fitting[nearest]._replace(hypotheses=tuple(left))

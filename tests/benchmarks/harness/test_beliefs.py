@@ -27,7 +27,7 @@ def robot(quarters: int, angle: int = 0, shape: str = "brick") -> tuple[Any, int
     """A robot who knows the whole table, on a lattice turned by so many quarters, and his heading."""
     about = (WOKE[0], WOKE[1])
     turned = rotate(BRICK, -90 * quarters, origin=about)
-    lattice = translate(turned, 0.5 - WOKE[0], 0.5 - WOKE[1])
+    frame = translate(turned, 0.5 - WOKE[0], 0.5 - WOKE[1])
     west = south = -24
     state = np.full((48, 48), -1, np.int8)
     grid = truth()
@@ -37,10 +37,10 @@ def robot(quarters: int, angle: int = 0, shape: str = "brick") -> tuple[Any, int
             for _ in range(-quarters % 4):
                 dx, dy = -dy, dx
             state[dy - south, dx - west] = grid[y, x]
-    node = SimpleNamespace(shape={shape: 90, "rectangle": 90, "polygon": 99}, polygon=lattice, patch=None)
+    node = SimpleNamespace(shape={shape: 90, "rectangle": 90, "polygon": 99}, polygon=frame, patch=None)
     view = SimpleNamespace(west=west, south=south, state=state)
     frame = SimpleNamespace(angle=angle)
-    model = SimpleNamespace(lattice=frame, objects=(node,), view=view, place=(0.5, 0.5), certain=state >= 0)
+    model = SimpleNamespace(frame=frame, objects=(node,), view=view, place=(0.5, 0.5), certain=state >= 0)
     return SimpleNamespace(model=model), (90 * quarters + angle) % 360
 
 

@@ -75,8 +75,8 @@ def test_a_turned_table_is_noticed() -> None:
             memory.accommodate(Move(0.0, 1.0), impression(occupied, (int(px), int(py)), heading=30)).explanation.how
         )
     assert "turned" in hows
-    assert abs(memory.lattice.angle - 30) <= 8
-    assert memory.evidence.overruled == 0
+    assert abs(memory.frame.angle - 30) <= 8
+    assert memory.occupancy.overruled == 0
 
 
 def test_one_who_runs_against_something_on_a_turned_table_finds_out_both() -> None:
@@ -93,9 +93,9 @@ def test_one_who_runs_against_something_on_a_turned_table_finds_out_both() -> No
         stop = ran(occupied, middle, way, heading)
         seen = impression(occupied, (math.floor(stop[0]), math.floor(stop[1])), heading)
         memory.accommodate(Move(*way), seen)
-        walked = math.dist(memory.lattice.place_to_utak(*memory.place), (0, 0))
+        walked = math.dist(memory.frame.place_to_utak(*memory.place), (0, 0))
         if math.dist(stop, middle) < 9 - 0.3:
-            off.append(abs(memory.lattice.angle - heading))
+            off.append(abs(memory.frame.angle - heading))
             far.append(abs(walked - math.dist(stop, middle)))
     assert len(far) >= 9
     assert sum(angle <= 1 for angle in off) >= 0.9 * len(off)
@@ -130,7 +130,7 @@ def test_a_stop_at_what_is_known_is_believed_rather_than_another_lattice(known: 
         Explanation("turned", (9.5, 0.5), other, 0, 0.0),
         Explanation("misled", (10.0, 0.0), Frame(), 0, 0.7, retold=told),
     ]
-    numbers = [number for number, one in enumerate(explanations) if one.met and one.lattice == Frame()]
+    numbers = [number for number, one in enumerate(explanations) if one.met and one.frame == Frame()]
     chosen = cheapest(explanations, ["trust(3)", *(f"met({number})" for number in numbers)])
     assert chosen.how == ("misled" if known else "turned")
 
@@ -143,7 +143,7 @@ def stopped_and_walked(seed: int, remember: bool) -> list[float] | None:
     rng = np.random.default_rng(seed)
     occupied, heading = world_of(random_room(rng, 30, 30, 14)), int(rng.choice([0, 0, *range(-44, 46)]))
     free = [(i, j) for i in range(6, 24) for j in range(6, 24) if not occupied(i, j)]
-    here = woke = tuple(v + 0.5 for v in free[int(rng.integers(len(free)))])
+    here = origin = tuple(v + 0.5 for v in free[int(rng.integers(len(free)))])
     memory, off = Memory(), []
     memory.wake(impression(occupied, (math.floor(here[0]), math.floor(here[1])), heading))
     for far in (12, 6, 6):
@@ -158,8 +158,8 @@ def stopped_and_walked(seed: int, remember: bool) -> list[float] | None:
         if not remember:
             memory.moved = ()
         memory.accommodate(Move(*way), impression(occupied, (math.floor(here[0]), math.floor(here[1])), heading))
-        own = turned(here[0] - woke[0], here[1] - woke[1], -heading)
-        off.append(math.dist(memory.lattice.place_to_utak(*memory.place), own))
+        own = turned(here[0] - origin[0], here[1] - origin[1], -heading)
+        off.append(math.dist(memory.frame.place_to_utak(*memory.place), own))
     return off
 
 
@@ -183,8 +183,8 @@ def test_where_a_motion_ends_need_not_be_floor() -> None:
     memory.accommodate(Move(wall - x, 0.0), impression(occupied, (wall, y)))  # stopped as he touched it
     assert memory.place == pytest.approx((wall - x, 0.5), abs=1e-5)
     assert memory.place[0] < wall - x
-    assert memory.evidence.state[memory.evidence.index(wall - x, 0)] != FREE
-    assert memory.evidence.state[memory.evidence.index(0, 0)] == FREE
+    assert memory.occupancy.state[memory.occupancy.index(wall - x, 0)] != FREE
+    assert memory.occupancy.state[memory.occupancy.index(0, 0)] == FREE
 
 
 def test_turning_what_is_held_moves_nobody() -> None:
@@ -215,8 +215,8 @@ def test_where_a_turn_leaves_a_thing_tells_where_in_his_square_he_stands(place: 
     after = rotate(thing, 90, origin=place)
     found = memory.accommodate(Turn(90.0), impression(around(after, PLAIN), (20, 20)))
     assert found.explanation.how == "turned"
-    assert memory.place == memory.lattice.woke
-    assert math.dist(memory.lattice.woke, (place[0] - 20, place[1] - 20)) < math.dist(
+    assert memory.place == memory.frame.origin
+    assert math.dist(memory.frame.origin, (place[0] - 20, place[1] - 20)) < math.dist(
         CENTRE, (place[0] - 20, place[1] - 20)
     )
     load = memory.loads["o1"]
@@ -245,7 +245,7 @@ def test_a_turn_by_one_who_stands_amid_his_square_teaches_nothing() -> None:
     memory = holding(thing, (20.5, 20.5))
     found = memory.accommodate(Turn(90.0), impression(around(rotate(thing, 90, origin=(20.5, 20.5)), PLAIN), (20, 20)))
     assert found.explanation.how == "predicted"
-    assert memory.lattice.woke == CENTRE
+    assert memory.frame.origin == CENTRE
     assert memory.loads["o1"].play == 0
 
 
@@ -259,13 +259,13 @@ def test_a_halt_beside_the_middle_tells_where_in_his_square_he_woke() -> None:
     for east, north in ((0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (0.46, 3.46)):
         now = (now[0] + east, now[1] + north)
         memory.accommodate(Move(east, north), impression(room, (math.floor(now[0]), math.floor(now[1]))))
-    assert memory.lattice.angle == 0
-    assert memory.lattice.woke[0] > 0.5
+    assert memory.frame.angle == 0
+    assert memory.frame.origin[0] > 0.5
     assert math.floor(memory.place[0]) + x == math.floor(now[0])
     assert math.floor(memory.place[1]) + y == math.floor(now[1])
     west, south, east, north = memory.leeway
-    assert west <= 0.8 - memory.lattice.woke[0] <= east
-    assert south <= 0.3 - memory.lattice.woke[1] <= north
+    assert west <= 0.8 - memory.frame.origin[0] <= east
+    assert south <= 0.3 - memory.frame.origin[1] <= north
 
 
 def test_what_stops_a_thing_unawares_makes_the_squares_before_it_suspect() -> None:
@@ -275,14 +275,14 @@ def test_what_stops_a_thing_unawares_makes_the_squares_before_it_suspect() -> No
     thing = shapely.box(22, 18, 27, 21)
     memory = holding(thing, (21.5, 19.5), posts)
     memory.hypotheses, memory.searches = CENTRED[:1], 99  # how the lattice lies is known
-    row, column = memory.evidence.index(29 - 21, -1)
-    memory.evidence.state[row - 3 : row + 6, column] = OPEN  # not looked at closely
+    row, column = memory.occupancy.index(29 - 21, -1)
+    memory.occupancy.state[row - 3 : row + 6, column] = OPEN  # not looked at closely
     stopped = translate(thing, 2, 0)  # of 6
     found = memory.accommodate(Push(6.0, 0.0), impression(around(stopped, posts), (23, 19)))
     assert found.explanation.how == "blocked"
     assert memory.suspected
     assert {column for column, _ in memory.suspected} == {29 - 21}
-    memory.evidence.state[memory.evidence.index(*min(memory.suspected))] = FREE
+    memory.occupancy.state[memory.occupancy.index(*min(memory.suspected))] = FREE
     assert min(memory.suspected) not in memory.closed
 
 
@@ -302,7 +302,7 @@ def test_what_seemed_to_stop_him_and_is_seen_to_be_free_is_free(
     memory = walked(ROOM, [(2, 0)]).knowledge.memory
     memory.slipped = slips
     memory.barred.add((3, 1))
-    row, column = memory.evidence.index(3, 1)
-    memory.evidence.state[row - 1 : row + 2, column - 1 : column + 2] = about
-    memory.evidence.state[row, column] = state
+    row, column = memory.occupancy.index(3, 1)
+    memory.occupancy.state[row - 1 : row + 2, column - 1 : column + 2] = about
+    memory.occupancy.state[row, column] = state
     assert ((3, 1) in memory.closed) == closed

@@ -62,12 +62,12 @@ class Stroll:
     @property
     def wrong(self) -> float:
         """The part of what he takes for settled that is otherwise."""
-        evidence, (x, y) = self.knowledge.memory.evidence, self.knowledge.memory.square
+        occupancy, (x, y) = self.knowledge.memory.occupancy, self.knowledge.memory.square
         i, j = math.floor(self.place[0]) - x, math.floor(self.place[1]) - y
-        rows, columns = np.nonzero(evidence.state != OPEN)
-        squares = zip((columns + evidence.west + i).tolist(), (rows + evidence.south + j).tolist(), strict=True)
+        rows, columns = np.nonzero(occupancy.state != OPEN)
+        squares = zip((columns + occupancy.west + i).tolist(), (rows + occupancy.south + j).tolist(), strict=True)
         there = np.array([self.occupied(*square) for square in squares])
-        return float((there != (evidence.state[rows, columns] == FULL)).mean())
+        return float((there != (occupancy.state[rows, columns] == FULL)).mean())
 
 
 def strolled(seed: int) -> Stroll:
@@ -151,16 +151,16 @@ def test_on_another_lattice_what_never_moved_stands_where_it_is_seen() -> None:
     thing = shapely.box(-6, 5, -3, 8)  # there is nothing
     for moved, held in ((False, False), (True, False), (False, True)):
         memory = walked(ROOM, [(2, 0), (0, 3)]).knowledge.memory
-        before = memory.evidence.state.copy()
+        before = memory.occupancy.state.copy()
         memory.grasp(HeldObject("o1", thing, thing, proven=moved))
         memory.held = "o1" if held else None
-        memory._lie(Explanation("predicted", memory.place, memory.lattice, 0, 0.0))
+        memory._lie(Explanation("predicted", memory.place, memory.frame, 0, 0.0))
         assert list(memory.loads) == ["o1"]
-        other = Frame(woke=(0.4, 0.6))  # on which he saw the same
-        memory._lie(Explanation("turned", memory.place, other, 0, 0.0, None, (FrameHypothesis(0, other.woke * 2),)))
-        assert memory.lattice == other
+        other = Frame(origin=(0.4, 0.6))  # on which he saw the same
+        memory._lie(Explanation("turned", memory.place, other, 0, 0.0, None, (FrameHypothesis(0, other.origin * 2),)))
+        assert memory.frame == other
         assert list(memory.loads) == ["o1"] * (moved or held)
-        assert (memory.evidence.state == before).all() == (not moved and not held)
+        assert (memory.occupancy.state == before).all() == (not moved and not held)
 
 
 def test_who_forgot_knows_about_where_he_came_from() -> None:
@@ -183,9 +183,9 @@ def test_one_look_tells_how_the_lattice_lies_whatever_he_believed() -> None:
     off = []
     for seed in range(20):
         stroll = Stroll(seed)
-        memory = Memory(lattice=Frame((stroll.heading + 60) % 90 - 44)).anew()
+        memory = Memory(frame=Frame((stroll.heading + 60) % 90 - 44)).anew()
         memory.wake(stroll.sees())
-        off.append(abs((memory.lattice.angle - stroll.heading + 45) % 90 - 45))
+        off.append(abs((memory.frame.angle - stroll.heading + 45) % 90 - 45))
     assert sum(angle <= 2 for angle in off) >= 18
 
 

@@ -32,7 +32,7 @@ NO_SURPRISE = cast(Surprise, None)
 def test_what_likely_was_otherwise_is_thought_of_where_something_odd_explains_a_look(
     likely: float, simple: Explanation, asked: list[int] | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    memory = Memory(looks=[Observation(np.zeros((160, 2), np.int16), (float(n), 0.0)) for n in range(3)])
+    memory = Memory(observations=[Observation(np.zeros((160, 2), np.int16), (float(n), 0.0)) for n in range(3)])
     doubts = (((0.75, 0.5), likely), ((0.0, 0.0), 0.001))
     memory.moved = (MotionHypothesis(1, (1.0, 0.0), (HELD,), doubts=doubts), MotionHypothesis(2, (1.0, 0.0), (HELD,)))
     told = ReestimatedMotion(

@@ -49,8 +49,8 @@ def test_a_scene_stays_the_same_when_only_others_change() -> None:
     plain = ["b" * 100, *["b" + "." * 98 + "b"] * 98, "b" * 100]
     rows = [row[:54] + "ggg" + row[57:] if n in (40, 41) else row for n, row in enumerate(plain)]
     found = []
-    for looks in ([(50, 50)], [(50, 50), (50, 16)]):
-        view = looked(rows, looks).view()
+    for observations in ([(50, 50)], [(50, 50), (50, 16)]):
+        view = looked(rows, observations).view()
         places = {}
         for scene in scenes(view, ground_of(view)):
             corner = view.west + scene.columns.start, view.south + scene.rows.start
@@ -72,8 +72,8 @@ def by_square(pictures: Completions) -> dict[tuple[int, int], bytes]:
 def test_what_is_drawn_stays_while_nothing_new_is_told_of_it() -> None:
     rows = ["b" * 100, *["b" + "." * 98 + "b"] * 98, "b" * 100]
     rows = [row[:54] + "ggg" + row[57:] if n in (40, 41) else row for n, row in enumerate(rows)]
-    looks = [(50, 50), (50, 16), (52, 20)]
-    first, second, third = (looked(rows, looks[:count]).view() for count in (1, 2, 3))
+    observations = [(50, 50), (50, 16), (52, 20)]
+    first, second, third = (looked(rows, observations[:count]).view() for count in (1, 2, 3))
     assert second.south < first.south
     before = pictured(first, ground_of(first), NO_PICTURES)
     now = pictured(second, ground_of(second), before)

@@ -45,11 +45,11 @@ def test_what_pictures_show_goes_together() -> None:
 
 
 def test_what_is_settled_is_asked_of_no_picture() -> None:
-    evidence, shown = OccupancyMap(), np.ones((PICTURES, SIDE, SIDE), np.int8)
-    evidence.state[evidence.index(1, 1)] = FREE
-    evidence.state[evidence.index(3, 3)] = FULL
-    assert ObstacleChance(evidence, of(shown * 0)).met([[(1, 1)], [(3, 3)]]) == [0.0, 1.0]
-    assert ObstacleChance(evidence, of(shown)).met([[(1, 1)], [(3, 3)]]) == [0.0, 1.0]
+    occupancy, shown = OccupancyMap(), np.ones((PICTURES, SIDE, SIDE), np.int8)
+    occupancy.state[occupancy.index(1, 1)] = FREE
+    occupancy.state[occupancy.index(3, 3)] = FULL
+    assert ObstacleChance(occupancy, of(shown * 0)).met([[(1, 1)], [(3, 3)]]) == [0.0, 1.0]
+    assert ObstacleChance(occupancy, of(shown)).met([[(1, 1)], [(3, 3)]]) == [0.0, 1.0]
 
 
 def test_what_no_picture_shows_is_hardly_there_but_beside_what_one_shows() -> None:
@@ -63,11 +63,11 @@ def test_what_no_picture_shows_is_hardly_there_but_beside_what_one_shows() -> No
 
 
 def test_without_pictures_the_counts_alone_tell() -> None:
-    evidence = OccupancyMap()
-    at = evidence.index(2, 1)
-    assert evidence.state[at] == OPEN
-    evidence.logit[at] = 1.5
-    outlook = ObstacleChance(evidence)
+    occupancy = OccupancyMap()
+    at = occupancy.index(2, 1)
+    assert occupancy.state[at] == OPEN
+    occupancy.logit[at] = 1.5
+    outlook = ObstacleChance(occupancy)
     assert outlook.odds((2, 1)) == pytest.approx(1.5)
     assert outlook.met([[(2, 1)]]) == [pytest.approx(1 / (1 + np.exp(-1.5)))]
 

@@ -15,16 +15,16 @@ from tests.kb.eyes import Occupied, random_room, retina, world_of
 seeds = st.integers(0, 2**32 - 1)
 
 
-def look(evidence: OccupancyMap, occupied: Occupied, square: tuple[int, int], number: int) -> None:
+def observe(occupancy: OccupancyMap, occupied: Occupied, square: tuple[int, int], number: int) -> None:
     """One look along the axes; the lattice is the table's own."""
-    evidence.look(Frame(0).samples(), count_ranges(retina(occupied, square)), *square, number)
+    occupancy.observe(Frame(0).samples(), count_ranges(retina(occupied, square)), *square, number)
 
 
-def settled(evidence: OccupancyMap) -> dict[tuple[int, int], int]:
+def settled(occupancy: OccupancyMap) -> dict[tuple[int, int], int]:
     """Settled squares (x, y) and their states."""
-    rows, columns = np.nonzero(evidence.state != OPEN)
+    rows, columns = np.nonzero(occupancy.state != OPEN)
     return {
-        (c + evidence.west, r + evidence.south): int(evidence.state[r, c])
+        (c + occupancy.west, r + occupancy.south): int(occupancy.state[r, c])
         for r, c in zip(rows.tolist(), columns.tolist(), strict=True)
     }
 
@@ -40,14 +40,14 @@ def free_squares(rows: list[str], rng: np.random.Generator, count: int) -> list[
 def test_what_is_settled_is_true(seed: int) -> None:
     rng = np.random.default_rng(seed)
     rows = random_room(rng, *rng.integers(8, 40, 2), things=rng.integers(0, 9))
-    occupied, evidence = world_of(rows), OccupancyMap()
+    occupied, occupancy = world_of(rows), OccupancyMap()
     for number, square in enumerate(free_squares(rows, rng, 4)):
-        look(evidence, occupied, square, number)
-        evidence.stand(*square, number)
-        found = settled(evidence)
+        observe(occupancy, occupied, square, number)
+        occupancy.stand(*square, number)
+        found = settled(occupancy)
         assert len(found) >= 63
         assert all(occupied(*s) == (state == FULL) for s, state in found.items())
-    assert evidence.overruled == 0
+    assert occupancy.overruled == 0
 
 
 def tiny(fields: list[list[int]], weights: list[list[int]], slack: list[int]) -> Samples:
@@ -93,34 +93,34 @@ def consistent(case) -> list[tuple[int, ...]]:
 @given(tiny_cases())
 def test_what_is_settled_follows_from_the_counts(case) -> None:
     _, fields, weights, slack, ranges = case
-    evidence = OccupancyMap()
-    evidence.look(tiny(fields, weights, slack), np.array(ranges, np.int16), 0, 0, 0)
+    occupancy = OccupancyMap()
+    occupancy.observe(tiny(fields, weights, slack), np.array(ranges, np.int16), 0, 0, 0)
     worlds = consistent(case)
     assert worlds
-    for (x, _), state in settled(evidence).items():
+    for (x, _), state in settled(occupancy).items():
         assert {world[x] for world in worlds} == {state}
 
 
 def test_single_fields_and_full_counts_settle() -> None:
-    evidence = OccupancyMap()
-    evidence.look(
+    occupancy = OccupancyMap()
+    occupancy.observe(
         tiny([[0], [1, 2], [3, 4]], [[1], [1, 1], [1, 1]], [0] * 3), np.array([(1, 1), (0, 0), (2, 2)]), 0, 0, 0
     )
-    assert settled(evidence) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FREE, (3, 0): FULL, (4, 0): FULL}
+    assert settled(occupancy) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FREE, (3, 0): FULL, (4, 0): FULL}
 
 
 def test_the_difference_of_two_fields_settles() -> None:
-    evidence = OccupancyMap()
-    evidence.look(tiny([[0, 1], [1, 2]], [[1, 1]] * 2, [0, 0]), np.array([(1, 1), (1, 1)]), 0, 0, 0)
-    assert settled(evidence) == {}
-    evidence.look(tiny([[0, 1, 2]], [[1, 1, 1]], [0]), np.array([(2, 2)]), 0, 0, 1)
-    assert settled(evidence) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FULL}
+    occupancy = OccupancyMap()
+    occupancy.observe(tiny([[0, 1], [1, 2]], [[1, 1]] * 2, [0, 0]), np.array([(1, 1), (1, 1)]), 0, 0, 0)
+    assert settled(occupancy) == {}
+    occupancy.observe(tiny([[0, 1, 2]], [[1, 1, 1]], [0]), np.array([(2, 2)]), 0, 0, 1)
+    assert settled(occupancy) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FULL}
 
 
 def test_what_falls_between_two_squares_settles_nothing() -> None:
-    evidence = OccupancyMap()
-    evidence.look(tiny([[0, 1]], [[1, 1]], [1]), np.array([(2, 2)]), 0, 0, 0)
-    assert settled(evidence) == {}
+    occupancy = OccupancyMap()
+    occupancy.observe(tiny([[0, 1]], [[1, 1]], [1]), np.array([(2, 2)]), 0, 0, 0)
+    assert settled(occupancy) == {}
 
 
 @settings(max_examples=10, deadline=None)
@@ -131,8 +131,8 @@ def test_the_order_of_looks_hardly_matters(seed: int, order: list[int]) -> None:
     occupied, squares = world_of(rows), free_squares(rows, rng, 4)
     one, other = OccupancyMap(), OccupancyMap()
     for n in range(4):
-        look(one, occupied, squares[n], n)
-        look(other, occupied, squares[order[n]], n)
+        observe(one, occupied, squares[n], n)
+        observe(other, occupied, squares[order[n]], n)
     mine, others = settled(one), settled(other)
     assert all(mine[s] == others[s] for s in mine.keys() & others.keys())
     assert len(mine.keys() ^ others.keys()) <= 0.02 * len(mine)  # old fields are not compared anew among themselves
@@ -142,25 +142,25 @@ def test_the_order_of_looks_hardly_matters(seed: int, order: list[int]) -> None:
 @given(st.integers(-300, 300), st.integers(-300, 300))
 def test_growing_keeps_everything(x: int, y: int) -> None:
     rows = random_room(np.random.default_rng(7), 20, 20, things=5)
-    occupied, evidence = world_of(rows), OccupancyMap()
-    look(evidence, occupied, (9, 9), 0)
-    before, view = settled(evidence), evidence.view()
+    occupied, occupancy = world_of(rows), OccupancyMap()
+    observe(occupancy, occupied, (9, 9), 0)
+    before, view = settled(occupancy), occupancy.view()
     known = dict.fromkeys(before, 0)
-    look(evidence, occupied, (x, y), 1)
-    after, larger = settled(evidence), evidence.view()
+    observe(occupancy, occupied, (x, y), 1)
+    after, larger = settled(occupancy), occupancy.view()
     assert before.items() <= after.items()
     row, column = view.south - larger.south, view.west - larger.west
     part = larger.seen[row : row + view.seen.shape[0], column : column + view.seen.shape[1]]
     assert part[view.seen].all()
     for sx, sy in known:
-        assert evidence.settled_by[evidence.index(sx, sy)] == 0
+        assert occupancy.settled_by[occupancy.index(sx, sy)] == 0
 
 
 def test_the_view_says_where_it_lies() -> None:
-    occupied, evidence = world_of(random_room(np.random.default_rng(3), 12, 9, things=2)), OccupancyMap()
-    look(evidence, occupied, (4, 4), 0)
-    view = evidence.view()
-    for (x, y), state in settled(evidence).items():
+    occupied, occupancy = world_of(random_room(np.random.default_rng(3), 12, 9, things=2)), OccupancyMap()
+    observe(occupancy, occupied, (4, 4), 0)
+    view = occupancy.view()
+    for (x, y), state in settled(occupancy).items():
         row, column = view.locate(x + 0.5, y + 0.5)
         assert view.state[row, column] == state
         assert view.probability[row, column] == state
@@ -170,23 +170,23 @@ def test_the_view_says_where_it_lies() -> None:
 
 
 def test_open_squares_are_as_likely_as_their_field_says() -> None:
-    evidence = OccupancyMap()
-    evidence.look(tiny([[0, 1, 2, 3]], [[1] * 4], [0]), np.array([(1, 1)]), 0, 0, 0)
-    view = evidence.view()
+    occupancy = OccupancyMap()
+    occupancy.observe(tiny([[0, 1, 2, 3]], [[1] * 4], [0]), np.array([(1, 1)]), 0, 0, 0)
+    view = occupancy.view()
     likely = [view.probability[view.locate(x, 0)] for x in range(4)]
     assert likely == pytest.approx([0.25] * 4, abs=0.02)
 
 
 def test_true_looks_clash_with_nothing_and_false_ones_do() -> None:
     rows = ["b" * 24, *["b" + "." * 22 + "b"] * 10, "b.......ggg............b", *["b" + "." * 22 + "b"] * 8, "b" * 24]
-    occupied, evidence = world_of(rows), OccupancyMap()
+    occupied, occupancy = world_of(rows), OccupancyMap()
     samples = Frame(0).samples()
-    look(evidence, occupied, (12, 8), 0)
+    observe(occupancy, occupied, (12, 8), 0)
     ranges = count_ranges(retina(occupied, (10, 6)))
-    assert evidence.clashes(samples, ranges, 10, 6) == 0
-    assert not evidence.misfits(samples, ranges, 10, 6).any()
-    assert evidence.clashes(samples, ranges, 11, 6) > 0
-    wrong = evidence.misfits(samples, ranges, 10, 8)
+    assert occupancy.clashes(samples, ranges, 10, 6) == 0
+    assert not occupancy.misfits(samples, ranges, 10, 6).any()
+    assert occupancy.clashes(samples, ranges, 11, 6) > 0
+    wrong = occupancy.misfits(samples, ranges, 10, 8)
     assert wrong.any()
     assert not wrong[OWN]
 
@@ -194,56 +194,58 @@ def test_true_looks_clash_with_nothing_and_false_ones_do() -> None:
 def test_what_is_seen_now_counts() -> None:
     rows = ["b" * 24, *["b" + "." * 22 + "b"] * 18, "b" * 24]
     changed = [row[:12] + "gg" + row[14:] if n in (9, 10) else row for n, row in enumerate(rows)]
-    evidence = OccupancyMap()
-    look(evidence, world_of(rows), (10, 9), 0)
-    look(evidence, world_of(changed), (10, 9), 1)
-    assert evidence.overruled > 0
-    for (x, y), state in settled(evidence).items():
+    occupancy = OccupancyMap()
+    observe(occupancy, world_of(rows), (10, 9), 0)
+    observe(occupancy, world_of(changed), (10, 9), 1)
+    assert occupancy.overruled > 0
+    for (x, y), state in settled(occupancy).items():
         assert world_of(changed)(x, y) == (state == FULL)
 
 
 def test_a_second_look_from_the_same_place_tells_nothing_new() -> None:
     rows = ["b" * 24, *["b" + "." * 22 + "b"] * 10, "b.......ggg............b", *["b" + "." * 22 + "b"] * 8, "b" * 24]
-    occupied, evidence = world_of(rows), OccupancyMap()
+    occupied, occupancy = world_of(rows), OccupancyMap()
     for number, place in enumerate([(12, 8), (5, 5)]):
-        look(evidence, occupied, place, number)
-    before = evidence.view()
-    look(evidence, occupied, (12, 8), 2)
-    after = evidence.view()
+        observe(occupancy, occupied, place, number)
+    before = occupancy.view()
+    observe(occupancy, occupied, (12, 8), 2)
+    after = occupancy.view()
     assert all(np.array_equal(a, b) for a, b in zip(before.counts, after.counts, strict=True))
     assert np.array_equal(before.probability, after.probability)
     assert np.array_equal(before.settled_by, after.settled_by)
 
 
 def test_after_a_withdrawal_the_same_look_counts_again() -> None:
-    evidence = OccupancyMap()
+    occupancy = OccupancyMap()
     counts = tiny([[0], [1, 2]], [[1], [1, 1]], [0] * 2), np.array([(1, 1), (0, 0)])
-    evidence.look(*counts, 0, 0, 0)
-    evidence.withdraw(np.array([evidence.index(1, 0)[0] * evidence.state.shape[1] + evidence.index(1, 0)[1]], np.int32))
-    assert (1, 0) not in settled(evidence)
-    evidence.look(*counts, 0, 0, 1)
-    assert settled(evidence) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FREE}
+    occupancy.observe(*counts, 0, 0, 0)
+    occupancy.withdraw(
+        np.array([occupancy.index(1, 0)[0] * occupancy.state.shape[1] + occupancy.index(1, 0)[1]], np.int32)
+    )
+    assert (1, 0) not in settled(occupancy)
+    occupancy.observe(*counts, 0, 0, 1)
+    assert settled(occupancy) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FREE}
 
 
 def test_withdrawn_squares_are_open_and_their_fields_forgotten() -> None:
-    evidence = OccupancyMap()
+    occupancy = OccupancyMap()
     fields = tiny([[0], [0, 1, 2], [2, 3]], [[1], [1] * 3, [1] * 2], [0] * 3)
-    evidence.look(fields, np.array([(1, 1), (2, 2), (1, 1)]), 0, 0, 0)
-    row, column = evidence.index(1, 0)
-    evidence.withdraw(np.array([row * evidence.state.shape[1] + column], np.int32))
-    evidence.look(tiny([[1]], [[1]], [0]), np.array([(0, 0)]), 0, 0, 1)
-    assert settled(evidence) == {(0, 0): FULL, (1, 0): FREE}  # the field of three would have filled square 2
+    occupancy.observe(fields, np.array([(1, 1), (2, 2), (1, 1)]), 0, 0, 0)
+    row, column = occupancy.index(1, 0)
+    occupancy.withdraw(np.array([row * occupancy.state.shape[1] + column], np.int32))
+    occupancy.observe(tiny([[1]], [[1]], [0]), np.array([(0, 0)]), 0, 0, 1)
+    assert settled(occupancy) == {(0, 0): FULL, (1, 0): FREE}  # the field of three would have filled square 2
 
 
 def test_standing_does_not_overrule_and_declaring_does() -> None:
-    occupied, evidence = world_of(["....", ".gg.", ".gg.", "...."]), OccupancyMap()
-    look(evidence, occupied, (0, 0), 0)
-    evidence.stand(1, 1, 1)
-    evidence.stand(0, 0, 1)
-    assert settled(evidence)[1, 1] == FULL
-    assert settled(evidence)[0, 0] == FREE
-    mask = np.zeros(evidence.state.shape, bool)
-    mask[evidence.index(1, 1)] = True
-    evidence.declare(mask, FREE, 2)
-    assert settled(evidence)[1, 1] == FREE
-    assert evidence.settled_by[evidence.index(1, 1)] == 2
+    occupied, occupancy = world_of(["....", ".gg.", ".gg.", "...."]), OccupancyMap()
+    observe(occupancy, occupied, (0, 0), 0)
+    occupancy.stand(1, 1, 1)
+    occupancy.stand(0, 0, 1)
+    assert settled(occupancy)[1, 1] == FULL
+    assert settled(occupancy)[0, 0] == FREE
+    mask = np.zeros(occupancy.state.shape, bool)
+    mask[occupancy.index(1, 1)] = True
+    occupancy.declare(mask, FREE, 2)
+    assert settled(occupancy)[1, 1] == FREE
+    assert occupancy.settled_by[occupancy.index(1, 1)] == 2

@@ -15,13 +15,13 @@ def test_when_odds_are_asked_for_does_not_matter(seed: int) -> None:
     rows = random_room(rng, 60, 12, things=6)
     occupied, late, soon = world_of(rows), OccupancyMap(), OccupancyMap()
     for number, square in enumerate([(5, 5), (9, 6), (50, 5), (12, 4)]):  # the map grows on the way
-        for evidence in (late, soon):
-            evidence.look(Frame(0).samples(), count_ranges(retina(occupied, square)), *square, number)
+        for occupancy in (late, soon):
+            occupancy.observe(Frame(0).samples(), count_ranges(retina(occupied, square)), *square, number)
         if number == 1:
-            for evidence in (late, soon):
-                evidence.withdraw(np.flatnonzero(evidence.seen)[::7].astype(np.int32))
+            for occupancy in (late, soon):
+                occupancy.withdraw(np.flatnonzero(occupancy.seen)[::7].astype(np.int32))
         assert soon.logit.any()
     other = late.copy()
-    other.look(Frame(0).samples(), count_ranges(retina(occupied, (20, 5))), 20, 5, 4)
+    other.observe(Frame(0).samples(), count_ranges(retina(occupied, (20, 5))), 20, 5, 4)
     assert (late.logit == soon.logit).all()
     assert not np.array_equal(other.logit, late.logit)

@@ -86,8 +86,8 @@ def test_a_load_that_lies_askew_leaves_its_rim_open_until_it_is_seen() -> None:
     before = load(askew, slack_of(askew))
     assert before.sure.squares() < covered(askew).squares() < before.possible.squares()
     true = squares_of(askew)
-    look = impression(lambda i, j: (i, j) in true, (2, -1))
-    after = before.seen(Frame().samples(), count_ranges(look.retina), 2, -1)
+    observation = impression(lambda i, j: (i, j) in true, (2, -1))
+    after = before.seen(Frame().samples(), count_ranges(observation.retina), 2, -1)
     near = {(i, j) for i in range(-2, 6) for j in range(-5, 3)}
     assert after.sure.squares() & near == after.possible.squares() & near == true & near
 
@@ -121,24 +121,24 @@ def test_a_turn_leaves_utak_and_may_have_been_about_another_point_of_his_square(
 def test_a_look_at_what_is_so_never_clashes(seed: int, heading: int, degrees: float, whole_: bool) -> None:
     rng = np.random.default_rng(seed)
     rows = random_room(rng, 24, 24, 4)
-    lattice = Frame((heading + 45) % 90 - 45)
+    frame = Frame((heading + 45) % 90 - 45)
     free = [(i, j) for j, row in enumerate(reversed(rows)) for i, mark in enumerate(row) if mark == "."]
-    evidence, occupied = OccupancyMap(), world_of(rows)
-    quarters = round((heading - lattice.angle) / 90)
+    occupancy, occupied = OccupancyMap(), world_of(rows)
+    quarters = round((heading - frame.angle) / 90)
     for number, at in enumerate(rng.choice(len(free), 3)):
         there = free[at]
         ranges = count_ranges(impression(occupied, there, heading).retina)
-        evidence.look(lattice.samples(), ranges, *on_lattice(there, quarters), number)
+        occupancy.observe(frame.samples(), ranges, *on_lattice(there, quarters), number)
     middle, here = (free[at] for at in rng.choice(len(free), 2))
     turn = 90.0 * round(degrees / 90) if whole_ else round(degrees, 3)
     thing = translate(rotate(ELL, turn, origin=(0, 0)), *middle)
     with_it = around(thing, occupied)
     assume(not with_it(*here))
     lying = rotate(thing, -90 * quarters, origin=(0, 0))
-    look = count_ranges(impression(with_it, here, heading).retina)
+    observation = count_ranges(impression(with_it, here, heading).retina)
     x, y = on_lattice(here, quarters)
-    freed = discounted(lattice.samples(), look, x, y, [load(whole(lying))])
-    assert evidence.clashes(*freed, x, y) == 0
+    freed = discounted(frame.samples(), observation, x, y, [load(whole(lying))])
+    assert occupancy.clashes(*freed, x, y) == 0
 
 
 def on_lattice(square: tuple[int, int], quarters: int) -> tuple[int, int]:

@@ -42,9 +42,9 @@ def test_a_rectangle_may_always_be_what_it_is(
 
 
 def test_a_square_between_the_squares_looks_like_a_brick_until_it_is_told() -> None:
-    looks, told = shapely.box(0, 0, 4, 3), SubcellExtent((0.45, 0.45, 0.0, 0.0), (0.55, 0.55, 0.1, 0.1))
-    assert set(may_be(looks, SubcellExtent())) == {"square", "brick"}
-    assert reshaped(SEEN, looks, SubcellExtent()) == SEEN
+    observations, told = shapely.box(0, 0, 4, 3), SubcellExtent((0.45, 0.45, 0.0, 0.0), (0.55, 0.55, 0.1, 0.1))
+    assert set(may_be(observations, SubcellExtent())) == {"square", "brick"}
+    assert reshaped(SEEN, observations, SubcellExtent()) == SEEN
     half = SubcellExtent((0.45, 0.45, 0.0, 0.0), (0.55, 0.55, 1.0, 1.0))
     assert reshaped(SEEN, shapely.box(0.5, 0, 3.5, 3), half) == SEEN  # to the north it may be shorter yet
     square = reshaped(SEEN, shapely.box(0.5, 0, 3.5, 3), told)

@@ -17,7 +17,7 @@ from tests.kb.eyes import sampled
 length = st.floats(-100, 100).map(lambda v: round(v, 6))
 vector = st.tuples(length, length)
 degrees = st.integers(-720, 720)
-lattices = st.builds(Frame, st.integers(-44, 45), st.tuples(st.floats(0, 1), st.floats(0, 1)))
+frames = st.builds(Frame, st.integers(-44, 45), st.tuples(st.floats(0, 1), st.floats(0, 1)))
 
 
 @given(vector, degrees, degrees)
@@ -38,18 +38,18 @@ def test_quarter_turns_are_exact(x: int, y: int, quarters: int) -> None:
     assert turned(x, y, 90 * quarters) == (round(want.real), round(want.imag))
 
 
-@given(vector, lattices)
-def test_there_and_back(v: tuple[float, float], lattice: Frame) -> None:
-    assert lattice.to_utak(*lattice.to_lattice(*v)) == pytest.approx(v, abs=1e-9)
-    assert lattice.place_to_utak(*lattice.place_from_utak(*v)) == pytest.approx(v, abs=1e-9)
+@given(vector, frames)
+def test_there_and_back(v: tuple[float, float], frame: Frame) -> None:
+    assert frame.to_utak(*frame.to_lattice(*v)) == pytest.approx(v, abs=1e-9)
+    assert frame.place_to_utak(*frame.place_from_utak(*v)) == pytest.approx(v, abs=1e-9)
 
 
-@given(vector, vector, lattices)
-def test_places_differ_by_vectors(p: tuple[float, float], v: tuple[float, float], lattice: Frame) -> None:
-    x, y = lattice.place_from_utak(*p)
-    dx, dy = lattice.to_lattice(*v)
-    assert lattice.place_from_utak(p[0] + v[0], p[1] + v[1]) == pytest.approx((x + dx, y + dy), abs=1e-9)
-    assert lattice.place_from_utak(0, 0) == pytest.approx(lattice.woke)
+@given(vector, vector, frames)
+def test_places_differ_by_vectors(p: tuple[float, float], v: tuple[float, float], frame: Frame) -> None:
+    x, y = frame.place_from_utak(*p)
+    dx, dy = frame.to_lattice(*v)
+    assert frame.place_from_utak(p[0] + v[0], p[1] + v[1]) == pytest.approx((x + dx, y + dy), abs=1e-9)
+    assert frame.place_from_utak(0, 0) == pytest.approx(frame.origin)
 
 
 def is_tie(east: int, north: int, angle: int) -> bool:
@@ -88,7 +88,7 @@ def test_along_the_axes_every_square_is_sampled_once() -> None:
 
 @pytest.mark.parametrize("angle", range(-44, 46))
 def test_a_direction_names_the_square_that_the_senses_mean_however_the_table_lies(angle: int) -> None:
-    lattice = Frame(angle)
+    frame = Frame(angle)
     for direction in DIRECTIONS:
         meant = set()
         for quarters in range(4):
@@ -97,7 +97,7 @@ def test_a_direction_names_the_square_that_the_senses_mean_however_the_table_lie
             for _ in range(quarters):
                 i, j = j, -i
             meant.add((i, j))
-        named = lattice.beside(direction)
+        named = frame.beside(direction)
         assert meant == {named} if named is not None else len(meant) > 1 or abs(angle) == 30
-    assert all(lattice.beside(direction) == square for square, direction in lattice.directions().items())
-    assert {(1, 0), (0, 1), (-1, 0), (0, -1)} <= lattice.directions().keys()
+    assert all(frame.beside(direction) == square for square, direction in frame.directions().items())
+    assert {(1, 0), (0, 1), (-1, 0), (0, -1)} <= frame.directions().keys()

@@ -199,12 +199,12 @@ def test_what_he_feels_is_in_his_hand_when_he_grasps_there() -> None:
         seen = replace(impression(world_of(ROOM), (x - 2, y), colour="g"), touch=(felt, *[None] * 7))
         knowledge.perceive(Move(0.0, 0.0), seen)
         memory = knowledge.memory
-        memory.lattice = Frame(angle, memory.lattice.woke)
+        memory.frame = Frame(angle, memory.frame.origin)
         thing, (i, j) = walk.model.objects[0], memory.square
         polygon = shapely.box(i + aside, j + 1, i + aside + 3, j + 4)
         knowledge.objects = (replace(thing, polygon=polygon, patch=covered(polygon), colour="g"),)
         for column in (i - 1, i, i + 1):
-            memory.evidence.state[memory.evidence.index(column, j + 1)] = FULL if wall else OPEN
+            memory.occupancy.state[memory.occupancy.index(column, j + 1)] = FULL if wall else OPEN
         knowledge._grasp("north")
         return memory.held
 
@@ -243,8 +243,8 @@ def test_far_squares_are_not_certain_while_the_lattice_may_lie_a_little_otherwis
     settled = known.view.state != OPEN
     assert (known.certain == settled).all()
     rows, columns = np.indices(settled.shape)
-    woke = known.lattice.woke[0] - known.view.west, known.lattice.woke[1] - known.view.south
-    far = np.hypot(columns + 0.5 - woke[0], rows + 0.5 - woke[1])
+    origin = known.frame.origin[0] - known.view.west, known.frame.origin[1] - known.view.south
+    far = np.hypot(columns + 0.5 - origin[0], rows + 0.5 - origin[1])
     moved = 2 * far * math.sin(math.radians(degrees) / 2)  # by a turn about where he woke
     if degrees > 5:  # that would have shown
         assert (model.certain == settled).all()

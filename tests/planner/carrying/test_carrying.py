@@ -66,9 +66,9 @@ def run(folder: Path, settings: Settings | None = None) -> Run:
 
 def on_table(session: Session, polygon: shapely.Polygon) -> shapely.Polygon:
     """A polygon of Utak's lattice as one of the table, where he woke amid a square and quarter turns are enough."""
-    world, lattice = session.scenario.world, session.robot.knowledge.memory.lattice
-    moved = translate(polygon, -lattice.woke[0], -lattice.woke[1])
-    turned = rotate(moved, world.heading - lattice.angle, origin=(0, 0))
+    world, frame = session.scenario.world, session.robot.knowledge.memory.frame
+    moved = translate(polygon, -frame.origin[0], -frame.origin[1])
+    turned = rotate(moved, world.heading - frame.angle, origin=(0, 0))
     return translate(turned, *world.utak)
 
 
@@ -234,13 +234,15 @@ def test_what_is_clear_of_a_plan_is_done_before_the_rest_is_seen(
             own = situation.model.mask(node.patch)
             (leg,), (whole, *_) = part.plan.legs, haul.plan.legs
             *before, last = leg.motions
-            assert not (part.swept & ~situation.screens.safe & ~own).any()
+            assert not (part.swept & ~situation.cost_maps.safe & ~own).any()
             assert tuple(before) == whole.motions[: len(before)]
-            aim = whole.motions[len(before)]
+            subgoal = whole.motions[len(before)]
             assert isinstance(last, Translate)
-            assert isinstance(aim, Translate)
-            assert abs(last.dx * aim.dy - last.dy * aim.dx) <= math.hypot(aim.dx, aim.dy)  # nearly the same way
-            assert math.hypot(last.dx, last.dy) <= math.hypot(aim.dx, aim.dy) + 1
+            assert isinstance(subgoal, Translate)
+            assert abs(last.dx * subgoal.dy - last.dy * subgoal.dx) <= math.hypot(
+                subgoal.dx, subgoal.dy
+            )  # nearly the same way
+            assert math.hypot(last.dx, last.dy) <= math.hypot(subgoal.dx, subgoal.dy) + 1
             begun.append(part)
         return part
 

@@ -83,7 +83,7 @@ def test_what_stands_before_the_only_door_is_in_the_way() -> None:
         if fit:
             free = situation.model.space | situation.model.mask(node.patch)
             free &= areas(there, free.shape[1], free.shape[0]) == 0.0
-            assert reach(free, *situation.screens.here)[5, 20] != UNREACHED
+            assert reach(free, *situation.cost_maps.here)[5, 20] != UNREACHED
 
 
 @pytest.mark.parametrize("rows", [ELSEWHERE, AGAINST])

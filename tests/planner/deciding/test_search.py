@@ -37,12 +37,12 @@ def test_a_thing_and_a_picture_of_it_count_once() -> None:
 
 
 def test_what_lies_behind_a_place_is_seen_short_of_it() -> None:
-    screens, _ = room()
-    model = screens.model
+    cost_maps, _ = room()
+    model = cost_maps.model
     row, column = model.view.locate(*model.place)
     ahead = int(row) * model.labels.shape[1] + int(column) + 20
-    squares = short_of(screens, np.array([ahead]))
+    squares = short_of(cost_maps, np.array([ahead]))
     mask = marked(np.array([ahead]), model.labels.shape)
     assert ahead in squares
     assert distance_from(squares, mask).max() == SHORT_OF
-    assert screens.floor.ravel()[squares].all()
+    assert cost_maps.floor.ravel()[squares].all()

@@ -172,7 +172,7 @@ def test_what_takes_away_the_room_of_a_tedious_way_is_looked_at(pushes: int, cha
     assert (see is not None) == looks
     if see is not None:
         place = view.locate(8.5, 3.5)
-        rows, columns = np.divmod(see.lookout.squares, view.state.shape[1])
+        rows, columns = np.divmod(see.viewpoint.squares, view.state.shape[1])
         assert max(abs(rows - place[0]).max(), abs(columns - place[1]).max()) <= CLOSE
 
 

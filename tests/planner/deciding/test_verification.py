@@ -75,11 +75,11 @@ def test_before_a_thing_is_turned_or_tried_again_he_looks_how_the_squares_lie(
     looked = frozenset((x, 0) for x in range(looks))
     model = replace(seen_whole(BESIDE_A_THING), likely_spread=spread, looked_from=looked)
     (node,) = model.objects
-    aim = before_taking(replace(node, stuck=stuck), turns, situation_of(model))
-    assert (aim is not None) == first
-    if aim is not None:
-        assert "how the squares lie" in aim.what
-        assert len(aim.squares)
+    subgoal = before_taking(replace(node, stuck=stuck), turns, situation_of(model))
+    assert (subgoal is not None) == first
+    if subgoal is not None:
+        assert "how the squares lie" in subgoal.what
+        assert len(subgoal.squares)
 
 
 @pytest.mark.parametrize("sure", [True, False])
@@ -109,9 +109,9 @@ def test_who_is_not_sure_of_his_map_looks_at_a_narrow_passage_from_close_by_befo
 def test_who_sees_what_contradicts_his_beliefs_looks_from_elsewhere_near_by() -> None:
     assert misgiving(situation_of(stood_in(BESIDE_A_THING, False))) is None
     model = stood_in(BESIDE_A_THING, True)
-    aim = misgiving(situation_of(model))
-    assert aim is not None
-    away = np.abs(squares_from(model, aim.squares)).max(1)
+    subgoal = misgiving(situation_of(model))
+    assert subgoal is not None
+    away = np.abs(squares_from(model, subgoal.squares)).max(1)
     assert len(away)
     assert away.min() > 0
     assert away.max() <= CLOSE

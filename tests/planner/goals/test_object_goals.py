@@ -40,7 +40,7 @@ def landing_of(model: WorldModel, held: bool) -> Placement:
 @pytest.mark.parametrize("held", [True, False])
 def test_what_he_carries_does_not_shut_him_in(held: bool) -> None:
     model = seen_whole(SHUT_IN)
-    assert np.count_nonzero(situation_of(model).screens.floor) == 1
+    assert np.count_nonzero(situation_of(model).cost_maps.floor) == 1
     assert landing_of(model, held).ends
 
 
@@ -192,7 +192,7 @@ def test_who_is_shut_in_a_corner_by_what_he_holds_sees_the_rooms_that_he_could_t
     node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True, movable=99)
     for held in ("o1", None):
         situation = situation_of(replace(model, objects=(node,), held=held), {"x": "o1"})
-        assert np.count_nonzero(situation.screens.floor) <= 1
+        assert np.count_nonzero(situation.cost_maps.floor) <= 1
         found = landing(NORTHEAST, node, (-1.5, -1.5), situation)
         if behind == "?" and held:
             assert found.shut_in and not found.holds and not found.there

@@ -65,7 +65,7 @@ def test_only_what_was_never_seen_is_hoped_for_and_not_too_far(row: int, column:
 def test_floor_is_hoped_to_go_on_behind_its_open_edge_but_not_through_walls() -> None:
     situation = situation_of(seen_whole(HALF_SEEN))
     free = hoped_floor(situation)
-    seen = np.pad(situation.screens.free(0), BEYOND)
+    seen = np.pad(situation.cost_maps.free(0), BEYOND)
     beyond = free & ~seen
     assert beyond[BEYOND + 5, BEYOND + 22 : BEYOND + 22 + BEYOND].all()
     assert not beyond[BEYOND + 5, BEYOND + 22 + BEYOND :].any()
@@ -104,7 +104,7 @@ def test_a_push_over_what_is_hoped_to_be_free_is_taken_where_it_saves_one() -> N
     haul, situation = found(model, THROUGH)
     assert haul.hopes and haul.level == UNSEEN
     assert len(haul.plan.legs[0].motions) == 1
-    assert (haul.swept & ~situation.screens.free(0) & ~situation.model.mask(thing(model).patch)).any()
+    assert (haul.swept & ~situation.cost_maps.free(0) & ~situation.model.mask(thing(model).patch)).any()
     sure, _ = found(beside_the_jamb(0.6), THROUGH)
     assert not sure.hopes and sure.plan.commands > haul.plan.commands
 

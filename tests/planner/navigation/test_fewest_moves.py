@@ -41,7 +41,7 @@ def flat(column: int, line: int) -> int:
     return (len(WALLS) - 1 - line) * len(WALLS[0]) + column
 
 
-def aim(*squares: tuple[int, int]) -> Subgoal:
+def subgoal(*squares: tuple[int, int]) -> Subgoal:
     """An aim at squares (column, line) of the drawing."""
     return Subgoal("explore", np.array([flat(*square) for square in squares]), "there", 50)
 
@@ -51,51 +51,51 @@ def symbol(name: str, *args: Symbol) -> Symbol:
 
 
 @pytest.fixture
-def screens() -> CostMaps:
+def cost_maps() -> CostMaps:
     return CostMaps(seen_whole(WALLS))
 
 
-def test_of_an_aim_what_one_move_leads_to_counts(screens: CostMaps) -> None:
+def test_of_an_aim_what_one_move_leads_to_counts(cost_maps: CostMaps) -> None:
     behind, open_ = (31, 12), (29, 15)
-    assert one_move(screens, "explore").ravel()[[flat(*behind), flat(*open_)]].tolist() == [False, True]
-    fewest = FewestMoves(screens)
-    (priced,) = fewest.priced([aim(behind, open_)])
+    assert one_move(cost_maps, "explore").ravel()[[flat(*behind), flat(*open_)]].tolist() == [False, True]
+    fewest = FewestMoves(cost_maps)
+    (priced,) = fewest.priced([subgoal(behind, open_)])
     assert priced.squares.tolist() == [flat(*open_)]
     way = fewest.way(priced)
     assert way is not None
-    assert way.squares == (screens.here, (29, len(WALLS) - 1 - 15))
+    assert way.squares == (cost_maps.here, (29, len(WALLS) - 1 - 15))
 
 
 def test_a_move_is_saved_by_a_long_detour() -> None:
     rows = ["b" * 40, *["b" + "." * 38 + "b"] * 11, "b..U........b" + "." * 26 + "b", "b" * 40]
-    screens = CostMaps(seen_whole(rows))
+    cost_maps = CostMaps(seen_whole(rows))
     width = len(rows[0])
     behind, far = width + 14, 12 * width + 37
-    assert one_move(screens, "explore").ravel()[[behind, far]].tolist() == [False, True]
-    ways = screens.distances[0].ravel()[[behind, far]] / 5
+    assert one_move(cost_maps, "explore").ravel()[[behind, far]].tolist() == [False, True]
+    ways = cost_maps.distances[0].ravel()[[behind, far]] / 5
     assert ways[0] + 2 < ways[1]
-    (priced,) = FewestMoves(screens).priced([Subgoal("explore", np.array([behind, far]), "there")])
+    (priced,) = FewestMoves(cost_maps).priced([Subgoal("explore", np.array([behind, far]), "there")])
     assert priced.squares.tolist() == [far]
 
 
 @pytest.mark.parametrize(("square", "moves"), [((29, 15), 1), ((33, 9), 2), ((3, 2), MANY_MOVES)])
 def test_an_aim_costs_what_its_moves_cost_and_a_share_of_its_way(
-    screens: CostMaps, square: tuple[int, int], moves: int
+    cost_maps: CostMaps, square: tuple[int, int], moves: int
 ) -> None:
-    far = screens.distances[0].ravel()[flat(*square)] / 5
-    (priced,) = FewestMoves(screens).priced([aim(square)._replace(price=7.0)])
+    far = cost_maps.distances[0].ravel()[flat(*square)] / 5
+    (priced,) = FewestMoves(cost_maps).priced([subgoal(square)._replace(price=7.0)])
     assert far + priced.price == pytest.approx(7.0 + moves * MOVE + WAY * far)
 
 
-def test_the_first_of_two_moves_ends_where_the_second_can_begin(screens: CostMaps) -> None:
-    met = aim((33, 9))
-    way = FewestMoves(screens).way(met)
+def test_the_first_of_two_moves_ends_where_the_second_can_begin(cost_maps: CostMaps) -> None:
+    met = subgoal((33, 9))
+    way = FewestMoves(cost_maps).way(met)
     assert way is not None
     (_, via) = way.squares
     end = (33, len(WALLS) - 1 - 9)
-    assert clear(screens.safe, screens.here, via)
-    assert clear(screens.safe, via, end)
-    assert FewestMoves(screens).way(aim((3, 2))) is None
+    assert clear(cost_maps.safe, cost_maps.here, via)
+    assert clear(cost_maps.safe, via, end)
+    assert FewestMoves(cost_maps).way(subgoal((3, 2))) is None
 
 
 @pytest.mark.parametrize("unseen", ["north", "south"])
@@ -106,9 +106,9 @@ def test_he_turns_where_he_sees_what_he_has_not_seen(unseen: str) -> None:
     model = seen_whole(["b" * 60, *[hall] * 9, *[block] * 4, here, *[block] * 4, *[hall] * 9, "b" * 60])
     seen = model.view.seen.copy()
     seen[slice(-4, None) if unseen == "north" else slice(4)] = False
-    screens = CostMaps(replace(model, view=model.view._replace(seen=seen)))
-    row = screens.here[1]
-    way = FewestMoves(screens).way(Subgoal("explore", np.array([row * 60 + 56]), "there"))
+    cost_maps = CostMaps(replace(model, view=model.view._replace(seen=seen)))
+    row = cost_maps.here[1]
+    way = FewestMoves(cost_maps).way(Subgoal("explore", np.array([row * 60 + 56]), "there"))
     assert way is not None
     assert (way.squares[1][1] > row) == (unseen == "north")
 
@@ -122,35 +122,35 @@ def half_seen(shown: int) -> CostMaps:
 
 
 def test_the_best_view_is_had_where_most_comes_into_sight_for_its_way() -> None:
-    screens = half_seen(40)
-    met = one_move(screens, "explore")
-    (look,) = best_views(screens, met, MOVE, WAY)
+    cost_maps = half_seen(40)
+    met = one_move(cost_maps, "explore")
+    (look,) = best_views(cost_maps, met, MOVE, WAY)
     columns = look.squares % met.shape[1]
     assert met.ravel()[look.squares].all()
     assert columns.min() > 40 - REACH  # from further west hardly anything new is seen
     assert (columns < 39).any()  # and it need not be right beside what was not
     west = met & (np.arange(met.shape[1]) < columns.min())
-    (nearer,) = best_views(screens, west, MOVE, WAY)
+    (nearer,) = best_views(cost_maps, west, MOVE, WAY)
     assert 1 <= nearer.chance <= look.chance
 
 
 def test_there_is_no_view_where_nothing_new_comes_into_sight() -> None:
-    screens = half_seen(60)
-    amid = np.zeros_like(one_move(screens, "explore"))
-    assert best_views(screens, amid, MOVE, WAY) == []
+    cost_maps = half_seen(60)
+    amid = np.zeros_like(one_move(cost_maps, "explore"))
+    assert best_views(cost_maps, amid, MOVE, WAY) == []
     hall = seen_whole(["b" * 70, *["b" + "." * 68 + "b"] * 40, "b..U" + "." * 65 + "b", "b" * 70])
-    screens = CostMaps(hall)
+    cost_maps = CostMaps(hall)
     amid = np.zeros(hall.view.seen.shape, bool)
     amid[20:23, 30:40] = True
-    assert best_views(screens, amid, MOVE, WAY) == []
+    assert best_views(cost_maps, amid, MOVE, WAY) == []
 
 
 def test_every_first_move_is_one_that_may_be_made() -> None:
     for spread in (0.0, math.pi):
-        screens = CostMaps(replace(seen_whole(WALLS), likely_spread=spread))
-        reached = one_move(screens, "explore")
-        for square in np.flatnonzero(screens.floor)[::7].tolist():
-            way = FewestMoves(screens).way(Subgoal("explore", np.array([square]), "there"))
+        cost_maps = CostMaps(replace(seen_whole(WALLS), likely_spread=spread))
+        reached = one_move(cost_maps, "explore")
+        for square in np.flatnonzero(cost_maps.floor)[::7].tolist():
+            way = FewestMoves(cost_maps).way(Subgoal("explore", np.array([square]), "there"))
             if way is not None:
                 column, row = way.squares[-1]
                 assert reached[row, column]
@@ -163,11 +163,11 @@ def test_no_straight_move_leads_through_a_forbidden_door() -> None:
     assert len(rooms_of(model).doors) == 1
     carried = symbol("at", symbol("x"), symbol("corner", symbol("northeast")))
     never = symbol("not_through", symbol("utak"), symbol("d"))
-    screens, beyond = CostMaps(model), Subgoal("explore", np.array([7 * 30 + 25]), "there")
-    assert FewestMoves(screens).way(beyond) is not None
+    cost_maps, beyond = CostMaps(model), Subgoal("explore", np.array([7 * 30 + 25]), "there")
+    assert FewestMoves(cost_maps).way(beyond) is not None
     for goals, moves in (((carried,), True), ((carried, never), False)):
         task = Task({}, (), goals)
         decider = Decider(task)
         situation = situation_of(model, task=task)
-        decision = decider.pursuer._walk(beyond, decider.stages[0], situation, FewestMoves(screens))
+        decision = decider.pursuer._walk(beyond, decider.stages[0], situation, FewestMoves(cost_maps))
         assert (decision.command is not None) == moves

@@ -41,14 +41,14 @@ def random_walk(seed: int) -> WorldModel:
 @settings(max_examples=12, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_the_projection_is_monotone(seed: int) -> None:
-    screens = CostMaps(random_walk(seed))
+    cost_maps = CostMaps(random_walk(seed))
     for level in range(UNSEEN):
-        assert not (screens.free(level) & ~screens.free(level + 1)).any()
-        before, after = screens.distances[level], screens.distances[level + 1]
+        assert not (cost_maps.free(level) & ~cost_maps.free(level + 1)).any()
+        before, after = cost_maps.distances[level], cost_maps.distances[level + 1]
         assert (after[before >= 0] >= 0).all()
         assert (after <= before)[before >= 0].all()
-    assert not (screens.floor & ~screens.free(0)).any()
-    assert screens.floor[screens.here[1], screens.here[0]]
+    assert not (cost_maps.floor & ~cost_maps.free(0)).any()
+    assert cost_maps.floor[cost_maps.here[1], cost_maps.here[0]]
 
 
 @settings(max_examples=8, deadline=None)
@@ -96,93 +96,93 @@ def flat(model: WorldModel, x: int, y: int) -> np.ndarray:
 @pytest.mark.parametrize("kind", sorted(STROLL.longest))
 def test_a_move_sweeps_safe_squares_alone(kind: str, pace: Pace) -> None:
     model = seen_whole(HALL)
-    screens = CostMaps(model)
+    cost_maps = CostMaps(model)
     for goal in ((11, 0), (11, -2), (6, 5), (-4, 5), (0, 1)):
-        for way in ways(screens, 0, flat(model, *goal), "skeleton"):
-            move = next_move(screens, way.squares, kind, pace=pace)
+        for way in ways(cost_maps, 0, flat(model, *goal), "skeleton"):
+            move = next_move(cost_maps, way.squares, kind, pace=pace)
             east, north = round(move.east), round(move.north)
             assert (east, north) == (move.east, move.north)
             assert max(abs(east), abs(north)) <= pace.longest[kind]
             c, r = swept(east, north)
-            assert screens.safe[r + screens.here[1], c + screens.here[0]].all()
+            assert cost_maps.safe[r + cost_maps.here[1], c + cost_maps.here[0]].all()
 
 
 @settings(max_examples=8, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_longer_moves_than_a_step_are_safe_in_random_models(seed: int) -> None:
     model = random_walk(seed)
-    screens = CostMaps(model)
-    squares = np.flatnonzero(screens.floor)
+    cost_maps = CostMaps(model)
+    squares = np.flatnonzero(cost_maps.floor)
     rng = np.random.default_rng(seed)
     for goal in rng.choice(squares, size=min(4, len(squares)), replace=False):
-        for way in ways(screens, 0, np.array([goal]), "skeleton"):
+        for way in ways(cost_maps, 0, np.array([goal]), "skeleton"):
             if len(way.squares) < 2:
                 continue
-            move = next_move(screens, way.squares, "attain")
+            move = next_move(cost_maps, way.squares, "attain")
             if max(abs(move.east), abs(move.north)) > 1:
                 c, r = swept(round(move.east), round(move.north))
-                assert screens.safe[r + screens.here[1], c + screens.here[0]].all()
+                assert cost_maps.safe[r + cost_maps.here[1], c + cost_maps.here[0]].all()
 
 
 def test_ways_are_free_connected_and_distinct() -> None:
     model = seen_whole(HALL)
-    screens = CostMaps(model)
-    found = ways(screens, 0, flat(model, 12, -1), "skeleton")
+    cost_maps = CostMaps(model)
+    found = ways(cost_maps, 0, flat(model, 12, -1), "skeleton")
     assert len(found) >= 2
     for way in found:
-        assert way.squares[0] == screens.here
-        assert all(screens.free(0)[y, x] for x, y in way.squares)
+        assert way.squares[0] == cost_maps.here
+        assert all(cost_maps.free(0)[y, x] for x, y in way.squares)
         assert all(abs(a - c) + abs(b - d) == 1 for (a, b), (c, d) in zip(way.squares, way.squares[1:], strict=False))
     assert found[0].length <= found[1].length
-    chosen = choose_way(found, screens, frozenset(), (), frozenset())
+    chosen = choose_way(found, cost_maps, frozenset(), (), frozenset())
     assert chosen == found[0]
-    sticky = choose_way(found[:2], screens, frozenset(found[1].squares), (), frozenset())
+    sticky = choose_way(found[:2], cost_maps, frozenset(found[1].squares), (), frozenset())
     assert sticky == (found[1] if found[1].length - found[0].length < 2 else found[0])
 
 
 def test_who_is_there_has_a_way_of_one_square() -> None:
     model = seen_whole(HALL)
-    screens = CostMaps(model)
-    (way,) = ways(screens, 0, flat(model, 0, 0), "skeleton")
-    assert way.squares == (screens.here,)
+    cost_maps = CostMaps(model)
+    (way,) = ways(cost_maps, 0, flat(model, 0, 0), "skeleton")
+    assert way.squares == (cost_maps.here,)
     assert way.length == 0
 
 
 def test_nearest_is_by_level_first() -> None:
     rows = ["b" * 12, "b..........b", "b.U..?...?.b", "b..........b", "b" * 12]
     model = seen_whole(rows)
-    screens = CostMaps(model)
-    reached = screens.nearest(np.concatenate([flat(model, 3, 0), flat(model, 8, 0)]))
+    cost_maps = CostMaps(model)
+    reached = cost_maps.nearest(np.concatenate([flat(model, 3, 0), flat(model, 8, 0)]))
     assert reached is not None
     assert reached.level == 0  # the further one is floor, the nearer one was never seen
     assert reached.cost == pytest.approx(9.4)
-    only = screens.nearest(flat(model, 3, 0))
+    only = cost_maps.nearest(flat(model, 3, 0))
     assert only is not None
     assert only.level == UNSEEN
-    assert screens.nearest(flat(model, 9, 1)) is None
+    assert cost_maps.nearest(flat(model, 9, 1)) is None
 
 
 def test_the_choice_of_an_aim() -> None:
     model = seen_whole(HALL)
-    screens = CostMaps(model)
+    cost_maps = CostMaps(model)
     near, far = Subgoal("explore", flat(model, 1, 0), "near"), Subgoal("explore", flat(model, 12, 0), "far")
     goal = Subgoal("attain", flat(model, 12, 3), "there")
-    assert choose([near, far], screens, frozenset()) == near
-    assert choose([near, far, goal], screens, frozenset()) == goal
+    assert choose([near, far], cost_maps, frozenset()) == near
+    assert choose([near, far, goal], cost_maps, frozenset()) == goal
     wall = Subgoal("attain", flat(model, 14, 0), "in the wall")
-    assert choose([wall, far], screens, frozenset()) == far
-    assert choose([wall], screens, frozenset()) is None
-    assert choose([near._replace(price=30.0), far], screens, frozenset()) == far
-    assert choose([], screens, frozenset()) is None
+    assert choose([wall, far], cost_maps, frozenset()) == far
+    assert choose([wall], cost_maps, frozenset()) is None
+    assert choose([near._replace(price=30.0), far], cost_maps, frozenset()) == far
+    assert choose([], cost_maps, frozenset()) is None
 
 
 def test_frontiers_border_on_what_was_never_seen() -> None:
     rows = ["bbbbb?????", "b....?????", "b.U..?????", "b.........", "bbbbb....?"]
     model = seen_whole(rows)
-    screens = CostMaps(model)
-    found = np.unique(np.concatenate([look.squares for look in frontiers.frontiers(screens, 0)]))
+    cost_maps = CostMaps(model)
+    found = np.unique(np.concatenate([look.squares for look in frontiers.frontiers(cost_maps, 0)]))
     near = grown(~model.view.seen, 1)
-    assert np.array_equal(found, np.flatnonzero(screens.floor & near))
+    assert np.array_equal(found, np.flatnonzero(cost_maps.floor & near))
     closed = CostMaps(seen_whole(HALL))
     assert frontiers.frontiers(closed, 0) == []
     assert frontiers.vague_places(closed, 0, odd=False) == []
@@ -191,10 +191,10 @@ def test_frontiers_border_on_what_was_never_seen() -> None:
 
 def test_floor_seen_over_a_wall_is_a_room_beyond() -> None:
     rows = ["bbbbbbbbbbb", "b....b....b", "b.U..b....b", "b....b....b", "bbbbbbbbbbb"]
-    screens = CostMaps(seen_whole(rows))
-    (room,) = frontiers.rooms_beyond(screens)
+    cost_maps = CostMaps(seen_whole(rows))
+    (room,) = frontiers.rooms_beyond(cost_maps)
     assert len(room.squares) == 12
-    assert not screens.floor.ravel()[room.squares].any()
+    assert not cost_maps.floor.ravel()[room.squares].any()
     small = ["bbbbbbbbbbb", "b....b...bb", "b.U..b..bbb", "b....bbbbbb", "bbbbbbbbbbb"]
     assert frontiers.rooms_beyond(CostMaps(seen_whole(small))) == []
 
@@ -213,14 +213,14 @@ def test_a_second_look_from_the_same_square_is_not_worth_it() -> None:
 def test_circling_winds_once() -> None:
     model = seen_whole(HALL)
     (node,) = model.objects
-    screens = CostMaps(model)
+    cost_maps = CostMaps(model)
     track = [model.place]
-    offered = ways_round(screens, track, node)
+    offered = ways_round(cost_maps, track, node)
     assert len(offered) == 2
     sides = set()
     for turn, way in offered.items():
-        assert way.squares[0] == way.squares[-1] == screens.here
-        assert all(screens.free(0)[y, x] for x, y in way.squares)
+        assert way.squares[0] == way.squares[-1] == cost_maps.here
+        assert all(cost_maps.free(0)[y, x] for x, y in way.squares)
         walked_track = [(x + 0.5 + model.view.west, y + 0.5 + model.view.south) for x, y in way.squares]
         assert winding(walked_track, node) == turn
         sides.add(turn)
@@ -265,22 +265,22 @@ def test_the_pivot_lies_within_the_object() -> None:
 @settings(max_examples=8, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_what_no_wall_explains_is_part_of_what_is_vague(seed: int) -> None:
-    screens = CostMaps(random_walk(seed))
+    cost_maps = CostMaps(random_walk(seed))
 
     def squares(odd: bool) -> set[int]:
-        return {int(s) for look in frontiers.vague_places(screens, 0, odd=odd) for s in look.squares}
+        return {int(s) for look in frontiers.vague_places(cost_maps, 0, odd=odd) for s in look.squares}
 
-    assert squares(odd=True) <= squares(odd=False) <= set(np.flatnonzero(screens.floor).tolist())
+    assert squares(odd=True) <= squares(odd=False) <= set(np.flatnonzero(cost_maps.floor).tolist())
 
 
 @pytest.mark.parametrize("leeway", [(-0.5, -0.5, 0.5, 0.5), (-0.5, 0.0, 0.0, 0.5), (-0.05, -0.05, 0.05, 0.05)])
 def test_he_halts_near_the_edge_of_a_square_while_he_may_have_woken_elsewhere(leeway: tuple[float, ...]) -> None:
     model = replace(seen_whole(HALL), leeway=leeway)
-    screens = CostMaps(model)
+    cost_maps = CostMaps(model)
     for goal in ((4, 3), (-3, -2), (5, -4)):
-        way = ways(screens, 0, flat(model, *goal), "skeleton")[0]
-        move = next_move(screens, way.squares, "explore")
-        plain = next_move(screens, way.squares, "attain")
+        way = ways(cost_maps, 0, flat(model, *goal), "skeleton")[0]
+        move = next_move(cost_maps, way.squares, "explore")
+        plain = next_move(cost_maps, way.squares, "attain")
         assert (plain.east, plain.north) == (round(plain.east), round(plain.north))
         west, south, east, north = leeway
         for gone, back, forth in ((move.east, west, east), (move.north, south, north)):
@@ -290,20 +290,20 @@ def test_he_halts_near_the_edge_of_a_square_while_he_may_have_woken_elsewhere(le
             assert aside == 0 or (aside > 0.4 and forth > LOOSE) or (aside < -0.4 and -back > LOOSE)
         assert (round(move.east), round(move.north)) == (move.east, move.north) or max(leeway) > LOOSE
     assert any(
-        next_move(screens, ways(screens, 0, flat(model, *goal), "skeleton")[0].squares, "explore").east % 1
+        next_move(cost_maps, ways(cost_maps, 0, flat(model, *goal), "skeleton")[0].squares, "explore").east % 1
         for goal in ((4, 3), (-3, -2), (5, -4))
     ) == (max(leeway) > LOOSE)
 
 
 def test_while_it_is_open_how_the_lattice_lies_no_turn_leads_to_the_line_between_two_squares() -> None:
     model = replace(seen_whole(HALL), likely_spread=math.pi)
-    screens = CostMaps(model)
+    cost_maps = CostMaps(model)
     plain = 0
-    for goal in np.flatnonzero(screens.floor).tolist():
-        for way in ways(screens, 0, np.array([goal]), "skeleton")[:1]:
+    for goal in np.flatnonzero(cost_maps.floor).tolist():
+        for way in ways(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
             if len(way.squares) < 2:
                 continue
-            move = next_move(screens, way.squares, "explore")
+            move = next_move(cost_maps, way.squares, "explore")
             plain += (move.east, move.north) == (round(move.east), round(move.north))
             for degrees in range(360):
                 c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
@@ -317,18 +317,18 @@ def test_while_it_is_open_how_the_lattice_lies_no_turn_leads_to_the_line_between
 @pytest.mark.parametrize("pace", [STROLL, HURRY])
 def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear_unless_they_are_bold(pace: Pace) -> None:
     model = replace(seen_whole(HALL), likely_spread=math.pi)
-    screens = CostMaps(model)
-    clear_of = ~grown(~screens.safe, 1)
+    cost_maps = CostMaps(model)
+    clear_of = ~grown(~cost_maps.safe, 1)
     longest, near = 0.0, []
-    for goal in np.flatnonzero(screens.floor).tolist():
-        for way in ways(screens, 0, np.array([goal]), "skeleton")[:1]:
+    for goal in np.flatnonzero(cost_maps.floor).tolist():
+        for way in ways(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
             if len(way.squares) < 2:
                 continue
-            move = next_move(screens, way.squares, "explore", pace=pace)
+            move = next_move(cost_maps, way.squares, "explore", pace=pace)
             far = max(abs(move.east), abs(move.north))
             longest = max(longest, far)
             assert far < pace.unsure + 0.5
-            column, row = screens.here[0] + round(move.east), screens.here[1] + round(move.north)
+            column, row = cost_maps.here[0] + round(move.east), cost_maps.here[1] + round(move.north)
             near.append(far > NARROW + 0.5 and not clear_of[row, column])
     assert longest > NARROW + 0.5
     assert any(near) == pace.bold
@@ -337,48 +337,52 @@ def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear_unless_th
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_the_bold_go_right_up_to_what_is_not_settled_but_not_to_what_was_never_seen(seed: int) -> None:
-    screens = CostMaps(random_walk(seed))
-    view = screens.model.view
-    more = screens.believed & ~screens.safe
-    assert (screens.believed & screens.safe == screens.safe).all()
-    hardly = screens.free(0) & (view.probability <= TRUSTED)
-    assert (more == hardly & ~screens.safe & ~grown(~view.seen, 1)).all()
+    cost_maps = CostMaps(random_walk(seed))
+    view = cost_maps.model.view
+    more = cost_maps.believed & ~cost_maps.safe
+    assert (cost_maps.believed & cost_maps.safe == cost_maps.safe).all()
+    hardly = cost_maps.free(0) & (view.probability <= TRUSTED)
+    assert (more == hardly & ~cost_maps.safe & ~grown(~view.seen, 1)).all()
     beside_doubt = grown(view.seen & (view.state == OPEN) & (view.probability >= WARY), 1)
     assert not (more & ~beside_doubt).any()
 
 
 @pytest.mark.parametrize("spread", [0.0, math.pi])
 def test_who_hurries_is_bold_and_who_strolls_is_not(spread: float) -> None:
-    screens = CostMaps(replace(random_walk(3), likely_spread=spread))
+    cost_maps = CostMaps(replace(random_walk(3), likely_spread=spread))
     for kind in STROLL.longest:
-        assert (HURRY.ground(screens, kind) == (screens.approached if kind == "inspect" else screens.believed)).all()
-        assert (STROLL.ground(screens, kind) == screens.safe).all()
-    assert (screens.believed != screens.safe).any()
+        assert (
+            HURRY.ground(cost_maps, kind) == (cost_maps.approached if kind == "inspect" else cost_maps.believed)
+        ).all()
+        assert (STROLL.ground(cost_maps, kind) == cost_maps.safe).all()
+    assert (cost_maps.believed != cost_maps.safe).any()
 
 
 @pytest.mark.parametrize("spread", [0.0, math.pi])
 @pytest.mark.parametrize("kind", sorted(STROLL.longest))
 def test_one_move_leads_just_where_the_next_move_may_end(kind: str, spread: float) -> None:
-    screens = CostMaps(replace(seen_whole(HALL), likely_spread=spread))
-    reached = one_move(screens, kind)
+    cost_maps = CostMaps(replace(seen_whole(HALL), likely_spread=spread))
+    reached = one_move(cost_maps, kind)
     ended = np.zeros_like(reached)
-    ended[screens.here[1], screens.here[0]] = True
-    for row, column in np.argwhere(screens.floor).tolist():
-        if (column, row) != screens.here:
+    ended[cost_maps.here[1], cost_maps.here[0]] = True
+    for row, column in np.argwhere(cost_maps.floor).tolist():
+        if (column, row) != cost_maps.here:
             step = (
-                (column, row) if max(abs(column - screens.here[0]), abs(row - screens.here[1])) <= 1 else screens.here
+                (column, row)
+                if max(abs(column - cost_maps.here[0]), abs(row - cost_maps.here[1])) <= 1
+                else cost_maps.here
             )
-            move = next_move(screens, [screens.here, step, (column, row)], kind, pace=HURRY)
-            ended[screens.here[1] + round(move.north), screens.here[0] + round(move.east)] = True
-    assert (reached & screens.believed == ended & screens.believed).all()
+            move = next_move(cost_maps, [cost_maps.here, step, (column, row)], kind, pace=HURRY)
+            ended[cost_maps.here[1] + round(move.north), cost_maps.here[0] + round(move.east)] = True
+    assert (reached & cost_maps.believed == ended & cost_maps.believed).all()
 
 
 def test_he_does_not_halt_near_an_edge_where_what_lies_beyond_it_may_stop_him() -> None:
     model = replace(seen_whole(HALL), leeway=(-0.5, -0.5, 0.5, 0.5))
-    screens = CostMaps(model)
-    for goal in np.flatnonzero(screens.floor).tolist():
-        for way in ways(screens, 0, np.array([goal]), "skeleton")[:1]:
+    cost_maps = CostMaps(model)
+    for goal in np.flatnonzero(cost_maps.floor).tolist():
+        for way in ways(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
             if len(way.squares) > 1:
-                move = next_move(screens, way.squares, "explore")
-                here = (screens.here[0] + 0.5, screens.here[1] + 0.5)
-                assert clear_line(screens.safe, here, (here[0] + move.east, here[1] + move.north))
+                move = next_move(cost_maps, way.squares, "explore")
+                here = (cost_maps.here[0] + 0.5, cost_maps.here[1] + 0.5)
+                assert clear_line(cost_maps.safe, here, (here[0] + move.east, here[1] + move.north))

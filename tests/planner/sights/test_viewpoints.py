@@ -36,44 +36,44 @@ def room(looked_from: frozenset[tuple[int, int]] = frozenset()) -> tuple[CostMap
 
 
 def test_what_is_hardly_what_is_looked_for_is_seen_from_afar_first() -> None:
-    screens, mask = room()
-    away = distance_from(close(screens, mask, 0.2, ARRIVE), mask)
+    cost_maps, mask = room()
+    away = distance_from(close(cost_maps, mask, 0.2, ARRIVE), mask)
     assert away.max() == FURTHER > CLOSE
-    assert distance_from(close(screens, mask, 0.2, TAKE), mask).max() <= CLOSE
+    assert distance_from(close(cost_maps, mask, 0.2, TAKE), mask).max() <= CLOSE
     row, column = np.argwhere(mask).min(0)
-    view = screens.model.view
-    screens, mask = room(frozenset({(int(column) + view.west - FURTHER, int(row) + view.south)}))
-    away = distance_from(close(screens, mask, 0.2, ARRIVE), mask)
+    view = cost_maps.model.view
+    cost_maps, mask = room(frozenset({(int(column) + view.west - FURTHER, int(row) + view.south)}))
+    away = distance_from(close(cost_maps, mask, 0.2, ARRIVE), mask)
     assert away.max() == CLOSE
 
 
 @pytest.mark.parametrize("to", [ARRIVE, TAKE])
 def test_what_is_likely_looked_for_is_gone_up_to(to: Approach) -> None:
-    screens, mask = room()
-    squares = close(screens, mask, 0.8, to)
+    cost_maps, mask = room()
+    squares = close(cost_maps, mask, 0.8, to)
     assert (distance_from(squares, mask) == 1).all()
     assert edged(mask).ravel()[squares].all()
 
 
 def test_what_he_shall_take_is_gone_up_to_where_it_surely_is() -> None:
-    screens, mask = room()
+    cost_maps, mask = room()
     column = int(np.argwhere(mask)[:, 1].min())
     rim = mask & (np.arange(mask.shape[1]) == column)[None]  # may be part of the thing, and may be floor
-    view = screens.model.view
+    view = cost_maps.model.view
     doubtful = np.where(rim, 0.5, view.probability).astype(np.float32)
-    screens = CostMaps(replace(screens.model, view=view._replace(probability=doubtful)))
-    squares = close(screens, mask, 0.8, TAKE)
+    cost_maps = CostMaps(replace(cost_maps.model, view=view._replace(probability=doubtful)))
+    squares = close(cost_maps, mask, 0.8, TAKE)
     assert edged(mask & ~rim).ravel()[squares].all()
-    only = CostMaps(replace(screens.model, view=view._replace(probability=np.where(mask, 0.5, doubtful))))
+    only = CostMaps(replace(cost_maps.model, view=view._replace(probability=np.where(mask, 0.5, doubtful))))
     assert edged(mask).ravel()[close(only, mask, 0.8, TAKE)].all()
 
 
-def looking(screens: CostMaps, squares: np.ndarray, probability: float, state: int) -> CostMaps:
+def looking(cost_maps: CostMaps, squares: np.ndarray, probability: float, state: int) -> CostMaps:
     """The same, but for squares that are occupied with another probability, and settled or open."""
-    view = screens.model.view
+    view = cost_maps.model.view
     chance = np.where(squares, probability, view.probability).astype(np.float32)
     states = np.where(squares, state, view.state).astype(view.state.dtype)
-    return CostMaps(replace(screens.model, view=view._replace(probability=chance, state=states)))
+    return CostMaps(replace(cost_maps.model, view=view._replace(probability=chance, state=states)))
 
 
 def sides(mask: np.ndarray) -> dict[str, np.ndarray]:
@@ -99,75 +99,75 @@ def sides(mask: np.ndarray) -> dict[str, np.ndarray]:
     ],
 )
 def test_he_does_not_stand_between_a_thing_and_the_corner_it_is_for(corner: tuple[int, int], wanted: set[str]) -> None:
-    screens, mask = room()
-    squares = close(screens, mask, 1.0, TAKE._replace(corner=corner))
+    cost_maps, mask = room()
+    squares = close(cost_maps, mask, 1.0, TAKE._replace(corner=corner))
     by_side = sides(mask)
     assert len(squares)
     assert np.logical_or.reduce([by_side[name] for name in wanted]).ravel()[squares].all()
 
 
 def test_he_stands_in_its_way_where_no_other_side_is_floor() -> None:
-    screens, mask = room()
+    cost_maps, mask = room()
     by_side = sides(mask)
-    screens = looking(screens, by_side["west"] | by_side["south"], 1.0, FULL)
-    squares = close(screens, mask, 1.0, TAKE._replace(corner=(1, 1)))
+    cost_maps = looking(cost_maps, by_side["west"] | by_side["south"], 1.0, FULL)
+    squares = close(cost_maps, mask, 1.0, TAKE._replace(corner=(1, 1)))
     assert len(squares)
     assert (by_side["east"] | by_side["north"]).ravel()[squares].all()
 
 
 def test_of_the_sides_of_a_thing_one_is_taken_that_a_straight_move_leads_to() -> None:
-    screens, mask = room()
-    met = one_move(screens, "inspect").ravel()
-    at_sides = np.flatnonzero(edged(mask) & screens.floor)
+    cost_maps, mask = room()
+    met = one_move(cost_maps, "inspect").ravel()
+    at_sides = np.flatnonzero(edged(mask) & cost_maps.floor)
     assert met[at_sides].any()
     assert not met[at_sides].all()
-    assert met[close(screens, mask, LIKELY, TAKE)].all()
-    all_round = close(screens, mask, LIKELY, ARRIVE)
+    assert met[close(cost_maps, mask, LIKELY, TAKE)].all()
+    all_round = close(cost_maps, mask, LIKELY, ARRIVE)
     assert sorted(all_round.tolist()) == at_sides.tolist()
 
 
 def test_who_goes_up_to_a_thing_goes_over_what_may_well_be_floor_beside_it() -> None:
-    screens, mask = room()
+    cost_maps, mask = room()
     ring = grown(mask, 1) & ~mask
-    screens = looking(screens, ring, LEVELS[1], OPEN)
-    assert not screens.believed[ring].any()
-    assert (HURRY.ground(screens, "inspect") == screens.approached).all()
-    assert (screens.approached & ~screens.believed == edged(mask) & ring).all()
-    squares = close(screens, mask, 1.0, TAKE)
+    cost_maps = looking(cost_maps, ring, LEVELS[1], OPEN)
+    assert not cost_maps.believed[ring].any()
+    assert (HURRY.ground(cost_maps, "inspect") == cost_maps.approached).all()
+    assert (cost_maps.approached & ~cost_maps.believed == edged(mask) & ring).all()
+    squares = close(cost_maps, mask, 1.0, TAKE)
     assert edged(mask).ravel()[squares].all()
-    fewest, aim = FewestMoves(screens), Subgoal("inspect", squares, "a thing")
-    way, dear = fewest.way(aim), fewest.priced([aim])[0]
+    fewest, subgoal = FewestMoves(cost_maps), Subgoal("inspect", squares, "a thing")
+    way, dear = fewest.way(subgoal), fewest.priced([subgoal])[0]
     assert way is not None
     assert (np.flatnonzero(ring) == way.squares[-1][1] * mask.shape[1] + way.squares[-1][0]).any()
     assert len(dear.squares)
-    assert not fewest.way(aim._replace(kind="explore"))
-    assert dear.price < fewest.priced([aim._replace(kind="explore")])[0].price
-    assert not looking(screens, ring, LEVELS[2], OPEN).approached[ring].any()
+    assert not fewest.way(subgoal._replace(kind="explore"))
+    assert dear.price < fewest.priced([subgoal._replace(kind="explore")])[0].price
+    assert not looking(cost_maps, ring, LEVELS[2], OPEN).approached[ring].any()
 
 
 def test_nothing_is_gone_up_to_so_beside_the_verge() -> None:
-    screens, _ = room()
-    verge = screens.model.verge & (screens.model.view.probability >= WALL_LIKE)
-    assert (edged(verge) & screens.believed).any()
+    cost_maps, _ = room()
+    verge = cost_maps.model.verge & (cost_maps.model.view.probability >= WALL_LIKE)
+    assert (edged(verge) & cost_maps.believed).any()
     beside = edged(verge) & ~verge
-    screens = looking(screens, beside, LEVELS[1], OPEN)
-    assert not screens.approached[beside].any()
+    cost_maps = looking(cost_maps, beside, LEVELS[1], OPEN)
+    assert not cost_maps.approached[beside].any()
 
 
 def test_how_far_a_square_is_no_way_leads_to_is_told_as_it_lies() -> None:
-    screens, mask = room()
+    cost_maps, mask = room()
     inside = np.flatnonzero(mask)[:1]
     row, column = divmod(int(inside[0]), mask.shape[1])
-    assert screens.far(inside) == pytest.approx(np.hypot(column - screens.here[0], row - screens.here[1]))
-    some = np.flatnonzero(screens.floor)
-    assert (screens.far(some) == screens.distances[0].ravel()[some] / 5).all()
+    assert cost_maps.far(inside) == pytest.approx(np.hypot(column - cost_maps.here[0], row - cost_maps.here[1]))
+    some = np.flatnonzero(cost_maps.floor)
+    assert (cost_maps.far(some) == cost_maps.distances[0].ravel()[some] / 5).all()
 
 
 def test_what_is_for_a_corner_is_gone_up_to_from_away_of_its_walls() -> None:
-    screens, _ = room()
+    cost_maps, _ = room()
     corners = {"northeast": Corner((9.0, 5.0), (8, 5)), "southwest": Corner((2.0, 3.0), (2, 3))}
     goals = {name: facts_of(f"at(x, corner({name})).")[0] for name in (*corners, "southeast")}
-    situation = situation_of(screens.model, {})
+    situation = situation_of(cost_maps.model, {})
     situation = replace(situation, corners=corners)
     assert approach([goals["northeast"]], situation) == TAKE._replace(corner=(1, -1))
     assert approach([goals["southwest"]], situation) == TAKE._replace(corner=(-1, -1))

@@ -105,13 +105,13 @@ def test_what_did_not_move_or_may_not_be_pulled_is_let_go(
     assert to_be_seen(decider, situation, at(situation, (3, 5)), monkeypatch) == Release()
 
 
-def exploring(situation: Situation, squares: Squares, lookouts: bool, monkeypatch: pytest.MonkeyPatch) -> Decision:
+def exploring(situation: Situation, squares: Squares, viewpoints: bool, monkeypatch: pytest.MonkeyPatch) -> Decision:
     """What he does who does not know where a thing must end, and may see it from some squares.
 
     lookouts : it is just there that he must look; else anywhere.
     """
     looks = (Viewpoint(squares, "what may be a door is not clear"),)
-    nowhere = Placement({}, "it is not seen yet", looks if lookouts else ())
+    nowhere = Placement({}, "it is not seen yet", looks if viewpoints else ())
     monkeypatch.setattr(planner.deciding.transport, "landing", lambda *_: nowhere)
     monkeypatch.setattr(
         planner.deciding.transport, "aims_towards", lambda *_: [Subgoal("explore", squares, "it goes on unseen")]
@@ -133,10 +133,10 @@ def beside(stuck: int = 0) -> Situation:
 
 def test_who_explores_fetches_the_thing_first(monkeypatch: pytest.MonkeyPatch) -> None:
     situation = beside()
-    decision = exploring(situation, at(situation, (9, 6), (10, 6)), lookouts=False, monkeypatch=monkeypatch)
+    decision = exploring(situation, at(situation, (9, 6), (10, 6)), viewpoints=False, monkeypatch=monkeypatch)
     assert decision.command == Grasp("east")
     monkeypatch.undo()
-    looking = exploring(situation, at(situation, (9, 6), (10, 6)), lookouts=True, monkeypatch=monkeypatch)
+    looking = exploring(situation, at(situation, (9, 6), (10, 6)), viewpoints=True, monkeypatch=monkeypatch)
     assert isinstance(looking.command, Move)  # about a door it would be in the way
 
 
@@ -146,13 +146,13 @@ def test_nothing_is_fetched_while_it_is_open_how_the_squares_lie(
 ) -> None:
     situation = beside()
     unsure = situation_of(replace(situation.model, likely_spread=spread), situation.binding)
-    decision = exploring(unsure, at(unsure, (9, 6), (10, 6)), lookouts=False, monkeypatch=monkeypatch)
+    decision = exploring(unsure, at(unsure, (9, 6), (10, 6)), viewpoints=False, monkeypatch=monkeypatch)
     assert isinstance(decision.command, command)
 
 
 def test_what_did_not_move_is_left_where_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     situation = beside(stuck=1)
-    decision = exploring(situation, at(situation, (9, 6), (10, 6)), lookouts=False, monkeypatch=monkeypatch)
+    decision = exploring(situation, at(situation, (9, 6), (10, 6)), viewpoints=False, monkeypatch=monkeypatch)
     assert isinstance(decision.command, Move)
 
 
@@ -205,7 +205,7 @@ def at_a_loss(situation: Situation, monkeypatch: pytest.MonkeyPatch) -> Decision
     """What he does with something in hand who knows no way for it, and nothing to look at."""
     monkeypatch.setattr(Transporter, "_advice", lambda *_: Infeasibility(False, lambda: "it is not seen yet"))
     monkeypatch.setattr(planner.deciding.pursuit, "against_walls", lambda _: [])
-    return exploring(situation, at(situation), lookouts=False, monkeypatch=monkeypatch)
+    return exploring(situation, at(situation), viewpoints=False, monkeypatch=monkeypatch)
 
 
 def test_who_is_shut_in_and_at_a_loss_leads_it_out(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -222,9 +222,9 @@ def test_what_shuts_him_in_is_taken_along_once(monkeypatch: pytest.MonkeyPatch) 
     situation, _ = in_a_nook(drawn)
     looks = (Viewpoint(at(situation, (-5, -5)), "a room is not seen"),)
     land = Placement({}, "a room is not seen", looks, shut_in=True)
-    aims = [Subgoal("inspect", looks[0].squares, looks[0].what)]
+    subgoals = [Subgoal("inspect", looks[0].squares, looks[0].what)]
     monkeypatch.setattr(planner.deciding.transport, "landing", lambda *_: land)
-    monkeypatch.setattr(planner.deciding.transport, "aims_towards", lambda *_: aims)
+    monkeypatch.setattr(planner.deciding.transport, "aims_towards", lambda *_: subgoals)
     decider, (goal,) = Decider(NO_TASK, bound=situation.binding), facts_of("at(x, corner(northeast)).")
     stage, nothing = Stage((goal,)), Reconciled({}, (), (), ())
     decisions = [decider.transporter.towards(goal, stage, situation, nothing) for _ in range(2)]
@@ -237,7 +237,7 @@ def test_who_is_not_shut_in_and_at_a_loss_gives_up(monkeypatch: pytest.MonkeyPat
 
 
 def surely_free(situation: Situation, node: Node) -> Workspace:
-    return Workspace(situation.screens.free(0) | situation.model.mask(node.patch))
+    return Workspace(situation.cost_maps.free(0) | situation.model.mask(node.patch))
 
 
 @given(st.integers(-3, 14), st.integers(-2, 6), st.integers(-3, 14), st.integers(-2, 6))

@@ -21,14 +21,14 @@ Square = tuple[int, int]
 
 def evidence_of(open_: dict[Square, float], full: list[Square]) -> OccupancyMap:
     """A map on which all is free but some squares, of which it is open (with their log odds) or known."""
-    evidence = OccupancyMap()
-    evidence.state[:] = FREE
+    occupancy = OccupancyMap()
+    occupancy.state[:] = FREE
     for square, odds in open_.items():
-        evidence.state[evidence.index(*square)] = OPEN
-        evidence.logit[evidence.index(*square)] = odds
+        occupancy.state[occupancy.index(*square)] = OPEN
+        occupancy.logit[occupancy.index(*square)] = odds
     for square in full:
-        evidence.state[evidence.index(*square)] = FULL
-    return evidence
+        occupancy.state[occupancy.index(*square)] = FULL
+    return occupancy
 
 
 def met_by_steps(square: Square, motion: Motion) -> float:

@@ -39,14 +39,14 @@ def angle_of(heading: int) -> int:
 def looks_of(rows: list[str], heading: int, points: list[Point]) -> list[Observation]:
     """The looks of one who wakes at the first point (table frame) and goes exactly to the others."""
     occupied = world_of(rows)
-    looks = []
+    observations = []
     for x, y in points:
         seen = retina(occupied, (math.floor(x), math.floor(y)), heading)
-        looks.append(Observation(count_ranges(seen), turned(x - points[0][0], y - points[0][1], -heading)))
-    return looks
+        observations.append(Observation(count_ranges(seen), turned(x - points[0][0], y - points[0][1], -heading)))
+    return observations
 
 
-def woke(heading: int, point: Point) -> Point:
+def origin(heading: int, point: Point) -> Point:
     """Where in his square he woke, in the frame of the lattice."""
     quarters = heading - angle_of(heading)
     x, y = turned(point[0] % 1 - 0.5, point[1] % 1 - 0.5, -quarters)
@@ -74,9 +74,9 @@ def scene(seed: int, count: int) -> tuple[list[str], int, list[Point]]:
 @given(st.integers(0, 2**32 - 1))
 def test_the_truth_is_never_given_up(seed: int) -> None:
     rows, heading, points = scene(seed, 3)
-    looks = looks_of(rows, heading, points)
-    left = search(looks)
-    assert any(holds(h, angle_of(heading), woke(heading, points[0])) for h in left)
+    observations = looks_of(rows, heading, points)
+    left = search(observations)
+    assert any(holds(h, angle_of(heading), origin(heading, points[0])) for h in left)
     for angle in {h.angle for h in left}:  # parts of one square
         assert sum(h.area for h in left if h.angle == angle) <= 1 + 1e-9
 
@@ -86,12 +86,12 @@ def test_the_truth_is_never_given_up(seed: int) -> None:
 def test_who_wakes_in_the_middle_keeps_the_middle(seed: int) -> None:
     rows, heading, points = scene(seed, 4)
     centred = (math.floor(points[0][0]) + 0.5, math.floor(points[0][1]) + 0.5)
-    looks = looks_of(rows, heading, [centred, *points[1:]])
+    observations = looks_of(rows, heading, [centred, *points[1:]])
     hypotheses = CENTRED
-    for number in range(1, len(looks) + 1):
-        hypotheses = standing(hypotheses, looks[:number])
+    for number in range(1, len(observations) + 1):
+        hypotheses = standing(hypotheses, observations[:number])
         assert angle_of(heading) in {h.angle for h in hypotheses}
-        assert contradictions(Frame(angle_of(heading)), looks[:number]) == 0
+        assert contradictions(Frame(angle_of(heading)), observations[:number]) == 0
 
 
 ROOM = [
@@ -105,21 +105,21 @@ ROOM = [
 
 @pytest.mark.parametrize("heading", [20, 117, 300])
 def test_wrong_angles_are_given_up(heading: int) -> None:
-    looks = looks_of(ROOM, heading, [(12.5, 10.5), (14.7, 6.2), (5.5, 15.5), (20.1, 4.4)])
-    assert contradictions(Frame(0), looks) > 0
+    observations = looks_of(ROOM, heading, [(12.5, 10.5), (14.7, 6.2), (5.5, 15.5), (20.1, 4.4)])
+    assert contradictions(Frame(0), observations) > 0
     hypotheses = CENTRED
-    for number in range(1, len(looks) + 1):
-        hypotheses = standing(hypotheses, looks[:number])
+    for number in range(1, len(observations) + 1):
+        hypotheses = standing(hypotheses, observations[:number])
     assert hypotheses
     assert all(abs(h.angle - angle_of(heading)) <= 6 for h in hypotheses)
 
 
 def test_one_look_at_an_edge_that_runs_askew_gives_the_axes_up() -> None:
-    looks = looks_of(ROOM, 27, [(4.5, 4.5)])
+    observations = looks_of(ROOM, 27, [(4.5, 4.5)])
     assert 0 in {h.angle for h in CENTRED}
     later = looks_of(ROOM, 27, [(4.5, 4.5), (7.5, 4.5), (4.5, 7.5)])
     assert contradictions(Frame(0), later) > 0
-    assert contradictions(Frame(27), looks) == 0
+    assert contradictions(Frame(27), observations) == 0
 
 
 def test_a_false_place_is_a_contradiction() -> None:
@@ -149,14 +149,14 @@ def test_the_held_lattice_is_tried_first_then_the_axes() -> None:
     held = Frame(3)
     tried = candidates(CENTRED, held)
     assert tried[:2] == [held, Frame(0)]
-    assert sorted(lattice.angle for lattice in tried) == list(range(-44, 46))
+    assert sorted(frame.angle for frame in tried) == list(range(-44, 46))
 
 
 def test_of_the_others_the_middle_is_tried_first() -> None:
     others = tuple(h for h in CENTRED if h.angle > 10)
     tried = candidates(others, Frame(3))
     assert tried[0].angle == 28  # the middle of 11 to 45
-    away = [abs(lattice.angle - 28) for lattice in tried]
+    away = [abs(frame.angle - 28) for frame in tried]
     assert away == sorted(away)
     assert candidates((), Frame(3)) == []
 
@@ -164,34 +164,38 @@ def test_of_the_others_the_middle_is_tried_first() -> None:
 def test_every_angle_is_tried_once_the_axes_first() -> None:
     assert sorted(ANGLES) == list(range(-44, 46))
     assert ANGLES[0] == 0
-    assert all(h.lattice.woke == CENTRE for h in CENTRED)
+    assert all(h.frame.origin == CENTRE for h in CENTRED)
 
 
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_wherever_within_he_woke_every_look_fell_on_the_same_square(seed: int) -> None:
     rows, heading, places = scene(seed, 4)
-    looks = looks_of(rows, heading, places)
-    true = Frame(angle_of(heading), woke(heading, places[0]))
-    west, south, east, north = within(true, looks)
-    assert west <= true.woke[0] <= east
-    assert south <= true.woke[1] <= north
-    squares = {tuple(math.floor(v) for v in true.place_from_utak(*look.place)) for look in looks}
-    for point in points(true, looks):
-        other = point.lattice
-        assert {tuple(math.floor(v) for v in other.place_from_utak(*look.place)) for look in looks} == squares
+    observations = looks_of(rows, heading, places)
+    true = Frame(angle_of(heading), origin(heading, places[0]))
+    west, south, east, north = within(true, observations)
+    assert west <= true.origin[0] <= east
+    assert south <= true.origin[1] <= north
+    squares = {tuple(math.floor(v) for v in true.place_from_utak(*observation.place)) for observation in observations}
+    for point in points(true, observations):
+        other = point.frame
+        assert {
+            tuple(math.floor(v) for v in other.place_from_utak(*observation.place)) for observation in observations
+        } == squares
     if east < 1:
-        other = Frame(true.angle, (east + 1e-6, true.woke[1]))
-        assert {tuple(math.floor(v) for v in other.place_from_utak(*look.place)) for look in looks} != squares
+        other = Frame(true.angle, (east + 1e-6, true.origin[1]))
+        assert {
+            tuple(math.floor(v) for v in other.place_from_utak(*observation.place)) for observation in observations
+        } != squares
 
 
 def test_looks_need_not_agree_where_a_thing_was_moved() -> None:
     gone = [row.replace("ggg", "...") for row in ROOM]
-    looks = [*looks_of(ROOM, 0, [(12.5, 10.5)]), *looks_of(gone, 0, [(12.5, 10.5)])]
-    assert contradictions(Frame(), looks) > 0
+    observations = [*looks_of(ROOM, 0, [(12.5, 10.5)]), *looks_of(gone, 0, [(12.5, 10.5)])]
+    assert contradictions(Frame(), observations) > 0
     away = OriginDisc((7.5 - 12.5, 11.5 - 10.5), 4.0)
-    assert contradictions(Frame(), looks, [away]) == 0
-    assert contradictions(Frame(), looks, [OriginDisc((9.0, -7.0), 2.0)]) > 0
+    assert contradictions(Frame(), observations, [away]) == 0
+    assert contradictions(Frame(), observations, [OriginDisc((9.0, -7.0), 2.0)]) > 0
     turned_looks = looks_of(ROOM, 3, [(12.5, 10.5), (14.7, 6.2), (5.5, 15.5), (20.1, 4.4)])
     assert 0 not in {h.angle for h in search(turned_looks, anywhere((0,)), [away])}
     assert 3 in {h.angle for h in search(turned_looks, anywhere((0, 3)), [away])}
@@ -210,20 +214,20 @@ def test_a_hypothesis_holds_what_lies_in_its_box() -> None:
 
 def test_of_one_angle_the_widest_box_is_tried_first() -> None:
     boxes = (FrameHypothesis(0, (0.0, 0.0, 0.1, 0.1)), FrameHypothesis(0, (0.6, 0.0, 1.0, 1.0)))
-    assert candidates(boxes, Frame())[0].woke == (0.8, 0.5)
+    assert candidates(boxes, Frame())[0].origin == (0.8, 0.5)
 
 
 def test_looks_rarely_leave_less_room_than_that_he_could_have_woken_there() -> None:
     rng, found, tried = np.random.default_rng(4), 0, 4000
     for _ in range(tried):
-        looks = int(rng.integers(1, 15))
+        observations = int(rng.integers(1, 15))
         box = []
-        for woke in rng.random(2):
-            cuts = np.sort(np.append(rng.random(looks), (0.0, 1.0)))
-            at = int(np.searchsorted(cuts, woke))
+        for origin in rng.random(2):
+            cuts = np.sort(np.append(rng.random(observations), (0.0, 1.0)))
+            at = int(np.searchsorted(cuts, origin))
             box.append((cuts[at - 1], cuts[at]))
         (west, east), (south, north) = box
-        found += cramped([FrameHypothesis(3, (west, south, east, north))], looks)
+        found += cramped([FrameHypothesis(3, (west, south, east, north))], observations)
     assert found / tried < 0.02
 
 
@@ -235,9 +239,9 @@ def test_a_sliver_of_his_square_is_little_room_whatever_its_length() -> None:
 
 
 def test_points_stand_for_the_cells_of_their_grid() -> None:
-    looks = looks_of(ROOM, 0, [(12.5, 10.5), (14.5, 6.25)])
-    west, south, east, north = within(Frame(), looks)
-    where = points(Frame(), looks)
+    observations = looks_of(ROOM, 0, [(12.5, 10.5), (14.5, 6.25)])
+    west, south, east, north = within(Frame(), observations)
+    where = points(Frame(), observations)
     assert cells(where) == pytest.approx(((east - west) / GRID, (north - south) / GRID))
     assert cells(where[3:40]) == pytest.approx(cells(where))
     assert cells(where[:1]) == (0.0, 0.0)

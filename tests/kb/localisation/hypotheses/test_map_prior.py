@@ -26,8 +26,8 @@ def a_look(rng: np.random.Generator, heading: int) -> Observation:
     return Observation(count_ranges(impression(occupied, square, heading).retina), (0.0, 0.0))
 
 
-def cost(evidence: OccupancyMap) -> float:
-    sketch = MapDescription(evidence)
+def cost(occupancy: OccupancyMap) -> float:
+    sketch = MapDescription(occupancy)
     sketch.draw()
     return sketch.cost(0.0)
 
@@ -55,43 +55,43 @@ def test_one_is_the_plainest_and_what_was_not_tried_is_not_likely() -> None:
 
 def test_only_the_likely_ones_are_weighed_again_until_they_are_given_up() -> None:
     rng = np.random.default_rng(3)
-    look = a_look(rng, -20)
-    first = weighed(CENTRED, [look])
+    observation = a_look(rng, -20)
+    first = weighed(CENTRED, [observation])
     assert abs(likeliest(first) + 20) <= 2
     told = tuple(h._replace(dear=0.0 if h.angle == 7 else 40.0) for h in first)
-    again = weighed(told, [look])  # he was sure, and nothing else is asked
+    again = weighed(told, [observation])  # he was sure, and nothing else is asked
     assert abs(likeliest(again) - 7) <= BESIDE
     assert {h.angle for h in again if h.dear < 40.0} <= {7 + step for step in range(-BESIDE, BESIDE + 1)}
     without = tuple(h for h in told if abs(h.angle - 7) > BESIDE)
-    assert abs(likeliest(weighed(without, [look])) + 20) <= 2
+    assert abs(likeliest(weighed(without, [observation])) + 20) <= 2
 
 
-def strolled(heading: int, woke: Point, seed: int) -> list[Observation]:
+def strolled(heading: int, origin: Point, seed: int) -> list[Observation]:
     """Looks from here and there in a long room. woke : where in his square."""
     room, rng = world_of(LONG_ROOM), np.random.default_rng(seed)
-    true = Frame(heading, woke)
+    true = Frame(heading, origin)
     places = [(0.0, 0.0), *(true.place_to_utak(*rng.uniform((-34, -8), (34, 8))) for _ in range(9))]
-    looks = []
+    observations = []
     for place in places:
         i, j = (math.floor(v) for v in true.place_from_utak(*place))
-        looks.append(Observation(count_ranges(impression(room, (i + 40, j + 11), heading).retina), place))
-    return looks
+        observations.append(Observation(count_ranges(impression(room, (i + 40, j + 11), heading).retina), place))
+    return observations
 
 
 @pytest.mark.parametrize("heading", [-2, -1, 0, 1, 2])
 def test_a_degree_shows_by_and_by_however_sure_he_was_at_first(heading: int) -> None:
     for seed in range(3):
-        looks = strolled(heading, CENTRE, seed)
+        observations = strolled(heading, CENTRE, seed)
         left: tuple[FrameHypothesis, ...] = tuple(h._replace(dear=40.0 * (h.angle != 0)) for h in CENTRED)
-        for number in range(1, len(looks) + 1):
-            left = weighed(standing(left, looks[:number]), looks[:number])
+        for number in range(1, len(observations) + 1):
+            left = weighed(standing(left, observations[:number]), observations[:number])
         assert likeliest(left) == heading
 
 
 def test_where_in_his_square_he_woke_is_nothing_to_a_single_look() -> None:
-    look = strolled(-7, (0.8, 0.3), 1)[0]._replace(place=(3.3, -2.2))
-    left = search([look], [h for h in ANYWHERE if -12 < h.angle < 0])
-    found = weighed(left, [look])
+    observation = strolled(-7, (0.8, 0.3), 1)[0]._replace(place=(3.3, -2.2))
+    left = search([observation], [h for h in ANYWHERE if -12 < h.angle < 0])
+    found = weighed(left, [observation])
     assert [h._replace(dear=0.0) for h in found] == list(left)
     assert len(left) > 30
     assert len({h.dear for h in found}) == len({h.angle for h in found}) == 11
@@ -99,10 +99,10 @@ def test_where_in_his_square_he_woke_is_nothing_to_a_single_look() -> None:
 
 
 def test_the_less_is_left_of_his_square_the_less_likely_he_woke_elsewhere_than_amid_it() -> None:
-    looks = strolled(1, CENTRE, 0)[:4]
+    observations = strolled(1, CENTRE, 0)[:4]
     own = FrameHypothesis(1, CENTRE * 2, dear=1.0)
     half, whole = (
-        weighed([FrameHypothesis(0, (0.4, 0.4, east, 0.6), dear=1.0), own], looks)[0].dear for east in (0.5, 0.6)
+        weighed([FrameHypothesis(0, (0.4, 0.4, east, 0.6), dear=1.0), own], observations)[0].dear for east in (0.5, 0.6)
     )
     assert half == pytest.approx(whole + math.log(2))
 
@@ -120,9 +120,9 @@ def test_a_look_from_elsewhere_than_believed_makes_a_table_crooked() -> None:
     seen = count_ranges(impression(world_of(room), (25, 22)).retina)
     sketches = []
     for aside in (0, 1, 2):
-        evidence = looked(room, LOOKS[:2])
-        evidence.look(Frame().samples(), seen, 5 + aside, 2, 2)
-        sketches.append((MapDescription(evidence), 0.0))
+        occupancy = looked(room, LOOKS[:2])
+        occupancy.observe(Frame().samples(), seen, 5 + aside, 2, 2)
+        sketches.append((MapDescription(occupancy), 0.0))
     prices = plainness(sketches)
     assert prices[0] == 0.0
     assert min(prices[1:]) > 2

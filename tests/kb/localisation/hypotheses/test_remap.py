@@ -61,8 +61,8 @@ def test_what_was_turned_lies_elsewhere_by_where_he_woke(
 def test_a_thing_that_was_carried_lies_right_on_the_true_lattice(heading: int, fx: float, fy: float) -> None:
     """He holds the lattice for one along his own axes, a degree or two amiss, and carries a thing."""
     start, thing = (9 + fx, 9 + fy), translate(ELL, 11, 8)
-    looks, load, new, truth = carried(thing, _felt(thing, start, heading), start, heading)
-    found = relaid(new, Frame(), looks, [load])
+    observations, load, new, truth = carried(thing, _felt(thing, start, heading), start, heading)
+    found = relaid(new, Frame(), observations, [load])
     assert found.misfits == 0
     told = [new.place_to_utak(x, y) for x, y in found.loads["o1"].polygon.exterior.coords]
     assert shapely.Polygon(told).hausdorff_distance(truth) < MOST_ASIDE
@@ -74,9 +74,11 @@ def test_what_is_laid_on_one_lattice_after_another_lies_as_if_it_were_laid_at_on
     start, thing = (9.3, 9.8), translate(ELL, 11, 8)
     straight = rotate(_felt(thing, start, heading), heading)
     x0, y0 = straight.bounds[:2]
-    looks, load, new, truth = carried(thing, whole(translate(straight, round(x0) - x0, round(y0) - y0)), start, heading)
-    at_once = relaid(new, Frame(), looks, [load])
-    later = relaid(new, other, looks, relaid(other, Frame(), looks, [load]).loads.values())
+    observations, load, new, truth = carried(
+        thing, whole(translate(straight, round(x0) - x0, round(y0) - y0)), start, heading
+    )
+    at_once = relaid(new, Frame(), observations, [load])
+    later = relaid(new, other, observations, relaid(other, Frame(), observations, [load]).loads.values())
     for found in (at_once, later):
         lies = [new.place_to_utak(x, y) for x, y in found.loads["o1"].polygon.exterior.coords]
         assert shapely.Polygon(lies).hausdorff_distance(truth) < MOST_ASIDE
@@ -91,8 +93,8 @@ def test_an_outline_from_a_lattice_quite_askew_is_measured_anew_where_the_thing_
     """He takes a square of three for one of less than two, and carries it. Seen from afar it stays what he took."""
     start, thing = (9.5, 9.5), shapely.box(east, 6, east + 3, 9)
     believed = rotate(_felt(thing.buffer(-0.65, join_style="mitre"), start, heading), 10)
-    looks, load, new, truth = carried(thing, believed, start, heading)
-    load = relaid(new, Frame(), looks, [load]).loads["o1"]
+    observations, load, new, truth = carried(thing, believed, start, heading)
+    load = relaid(new, Frame(), observations, [load]).loads["o1"]
     assert load.skewed == (not told)
     assert load.dubious == load.skewed
     if told:
@@ -109,7 +111,7 @@ def carried(
     """
     room = world_of(ROOM)
     angle = (heading + 44) % 90 - 44
-    looks, now, moved, lay = [], start, False, HeldObject("o1", believed, believed, since=2)
+    observations, now, moved, lay = [], start, False, HeldObject("o1", believed, believed, since=2)
     for step, (dx, dy) in enumerate([(0, 0), (1.0, -2.0), (3.0, 4.0)]):
         away = _turned((dx, dy), heading)
         if step == 2:  # with the thing in hand
@@ -119,22 +121,22 @@ def carried(
         seen = retina(around(thing, room), (math.floor(now[0]), math.floor(now[1])), heading)
         own = _turned((now[0] - start[0], now[1] - start[1]), -heading)
         there = (laid(lay, Frame()),) if moved else ()
-        looks.append(Observation(count_ranges(seen), own, there))
-    woke = _turned((start[0] % 1 - 0.5, start[1] % 1 - 0.5), angle - heading)
-    new = Frame(angle, (woke[0] + 0.5, woke[1] + 0.5))
+        observations.append(Observation(count_ranges(seen), own, there))
+    origin = _turned((start[0] % 1 - 0.5, start[1] % 1 - 0.5), angle - heading)
+    new = Frame(angle, (origin[0] + 0.5, origin[1] + 0.5))
     truth = translate(_felt(thing, start, heading), -0.5, -0.5)
-    return looks, lay, new, truth
+    return observations, lay, new, truth
 
 
 def test_where_a_load_lies_is_told_in_his_own_frame() -> None:
-    lattice = Frame(30, (0.2, 0.7))
+    frame = Frame(30, (0.2, 0.7))
     load = HeldObject("o1", translate(ELL, 3, 4), ELL, slack=0.3, turned=90.0)
-    told = laid(load, lattice)
+    told = laid(load, frame)
     assert told == PlacedObservation("o1", told.middle, 90.0, 0.3, told.taken)
     middle = load.polygon.centroid
-    assert lattice.place_from_utak(*told.middle) == pytest.approx((middle.x, middle.y))
+    assert frame.place_from_utak(*told.middle) == pytest.approx((middle.x, middle.y))
     first = load.first.centroid
-    assert lattice.place_from_utak(*told.taken) == pytest.approx((first.x, first.y))
+    assert frame.place_from_utak(*told.taken) == pytest.approx((first.x, first.y))
 
 
 def _turned(vector: tuple[float, float], degrees: float) -> tuple[float, float]:
@@ -142,60 +144,66 @@ def _turned(vector: tuple[float, float], degrees: float) -> tuple[float, float]:
     return vector[0] * c - vector[1] * s, vector[0] * s + vector[1] * c
 
 
-def _felt(thing: shapely.Polygon, woke: tuple[float, float], heading: float) -> shapely.Polygon:
+def _felt(thing: shapely.Polygon, origin: tuple[float, float], heading: float) -> shapely.Polygon:
     """A thing of the table on a lattice along his own axes, where he woke amid square (0, 0)."""
-    return translate(rotate(translate(thing, -woke[0], -woke[1]), -heading, origin=(0, 0)), 0.5, 0.5)
+    return translate(rotate(translate(thing, -origin[0], -origin[1]), -heading, origin=(0, 0)), 0.5, 0.5)
 
 
 @pytest.mark.parametrize("number", [1, 3, 20])
 def test_looks_that_are_taken_in_already_need_not_be_taken_in_again(number: int) -> None:
     start, thing = (9.5, 9.5), translate(ELL, 11, 8)
-    looks, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
-    number = min(number, len(looks))
+    observations, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
+    number = min(number, len(observations))
     loads = {"o1": load}
-    at_once, first = relaid(new, new, looks, [load]), Prefixes(new, looks, loads)
+    at_once, first = relaid(new, new, observations, [load]), Prefixes(new, observations, loads)
     for _ in range(2):  # what is begun with stays as it is
-        found = relaid(new, new, looks, [load], first.of(number))
-        assert (found.evidence.state == at_once.evidence.state).all()
-        assert (found.evidence.logit == at_once.evidence.logit).all()
+        found = relaid(new, new, observations, [load], first.of(number))
+        assert (found.occupancy.state == at_once.occupancy.state).all()
+        assert (found.occupancy.logit == at_once.occupancy.logit).all()
         assert found.misfits == at_once.misfits
         assert found.loads["o1"].polygon.equals(at_once.loads["o1"].polygon)
 
 
 def test_who_asks_whether_looks_contradict_is_told_so_at_the_first_that_does() -> None:
     start, thing = (9.5, 9.5), translate(ELL, 11, 8)
-    looks, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
-    empty = looks[0].ranges * 0
-    contradicted = [looks[0], looks[0]._replace(ranges=empty, moved=()), *looks[1:]]
+    observations, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
+    empty = observations[0].ranges * 0
+    contradicted = [observations[0], observations[0]._replace(ranges=empty, moved=()), *observations[1:]]
     in_full = relaid(new, new, contradicted, [load])
     cut = relaid(new, new, contradicted, [load], whether=True)
     assert 0 < cut.misfits <= in_full.misfits
     assert (cut.cut, in_full.cut) == (True, False)
-    agreeing, at_once = relaid(new, new, looks, [load], whether=True), relaid(new, new, looks, [load])
+    agreeing, at_once = relaid(new, new, observations, [load], whether=True), relaid(new, new, observations, [load])
     assert not agreeing.misfits and not agreeing.cut
-    assert (agreeing.evidence.state == at_once.evidence.state).all()
+    assert (agreeing.occupancy.state == at_once.occupancy.state).all()
 
 
 @pytest.mark.parametrize("aside", [0.3, -0.3])
 def test_lattices_on_which_looks_fall_alike_are_told_the_same(aside: float) -> None:
     start, thing = (9.5, 9.5), translate(ELL, 11, 8)
-    looks, load, believed, _ = carried(thing, _felt(thing, start, 0), start, 0)
-    looks = [look._replace(place=(look.place[0] + 0.1, look.place[1])) for look in looks]
-    evidence = relaid(believed, believed, looks, [load]).evidence
-    layings = RemapCache(believed, evidence, looks, {"o1": load})
+    observations, load, believed, _ = carried(thing, _felt(thing, start, 0), start, 0)
+    observations = [
+        observation._replace(place=(observation.place[0] + 0.1, observation.place[1])) for observation in observations
+    ]
+    occupancy = relaid(believed, believed, observations, [load]).occupancy
+    layings = RemapCache(believed, occupancy, observations, {"o1": load})
     one, other = (Frame(3, (CENTRE[0] + part, CENTRE[1])) for part in (aside, aside * 1.01))
-    assert layings.on(believed).evidence is evidence
+    assert layings.on(believed).occupancy is occupancy
     found = layings.on(one)
-    assert found.evidence is not evidence
-    assert layings.on(other).evidence is found.evidence
-    assert (found.evidence.state == relaid(one, believed, looks, [load]).evidence.state).all()
+    assert found.occupancy is not occupancy
+    assert layings.on(other).occupancy is found.occupancy
+    assert (found.occupancy.state == relaid(one, believed, observations, [load]).occupancy.state).all()
 
 
 def test_what_was_cut_is_laid_in_full_when_more_is_asked() -> None:
     start, thing = (9.5, 9.5), translate(ELL, 11, 8)
-    looks, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
-    contradicted = [looks[0], looks[0]._replace(ranges=looks[0].ranges * 0, moved=()), *looks[1:]]
-    layings = RemapCache(new, relaid(new, new, contradicted, [load]).evidence, contradicted, {"o1": load})
+    observations, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
+    contradicted = [
+        observations[0],
+        observations[0]._replace(ranges=observations[0].ranges * 0, moved=()),
+        *observations[1:],
+    ]
+    layings = RemapCache(new, relaid(new, new, contradicted, [load]).occupancy, contradicted, {"o1": load})
     askew = Frame(5)
     assert layings.on(askew, whether=True).cut
     assert layings.on(askew).loads.keys() == {"o1"}

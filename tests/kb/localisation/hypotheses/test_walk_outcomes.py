@@ -77,35 +77,35 @@ def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
     stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
     assume(stop is not None and not passes_corner(0.5, 0.5, *turned(*way, heading)))
     assert stop is not None
-    lattice = Frame(heading)
-    own = lattice.place_to_utak(stop.before[0] - x, stop.before[1] - y)  # of a lattice whose origin is where he woke
+    frame = Frame(heading)
+    own = frame.place_to_utak(stop.before[0] - x, stop.before[1] - y)  # of a lattice whose origin is where he woke
     back = (-own[0], -own[1])
     truth = [(0.0, 0.0), own, (own[0] + 0.5 * back[0], own[1] + 0.5 * back[1])]
-    looks = []
+    observations = []
     for place, shift in zip(truth, [(0.0, 0.0), *[(way[0] - own[0], way[1] - own[1])] * 2], strict=True):
-        i, j = (math.floor(v) for v in lattice.place_from_utak(*place))
+        i, j = (math.floor(v) for v in frame.place_from_utak(*place))
         seen = count_ranges(impression(occupied, (i + x, j + y), heading).retina)
-        looks.append(Observation(seen, (place[0] + shift[0], place[1] + shift[1])))
+        observations.append(Observation(seen, (place[0] + shift[0], place[1] + shift[1])))
     assume(math.dist(own, way) > 2 * HAIR)
-    found = list(retold(MotionHypothesis(1, way, CENTRED), Frame(), looks))
+    found = list(retold(MotionHypothesis(1, way, CENTRED), Frame(), observations))
     right = [
         one
         for one in found
-        if one.hypothesis.angle == heading and math.dist(one.correction.looks(looks)[1].place, own) < 1e-3
+        if one.hypothesis.angle == heading and math.dist(one.correction.observations(observations)[1].place, own) < 1e-3
     ]
     assert right
     assert all(one.correction.since == 1 and one.misfits == 0 for one in right)
     for one in found:
-        assert not contradictions(one.hypothesis.lattice, one.correction.looks(looks))
-        assert one.correction.looks(looks)[0] == looks[0]
-        assert math.dist(one.correction.looks(looks)[2].place, looks[2].place) > HAIR
+        assert not contradictions(one.hypothesis.frame, one.correction.observations(observations))
+        assert one.correction.observations(observations)[0] == observations[0]
+        assert math.dist(one.correction.observations(observations)[2].place, observations[2].place) > HAIR
 
 
 def test_who_met_nothing_has_nothing_to_tell_otherwise() -> None:
     occupied = world_of(["." * 80] * 80)
     seen = [count_ranges(impression(occupied, (x, 40)).retina) for x in (30, 35)]
-    looks = [Observation(seen[0], (0.0, 0.0)), Observation(seen[1], (5.0, 0.0))]
-    told = list(retold(MotionHypothesis(1, (5.0, 0.0), CENTRED[:1]), Frame(), looks))
+    observations = [Observation(seen[0], (0.0, 0.0)), Observation(seen[1], (5.0, 0.0))]
+    told = list(retold(MotionHypothesis(1, (5.0, 0.0), CENTRED[:1]), Frame(), observations))
     assert told == []
 
 
@@ -146,11 +146,11 @@ def test_two_stops_in_a_row_are_told_together(seed: int) -> None:
     here = math.floor(stop.before[0]), math.floor(stop.before[1])
     first = Observation(count_ranges(impression(occupied, (x, y)).retina), (0.0, 0.0))
     beside = Observation(count_ranges(impression(occupied, here).retina), way)
-    looks = [first, beside, beside._replace(place=(way[0] + into[0], way[1] + into[1]))]
+    observations = [first, beside, beside._replace(place=(way[0] + into[0], way[1] + into[1]))]
     motions = MotionHypothesis(1, way, CENTRED[:1]), MotionHypothesis(2, into, CENTRED[:1])
-    found = list(retold_both(*motions, CENTRED[0], looks))
+    found = list(retold_both(*motions, CENTRED[0], observations))
     for one in found:
-        told = [*one.correction.looks(looks)[:2], looks[2]._replace(place=one.newest)]
+        told = [*one.correction.observations(observations)[:2], observations[2]._replace(place=one.newest)]
         assert one.known
         assert not contradictions(Frame(), told)
     known = known_to_be_occupied(occupied, (x, y), here, stop.entered)
@@ -164,8 +164,8 @@ def known_to_be_occupied(
     occupied: Occupied, start: tuple[int, int], here: tuple[int, int], wall: tuple[int, int]
 ) -> bool:
     """Is a square known to be occupied by all that is seen from two others?"""
-    evidence = OccupancyMap()
+    occupancy = OccupancyMap()
     for number, (i, j) in enumerate((start, here)):
         samples = Frame().samples()
-        evidence.look(samples, count_ranges(impression(occupied, (i, j)).retina), i, j, number)
-    return bool(evidence.state[evidence.index(*wall)] == FULL)
+        occupancy.observe(samples, count_ranges(impression(occupied, (i, j)).retina), i, j, number)
+    return bool(occupancy.state[occupancy.index(*wall)] == FULL)

@@ -31,7 +31,7 @@ def looking(room: Occupied, square: tuple[int, int], thing: shapely.Polygon | No
     if thing is not None:
         lies = translate(thing, -square[0], -square[1])
         memory.grasp(HeldObject("o1", lies, lies, proven=True))
-    view = memory.evidence.view()
+    view = memory.occupancy.view()
     memory.pictures = pictured(view, ground_of(view), NO_PICTURES)
     return memory
 
@@ -67,7 +67,7 @@ def test_who_is_stopped_right_beyond_the_eye_knows_where() -> None:
         memory.accommodate(Move(26.0, 0.0), impression(room, (50, 7)))
         assert memory.place == pytest.approx((51 - begun, 0.5), abs=1e-5)
         assert memory.square == (50 - begun, 0)
-        assert memory.evidence.state[memory.evidence.index(49 - begun, 0)] == FREE
+        assert memory.occupancy.state[memory.occupancy.index(49 - begun, 0)] == FREE
 
 
 @pytest.mark.parametrize("side", [-1, 1])

@@ -31,22 +31,24 @@ def turned_by(commanded: float, truly: float) -> tuple[Surprise, HeldObject, Rot
     """One who turned a thing the other way and brought it to where he was never before, and is commanded to turn it
     back; and what he sees of it. It lies exactly where he believes, which he does not know.
     """
-    lattice = Frame()
+    frame = Frame()
     thing = translate(ELL, HERE[0] - HOLD[0], HERE[1] - HOLD[1])
     lies = translate(thing, CENTRE[0] - HERE[0], CENTRE[1] - HERE[1])
     first = translate(rotate(lies, commanded, origin=CENTRE), -FAR)
     taken = HeldObject("o1", first, first, since=1)
     load = replace(taken, polygon=lies, turned=-commanded, proven=True, astray=0.4)
     began = around(translate(rotate(thing, commanded, origin=HERE), -FAR), HALL)
-    look = Observation(count_ranges(retina(began, (math.floor(HERE[0] - FAR), math.floor(HERE[1])))), (-FAR, 0.0))
+    observation = Observation(
+        count_ranges(retina(began, (math.floor(HERE[0] - FAR), math.floor(HERE[1])))), (-FAR, 0.0)
+    )
     here = math.floor(HERE[0]), math.floor(HERE[1])
-    brought = Observation(count_ranges(retina(around(thing, HALL), here)), (0.0, 0.0), (laid(load, lattice),))
-    looks = [look, look._replace(moved=(laid(taken, lattice),)), brought]
-    evidence, loads = relaid(lattice, lattice, looks, [load]).evidence, {"o1": load}
+    brought = Observation(count_ranges(retina(around(thing, HALL), here)), (0.0, 0.0), (laid(load, frame),))
+    observations = [observation, observation._replace(moved=(laid(taken, frame),)), brought]
+    occupancy, loads = relaid(frame, frame, observations, [load]).occupancy, {"o1": load}
     for square in covered(rotate(lies, commanded, origin=CENTRE).buffer(1.5)).squares():
-        evidence.state[evidence.index(*square)] = OPEN  # nothing told of them before
+        occupancy.state[occupancy.index(*square)] = OPEN  # nothing told of them before
     after = count_ranges(retina(around(rotate(thing, truly, origin=HERE), HALL), here))
-    surprise = Surprise(Turn(commanded), after, lattice, CENTRE, evidence, looks, loads, "o1", CENTRED[:1])
+    surprise = Surprise(Turn(commanded), after, frame, CENTRE, occupancy, observations, loads, "o1", CENTRED[:1])
     return surprise, load, Rotate(commanded, CENTRE)
 
 

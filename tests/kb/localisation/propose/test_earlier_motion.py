@@ -39,7 +39,7 @@ def free_about(occupied: Occupied, x: float, y: float, reach: int) -> bool:
     return not any(occupied(math.floor(x) + i, math.floor(y) + j) for i in about for j in about)
 
 
-def look(occupied: Occupied, here: Point, own: Point) -> Observation:
+def observe(occupied: Occupied, here: Point, own: Point) -> Observation:
     """What is seen from a point of the table, believed to be seen from a place of his own frame."""
     return Observation(count_ranges(retina(occupied, square_of(here))), own)
 
@@ -68,20 +68,20 @@ def right(
     loads = [
         (one, one.supposed.outcome.polygon)
         if one.supposed.outcome is not None
-        else (one, one.retold.correction.loads(surprise.loads, surprise.lattice)["o1"].polygon)
+        else (one, one.retold.correction.loads(surprise.loads, surprise.frame)["o1"].polygon)
         for one in near
     ]
     return [one for one, polygon in loads if polygon.hausdorff_distance(thing) < 5e-3]
 
 
 def surprised(
-    command: Move | Push, after: Observation, looks: list[Observation], load: HeldObject, held: bool
+    command: Move | Push, after: Observation, observations: list[Observation], load: HeldObject, held: bool
 ) -> Surprise:
-    lattice = Frame()
-    evidence = relaid(lattice, lattice, looks, [load]).evidence
-    place = lattice.place_from_utak(*looks[-1].place)
+    frame = Frame()
+    occupancy = relaid(frame, frame, observations, [load]).occupancy
+    place = frame.place_from_utak(*observations[-1].place)
     name = load.name if held else None
-    return Surprise(command, after.ranges, lattice, place, evidence, looks, {load.name: load}, name, CENTRED[:1])
+    return Surprise(command, after.ranges, frame, place, occupancy, observations, {load.name: load}, name, CENTRED[:1])
 
 
 def room_with_a_thing(rng: np.random.Generator) -> tuple[Occupied, shapely.Polygon, tuple[int, int]]:
@@ -110,26 +110,30 @@ def walked_and_pushed(rng: np.random.Generator) -> Told | None:
     """One who was stopped on his way, walked to a thing, took it and pushed it."""
     room, thing, (x, y) = room_with_a_thing(rng)
     occupied = around(thing, room)
-    woke = (float(rng.integers(2, SIDE - 2)) + 0.5, float(rng.integers(2, SIDE - 2)) + 0.5)
+    origin = (float(rng.integers(2, SIDE - 2)) + 0.5, float(rng.integers(2, SIDE - 2)) + 0.5)
     way = (float(rng.uniform(-14, 14)), float(rng.uniform(-14, 14)))
     far = (float(rng.integers(-2, 3)), float(rng.integers(-2, 3)))
-    if not free_about(room, x + 1, y + 1, 4) or occupied(*square_of(woke)) or not any(far):
+    if not free_about(room, x + 1, y + 1, 4) or occupied(*square_of(origin)) or not any(far):
         return None
-    stopped = ran(occupied, woke, way, 0)
-    shift = stopped[0] - woke[0] - way[0], stopped[1] - woke[1] - way[1]
+    stopped = ran(occupied, origin, way, 0)
+    shift = stopped[0] - origin[0] - way[0], stopped[1] - origin[1] - way[1]
     onward = round(x + 1.5 - stopped[0]) + 0.0, round(y - 0.5 - stopped[1]) + 0.0  # to about where it is taken
     truly = plus(stopped, onward)
     if not 0.2 < math.hypot(*shift) < 6 or occupied(*square_of(truly)):
         return None
-    lattice, believed = Frame(), plus(way, onward)
-    place = square_of(lattice.place_from_utak(*believed))
+    frame, believed = Frame(), plus(way, onward)
+    place = square_of(frame.place_from_utak(*believed))
     lies = translate(thing, place[0] - math.floor(truly[0]), place[1] - math.floor(truly[1]))
     load = HeldObject("o1", lies, lies, since=3, proven=True)
-    looks = [look(occupied, woke, (0.0, 0.0)), look(occupied, stopped, way), look(occupied, truly, believed)]
-    looks.append(looks[-1]._replace(moved=(laid(load, lattice),)))
-    after = look(around(translate(thing, *far), room), plus(truly, far), plus(believed, far))
-    surprise = surprised(Push(*far), after, looks, load, held=True)
-    true = translate(thing, far[0] + CENTRE[0] - woke[0], far[1] + CENTRE[1] - woke[1])
+    observations = [
+        observe(occupied, origin, (0.0, 0.0)),
+        observe(occupied, stopped, way),
+        observe(occupied, truly, believed),
+    ]
+    observations.append(observations[-1]._replace(moved=(laid(load, frame),)))
+    after = observe(around(translate(thing, *far), room), plus(truly, far), plus(believed, far))
+    surprise = surprised(Push(*far), after, observations, load, held=True)
+    true = translate(thing, far[0] + CENTRE[0] - origin[0], far[1] + CENTRE[1] - origin[1])
     return surprise, MotionHypothesis(1, way, CENTRED[:1]), shift, true
 
 
@@ -160,25 +164,25 @@ def test_where_nothing_was_in_hand_nothing_is_told_together_with_where_he_woke(s
 def pushed_and_walked(rng: np.random.Generator, beside: Point = CENTRE) -> Told | None:
     """One who took a thing, was stopped as he pushed it, and walked on without it. beside : where in his square."""
     room, thing, (x, y) = room_with_a_thing(rng)
-    woke = (x + 1 + beside[0], y - 1 + beside[1])
+    origin = (x + 1 + beside[0], y - 1 + beside[1])
     way = (float(rng.integers(-14, 15)), float(rng.integers(-14, 15)))
     walk = (float(rng.integers(-3, 4)), float(rng.integers(-3, 4)))
     if not free_about(room, x + 1, y + 1, 3) or not any(way):
         return None
     walls = [shapely.box(i, j, i + 1, j + 1) for i in range(SIDE) for j in range(SIDE) if room(i, j)]
-    part = Obstacles(walls).first_contact(ContactBody(thing, [woke]), Translate(*way)).fraction
+    part = Obstacles(walls).first_contact(ContactBody(thing, [origin]), Translate(*way)).fraction
     alone = Obstacles(walls).first_contact(ContactBody(thing, []), Translate(*way)).fraction
     went = way[0] * part, way[1] * part
     shift = went[0] - way[0], went[1] - way[1]
     there = around(translate(thing, *went), room)
-    end = plus(plus(woke, went), walk)
+    end = plus(plus(origin, went), walk)
     if not 0.2 < math.hypot(*shift) < 6 or part == 0 or there(*square_of(end)) or (beside != CENTRE and part != alone):
         return None
-    lattice = Frame()
-    lies = translate(thing, -math.floor(woke[0]), -math.floor(woke[1]))
+    frame = Frame()
+    lies = translate(thing, -math.floor(origin[0]), -math.floor(origin[1]))
     load = HeldObject("o1", translate(lies, *way), lies, since=1, proven=True)
-    first = look(around(thing, room), woke, (0.0, 0.0))
-    taken = first._replace(moved=(laid(HeldObject("o1", lies, lies, since=1), lattice),))
-    pushed = look(there, plus(woke, went), way)._replace(moved=(laid(load, lattice),))
-    surprise = surprised(Move(*walk), look(there, end, plus(way, walk)), [first, taken, pushed], load, held=False)
+    first = observe(around(thing, room), origin, (0.0, 0.0))
+    taken = first._replace(moved=(laid(HeldObject("o1", lies, lies, since=1), frame),))
+    pushed = observe(there, plus(origin, went), way)._replace(moved=(laid(load, frame),))
+    surprise = surprised(Move(*walk), observe(there, end, plus(way, walk)), [first, taken, pushed], load, held=False)
     return surprise, MotionHypothesis(2, way, CENTRED[:1], load="o1"), shift, translate(lies, *went)

@@ -23,7 +23,6 @@ from tests.kb.localisation.hypotheses.test_remap import around
 from tests.kb.localisation.propose.test_earlier_motion import (
     SIDE,
     free_about,
-    look,
     plus,
     room_with_a_thing,
     square_of,
@@ -39,22 +38,22 @@ def stopped_himself(rng: np.random.Generator, beside: Point) -> tuple[Surprise, 
     beside : where in his square he woke.
     """
     room, thing, (x, y) = room_with_a_thing(rng)
-    woke = (x + 1 + beside[0], y - 1 + beside[1])
+    origin = (x + 1 + beside[0], y - 1 + beside[1])
     way = (float(rng.integers(-14, 15)), float(rng.integers(-14, 15)))
     if not free_about(room, x + 1, y + 1, 3) or not any(way):
         return None
     walls = Obstacles([shapely.box(i, j, i + 1, j + 1) for i in range(SIDE) for j in range(SIDE) if room(i, j)])
-    part = walls.first_contact(ContactBody(thing, [woke]), Translate(*way)).fraction
+    part = walls.first_contact(ContactBody(thing, [origin]), Translate(*way)).fraction
     if part in (0.0, 1.0) or part == walls.first_contact(ContactBody(thing, []), Translate(*way)).fraction:
         return None
     went = way[0] * part, way[1] * part
-    lies = translate(thing, -math.floor(woke[0]), -math.floor(woke[1]))
+    lies = translate(thing, -math.floor(origin[0]), -math.floor(origin[1]))
     load = HeldObject("o1", lies, lies, since=1, proven=True)
-    first = look(around(thing, room), woke, (0.0, 0.0))
-    looks = [first, first._replace(moved=(laid(load, Frame()),))]
-    after = look(around(translate(thing, *went), room), plus(woke, went), way)
+    first = observe(around(thing, room), origin, (0.0, 0.0))
+    observations = [first, first._replace(moved=(laid(load, Frame()),))]
+    after = observe(around(translate(thing, *went), room), plus(origin, went), way)
     there = plus(beside, went)
-    return surprised(Push(*way), after, looks, load, held=True), there, translate(lies, *went)
+    return surprised(Push(*way), after, observations, load, held=True), there, translate(lies, *went)
 
 
 @settings(max_examples=15, deadline=None)
@@ -66,10 +65,10 @@ def test_where_he_himself_ran_against_something_is_told_with_where_he_woke(seed:
     found = halted_elsewhere(surprise)
     near = []
     for one in found:
-        outcome, woke = one.supposed.outcome, one.supposed.lattice.woke
+        outcome, origin = one.supposed.outcome, one.supposed.frame.origin
         assert outcome is not None and outcome.how == "blocked"
         assert one.supposed.misfits == 0 and 0 < one.chance <= 1
-        assert len(one.supposed.hypotheses) <= len(PLACES) and woke in PLACES
+        assert len(one.supposed.hypotheses) <= len(PLACES) and origin in PLACES
         assert math.isclose(one.against, ELSEWHERE - math.log(len(one.supposed.hypotheses) / len(PLACES)))
         if math.dist(one.supposed.place, there) < 1 and outcome.polygon.hausdorff_distance(thing) < 1:
             near += [hypothesis.box[:2] for hypothesis in one.supposed.hypotheses]

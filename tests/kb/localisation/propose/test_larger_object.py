@@ -45,13 +45,13 @@ def drawn(room: Occupied, deep: int, by: float) -> tuple[Memory, str]:
 def test_what_is_drawn_out_of_a_door_is_as_large_as_it_is(deep: int, by: float) -> None:
     memory, how = drawn(hall(DOOR), deep, by)
     assert how == "larger"
-    load, evidence = memory.loads["o1"], memory.evidence
+    load, occupancy = memory.loads["o1"], memory.occupancy
     first = translate(shapely.box(18, 10, 20 + deep, 15), -HERE[0], -HERE[1])
     assert load.first.equals(first)
     assert load.polygon.equals(translate(first, -by))
     assert load.proven
     assert memory.place == pytest.approx((0.5 - by, 0.5))
-    assert {evidence.state[evidence.index(3, y)] for y in range(-2, 3)} == {FREE}
+    assert {occupancy.state[occupancy.index(3, y)] for y in range(-2, 3)} == {FREE}
 
 
 @pytest.mark.parametrize("by", [2.0, 4.0])
@@ -59,7 +59,7 @@ def test_what_stood_before_a_wall_is_no_larger_than_it_seemed(by: float) -> None
     memory, how = drawn(hall(NO_DOOR), 0, by)
     assert how == "predicted"
     assert memory.loads["o1"].polygon.equals(translate(shapely.box(18, 10, 20, 15), -HERE[0] - by, -HERE[1]))
-    assert memory.evidence.state[memory.evidence.index(3, 0)] == FULL
+    assert memory.occupancy.state[memory.occupancy.index(3, 0)] == FULL
 
 
 def test_what_was_moved_before_is_no_larger_than_it_seemed() -> None:

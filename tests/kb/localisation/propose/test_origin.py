@@ -19,61 +19,63 @@ from tests.kb.localisation.hypotheses.test_walk_outcomes import passes_corner
 Point = tuple[float, float]
 
 
-def received(one: Explanation, looks: list[Observation]) -> list[Observation]:
+def received(one: Explanation, observations: list[Observation]) -> list[Observation]:
     """The looks where they were received by an explanation."""
     assert one.retold is not None
-    *before, newest = one.retold.correction.looks(looks)
+    *before, newest = one.retold.correction.observations(observations)
     return [*before, newest._replace(place=one.retold.newest)]
 
 
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(PLACES))
-def test_of_what_is_told_the_truth_is_one(seed: int, woke: Point) -> None:
+def test_of_what_is_told_the_truth_is_one(seed: int, origin: Point) -> None:
     """He is stopped by a wall, does not notice, and goes back some of the way."""
     rng = np.random.default_rng(seed)
     occupied, heading = world_of(random_room(rng, 26, 26, 8)), int(rng.integers(-44, 46))
     free = [(i, j) for i in range(3, 23) for j in range(3, 23) if not occupied(i, j)]
     x, y = free[int(rng.integers(len(free)))]
     way = (float(rng.uniform(-14, 14)), float(rng.uniform(-14, 14)))
-    met = crossings((x + woke[0], y + woke[1]), turned(*way, heading))
+    met = crossings((x + origin[0], y + origin[1]), turned(*way, heading))
     stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
-    assume(stop is not None and not passes_corner(*woke, *turned(*way, heading)))
+    assume(stop is not None and not passes_corner(*origin, *turned(*way, heading)))
     assert stop is not None
-    true, held = Frame(heading, woke), Frame(heading)
+    true, held = Frame(heading, origin), Frame(heading)
     own = true.place_to_utak(stop.before[0] - x, stop.before[1] - y)
     assume(math.dist(own, way) > 2 * HAIR)
     places = [(0.0, 0.0), own, (0.5 * own[0], 0.5 * own[1])]
-    looks, astray = [], (way[0] - own[0], way[1] - own[1])
+    observations, astray = [], (way[0] - own[0], way[1] - own[1])
     for place, (east, north) in zip(places, [(0.0, 0.0), astray, astray], strict=True):
         i, j = (math.floor(v) for v in true.place_from_utak(*place))
         seen = count_ranges(impression(occupied, (i + x, j + y), heading).retina)
-        looks.append(Observation(seen, (place[0] + east, place[1] + north)))
-    found = misplaced([MotionHypothesis(1, way, CENTRED)], held, looks)
-    squares = [fallen(one.lattice, received(one, looks)).tolist() for one in found]
+        observations.append(Observation(seen, (place[0] + east, place[1] + north)))
+    found = misplaced([MotionHypothesis(1, way, CENTRED)], held, observations)
+    squares = [fallen(one.frame, received(one, observations)).tolist() for one in found]
     assert (
-        fallen(true, [look._replace(place=place) for look, place in zip(looks, places, strict=True)]).tolist()
+        fallen(
+            true, [observation._replace(place=place) for observation, place in zip(observations, places, strict=True)]
+        ).tolist()
         in squares
     )
     for one in found:
-        assert one.lattice.angle == heading and one.misfits == 0
+        assert one.frame.angle == heading and one.misfits == 0
         assert one.how == "misled" and one.crooked >= 0
-        assert not contradictions(one.lattice, received(one, looks))
+        assert not contradictions(one.frame, received(one, observations))
 
 
 def test_the_larger_part_of_his_square_is_the_likelier_one() -> None:
     """A wall stopped him two squares too early; whether he looks from this row or the next one, nothing tells."""
     room = world_of(["b" * 40, *["b" + "." * 30 + "b" * 9] * 70, "b" * 40])
     seen = [count_ranges(impression(room, square).retina) for square in ((20, 35), (30, 35), (26, 35))]
-    looks = [
+    observations = [
         Observation(ranges, place) for ranges, place in zip(seen, [(0.0, 0.0), (12.0, 0.0), (7.6, 0.3)], strict=True)
     ]
-    found = misplaced([MotionHypothesis(1, (12.0, 0.0), CENTRED)], Frame(), looks)
+    found = misplaced([MotionHypothesis(1, (12.0, 0.0), CENTRED)], Frame(), observations)
     shares = [len(one.hypotheses) / len(PLACES) for one in found]
     assert len(set(shares)) > 1
     for one, share in zip(found, shares, strict=True):
         assert one.crooked == pytest.approx(ELSEWHERE - math.log(share))
     again = misplaced(
-        [MotionHypothesis(1, (12.0, 0.0), CENTRED)], Frame(0, (0.4, 0.5)), looks
+        [MotionHypothesis(1, (12.0, 0.0), CENTRED)], Frame(0, (0.4, 0.5)), observations
     )  # that he woke there is known
     assert [one.crooked for one in again] == pytest.approx([one.crooked - ELSEWHERE for one in found])
 
@@ -81,5 +83,5 @@ def test_the_larger_part_of_his_square_is_the_likelier_one() -> None:
 def test_who_met_nothing_has_nothing_to_tell() -> None:
     occupied = world_of(["." * 80] * 80)
     seen = [count_ranges(impression(occupied, (x, 40)).retina) for x in (30, 35)]
-    looks = [Observation(seen[0], (0.0, 0.0)), Observation(seen[1], (5.0, 0.0))]
-    assert misplaced([MotionHypothesis(1, (5.0, 0.0), CENTRED[:1])], Frame(), looks) == []
+    observations = [Observation(seen[0], (0.0, 0.0)), Observation(seen[1], (5.0, 0.0))]
+    assert misplaced([MotionHypothesis(1, (5.0, 0.0), CENTRED[:1])], Frame(), observations) == []

@@ -55,7 +55,7 @@ def test_a_turn_that_was_stopped_tells_where_he_woke_and_how_far_it_went(
     memory.grasp(HeldObject("o1", lies, lies, proven=True))
     memory.hypotheses, memory.searches = CENTRED[:1], MOST_SEARCHES  # how the lattice is turned is known
     for i, j in ((x, y), (x - 1, y), (x, y + 1), (x + 1, y + 1)):  # not looked at closely
-        memory.evidence.state[memory.evidence.index(i - 20, j - 20)] = OPEN
+        memory.occupancy.state[memory.occupancy.index(i - 20, j - 20)] = OPEN
     after = rotate(thing, degrees, origin=about)
     found = memory.accommodate(Turn(90.0), impression(around(after, room), (20, 20))).explanation
     assert found.misfits == 0
@@ -66,9 +66,9 @@ def test_a_turn_that_was_stopped_tells_where_he_woke_and_how_far_it_went(
     assert found.outcome.degrees == pytest.approx(degrees, abs=6.0)
     if found.how == "turned":
         west, south, east, north = memory.leeway
-        woke = memory.lattice.woke
-        assert west - 0.15 <= fx - woke[0] <= east + 0.15
-        assert south - 0.15 <= fy - woke[1] <= north + 0.15
+        origin = memory.frame.origin
+        assert west - 0.15 <= fx - origin[0] <= east + 0.15
+        assert south - 0.15 <= fy - origin[1] <= north + 0.15
 
 
 def test_who_was_stopped_a_hair_beside_a_line_turns_things_a_hair_aside() -> None:
@@ -79,11 +79,11 @@ def test_who_was_stopped_a_hair_beside_a_line_turns_things_a_hair_aside() -> Non
     memory.hypotheses = CENTRED[:1]
     lies = translate(thing, -20, -20)
     memory.grasp(HeldObject("o1", lies, lies, proven=True))
-    memory.looks[0] = memory.looks[0]._replace(place=(0.5 - 1e-6, 0.0))  # there he was stopped
+    memory.observations[0] = memory.observations[0]._replace(place=(0.5 - 1e-6, 0.0))  # there he was stopped
     found = memory.accommodate(Turn(90.0), impression(around(after, PLAIN), (20, 20))).explanation
     assert found.how == "predicted"
     assert found.misfits == 0
-    assert memory.lattice.woke == CENTRE
+    assert memory.frame.origin == CENTRE
     assert memory.loads["o1"].polygon.hausdorff_distance(translate(after, -20, -20)) < 1e-5
 
 
@@ -94,14 +94,14 @@ def test_a_part_is_cut_into_parts_that_fill_it() -> None:
     volume = sum(math.prod(end - begin for begin, end in one) for one in parts)
     assert volume == pytest.approx(0.16)
     assert len(set(parts)) == 30
-    assert part.woke == pytest.approx((0.4, 0.7))
+    assert part.origin == pytest.approx((0.4, 0.7))
     assert part.far == pytest.approx(math.hypot(0.2, 0.2))
-    assert all(0.2 < one.woke[0] < 0.6 and 0.5 < one.woke[1] < 0.9 for one in parts)
+    assert all(0.2 < one.origin[0] < 0.6 and 0.5 < one.origin[1] < 0.9 for one in parts)
     assert max(one.far for one in parts) < part.far
 
 
 def test_points_of_a_grid_lie_amid_his_square() -> None:
     memory = Memory()
     memory.wake(impression(PLAIN, (20, 20)))
-    where = points(Frame(), memory.looks)
+    where = points(Frame(), memory.observations)
     assert all(0 < point.box[0] < 1 and 0 < point.box[1] < 1 for point in where)
