@@ -113,7 +113,8 @@ class OccupancyMap:
         """The same, to be told more."""
         other = copy(self)
         other.state, other.seen = self.state.copy(), self.seen.copy()
-        other.settled_by, other._observations, other._fresh = (
+        other.settled_by, other._fresh = self.settled_by.copy(), self._fresh.copy()
+        other._observations = self._observations.copy()
             self.settled_by.copy(),
             self._observations.copy(),
             self._fresh.copy(),

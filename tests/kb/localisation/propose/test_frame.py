@@ -23,6 +23,7 @@ from tests.kb.localisation.hypotheses.test_remap import around
 from tests.kb.localisation.propose.test_earlier_motion import (
     SIDE,
     free_about,
+    observe,
     plus,
     room_with_a_thing,
     square_of,
