@@ -115,10 +115,6 @@ class OccupancyMap:
         other.state, other.seen = self.state.copy(), self.seen.copy()
         other.settled_by, other._fresh = self.settled_by.copy(), self._fresh.copy()
         other._observations = self._observations.copy()
-            self.settled_by.copy(),
-            self._observations.copy(),
-            self._fresh.copy(),
-        )
         return other
 
     def view(self, places: Iterable[tuple[float, float]] = (), margin: int = 2) -> MapView:
