@@ -37,8 +37,8 @@ EMPTY_NAMES = {"utils", "helpers", "common", "misc", "core", "manager"}
 RIDDLE = re.compile(r"(That|Who|What|By|Where|Whose|Whom|When|How|If|So|And|Of|To)\b")
 PERSON = re.compile(r"\b(he|his|him|himself)\b", re.IGNORECASE)
 VAGUE_WORDS = """
-    MOST LEAST NEAR FAR BESIDE LIKELY FULL FEW SOME ABOUT STILL EDGE LOOSE WIDEST MAYBE SHY BARE LAST SURE CLEAR LONG SHORT
-    OTHERS UNSEEN
+    MOST LEAST NEAR FAR BESIDE LIKELY FULL FEW SOME ABOUT STILL EDGE LOOSE WIDEST MAYBE SHY BARE LAST SURE CLEAR LONG
+    SHORT OTHERS UNSEEN
 """
 VAGUE = set(VAGUE_WORDS.split())
 
@@ -269,7 +269,7 @@ def thunks(root: Path) -> Iterator[str]:
         aliases = {
             target.id
             for node in tree_of(path).body
-            if isinstance(node, ast.Assign) and ast.unparse(node.value).startswith("Callable[")
+            if isinstance(node, ast.Assign) and ast.unparse(node.value).startswith("Callable[[],")
             for target in node.targets
             if isinstance(target, ast.Name)
         }
@@ -277,9 +277,9 @@ def thunks(root: Path) -> Iterator[str]:
             if isinstance(node, ast.ClassDef) and is_frozen(node):
                 for field in node.body:
                     if isinstance(field, ast.AnnAssign):
-                        words = set(re.findall(r"\w+", ast.unparse(field.annotation)))
-                        if "Callable" in words or words & aliases:
-                            yield f"{short(path, root)}: {node.name}.{ast.unparse(field.target)} is a function"
+                        written = ast.unparse(field.annotation)
+                        if "Callable[[]," in written or set(re.findall(r"\w+", written)) & aliases:
+                            yield f"{short(path, root)}: {node.name}.{ast.unparse(field.target)} is still to be called"
 
 
 def words_of_simulator(root: Path) -> Iterator[str]:
