@@ -3,8 +3,9 @@
     python -m benchmarks.timing.paired OTHER [--count N] [--seed S] [--noise S] [--turns T]
 
 OTHER is the folder of another checkout, whatever its layout: it is run by its command line alone. Examples and random
-worlds are run in both by turns, each in a process of its own, and the least of some turns counts. Printed are the sums of
-processor seconds and their ratio, this checkout's by the other's: above 1 this one is slower. Starting Python is part of both.
+worlds are run in both by turns, each in a process of its own, and the least of some turns counts. Printed are the sums
+of processor seconds and their ratio, this checkout's by the other's: above 1 this one is slower. Starting Python is
+part of both.
 """
 
 import argparse
