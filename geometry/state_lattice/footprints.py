@@ -20,7 +20,7 @@ from shapely import affinity
 from geometry.kernels.arrays import Bools, Floats, Longs
 from geometry.kernels.jit import compiled
 from geometry.motion.first_contact import ContactBody, Obstacles
-from geometry.motion.time_of_impact import turn_through_skin
+from geometry.motion.time_of_impact import first_turn_skin_hit
 from geometry.raster.rasterize import squares
 
 DIRECTIONS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))  # a quarter turn is two further
@@ -140,4 +140,4 @@ def _meet(
             for n in range(4):
                 box[0, 2 + n] = chunks[0, 2 + n] + (dx if n % 2 == 0 else dy)
             turn = math.pi / 2
-            met[i, j] = turn_through_skin(corners, body, shifted, inner, box, cx, cy, 1.0, turn)[1] != 0
+            met[i, j] = first_turn_skin_hit(corners, body, shifted, inner, box, cx, cy, 1.0, turn)[1] != 0

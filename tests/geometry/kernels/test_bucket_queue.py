@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from geometry.kernels.bucket_queue import RING, new_queue, put, take
-from geometry.motion.obstacle_field import DIAGONAL, SIDE, WALL, disc_ways
+from geometry.motion.obstacle_field import PIXEL_DIAGONAL_COST, PIXEL_STEP_COST, TIGHT_PIXEL_FACTOR, disc_path_costs
 
 
 @settings(max_examples=30, deadline=None, derandomize=True)
@@ -40,12 +40,12 @@ def test_the_way_of_a_disc(tight: np.ndarray, goal: int) -> None:
     for y, x in np.ndindex(7, 9):
         for v, u in np.ndindex(7, 9):
             if max(abs(x - u), abs(y - v)) == 1:
-                side = DIAGONAL if x != u and y != v else SIDE
-                graph.add_edge((y, x), (v, u), weight=side * (WALL if tight[v, u] else 1))
+                side = PIXEL_DIAGONAL_COST if x != u and y != v else PIXEL_STEP_COST
+                graph.add_edge((y, x), (v, u), weight=side * (TIGHT_PIXEL_FACTOR if tight[v, u] else 1))
     expected = nx.single_source_dijkstra_path_length(graph, divmod(goal, 9))
-    found = disc_ways(tight, goals)
+    found = disc_path_costs(tight, goals)
     assert all(found[place] == expected[place] for place in np.ndindex(7, 9))
 
 
 def test_without_a_goal_nothing_is_near() -> None:
-    assert disc_ways(np.zeros((3, 3), bool), np.zeros((3, 3), bool)).min() == pytest.approx(2**40)
+    assert disc_path_costs(np.zeros((3, 3), bool), np.zeros((3, 3), bool)).min() == pytest.approx(2**40)
