@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from geometry.cspace.cell_tree import MAX_CELL_DEPTH, CellTree, is_splittable, next_link_to_leaf
 from geometry.kernels.arrays import Floats, Ints
-from geometry.kernels.full_heap import pop, push
+from geometry.kernels.bounded_heap import pop, push
 from geometry.kernels.jit import bare
 from geometry.motion.cell_clearance import (
     CELL_BLOCKED,
@@ -58,7 +58,7 @@ class ChannelSearch(NamedTuple):
         hold a goal and is on the heap again).
     cut_verdict : (capacity,) scratch of the repair: twice the number of the search, plus 1 for a cell that is cut off.
     seen : (2,) number of cells that have a state; 1 if the last channel ends at a postponed cell, else 0.
-    key, item, size : the heap, see full_heap.
+    key, item, size : the heap, see bounded_heap.
     channel : the cells of the last channel, the start's first.
     unattached : scratch of the repair.
     distances : (rows, columns) estimated length to the goal from a pixel, squares.

@@ -150,9 +150,9 @@ class Obstacles:
         for corners, edges, as_one in body.runs:
             surface = self.point_surface if as_one else self.surface
             if isinstance(motion, Translate):
-                hit = first_push_contact.swift(corners, edges, surface, x, y)
+                hit = first_push_contact.call_unchecked(corners, edges, surface, x, y)
             else:
-                hit = first_turn_contact.swift(corners, edges, surface, turn, x, y)
+                hit = first_turn_contact.call_unchecked(corners, edges, surface, turn, x, y)
             fraction, at_x, at_y, owner, nx, ny = hit
             if owner >= 0 and fraction < contact.fraction:
                 contact = Contact(fraction, (at_x, at_y), owner, (nx, ny))

@@ -25,7 +25,7 @@ def guess(lattice: StateLattice, end_costs: Costs, redirect_cost: int) -> Costs:
     Parameters
     ----------
     lattice : the state lattice.
-    end_costs : (4, squares) cost of ending at a pose, -1 where the goal is not met; below bucket_queue.RING.
+    end_costs : (4, squares) cost of ending at a pose, -1 where the goal is not met; below bucket_queue.BUCKETS.
     redirect_cost : cost of going on in another direction in the same push; COMMAND stands for starting another push.
 
     Returns
