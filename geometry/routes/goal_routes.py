@@ -126,8 +126,7 @@ class GoalArea:
             tight, word, cell = better
 
     def moved_end(self, word: Ints, cell: int, step: int) -> tuple[Route, Ints, int] | None:
-        """Return the route, word and cell with the end moved by a step; None if that leaves the set or the step is cut.
-        """
+        """Return the route, word and cell with the end moved by a step; None if that leaves the set or the step is cut."""
         other = cell + step
         if other not in self.region_of or (self.barrier is not None and self.barrier.is_closed(cell, other)):
             return None
