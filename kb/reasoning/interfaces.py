@@ -6,30 +6,37 @@ or a thing.
 
 from collections.abc import Mapping
 
-from kb.language.arguments import COLOUR, NAME, Slot, named, whole, word
-from kb.language.vocabulary import CONFIDENCE, CORNERS, KIND, LENGTH, SHAPES
+from kb.language.arguments import (
+    COLOUR_ARGUMENT,
+    NAME_ARGUMENT,
+    ArgumentType,
+    integer_argument,
+    pattern_argument,
+    word_argument,
+)
+from kb.language.vocabulary import CONFIDENCE_ARGUMENT, CORNER_NAMES, KIND_ARGUMENT, LENGTH_ARGUMENT, SHAPE_CLASSES
 
 Signature = tuple[str, int]
-Interface = Mapping[Signature, tuple[Slot, ...]]
+Interface = Mapping[Signature, tuple[ArgumentType, ...]]
 
 LARGE = 1_000_000  # no count, price or length in these facts is greater
-AMOUNT = whole("an amount", 0, LARGE)
-NUMBER = whole("a number", 0, LARGE)
+AMOUNT = integer_argument("an amount", 0, LARGE)
+NUMBER = integer_argument("a number", 0, LARGE)
 
 
-def _named(name: str) -> Slot:
-    return Slot(name, NAME.check)
+def _named(name: str) -> ArgumentType:
+    return ArgumentType(name, NAME_ARGUMENT.check)
 
 
-def _numbered(name: str) -> Slot:
-    return Slot(name, NUMBER.check, NUMBER.limits)
+def _numbered(name: str) -> ArgumentType:
+    return ArgumentType(name, NUMBER.check, NUMBER.limits)
 
 
 REGION, THING, PARAMETER = (_named(name) for name in ("region", "candidate", "parameter"))
-NODE = named("thing", "o[0-9]+", "o1")
+NODE = pattern_argument("thing", "o[0-9]+", "o1")
 NECK, CONVEX = _numbered("neck"), _numbered("convex corner")
-PROPERTY = word("property", ("shape", "colour"))
-SHAPE = word("shape", SHAPES)
+PROPERTY = word_argument("property", ("shape", "colour"))
+SHAPE = word_argument("shape", SHAPE_CLASSES)
 # By the name of a slot, the facts that name such things, and in which argument.
 DOMAINS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
     "region": ((("region", 3), 0),),
@@ -42,44 +49,44 @@ DOMAINS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
 PASSING = frozenset({"neck", "convex corner"})
 REACHED: Mapping[str, Interface] = {
     "interpretation": {
-        ("region", 3): (REGION, word("state", ("zero", "nonzero")), CONFIDENCE),
+        ("region", 3): (REGION, word_argument("state", ("zero", "nonzero")), CONFIDENCE_ARGUMENT),
         ("rim", 1): (REGION,),
         ("own", 1): (REGION,),
         ("surrounds", 2): (REGION, REGION),
         ("extent", 2): (REGION, AMOUNT),
         ("mass", 2): (REGION, AMOUNT),
-        ("touched", 2): (REGION, COLOUR),
-        ("kind", 3): (REGION, KIND, CONFIDENCE),
+        ("touched", 2): (REGION, COLOUR_ARGUMENT),
+        ("kind", 3): (REGION, KIND_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("hidden_passage", 2): (REGION, REGION),
     },
     "shapes": {
-        ("fit", 4): (NODE, SHAPE, AMOUNT, whole("a rank", 1, len(SHAPES))),
+        ("fit", 4): (NODE, SHAPE, AMOUNT, integer_argument("a rank", 1, len(SHAPE_CLASSES))),
         ("open_squares", 2): (NODE, AMOUNT),
         ("full_squares", 2): (NODE, AMOUNT),
-        ("shape", 3): (NODE, SHAPE, CONFIDENCE),
+        ("shape", 3): (NODE, SHAPE, CONFIDENCE_ARGUMENT),
     },
     "rooms": {
-        ("neck", 5): (NECK, AMOUNT, AMOUNT, AMOUNT, CONFIDENCE),
-        ("door", 2): (NECK, CONFIDENCE),
+        ("neck", 5): (NECK, AMOUNT, AMOUNT, AMOUNT, CONFIDENCE_ARGUMENT),
+        ("door", 2): (NECK, CONFIDENCE_ARGUMENT),
         ("opening", 1): (NECK,),
     },
     "corners": {
-        ("convex", 3): (CONVEX, LENGTH, LENGTH),
-        ("furthest", 2): (word("corner", CORNERS), CONVEX),
+        ("convex", 3): (CONVEX, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
+        ("furthest", 2): (word_argument("corner", CORNER_NAMES), CONVEX),
     },
     "reconciliation": {
         ("wanted", 1): (PARAMETER,),
         ("named", 1): (PARAMETER,),
-        ("claim", 4): (PARAMETER, PROPERTY, NAME, CONFIDENCE),
-        ("candidate", 2): (THING, CONFIDENCE),
-        ("has", 4): (THING, PROPERTY, NAME, CONFIDENCE),
+        ("claim", 4): (PARAMETER, PROPERTY, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("candidate", 2): (THING, CONFIDENCE_ARGUMENT),
+        ("has", 4): (THING, PROPERTY, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("settled", 2): (THING, PROPERTY),
         ("distance", 2): (THING, AMOUNT),
         ("bound_before", 2): (PARAMETER, THING),
         ("carried", 1): (PARAMETER,),
         ("fixed", 1): (THING,),
         ("moved", 1): (THING,),
-        ("may_be", 3): (THING, PROPERTY, NAME),
+        ("may_be", 3): (THING, PROPERTY, NAME_ARGUMENT),
         ("bind", 2): (PARAMETER, THING),
         ("hypothesised", 1): (PARAMETER,),
         ("doubtful", 2): (PARAMETER, THING),

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from types import TracebackType
 
 from kb.language.diagnostics import BadInputError, Problem, Span
-from kb.language.integers import wide_integers
+from kb.language.integers import integers_beyond_32_bits
 from kb.language.reader import parse_facts
 from kb.language.source_text import decode
 from kb.language.terms import Fact, Number
@@ -21,7 +21,7 @@ from kb.reasoning.rulebook import Statement
 from kb.reasoning.worker import Worker
 
 SECONDS = 5.0  # after which a query is given up
-LONGEST = 10_000  # characters of a query
+MAX_QUERY_CHARACTERS = 10_000  # characters of a query
 MOST_ROWS = 10_000  # of an answer, unless more are asked for
 VOCABULARY = tuple(BELIEF)
 
@@ -121,10 +121,10 @@ def _check(text: str) -> None:
     """Whether a text may be handed to the worker."""
     if not text:
         raise _problem(text, "the query is empty", hint="such as object(X), shape(X, square, C)")
-    if len(text) > LONGEST:
-        raise _problem(text[:100], f"a query has at most {LONGEST} characters")
+    if len(text) > MAX_QUERY_CHARACTERS:
+        raise _problem(text[:100], f"a query has at most {MAX_QUERY_CHARACTERS} characters")
     if "\n" in text or "%" in text:
         raise _problem(text, "a query is one line without comments")
-    problems = list(wide_integers(decode("query", text.encode("utf-8", errors="surrogateescape"))))
+    problems = list(integers_beyond_32_bits(decode("query", text.encode("utf-8", errors="surrogateescape"))))
     if problems:
         raise BadInputError(problems)

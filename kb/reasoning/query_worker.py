@@ -173,13 +173,13 @@ def _respond(line: bytes) -> Answer:
 def main() -> None:
     """Answer queries until the input ends, and end then at once."""
     operating_system.end_with_parent()
-    operating_system.limit("AS", MEMORY)
-    operating_system.limit("CORE", 0)
+    operating_system.limit_resource("AS", MEMORY)
+    operating_system.limit_resource("CORE", 0)
     json.loads('{"a": [1.5, "b"]}')  # everything that is imported late is imported now
     answer([["room", "r1"]], "room(X), not room(r2)")
     did_you_mean("room", ["door"])
-    requests = operating_system.lines_of_parent()
-    operating_system.limit("NOFILE", 3)
+    requests = operating_system.read_lines_from_parent()
+    operating_system.limit_resource("NOFILE", 3)
     print("ready", flush=True)
     for line in requests:
         operating_system.limit_processor_time(PROCESSOR_TIME)

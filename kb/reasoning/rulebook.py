@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from kb.language.arguments import Slot
+from kb.language.arguments import ArgumentType
 from kb.language.diagnostics import BadInputError, Problem, Span, did_you_mean
 from kb.language.reader import facts_of
 from kb.language.source_text import Source
@@ -208,6 +208,6 @@ def misfit(encoding: str, atom: Fact, given: Mapping[Signature, Sequence[Fact]])
     return ""
 
 
-def _domain(slot: Slot, given: Mapping[Signature, Sequence[Fact]]) -> set[str]:
+def _domain(slot: ArgumentType, given: Mapping[Signature, Sequence[Fact]]) -> set[str]:
     """The names of what given facts speak of."""
     return {str(fact.args[at]) for signature, at in DOMAINS[slot.name] for fact in given.get(signature, ())}

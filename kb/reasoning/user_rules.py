@@ -16,11 +16,11 @@ from typing import Any
 import clingo
 
 from kb.language.diagnostics import BadInputError, Problem, Span
-from kb.language.integers import wide_integers
-from kb.language.reader import DEEPEST, facts_of
+from kb.language.integers import integers_beyond_32_bits
+from kb.language.reader import MAX_TERM_DEPTH, facts_of
 from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact
-from kb.language.tokens import tokens
+from kb.language.tokens import tokenize
 from kb.reasoning.interfaces import REACHED, Signature
 from kb.reasoning.rulebook import DECLARED, Rulebook, Statement, misfit, statement_of
 from kb.reasoning.worker import Worker
@@ -70,7 +70,7 @@ def _rulebook(sources: tuple[Source, ...]) -> Rulebook:
 
 
 def _statements(source: Source) -> list[Statement]:
-    problems = [*wide_integers(source), *_not_taken(source)]
+    problems = [*integers_beyond_32_bits(source), *_not_taken(source)]
     if problems:
         raise BadInputError(problems)
     found = _worker().exchange({"read": source.text}, SECONDS)
@@ -88,12 +88,12 @@ def _statements(source: Source) -> list[Statement]:
 def _not_taken(source: Source) -> Iterator[Problem]:
     """What clingo must not see: other files, and brackets so deep that it would break down."""
     depth = 0
-    for token in tokens(source, []):
+    for token in tokenize(source, []):
         if token.text == "#include":
             yield source.problem(token.span, "#include is not allowed", "give each file with a --kb of its own")
         depth += (token.text == "(") - (token.text == ")")
-        if depth > DEEPEST:
-            yield source.problem(token.span, f"brackets are nested more than {DEEPEST} deep")
+        if depth > MAX_TERM_DEPTH:
+            yield source.problem(token.span, f"brackets are nested more than {MAX_TERM_DEPTH} deep")
             return
 
 

@@ -8,7 +8,7 @@ from kb.language.diagnostics import BadInputError, Problem, Span, did_you_mean
 from kb.language.reader import parse_facts
 from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact, Number, Symbol, Term
-from kb.language.vocabulary import GOAL, RESERVED, START, Vocabulary, check_facts
+from kb.language.vocabulary import GOAL, RESERVED_PARAMETER_NAMES, START, Vocabulary, check_facts
 
 CERTAIN = 100
 KINDS = ("object", "door", "room")
@@ -149,7 +149,7 @@ def _parameters(source: Source, facts: tuple[Fact, ...], problems: list[Problem]
         if fact.name not in KINDS:
             continue
         name, span = str(fact.args[0]), fact.args[0].span
-        if name in RESERVED:
+        if name in RESERVED_PARAMETER_NAMES:
             problems.append(source.problem(span, f"{name} is a reserved word and cannot name a parameter"))
         elif name in found and found[name].kind != fact.name:
             what = f"{name} is already a{'n' * (found[name].kind == 'object')} {found[name].kind}"
@@ -255,7 +255,7 @@ def _misused(
             yield source.problem(
                 term.span, f"{term} is a{'n' * (kind == 'object')} {kind}; {goal.name} wants {wanted} here"
             )
-    elif term.name in RESERVED:
+    elif term.name in RESERVED_PARAMETER_NAMES:
         yield source.problem(term.span, f"{goal.name} wants {wanted} here, not {term}")
     else:
         yield source.problem(term.span, *_unknown(term.name, parameters))

@@ -2,7 +2,7 @@
 
 import clingo
 
-from kb.language.integers import HIGH, LOW
+from kb.language.integers import MAX_INT32, MIN_INT32
 from kb.three_valued.arithmetic import checked
 from kb.three_valued.uncertain_values import Unknown, Value, bounds, symbol
 
@@ -39,8 +39,8 @@ class Tally:
     def _between(self, least: int, up: int, down: int) -> Value:
         """A number from `least` - `down` to `least` + `up`; without an upper bound where there are vague tuples."""
         checked(least)
-        high = HIGH if self._vague else min(HIGH, least + up)
-        low = max(LOW, least - down)
+        high = MAX_INT32 if self._vague else min(MAX_INT32, least + up)
+        low = max(MIN_INT32, least - down)
         return least if low == high == least else Unknown(low, high)
 
     def _sum(self, more: list[Tuple]) -> Value:
@@ -50,10 +50,10 @@ class Tally:
             return max(0, number) if self._function == "#sum+" else number
 
         weights = [weight(values) for values in more]
-        vague_down = any((bounds(values[0]) or (LOW, HIGH))[0] < 0 for values in self._vague if values)
+        vague_down = any((bounds(values[0]) or (MIN_INT32, MAX_INT32))[0] < 0 for values in self._vague if values)
         down = -sum(w for w in weights if w < 0)
         if vague_down and self._function == "#sum":
-            down = HIGH - LOW
+            down = MAX_INT32 - MIN_INT32
         return self._between(sum(map(weight, self._certain)), sum(w for w in weights if w > 0), down)
 
     def _extreme(self, more: list[Tuple]) -> Value:

@@ -6,7 +6,7 @@ from typing import Any
 
 import clingo
 
-from kb.language.vocabulary import BELIEF, KIND
+from kb.language.vocabulary import BELIEF, KIND_ARGUMENT
 from kb.three_valued.clauses import Atom, Clause, Comparison, Constant, Variable, atoms_of
 
 UTAK, ORG = clingo.Function("utak"), clingo.Function("org")
@@ -25,8 +25,8 @@ def with_org(clause: Clause) -> Clause:
 
 def _kinds(atom: Atom) -> list[int]:
     """Which arguments of an atom are kinds."""
-    slots = BELIEF[atom.signature].slots if atom.signature in BELIEF else ()
-    return [at for at, slot in enumerate(slots) if slot is KIND]
+    slots = BELIEF[atom.signature].arguments if atom.signature in BELIEF else ()
+    return [at for at, slot in enumerate(slots) if slot is KIND_ARGUMENT]
 
 
 def _renamed(part: Any, kinds: Set[str]) -> Any:

@@ -5,7 +5,7 @@ Division and remainder are those of clingo (towards zero); a power with a negati
 
 from collections.abc import Callable, Mapping
 
-from kb.language.integers import HIGH, LOW
+from kb.language.integers import MAX_INT32, MIN_INT32
 
 MOST_BITS = 64  # no power with more of them is worked out
 
@@ -16,9 +16,9 @@ class CalculationError(Exception):
 
 def checked(value: int) -> int:
     """Return an integer that has at most 32 bits; raises CalculationError for any other."""
-    if LOW <= value <= HIGH:
+    if MIN_INT32 <= value <= MAX_INT32:
         return value
-    raise CalculationError(f"a number beyond 32 bits ({LOW} to {HIGH})")
+    raise CalculationError(f"a number beyond 32 bits ({MIN_INT32} to {MAX_INT32})")
 
 
 def _divide(a: int, b: int) -> int:
@@ -35,7 +35,7 @@ def _power(a: int, b: int) -> int:
     if b < 0:
         return 0
     if abs(a) > 1 and b > MOST_BITS:
-        return checked(HIGH + 1)
+        return checked(MAX_INT32 + 1)
     return int(a ** (b if abs(a) > 1 else min(b, 2 + b % 2)))  # of 0, 1 and -1 high powers are those of 2 and 3
 
 

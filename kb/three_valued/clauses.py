@@ -11,7 +11,7 @@ from typing import Any
 import clingo
 from clingo.ast import AST, AggregateFunction, ASTType, BinaryOperator, ComparisonOperator, Sign, UnaryOperator
 
-from kb.language.integers import LOW
+from kb.language.integers import MIN_INT32
 
 SIGNS = {
     ComparisonOperator.GreaterThan: ">", ComparisonOperator.LessThan: "<", ComparisonOperator.LessEqual: "<=",
@@ -259,7 +259,8 @@ class _Translator:
             inner, sign = self._term(node.argument), UNARY[node.operator_type]
             plain = sign == "-" and node.argument.ast_type == ASTType.SymbolicTerm
             if plain and isinstance(inner, Constant) and isinstance(inner.value, int):
-                return Constant(inner.value if inner.value == LOW else -inner.value, at)  # LOW: 2147483648, wrapped
+                # clingo has wrapped the literal 2147483648 to -2147483648.
+                return Constant(inner.value if inner.value == MIN_INT32 else -inner.value, at)
             return Operation(sign, (inner,), at)
         if node.ast_type == ASTType.BinaryOperation:
             return Operation(BINARY[node.operator_type], (self._term(node.left), self._term(node.right)), at)

@@ -11,7 +11,7 @@ from typing import Any
 
 import clingo
 
-from kb.language.integers import HIGH, LOW
+from kb.language.integers import MAX_INT32, MIN_INT32
 from kb.three_valued.aggregates import Tally
 from kb.three_valued.arithmetic import CalculationError, calculate
 from kb.three_valued.clauses import (
@@ -363,7 +363,7 @@ def _is_interval(term: Term) -> bool:
 
 def _ends(term: Operation, given: Bindings, search: _Search) -> tuple[int, int]:
     """The bounds of the numbers of an interval of which an end is not known."""
-    low, high = (bounds(search.number(part, given)) or (LOW, HIGH) for part in term.parts)
+    low, high = (bounds(search.number(part, given)) or (MIN_INT32, MAX_INT32) for part in term.parts)
     return low[0], high[1]
 
 

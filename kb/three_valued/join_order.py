@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from kb.language.integers import HIGH, LOW
+from kb.language.integers import MAX_INT32, MIN_INT32
 from kb.three_valued.clauses import (
     Aggregate,
     Atom,
@@ -133,9 +133,9 @@ def _ranged(literals: Iterable[Literal], bound: set[str]) -> Comparison | None:
                 number = other.value if isinstance(other, Constant) else None
                 if isinstance(one, Variable) and one.name not in bound and isinstance(number, int):
                     if way in (">", ">="):
-                        lows[one.name] = max(lows.get(one.name, LOW), number + (way == ">"))
+                        lows[one.name] = max(lows.get(one.name, MIN_INT32), number + (way == ">"))
                     if way in ("<", "<="):
-                        highs[one.name] = min(highs.get(one.name, HIGH), number - (way == "<"))
+                        highs[one.name] = min(highs.get(one.name, MAX_INT32), number - (way == "<"))
     name = next((name for name in lows if name in highs), None)
     if name is None:
         return None

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 import clingo
 
-from kb.language.arguments import Slot, short
+from kb.language.arguments import ArgumentType, abbreviated
 from kb.language.diagnostics import Span, did_you_mean
 from kb.language.terms import Number, Symbol, Text
 from kb.language.terms import Term as Word
@@ -32,7 +32,7 @@ def stated_names(rows: Mapping[Signature, Iterable[Sequence[Value]]]) -> Names:
     """Return, by the name of a slot, the constants that facts have there: they are known, whatever they are."""
     found: dict[str, set[str]] = {}
     for signature, stated in rows.items():
-        slots = BELIEF[signature].slots if signature in BELIEF else ()
+        slots = BELIEF[signature].arguments if signature in BELIEF else ()
         for row in stated:
             for slot, value in zip(slots, row, strict=False):
                 if not isinstance(value, int):
@@ -48,7 +48,7 @@ def check_body(body: Sequence[Literal], known: Collection[Signature], names: Nam
     for atom in atoms_of(tuple(body)):
         check_predicate(atom, known)
         if atom.signature in BELIEF:
-            for slot, part in zip(BELIEF[atom.signature].slots, atom.parts, strict=True):
+            for slot, part in zip(BELIEF[atom.signature].arguments, atom.parts, strict=True):
                 check_constant(slot, part, names)
     for literals in _conjunctions(body):
         slots = {name: slot for atom in literals if isinstance(atom, Atom) for name, slot in _slots_of(atom)}
@@ -67,7 +67,7 @@ def check_predicate(atom: Atom, known: Collection[Signature]) -> None:
     raise ClauseError(f"unknown predicate {name}/{arity}", atom.at, hint)
 
 
-def check_constant(slot: Slot, term: Term, names: Names) -> None:
+def check_constant(slot: ArgumentType, term: Term, names: Names) -> None:
     """Raise ClauseError when a constant cannot stand in a slot."""
     if not isinstance(term, Constant) or str(term.value) in names.get(slot.name, ()):
         return
@@ -75,7 +75,7 @@ def check_constant(slot: Slot, term: Term, names: Names) -> None:
     if complaint is not None:
         hint = did_you_mean(str(term.value), names.get(slot.name, ())) or complaint.hint
         if complaint.what.startswith("unknown"):
-            what = f"unknown constant {short(as_word(term.value))}, which is no {slot.name}"
+            what = f"unknown constant {abbreviated(as_word(term.value))}, which is no {slot.name}"
             raise ClauseError(what, term.at, hint.replace("one of ", "did you mean one of ") + "?" * ("one of" in hint))
         raise ClauseError(complaint.what, term.at, hint)
 
@@ -104,8 +104,8 @@ def _conjunctions(body: Sequence[Literal]) -> Iterator[tuple[Literal, ...]]:
             yield from _conjunctions((*part, *(one for one in body if isinstance(one, Atom))))
 
 
-def _slots_of(atom: Atom) -> Iterator[tuple[str, Slot]]:
-    slots = BELIEF[atom.signature].slots if atom.signature in BELIEF else ()
+def _slots_of(atom: Atom) -> Iterator[tuple[str, ArgumentType]]:
+    slots = BELIEF[atom.signature].arguments if atom.signature in BELIEF else ()
     for slot, part in zip(slots, atom.parts, strict=False):
         if isinstance(part, Variable) and slot.limits is None:
             yield part.name, slot

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from kb.language.vocabulary import BELIEF, Declared, Open
+from kb.language.vocabulary import BELIEF, BeliefPredicate, Open
 from kb.three_valued.uncertain_values import Unknown, Value, compare
 
 Signature = tuple[str, int]
@@ -88,7 +88,7 @@ class Beliefs:
                 index.setdefault(row[at], []).append(row)
         return index.get(fixed[at], [])
 
-    def _besides(self, signature: Signature, declared: Declared, subject: Value) -> Iterator[Row]:
+    def _besides(self, signature: Signature, declared: BeliefPredicate, subject: Value) -> Iterator[Row]:
         """Rows that may hold of what was not seen, and of what nothing is told of."""
         if declared.open is Open.NEVER:
             return
@@ -97,12 +97,12 @@ class Beliefs:
         if declared.open is Open.UNTOLD:
             for thing in self._things if subject is None else [subject]:
                 known = str(thing) in self.names and str(thing) not in declared.settled
-                if known and not self._stated(signature, [thing] + [None] * (len(declared.slots) - 1)):
+                if known and not self._stated(signature, [thing] + [None] * (len(declared.arguments) - 1)):
                     yield self._row(declared, thing)
 
-    def _row(self, declared: Declared, subject: Value) -> Row:
+    def _row(self, declared: BeliefPredicate, subject: Value) -> Row:
         """A row of which only the subject is known."""
-        values: list[Value] = [Unknown(*(slot.limits or ())) for slot in declared.slots]
+        values: list[Value] = [Unknown(*(slot.limits or ())) for slot in declared.arguments]
         values[declared.subject] = subject
         return tuple(values)
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import clingo
 
-from kb.language.integers import HIGH, LOW
+from kb.language.integers import MAX_INT32, MIN_INT32
 from kb.three_valued.arithmetic import calculate
 
 Truth = bool | None
@@ -116,7 +116,7 @@ def calculated(sign: str, *values: Value) -> Value:
     """Return the result of an operation on numbers, of which some may be unknown; raises CalculationError."""
     if not any(isinstance(value, Unknown) for value in values):
         return calculate(sign, *values)
-    ends = [bounds(value) or (LOW, HIGH) for value in values]
+    ends = [bounds(value) or (MIN_INT32, MAX_INT32) for value in values]
     if sign == "+":
         low, high = ends[0][0] + ends[1][0], ends[0][1] + ends[1][1]
     elif sign == "-" and len(ends) == 2:
@@ -127,5 +127,5 @@ def calculated(sign: str, *values: Value) -> Value:
         corners = [p * q for p in ends[0] for q in ends[1]]
         low, high = min(corners), max(corners)
     else:
-        low, high = LOW, HIGH
-    return Unknown(max(low, LOW), min(high, HIGH))
+        low, high = MIN_INT32, MAX_INT32
+    return Unknown(max(low, MIN_INT32), min(high, MAX_INT32))

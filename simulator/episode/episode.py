@@ -13,7 +13,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO
 
-from kb.language.diagnostics import ENOUGH, BadInputError, CannotOpenError, Problem, Span
+from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, Span
 from kb.language.source_text import read_bytes
 from simulator.episode.output_files import is_episode, keep_first, opened
 from simulator.episode.wellformed import HEADER, RESULT, STEP, Where, column
@@ -63,7 +63,7 @@ def read_episode(path: Path | str) -> Episode:
     for number, raw in enumerate(lines):
         check = HEADER if number == 0 else STEP if number < len(rows) else RESULT
         row = rows[number] if number < len(rows) else {"result": result}
-        problems += (_located(name, number + 1, raw, *complaint) for complaint in islice(check(row, ()), ENOUGH))
+        problems += (_located(name, number + 1, raw, *complaint) for complaint in islice(check(row, ()), MAX_PROBLEMS_PER_FILE))
         if problems:
             raise BadInputError(problems)
     return Episode(rows[0], tuple(rows[1:]), result)

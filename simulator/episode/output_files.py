@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from kb.language.diagnostics import CannotOpenError
-from kb.language.operating_system import WRITE, lock
+from kb.language.operating_system import WRITE_FLAGS, lock_file
 
 HEAD = 4096  # bytes by which the kind of a file is known
 EPISODE = b'{"utak":"episode"'
@@ -46,7 +46,7 @@ def opened(path: Path | str, kind: Kind, name: str, force: bool = False) -> Bina
     try:
         if Path(path).exists() and not Path(path).is_file():
             return Path(path).open("wb")
-        stream = os.fdopen(os.open(path, WRITE, 0o666), "r+b")
+        stream = os.fdopen(os.open(path, WRITE_FLAGS, 0o666), "r+b")
     except (OSError, ValueError) as error:
         raise CannotOpenError(str(path), getattr(error, "strerror", None) or str(error)) from None
     problem = _problem(stream, kind, name, force)
@@ -60,7 +60,7 @@ def _problem(stream: BinaryIO, kind: Kind, name: str, force: bool) -> str:
     """Why a file that was opened is not to be written; else ''."""
     if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
         return "it is no regular file"
-    if not lock(stream.fileno()):
+    if not lock_file(stream.fileno()):
         return "another process is writing to it"
     head = stream.read(HEAD)
     stream.seek(0)

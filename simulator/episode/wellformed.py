@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any
 
 from kb.body import DIRECTIONS
-from kb.language.vocabulary import MOST_SQUARES
+from kb.language.vocabulary import MAX_TABLE_SIDE
 
 Where = tuple[str, ...]  # the keys that lead to a value
 Complaint = tuple[Where, str]
@@ -135,7 +135,7 @@ ACTIONS: dict[str, dict[str, Check]] = {
     "grasp": {"direction": one_of(*DIRECTIONS)},
     "release": {},
 }
-POINT = list_of(number(-MARGIN, MOST_SQUARES + MARGIN), 2, 2)
+POINT = list_of(number(-MARGIN, MAX_TABLE_SIDE + MARGIN), 2, 2)
 RING = list_of(POINT, 3)
 RINGS = list_of(RING, 1)
 THING = keys({"colour": text(), "rings": RINGS})
@@ -154,7 +154,7 @@ HEADER = keys(
         ),
         "world": keys(
             {
-                "table": list_of(whole(1, MOST_SQUARES), 2, 2),
+                "table": list_of(whole(1, MAX_TABLE_SIDE), 2, 2),
                 "heading": whole(0, 359),
                 "verge": list_of(RINGS),
                 "fixed": names_to(THING),

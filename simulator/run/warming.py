@@ -16,7 +16,7 @@ from pathlib import Path
 
 import geometry
 from geometry.kernels.jit import tell
-from kb.language.operating_system import end_with_parent, lines_of_parent
+from kb.language.operating_system import end_with_parent, read_lines_from_parent
 from utak_command import beside
 
 PACKAGES = [Path(geometry.__file__).parent.with_name(name) for name in ("geometry", "kb", "planner", "simulator")]
@@ -257,5 +257,5 @@ def main(names: Sequence[str]) -> None:
 
 if __name__ == "__main__":
     end_with_parent()
-    threading.Thread(target=next, args=(lines_of_parent(),), daemon=True).start()
+    threading.Thread(target=next, args=(read_lines_from_parent(),), daemon=True).start()
     main(sys.argv[1:])

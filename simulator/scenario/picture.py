@@ -15,7 +15,7 @@ import numpy.typing as npt
 import shapely
 
 from geometry.raster.rasterize import squares
-from kb.language.diagnostics import ENOUGH, BadInputError, Problem, Span
+from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, Span
 from kb.language.source_text import Source, read_source
 from simulator.world.world import VERGE_COLOUR, Thing, World
 
@@ -33,7 +33,7 @@ def read_picture(path: Path | str) -> World:
     rows = [line.rstrip() for line in source.lines]
     while rows and not rows[-1]:
         rows.pop()
-    problems = list(_bad_rows(source, rows)) or list(islice(_bad_marks(source, rows), ENOUGH))
+    problems = list(_bad_rows(source, rows)) or list(islice(_bad_marks(source, rows), MAX_PROBLEMS_PER_FILE))
     if problems:
         raise BadInputError(problems)
     return _world(rows)

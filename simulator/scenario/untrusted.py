@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from kb.language.diagnostics import CannotOpenError
-from kb.language.source_text import leads_out
+from kb.language.source_text import lies_outside
 
 FILES = ("world.lp", "world.txt", "start.lp", "goal.lp", "expect.lp")
 
@@ -29,5 +29,5 @@ def refuse_links(options: argparse.Namespace, place: Path | str, root: Path | st
     files = [place / name for name in FILES] if place.is_dir() else [place]
     within = [place] if root is not None and place != Path(root) else []
     for path in [*within, *files]:
-        if path.exists() and leads_out(path, root if path in within else None):
+        if path.exists() and lies_outside(path, root if path in within else None):
             raise CannotOpenError(str(path), "it is a link out of its folder, which --untrusted refuses")

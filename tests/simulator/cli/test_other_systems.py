@@ -85,20 +85,20 @@ def test_a_worker_answers_without_limits(system: str) -> None:
 
 
 def test_what_is_missing_is_said() -> None:
-    code = "from kb.language.operating_system import lacking; print(*lacking(), sep='\\n')"
+    code = "from kb.language.operating_system import missing_features; print(*missing_features(), sep='\\n')"
     assert "memory of a question is not limited" in hidden("windows", code).stdout
     assert "not locked" in hidden("windows", code).stdout
     assert hidden("macos", code).stdout.strip() == ""
 
 
 def test_nothing_is_missing_here() -> None:
-    assert operating_system.lacking() == []
+    assert operating_system.missing_features() == []
 
 
 def test_nobody_else_asks_for_what_some_systems_lack() -> None:
     for package in ("kb", "planner", "simulator", "geometry"):
         for path in sorted((ROOT / package).rglob("*.py")):
-            if path.name == "machine.py":
+            if path.name == "operating_system.py":
                 continue
             text = path.read_text()
             for name in ("import resource", "import fcntl", "import select", "O_NONBLOCK", "O_CLOEXEC", "SIGALRM"):

@@ -10,7 +10,7 @@ import pytest
 import scripted_robot
 from random_scenes import write_scene
 
-from kb.language.source_text import leads_out, read_source
+from kb.language.source_text import lies_outside, read_source
 from simulator.cli.main import main
 from simulator.terminal import exits
 
@@ -122,10 +122,10 @@ def test_links_that_stay_inside_are_read_as_ever(scene: Path, capsys: pytest.Cap
 def test_a_linked_folder_in_a_suite_is_refused_too(scene: Path, tmp_path: Path) -> None:
     shutil.copytree(scene, tmp_path / "elsewhere")
     (scene.parent / "linked").symlink_to(tmp_path / "elsewhere")
-    assert not leads_out(scene, scene.parent)
-    assert leads_out(scene.parent / "linked", scene.parent)
-    assert leads_out(scene.parent / "linked" / "goal.lp", scene.parent)
-    assert not leads_out(scene.parent / "linked" / "goal.lp")
+    assert not lies_outside(scene, scene.parent)
+    assert lies_outside(scene.parent / "linked", scene.parent)
+    assert lies_outside(scene.parent / "linked" / "goal.lp", scene.parent)
+    assert not lies_outside(scene.parent / "linked" / "goal.lp")
     assert main(["check", str(scene.parent / "linked"), "--untrusted"]) == 0  # the user names it
 
 
