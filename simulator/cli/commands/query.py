@@ -30,7 +30,7 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Go to the step, ask, and print the answer."""
-    from kb.reasoning.query import MOST_ROWS, QueryEngine, QueryLimitError
+    from kb.reasoning.query import MAX_ANSWER_ROWS, QueryEngine, QueryLimitError
     from simulator.run.story import open_story
 
     refuse_links(options, options.story)
@@ -39,7 +39,7 @@ def execute(options: argparse.Namespace) -> int:
     step = story.line["step"]
     try:
         with QueryEngine(rules=options.kb) as engine:
-            answer = engine.ask(story.facts, options.query, options.limit or MOST_ROWS)
+            answer = engine.ask(story.facts, options.query, options.limit or MAX_ANSWER_ROWS)
     except QueryLimitError as limit:
         print(f"utak: {limit}", file=sys.stderr)
         return exits.LIMIT

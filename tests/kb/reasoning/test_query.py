@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.language.diagnostics import BadInputError
-from kb.reasoning.query import Answer, QueryEngine, QueryLimitError
+from kb.reasoning.query import QueryAnswer, QueryEngine, QueryLimitError
 
 FACTS = [
     "node(o1).",
@@ -211,7 +211,7 @@ def test_a_runaway_query_is_given_up(engine: QueryEngine, query: str) -> None:
     with pytest.raises(QueryLimitError):
         engine.ask(FACTS, query)
     assert time.monotonic() - start < 5
-    assert engine.ask(FACTS, "node(o1)") == Answer("yes")
+    assert engine.ask(FACTS, "node(o1)") == QueryAnswer("yes")
 
 
 def test_a_worker_that_dies_is_replaced(engine: QueryEngine) -> None:

@@ -12,7 +12,7 @@ from kb.language.diagnostics import BadInputError
 from kb.reasoning import user_rules
 from kb.reasoning.interfaces import REACHED
 from kb.reasoning.query import QueryEngine
-from kb.reasoning.rulebook import UNREACHED
+from kb.reasoning.rulebook import INTERNAL_PREDICATES
 from kb.reasoning.solver import KB, solve
 from kb.reasoning.user_rules import checked_rules, read_rules
 from tests.encoding_cases import ENCODINGS, case_file
@@ -82,7 +82,7 @@ def test_a_rule_that_contradicts_whatever_is_given_is_refused_at_once(tmp_path: 
 
 
 def test_a_search_that_is_cut_off_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(user_rules, "CONFLICTS", 50)
+    monkeypatch.setattr(user_rules, "MAX_CONFLICTS", 50)
     birds = "bird(1..9). hole(1..8). :- sits(B,H), sits(C,H), B < C. "
     for rules in (
         "1 { sits(B,H) : hole(H) } 1 :- bird(B).",  # there is no answer, but that is hard to prove
@@ -166,7 +166,7 @@ def test_a_rule_counts_where_all_of_it_is_known(tmp_path: Path) -> None:
     rules = read_rules(
         written(tmp_path, "p(X) :- kind(X, verge, _). q(X) :- p(X), not r(X). r(o9). s :- neck(_,W,_,_,_).")
     )
-    assert [len(rules.counting(name)) for name in ("interpretation", "shapes", "rooms", "belief")] == [3, 1, 2, 3]
+    assert [len(rules.rules_reaching(name)) for name in ("interpretation", "shapes", "rooms", "belief")] == [3, 1, 2, 3]
 
 
 def test_ones_own_predicates_can_be_asked_for(tmp_path: Path) -> None:
@@ -202,7 +202,7 @@ def test_what_goes_wrong_in_a_rule_while_asked_is_told_there(tmp_path: Path) -> 
 
 
 def test_a_runaway_rule_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(user_rules, "SECONDS", 0.5)
+    monkeypatch.setattr(user_rules, "MAX_RULE_SECONDS", 0.5)
     before = time.monotonic()
     for find in (complaint, refusal):
         said = find(tmp_path, "n(0). n(X+1) :- n(X), X < 2000000000.")
@@ -240,7 +240,7 @@ def test_the_table_of_interfaces_is_that_of_the_encodings() -> None:
         elif path.stem != "belief":
             for signature in interface:
                 unreached.setdefault(signature, set()).add(path.stem)
-    assert {signature: set(names) for signature, names in UNREACHED.items()} == unreached
+    assert {signature: set(names) for signature, names in INTERNAL_PREDICATES.items()} == unreached
 
 
 @pytest.mark.parametrize("name", REACHED)

@@ -48,7 +48,7 @@ from tests_of import scripted_robot
 scripted_robot.install()
 from simulator.cli.main import main
 sys.exit(main(sys.argv[1:]))
-""".replace("from tests_of import", f"sys.path.insert(0, {str(Path(__file__).parent)!r}); import")
+""".replace("from tests_of import", f"sys.path.insert(0, {str(Path(__file__).parents[1])!r}); import")
 
 
 @pytest.mark.parametrize("system", SYSTEMS)
