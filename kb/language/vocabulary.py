@@ -19,6 +19,7 @@ from kb.language.diagnostics import Problem, did_you_mean
 from kb.language.source_text import Source
 from kb.language.terms import Fact, Symbol, Term
 
+Signature = tuple[str, int]  # the name of a predicate and its number of arguments
 Vocabulary = Mapping[str, tuple[ArgumentType, ...]]
 
 SHAPE_CLASSES = ("square", "brick", "rectangle", "l_shape", "t_shape", "u_shape", "triangle", "disc", "polygon")

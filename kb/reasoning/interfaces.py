@@ -14,9 +14,15 @@ from kb.language.arguments import (
     pattern_argument,
     word_argument,
 )
-from kb.language.vocabulary import CONFIDENCE_ARGUMENT, CORNER_NAMES, KIND_ARGUMENT, LENGTH_ARGUMENT, SHAPE_CLASSES
+from kb.language.vocabulary import (
+    CONFIDENCE_ARGUMENT,
+    CORNER_NAMES,
+    KIND_ARGUMENT,
+    LENGTH_ARGUMENT,
+    SHAPE_CLASSES,
+    Signature,
+)
 
-Signature = tuple[str, int]
 Interface = Mapping[Signature, tuple[ArgumentType, ...]]
 
 MAX_AMOUNT = 1_000_000  # the greatest count, price or length that users' rules may derive; a convention

@@ -17,13 +17,13 @@ from kb.language import operating_system
 from kb.language.diagnostics import did_you_mean
 from kb.language.vocabulary import BELIEF
 from kb.reasoning.rule_solver import Response, read_rule_text, solve_with_rules
-from kb.three_valued.aliases import with_org
-from kb.three_valued.clauses import Clause, ClauseError, clauses_of, global_variables
+from kb.three_valued.aliases import rename_utak_to_org
+from kb.three_valued.clauses import Clause, ClauseError, global_variables, translate_rule
 from kb.three_valued.derivation import derive
-from kb.three_valued.evaluation import Bindings, bindings
-from kb.three_valued.join_order import unsafe
-from kb.three_valued.known_words import check_body, stated_names
-from kb.three_valued.open_world import Beliefs, Row
+from kb.three_valued.evaluation import Bindings, find_bindings
+from kb.three_valued.join_order import unsafe_variable_error
+from kb.three_valued.known_words import check_body, names_in_facts
+from kb.three_valued.open_world import Beliefs, FactRow
 from kb.three_valued.uncertain_values import Value
 
 MAX_MEMORY_BYTES = 1_500_000_000  # bytes of address space; a convention
@@ -83,9 +83,9 @@ def answer(
     QueryError : the text is not one query.
     RuleError : a rule cannot be evaluated.
     """
-    clauses = [with_org(clause) for clause in clauses_of(_query_as_rule(query))]
+    clauses = [rename_utak_to_org(clause) for clause in translate_rule(_query_as_rule(query))]
     beliefs = Beliefs(_facts(facts))
-    names = stated_names(beliefs.signatures())
+    names = names_in_facts(beliefs.signatures())
     defining = _clauses_of_rules(rules)
     defined = {clause.head.signature for clause in defining if clause.head is not None}
     for clause in clauses:
@@ -95,9 +95,11 @@ def answer(
     except ClauseError as error:
         raise RuleError(error) from None
     variables = list(dict.fromkeys(name for clause in clauses for name in global_variables(clause.body)))
-    rows: dict[Row, None] = {}
+    rows: dict[FactRow, None] = {}
     for clause in clauses:
-        rows |= dict.fromkeys(_row(found, variables, clause) for found in bindings(clause.body, {}, beliefs, False))
+        rows |= dict.fromkeys(
+            _row(found, variables, clause) for found in find_bindings(clause.body, {}, beliefs, False)
+        )
     found = {"variables": variables, "rows": [], "more": False}
     if rows:
         sorted_rows = sorted(([_json_value(value) for value in row] for row in rows), key=_sort_key)
@@ -106,7 +108,7 @@ def answer(
             | {"answer": "bindings" if variables else "yes", "rows": sorted_rows[:max_rows] if variables else []}
             | {"more": max_rows is not None and len(sorted_rows) > max_rows}
         )
-    possible = any(True for clause in clauses for _ in bindings(clause.body, {}, beliefs, True))
+    possible = any(True for clause in clauses for _ in find_bindings(clause.body, {}, beliefs, True))
     return found | {"answer": "don't know" if possible else "no"}
 
 
@@ -115,16 +117,16 @@ def _clauses_of_rules(rules: Sequence[str]) -> list[Clause]:
     parts: list[AST] = []
     parse_string("\n".join(rules), parts.append, logger=_record_message, message_limit=20)
     try:
-        return [clause for part in parts if part.ast_type == ASTType.Rule for clause in clauses_of(part)]
+        return [clause for part in parts if part.ast_type == ASTType.Rule for clause in translate_rule(part)]
     except ClauseError as error:
         raise RuleError(error) from None
 
 
-def _row(found: Bindings, variables: list[str], clause: Clause) -> Row:
+def _row(found: Bindings, variables: list[str], clause: Clause) -> FactRow:
     """Return the values of the variables; raise ClauseError when the query does not bind one of them."""
     missing = [name for name in variables if name not in found]
     if missing:
-        raise unsafe(missing[0], clause.at)
+        raise unsafe_variable_error(missing[0], clause.at)
     return tuple(found[name] for name in variables)
 
 
@@ -133,7 +135,7 @@ def _sort_key(row: list[Any]) -> list[tuple[bool, Any]]:
     return [(isinstance(value, str), value) for value in row]
 
 
-def _facts(entries: Iterable[Sequence[int | str]]) -> Iterator[tuple[str, Row]]:
+def _facts(entries: Iterable[Sequence[int | str]]) -> Iterator[tuple[str, FactRow]]:
     """Yield the name and the values of each fact of a request."""
     for name, *arguments in entries:
         yield str(name), tuple(term if isinstance(term, int) else _parse_term(term) for term in arguments)

@@ -21,7 +21,7 @@ from clingo.ast import (
 )
 
 from kb.three_valued.arithmetic import CalculationError, calculate
-from kb.three_valued.clauses import BINARY, UNARY, ClauseError, place_of
+from kb.three_valued.clauses import BINARY_SIGNS, UNARY_SIGNS, ClauseError, place_of
 
 KEPT_STATEMENTS = (ASTType.Rule, ASTType.Minimize, ASTType.Defined)
 # Constants are substituted, and queries decide what is shown: these statements have no effect of their own.
@@ -202,14 +202,14 @@ class _ArithmeticRewriter(Transformer):
     """Replaces arithmetic by calls of the calculator."""
 
     def visit_BinaryOperation(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        return self._call(node, BINARY[node.operator_type], [self.visit(node.left), self.visit(node.right)])
+        return self._call(node, BINARY_SIGNS[node.operator_type], [self.visit(node.left), self.visit(node.right)])
 
     def visit_UnaryOperation(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
         if node.argument.ast_type == ASTType.SymbolicTerm:
             number = node.argument.symbol
-            if UNARY[node.operator_type] == "-" and number.type == clingo.SymbolType.Number:
+            if UNARY_SIGNS[node.operator_type] == "-" and number.type == clingo.SymbolType.Number:
                 return node  # a negative number
-        return self._call(node, UNARY[node.operator_type], [self.visit(node.argument)])
+        return self._call(node, UNARY_SIGNS[node.operator_type], [self.visit(node.argument)])
 
     def visit_Function(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
         if node.external:

@@ -13,8 +13,8 @@ from kb.language.diagnostics import BadInputError, Problem, Span, did_you_mean
 from kb.language.reader import facts_of
 from kb.language.source_text import Source
 from kb.language.terms import Fact
-from kb.language.vocabulary import BELIEF
-from kb.reasoning.interfaces import DEFINING_FACTS, REACHED, READ_ONLY, TRANSIENT_NUMBERS, Signature
+from kb.language.vocabulary import BELIEF, Signature
+from kb.reasoning.interfaces import DEFINING_FACTS, REACHED, READ_ONLY, TRANSIENT_NUMBERS
 
 QUERY_INTERFACE = "belief"  # the name under which the facts that queries read stand among the encodings
 # Predicates of encodings that users' rules do not reach, and those encodings.

@@ -20,7 +20,8 @@ from kb.language.reader import MAX_TERM_DEPTH, facts_of
 from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact
 from kb.language.tokens import tokenize
-from kb.reasoning.interfaces import REACHED, Signature
+from kb.language.vocabulary import Signature
+from kb.reasoning.interfaces import REACHED
 from kb.reasoning.rulebook import INTERFACE_PREDICATES, Rulebook, Statement, statement_of, why_not_in_domain
 from kb.reasoning.solver import KB
 from kb.reasoning.worker import Worker

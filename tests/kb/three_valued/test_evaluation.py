@@ -29,10 +29,10 @@ def by_clingo(facts: list[str], query: str, variables: tuple[str, ...]) -> set[t
     control.add("base", [], "\n".join([*(f"{fact}." for fact in facts), rules, f"{head} :- {query}."]))
     control.ground([("base", [])])
     found = control.symbolic_atoms.by_signature("q__", len(variables))
-    return {tuple(plain(term) for term in atom.symbol.arguments) for atom in found}
+    return {tuple(from_clingo(term) for term in atom.symbol.arguments) for atom in found}
 
 
-def plain(term: clingo.Symbol) -> object:
+def from_clingo(term: clingo.Symbol) -> object:
     return term.number if term.type == clingo.SymbolType.Number else str(term)
 
 
