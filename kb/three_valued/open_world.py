@@ -111,7 +111,7 @@ class Beliefs:
         return index.get(fixed[at], [])
 
     def _open_rows(self, signature: Signature, declared: BeliefPredicate, subject: Value) -> Iterator[FactRow]:
-        """Yield the rows that may hold for things not seen yet, and for known things of which no such fact is believed."""
+        """Yield the rows that may hold for things not seen yet, and for known things without such a fact."""
         if declared.open is Open.NEVER:
             return
         if not self.everything_seen and (subject is None or str(subject) not in self.known_names):

@@ -66,7 +66,7 @@ def test_a_step_may_come_again(tmp_path: Path) -> None:
 
 
 def test_goals_name_parameters(tmp_path: Path) -> None:
-    assert task(tmp_path, START, "first(at(utak, x)). then(through(y, d)).").named == {"x", "y", "d"}
+    assert task(tmp_path, START, "first(at(utak, x)). then(through(y, d)).").goal_parameters == {"x", "y", "d"}
 
 
 BAD = {
