@@ -63,7 +63,9 @@ def read_episode(path: Path | str) -> Episode:
     for number, raw in enumerate(lines):
         check = HEADER if number == 0 else STEP if number < len(rows) else RESULT
         row = rows[number] if number < len(rows) else {"result": result}
-        problems += (_located(name, number + 1, raw, *complaint) for complaint in islice(check(row, ()), MAX_PROBLEMS_PER_FILE))
+        problems += (
+            _located(name, number + 1, raw, *complaint) for complaint in islice(check(row, ()), MAX_PROBLEMS_PER_FILE)
+        )
         if problems:
             raise BadInputError(problems)
     return Episode(rows[0], tuple(rows[1:]), result)
