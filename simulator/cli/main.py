@@ -7,7 +7,7 @@ from types import FrameType
 
 from utak_command import exit_at_ctrl_c, find_ours_here
 
-SOON = 0.01  # seconds after which what Python ignores is over
+REPEAT_DELAY_SECONDS = 0.01  # seconds after which what Python ignores is over
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -21,15 +21,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         find_ours_here()
         from simulator.cli import parsing  # noqa: F401 (all that is imported before anything is done)
-        from simulator.terminal.streams import fill_gaps, guarded
+        from simulator.terminal.streams import guard_streams, open_missing_streams
 
         if arguments is None:
-            fill_gaps()
+            open_missing_streams()
             interrupts.take()
-        with guarded() as (_, err):
-            code = _guarded(arguments, interrupts)
+        with guard_streams() as (_, err):
+            code = _run_reporting_errors(arguments, interrupts)
             err.flush()
-        return _code(code, err.lost)
+        return _final_code(code, err.lost)
     except KeyboardInterrupt:
         return 130  # before or after everything
     finally:
@@ -61,7 +61,7 @@ class _Interrupts:
         if issubclass(lost.exc_type, KeyboardInterrupt):
             from threading import Timer
 
-            Timer(SOON, signal_again).start()
+            Timer(REPEAT_DELAY_SECONDS, signal_again).start()
         else:
             sys.__unraisablehook__(lost)
 
@@ -77,7 +77,7 @@ def signal_again() -> None:
     _thread.interrupt_main()
 
 
-def _guarded(arguments: Sequence[str] | None, interrupts: _Interrupts) -> int:
+def _run_reporting_errors(arguments: Sequence[str] | None, interrupts: _Interrupts) -> int:
     """Run, with streams to which all can be written, and return the exit code."""
     from kb.language.diagnostics import BadInputError, CannotOpenError
     from simulator.terminal import exits
@@ -85,49 +85,49 @@ def _guarded(arguments: Sequence[str] | None, interrupts: _Interrupts) -> int:
     from simulator.terminal.streams import StreamError
 
     try:
-        code = _executed(arguments)
+        code = _parse_and_execute(arguments)
         sys.stdout.flush()
     except BadInputError as bad:
-        return _say(exits.BAD_INPUT, str(bad))
+        return _print_error(exits.BAD_INPUT, str(bad))
     except CannotOpenError as absent:
-        return _say(exits.CANNOT_OPEN, f"utak: {absent}")
+        return _print_error(exits.CANNOT_OPEN, f"utak: {absent}")
     except KeyboardInterrupt:
-        return _say(exits.INTERRUPTED, "utak: interrupted")
+        return _print_error(exits.INTERRUPTED, "utak: interrupted")
     except BrokenPipeError:
         return exits.NO_READER
     except StreamError as lost:
-        return _say(exits.LOST_OUTPUT, f"utak: {lost}")
+        return _print_error(exits.LOST_OUTPUT, f"utak: {lost}")
     except Exception as bug:
         if interrupts.seen:
-            return _say(exits.INTERRUPTED, "utak: interrupted")
+            return _print_error(exits.INTERRUPTED, "utak: interrupted")
         if os.environ.get("UTAK_DEBUG"):
             raise
-        return _say(exits.OUR_BUG, bug_message(bug))
+        return _print_error(exits.OUR_BUG, bug_message(bug))
     return code
 
 
-def _executed(arguments: Sequence[str] | None) -> int:
-    from simulator.cli.parsing import parser
+def _parse_and_execute(arguments: Sequence[str] | None) -> int:
+    from simulator.cli.parsing import build_parser
     from simulator.terminal import exits
 
     try:
-        options = parser().parse_args(arguments)
+        options = build_parser().parse_args(arguments)
     except SystemExit as stop:  # argparse has said what is wrong, or has printed the help
         return stop.code if isinstance(stop.code, int) else exits.USAGE
     code: int = options.execute(options)
     return code
 
 
-def _say(code: int, message: str) -> int:
+def _print_error(code: int, message: str) -> int:
     print(message, file=sys.stderr)
     return code
 
 
-def _code(code: int, lost: str) -> int:
+def _final_code(code: int, lost: str) -> int:
     """The exit code, when something could not be said on the standard error: then it did not go well."""
     from simulator.terminal import exits
 
-    return exits.LOST_OUTPUT if lost and code == exits.DONE else code
+    return exits.LOST_OUTPUT if lost and code == exits.SUCCESS else code
 
 
 if __name__ == "__main__":

@@ -11,14 +11,14 @@ from typing import BinaryIO
 from kb.language.diagnostics import CannotOpenError
 from kb.language.operating_system import WRITE_FLAGS, lock_file
 
-HEAD = 4096  # bytes by which the kind of a file is known
-EPISODE = b'{"utak":"episode"'
+HEAD_BYTES = 4096  # bytes by which the kind of a file is known
+EPISODE_START = b'{"utak":"episode"'
 Kind = Callable[[bytes], bool]
 
 
 def is_episode(head: bytes) -> bool:
     """Return whether a file that begins so is an episode, even one whose first line was cut short."""
-    return bool(re.match(rb'\s*\{\s*"utak"\s*:\s*"episode"', head)) or EPISODE.startswith(head)
+    return bool(re.match(rb'\s*\{\s*"utak"\s*:\s*"episode"', head)) or EPISODE_START.startswith(head)
 
 
 def is_rows(head: bytes) -> bool:
@@ -62,7 +62,7 @@ def _problem(stream: BinaryIO, kind: Kind, name: str, force: bool) -> str:
         return "it is no regular file"
     if not lock_file(stream.fileno()):
         return "another process is writing to it"
-    head = stream.read(HEAD)
+    head = stream.read(HEAD_BYTES)
     stream.seek(0)
     if head and not force and not kind(head):
         return f"it is no {name}, and is not overwritten without --force"

@@ -8,13 +8,13 @@ import shapely
 from geometry.motion.se2 import Motion, Translate
 from kb.body import Command, Grasp, Release, Turn
 from kb.language.source_text import read_source
-from simulator.episode.episode import VERSION, Line
+from simulator.episode.episode import EPISODE_VERSION, EpisodeLine
 from simulator.scenario.scenario import Scenario
 from simulator.scenario.settings import Settings
 from simulator.world.world import Thing, World
 
 
-def action_entry(command: Command | None) -> Line | None:
+def action_entry(command: Command | None) -> EpisodeLine | None:
     """Return a command as an episode states it, in Utak's frame."""
     if command is None:
         return None
@@ -28,7 +28,7 @@ def action_entry(command: Command | None) -> Line | None:
     return {"do": do, "east": command.east, "north": command.north}
 
 
-def motion_entry(motion: Motion | None) -> Line | None:
+def motion_entry(motion: Motion | None) -> EpisodeLine | None:
     """Return what really happened as an episode states it, in the table's frame."""
     if motion is None:
         return None
@@ -37,7 +37,7 @@ def motion_entry(motion: Motion | None) -> Line | None:
     return {"rotate": motion.degrees, "about": list(motion.about)}
 
 
-def header(scenario: Scenario, settings: Settings) -> Line:
+def header(scenario: Scenario, settings: Settings) -> EpisodeLine:
     """Return the first line of an episode: options, world and task, without times or paths."""
     world, task = scenario.world, scenario.task
     rules = [read_source(path).text for path in settings.kb_files]
@@ -55,11 +55,17 @@ def header(scenario: Scenario, settings: Settings) -> Line:
         "goals": [str(goal) for goal in task.goals],
         "expect": None if scenario.expectations is None else [str(fact) for fact in scenario.expectations],
     }
-    return {"utak": "episode", "version": VERSION, "options": options, "world": _world_entry(world), "task": told}
+    return {
+        "utak": "episode",
+        "version": EPISODE_VERSION,
+        "options": options,
+        "world": _world_entry(world),
+        "task": told,
+    }
 
 
-def _world_entry(world: World) -> Line:
-    def entry(thing: Thing) -> Line:
+def _world_entry(world: World) -> EpisodeLine:
+    def entry(thing: Thing) -> EpisodeLine:
         return {"colour": thing.colour, "rings": _rings(thing.polygon)}
 
     return {
@@ -77,7 +83,7 @@ def _rings(polygon: Any) -> list[list[list[float]]]:
     return [[[float(x), float(y)] for x, y in ring.coords[:-1]] for ring in rings]
 
 
-def recorded_world(head: Line) -> World:
+def recorded_world(head: EpisodeLine) -> World:
     """Return the world that an episode's header records, as far as a picture needs it: Utak stands at (0, 0).
 
     Raises KeyError, TypeError or ValueError when the header is not as `header` makes it.
@@ -89,5 +95,5 @@ def recorded_world(head: Line) -> World:
     return World(int(width), int(height), verge, movable, fixed, (0.0, 0.0), int(entry["heading"]))
 
 
-def _thing(name: str, entry: Line) -> Thing:
+def _thing(name: str, entry: EpisodeLine) -> Thing:
     return Thing(name, str(entry["colour"]), shapely.Polygon(entry["rings"][0], entry["rings"][1:]))

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from types import FrameType
 
 
-class Pressed:
+class InterruptCount:
     """Whether Ctrl-C was pressed while something was not to be broken off."""
 
     times = 0
@@ -17,7 +17,7 @@ class Pressed:
 
 
 @contextmanager
-def deferred(tell: Callable[[], object]) -> Iterator[Pressed]:
+def defer_interrupt(tell: Callable[[], object]) -> Iterator[InterruptCount]:
     """Keep the first Ctrl-C until the end of the block, where the value that is given tells of it.
 
     The second breaks the block off, by KeyboardInterrupt. Where this is not the main thread, or Ctrl-C is ignored,
@@ -27,7 +27,7 @@ def deferred(tell: Callable[[], object]) -> Iterator[Pressed]:
     ----------
     tell : called at the first one.
     """
-    pressed, before = Pressed(), signal.getsignal(signal.SIGINT)
+    pressed, before = InterruptCount(), signal.getsignal(signal.SIGINT)
     if not callable(before) or threading.current_thread() is not threading.main_thread():
         yield pressed
         return

@@ -6,14 +6,14 @@ from typing import Any, Protocol
 
 from kb.body import Body, Command, Impression
 from kb.task.task import Task
-from simulator.episode.episode import EpisodeLog, Line
+from simulator.episode.episode import EpisodeLine, EpisodeLog
 from simulator.episode.record import action_entry, header, motion_entry
 from simulator.run.embodiment import Embodiment
 from simulator.scenario.expectation import Snapshot, should_fail, unmet
 from simulator.scenario.scenario import Scenario
 from simulator.scenario.settings import Settings
 from simulator.world.physics import Tabletop
-from simulator.world.world import ring_of
+from simulator.world.world import outer_ring
 
 
 class StepReportProtocol(Protocol):
@@ -76,7 +76,7 @@ class Result:
     unmet: tuple[str, ...] = field(default=())
 
     @property
-    def line(self) -> Line:
+    def line(self) -> EpisodeLine:
         """The last line of the episode."""
         names = ("believed", "achieved", "verdict", "reason", "steps")
         return {"result": {name: getattr(self, name) for name in names}}
@@ -89,16 +89,16 @@ class Session:
         self.scenario, self.settings = scenario, settings
         self.table = Tabletop(scenario.world, settings.noise, settings.seed)
         self.robot = make(Embodiment(self.table), scenario.task, settings)
-        self.line: Line = {}
+        self.line: EpisodeLine = {}
         self._log = log
         self._track: list[Snapshot] = []
 
-    def wake(self) -> Line:
+    def wake(self) -> EpisodeLine:
         """Write the header, let the robot wake, and write step 0."""
         self._log.write(header(self.scenario, self.settings))
         return self._record(self.robot.wake())
 
-    def step(self) -> Line:
+    def step(self) -> EpisodeLine:
         """Let the robot act once, and write what happened. A step without a command is not written."""
         report = self.robot.step()
         return self.line if report.command is None else self._record(report)
@@ -128,7 +128,7 @@ class Session:
             watch(self)
         return self.end()
 
-    def _record(self, report: StepReportProtocol) -> Line:
+    def _record(self, report: StepReportProtocol) -> EpisodeLine:
         table, number = self.table, len(self._track)
         self._track.append(Snapshot(number, table.utak, dict(table.polygons)))
         self.line = {
@@ -137,7 +137,7 @@ class Session:
             "motion": motion_entry(table.motion),
             "utak": list(table.utak),
             "held": table.held,
-            "objects": {name: [list(point) for point in ring_of(shape)] for name, shape in table.polygons.items()},
+            "objects": {name: [list(point) for point in outer_ring(shape)] for name, shape in table.polygons.items()},
             "retina": list(report.impression.retina),
             "touch": list(report.impression.touch),
             "belief": report.belief,

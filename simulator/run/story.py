@@ -9,7 +9,7 @@ import shapely
 from kb.language.diagnostics import BadInputError, Problem, Span
 from kb.language.reader import parse_facts
 from kb.language.source_text import decode
-from simulator.episode.episode import Episode, EpisodeLog, Line, read_episode
+from simulator.episode.episode import Episode, EpisodeLine, EpisodeLog, read_episode
 from simulator.episode.record import recorded_world
 from simulator.run.robots import make_robot
 from simulator.run.session import Session
@@ -22,11 +22,11 @@ class Story(Protocol):
     """A sequence of episode lines with a place in it."""
 
     @property
-    def line(self) -> Line:
+    def line(self) -> EpisodeLine:
         """The line of the step at which the story stands."""
 
     @property
-    def result(self) -> Line | None:
+    def result(self) -> EpisodeLine | None:
         """How it ended, once it has: `believed`, `achieved`, `verdict`, `reason`, `steps`."""
 
     def advance(self) -> bool:
@@ -40,16 +40,16 @@ class Story(Protocol):
         """The table at this step."""
 
 
-class Moment(NamedTuple):
+class RunState(NamedTuple):
     """What is known of a run after one of its steps: its line, its end, where things lay and where Utak stood."""
 
-    line: Line
-    result: Line | None
+    line: EpisodeLine
+    result: EpisodeLine | None
     polygons: Mapping[str, Any]
     utak: tuple[float, float]
 
 
-class Running:
+class LiveStory:
     """A run of the robot in a scenario; it wakes at once.
 
     A step is whole or did not happen. One that was broken off, at whatever point, leaves a robot and a table that
@@ -65,16 +65,16 @@ class Running:
         session = begin()
         session.wake()
         self._world = session.table.world
-        self._moment = _moment(session)
+        self._moment = _run_state(session)
         self._session: Session | None = session
 
     @property
-    def line(self) -> Line:
+    def line(self) -> EpisodeLine:
         """The line of the last step."""
         return self._moment.line
 
     @property
-    def result(self) -> Line | None:
+    def result(self) -> EpisodeLine | None:
         """How it ended, once it has."""
         return self._moment.result
 
@@ -85,7 +85,7 @@ class Running:
         session = self._session or self._repeated()
         self._session = None  # whatever breaks this off, the session is not gone on with
         session.step()
-        self._moment = _moment(session)
+        self._moment = _run_state(session)
         self._session = session
         return True
 
@@ -107,14 +107,14 @@ class Running:
         return session
 
 
-def _moment(session: Session) -> Moment:
+def _run_state(session: Session) -> RunState:
     """What is known after a step of a session; it is ended when the robot has come to a verdict."""
     result = session.end().line["result"] if session.finished else None
     table = session.table
-    return Moment(session.line, result, dict(table.polygons), table.utak)
+    return RunState(session.line, result, dict(table.polygons), table.utak)
 
 
-class Recorded:
+class RecordedStory:
     """An episode that was written to a file."""
 
     def __init__(self, name: str, episode: Episode) -> None:
@@ -122,12 +122,12 @@ class Recorded:
         self._at = 0
 
     @property
-    def line(self) -> Line:
+    def line(self) -> EpisodeLine:
         """The line of this step."""
         return self._episode.steps[self._at]
 
     @property
-    def result(self) -> Line | None:
+    def result(self) -> EpisodeLine | None:
         """How it ended, at the last step."""
         return self._episode.result if self._at == len(self._episode.steps) - 1 else None
 
@@ -169,14 +169,14 @@ def open_story(path: Path | str, settings: Settings) -> Story:
     """
     if Path(path).is_dir():
         scenario = read_scenario(path)
-        return Running(lambda: Session(scenario, settings, make_robot, EpisodeLog(None)))
+        return LiveStory(lambda: Session(scenario, settings, make_robot, EpisodeLog(None)))
     episode = read_episode(path)
     if not episode.steps:
         raise BadInputError([Problem(str(path), Span(1, 1, 1), "the episode ends before its first step")])
-    return Recorded(str(path), episode)
+    return RecordedStory(str(path), episode)
 
 
-def facts_of_line(line: Line) -> list[str]:
+def facts_of_line(line: EpisodeLine) -> list[str]:
     """Return the world model of a step as facts; empty when the step records none."""
     belief: Any = line.get("belief")
     facts: Any = belief.get("facts") if isinstance(belief, dict) else None

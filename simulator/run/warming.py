@@ -29,17 +29,17 @@ def warm(carrying: bool, paths: str = "skeleton") -> None:
     """
     if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
         return
-    missing = cold([search, *([carry] if carrying else []), *([sightlines] if paths == "visibility" else [])])
+    missing = uncompiled([search, *([carry] if carrying else []), *([sightlines] if paths == "visibility" else [])])
     if not missing:
         return
     tell()
-    mine, others = HALVES[carrying] if search in missing else ((), ())
+    mine, others = PROCESS_SPLIT[carrying] if search in missing else ((), ())
     _compile_beside([*mine, *(use for use in missing if use not in (*mine, *others))], others)
 
 
 def warm_all() -> None:
     """Compile the kernels for everything, in two processes; those that are in the cache are loaded."""
-    mine, others = HALVES[True]
+    mine, others = PROCESS_SPLIT[True]
     _compile_beside((*mine, move), (*others, sightlines, change))
 
 
@@ -61,13 +61,13 @@ def _compile_beside(mine: Sequence[Callable[[], None]], others: Sequence[Callabl
             raise
 
 
-def cold(uses: Collection[Callable[[], None]]) -> list[Callable[[], None]]:
+def uncompiled(uses: Collection[Callable[[], None]]) -> list[Callable[[], None]]:
     """Return the uses whose kernels are not in the cache of this installation."""
     places = [place for place in _caches() if place.is_dir()]
-    return [use for use in uses if not any(next(place.rglob(f"{INDEX[use]}-*.nbi"), None) for place in places)]
+    return [use for use in uses if not any(next(place.rglob(f"{LONGEST_KERNEL[use]}-*.nbi"), None) for place in places)]
 
 
-def kept() -> int:
+def count_cached_kernels() -> int:
     """Return how many of our kernels are in the cache."""
     names = {path.stem for path in Path(geometry.__file__).parent.rglob("*.py")}
     found = {path.name.split("-")[0] for place in _caches() if place.is_dir() for path in place.rglob("*.nbi")}
@@ -239,19 +239,19 @@ def carry() -> None:
     plan_carrying(shapely.box(3, 2, 5, 3), free, (1.5, 1.5), Inside(shapely.box(10, 0, 16, 6)))
 
 
-HALVES: dict[bool, tuple[tuple[Callable[[], None], ...], ...]] = {
+PROCESS_SPLIT: dict[bool, tuple[tuple[Callable[[], None], ...], ...]] = {
     False: ((search, walk), (see, survey, tell_shapes)),
     True: ((search, see), (survey, tell_shapes, walk, carry)),
 }
 
 
-INDEX = {search: "router.itineraries", carry: "astar.haul", sightlines: "visibility_graph.line_open"}
+LONGEST_KERNEL = {search: "router.itineraries", carry: "astar.haul", sightlines: "visibility_graph.line_open"}
 """A kernel of each use by whose index in numba's cache the use is known to have been compiled: the longest."""
 
 
 def main(names: Sequence[str]) -> None:
     """Compile for the uses of these names: the work of the other process."""
-    uses = {use.__name__: use for use in (*(use for half in HALVES[True] for use in half), sightlines, change)}
+    uses = {use.__name__: use for use in (*(use for half in PROCESS_SPLIT[True] for use in half), sightlines, change)}
     compile_for([uses[name] for name in names])
 
 

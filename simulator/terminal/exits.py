@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-DONE = 0
+SUCCESS = 0
 NOT_REACHED = 1  # it ran, and the goal is not reached: the verdict says why
 USAGE = 2
 BAD_INPUT = 65
@@ -13,9 +13,9 @@ LIMIT = 75
 INTERRUPTED = 130
 NO_READER = 141  # whoever read our output went away
 
-FROM_THE_WORST = (OUR_BUG, CANNOT_OPEN, BAD_INPUT, LIMIT, NOT_REACHED, DONE)
+SEVERITY_ORDER = (OUR_BUG, CANNOT_OPEN, BAD_INPUT, LIMIT, NOT_REACHED, SUCCESS)
 
 
 def worst(codes: Iterable[int]) -> int:
     """Return the code that stands for several: a bug before an absent file before bad input before a failure."""
-    return min(codes, key=FROM_THE_WORST.index, default=DONE)
+    return min(codes, key=SEVERITY_ORDER.index, default=SUCCESS)

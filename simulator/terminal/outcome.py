@@ -9,10 +9,10 @@ from kb.language.diagnostics import BadInputError, CannotOpenError
 from simulator.terminal import exits
 from simulator.terminal.streams import StreamError
 
-P = ParamSpec("P")
+_Parameters = ParamSpec("_Parameters")
 
 
-def attempt(do: Callable[P, int], *args: P.args, **kwargs: P.kwargs) -> int:
+def attempt(do: Callable[_Parameters, int], *args: _Parameters.args, **kwargs: _Parameters.kwargs) -> int:
     """Do something and return its exit code, or that of what went wrong, which is told on the standard error.
 
     A broken stream and Ctrl-C end everything. With UTAK_DEBUG set a bug does, too.

@@ -9,10 +9,10 @@ from typing import Any
 
 from kb.language.diagnostics import BadInputError, CannotOpenError, did_you_mean
 from kb.reasoning.query import VOCABULARY, QueryEngine, QueryLimitError
-from simulator.run.interrupts import deferred
+from simulator.run.interrupts import defer_interrupt
 from simulator.run.story import Story
 from simulator.terminal.action_in_words import describe
-from simulator.terminal.streams import StreamError, shown
+from simulator.terminal.streams import StreamError, escape_controls
 
 HELP = """\
 ?- QUERY.     ask what Utak believes: ?- object(X), shape(X, square, C).
@@ -25,7 +25,7 @@ quit          leave (so does the end of the input)
 
 In facts, places and lengths are whole hundredths of a square, in the robot's frame: east and north from where it woke,
 north being the way it faced then. Confidences are percent. The robot is called utak in questions, and org in facts."""
-TRUTH = "the true table, which the robot may believe to be otherwise:"
+TRUE_TABLE_NOTICE = "the true table, which the robot may believe to be otherwise:"
 
 
 class Prompt:
@@ -38,8 +38,8 @@ class Prompt:
             "?-": self._ask,
             "facts": self._facts,
             "help": lambda rest: self._say(HELP),
-            "run": lambda rest: self._go(None),
-            "show": lambda rest: self._say(f"{TRUTH}\n{self._story.picture()}".rstrip("\n")),
+            "run": lambda rest: self._advance(None),
+            "show": lambda rest: self._say(f"{TRUE_TABLE_NOTICE}\n{self._story.picture()}".rstrip("\n")),
             "step": self._step,
         }
 
@@ -79,7 +79,7 @@ class Prompt:
 
     def _facts(self, rest: str) -> None:
         word = rest.removesuffix(".")
-        facts = [fact for fact in self._story.facts if not word or word in _names(fact)]
+        facts = [fact for fact in self._story.facts if not word or word in _words_of(fact)]
         self._say("\n".join(facts) if facts else "none")
 
     def _step(self, rest: str) -> None:
@@ -87,30 +87,31 @@ class Prompt:
         if not (count.isascii() and count.isdigit() and 0 < int(count[:9]) <= 1_000_000):
             self._say(f"step takes a number of steps, not {rest}")
             return
-        self._go(int(count[:9]))
+        self._advance(int(count[:9]))
 
-    def _go(self, count: int | None) -> None:
+    def _advance(self, count: int | None) -> None:
         """Go on by some steps, or to the end."""
         done = 0
         while done != count:
-            with deferred(self._tell_of_ctrl_c) as pressed:
+            with defer_interrupt(self._announce_interrupt) as pressed:
                 moved = self._story.advance()
             if not moved:
                 break
             done += 1
             line = self._story.line
-            self._say(f"step {line['step']}: {describe(line.get('action'))}: {shown(str(line.get('why', '')), False)}")
+            why = escape_controls(str(line.get("why", "")), False)
+            self._say(f"step {line['step']}: {describe(line.get('action'))}: {why}")
             if pressed:
                 self._say("interrupted")
                 return
         result: Any = self._story.result
         if result is not None:
-            reason = shown(str(result["reason"]), False)
+            reason = escape_controls(str(result["reason"]), False)
             self._say(f"{result['verdict']} after {result['steps']} steps: {reason}")
         elif done == 0:
             self._say("there are no more steps")
 
-    def _tell_of_ctrl_c(self) -> None:
+    def _announce_interrupt(self) -> None:
         with suppress(RuntimeError):  # something is being printed just now
             self._say("the step comes to its end first; Ctrl-C once more breaks it off, and it did not happen")
 
@@ -119,7 +120,7 @@ class Prompt:
         self._say(f"unknown command {name[:40]}; {hint or 'help lists what there is, ?- asks'}")
 
 
-def _names(fact: str) -> set[str]:
+def _words_of(fact: str) -> set[str]:
     """The words of a fact."""
     return set("".join(char if char.isalnum() or char == "_" else " " for char in fact).split())
 

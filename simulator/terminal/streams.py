@@ -8,14 +8,16 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 # Control characters but the line end, marks that turn the direction of text, line separators, undecoded bytes.
-HARMFUL = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ud800-\udfff]")
+UNSAFE_CHARACTERS = re.compile(
+    "[\x00-\x09\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ud800-\udfff]"
+)
 
 
 class StreamError(Exception):
     """A standard stream is closed, full or cannot be read; the message names it."""
 
 
-def shown(text: str, lines: bool = True) -> str:
+def escape_controls(text: str, lines: bool = True) -> str:
     r"""Return a text with all that a terminal would obey written out, in the form that JSON has for it.
 
     Parameters
@@ -25,11 +27,11 @@ def shown(text: str, lines: bool = True) -> str:
     >>> shown("red \x1b[31m")
     'red \\u001b[31m'
     """
-    clean = HARMFUL.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
+    clean = UNSAFE_CHARACTERS.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
     return clean if lines else clean.replace("\n", "\\n")
 
 
-class Guarded:
+class GuardedStream:
     """A text stream to which nothing harmful is written.
 
     Parameters
@@ -54,7 +56,7 @@ class Guarded:
 
     def write(self, text: str) -> int:
         """Write a text; characters that the stream's encoding lacks are written out."""
-        clean = shown(text)
+        clean = escape_controls(text)
         encoding = getattr(self._stream, "encoding", None) or "utf-8"
         self._attempt("write", clean.encode(encoding, "backslashreplace").decode(encoding))
         return len(text)
@@ -95,10 +97,13 @@ class Guarded:
 
 
 @contextmanager
-def guarded() -> Iterator[tuple[Guarded, Guarded]]:
+def guard_streams() -> Iterator[tuple[GuardedStream, GuardedStream]]:
     """Guard the standard output and the standard error for a while; gives both."""
     before = sys.stdout, sys.stderr
-    out, err = Guarded(sys.stdout, "the standard output", True), Guarded(sys.stderr, "the standard error", False)
+    out, err = (
+        GuardedStream(sys.stdout, "the standard output", True),
+        GuardedStream(sys.stderr, "the standard error", False),
+    )
     sys.stdout, sys.stderr = out, err
     try:
         yield out, err
@@ -106,7 +111,7 @@ def guarded() -> Iterator[tuple[Guarded, Guarded]]:
         sys.stdout, sys.stderr = before
 
 
-def fill_gaps() -> None:
+def open_missing_streams() -> None:
     """Open the standard streams that are closed to nowhere: else the next file opened would get the number of one."""
     with suppress(OSError):
         while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:

@@ -8,10 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, Span
-from simulator.scenario.untrusted import add_option, refuse_links
+from simulator.scenario.untrusted import add_untrusted_option, refuse_links
 from simulator.terminal import exits
 
-TOLD = {exits.DONE: "ok", exits.BAD_INPUT: "bad", exits.CANNOT_OPEN: "cannot be opened", exits.OUR_BUG: "a bug of ours"}
+OUTCOME_WORDS = {
+    exits.SUCCESS: "ok",
+    exits.BAD_INPUT: "bad",
+    exits.CANNOT_OPEN: "cannot be opened",
+    exits.OUR_BUG: "a bug of ours",
+}
 
 
 def add(parts: Any) -> None:
@@ -19,7 +24,7 @@ def add(parts: Any) -> None:
     part = parts.add_parser("check", help="check scenarios or single files of them")
     what = "a scenario, a folder of them, a file of one, or a file of rules for --kb"
     part.add_argument("paths", nargs="+", metavar="FILE|FOLDER", help=what)
-    add_option(part)
+    add_untrusted_option(part)
     part.set_defaults(execute=execute)
 
 
@@ -30,11 +35,14 @@ def execute(options: argparse.Namespace) -> int:
     codes = []
     for root, path in [(Path(given), part) for given in options.paths for part in _parts(Path(given))]:
         codes.append(attempt(_check, path, root, options))
-        if codes[-1] == exits.DONE:
+        if codes[-1] == exits.SUCCESS:
             print(f"{path}: ok")
     if len(codes) > 1:
         counts = Counter(codes)
-        print(", ".join(f"{counts[code]} {told}" for code, told in TOLD.items() if counts[code]), file=sys.stderr)
+        print(
+            ", ".join(f"{counts[code]} {words}" for code, words in OUTCOME_WORDS.items() if counts[code]),
+            file=sys.stderr,
+        )
     return exits.worst(codes)
 
 
@@ -53,7 +61,7 @@ def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
     refuse_links(options, path, root)
     if path.is_dir():
         read_scenario(path)
-        return exits.DONE
+        return exits.SUCCESS
     check = _checks().get(path.name)
     if check is None:
         if not path.exists():
@@ -65,7 +73,7 @@ def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
             hint = f"a scenario's files are {', '.join(sorted(_checks()))}; files of rules end in .lp"
             raise BadInputError([Problem(str(path), Span(1, 1, 1), what, hint=hint)])
     check(path)
-    return exits.DONE
+    return exits.SUCCESS
 
 
 def _rules(path: Path) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 from kb.language.diagnostics import CannotOpenError
 from simulator.terminal import exits
 
-FILES = {
+NEW_SCENARIO_FILES = {
     "world.txt": """\
 bbbbbbbbbbbbbbbbbbbbbbbb
 b......................b
@@ -56,10 +56,10 @@ def execute(options: argparse.Namespace) -> int:
         folder.mkdir(parents=True, exist_ok=True)
         if any(folder.iterdir()):
             raise CannotOpenError(str(folder), "it is there already, and not empty")
-        for name, text in FILES.items():
+        for name, text in NEW_SCENARIO_FILES.items():
             with (folder / name).open("x") as stream:
                 stream.write(text)
     except (OSError, ValueError) as error:
         raise CannotOpenError(str(folder), getattr(error, "strerror", None) or str(error)) from None
-    print(f"{folder}: {', '.join(FILES)}")
-    return exits.DONE
+    print(f"{folder}: {', '.join(NEW_SCENARIO_FILES)}")
+    return exits.SUCCESS

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 from simulator.cli.commands.run import add_settings, settings_of
 from simulator.scenario.untrusted import refuse_links
 from simulator.terminal import exits
-from simulator.terminal.numbers import whole
+from simulator.terminal.numbers import parse_whole
 from simulator.terminal.printing import as_json
 
 if TYPE_CHECKING:
     from simulator.run.story import Story
 
-MOST = 1_000_000  # rows
+MAX_LIMIT_ROWS = 1_000_000  # rows
 
 
 def add(parts: Any) -> None:
@@ -44,15 +44,15 @@ def execute(options: argparse.Namespace) -> int:
         print(f"utak: {limit}", file=sys.stderr)
         return exits.LIMIT
     if options.json:
-        told = {"step": step, "answer": answer.kind, "variables": list(answer.variables)}
-        print(as_json({**told, "rows": [list(row) for row in answer.rows], "more": answer.more}))
+        entry = {"step": step, "answer": answer.kind, "variables": list(answer.variables)}
+        print(as_json({**entry, "rows": [list(row) for row in answer.rows], "more": answer.more}))
     else:
         print(answer)
-    return exits.DONE
+    return exits.SUCCESS
 
 
 def _limit(text: str) -> int:
-    return whole(text, 1, MOST)
+    return parse_whole(text, 1, MAX_LIMIT_ROWS)
 
 
 def _go_to(story: "Story", name: str, step: int | None) -> None:
@@ -67,4 +67,4 @@ def _go_to(story: "Story", name: str, step: int | None) -> None:
 
 
 def _step(text: str) -> int:
-    return whole(text, 0, 1_000_000)
+    return parse_whole(text, 0, 1_000_000)

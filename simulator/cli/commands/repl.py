@@ -29,4 +29,4 @@ def execute(options: argparse.Namespace) -> int:
         for line in lines_of(prompt.words()):
             if not prompt.obey(line):
                 break
-    return exits.DONE
+    return exits.SUCCESS

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 from simulator.cli.commands.run import add_settings, settings_of
 from simulator.scenario.untrusted import refuse_links
 from simulator.terminal import exits
-from simulator.terminal.streams import shown
+from simulator.terminal.streams import escape_controls
 
 if TYPE_CHECKING:
     from simulator.scenario.settings import Settings
 
-WORDS = {
-    exits.DONE: ("ok", "passed"),
+TEST_OUTCOME_WORDS = {
+    exits.SUCCESS: ("ok", "passed"),
     exits.NOT_REACHED: ("FAILED", "failed"),
     exits.BAD_INPUT: ("BAD", "bad"),
     exits.CANNOT_OPEN: ("ABSENT", "cannot be opened"),
@@ -39,33 +39,37 @@ def execute(options: argparse.Namespace) -> int:
     found: list[tuple[Path, Path]] = []
     codes = []
     for folder in options.folders:
-        absent = attempt(_look_into, Path(folder), found)
+        absent = attempt(_find_scenarios, Path(folder), found)
         codes += [absent] if absent else []
     for root, scenario in found:
-        code = attempt(_tried, root, scenario, settings, options)
+        code = attempt(_run_and_print, root, scenario, settings, options)
         codes.append(code)
-        if code not in (exits.DONE, exits.NOT_REACHED):
-            print(f"{WORDS[code][0]} {scenario}: see above", flush=True)
+        if code not in (exits.SUCCESS, exits.NOT_REACHED):
+            print(f"{TEST_OUTCOME_WORDS[code][0]} {scenario}: see above", flush=True)
     counts = Counter(codes)
-    others = "".join(f", {counts[code]} {WORDS[code][1]}" for code in WORDS if code != exits.DONE and counts[code])
-    print(f"{counts[exits.DONE]} of {len(codes)} passed{others}", file=sys.stderr)
+    others = "".join(
+        f", {counts[code]} {TEST_OUTCOME_WORDS[code][1]}"
+        for code in TEST_OUTCOME_WORDS
+        if code != exits.SUCCESS and counts[code]
+    )
+    print(f"{counts[exits.SUCCESS]} of {len(codes)} passed{others}", file=sys.stderr)
     return exits.worst(codes)
 
 
-def _look_into(folder: Path, found: list[tuple[Path, Path]]) -> int:
+def _find_scenarios(folder: Path, found: list[tuple[Path, Path]]) -> int:
     """Find the scenarios in a folder."""
     from simulator.run.trial import scenarios_in
 
     found += ((folder, scenario) for scenario in scenarios_in(folder))
-    return exits.DONE
+    return exits.SUCCESS
 
 
-def _tried(root: Path, folder: Path, settings: "Settings", options: argparse.Namespace) -> int:
+def _run_and_print(root: Path, folder: Path, settings: "Settings", options: argparse.Namespace) -> int:
     """Run one scenario and print how it went."""
     from simulator.run.trial import run_trial
 
     refuse_links(options, folder, root)
     trial = run_trial(folder, settings)
-    code = exits.DONE if trial.passed else exits.NOT_REACHED
-    print(f"{WORDS[code][0]} {folder}: {shown(trial.message, lines=False)}", flush=True)
+    code = exits.SUCCESS if trial.passed else exits.NOT_REACHED
+    print(f"{TEST_OUTCOME_WORDS[code][0]} {folder}: {escape_controls(trial.message, lines=False)}", flush=True)
     return code

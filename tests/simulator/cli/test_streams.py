@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from random_scenes import write_scene
 
 from simulator.cli.main import main
-from simulator.terminal.streams import Guarded, StreamError, shown
+from simulator.terminal.streams import GuardedStream, StreamError, escape_controls
 
 ROOT = Path(__file__).resolve().parents[3]
 HOSTILE = "\x1b[2J\x1b]0;owned\x07\r\x9b31m\u202egnp.exe\u2066\x7f\b\u2028"
@@ -101,20 +101,20 @@ def test_an_umlaut_in_a_name_is_no_bug(command: str, code: int, environment: dic
 
 @given(st.text())
 def test_what_is_shown_is_never_obeyed_and_stays_json(text: str) -> None:
-    assert not OBEYED.search(shown(text))
-    assert shown(json.dumps(text)) == json.dumps(text).replace("\x7f", "\\u007f")
-    assert json.loads(shown(json.dumps(text))) == text
-    assert "\n" not in shown(text, lines=False)
+    assert not OBEYED.search(escape_controls(text))
+    assert escape_controls(json.dumps(text)) == json.dumps(text).replace("\x7f", "\\u007f")
+    assert json.loads(escape_controls(json.dumps(text))) == text
+    assert "\n" not in escape_controls(text, lines=False)
 
 
 def test_a_closed_stream_that_matters_is_an_error_and_another_a_note() -> None:
     with pytest.raises(StreamError, match="standard output cannot be written: it is closed"):
-        Guarded(None, "the standard output", True).write("x")
-    note = Guarded(None, "the standard error", False)
+        GuardedStream(None, "the standard output", True).write("x")
+    note = GuardedStream(None, "the standard error", False)
     note.write("x")
     assert note.lost == ""
     with Path("/dev/full").open("w", buffering=1) as full:
-        note = Guarded(full, "the standard error", False)
+        note = GuardedStream(full, "the standard error", False)
         note.write("x\n")
     assert note.lost == "No space left on device"
 

@@ -20,7 +20,7 @@ from random_scenes import write_scene
 from kb.language.diagnostics import BadInputError, CannotOpenError
 from simulator.cli.main import main
 from simulator.episode.episode import read_episode
-from simulator.run.story import Recorded
+from simulator.run.story import RecordedStory
 from simulator.scenario.scenario import read_scenario
 from simulator.terminal.action_in_words import describe
 
@@ -40,7 +40,7 @@ def lines(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
 
 def looked_through(path: Path) -> None:
     """Read an episode and do with every step what the prompt does."""
-    story = Recorded(str(path), read_episode(path))
+    story = RecordedStory(str(path), read_episode(path))
     while True:
         assert isinstance(story.facts, list)
         assert story.picture()

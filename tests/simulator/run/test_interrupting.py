@@ -18,7 +18,7 @@ from random_scenes import write_scene
 
 from kb.reasoning.query import QueryEngine
 from simulator.cli.commands.new import FILES
-from simulator.run.interrupts import deferred
+from simulator.run.interrupts import defer_interrupt
 from simulator.run.story import Story, open_story
 from simulator.scenario.settings import Settings
 from simulator.terminal.prompt import Prompt
@@ -121,14 +121,14 @@ def test_the_robot_itself_goes_on_as_if_nothing_had_been(tmp_path: Path) -> None
 
 def test_the_first_keeps_the_step_and_the_second_breaks_it_off() -> None:
     told: list[str] = []
-    with deferred(lambda: told.append("once")) as pressed:
+    with defer_interrupt(lambda: told.append("once")) as pressed:
         signal.raise_signal(signal.SIGINT)
         assert told == ["once"]
     assert pressed
-    with pytest.raises(KeyboardInterrupt), deferred(lambda: None):
+    with pytest.raises(KeyboardInterrupt), defer_interrupt(lambda: None):
         signal.raise_signal(signal.SIGINT)
         signal.raise_signal(signal.SIGINT)
-    with deferred(lambda: None) as pressed:
+    with defer_interrupt(lambda: None) as pressed:
         pass
     assert not pressed
     with pytest.raises(KeyboardInterrupt):

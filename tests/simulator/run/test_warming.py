@@ -37,7 +37,7 @@ def test_the_other_process_does_what_it_is_told(monkeypatch) -> None:
 
 def test_the_first_run_says_what_it_does(monkeypatch) -> None:
     told, done = [], []
-    monkeypatch.setattr(warming, "cold", list)
+    monkeypatch.setattr(warming, "uncompiled", list)
     monkeypatch.setattr(warming, "beside", lambda *_: [sys.executable, "-I", "-c", ""])
     monkeypatch.setattr(warming, "tell", lambda: told.append(True))
     monkeypatch.setattr(warming, "compile_for", done.extend)
@@ -45,7 +45,7 @@ def test_the_first_run_says_what_it_does(monkeypatch) -> None:
     warming.warm(carrying=False)
     assert told
     assert done == list(warming.HALVES[False][0])
-    monkeypatch.setattr(warming, "cold", lambda uses: [])
+    monkeypatch.setattr(warming, "uncompiled", lambda uses: [])
     warming.warm(carrying=True)
     assert len(told) == 1
 
@@ -55,15 +55,15 @@ def test_bytecode_is_kept_where_python_keeps_none(monkeypatch, tmp_path) -> None
     (tmp_path / "part" / "module.py").write_text("ANSWER = 42\n")
     (tmp_path / "broken.py").write_text("ANSWER =\n")
     monkeypatch.setattr(warming, "PACKAGES", [tmp_path, tmp_path / "absent"])
-    monkeypatch.setattr(warming, "cold", list)
+    monkeypatch.setattr(warming, "uncompiled", list)
     monkeypatch.setattr(warming, "beside", lambda *_: [sys.executable, "-I", "-c", ""])
     monkeypatch.setattr(warming, "tell", lambda: None)
     monkeypatch.setattr(warming, "compile_for", lambda _: None)
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
-    for told, kept in ((False, 0), (True, 1)):
+    for told, cached in ((False, 0), (True, 1)):
         monkeypatch.setattr(sys, "dont_write_bytecode", told)
         warming.warm(carrying=False)
-        assert len(list(tmp_path.rglob("module.*.pyc"))) == kept
+        assert len(list(tmp_path.rglob("module.*.pyc"))) == cached
 
 
 def test_every_package_of_the_robot_is_among_those_whose_bytecode_is_kept() -> None:
@@ -73,14 +73,14 @@ def test_every_package_of_the_robot_is_among_those_whose_bytecode_is_kept() -> N
 def test_what_is_missing_is_known_use_by_use(monkeypatch, tmp_path) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     uses = list(warming.INDEX)
-    assert warming.cold(uses) == uses
+    assert warming.uncompiled(uses) == uses
     (tmp_path / "geometry_1234").mkdir()
     (tmp_path / "geometry_1234" / "router.itineraries-17.py311.nbi").touch()
-    assert warming.cold(uses) == [warming.carry, warming.sightlines]
+    assert warming.uncompiled(uses) == [warming.carry, warming.sightlines]
     (tmp_path / "geometry_1234" / "astar.haul-20.py311.nbi").touch()
     (tmp_path / "other.function-1.py311.nbi").touch()
-    assert warming.cold([warming.search, warming.carry]) == []
-    assert warming.kept() == 2
+    assert warming.uncompiled([warming.search, warming.carry]) == []
+    assert warming.count_cached_kernels() == 2
 
 
 def test_only_what_is_missing_is_compiled(monkeypatch) -> None:
@@ -90,7 +90,7 @@ def test_only_what_is_missing_is_compiled(monkeypatch) -> None:
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
     for use, asked in ((warming.carry, (True, "skeleton")), (warming.sightlines, (False, "visibility"))):
         done.clear()
-        monkeypatch.setattr(warming, "cold", lambda uses, use=use: [use])
+        monkeypatch.setattr(warming, "uncompiled", lambda uses, use=use: [use])
         warming.warm(*asked)
         assert done == [use]
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from geometry.motion.se2 import Rotate, Translate
 from simulator.world.physics import Tabletop
-from simulator.world.world import Thing, World, ring_of
+from simulator.world.world import Thing, World, outer_ring
 
 VERGE = shapely.box(0, 0, 20, 18).difference(shapely.box(2, 2, 18, 16))
 DEEP = 1e-6
@@ -205,7 +205,7 @@ def test_same_seed_same_world(commands: list[Any], seed: int) -> None:
     for world in worlds:
         for name, *values in commands:
             getattr(world, name)(*values)
-    first, second = ((w.utak, w.held, {n: ring_of(p) for n, p in w.polygons.items()}) for w in worlds)
+    first, second = ((w.utak, w.held, {n: outer_ring(p) for n, p in w.polygons.items()}) for w in worlds)
     assert first == second
 
 
