@@ -1,26 +1,33 @@
-"""The `utak` command: runs a subcommand, and turns what goes wrong into messages and exit codes."""
+"""The `utak` command: runs a subcommand, and turns errors into messages and exit codes."""
 
 import os
 import sys
 from collections.abc import Sequence
 from types import FrameType
 
-from utak_command import exit_at_ctrl_c, find_ours_here
+from utak_command import exit_at_ctrl_c, install_package_finder
 
-REPEAT_DELAY_SECONDS = 0.01  # seconds after which what Python ignores is over
+REPEAT_DELAY_SECONDS = 0.01  # until Python no longer drops exceptions; a convention
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run `utak` with arguments and return its exit code.
+    """Run `utak` and return its exit code.
 
-    Without any, those of the process are taken, and Ctrl-C and the standard streams with them: it is to end then.
+    Parameters
+    ----------
+    arguments : the command line without the program's name. None for that of the process: then Ctrl-C and the standard
+        streams are handled, too, because the process ends afterwards.
+
+    Returns
+    -------
+    The exit code.
     """
     interrupts = _Interrupts()
     if arguments is None:
         exit_at_ctrl_c()
     try:
-        find_ours_here()
-        from simulator.cli import parsing  # noqa: F401 (all that is imported before anything is done)
+        install_package_finder()
+        from simulator.cli import parsing  # noqa: F401 (all imports happen before anything is done)
         from simulator.terminal.streams import guard_streams, open_missing_streams
 
         if arguments is None:
@@ -31,14 +38,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
             err.flush()
         return _final_code(code, err.lost)
     except KeyboardInterrupt:
-        return 130  # before or after everything
+        return 130  # interrupted before the work began or after it ended
     finally:
         if arguments is None:
             interrupts.ignore()
 
 
 class _Interrupts:
-    """Notes that Ctrl-C was pressed: what it breaks off may call it by another name, such as a failed import."""
+    """Remembers that Ctrl-C was pressed, because an interrupted operation may fail with another exception.
+
+    An example is an import that fails.
+    """
 
     seen = False
 
@@ -51,13 +61,13 @@ class _Interrupts:
             sys.unraisablehook = self._again
 
     def ignore(self) -> None:
-        """Nothing is left to interrupt."""
+        """Ignore SIGINT from now on: nothing is left to interrupt."""
         import signal
 
         signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def _again(self, lost: "sys.UnraisableHookArgs") -> None:
-        """Interrupt once more, when it happened where Python ignores every exception, as at the end of an import."""
+        """Interrupt once more after an interrupt where Python drops all exceptions, such as the end of an import."""
         if issubclass(lost.exc_type, KeyboardInterrupt):
             from threading import Timer
 
@@ -66,19 +76,20 @@ class _Interrupts:
             sys.__unraisablehook__(lost)
 
     def _note(self, number: int, frame: FrameType | None) -> None:
+        """Note the interrupt and raise KeyboardInterrupt."""
         self.seen = True
         raise KeyboardInterrupt
 
 
 def signal_again() -> None:
-    """Let the main thread be interrupted."""
+    """Interrupt the main thread."""
     import _thread
 
     _thread.interrupt_main()
 
 
 def _run_reporting_errors(arguments: Sequence[str] | None, interrupts: _Interrupts) -> int:
-    """Run, with streams to which all can be written, and return the exit code."""
+    """Run with guarded streams, report errors and return the exit code."""
     from kb.language.diagnostics import BadInputError, CannotOpenError
     from simulator.terminal import exits
     from simulator.terminal.outcome import bug_message
@@ -107,6 +118,7 @@ def _run_reporting_errors(arguments: Sequence[str] | None, interrupts: _Interrup
 
 
 def _parse_and_execute(arguments: Sequence[str] | None) -> int:
+    """Parse the command line, run the subcommand and return its exit code."""
     from simulator.cli.parsing import build_parser
     from simulator.terminal import exits
 
@@ -119,12 +131,13 @@ def _parse_and_execute(arguments: Sequence[str] | None) -> int:
 
 
 def _print_error(code: int, message: str) -> int:
+    """Print a message on the standard error and return the exit code."""
     print(message, file=sys.stderr)
     return code
 
 
 def _final_code(code: int, lost: str) -> int:
-    """The exit code, when something could not be said on the standard error: then it did not go well."""
+    """Return the exit code, or that for lost output when a message could not be printed."""
     from simulator.terminal import exits
 
     return exits.LOST_OUTPUT if lost and code == exits.SUCCESS else code

@@ -1,5 +1,6 @@
-"""Is a line of an episode as simulator.episode.record writes it? A check for each key; docs/files.md has the form
-in words.
+"""The check of episodes: whether every value in a line is as simulator.episode.record writes it (docs/files.md).
+
+A check takes a value and the keys that lead to it, and yields complaints. The functions below return such checks.
 """
 
 import re
@@ -13,26 +14,26 @@ KeyPath = tuple[str, ...]  # the keys that lead to a value
 LineComplaint = tuple[KeyPath, str]
 ValueCheck = Callable[[Any, KeyPath], Iterator[LineComplaint]]
 
-MAX_TEXT_CHARACTERS = 100_000  # characters of a text
-MAX_COMMAND_VALUE = 1e9  # squares or degrees: what a command may ask for
-TABLE_MARGIN = 1.0  # squares beyond the table
+MAX_TEXT_CHARACTERS = 100_000  # characters of a string; a convention
+MAX_COMMAND_VALUE = 1e9  # squares or degrees in commands and motions, in absolute value; a convention
+TABLE_MARGIN = 1.0  # squares beyond the table in which points may lie; a convention
 FACT_PATTERN = re.compile(r"-?_*[a-z][A-Za-z0-9_']*(\([ -~]*\))?\.")
 
 
 def number(low: float, high: float) -> ValueCheck:
-    """A number within bounds."""
+    """Return the check for a number from `low` to `high`."""
 
     def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if isinstance(value, bool) or not isinstance(value, int | float):
             yield at, "a number is wanted"
-        elif not low <= value <= high:  # which no NaN is, and no infinity
+        elif not low <= value <= high:  # false for NaN and infinity, too
             yield at, f"a number from {low:g} to {high:g} is wanted"
 
     return check
 
 
 def whole_number(low: int, high: int) -> ValueCheck:
-    """A whole number within bounds."""
+    """Return the check for an integer from `low` to `high`."""
 
     def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
@@ -42,7 +43,7 @@ def whole_number(low: int, high: int) -> ValueCheck:
 
 
 def text(form: re.Pattern[str] | None = None, name: str = "a text") -> ValueCheck:
-    """A text, of a form if one is given."""
+    """Return the check for a string; form : a pattern that must match all of it. name : what messages call it."""
 
     def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if not isinstance(value, str) or len(value) > MAX_TEXT_CHARACTERS or (form and not form.fullmatch(value)):
@@ -52,7 +53,7 @@ def text(form: re.Pattern[str] | None = None, name: str = "a text") -> ValueChec
 
 
 def one_of(*known: Any) -> ValueCheck:
-    """One of some values, of their very types."""
+    """Return the check for one of some values, of the same type."""
 
     def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if not any(type(value) is type(one) and value == one for one in known):
@@ -62,7 +63,7 @@ def one_of(*known: Any) -> ValueCheck:
 
 
 def or_null(inner: ValueCheck) -> ValueCheck:
-    """Null, or what another check allows."""
+    """Return the check for null, or what another check accepts."""
 
     def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if value is not None:
@@ -72,7 +73,7 @@ def or_null(inner: ValueCheck) -> ValueCheck:
 
 
 def list_of(inner: ValueCheck, least: int = 0, most: int = 10_000_000) -> ValueCheck:
-    """A list of so many values, each as another check allows."""
+    """Return the check for a list of `least` to `most` values that another check accepts."""
 
     def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if not isinstance(value, list) or not least <= len(value) <= most:
@@ -85,7 +86,7 @@ def list_of(inner: ValueCheck, least: int = 0, most: int = 10_000_000) -> ValueC
 
 
 def names_to(inner: ValueCheck) -> ValueCheck:
-    """An object whose keys are names, each value as another check allows."""
+    """Return the check for an object with any keys, whose values another check accepts."""
 
     def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if not isinstance(value, dict):
@@ -98,7 +99,7 @@ def names_to(inner: ValueCheck) -> ValueCheck:
 
 
 def keys(checks: Mapping[str, ValueCheck], optional: Collection[str] = ()) -> ValueCheck:
-    """An object with these keys; others do not matter."""
+    """Return the check for an object with these keys, each with its own check; further keys are accepted."""
 
     def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if not isinstance(value, dict):
@@ -114,14 +115,14 @@ def keys(checks: Mapping[str, ValueCheck], optional: Collection[str] = ()) -> Va
 
 
 def action(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
-    """A command that was given."""
+    """Check a command: yield complaints about it."""
     yield from keys({"do": one_of(*ACTION_KEYS)})(value, at)
     if isinstance(value, dict) and value.get("do") in ACTION_KEYS:
         yield from keys(ACTION_KEYS[value["do"]])(value, at)
 
 
 def motion(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
-    """What really happened."""
+    """Check a true motion: yield complaints about it."""
     turned = isinstance(value, dict) and "rotate" in value
     pair = list_of(number(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE), 2, 2)
     yield from keys(
@@ -205,7 +206,7 @@ RESULT_CHECK = keys(
 
 
 def column(row: str, where: KeyPath) -> int:
-    """Return the column, from 1, at which a line has the last of some keys, one inside of the other."""
+    """Return the column, from 1, of the last of some nested keys in a line; 1 for no keys."""
     at = 0
     for key in where:
         found = row.find(f'"{key}"', at)

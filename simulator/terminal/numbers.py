@@ -1,4 +1,4 @@
-"""Numbers on the command line: plain ASCII digits, within bounds; anything else is wrong usage."""
+"""Numbers on the command line: ASCII digits within bounds; anything else is an error of usage."""
 
 import argparse
 import re
@@ -8,9 +8,9 @@ DECIMAL_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]
 
 
 def parse_whole(text: str, low: int, high: int) -> int:
-    """Return the integer that a text says; raises ArgumentTypeError when it is none from `low` to `high`.
+    """Return the integer that a text denotes; raise ArgumentTypeError unless it is from `low` to `high`.
 
-    >>> whole("12", 0, 99)
+    >>> parse_whole("12", 0, 99)
     12
     """
     if not WHOLE_NUMBER.fullmatch(text) or not low <= int(text) <= high:
@@ -19,7 +19,7 @@ def parse_whole(text: str, low: int, high: int) -> int:
 
 
 def parse_decimal(text: str, low: float, high: float) -> float:
-    """Return the number that a text says; raises ArgumentTypeError when it is none from `low` to `high`."""
+    """Return the number that a text denotes; raise ArgumentTypeError unless it is from `low` to `high`."""
     if not DECIMAL_NUMBER.fullmatch(text) or not low <= float(text) <= high:
         raise argparse.ArgumentTypeError(f"must be a number from {low:g} to {high:g}, not {text[:40]!r}")
     return float(text)

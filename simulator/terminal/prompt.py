@@ -1,4 +1,4 @@
-"""The prompt of `utak repl`: one line, one command or question; whatever is typed, the prompt comes back."""
+"""The prompt of `utak repl`: each line is a command or a query; the prompt survives every input."""
 
 import os
 import sys
@@ -29,7 +29,14 @@ TRUE_TABLE_NOTICE = "the true table, which the robot may believe to be otherwise
 
 
 class Prompt:
-    """Obeys commands about one story."""
+    """Executes commands about one story.
+
+    Parameters
+    ----------
+    story : a run or a recorded episode.
+    engine : answers queries.
+    write : prints a text; by default on the standard output.
+    """
 
     def __init__(self, story: Story, engine: QueryEngine, write: Callable[[str], object] | None = None) -> None:
         self._story, self._engine = story, engine
@@ -44,11 +51,11 @@ class Prompt:
         }
 
     def words(self) -> list[str]:
-        """What can be completed: commands and the names of predicates."""
+        """Return the words that can be completed: commands and names of predicates."""
         return sorted([*self._commands, "quit", *(f"{name}(" for name, _ in VOCABULARY)])
 
     def obey(self, line: str) -> bool:
-        """Do what a line says; False when it says to leave. Nothing that it says raises an exception."""
+        """Execute a line. Return False when it says to quit. Errors are printed, not raised."""
         text = line.strip()
         name, _, rest = ("?-", "", text[2:]) if text.startswith("?-") else text.partition(" ")
         name = name.removesuffix(".")
@@ -72,17 +79,21 @@ class Prompt:
         return True
 
     def _say(self, text: str) -> None:
+        """Print a text."""
         self._write(text)
 
     def _ask(self, rest: str) -> None:
+        """Print the answer to a query."""
         self._say(str(self._engine.ask(self._story.facts, rest)))
 
     def _facts(self, rest: str) -> None:
+        """Print the facts of the world model; with a word, only those that contain it."""
         word = rest.removesuffix(".")
         facts = [fact for fact in self._story.facts if not word or word in _words_of(fact)]
         self._say("\n".join(facts) if facts else "none")
 
     def _step(self, rest: str) -> None:
+        """Advance by a number of steps, 1 by default."""
         count = rest.removesuffix(".") or "1"
         if not (count.isascii() and count.isdigit() and 0 < int(count[:9]) <= 1_000_000):
             self._say(f"step takes a number of steps, not {rest}")
@@ -90,7 +101,7 @@ class Prompt:
         self._advance(int(count[:9]))
 
     def _advance(self, count: int | None) -> None:
-        """Go on by some steps, or to the end."""
+        """Advance by `count` steps, or to the end for None, and print each step."""
         done = 0
         while done != count:
             with defer_interrupt(self._announce_interrupt) as pressed:
@@ -112,23 +123,35 @@ class Prompt:
             self._say("there are no more steps")
 
     def _announce_interrupt(self) -> None:
+        """Print how to stop after the first Ctrl-C."""
         with suppress(RuntimeError):  # something is being printed just now
             self._say("the step comes to its end first; Ctrl-C once more breaks it off, and it did not happen")
 
     def _unknown(self, name: str) -> None:
+        """Print that a command is unknown."""
         hint = did_you_mean(name, self._commands)
         self._say(f"unknown command {name[:40]}; {hint or 'help lists what there is, ?- asks'}")
 
 
 def _words_of(fact: str) -> set[str]:
-    """The words of a fact."""
+    """Return the words of a fact."""
     return set("".join(char if char.isalnum() or char == "_" else " " for char in fact).split())
 
 
 def lines_of(words: Sequence[str]) -> Iterator[str]:
-    """Yield the lines that are typed, with history and completion on a terminal, or that come through a pipe.
+    """Yield the lines of the standard input; on a terminal, with history and completion.
 
-    Raises StreamError when the standard input is closed or cannot be read.
+    Parameters
+    ----------
+    words : the words that can be completed.
+
+    Yields
+    ------
+    One line, with or without its line end.
+
+    Raises
+    ------
+    StreamError : the standard input is closed or cannot be read.
     """
     if sys.stdin is None:
         raise StreamError("the standard input is closed")
@@ -153,7 +176,7 @@ def lines_of(words: Sequence[str]) -> Iterator[str]:
 
 
 def _prepare(words: Sequence[str]) -> None:
-    """History and completion, where Python has readline."""
+    """Set up history and completion, where Python has readline."""
     try:
         import atexit
         import readline
@@ -175,6 +198,7 @@ def _prepare(words: Sequence[str]) -> None:
 
 
 def _write_history(readline: Any, history: Path) -> None:
+    """Write the history file; print a message when that fails."""
     try:
         readline.write_history_file(history)
     except OSError:

@@ -71,7 +71,7 @@ class Tabletop:
             self._move_until_contact(self._disturbed_translation(east, north))
 
     def push(self, east: float, north: float) -> None:
-        """Walk straight by (east, north) squares in Utak's frame with the held object; no effect when nothing is held."""
+        """Walk straight by (east, north) squares in Utak's frame, with the held object; no effect without one."""
         self.motion = None
         if self.held is not None:
             self._move_until_contact(self._disturbed_translation(east, north))

@@ -70,15 +70,14 @@ class Senses:
         return tuple(((14 * count + area) // (2 * area)).tolist())
 
     def touch(self, table: Table, here: tuple[float, float]) -> tuple[str | None, ...]:
-        """Return the colours of the 8 squares adjacent to the point's square, clockwise from Utak's north; None for
-        floor.
+        """Return the colours of the 8 squares adjacent to the point's square; None for floor.
+
+        The order is clockwise from Utak's north.
         """
         return tuple(table.colour(*self.adjacent(here, direction)) for direction in NEIGHBOUR_OFFSETS)
 
     def adjacent(self, here: tuple[float, float], direction: str) -> tuple[int, int]:
-        """Return the square (i, j) next to that of the point `here`, in a direction of Utak's frame such as
-        "northeast".
-        """
+        """Return the square (i, j) next to that of the point `here`, in a direction of `NEIGHBOUR_OFFSETS`."""
         east, north = NEIGHBOUR_OFFSETS[direction]
         i = math.floor(here[0]) + round(east * self._cosine - north * self._sine)
         j = math.floor(here[1]) + round(east * self._sine + north * self._cosine)
@@ -86,8 +85,9 @@ class Senses:
 
 
 def _fields_of_squares() -> tuple[Indices, npt.NDArray[np.int_]]:
-    """Return the index of the field of each of the 32 x 32 squares, row by row from the south, and the sides of the
-    fields.
+    """Return the index of the field of each of the 32 x 32 squares, and the sides of the fields in squares.
+
+    The squares are in rows from the south.
     """
     fields = retina_fields()
     owner = np.zeros((2 * VIEW_REACH, 2 * VIEW_REACH), dtype=np.intp)

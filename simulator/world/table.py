@@ -110,9 +110,7 @@ class Table:
         return next((colour for colour, part in layers if part.covers(i, j)), None)
 
     def movable_at(self, i: int, j: int) -> str | None:
-        """Return the name of the movable thing that covers the square (i, j), the first by name; None when there is
-        none.
-        """
+        """Return the name of the movable thing that covers the square (i, j), the first by name; None without one."""
         return next((name for name, part in self._movable.items() if part.covers(i, j)), None)
 
     def _parts(self) -> Iterable[Projection]:

@@ -1,4 +1,4 @@
-"""`utak check`: are the files of a scenario as they must be?"""
+"""`utak check`: check the files of scenarios."""
 
 import argparse
 import sys
@@ -29,7 +29,7 @@ def add(parts: Any) -> None:
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Check every path, whatever is wrong with another; the exit code is that of the worst."""
+    """Check every path, whatever is wrong with the others; return the most severe exit code."""
     from simulator.terminal.outcome import attempt
 
     codes = []
@@ -47,7 +47,7 @@ def execute(options: argparse.Namespace) -> int:
 
 
 def _parts(path: Path) -> list[Path]:
-    """The scenarios in a folder that is none itself; else the path alone."""
+    """Return the scenarios in a folder that is no scenario itself; else a list of the path alone."""
     names = ("world.lp", "world.txt", "start.lp", "goal.lp")
     if not path.is_dir() or any((path / name).exists() for name in names):
         return [path]
@@ -55,7 +55,7 @@ def _parts(path: Path) -> list[Path]:
 
 
 def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
-    """Check a scenario folder or one file; what a file must hold is known by its name."""
+    """Check a scenario folder or one file; the file's name tells what it must hold."""
     from simulator.scenario.scenario import read_scenario
 
     refuse_links(options, path, root)
@@ -77,14 +77,14 @@ def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
 
 
 def _rules(path: Path) -> None:
-    """Check a file of rules by itself, as --kb takes it."""
+    """Check a file of rules, as for --kb."""
     from kb.reasoning.user_rules import checked_rules
 
     checked_rules([path])
 
 
 def _checks() -> dict[str, Callable[[Path], Any]]:
-    """How each file of a scenario is checked."""
+    """Return the check for each file of a scenario, by name."""
     from kb.task.task import read_start, read_task
     from simulator.scenario.expectation import read_expectations
     from simulator.scenario.picture import read_picture

@@ -1,4 +1,4 @@
-"""`utak query`: ask what Utak believes, at a step of a run or of an episode."""
+"""`utak query`: ask what Utak believes at a step of a run or of an episode."""
 
 import argparse
 import sys
@@ -13,7 +13,7 @@ from simulator.terminal.printing import as_json
 if TYPE_CHECKING:
     from simulator.run.story import Story
 
-MAX_LIMIT_ROWS = 1_000_000  # rows
+MAX_LIMIT_ROWS = 1_000_000  # the greatest --limit, in rows; a convention
 
 
 def add(parts: Any) -> None:
@@ -29,7 +29,7 @@ def add(parts: Any) -> None:
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Go to the step, ask, and print the answer."""
+    """Go to the step, answer the query and print the answer."""
     from kb.reasoning.query import MAX_ANSWER_ROWS, QueryEngine, QueryLimitError
     from simulator.run.story import open_story
 
@@ -52,11 +52,12 @@ def execute(options: argparse.Namespace) -> int:
 
 
 def _limit(text: str) -> int:
+    """Return the number of rows for `--limit`."""
     return parse_whole(text, 1, MAX_LIMIT_ROWS)
 
 
 def _go_to(story: "Story", name: str, step: int | None) -> None:
-    """Advance to a step, or to the end."""
+    """Advance to a step, or to the end for None; raise BadInputError when there is no such step."""
     from kb.language.diagnostics import BadInputError, Problem, Span
 
     while story.line["step"] != step and story.advance():
@@ -67,4 +68,5 @@ def _go_to(story: "Story", name: str, step: int | None) -> None:
 
 
 def _step(text: str) -> int:
+    """Return the step for `--at`."""
     return parse_whole(text, 0, 1_000_000)

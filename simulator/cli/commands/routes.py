@@ -1,4 +1,4 @@
-"""`utak routes`: topologically distinct ways between two points of a map or of a scenario's table."""
+"""`utak routes`: topologically distinct routes between two points of a map or of a scenario's table."""
 
 import argparse
 import sys
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from geometry.kernels.arrays import Bools
     from geometry.routes.route import Route
 
-MAX_MAP_BYTES = 200_000_000  # bytes of a map
-MAX_ROUTES = 1000
-MAX_POINT_COORDINATE = 1e6  # squares: no point lies further out
+MAX_MAP_BYTES = 200_000_000  # bytes of a map file; a convention
+MAX_ROUTES = 1000  # the greatest -k; a convention
+MAX_POINT_COORDINATE = 1e6  # squares; the greatest absolute value in --from and --to; a convention
 ORIGIN_HELP = (
     "Points are in squares, with fractions. With --origin bottom, the default, (0, 0) is the south-west corner, x goes "
     "east and y north, as in scenarios. With --origin top, (0, 0) is the north-west corner, x goes east and y SOUTH, "
@@ -49,7 +49,7 @@ def add(parts: Any) -> None:
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Find the ways, and print them."""
+    """Find the routes and print them."""
     from geometry.screen import Screen
 
     refuse_links(options, options.map)
@@ -73,7 +73,7 @@ def execute(options: argparse.Namespace) -> int:
 
 
 def _free_squares(name: str) -> "Bools":
-    """Where one may be: on a map as it says, in a scenario wherever nothing stands."""
+    """Return the free squares: those of a map, or those of a scenario's table where nothing stands."""
     from geometry.io.movingai import MapError, parse_map
     from kb.language.source_text import read_bytes
 
@@ -90,6 +90,7 @@ def _free_squares(name: str) -> "Bools":
 
 
 def _free_squares_of_scenario(name: str) -> "Bools":
+    """Return the squares of a scenario's table that nothing covers."""
     from geometry.raster.rasterize import squares
     from simulator.scenario.scenario import read_any_world
 
@@ -101,11 +102,15 @@ def _free_squares_of_scenario(name: str) -> "Bools":
 
 
 def _mirrored(point: tuple[float, float], top: int | None) -> tuple[float, float]:
-    """A point counted from the bottom as one from the top, or the other way round. top : rows; None for as it is."""
+    """Return a point with y counted from the other end.
+
+    top : the number of rows; None to return the point as it is.
+    """
     return point if top is None else (point[0], top - point[1])
 
 
 def _print(routes: "list[Route]", json: bool, top: int | None) -> None:
+    """Print the routes as JSON or as text."""
     if json:
         print(as_json({"routes": [_entry(route, top) for route in routes]}))
         return
@@ -117,10 +122,12 @@ def _print(routes: "list[Route]", json: bool, top: int | None) -> None:
 
 
 def _points(route: "Route", top: int | None) -> list[list[float]]:
+    """Return the points of a route as lists."""
     return [list(_mirrored((x, y), top)) for x, y in route.points.tolist()]
 
 
 def _entry(route: "Route", top: int | None) -> dict[str, Any]:
+    """Return a route as JSON values."""
     return {
         "length": float(route.length),
         "clearance": float(route.clearance),
@@ -130,6 +137,7 @@ def _entry(route: "Route", top: int | None) -> dict[str, Any]:
 
 
 def _point(text: str) -> tuple[float, float]:
+    """Return the point for `--from` and `--to`."""
     parts = text.split(",")
     if len(parts) != 2:
         raise argparse.ArgumentTypeError(f"{text!r} is no point: write X,Y")
@@ -138,4 +146,5 @@ def _point(text: str) -> tuple[float, float]:
 
 
 def _count(text: str) -> int:
+    """Return the number for `-k`."""
     return parse_whole(text, 1, MAX_ROUTES)

@@ -1,4 +1,4 @@
-"""`utak run`: the robot wakes in a scenario and does his task."""
+"""`utak run`: run the robot on a scenario."""
 
 import argparse
 import sys
@@ -38,7 +38,7 @@ def add(parts: Any) -> None:
 
 
 def add_settings(part: argparse.ArgumentParser) -> None:
-    """Declare the options that decide what happens in a run."""
+    """Declare the options that determine a run."""
     part.add_argument("--seed", type=_seed, metavar="N", help="seed of all randomness (default 0)")
     part.add_argument("--noise", type=_noise, metavar="S", help="how much motions are disturbed, 0 to 1 (default 0)")
     part.add_argument("--paths", choices=PATH_FINDERS, help="how ways are found (default skeleton)")
@@ -51,7 +51,7 @@ def add_settings(part: argparse.ArgumentParser) -> None:
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Run, and print the result."""
+    """Run the robot and print the result."""
     from simulator.episode.episode import STANDARD_OUTPUT, EpisodeLog
     from simulator.run.robots import make_robot
     from simulator.run.session import Session
@@ -71,7 +71,7 @@ def execute(options: argparse.Namespace) -> int:
 
 
 def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = None) -> "Settings":
-    """Return the settings that the command line gives; those of a recorded episode hold where it is silent."""
+    """Return the settings of the command line; where it is silent, those of a recorded episode."""
     from dataclasses import replace
 
     from simulator.scenario.settings import Settings, kb_files_named
@@ -83,14 +83,14 @@ def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = N
 
 
 def exit_code(result: "Result") -> int:
-    """Return the exit code that a result deserves."""
+    """Return the exit code for a result."""
     if result.believed:
         return exits.NOT_REACHED if result.achieved is False else exits.SUCCESS
     return exits.LIMIT if result.verdict == "limit" else exits.NOT_REACHED
 
 
 def _recorded_options(options: argparse.Namespace) -> dict[str, Any] | None:
-    """The options that an episode to be resumed was run with; None when there is nothing to resume."""
+    """Return the options of the episode that is to be resumed; None when there is none."""
     from pathlib import Path
 
     from simulator.episode.episode import complete_lines, read_episode
@@ -102,6 +102,7 @@ def _recorded_options(options: argparse.Namespace) -> dict[str, Any] | None:
 
 
 def _print(result: "Result", json: bool, stream: TextIO) -> None:
+    """Print the result."""
     if json:
         print(as_json({**result.line["result"], "unmet": list(result.unmet)}), file=stream)
         return
@@ -114,7 +115,7 @@ def _print(result: "Result", json: bool, stream: TextIO) -> None:
 
 
 def _progress_printer(watch: bool) -> Any:
-    """What is shown after every step: nothing, a line on a terminal, or the table drawn."""
+    """Return the function that prints after each step: nothing, one line on a terminal, or the table as a picture."""
     if not watch and not sys.stderr.isatty():
         return lambda session: None
 
@@ -132,12 +133,15 @@ def _progress_printer(watch: bool) -> Any:
 
 
 def _seed(text: str) -> int:
+    """Return the number for `--seed`."""
     return parse_whole(text, 0, 2**63 - 1)
 
 
 def _steps(text: str) -> int:
+    """Return the number for `--max-steps`."""
     return parse_whole(text, 0, 1_000_000)
 
 
 def _noise(text: str) -> float:
+    """Return the number for `--noise`."""
     return parse_decimal(text, 0, 1)

@@ -1,4 +1,4 @@
-"""`utak show`: a scenario's world as a picture."""
+"""`utak show`: print a scenario's world as a picture."""
 
 import argparse
 import sys
@@ -18,7 +18,7 @@ def add(parts: Any) -> None:
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Print the world; what a picture cannot say goes to stderr."""
+    """Print the world; what a picture cannot show goes to the standard error."""
     from simulator.scenario.picture import draw
     from simulator.scenario.scenario import read_any_world
 

@@ -1,4 +1,4 @@
-"""`utak test`: run scenarios and compare their ends with what expect.lp expects."""
+"""`utak test`: run scenarios and compare their ends with expect.lp."""
 
 import argparse
 import sys
@@ -14,7 +14,7 @@ from simulator.terminal.streams import escape_controls
 if TYPE_CHECKING:
     from simulator.scenario.settings import Settings
 
-TEST_OUTCOME_WORDS = {
+TEST_OUTCOME_WORDS = {  # by exit code: the word on a scenario's line, and the word in the summary
     exits.SUCCESS: ("ok", "passed"),
     exits.NOT_REACHED: ("FAILED", "failed"),
     exits.BAD_INPUT: ("BAD", "bad"),
@@ -32,7 +32,7 @@ def add(parts: Any) -> None:
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Run every scenario, print one line each, and say how many passed; the exit code is that of the worst."""
+    """Run every scenario, print one line each and the number that passed; return the most severe exit code."""
     from simulator.terminal.outcome import attempt
 
     settings = settings_of(options)
@@ -57,7 +57,7 @@ def execute(options: argparse.Namespace) -> int:
 
 
 def _find_scenarios(folder: Path, found: list[tuple[Path, Path]]) -> int:
-    """Find the scenarios in a folder."""
+    """Append the scenarios in a folder to `found`; return the exit code."""
     from simulator.run.trial import scenarios_in
 
     found += ((folder, scenario) for scenario in scenarios_in(folder))
@@ -65,7 +65,7 @@ def _find_scenarios(folder: Path, found: list[tuple[Path, Path]]) -> int:
 
 
 def _run_and_print(root: Path, folder: Path, settings: "Settings", options: argparse.Namespace) -> int:
-    """Run one scenario and print how it went."""
+    """Run one scenario, print the outcome and return the exit code."""
     from simulator.run.trial import run_trial
 
     refuse_links(options, folder, root)

@@ -1,4 +1,4 @@
-"""`utak warm`: compile the geometry kernels now, so that no run has to wait for them."""
+"""`utak warm`: compile the geometry kernels, so that no run has to wait for them."""
 
 import argparse
 from typing import Any
@@ -13,7 +13,7 @@ def add(parts: Any) -> None:
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Compile for everything, and say how many kernels there are."""
+    """Compile all kernels and print their number."""
     from geometry.kernels.jit import ready
     from simulator.run.warming import count_cached_kernels, warm_all
 

@@ -152,7 +152,7 @@ def test_the_prompt_reads_an_episode_cut_short(
 
 
 class DoneRobot(scripted_robot.Robot):
-    """Stands still and believes that he is done."""
+    """Stands still and believes that the task is done."""
 
     @property
     def finished(self) -> bool:
@@ -175,12 +175,12 @@ def test_test_runs_scenarios(scene: Path, monkeypatch: pytest.MonkeyPatch, capsy
     good = expecting(shutil.copytree(scene, scene.parent / "good"), "within(0).")
     assert main(["test", str(scene.parent)]) == 1
     seen = capsys.readouterr()
-    assert f"FAILED {good}: not met: within(0); Utak does not believe that he is done; limit in 30" in seen.out
+    assert f"FAILED {good}: not met: within(0); Utak does not believe that the task is done; limit in 30" in seen.out
     assert "1 of 2 passed" in seen.err
     monkeypatch.setattr(sys.modules["planner.cycle"], "Robot", DoneRobot)
     assert main(["test", str(good)]) == 0
     assert main(["test", str(scene)]) == 1
-    assert "Utak believes that he did what cannot be done" in capsys.readouterr().out
+    assert "Utak believes that an impossible task is done" in capsys.readouterr().out
 
 
 def test_test_says_what_is_wrong(scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
