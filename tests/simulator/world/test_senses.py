@@ -1,4 +1,4 @@
-"""Retina and touch against a plain reading of their definition."""
+"""Retina and touch, compared with a literal implementation of their definition."""
 
 import math
 from fractions import Fraction
@@ -31,7 +31,7 @@ def test_the_fields_tile_the_retina() -> None:
 
 
 def slow_impression(world: World) -> tuple[list[int], list[str | None]]:
-    """The impression by definition, square by square and with exact fractions."""
+    """Return the impression by definition, square by square and with exact fractions."""
     shapes = [(t.polygon, t.colour) for t in world.movable] + [(world.verge, "b")]
     cosine, sine = math.cos(math.radians(world.heading)), math.sin(math.radians(world.heading))
 
