@@ -1,6 +1,4 @@
 """Broken streams, strange locales and control characters: one line of message, the right code, safe output."""
-obeys.
-"""
 
 import json
 import os
