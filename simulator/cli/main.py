@@ -141,7 +141,3 @@ def _final_code(code: int, lost: str) -> int:
     from simulator.terminal import exits
 
     return exits.LOST_OUTPUT if lost and code == exits.SUCCESS else code
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -110,7 +110,7 @@ def strictly(text: str) -> object:
 
 def printing_commands() -> set[str]:
     """Return the subcommands that have --json."""
-    (parts,) = (a for a in parsing.parser()._actions if isinstance(a, argparse._SubParsersAction))
+    (parts,) = (a for a in parsing.build_parser()._actions if isinstance(a, argparse._SubParsersAction))
     return {name for name, part in parts.choices.items() if "--json" in part._option_string_actions}
 
 
