@@ -6,12 +6,13 @@ from typing import cast
 import numpy as np
 import pytest
 
-from kb.localisation.accommodation import Memory
 from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.frames import CENTRED, Observation
 from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis, ReestimatedWalk, WalkCorrection
 from kb.localisation.hypotheses.what_if import Surprise, WhatIf
 from kb.localisation.propose.earlier_motion import ReestimatedMotion
+from kb.localisation.score import EARLIER_MOTION_PROPOSERS, SearchBudget, propose_earlier_motions
+from kb.localisation.state import TrackerState
 from kb.perception.frame import CENTRE, Frame
 
 HELD = CENTRED[0]
@@ -30,11 +31,11 @@ NO_SURPRISE = cast(Surprise, None)
     ],
 )
 def test_what_likely_was_otherwise_is_thought_of_where_something_odd_explains_a_look(
-    likely: float, simple: Explanation, asked: list[int] | None, monkeypatch: pytest.MonkeyPatch
+    likely: float, simple: Explanation, asked: list[int] | None
 ) -> None:
-    memory = Memory(observations=[Observation(np.zeros((160, 2), np.int16), (float(n), 0.0)) for n in range(3)])
+    observations = tuple(Observation(np.zeros((160, 2), np.int16), (float(n), 0.0)) for n in range(3))
     doubts = (((0.75, 0.5), likely), ((0.0, 0.0), 0.001))
-    memory.moved = (MotionHypothesis(1, (1.0, 0.0), (HELD,), doubts=doubts), MotionHypothesis(2, (1.0, 0.0), (HELD,)))
+    moved = (MotionHypothesis(1, (1.0, 0.0), (HELD,), doubts=doubts), MotionHypothesis(2, (1.0, 0.0), (HELD,)))
     told = ReestimatedMotion(
         ReestimatedWalk(HELD, WalkCorrection(1, (-0.25, 0.5)), True, 0),
         WhatIf(Frame(), (HELD,), CENTRE, None, 0, False),
@@ -45,8 +46,9 @@ def test_what_likely_was_otherwise_is_thought_of_where_something_odd_explains_a_
         calls.append([motion.number for motion in motions])
         return [told] * bool(motions)
 
-    monkeypatch.setattr("kb.localisation.score.recalled", recalled)
-    found = memory._recalled(NO_SURPRISE, [simple])
+    state, budget = TrackerState(observations=observations, moved=moved), SearchBudget(0)
+    proposers = EARLIER_MOTION_PROPOSERS._replace(in_frame=recalled)
+    found = propose_earlier_motions(state, NO_SURPRISE, [simple], budget, proposers)
     assert calls == ([] if asked is None else [asked])
     assert len(found) == bool(asked)
     for one in found:

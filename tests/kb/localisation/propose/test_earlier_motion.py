@@ -22,7 +22,7 @@ from kb.perception.frame import CENTRE, Frame
 from kb.perception.retina import count_ranges
 from tests.kb.eyes import Occupied, random_room, retina, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
-from tests.kb.localisation.test_accommodation import ran
+from tests.kb.localisation.test_tracker import ran
 
 SIDE = 34
 BRICK = shapely.box(0, 0, 3, 2)

@@ -6,7 +6,7 @@ from shapely.affinity import translate
 
 from kb.body import Move, Push
 from kb.knowledge import Knowledge
-from kb.localisation.accommodation import Memory
+from kb.localisation.tracker import Tracker
 from kb.mapping.occupancy import FREE, FULL
 from kb.objects.held_object import HeldObject
 from tests.kb.eyes import Occupied, impression, world_of
@@ -23,49 +23,49 @@ def hall(middle: list[str]) -> Occupied:
     return world_of(["b" * 40, *[wall] * 10, *middle, *[wall] * 9, "b" * 40])
 
 
-def drawn(room: Occupied, deep: int, by: float) -> tuple[Memory, str]:
+def drawn(room: Occupied, deep: int, by: float) -> tuple[Tracker, str]:
     """What one believes who felt two columns of a thing right before a wall, takes it and draws it back to the west.
 
     room : without it. deep : squares that it goes on in the wall. And how he explains what he sees then.
     """
     thing = shapely.box(18, 10, 20 + deep, 15)
-    memory = Memory()
-    memory.wake(impression(around(thing, room), HERE))
-    memory.accommodate(Move(0.0, 1.0), impression(around(thing, room), (HERE[0], HERE[1] + 1)))
-    memory.accommodate(Move(0.0, -1.0), impression(around(thing, room), HERE))
+    tracker = Tracker()
+    tracker.wake(impression(around(thing, room), HERE))
+    tracker.accommodate(Move(0.0, 1.0), impression(around(thing, room), (HERE[0], HERE[1] + 1)))
+    tracker.accommodate(Move(0.0, -1.0), impression(around(thing, room), HERE))
     felt = translate(shapely.box(18, 10, 20, 15), -HERE[0], -HERE[1])
-    memory.grasp(HeldObject("o1", felt, felt))
+    tracker.grasp(HeldObject("o1", felt, felt))
     after = around(translate(thing, -by), room)
-    found = memory.accommodate(Push(-by, 0.0), impression(after, (round(HERE[0] - by), HERE[1])))
-    return memory, found.explanation.how
+    found = tracker.accommodate(Push(-by, 0.0), impression(after, (round(HERE[0] - by), HERE[1])))
+    return tracker, found.explanation.how
 
 
 @pytest.mark.parametrize("deep", [1, 2, 3])
 @pytest.mark.parametrize("by", [2.0, 4.0])
 def test_what_is_drawn_out_of_a_door_is_as_large_as_it_is(deep: int, by: float) -> None:
-    memory, how = drawn(hall(DOOR), deep, by)
+    tracker, how = drawn(hall(DOOR), deep, by)
     assert how == "larger"
-    load, occupancy = memory.loads["o1"], memory.occupancy
+    load, occupancy = tracker.state.loads["o1"], tracker.state.occupancy
     first = translate(shapely.box(18, 10, 20 + deep, 15), -HERE[0], -HERE[1])
     assert load.first.equals(first)
     assert load.polygon.equals(translate(first, -by))
     assert load.proven
-    assert memory.place == pytest.approx((0.5 - by, 0.5))
+    assert tracker.state.place == pytest.approx((0.5 - by, 0.5))
     assert {occupancy.state[occupancy.index(3, y)] for y in range(-2, 3)} == {FREE}
 
 
 @pytest.mark.parametrize("by", [2.0, 4.0])
 def test_what_stood_before_a_wall_is_no_larger_than_it_seemed(by: float) -> None:
-    memory, how = drawn(hall(NO_DOOR), 0, by)
+    tracker, how = drawn(hall(NO_DOOR), 0, by)
     assert how == "predicted"
-    assert memory.loads["o1"].polygon.equals(translate(shapely.box(18, 10, 20, 15), -HERE[0] - by, -HERE[1]))
-    assert memory.occupancy.state[memory.occupancy.index(3, 0)] == FULL
+    assert tracker.state.loads["o1"].polygon.equals(translate(shapely.box(18, 10, 20, 15), -HERE[0] - by, -HERE[1]))
+    assert tracker.state.occupancy.state[tracker.state.occupancy.index(3, 0)] == FULL
 
 
 def test_what_was_moved_before_is_no_larger_than_it_seemed() -> None:
-    memory, _ = drawn(hall(DOOR), 1, 2.0)
+    tracker, _ = drawn(hall(DOOR), 1, 2.0)
     again = around(shapely.box(14, 10, 17, 15), hall(DOOR))
-    assert memory.accommodate(Push(-2.0, 0.0), impression(again, (13, 12))).explanation.how == "predicted"
+    assert tracker.accommodate(Push(-2.0, 0.0), impression(again, (13, 12))).explanation.how == "predicted"
 
 
 def test_its_shape_is_told_anew() -> None:
@@ -75,7 +75,7 @@ def test_its_shape_is_told_anew() -> None:
     here = (14, 12)
     knowledge.wake(impression(before, here, colour="g"))
     felt = translate(shapely.box(15, 10, 20, 15), -here[0], -here[1])
-    knowledge.memory.grasp(HeldObject("o1", felt, felt, shape={"square": 62, "brick": 30}))
+    knowledge.tracker.grasp(HeldObject("o1", felt, felt, shape={"square": 62, "brick": 30}))
     model, accommodated = knowledge.perceive(Push(-3.0, 0.0), impression(after, (11, 12), colour="g"))
     assert accommodated.explanation.how == "larger"
     node = model.object("o1")

@@ -1,6 +1,7 @@
 """A turn that was stopped tells how far it went and what it was about, as shapely turned it."""
 
 import math
+from dataclasses import replace
 
 import pytest
 import shapely
@@ -9,10 +10,10 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
 from kb.body import Turn
-from kb.localisation.accommodation import Memory
 from kb.localisation.hypotheses.frames import CENTRED, points
 from kb.localisation.propose.origin_from_turns import Part
-from kb.localisation.score import MOST_SEARCHES
+from kb.localisation.score import MAX_FRAME_SEARCHES
+from kb.localisation.tracker import Tracker
 from kb.mapping.occupancy import OPEN
 from kb.objects.held_object import HeldObject
 from kb.perception.frame import CENTRE, Frame
@@ -49,24 +50,26 @@ def test_a_turn_that_was_stopped_tells_where_he_woke_and_how_far_it_went(
     def room(i: int, j: int) -> bool:
         return PLAIN(i, j) or (i, j) == (x, y)
 
-    memory = Memory()
-    memory.wake(impression(around(thing, room), (20, 20)))
+    tracker = Tracker()
+    tracker.wake(impression(around(thing, room), (20, 20)))
     lies = translate(thing, -20, -20)
-    memory.grasp(HeldObject("o1", lies, lies, proven=True))
-    memory.hypotheses, memory.searches = CENTRED[:1], MOST_SEARCHES  # how the lattice is turned is known
+    tracker.grasp(HeldObject("o1", lies, lies, proven=True))
+    tracker.state = replace(
+        tracker.state, hypotheses=CENTRED[:1], searches=MAX_FRAME_SEARCHES
+    )  # how the lattice is turned is known
     for i, j in ((x, y), (x - 1, y), (x, y + 1), (x + 1, y + 1)):  # not looked at closely
-        memory.occupancy.state[memory.occupancy.index(i - 20, j - 20)] = OPEN
+        tracker.state.occupancy.state[tracker.state.occupancy.index(i - 20, j - 20)] = OPEN
     after = rotate(thing, degrees, origin=about)
-    found = memory.accommodate(Turn(90.0), impression(around(after, room), (20, 20))).explanation
+    found = tracker.accommodate(Turn(90.0), impression(around(after, room), (20, 20))).explanation
     assert found.misfits == 0
     assert found.how in ("turned", "blocked")
-    load, true = memory.loads["o1"], translate(after, -20, -20)
+    load, true = tracker.state.loads["o1"], translate(after, -20, -20)
     assert load.polygon.hausdorff_distance(true) < load.play + 0.3
     assert found.outcome is not None
     assert found.outcome.degrees == pytest.approx(degrees, abs=6.0)
     if found.how == "turned":
-        west, south, east, north = memory.leeway
-        origin = memory.frame.origin
+        west, south, east, north = tracker.state.leeway
+        origin = tracker.state.frame.origin
         assert west - 0.15 <= fx - origin[0] <= east + 0.15
         assert south - 0.15 <= fy - origin[1] <= north + 0.15
 
@@ -74,17 +77,18 @@ def test_a_turn_that_was_stopped_tells_where_he_woke_and_how_far_it_went(
 def test_who_was_stopped_a_hair_beside_a_line_turns_things_a_hair_aside() -> None:
     thing = translate(ELL, 21, 18)
     after = rotate(thing, 90, origin=(20.5 + 1e-6, 20.5))  # on some squares by a hair
-    memory = Memory()
-    memory.wake(impression(around(thing, PLAIN), (20, 20)))
-    memory.hypotheses = CENTRED[:1]
+    tracker = Tracker()
+    tracker.wake(impression(around(thing, PLAIN), (20, 20)))
+    tracker.state = replace(tracker.state, hypotheses=CENTRED[:1])
     lies = translate(thing, -20, -20)
-    memory.grasp(HeldObject("o1", lies, lies, proven=True))
-    memory.observations[0] = memory.observations[0]._replace(place=(0.5 - 1e-6, 0.0))  # there he was stopped
-    found = memory.accommodate(Turn(90.0), impression(around(after, PLAIN), (20, 20))).explanation
+    tracker.grasp(HeldObject("o1", lies, lies, proven=True))
+    stopped = tracker.state.observations[0]._replace(place=(0.5 - 1e-6, 0.0))
+    tracker.state = replace(tracker.state, observations=(stopped,))  # there he was stopped
+    found = tracker.accommodate(Turn(90.0), impression(around(after, PLAIN), (20, 20))).explanation
     assert found.how == "predicted"
     assert found.misfits == 0
-    assert memory.frame.origin == CENTRE
-    assert memory.loads["o1"].polygon.hausdorff_distance(translate(after, -20, -20)) < 1e-5
+    assert tracker.state.frame.origin == CENTRE
+    assert tracker.state.loads["o1"].polygon.hausdorff_distance(translate(after, -20, -20)) < 1e-5
 
 
 def test_a_part_is_cut_into_parts_that_fill_it() -> None:
@@ -101,7 +105,7 @@ def test_a_part_is_cut_into_parts_that_fill_it() -> None:
 
 
 def test_points_of_a_grid_lie_amid_his_square() -> None:
-    memory = Memory()
-    memory.wake(impression(PLAIN, (20, 20)))
-    where = points(Frame(), memory.observations)
+    tracker = Tracker()
+    tracker.wake(impression(PLAIN, (20, 20)))
+    where = points(Frame(), tracker.state.observations)
     assert all(0 < point.box[0] < 1 and 0 < point.box[1] < 1 for point in where)

@@ -1,6 +1,7 @@
 """How an impression that differs from the predicted one is explained."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,10 +9,10 @@ import shapely
 from shapely.affinity import rotate, translate
 
 from kb.body import Move, Push, Turn
-from kb.localisation.accommodation import Memory
 from kb.localisation.hypotheses.explanation import CellStatus, Explanation, cheapest
 from kb.localisation.hypotheses.frames import CENTRED, FrameHypothesis
 from kb.localisation.hypotheses.walk_outcomes import ReestimatedWalk, WalkCorrection
+from kb.localisation.tracker import Tracker
 from kb.mapping.occupancy import FREE, OPEN
 from kb.objects.held_object import HeldObject
 from kb.perception.frame import CENTRE, Frame, turned
@@ -37,10 +38,10 @@ def test_exact_moves_are_predicted() -> None:
 
 
 def test_every_new_cell_is_explained_and_every_old_one_predicted() -> None:
-    memory, occupied, square = Memory(), world_of(ROOM), utak_in(ROOM)
-    first = memory.wake(impression(occupied, square))
+    tracker, occupied, square = Tracker(), world_of(ROOM), utak_in(ROOM)
+    first = tracker.wake(impression(occupied, square))
     assert set(first.cells) <= {CellStatus.EXPLAINED, CellStatus.PREDICTED}
-    again = memory.accommodate(Move(0.0, 0.0), impression(occupied, square))
+    again = tracker.accommodate(Move(0.0, 0.0), impression(occupied, square))
     assert CellStatus.NOISE not in again.cells
     fovea = again.cells[:64]
     assert set(fovea) == {CellStatus.PREDICTED}
@@ -49,34 +50,34 @@ def test_every_new_cell_is_explained_and_every_old_one_predicted() -> None:
 def test_a_motion_that_was_stopped_is_understood() -> None:
     walk = walked(ROOM, [(2, 0), (0, 3)])
     x, y = utak_in(ROOM)
-    memory, occupied = walk.knowledge.memory, world_of(ROOM)
-    found = memory.accommodate(Move(0.0, -9.0), impression(occupied, (x + 2, y - 3)))  # stopped after 6 of 9
+    tracker, occupied = walk.knowledge.tracker, world_of(ROOM)
+    found = tracker.accommodate(Move(0.0, -9.0), impression(occupied, (x + 2, y - 3)))  # stopped after 6 of 9
     assert found.explanation.how == "blocked"
-    assert memory.place == pytest.approx((2.5, -3.0), abs=1e-5)
-    assert (2, -4) in memory.barred
+    assert tracker.state.place == pytest.approx((2.5, -3.0), abs=1e-5)
+    assert (2, -4) in tracker.state.barred
 
 
 def test_a_slip_of_one_who_slips_is_understood() -> None:
     walk = walked(ROOM, [(2, 0), (0, 3), (1, 0), (0, 1), (-1, 0), (0, -1)])
     x, y = utak_in(ROOM)
-    memory = walk.knowledge.memory
-    memory.slipped = True
-    found = memory.accommodate(Move(-3.0, 0.0), impression(world_of(ROOM), (x - 1, y + 4)))
+    tracker = walk.knowledge.tracker
+    tracker.state = replace(tracker.state, slipped=True)
+    found = tracker.accommodate(Move(-3.0, 0.0), impression(world_of(ROOM), (x - 1, y + 4)))
     assert found.explanation.how == "slipped"
-    assert memory.place == pytest.approx((-0.5, 4.5))
+    assert tracker.state.place == pytest.approx((-0.5, 4.5))
 
 
 def test_a_turned_table_is_noticed() -> None:
-    memory, occupied, (x, y) = Memory(), world_of(ROOM), utak_in(ROOM)
-    hows = [memory.wake(impression(occupied, (x, y), heading=30)).explanation.how]
+    tracker, occupied, (x, y) = Tracker(), world_of(ROOM), utak_in(ROOM)
+    hows = [tracker.wake(impression(occupied, (x, y), heading=30)).explanation.how]
     for n in range(1, 7):  # north in his frame: 30 degrees from the table's north
         px, py = x + 0.5 - 0.5 * n, y + 0.5 + 0.8660254 * n
         hows.append(
-            memory.accommodate(Move(0.0, 1.0), impression(occupied, (int(px), int(py)), heading=30)).explanation.how
+            tracker.accommodate(Move(0.0, 1.0), impression(occupied, (int(px), int(py)), heading=30)).explanation.how
         )
     assert "turned" in hows
-    assert abs(memory.frame.angle - 30) <= 8
-    assert memory.occupancy.overruled == 0
+    assert abs(tracker.state.frame.angle - 30) <= 8
+    assert tracker.state.occupancy.overruled == 0
 
 
 def test_one_who_runs_against_something_on_a_turned_table_finds_out_both() -> None:
@@ -88,14 +89,14 @@ def test_one_who_runs_against_something_on_a_turned_table_finds_out_both() -> No
         x, y = free[int(rng.integers(len(free)))]
         angle = rng.uniform(0, 2 * math.pi)
         way, middle = (9 * math.cos(angle), 9 * math.sin(angle)), (x + 0.5, y + 0.5)
-        memory = Memory()
-        memory.wake(impression(occupied, (x, y), heading))
+        tracker = Tracker()
+        tracker.wake(impression(occupied, (x, y), heading))
         stop = ran(occupied, middle, way, heading)
         seen = impression(occupied, (math.floor(stop[0]), math.floor(stop[1])), heading)
-        memory.accommodate(Move(*way), seen)
-        walked = math.dist(memory.frame.place_to_utak(*memory.place), (0, 0))
+        tracker.accommodate(Move(*way), seen)
+        walked = math.dist(tracker.state.frame.place_to_utak(*tracker.state.place), (0, 0))
         if math.dist(stop, middle) < 9 - 0.3:
-            off.append(abs(memory.frame.angle - heading))
+            off.append(abs(tracker.state.frame.angle - heading))
             far.append(abs(walked - math.dist(stop, middle)))
     assert len(far) >= 9
     assert sum(angle <= 1 for angle in off) >= 0.9 * len(off)
@@ -144,8 +145,8 @@ def stopped_and_walked(seed: int, remember: bool) -> list[float] | None:
     occupied, heading = world_of(random_room(rng, 30, 30, 14)), int(rng.choice([0, 0, *range(-44, 46)]))
     free = [(i, j) for i in range(6, 24) for j in range(6, 24) if not occupied(i, j)]
     here = origin = tuple(v + 0.5 for v in free[int(rng.integers(len(free)))])
-    memory, off = Memory(), []
-    memory.wake(impression(occupied, (math.floor(here[0]), math.floor(here[1])), heading))
+    tracker, off = Tracker(), []
+    tracker.wake(impression(occupied, (math.floor(here[0]), math.floor(here[1])), heading))
     for far in (12, 6, 6):
         for angle in rng.uniform(0, 2 * math.pi, 30):
             way = (far * math.cos(angle), far * math.sin(angle))
@@ -156,10 +157,10 @@ def stopped_and_walked(seed: int, remember: bool) -> list[float] | None:
             return None
         here = end
         if not remember:
-            memory.moved = ()
-        memory.accommodate(Move(*way), impression(occupied, (math.floor(here[0]), math.floor(here[1])), heading))
+            tracker.state = replace(tracker.state, moved=())
+        tracker.accommodate(Move(*way), impression(occupied, (math.floor(here[0]), math.floor(here[1])), heading))
         own = turned(here[0] - origin[0], here[1] - origin[1], -heading)
-        off.append(math.dist(memory.frame.place_to_utak(*memory.place), own))
+        off.append(math.dist(tracker.state.frame.place_to_utak(*tracker.state.place), own))
     return off
 
 
@@ -177,95 +178,96 @@ def ran(
 
 
 def test_where_a_motion_ends_need_not_be_floor() -> None:
-    memory, occupied, (x, y) = Memory(), world_of(ROOM), utak_in(ROOM)
-    memory.wake(impression(occupied, (x, y)))
+    tracker, occupied, (x, y) = Tracker(), world_of(ROOM), utak_in(ROOM)
+    tracker.wake(impression(occupied, (x, y)))
     wall = len(ROOM[0]) - 1
-    memory.accommodate(Move(wall - x, 0.0), impression(occupied, (wall, y)))  # stopped as he touched it
-    assert memory.place == pytest.approx((wall - x, 0.5), abs=1e-5)
-    assert memory.place[0] < wall - x
-    assert memory.occupancy.state[memory.occupancy.index(wall - x, 0)] != FREE
-    assert memory.occupancy.state[memory.occupancy.index(0, 0)] == FREE
+    tracker.accommodate(Move(wall - x, 0.0), impression(occupied, (wall, y)))  # stopped as he touched it
+    assert tracker.state.place == pytest.approx((wall - x, 0.5), abs=1e-5)
+    assert tracker.state.place[0] < wall - x
+    assert tracker.state.occupancy.state[tracker.state.occupancy.index(wall - x, 0)] != FREE
+    assert tracker.state.occupancy.state[tracker.state.occupancy.index(0, 0)] == FREE
 
 
 def test_turning_what_is_held_moves_nobody() -> None:
-    memory, occupied, square = Memory(), world_of(ROOM), utak_in(ROOM)
-    memory.wake(impression(occupied, square))
-    found = memory.accommodate(Turn(90.0), impression(occupied, square))
+    tracker, occupied, square = Tracker(), world_of(ROOM), utak_in(ROOM)
+    tracker.wake(impression(occupied, square))
+    found = tracker.accommodate(Turn(90.0), impression(occupied, square))
     assert found.explanation.how == "predicted"
-    assert memory.place == CENTRE
+    assert tracker.state.place == CENTRE
 
 
 ELL = shapely.Polygon([(0, 0), (5, 0), (5, 2), (2, 2), (2, 5), (0, 5)])
 PLAIN = world_of(LARGE_ROOM)
 
 
-def holding(thing: shapely.Polygon, place: tuple[float, float], room: Occupied = PLAIN) -> Memory:
+def holding(thing: shapely.Polygon, place: tuple[float, float], room: Occupied = PLAIN) -> Tracker:
     """One who has just taken a thing of the table, where he woke."""
-    memory, square = Memory(), (math.floor(place[0]), math.floor(place[1]))
-    memory.wake(impression(around(thing, room), square))
+    tracker, square = Tracker(), (math.floor(place[0]), math.floor(place[1]))
+    tracker.wake(impression(around(thing, room), square))
     lies = translate(thing, -square[0], -square[1])
-    memory.grasp(HeldObject("o1", lies, lies, proven=True))
-    return memory
+    tracker.grasp(HeldObject("o1", lies, lies, proven=True))
+    return tracker
 
 
 @pytest.mark.parametrize("place", [(20.85, 20.05), (20.2, 20.6), (20.4, 20.1)])
 def test_where_a_turn_leaves_a_thing_tells_where_in_his_square_he_stands(place: tuple[float, float]) -> None:
     thing = translate(ELL, 21, 18)
-    memory = holding(thing, place)
+    tracker = holding(thing, place)
     after = rotate(thing, 90, origin=place)
-    found = memory.accommodate(Turn(90.0), impression(around(after, PLAIN), (20, 20)))
+    found = tracker.accommodate(Turn(90.0), impression(around(after, PLAIN), (20, 20)))
     assert found.explanation.how == "turned"
-    assert memory.place == memory.frame.origin
-    assert math.dist(memory.frame.origin, (place[0] - 20, place[1] - 20)) < math.dist(
+    assert tracker.state.place == tracker.state.frame.origin
+    assert math.dist(tracker.state.frame.origin, (place[0] - 20, place[1] - 20)) < math.dist(
         CENTRE, (place[0] - 20, place[1] - 20)
     )
-    load = memory.loads["o1"]
+    load = tracker.state.loads["o1"]
     true = translate(after, -20, -20)
     assert load.polygon.hausdorff_distance(true) <= load.play + 0.2
-    assert not memory.sure
-    back = memory.accommodate(Turn(-90.0), impression(around(thing, PLAIN), (20, 20)))
+    assert not tracker.state.sure
+    back = tracker.accommodate(Turn(-90.0), impression(around(thing, PLAIN), (20, 20)))
     assert back.explanation.misfits == 0
-    assert memory.loads["o1"].polygon.hausdorff_distance(translate(thing, -20, -20)) < 1e-6
-    assert memory.loads["o1"].play == 0
+    assert tracker.state.loads["o1"].polygon.hausdorff_distance(translate(thing, -20, -20)) < 1e-6
+    assert tracker.state.loads["o1"].play == 0
 
 
 def test_what_looks_as_before_after_a_push_did_not_move() -> None:
     thing = translate(ELL, 38, 18)  # it stands against the wall already
-    memory = holding(thing, (37.5, 20.5))
-    memory.hypotheses, memory.trust = (FrameHypothesis(0.0, CENTRE + CENTRE),), 20  # how the lattice lies is known
-    found = memory.accommodate(Push(1.0, 0.0), impression(around(thing, PLAIN), (37, 20)))
+    tracker = holding(thing, (37.5, 20.5))
+    # how the frame lies is known:
+    tracker.state = replace(tracker.state, hypotheses=(FrameHypothesis(0, CENTRE + CENTRE),), trust=20)
+    found = tracker.accommodate(Push(1.0, 0.0), impression(around(thing, PLAIN), (37, 20)))
     assert found.explanation.outcome is not None and found.explanation.outcome.stopped
-    assert memory.place == CENTRE
-    assert memory.loads["o1"].polygon.equals(translate(thing, -37, -20))
-    assert memory.loads["o1"].stuck == 1
+    assert tracker.state.place == CENTRE
+    assert tracker.state.loads["o1"].polygon.equals(translate(thing, -37, -20))
+    assert tracker.state.loads["o1"].stuck == 1
 
 
 def test_a_turn_by_one_who_stands_amid_his_square_teaches_nothing() -> None:
     thing = translate(ELL, 21, 18)
-    memory = holding(thing, (20.5, 20.5))
-    found = memory.accommodate(Turn(90.0), impression(around(rotate(thing, 90, origin=(20.5, 20.5)), PLAIN), (20, 20)))
+    tracker = holding(thing, (20.5, 20.5))
+    found = tracker.accommodate(Turn(90.0), impression(around(rotate(thing, 90, origin=(20.5, 20.5)), PLAIN), (20, 20)))
     assert found.explanation.how == "predicted"
-    assert memory.frame.origin == CENTRE
-    assert memory.loads["o1"].play == 0
+    assert tracker.state.frame.origin == CENTRE
+    assert tracker.state.loads["o1"].play == 0
 
 
 def test_a_halt_beside_the_middle_tells_where_in_his_square_he_woke() -> None:
     room = world_of(ROOM)
     x, y = utak_in(ROOM)
     truly = (x + 0.8, y + 0.3)
-    memory = Memory()
-    memory.wake(impression(room, (x, y)))
+    tracker = Tracker()
+    tracker.wake(impression(room, (x, y)))
     now = truly
     for east, north in ((0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (0.46, 3.46)):
         now = (now[0] + east, now[1] + north)
-        memory.accommodate(Move(east, north), impression(room, (math.floor(now[0]), math.floor(now[1]))))
-    assert memory.frame.angle == 0
-    assert memory.frame.origin[0] > 0.5
-    assert math.floor(memory.place[0]) + x == math.floor(now[0])
-    assert math.floor(memory.place[1]) + y == math.floor(now[1])
-    west, south, east, north = memory.leeway
-    assert west <= 0.8 - memory.frame.origin[0] <= east
-    assert south <= 0.3 - memory.frame.origin[1] <= north
+        tracker.accommodate(Move(east, north), impression(room, (math.floor(now[0]), math.floor(now[1]))))
+    assert tracker.state.frame.angle == 0
+    assert tracker.state.frame.origin[0] > 0.5
+    assert math.floor(tracker.state.place[0]) + x == math.floor(now[0])
+    assert math.floor(tracker.state.place[1]) + y == math.floor(now[1])
+    west, south, east, north = tracker.state.leeway
+    assert west <= 0.8 - tracker.state.frame.origin[0] <= east
+    assert south <= 0.3 - tracker.state.frame.origin[1] <= north
 
 
 def test_what_stops_a_thing_unawares_makes_the_squares_before_it_suspect() -> None:
@@ -273,17 +275,18 @@ def test_what_stops_a_thing_unawares_makes_the_squares_before_it_suspect() -> No
         return PLAIN(i, j) or (j == 16 and i % 7 == 0)
 
     thing = shapely.box(22, 18, 27, 21)
-    memory = holding(thing, (21.5, 19.5), posts)
-    memory.hypotheses, memory.searches = CENTRED[:1], 99  # how the lattice lies is known
-    row, column = memory.occupancy.index(29 - 21, -1)
-    memory.occupancy.state[row - 3 : row + 6, column] = OPEN  # not looked at closely
+    tracker = holding(thing, (21.5, 19.5), posts)
+    # how the frame lies is known:
+    tracker.state = replace(tracker.state, hypotheses=CENTRED[:1], searches=99)
+    row, column = tracker.state.occupancy.index(29 - 21, -1)
+    tracker.state.occupancy.state[row - 3 : row + 6, column] = OPEN  # not looked at closely
     stopped = translate(thing, 2, 0)  # of 6
-    found = memory.accommodate(Push(6.0, 0.0), impression(around(stopped, posts), (23, 19)))
+    found = tracker.accommodate(Push(6.0, 0.0), impression(around(stopped, posts), (23, 19)))
     assert found.explanation.how == "blocked"
-    assert memory.suspected
-    assert {column for column, _ in memory.suspected} == {29 - 21}
-    memory.occupancy.state[memory.occupancy.index(*min(memory.suspected))] = FREE
-    assert min(memory.suspected) not in memory.closed
+    assert tracker.state.suspected
+    assert {column for column, _ in tracker.state.suspected} == {29 - 21}
+    tracker.state.occupancy.state[tracker.state.occupancy.index(*min(tracker.state.suspected))] = FREE
+    assert min(tracker.state.suspected) not in tracker.state.closed
 
 
 @pytest.mark.parametrize(
@@ -299,10 +302,9 @@ def test_what_stops_a_thing_unawares_makes_the_squares_before_it_suspect() -> No
 def test_what_seemed_to_stop_him_and_is_seen_to_be_free_is_free(
     slips: bool, state: int, about: int, closed: bool
 ) -> None:
-    memory = walked(ROOM, [(2, 0)]).knowledge.memory
-    memory.slipped = slips
-    memory.barred.add((3, 1))
-    row, column = memory.occupancy.index(3, 1)
-    memory.occupancy.state[row - 1 : row + 2, column - 1 : column + 2] = about
-    memory.occupancy.state[row, column] = state
-    assert ((3, 1) in memory.closed) == closed
+    tracker = walked(ROOM, [(2, 0)]).knowledge.tracker
+    tracker.state = replace(tracker.state, slipped=slips, barred=tracker.state.barred | {(3, 1)})
+    row, column = tracker.state.occupancy.index(3, 1)
+    tracker.state.occupancy.state[row - 1 : row + 2, column - 1 : column + 2] = about
+    tracker.state.occupancy.state[row, column] = state
+    assert ((3, 1) in tracker.state.closed) == closed

@@ -1,6 +1,7 @@
 """Who is lost: he notices that nothing agrees with what he believes, forgets it, and knows where he is soon after."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,10 +9,10 @@ import shapely
 
 from kb.body import Impression, Move, Release, Turn
 from kb.knowledge import Knowledge
-from kb.localisation.accommodation import Memory
-from kb.localisation.holding import ASTRAY, LOST
 from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.frames import FrameHypothesis
+from kb.localisation.state import ASTRAY, LOST, TrackerState
+from kb.localisation.tracker import Tracker
 from kb.mapping.occupancy import FULL, OPEN
 from kb.mapping.patch import Patch
 from kb.objects.held_object import HeldObject
@@ -21,7 +22,7 @@ from kb.world.model import Names
 from planner.deciding.decider import Decider
 from tests.kb.drawings import walked
 from tests.kb.eyes import impression, random_room, utak_in, world_of
-from tests.kb.localisation.test_accommodation import ROOM
+from tests.kb.localisation.test_tracker import ROOM
 
 Point = tuple[float, float]
 
@@ -101,45 +102,45 @@ def test_a_look_that_agrees_with_nothing_contradicts_what_is_believed() -> None:
 
 
 def test_who_cannot_forget_believes_in_a_room_that_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Memory, "lost", False)
+    monkeypatch.setattr(TrackerState, "lost", False)
     assert all(strolled(seed).wrong > 0.01 for seed in range(3))
 
 
 def lost_in(rows: list[str]) -> Knowledge:
     """One who has walked a little, and whose last looks fitted badly."""
     knowledge = walked(rows, [(2, 0), (0, 3)]).knowledge
-    knowledge.memory.unfit = (LOST, LOST)
+    knowledge.tracker.state = replace(knowledge.memory, unfit=(LOST, LOST))
     assert knowledge.memory.lost
     return knowledge
 
 
 def test_misfits_of_a_single_look_are_no_reason_to_forget() -> None:
-    memory = Memory(unfit=(0, 0, 0, 3 * LOST))
-    assert not memory.lost
-    assert not Memory(unfit=(1, 1, 1, 1)).lost
-    assert Memory(unfit=(0, 1, 0, LOST)).lost
+    state = TrackerState(unfit=(0, 0, 0, 3 * LOST))
+    assert not state.lost
+    assert not TrackerState(unfit=(1, 1, 1, 1)).lost
+    assert TrackerState(unfit=(0, 1, 0, LOST)).lost
 
 
 def test_who_has_moved_a_thing_forgets_less_readily() -> None:
     thing = shapely.box(4, 2, 8, 4)
     held, moved = HeldObject("o1", thing, thing), HeldObject("o1", thing, thing).moved(thing, 0.0)
-    assert Memory(unfit=(1, LOST), loads={"o1": held}).lost
-    assert not Memory(unfit=(1, LOST), loads={"o1": moved}).lost
-    assert Memory(unfit=(1, ASTRAY), loads={"o1": moved}).lost
+    assert TrackerState(unfit=(1, LOST), loads={"o1": held}).lost
+    assert not TrackerState(unfit=(1, LOST), loads={"o1": moved}).lost
+    assert TrackerState(unfit=(1, ASTRAY), loads={"o1": moved}).lost
 
 
 def test_what_he_holds_he_lets_go_before_he_forgets() -> None:
     knowledge = lost_in(ROOM)
     x, y = utak_in(ROOM)
     thing = shapely.box(4, 2, 8, 4)
-    knowledge.memory.grasp(HeldObject("o1", thing, thing))
+    knowledge.tracker.grasp(HeldObject("o1", thing, thing))
     sees = impression(world_of(ROOM), (x + 2, y + 3))
     model, accommodated = knowledge.perceive(Turn(5.0), sees)
     assert model.lost
     assert not model.anew
     decision = Decider(Task({}, (), ())).decide(model, knowledge.memory.track)
     assert isinstance(decision.command, Release)
-    knowledge.memory.unfit = (LOST, LOST)
+    knowledge.tracker.state = replace(knowledge.memory, unfit=(LOST, LOST))
     model, accommodated = knowledge.perceive(Release(), sees)
     assert accommodated.explanation.how == "lost"
     assert model.anew
@@ -150,17 +151,19 @@ def test_what_he_holds_he_lets_go_before_he_forgets() -> None:
 def test_on_another_lattice_what_never_moved_stands_where_it_is_seen() -> None:
     thing = shapely.box(-6, 5, -3, 8)  # there is nothing
     for moved, held in ((False, False), (True, False), (False, True)):
-        memory = walked(ROOM, [(2, 0), (0, 3)]).knowledge.memory
-        before = memory.occupancy.state.copy()
-        memory.grasp(HeldObject("o1", thing, thing, proven=moved))
-        memory.held = "o1" if held else None
-        memory._lie(Explanation("predicted", memory.place, memory.frame, 0, 0.0))
-        assert list(memory.loads) == ["o1"]
+        tracker = walked(ROOM, [(2, 0), (0, 3)]).knowledge.tracker
+        before = tracker.state.occupancy.state.copy()
+        tracker.grasp(HeldObject("o1", thing, thing, proven=moved))
+        tracker.state = replace(tracker.state, held="o1" if held else None)
+        tracker._apply(Explanation("predicted", tracker.state.place, tracker.state.frame, 0, 0.0))
+        assert list(tracker.state.loads) == ["o1"]
         other = Frame(origin=(0.4, 0.6))  # on which he saw the same
-        memory._lie(Explanation("turned", memory.place, other, 0, 0.0, None, (FrameHypothesis(0, other.origin * 2),)))
-        assert memory.frame == other
-        assert list(memory.loads) == ["o1"] * (moved or held)
-        assert (memory.occupancy.state == before).all() == (not moved and not held)
+        tracker._apply(
+            Explanation("turned", tracker.state.place, other, 0, 0.0, None, (FrameHypothesis(0, other.origin * 2),))
+        )
+        assert tracker.state.frame == other
+        assert list(tracker.state.loads) == ["o1"] * (moved or held)
+        assert (tracker.state.occupancy.state == before).all() == (not moved and not held)
 
 
 def test_who_forgot_knows_about_where_he_came_from() -> None:
@@ -183,9 +186,9 @@ def test_one_look_tells_how_the_lattice_lies_whatever_he_believed() -> None:
     off = []
     for seed in range(20):
         stroll = Stroll(seed)
-        memory = Memory(frame=Frame((stroll.heading + 60) % 90 - 44)).anew()
-        memory.wake(stroll.sees())
-        off.append(abs((memory.frame.angle - stroll.heading + 45) % 90 - 45))
+        tracker = Tracker(TrackerState(frame=Frame((stroll.heading + 60) % 90 - 44))).anew()
+        tracker.wake(stroll.sees())
+        off.append(abs((tracker.state.frame.angle - stroll.heading + 45) % 90 - 45))
     assert sum(angle <= 2 for angle in off) >= 18
 
 
