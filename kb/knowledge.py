@@ -110,7 +110,7 @@ class Knowledge:
         return [node for node in self.objects if node.colour in (None, colour) and about & node.patch.squares()]
 
     def _model(self, impression: Impression, accommodated: Accommodated) -> tuple[WorldModel, Accommodated]:
-        if accommodated.explanation.anew:
+        if accommodated.explanation.remaps:
             self.felt.clear()  # its squares were those of another lattice
             self._imagined = NOTHING_IMAGINED
         self._feel(impression)
@@ -145,7 +145,7 @@ class Knowledge:
             lost=self.memory.lost,
             anew=bool(self.memory.been),
             shaken=self.memory.shaken,
-            contradicted=accommodated.explanation.misfits > 0,
+            contradicted=accommodated.explanation.residual > 0,
         )
         self.objects = self._objects(model)
         if self.memory.loads:

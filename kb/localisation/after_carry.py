@@ -7,20 +7,24 @@ from typing import Any
 import numpy as np
 
 from geometry.motion.se2 import Motion, Rotate
-from kb.localisation.hypotheses.carry_outcomes import Outcome, otherwise, predicted
-from kb.localisation.hypotheses.contacts import ContactHypothesis, Obstructions, led_to, suspects
+from kb.localisation.hypotheses.carry_outcomes import CarryOutcome, other_outcomes, predicted_outcome
+from kb.localisation.hypotheses.contacts import (
+    NO_SQUARES,
+    ContactHypothesis,
+    Obstructions,
+    contact_outcomes,
+    suspected_squares,
+)
 from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.frames import FrameHypothesis
-from kb.localisation.hypotheses.what_if import Surprise, agreeing, clashes
-from kb.localisation.propose.blocked import halts, whole_first
-from kb.localisation.propose.contradicted_motion import overlooked
-from kb.localisation.propose.held_object_state import after, leaning
-from kb.localisation.propose.larger_object import larger
+from kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
+from kb.localisation.hypotheses.what_if import Surprise, agreeing_hypotheses, count_clashes
+from kb.localisation.propose.blocked import has_whole_way, possible_ends
+from kb.localisation.propose.contradicted_motion import overlooked_contact
+from kb.localisation.propose.held_object_state import lean_on_obstacle, object_after
+from kb.localisation.propose.larger_object import larger_objects
 from kb.localisation.score import (
     CONTRADICTION_RESIDUAL,
     Judgement,
-    Place,
-    Ranges,
     SearchBudget,
     choose,
     consistent_ends,
@@ -28,11 +32,11 @@ from kb.localisation.score import (
     propose_blocked_push_and_origin,
     propose_earlier_motions,
     propose_frame,
-    residual,
+    residual_at,
 )
-from kb.localisation.state import Square, TrackerState
+from kb.localisation.state import TrackerState
 from kb.mapping.patch import covered
-from kb.objects.held_object import ROUNDING, HeldObject
+from kb.objects.held_object import ROUNDING, HeldObject, Square
 
 MAX_CLEAR_CHANCE = 0.25  # probability of a contact up to which a motion counts as clear of obstacles; tuned
 
@@ -42,28 +46,28 @@ def explain_carry(state: TrackerState, surprise: Surprise, load: HeldObject, mot
 
     load : the object in hand, before the motion. motion : as commanded, map frame.
     """
-    whole = _outcome(state, surprise, predicted(state.place, load.polygon, motion))
-    halted = _blocked_push(state, surprise, load, motion)
-    budget = SearchBudget(state.searches)
-    if whole_first(halted):
-        return Judgement(choose(state, list(halted)), budget.spent, halted)
-    if not whole.misfits and not halted:
-        stop = overlooked(surprise, load, motion)
-        if stop is None:
+    whole = _outcome(state, surprise, predicted_outcome(state.place, load.polygon, motion))
+    blocked = _blocked_push(state, surprise, load, motion)
+    budget = SearchBudget(state.search_count)
+    if has_whole_way(blocked):
+        return Judgement(choose(state, list(blocked)), budget.spent, blocked)
+    if not whole.residual and not blocked:
+        contact = overlooked_contact(surprise, load, motion)
+        if contact is None:
             return Judgement(whole, budget.spent)
-        doubtful = whole._replace(misfits=CONTRADICTION_RESIDUAL)
-        return Judgement(choose(state, [doubtful, _outcome(state, surprise, stop)]), budget.spent)
-    if not whole.misfits:
-        whole = whole._replace(misfits=CONTRADICTION_RESIDUAL)
-    stops = surprise.hindrances.stops(state.place, load.polygon, motion)
-    explanations = [whole, *_outcomes(state, surprise, load, motion, whole, halted, stops)]
-    simple = any(not one.misfits for one in explanations[1:] if one.how != "slipped" or state.slipped)
-    explanations += propose_frame(state, surprise, whole.misfits, budget, simple)
+        doubtful = whole._replace(residual=CONTRADICTION_RESIDUAL)
+        return Judgement(choose(state, [doubtful, _outcome(state, surprise, contact)]), budget.spent)
+    if not whole.residual:
+        whole = whole._replace(residual=CONTRADICTION_RESIDUAL)
+    contacts = surprise.obstructions.contacts(state.place, load.polygon, motion)
+    explanations = [whole, *_outcomes(state, surprise, load, motion, whole, blocked, contacts)]
+    simple = any(not one.residual for one in explanations[1:] if one.how != "slipped" or state.slipped)
+    explanations += propose_frame(state, surprise, whole.residual, budget, simple)
     explanations += propose_earlier_motions(state, surprise, explanations, budget)
     if not any(is_simple(state, one) for one in explanations):
         explanations += propose_blocked_push_and_origin(surprise, budget)
-    chosen = choose(state, explanations, _facts(state, surprise, load, stops))
-    return Judgement(chosen, budget.spent, halted)
+    chosen = choose(state, explanations, _facts(state, surprise, load, contacts))
+    return Judgement(chosen, budget.spent, blocked)
 
 
 def _outcomes(
@@ -72,25 +76,27 @@ def _outcomes(
     load: HeldObject,
     motion: Motion,
     whole: Explanation,
-    halted: Iterable[Explanation],
-    stops: Iterable[ContactHypothesis],
+    blocked: Iterable[Explanation],
+    contacts: Iterable[ContactHypothesis],
 ) -> list[Explanation]:
     """Return what else may have come of the motion in the believed frame: blocked, stuck, slipped, smaller, larger.
 
-    whole : the motion as commanded. halted : where a push may have ended. stops : all contacts the motion may have met.
+    whole : the motion as commanded. blocked : where a push may have ended. contacts : all that the motion may have met.
     """
-    ends = led_to(stops, state.place, load.polygon, motion)
-    outcomes = [*halted] or [one for one in (_outcome(state, surprise, end) for end in ends) if not one.misfits]
-    outcomes += [_outcome(state, surprise, other) for other in otherwise(state.place, load.polygon, motion)]
-    outcomes += [*_smaller(state, surprise.ranges, load, whole), *larger(surprise, load, motion)]
+    ends = contact_outcomes(contacts, state.place, load.polygon, motion)
+    outcomes = [*blocked] or [one for one in (_outcome(state, surprise, end) for end in ends) if not one.residual]
+    outcomes += [_outcome(state, surprise, other) for other in other_outcomes(state.place, load.polygon, motion)]
+    outcomes += [*_smaller(state, surprise.ranges, load, whole), *larger_objects(surprise, load, motion)]
     return outcomes
 
 
-def _facts(state: TrackerState, surprise: Surprise, load: HeldObject, stops: Iterable[ContactHypothesis]) -> list[str]:
-    """Return the facts about the motion on which the choice depends. stops : the contacts it may have met."""
+def _facts(
+    state: TrackerState, surprise: Surprise, load: HeldObject, contacts: Iterable[ContactHypothesis]
+) -> list[str]:
+    """Return the facts about the motion on which the choice depends. contacts : the contacts it may have met."""
     facts = {
         "unchanged": np.array_equal(surprise.ranges, state.observations[-1].ranges),
-        "clear": sum(stop.chance for stop in stops) <= MAX_CLEAR_CHANCE,
+        "clear": sum(contact.chance for contact in contacts) <= MAX_CLEAR_CHANCE,
         "uneven": load.insets is not None and any(load.insets.believed),
     }
     return [fact for fact, holds in facts.items() if holds]
@@ -99,13 +105,13 @@ def _facts(state: TrackerState, surprise: Surprise, load: HeldObject, stops: Ite
 def _blocked_push(state: TrackerState, surprise: Surprise, load: HeldObject, motion: Motion) -> tuple[Explanation, ...]:
     """Return where a push may have ended, its whole way included, as far as the observation agrees."""
     ended = []
-    for halt in halts(surprise, load, motion):
-        assert halt.outcome is not None
-        ended.append((halt, _outcome(state, surprise, halt.outcome)))
+    for end in possible_ends(surprise, load, motion):
+        assert end.outcome is not None
+        ended.append((end, _outcome(state, surprise, end.outcome)))
     return consistent_ends(surprise, ended)
 
 
-def _smaller(state: TrackerState, ranges: Ranges, load: HeldObject, whole: Explanation) -> list[Explanation]:
+def _smaller(state: TrackerState, ranges: FieldRanges, load: HeldObject, whole: Explanation) -> list[Explanation]:
     """Return the explanation that the object does not fill its squares, if there is one. whole : as commanded."""
     outcome = whole.outcome
     assert outcome is not None
@@ -113,27 +119,27 @@ def _smaller(state: TrackerState, ranges: Ranges, load: HeldObject, whole: Expla
     less = refined_extent(state, lying, ranges, outcome.place)
     if less is None:
         return []
-    told = outcome._replace(how="smaller", polygon=less.polygon, insets=less.insets)
-    return [whole._replace(how="smaller", misfits=0, outcome=told)]
+    smaller = outcome._replace(how="smaller", polygon=less.polygon, insets=less.insets)
+    return [whole._replace(how="smaller", residual=0, outcome=smaller)]
 
 
-def _outcome(state: TrackerState, surprise: Surprise, outcome: Outcome) -> Explanation:
+def _outcome(state: TrackerState, surprise: Surprise, outcome: CarryOutcome) -> Explanation:
     """Return the explanation that the motion of the object in hand had an outcome, in the believed frame."""
-    misfits = residual(state, surprise.ranges, outcome.place, surprise.lying(outcome))
-    return Explanation(outcome.how, outcome.place, state.frame, misfits, outcome.distance, outcome)
+    residual = residual_at(state, surprise.ranges, outcome.place, surprise.objects_after(outcome))
+    return Explanation(outcome.how, outcome.place, state.frame, residual, outcome.distance, outcome)
 
 
-def refined_extent(state: TrackerState, load: HeldObject, ranges: Ranges, place: Place) -> HeldObject | None:
+def refined_extent(state: TrackerState, load: HeldObject, ranges: FieldRanges, place: Position) -> HeldObject | None:
     """Return an object with the sub-cell extent that an observation at `place` shows; None when none agrees with it.
 
     Squares that the object may leave free are taken for floor, not for something that happens to fill them.
     """
-    frame, others, nothing = state.frame, state.others(load), frozenset[Square]()
+    frame, others, nothing = state.frame, state.others(load), NO_SQUARES
     floor = state.occupancy.supposing(covered(load.polygon).squares())
 
     def agrees(outline: Any) -> bool:
         lying = replace(load, polygon=outline, slack=0.0, full=nothing, empty=nothing)
-        return not clashes(frame, floor, [*others, lying], place, ranges)
+        return not count_clashes(frame, floor, [*others, lying], place, ranges)
 
     return load.told(agrees)
 
@@ -143,7 +149,7 @@ def contact_suspects(state: TrackerState, load: HeldObject, chosen: Explanation,
 
     load : the object before the motion. motion : as commanded, map frame.
     """
-    return suspects(chosen.outcome, motion, load, state.others(load), state.occupancy)
+    return suspected_squares(chosen.outcome, motion, load, state.others(load), state.occupancy)
 
 
 def moved_object(
@@ -151,7 +157,7 @@ def moved_object(
     load: HeldObject,
     chosen: Explanation,
     motion: Motion,
-    ranges: Ranges,
+    ranges: FieldRanges,
     suspected: frozenset[Square],
 ) -> HeldObject:
     """Return the object in hand after the chosen outcome of a motion.
@@ -160,14 +166,16 @@ def moved_object(
     """
     others, place = state.others(load), chosen.place
     load = replace(load, inexact=load.inexact or state.slipped)
-    carried = after(load, chosen.outcome, chosen.misfits, bool(suspected))
+    carried = object_after(load, chosen.outcome, chosen.residual, bool(suspected))
     if carried.inexact and carried.proven and not suspected and chosen.outcome and chosen.outcome.stopped:
-        walls = Obstructions(state.occupancy, place, carried.polygon, motion).walls
-        carried = leaning(carried, motion, walls, lambda lying: residual(state, ranges, place, [*others, lying]))
+        known = Obstructions(state.occupancy, place, carried.polygon, motion).known
+        carried = lean_on_obstacle(
+            carried, motion, known, lambda lying: residual_at(state, ranges, place, [*others, lying])
+        )
     return carried
 
 
-def agreeing_origins(state: TrackerState, ranges: Ranges) -> tuple[FrameHypothesis, ...]:
+def agreeing_origins(state: TrackerState, ranges: FieldRanges) -> tuple[FrameHypothesis, ...]:
     """Return the frame hypotheses left by an observation of objects that were turned.
 
     Where several exact origins of the believed orientation are left, those are returned that agree with the
@@ -176,7 +184,9 @@ def agreeing_origins(state: TrackerState, ranges: Ranges) -> tuple[FrameHypothes
     within = _exact_origins(state)
     if len(within) <= 1:
         return state.hypotheses
-    return agreeing(within, state.frame, state.place, state.occupancy, state.observations, state.loads, ranges)
+    return agreeing_hypotheses(
+        within, state.frame, state.place, state.occupancy, state.observations, state.loads, ranges
+    )
 
 
 def objects_astray(state: TrackerState) -> dict[str, HeldObject]:

@@ -7,25 +7,24 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
 from kb.localisation.hypotheses.explanation import Explanation, cheapest
-from kb.localisation.hypotheses.frames import FrameHypothesis
-from kb.localisation.hypotheses.map_prior import UNTRIED
+from kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
+from kb.localisation.hypotheses.map_prior import UNTRIED_COST
 from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
-from kb.localisation.hypotheses.what_if import Surprise, clashes
+from kb.localisation.hypotheses.what_if import Surprise, count_clashes
 from kb.localisation.propose import blocked
-from kb.localisation.propose.earlier_motion import ReestimatedMotion, recalled, recalled_elsewhere
-from kb.localisation.propose.frame import explained, halted_elsewhere
+from kb.localisation.propose.earlier_motion import (
+    ReestimatedMotion,
+    reestimate_motions,
+    reestimate_with_origin,
+)
+from kb.localisation.propose.frame import best_frame, blocked_pushes_with_origin
 from kb.localisation.state import TrackerState
 from kb.objects.held_object import HeldObject
 
 MAX_FRAME_SEARCHES = 6  # searches over all frames before slips are blamed for residuals; tuned on random worlds
 MAX_FAILED_SEARCHES = 18  # searches that explained nothing, after which no slow proposal is made; tuned likewise
 CONTRADICTION_RESIDUAL = 2  # fields that a contradiction of observations counts as: more than any other frame costs
-Place = tuple[float, float]
-Ranges = NDArray[np.int16]
 T = TypeVar("T")
 
 
@@ -76,9 +75,9 @@ class Judgement(NamedTuple):
     hypotheses: tuple[FrameHypothesis, ...] | None = None
 
 
-def residual(state: TrackerState, ranges: Ranges, place: Place, loads: Iterable[HeldObject]) -> int:
+def residual_at(state: TrackerState, ranges: FieldRanges, place: Position, loads: Iterable[HeldObject]) -> int:
     """Return how many fields of an observation at `place` contradict the map, with the objects where `loads` lie."""
-    return clashes(state.frame, state.occupancy, loads, place, ranges)
+    return count_clashes(state.frame, state.occupancy, loads, place, ranges)
 
 
 def consistent_ends(
@@ -88,21 +87,23 @@ def consistent_ends(
 
     ended : each possible end, with the explanation that the motion ended there.
     """
-    fitting = (one._replace(chance=halt.chance, against=halt.against) for halt, one in ended if not one.misfits)
-    return tuple(blocked.borne_out(surprise, fitting))
+    fitting = (
+        one._replace(chance=end.chance, contact_squares=end.contact_squares) for end, one in ended if not one.residual
+    )
+    return tuple(blocked.consistent_explanations(surprise, fitting))
 
 
 def propose_frame(
-    state: TrackerState, surprise: Surprise, misfits: int, budget: SearchBudget, simple: bool = False
+    state: TrackerState, surprise: Surprise, residual: int, budget: SearchBudget, simple: bool = False
 ) -> list[Explanation]:
-    """Return the frame that explains a surprise with fewer than `misfits` residual fields, if there is one.
+    """Return the frame that explains a surprise with fewer than `residual` unexplained fields, if there is one.
 
     simple : whether a motion that ended early explains it in the believed frame.
     """
     if budget.exhausted:
         return []
-    found = explained(surprise, budget.frames_left, simple)
-    if found is None or found.misfits >= misfits:
+    found = best_frame(surprise, budget.frames_left, simple)
+    if found is None or found.residual >= residual:
         budget.spent += 1
         return []
     budget.spent += found.searched
@@ -111,12 +112,12 @@ def propose_frame(
     if simple and pushed and found.frame == state.frame:  # finer proposals of where it was blocked exist already
         return []
     if found.frame != state.frame or set(found.hypotheses) != set(state.hypotheses):
-        far = 0.0 if outcome is None else outcome.distance
-        turned = Explanation("turned", found.place, found.frame, found.misfits, far, outcome, found.hypotheses)
-        return [turned._replace(crooked=prior_cost(state, found.frame.angle))]
+        distance = 0.0 if outcome is None else outcome.distance
+        turned = Explanation("turned", found.place, found.frame, found.residual, distance, outcome, found.hypotheses)
+        return [turned._replace(prior_cost=prior_cost(state, found.frame.angle))]
     if outcome is None or outcome.how == "predicted":  # proposed already
         return []
-    return [Explanation(outcome.how, outcome.place, state.frame, found.misfits, outcome.distance, outcome)]
+    return [Explanation(outcome.how, outcome.place, state.frame, found.residual, outcome.distance, outcome)]
 
 
 def propose_blocked_push_and_origin(surprise: Surprise, budget: SearchBudget) -> list[Explanation]:
@@ -125,10 +126,10 @@ def propose_blocked_push_and_origin(surprise: Surprise, budget: SearchBudget) ->
     Each costs the less the larger the part of the square is in which the origin may lie then.
     """
     found = []
-    for one, chance, against in budget.search(lambda: halted_elsewhere(surprise)):
-        far = 0.0 if one.outcome is None else one.outcome.distance
-        turned = Explanation("turned", one.place, one.frame, 0, far, one.outcome, one.hypotheses)
-        found.append(turned._replace(chance=chance, crooked=against, weighed=True))
+    for one, chance, against in budget.search(lambda: blocked_pushes_with_origin(surprise)):
+        distance = 0.0 if one.outcome is None else one.outcome.distance
+        turned = Explanation("turned", one.place, one.frame, 0, distance, one.outcome, one.hypotheses)
+        found.append(turned._replace(chance=chance, prior_cost=against, origin_weighed=True))
     return found
 
 
@@ -141,8 +142,8 @@ class EarlierMotionProposers(NamedTuple):
     with_origin : proposes other ends together with another origin of the frame.
     """
 
-    in_frame: Callable[[Surprise, Sequence[MotionHypothesis]], list[ReestimatedMotion]] = recalled
-    with_origin: Callable[[Surprise, Sequence[MotionHypothesis]], list[ReestimatedMotion]] = recalled_elsewhere
+    in_frame: Callable[[Surprise, Sequence[MotionHypothesis]], list[ReestimatedMotion]] = reestimate_motions
+    with_origin: Callable[[Surprise, Sequence[MotionHypothesis]], list[ReestimatedMotion]] = reestimate_with_origin
 
 
 EARLIER_MOTION_PROPOSERS = EarlierMotionProposers()  # the ones in use; tests pass others
@@ -167,7 +168,7 @@ def propose_earlier_motions(
     here = [other for other in simple if other.frame == state.frame]
     if here:
         known = any(other.chance is not None for other in here)
-        likely = [] if known else [_earlier_motion(state, one) for one in proposers.in_frame(surprise, state.in_doubt)]
+        likely = [] if known else [_earlier_motion(state, one) for one in proposers.in_frame(surprise, state.doubtful)]
         return [one for one in likely if one.chance is not None]
     found = proposers.in_frame(surprise, state.earlier)
     if not found and not simple:
@@ -178,25 +179,25 @@ def propose_earlier_motions(
 def is_simple(state: TrackerState, explanation: Explanation) -> bool:
     """Return whether an explanation leaves no residual and needs neither a first slip nor another orientation."""
     likely = explanation.how != "slipped" or state.slipped
-    return likely and not explanation.misfits and explanation.frame.angle == state.frame.angle
+    return likely and not explanation.residual and explanation.frame.angle == state.frame.angle
 
 
-def _earlier_motion(state: TrackerState, recalled: ReestimatedMotion) -> Explanation:
+def _earlier_motion(state: TrackerState, motion: ReestimatedMotion) -> Explanation:
     """Return the explanation that an earlier motion ended as it was re-estimated."""
-    told, one = recalled
-    far = math.hypot(*told.correction.shift)
-    misled = Explanation("misled", one.place, one.frame, 0, far, one.outcome, one.hypotheses, told)
+    walk, one = motion
+    distance = math.hypot(*walk.correction.shift)
+    misled = Explanation("misled", one.place, one.frame, 0, distance, one.outcome, one.hypotheses, walk)
     return with_chance(state, misled)
 
 
 def with_chance(state: TrackerState, explanation: Explanation) -> Explanation:
     """Return a re-estimation of an earlier motion with its chance by the observation after that motion, if known."""
-    assert explanation.retold is not None
-    correction = explanation.retold.correction
-    motion = next((motion for motion in state.moved if motion.number == correction.since), None)
+    assert explanation.reestimated is not None
+    correction = explanation.reestimated.correction
+    motion = next((motion for motion in state.motions if motion.number == correction.since), None)
     if motion is None or motion.number >= len(state.observations) or explanation.frame != state.frame:
         return explanation
-    return explanation._replace(chance=motion.doubt(correction.place(state.observations[motion.number].place)))
+    return explanation._replace(chance=motion.chance_of_end(correction.place(state.observations[motion.number].place)))
 
 
 def prior_cost(state: TrackerState, angle: int) -> float:
@@ -206,13 +207,13 @@ def prior_cost(state: TrackerState, angle: int) -> float:
     """
     if angle == state.frame.angle:
         return 0.0
-    return min((one.dear for one in state.hypotheses if one.angle == angle), default=UNTRIED)
+    return min((one.prior_cost for one in state.hypotheses if one.angle == angle), default=UNTRIED_COST)
 
 
 def choose(state: TrackerState, explanations: list[Explanation], facts: Iterable[str] = ()) -> Explanation:
     """Return the cheapest explanation (kb/asp/accommodation.lp). facts : facts about the motion and observation."""
-    known = [f"trust({0 if state.off_middle else state.trust})", *["slips"] * state.slipped]
+    known = [f"trust({0 if state.off_middle else state.confirmations})", *["slips"] * state.slipped]
     known += ["off_middle"] * state.off_middle
-    known += [f"met({n})" for n, e in enumerate(explanations) if e.met and e.frame == state.frame]
+    known += [f"met({n})" for n, e in enumerate(explanations) if e.met_known and e.frame == state.frame]
     known += ["proven"] * (state.held is not None and state.loads[state.held].proven)
     return cheapest(explanations, [*known, *facts])

@@ -7,23 +7,25 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
 from kb.body import Command
-from kb.localisation.hypotheses.frames import CENTRED, Box, FrameHypothesis, Observation, leeway
-from kb.localisation.hypotheses.walk_outcomes import HAIR, MotionHypothesis
+from kb.localisation.hypotheses.frames import (
+    CENTRED_HYPOTHESES,
+    FieldRanges,
+    FrameHypothesis,
+    Observation,
+    Position,
+    origin_leeway,
+)
+from kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis
 from kb.localisation.hypotheses.what_if import Surprise
 from kb.mapping.completions import Completions
 from kb.mapping.occupancy import FREE, OPEN, OccupancyMap
-from kb.objects.held_object import HeldObject
+from kb.objects.held_object import HeldObject, Square
 from kb.perception.frame import CENTRE, Frame
 
-LOST = 8  # residual fields of the last few observations together from which localisation has failed; tuned
-ASTRAY = 24  # the same once an object was moved: the object may just lie otherwise than believed; tuned
-ELSEWHERE_CHANCE = 0.05  # probability above which an alternative end of an earlier motion counts as likely; tuned
-Place = tuple[float, float]
-Square = tuple[int, int]
+MAX_RESIDUAL = 8  # residual fields of the last observations together from which localisation has failed; tuned
+MAX_RESIDUAL_AFTER_MOVING = 24  # the same once an object was moved, for it may lie elsewhere than believed; tuned
+LIKELY_END_CHANCE = 0.05  # probability above which an alternative end of an earlier motion counts as likely; tuned
 
 
 @dataclass(frozen=True)
@@ -37,37 +39,37 @@ class TrackerState:
     place : where Utak is: (x, y) in squares, map frame.
     observations : all observations since the tracker began; each keeps its place in Utak's own frame.
     hypotheses : the frame hypotheses that are left.
-    trust : number of observations in a row that confirmed the believed frame.
-    barred : squares that stopped Utak himself when a motion was about to enter them, map frame.
-    suspected : open squares one of which probably stopped a held object, map frame.
-    searches : how often all frames were searched, successfully or not. It limits further searches.
+    confirmations : number of observations in a row that confirmed the believed frame.
+    blocked_squares : squares that stopped Utak himself when a motion was about to enter them, map frame.
+    suspected_squares : open squares one of which probably stopped a held object, map frame.
+    search_count : how often all frames were searched, successfully or not. It limits further searches.
     slipped : whether any motion ended beside its predicted end.
-    moved : the last straight motions, oldest first. Each may have ended otherwise than believed.
+    motions : the last straight motions, oldest first. Each may have ended otherwise than believed.
     loads : all objects that were ever held, by name.
     held : the name of the object in the hand; None when the hand is empty.
-    unfit : residual of each of the last observations, oldest first.
+    residuals : residual of each of the last observations, oldest first.
     been : places of the observations before the tracker began anew, Utak's own frame.
-    pictures : the newest completions of the map in this frame; None when none were drawn.
+    completions : the newest completions of the map in this frame; None when none were drawn.
     """
 
     occupancy: OccupancyMap = field(default_factory=OccupancyMap)
     frame: Frame = field(default_factory=Frame)
-    place: Place = CENTRE
+    place: Position = CENTRE
     observations: tuple[Observation, ...] = ()
-    hypotheses: tuple[FrameHypothesis, ...] = CENTRED
-    trust: int = 0
-    barred: frozenset[Square] = frozenset()
-    suspected: frozenset[Square] = frozenset()
-    searches: int = 0
+    hypotheses: tuple[FrameHypothesis, ...] = CENTRED_HYPOTHESES
+    confirmations: int = 0
+    blocked_squares: frozenset[Square] = frozenset()
+    suspected_squares: frozenset[Square] = frozenset()
+    search_count: int = 0
     slipped: bool = False
-    moved: tuple[MotionHypothesis, ...] = ()
+    motions: tuple[MotionHypothesis, ...] = ()
     loads: Mapping[str, HeldObject] = field(default_factory=dict)
     held: str | None = None
-    unfit: tuple[int, ...] = ()
-    been: tuple[Place, ...] = ()
-    pictures: Completions | None = None
+    residuals: tuple[int, ...] = ()
+    been: tuple[Position, ...] = ()
+    completions: Completions | None = None
 
-    def surprise(self, command: Command, ranges: NDArray[np.int16]) -> Surprise:
+    def surprise(self, command: Command, ranges: FieldRanges) -> Surprise:
         """Return an observation that contradicts this state, with what of the state it is judged by.
 
         command : the command before the observation. ranges : (160, 2) least and greatest counts of its fields.
@@ -82,7 +84,7 @@ class TrackerState:
             self.loads,
             self.held,
             self.hypotheses,
-            self.pictures,
+            self.completions,
         )
 
     # -- pose and track --------------------------------------------------------------------------
@@ -93,7 +95,7 @@ class TrackerState:
         return math.floor(self.place[0]), math.floor(self.place[1])
 
     @property
-    def track(self) -> list[Place]:
+    def track(self) -> list[Position]:
         """Return all places of observations, oldest first, those before a new beginning included; map frame."""
         return [
             self.frame.place_from_utak(*place)
@@ -106,12 +108,12 @@ class TrackerState:
         return frozenset((math.floor(x), math.floor(y)) for x, y in self.track[len(self.been) :])
 
     @property
-    def leeway(self) -> Box:
+    def leeway(self) -> tuple[float, float, float, float]:
         """Return how far the true origin of the frame may lie from the believed one.
 
         In squares of the map frame: to the west and south (not above 0), then east and north (not below 0).
         """
-        return leeway(self.frame, self.observations, self.hypotheses)
+        return origin_leeway(self.frame, self.observations, self.hypotheses)
 
     @property
     def off_middle(self) -> bool:
@@ -121,15 +123,16 @@ class TrackerState:
     @property
     def beside_line(self) -> bool:
         """Return whether a contact at a grid line has fixed the origin in one axis, but for the width of a contact."""
-        return min(map(abs, self.leeway)) <= 2 * HAIR
+        return min(map(abs, self.leeway)) <= 2 * LINE_DISTANCE
 
     # -- certainty -------------------------------------------------------------------------------
 
     @property
     def lost(self) -> bool:
         """Return whether localisation has failed: observation after observation contradicts what is believed."""
-        most = ASTRAY if any(load.proven for load in self.loads.values()) else LOST
-        return sum(self.unfit) >= most and sum(unfit > 0 for unfit in self.unfit) > 1
+        moved = any(load.proven for load in self.loads.values())
+        limit = MAX_RESIDUAL_AFTER_MOVING if moved else MAX_RESIDUAL
+        return sum(self.residuals) >= limit and sum(residual > 0 for residual in self.residuals) > 1
 
     @property
     def spread(self) -> float:
@@ -153,7 +156,7 @@ class TrackerState:
         have ended in another square, or while several frame hypotheses are left that differ from Utak's own axes.
         """
         along = self.frame.angle == 0 and all(other.is_centred for other in self.hypotheses)
-        settled = not (self.shaken or any(map(self._elsewhere_likely, self.moved)))
+        settled = not (self.shaken or any(map(self._elsewhere_likely, self.motions)))
         return settled and (along or len(self.hypotheses) == 1)
 
     @property
@@ -165,7 +168,7 @@ class TrackerState:
         """Return whether a motion may well have ended in another square than believed, by the observation after it."""
         if motion.number >= len(self.observations):
             return False
-        places = [self.observations[motion.number].place, *motion.likely(ELSEWHERE_CHANCE)]
+        places = [self.observations[motion.number].place, *motion.likely_ends(LIKELY_END_CHANCE)]
         squares = {(math.floor(x), math.floor(y)) for x, y in (self.frame.place_from_utak(*own) for own in places)}
         return len(squares) > 1
 
@@ -178,8 +181,9 @@ class TrackerState:
         A square seen to be free is left out when motions slip, or when all eight squares around it are free, too:
         then the contact, or its place, was believed wrongly.
         """
-        certain = set() if self.slipped else {square for square in self.barred if not self._free_around(*square)}
-        doubted = (self.barred | self.suspected) - certain
+        blocked = self.blocked_squares
+        certain = set() if self.slipped else {square for square in blocked if not self._free_around(*square)}
+        doubted = (blocked | self.suspected_squares) - certain
         return frozenset((*certain, *(s for s in doubted if self.occupancy.state[self.occupancy.index(*s)] == OPEN)))
 
     def _free_around(self, x: int, y: int) -> bool:
@@ -191,19 +195,19 @@ class TrackerState:
     # -- motions that may be re-estimated --------------------------------------------------------
 
     @property
-    def tellable(self) -> tuple[MotionHypothesis, ...]:
+    def reestimable(self) -> tuple[MotionHypothesis, ...]:
         """Return the last straight motions that can be re-estimated: with an empty hand, or with a known object."""
-        return tuple(motion for motion in self.moved if motion.load is None or motion.load in self.loads)
+        return tuple(motion for motion in self.motions if motion.load is None or motion.load in self.loads)
 
     @property
     def earlier(self) -> tuple[MotionHypothesis, ...]:
         """Return those of them whose observation has been integrated already."""
-        return tuple(motion for motion in self.tellable if motion.number < len(self.observations))
+        return tuple(motion for motion in self.reestimable if motion.number < len(self.observations))
 
     @property
-    def in_doubt(self) -> tuple[MotionHypothesis, ...]:
+    def doubtful(self) -> tuple[MotionHypothesis, ...]:
         """Return those earlier motions that may well have ended elsewhere than believed."""
-        return tuple(motion for motion in self.earlier if motion.likely(ELSEWHERE_CHANCE))
+        return tuple(motion for motion in self.earlier if motion.likely_ends(LIKELY_END_CHANCE))
 
     def others(self, load: HeldObject) -> list[HeldObject]:
         """Return all objects that were ever held but one."""

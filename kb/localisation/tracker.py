@@ -19,12 +19,18 @@ from kb.localisation.after_carry import (
     refined_extent,
 )
 from kb.localisation.after_walk import WalkEnds, explain_walk
-from kb.localisation.hypotheses.explanation import Accommodated, Explanation, statuses
-from kb.localisation.hypotheses.frames import ANYWHERE, Observation
-from kb.localisation.hypotheses.remap import RemapCache, RemappedMap, laid, relaid
-from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis, amid, ends, next_square, views
-from kb.localisation.hypotheses.what_if import as_motion
-from kb.localisation.score import Judgement, Place, Ranges
+from kb.localisation.hypotheses.explanation import Accommodated, Explanation, field_statuses
+from kb.localisation.hypotheses.frames import ALL_HYPOTHESES, FieldRanges, Observation, Position
+from kb.localisation.hypotheses.remap import RemapCache, RemappedMap, object_pose, remap
+from kb.localisation.hypotheses.walk_outcomes import (
+    MotionHypothesis,
+    blocked_ends,
+    entered_square,
+    observation_places,
+    snap_to_middle,
+)
+from kb.localisation.hypotheses.what_if import command_motion
+from kb.localisation.score import Judgement
 from kb.localisation.state import TrackerState
 from kb.mapping.completions import Completions
 from kb.mapping.occupancy import FREE, FULL, OccupancyMap
@@ -56,7 +62,7 @@ class Tracker:
         """
         state = self.state
         been = (*state.been, *(observation.place for observation in state.observations[:-1]))
-        return Tracker(TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ANYWHERE, been=been))
+        return Tracker(TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been))
 
     def wake(self, impression: Impression) -> Accommodated:
         """Explain and integrate the first impression.
@@ -94,7 +100,7 @@ class Tracker:
         if isinstance(command, Move) and state.held is None:
             shift = state.frame.to_lattice(command.east, command.north)
         x, y = state.place
-        return self._after_walk(ranges, WalkEnds((x + shift[0], y + shift[1]), ends((x, y), shift)), command)
+        return self._after_walk(ranges, WalkEnds((x + shift[0], y + shift[1]), blocked_ends((x, y), shift)), command)
 
     def grasp(self, load: HeldObject) -> None:
         """Believe that an object is in the hand.
@@ -115,48 +121,49 @@ class Tracker:
         """Replace what is known of an object that was held before by `load`, which bears the same name."""
         self.state = replace(self.state, loads={**self.state.loads, load.name: load})
 
-    def keep_completions(self, pictures: Completions | None) -> None:
+    def keep_completions(self, completions: Completions | None) -> None:
         """Keep the newest completions of the map; the chance of a contact is estimated by them."""
-        self.state = replace(self.state, pictures=pictures)
+        self.state = replace(self.state, completions=completions)
 
     # -- after a walk, on waking, after a release ------------------------------------------------
 
-    def _after_walk(self, ranges: Ranges, walk: WalkEnds, command: Command | None) -> Accommodated:
+    def _after_walk(self, ranges: FieldRanges, walk: WalkEnds, command: Command | None) -> Accommodated:
         """Explain and integrate an observation after a walk, or after a command that leaves everything in place."""
-        if walk.stops and isinstance(command, Move):
+        if walk.blocked and isinstance(command, Move):
             self._remember(command)
         judged = explain_walk(self.state, ranges, walk, command)
         explanation = judged.explanation
         self._learn(judged)
         self._apply(explanation)
-        self._count_trust(explanation)
+        self._count_confirmations(explanation)
         self._note_motion(explanation)
         if explanation.how == "blocked" or explanation.place == self.state.place != walk.predicted:
-            against = explanation.against or {next_square(explanation.place, walk.predicted)}
-            self.state = replace(self.state, barred=self.state.barred | against)
+            squares = explanation.contact_squares or {entered_square(explanation.place, walk.predicted)}
+            self.state = replace(self.state, blocked_squares=self.state.blocked_squares | squares)
         return self._integrate(explanation, ranges)
 
-    def _count_trust(self, explanation: Explanation) -> None:
+    def _count_confirmations(self, explanation: Explanation) -> None:
         """Count an observation that was predicted in favour of the frame, and reset the count after a surprise."""
-        trust = self.state.trust
-        trust = trust + 1 if explanation.how == "predicted" else trust * (explanation.chance is not None)
-        self.state = replace(self.state, trust=trust)
+        number = self.state.confirmations
+        number = number + 1 if explanation.how == "predicted" else number * (explanation.chance is not None)
+        self.state = replace(self.state, confirmations=number)
 
     def _note_motion(self, explanation: Explanation) -> None:
         """Note that motions slip, or which of the last motions was blocked, if an explanation says so."""
         state = self.state
         if explanation.how == "slipped":
-            self.state = replace(state, slipped=True, moved=())
+            self.state = replace(state, slipped=True, motions=())
         elif explanation.how in ("blocked", "misled"):
-            since = len(state.observations) if explanation.retold is None else explanation.retold.correction.since
-            moved = tuple(m._replace(stopped=True) if m.number == since else m for m in state.moved)
-            self.state = replace(state, moved=moved)
+            walk = explanation.reestimated
+            since = len(state.observations) if walk is None else walk.correction.since
+            motions = tuple(m._replace(blocked=True) if m.number == since else m for m in state.motions)
+            self.state = replace(state, motions=motions)
 
     # -- after a push or a turn ------------------------------------------------------------------
 
-    def _after_carry(self, ranges: Ranges, name: str, command: Push | Turn) -> Accommodated:
+    def _after_carry(self, ranges: FieldRanges, name: str, command: Push | Turn) -> Accommodated:
         """Explain and integrate an observation after a push or a turn of the held object `name`."""
-        state, motion = self.state, as_motion(command, self.state.frame, self.state.place)
+        state, motion = self.state, command_motion(command, self.state.frame, self.state.place)
         load = state.loads[name]
         if isinstance(command, Turn) and state.beside_line:
             load = replace(load, astray=max(load.astray, ROUNDING))
@@ -169,16 +176,16 @@ class Tracker:
         self._move_object(name, judged.explanation, command, ranges)
         return self._integrate(judged.explanation, ranges)
 
-    def _move_object(self, name: str, chosen: Explanation, command: Push | Turn, ranges: Ranges) -> None:
+    def _move_object(self, name: str, chosen: Explanation, command: Push | Turn, ranges: FieldRanges) -> None:
         """Move the held object as the chosen explanation says, and refine what is known of its outline."""
         if chosen.larger is not None:
             self._declare_floor(chosen.larger)
             self.update_object(chosen.larger)
         self.state = replace(self.state, slipped=self.state.slipped or chosen.how == "slipped")
-        load, motion = self.state.loads[name], as_motion(command, self.state.frame, self.state.place)
+        load, motion = self.state.loads[name], command_motion(command, self.state.frame, self.state.place)
         suspected = contact_suspects(self.state, load, chosen, motion)
         self.update_object(moved_object(self.state, load, chosen, motion, ranges, suspected))
-        self.state = replace(self.state, suspected=self.state.suspected | suspected, place=chosen.place)
+        self.state = replace(self.state, suspected_squares=self.state.suspected_squares | suspected, place=chosen.place)
         if chosen.outcome is not None and chosen.outcome.as_commanded:
             refined = refined_extent(self.state, self.state.loads[name], ranges, self.state.place)
             if refined is not None:
@@ -194,11 +201,11 @@ class Tracker:
         If either is new, all observations and held objects are mapped anew.
         """
         state, loads = self.state, self.state.loads
-        if chosen.anew:
-            state = replace(state, hypotheses=chosen.hypotheses, trust=0)
+        if chosen.remaps:
+            state = replace(state, hypotheses=chosen.hypotheses, confirmations=0)
             loads = borne_out(loads, state.held)
-        if chosen.retold is not None:
-            correction = chosen.retold.correction
+        if chosen.reestimated is not None:
+            correction = chosen.reestimated.correction
             own = state.frame.place_to_utak(*state.place)
             observations = tuple(correction.observations(state.observations))
             loads = correction.loads(loads, state.frame)
@@ -207,10 +214,10 @@ class Tracker:
         elif chosen.frame == state.frame:
             self.state = state
             return
-        if chosen.retold is not None or len(loads) < len(state.loads):
-            under = relaid(chosen.frame, state.frame, state.observations, loads.values())
+        if chosen.reestimated is not None or len(loads) < len(state.loads):
+            under = remap(chosen.frame, state.frame, state.observations, loads.values())
         else:
-            under = RemapCache(state.frame, state.occupancy, state.observations, loads).on(chosen.frame)
+            under = RemapCache(state.frame, state.occupancy, state.observations, loads).remapped(chosen.frame)
         self.state = _remapped(replace(state, frame=chosen.frame), under)
 
     def _learn(self, judged: Judgement) -> None:
@@ -218,20 +225,20 @@ class Tracker:
         state, chosen = self.state, judged.explanation
         if judged.hypotheses is not None:
             state = replace(state, hypotheses=judged.hypotheses)
-        self.state = state = replace(state, searches=judged.searches)
-        if not judged.blocked or chosen.frame != state.frame or state.moved[-1].number != len(state.observations):
+        self.state = state = replace(state, search_count=judged.searches)
+        if not judged.blocked or chosen.frame != state.frame or state.motions[-1].number != len(state.observations):
             return
-        weights = [(one, (one.chance or 0.0) * math.exp(-one.crooked)) for one in judged.blocked]
+        weights = [(one, (one.chance or 0.0) * math.exp(-one.prior_cost)) for one in judged.blocked]
         total = sum(weight for _, weight in weights)
         others = [(state.frame.place_to_utak(*one.place), w / total) for one, w in weights if one.place != chosen.place]
-        moved = (*state.moved[:-1], state.moved[-1]._replace(doubts=tuple(others)))
-        self.state = replace(state, moved=moved)
+        motions = (*state.motions[:-1], state.motions[-1]._replace(alternative_ends=tuple(others)))
+        self.state = replace(state, motions=motions)
 
     def _remember(self, command: Move | Push, name: str | None = None) -> None:
         """Remember a straight motion, for it may have ended otherwise than believed. name : of the object in hand."""
         state = self.state
         motion = MotionHypothesis(len(state.observations), (command.east, command.north), state.hypotheses, load=name)
-        self.state = replace(state, moved=(*state.moved[1 - MAX_MOTIONS :], motion))
+        self.state = replace(state, motions=(*state.motions[1 - MAX_MOTIONS :], motion))
 
     def _declare_floor(self, load: HeldObject) -> None:
         """Believe that there is floor where an object lies."""
@@ -239,25 +246,25 @@ class Tracker:
         squares = occupancy.squares(patch.west, patch.south, patch.mask)
         occupancy.declare(squares, FREE, len(self.state.observations) - 1)
 
-    def _integrate(self, explanation: Explanation, ranges: Ranges) -> Accommodated:
+    def _integrate(self, explanation: Explanation, ranges: FieldRanges) -> Accommodated:
         """Integrate an explained observation into the map, without what the held objects show of themselves."""
         state, occupancy = self.state, self.state.occupancy
         samples, number = state.frame.samples(), len(state.observations)
         x, y = math.floor(explanation.place[0]), math.floor(explanation.place[1])
         loads = {name: load.seen(samples, ranges, x, y) for name, load in state.loads.items()}
         samples, counts = discounted(samples, ranges, x, y, loads.values())
-        cells = statuses(occupancy, samples, counts, x, y)
-        moved = tuple(laid(load, state.frame) for load in loads.values())
+        cells = field_statuses(occupancy, samples, counts, x, y)
+        moved = tuple(object_pose(load, state.frame) for load in loads.values())
         observation = Observation(ranges, state.frame.place_to_utak(*explanation.place), moved)
         occupancy.observe(samples, counts, x, y, number)
-        occupancy.overruled += explanation.misfits  # contradictions among open squares count as well
+        occupancy.overruled += explanation.residual  # contradictions among open squares count as well
         if number == 0:
             occupancy.stand(x, y, 0)
         self.state = replace(
             state,
             loads=loads,
             observations=(*state.observations, observation),
-            unfit=(*state.unfit[1 - RESIDUAL_WINDOW :], explanation.misfits),
+            residuals=(*state.residuals[1 - RESIDUAL_WINDOW :], explanation.residual),
             place=_standing_place(state, explanation.place),
         )
         return Accommodated(explanation, cells)
@@ -266,16 +273,16 @@ class Tracker:
 def _remapped(state: TrackerState, under: RemappedMap) -> TrackerState:
     """Return a state with another map and the objects on it; what belonged to the squares of the old map is dropped."""
     if under.occupancy is not state.occupancy:
-        state = replace(state, barred=frozenset(), suspected=frozenset(), pictures=None)
+        state = replace(state, blocked_squares=frozenset(), suspected_squares=frozenset(), completions=None)
     return replace(state, occupancy=under.occupancy, loads=dict(under.loads))
 
 
-def _standing_place(state: TrackerState, place: Place) -> Place:
+def _standing_place(state: TrackerState, place: Position) -> Position:
     """Return the place to believe, map frame: on the side of a grid line where nothing stands, snapped to the middle.
 
     A motion that a contact stopped ends on a grid line, and the observation may have been made from either side.
     """
-    sides, occupancy = [place, *views(place)], state.occupancy
+    sides, occupancy = [place, *observation_places(place)], state.occupancy
     squares = [(math.floor(x), math.floor(y)) for x, y in sides]
-    free = (occupancy.state[occupancy.index(*s)] != FULL and s not in state.barred for s in squares)
-    return amid(next((side for side, can_stand in zip(sides, free, strict=True) if can_stand), place))
+    free = (occupancy.state[occupancy.index(*s)] != FULL and s not in state.blocked_squares for s in squares)
+    return snap_to_middle(next((side for side, can_stand in zip(sides, free, strict=True) if can_stand), place))

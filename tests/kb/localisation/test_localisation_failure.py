@@ -11,7 +11,7 @@ from kb.body import Impression, Move, Release, Turn
 from kb.knowledge import Knowledge
 from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.frames import FrameHypothesis
-from kb.localisation.state import ASTRAY, LOST, TrackerState
+from kb.localisation.state import MAX_RESIDUAL, MAX_RESIDUAL_AFTER_MOVING, TrackerState
 from kb.localisation.tracker import Tracker
 from kb.mapping.occupancy import FULL, OPEN
 from kb.mapping.patch import Patch
@@ -109,24 +109,24 @@ def test_who_cannot_forget_believes_in_a_room_that_is_none(monkeypatch: pytest.M
 def lost_in(rows: list[str]) -> Knowledge:
     """One who has walked a little, and whose last looks fitted badly."""
     knowledge = walked(rows, [(2, 0), (0, 3)]).knowledge
-    knowledge.tracker.state = replace(knowledge.memory, unfit=(LOST, LOST))
+    knowledge.tracker.state = replace(knowledge.memory, residuals=(MAX_RESIDUAL, MAX_RESIDUAL))
     assert knowledge.memory.lost
     return knowledge
 
 
 def test_misfits_of_a_single_look_are_no_reason_to_forget() -> None:
-    state = TrackerState(unfit=(0, 0, 0, 3 * LOST))
+    state = TrackerState(residuals=(0, 0, 0, 3 * MAX_RESIDUAL))
     assert not state.lost
-    assert not TrackerState(unfit=(1, 1, 1, 1)).lost
-    assert TrackerState(unfit=(0, 1, 0, LOST)).lost
+    assert not TrackerState(residuals=(1, 1, 1, 1)).lost
+    assert TrackerState(residuals=(0, 1, 0, MAX_RESIDUAL)).lost
 
 
 def test_who_has_moved_a_thing_forgets_less_readily() -> None:
     thing = shapely.box(4, 2, 8, 4)
     held, moved = HeldObject("o1", thing, thing), HeldObject("o1", thing, thing).moved(thing, 0.0)
-    assert TrackerState(unfit=(1, LOST), loads={"o1": held}).lost
-    assert not TrackerState(unfit=(1, LOST), loads={"o1": moved}).lost
-    assert TrackerState(unfit=(1, ASTRAY), loads={"o1": moved}).lost
+    assert TrackerState(residuals=(1, MAX_RESIDUAL), loads={"o1": held}).lost
+    assert not TrackerState(residuals=(1, MAX_RESIDUAL), loads={"o1": moved}).lost
+    assert TrackerState(residuals=(1, MAX_RESIDUAL_AFTER_MOVING), loads={"o1": moved}).lost
 
 
 def test_what_he_holds_he_lets_go_before_he_forgets() -> None:
@@ -140,7 +140,7 @@ def test_what_he_holds_he_lets_go_before_he_forgets() -> None:
     assert not model.anew
     decision = Decider(Task({}, (), ())).decide(model, knowledge.memory.track)
     assert isinstance(decision.command, Release)
-    knowledge.tracker.state = replace(knowledge.memory, unfit=(LOST, LOST))
+    knowledge.tracker.state = replace(knowledge.memory, residuals=(MAX_RESIDUAL, MAX_RESIDUAL))
     model, accommodated = knowledge.perceive(Release(), sees)
     assert accommodated.explanation.how == "lost"
     assert model.anew

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.frames import CENTRED, Observation
+from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
 from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis, ReestimatedWalk, WalkCorrection
 from kb.localisation.hypotheses.what_if import Surprise, WhatIf
 from kb.localisation.propose.earlier_motion import ReestimatedMotion
@@ -15,7 +15,7 @@ from kb.localisation.score import EARLIER_MOTION_PROPOSERS, SearchBudget, propos
 from kb.localisation.state import TrackerState
 from kb.perception.frame import CENTRE, Frame
 
-HELD = CENTRED[0]
+HELD = CENTRED_HYPOTHESES[0]
 STUCK = Explanation("stuck", CENTRE, Frame(), 0, 0.5)
 NO_SURPRISE = cast(Surprise, None)
 
@@ -27,7 +27,7 @@ NO_SURPRISE = cast(Surprise, None)
         (0.01, STUCK, []),
         (0.3, STUCK._replace(how="blocked", chance=0.5), None),  # how likely that is is known
         (0.3, STUCK._replace(how="slipped"), [1, 2]),  # nothing simple explains it: all is thought of
-        (0.3, STUCK._replace(misfits=3), [1, 2]),
+        (0.3, STUCK._replace(residual=3), [1, 2]),
     ],
 )
 def test_what_likely_was_otherwise_is_thought_of_where_something_odd_explains_a_look(
@@ -35,7 +35,10 @@ def test_what_likely_was_otherwise_is_thought_of_where_something_odd_explains_a_
 ) -> None:
     observations = tuple(Observation(np.zeros((160, 2), np.int16), (float(n), 0.0)) for n in range(3))
     doubts = (((0.75, 0.5), likely), ((0.0, 0.0), 0.001))
-    moved = (MotionHypothesis(1, (1.0, 0.0), (HELD,), doubts=doubts), MotionHypothesis(2, (1.0, 0.0), (HELD,)))
+    moved = (
+        MotionHypothesis(1, (1.0, 0.0), (HELD,), alternative_ends=doubts),
+        MotionHypothesis(2, (1.0, 0.0), (HELD,)),
+    )
     told = ReestimatedMotion(
         ReestimatedWalk(HELD, WalkCorrection(1, (-0.25, 0.5)), True, 0),
         WhatIf(Frame(), (HELD,), CENTRE, None, 0, False),
@@ -46,10 +49,10 @@ def test_what_likely_was_otherwise_is_thought_of_where_something_odd_explains_a_
         calls.append([motion.number for motion in motions])
         return [told] * bool(motions)
 
-    state, budget = TrackerState(observations=observations, moved=moved), SearchBudget(0)
+    state, budget = TrackerState(observations=observations, motions=moved), SearchBudget(0)
     proposers = EARLIER_MOTION_PROPOSERS._replace(in_frame=recalled)
     found = propose_earlier_motions(state, NO_SURPRISE, [simple], budget, proposers)
     assert calls == ([] if asked is None else [asked])
     assert len(found) == bool(asked)
     for one in found:
-        assert (one.how, one.chance, one.retold) == ("misled", likely, told.retold)
+        assert (one.how, one.chance, one.reestimated) == ("misled", likely, told.walk)

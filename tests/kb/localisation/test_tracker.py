@@ -10,7 +10,7 @@ from shapely.affinity import rotate, translate
 
 from kb.body import Move, Push, Turn
 from kb.localisation.hypotheses.explanation import CellStatus, Explanation, cheapest
-from kb.localisation.hypotheses.frames import CENTRED, FrameHypothesis
+from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, FrameHypothesis
 from kb.localisation.hypotheses.walk_outcomes import ReestimatedWalk, WalkCorrection
 from kb.localisation.tracker import Tracker
 from kb.mapping.occupancy import FREE, OPEN
@@ -54,7 +54,7 @@ def test_a_motion_that_was_stopped_is_understood() -> None:
     found = tracker.accommodate(Move(0.0, -9.0), impression(occupied, (x + 2, y - 3)))  # stopped after 6 of 9
     assert found.explanation.how == "blocked"
     assert tracker.state.place == pytest.approx((2.5, -3.0), abs=1e-5)
-    assert (2, -4) in tracker.state.barred
+    assert (2, -4) in tracker.state.blocked_squares
 
 
 def test_a_slip_of_one_who_slips_is_understood() -> None:
@@ -125,13 +125,13 @@ def test_what_was_told_wrongly_is_told_again_by_the_next_looks(seed: int) -> Non
 @pytest.mark.parametrize("other", [Frame(0, (0.97, 0.97)), Frame(7)])
 def test_a_stop_at_what_is_known_is_believed_rather_than_another_lattice(known: bool, other: Frame) -> None:
     """Just where an earlier motion would have been stopped something stands, and all looks agree then."""
-    told = ReestimatedWalk(CENTRED[0], WalkCorrection(1, (0.5, -0.5)), known, 0)
+    told = ReestimatedWalk(CENTRED_HYPOTHESES[0], WalkCorrection(1, (0.5, -0.5)), known, 0)
     explanations = [
         Explanation("predicted", (9.5, 0.5), Frame(), 6, 0.0),
         Explanation("turned", (9.5, 0.5), other, 0, 0.0),
-        Explanation("misled", (10.0, 0.0), Frame(), 0, 0.7, retold=told),
+        Explanation("misled", (10.0, 0.0), Frame(), 0, 0.7, reestimated=told),
     ]
-    numbers = [number for number, one in enumerate(explanations) if one.met and one.frame == Frame()]
+    numbers = [number for number, one in enumerate(explanations) if one.met_known and one.frame == Frame()]
     chosen = cheapest(explanations, ["trust(3)", *(f"met({number})" for number in numbers)])
     assert chosen.how == ("misled" if known else "turned")
 
@@ -157,7 +157,7 @@ def stopped_and_walked(seed: int, remember: bool) -> list[float] | None:
             return None
         here = end
         if not remember:
-            tracker.state = replace(tracker.state, moved=())
+            tracker.state = replace(tracker.state, motions=())
         tracker.accommodate(Move(*way), impression(occupied, (math.floor(here[0]), math.floor(here[1])), heading))
         own = turned(here[0] - origin[0], here[1] - origin[1], -heading)
         off.append(math.dist(tracker.state.frame.place_to_utak(*tracker.state.place), own))
@@ -225,7 +225,7 @@ def test_where_a_turn_leaves_a_thing_tells_where_in_his_square_he_stands(place: 
     assert load.polygon.hausdorff_distance(true) <= load.play + 0.2
     assert not tracker.state.sure
     back = tracker.accommodate(Turn(-90.0), impression(around(thing, PLAIN), (20, 20)))
-    assert back.explanation.misfits == 0
+    assert back.explanation.residual == 0
     assert tracker.state.loads["o1"].polygon.hausdorff_distance(translate(thing, -20, -20)) < 1e-6
     assert tracker.state.loads["o1"].play == 0
 
@@ -234,7 +234,7 @@ def test_what_looks_as_before_after_a_push_did_not_move() -> None:
     thing = translate(ELL, 38, 18)  # it stands against the wall already
     tracker = holding(thing, (37.5, 20.5))
     # how the frame lies is known:
-    tracker.state = replace(tracker.state, hypotheses=(FrameHypothesis(0, CENTRE + CENTRE),), trust=20)
+    tracker.state = replace(tracker.state, hypotheses=(FrameHypothesis(0, CENTRE + CENTRE),), confirmations=20)
     found = tracker.accommodate(Push(1.0, 0.0), impression(around(thing, PLAIN), (37, 20)))
     assert found.explanation.outcome is not None and found.explanation.outcome.stopped
     assert tracker.state.place == CENTRE
@@ -277,16 +277,16 @@ def test_what_stops_a_thing_unawares_makes_the_squares_before_it_suspect() -> No
     thing = shapely.box(22, 18, 27, 21)
     tracker = holding(thing, (21.5, 19.5), posts)
     # how the frame lies is known:
-    tracker.state = replace(tracker.state, hypotheses=CENTRED[:1], searches=99)
+    tracker.state = replace(tracker.state, hypotheses=CENTRED_HYPOTHESES[:1], search_count=99)
     row, column = tracker.state.occupancy.index(29 - 21, -1)
     tracker.state.occupancy.state[row - 3 : row + 6, column] = OPEN  # not looked at closely
     stopped = translate(thing, 2, 0)  # of 6
     found = tracker.accommodate(Push(6.0, 0.0), impression(around(stopped, posts), (23, 19)))
     assert found.explanation.how == "blocked"
-    assert tracker.state.suspected
-    assert {column for column, _ in tracker.state.suspected} == {29 - 21}
-    tracker.state.occupancy.state[tracker.state.occupancy.index(*min(tracker.state.suspected))] = FREE
-    assert min(tracker.state.suspected) not in tracker.state.closed
+    assert tracker.state.suspected_squares
+    assert {column for column, _ in tracker.state.suspected_squares} == {29 - 21}
+    tracker.state.occupancy.state[tracker.state.occupancy.index(*min(tracker.state.suspected_squares))] = FREE
+    assert min(tracker.state.suspected_squares) not in tracker.state.closed
 
 
 @pytest.mark.parametrize(
@@ -303,7 +303,7 @@ def test_what_seemed_to_stop_him_and_is_seen_to_be_free_is_free(
     slips: bool, state: int, about: int, closed: bool
 ) -> None:
     tracker = walked(ROOM, [(2, 0)]).knowledge.tracker
-    tracker.state = replace(tracker.state, slipped=slips, barred=tracker.state.barred | {(3, 1)})
+    tracker.state = replace(tracker.state, slipped=slips, blocked_squares=tracker.state.blocked_squares | {(3, 1)})
     row, column = tracker.state.occupancy.index(3, 1)
     tracker.state.occupancy.state[row - 1 : row + 2, column - 1 : column + 2] = about
     tracker.state.occupancy.state[row, column] = state

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
 from geometry.motion.se2 import Motion, Rotate, Translate
-from kb.localisation.hypotheses.contacts import Obstructions, near
+from kb.localisation.hypotheses.contacts import Obstructions, likeliest_contact_near
 from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
 
 ELL = shapely.Polygon([(1, 0), (6, 0), (6, 2), (3, 2), (3, 5), (1, 5)])
@@ -65,16 +65,16 @@ def test_a_motion_may_end_where_it_meets_what_is_not_free(
     motion: Motion, open_: dict[Square, float], full: list[Square]
 ) -> None:
     open_ = {square: odds for square, odds in open_.items() if square not in full}
-    stops = Obstructions(evidence_of(open_, full), UTAK, ELL, motion).stops(UTAK, ELL, motion)
+    stops = Obstructions(evidence_of(open_, full), UTAK, ELL, motion).contacts(UTAK, ELL, motion)
     end = min((met_by_steps(square, motion) for square in full), default=1.0)
     for stop in stops:
-        for square in stop.against:
-            assert stop.part == pytest.approx(met_by_steps(square, motion), abs=1.5 / STEPS)
+        for square in stop.squares:
+            assert stop.fraction == pytest.approx(met_by_steps(square, motion), abs=1.5 / STEPS)
     before = {square for square in open_ if met_by_steps(square, motion) < end - 2 / STEPS}
-    assert {square for stop in stops for square in stop.against} <= set(open_)
-    assert len(before) >= len({stop.part for stop in stops if stop.part < end - 2 / STEPS}) >= bool(before)
-    assert [stop.part for stop in stops] == sorted(stop.part for stop in stops)
-    assert all(0.0 <= stop.part < 1.0 and 0.0 < stop.chance <= 1.0 for stop in stops)
+    assert {square for stop in stops for square in stop.squares} <= set(open_)
+    assert len(before) >= len({stop.fraction for stop in stops if stop.fraction < end - 2 / STEPS}) >= bool(before)
+    assert [stop.fraction for stop in stops] == sorted(stop.fraction for stop in stops)
+    assert all(0.0 <= stop.fraction < 1.0 and 0.0 < stop.chance <= 1.0 for stop in stops)
     total, gone_on = sum(stop.chance for stop in stops), 1.0
     for square in open_:
         if met_by_steps(square, motion) < end:
@@ -90,8 +90,8 @@ def test_the_likelier_square_comes_first() -> None:
     squares = {(8, 0): -2.0, (9, 1): 2.0}
     motion = Translate(6.0, 0.0)
     hindrances = Obstructions(evidence_of(squares, []), UTAK, ELL, motion)
-    first, second = hindrances.ends(UTAK, ELL, motion)
-    assert (first.against, second.against) == (frozenset({(9, 1)}), frozenset({(8, 0)}))
+    first, second = hindrances.outcomes(UTAK, ELL, motion)
+    assert (first.contact_squares, second.contact_squares) == (frozenset({(9, 1)}), frozenset({(8, 0)}))
     assert first.polygon.bounds[2] == pytest.approx(9.0)
     assert second.polygon.bounds[2] == pytest.approx(8.0)
     assert first.distance == pytest.approx(3.0)
@@ -102,16 +102,16 @@ def test_what_stops_nearby_is_known_by_the_place() -> None:
     motion = Translate(6.0, 0.0)
     hindrances = Obstructions(evidence_of({(8, 0): -2.0, (9, 1): 2.0}, []), UTAK, ELL, motion)
     for part, square in ((2 / 6, (8, 0)), (2.2 / 6, (8, 0)), (2.8 / 6, (9, 1))):
-        stop = near(hindrances.stops(UTAK, ELL, motion), UTAK, ELL, motion, part)
+        stop = likeliest_contact_near(hindrances.contacts(UTAK, ELL, motion), UTAK, ELL, motion, part)
         assert stop is not None
-        assert stop.against == {square}
-    assert near(hindrances.stops(UTAK, ELL, motion), UTAK, ELL, motion, 2.5 / 6) is None
-    assert Obstructions(evidence_of({}, []), UTAK, ELL, motion).stops(UTAK, ELL, motion) == []
+        assert stop.squares == {square}
+    assert likeliest_contact_near(hindrances.contacts(UTAK, ELL, motion), UTAK, ELL, motion, 2.5 / 6) is None
+    assert Obstructions(evidence_of({}, []), UTAK, ELL, motion).contacts(UTAK, ELL, motion) == []
 
 
 def test_squares_that_are_met_at_once_are_told_together() -> None:
     flush = {(8, y): 0.0 for y in (0, 1)} | {(8, 5): 0.0}
     motion = Translate(3.0, 0.0)
-    stops = Obstructions(evidence_of(flush, []), UTAK, ELL, motion).stops(UTAK, ELL, motion)
-    assert [(stop.against, stop.chance) for stop in stops] == [(frozenset({(8, 0), (8, 1)}), pytest.approx(0.75))]
-    assert all(a.part < b.part for a, b in itertools.pairwise(stops))
+    stops = Obstructions(evidence_of(flush, []), UTAK, ELL, motion).contacts(UTAK, ELL, motion)
+    assert [(stop.squares, stop.chance) for stop in stops] == [(frozenset({(8, 0), (8, 1)}), pytest.approx(0.75))]
+    assert all(a.fraction < b.fraction for a, b in itertools.pairwise(stops))

@@ -1,4 +1,4 @@
-"""What was seen and carried, laid on another lattice, lies where it truly is: shapely and eyes.py tell where."""
+"""What was seen and carried, object_pose on another lattice, lies where it truly is: shapely and eyes.py tell where."""
 
 import math
 
@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
-from kb.localisation.hypotheses.frames import Observation, PlacedObservation
-from kb.localisation.hypotheses.remap import Prefixes, RemapCache, laid, relaid, shifted
+from kb.localisation.hypotheses.frames import ObjectPose, Observation
+from kb.localisation.hypotheses.remap import RemapCache, ReplayPrefixes, object_pose, remap, shift_object
 from kb.objects.held_object import HeldObject, whole
 from kb.perception.frame import CENTRE, Frame
 from kb.perception.retina import count_ranges
@@ -52,7 +52,7 @@ def test_what_was_turned_lies_elsewhere_by_where_he_woke(
         here, truly = (here[0] + dx, here[1] + dy), (truly[0] + dx, truly[1] + dy)
         turned += degrees
     load = HeldObject("o1", believed, translate(ELL, 2, -1), turned=turned)
-    found = shifted(load, Frame(0, (fx, fy)), Frame())
+    found = shift_object(load, Frame(0, (fx, fy)), Frame())
     assert found.polygon.hausdorff_distance(true) < MOST_ASIDE
 
 
@@ -62,8 +62,8 @@ def test_a_thing_that_was_carried_lies_right_on_the_true_lattice(heading: int, f
     """He holds the lattice for one along his own axes, a degree or two amiss, and carries a thing."""
     start, thing = (9 + fx, 9 + fy), translate(ELL, 11, 8)
     observations, load, new, truth = carried(thing, _felt(thing, start, heading), start, heading)
-    found = relaid(new, Frame(), observations, [load])
-    assert found.misfits == 0
+    found = remap(new, Frame(), observations, [load])
+    assert found.residual == 0
     told = [new.place_to_utak(x, y) for x, y in found.loads["o1"].polygon.exterior.coords]
     assert shapely.Polygon(told).hausdorff_distance(truth) < MOST_ASIDE
 
@@ -77,12 +77,12 @@ def test_what_is_laid_on_one_lattice_after_another_lies_as_if_it_were_laid_at_on
     observations, load, new, truth = carried(
         thing, whole(translate(straight, round(x0) - x0, round(y0) - y0)), start, heading
     )
-    at_once = relaid(new, Frame(), observations, [load])
-    later = relaid(new, other, observations, relaid(other, Frame(), observations, [load]).loads.values())
+    at_once = remap(new, Frame(), observations, [load])
+    later = remap(new, other, observations, remap(other, Frame(), observations, [load]).loads.values())
     for found in (at_once, later):
         lies = [new.place_to_utak(x, y) for x, y in found.loads["o1"].polygon.exterior.coords]
         assert shapely.Polygon(lies).hausdorff_distance(truth) < MOST_ASIDE
-        assert found.misfits == 0
+        assert found.residual == 0
 
 
 @pytest.mark.parametrize("heading", [20, 37, 64, 325])
@@ -94,7 +94,7 @@ def test_an_outline_from_a_lattice_quite_askew_is_measured_anew_where_the_thing_
     start, thing = (9.5, 9.5), shapely.box(east, 6, east + 3, 9)
     believed = rotate(_felt(thing.buffer(-0.65, join_style="mitre"), start, heading), 10)
     observations, load, new, truth = carried(thing, believed, start, heading)
-    load = relaid(new, Frame(), observations, [load]).loads["o1"]
+    load = remap(new, Frame(), observations, [load]).loads["o1"]
     assert load.skewed == (not told)
     assert load.dubious == load.skewed
     if told:
@@ -120,7 +120,7 @@ def carried(
         now = (now[0] + away[0], now[1] + away[1])
         seen = retina(around(thing, room), (math.floor(now[0]), math.floor(now[1])), heading)
         own = _turned((now[0] - start[0], now[1] - start[1]), -heading)
-        there = (laid(lay, Frame()),) if moved else ()
+        there = (object_pose(lay, Frame()),) if moved else ()
         observations.append(Observation(count_ranges(seen), own, there))
     origin = _turned((start[0] % 1 - 0.5, start[1] % 1 - 0.5), angle - heading)
     new = Frame(angle, (origin[0] + 0.5, origin[1] + 0.5))
@@ -131,8 +131,8 @@ def carried(
 def test_where_a_load_lies_is_told_in_his_own_frame() -> None:
     frame = Frame(30, (0.2, 0.7))
     load = HeldObject("o1", translate(ELL, 3, 4), ELL, slack=0.3, turned=90.0)
-    told = laid(load, frame)
-    assert told == PlacedObservation("o1", told.middle, 90.0, 0.3, told.taken)
+    told = object_pose(load, frame)
+    assert told == ObjectPose("o1", told.middle, 90.0, 0.3, told.taken)
     middle = load.polygon.centroid
     assert frame.place_from_utak(*told.middle) == pytest.approx((middle.x, middle.y))
     first = load.first.centroid
@@ -155,12 +155,12 @@ def test_looks_that_are_taken_in_already_need_not_be_taken_in_again(number: int)
     observations, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
     number = min(number, len(observations))
     loads = {"o1": load}
-    at_once, first = relaid(new, new, observations, [load]), Prefixes(new, observations, loads)
+    at_once, first = remap(new, new, observations, [load]), ReplayPrefixes(new, observations, loads)
     for _ in range(2):  # what is begun with stays as it is
-        found = relaid(new, new, observations, [load], first.of(number))
+        found = remap(new, new, observations, [load], first.first(number))
         assert (found.occupancy.state == at_once.occupancy.state).all()
         assert (found.occupancy.logit == at_once.occupancy.logit).all()
-        assert found.misfits == at_once.misfits
+        assert found.residual == at_once.residual
         assert found.loads["o1"].polygon.equals(at_once.loads["o1"].polygon)
 
 
@@ -169,12 +169,12 @@ def test_who_asks_whether_looks_contradict_is_told_so_at_the_first_that_does() -
     observations, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
     empty = observations[0].ranges * 0
     contradicted = [observations[0], observations[0]._replace(ranges=empty, moved=()), *observations[1:]]
-    in_full = relaid(new, new, contradicted, [load])
-    cut = relaid(new, new, contradicted, [load], whether=True)
-    assert 0 < cut.misfits <= in_full.misfits
-    assert (cut.cut, in_full.cut) == (True, False)
-    agreeing, at_once = relaid(new, new, observations, [load], whether=True), relaid(new, new, observations, [load])
-    assert not agreeing.misfits and not agreeing.cut
+    in_full = remap(new, new, contradicted, [load])
+    cut = remap(new, new, contradicted, [load], only_whether=True)
+    assert 0 < cut.residual <= in_full.residual
+    assert (cut.incomplete, in_full.incomplete) == (True, False)
+    agreeing, at_once = remap(new, new, observations, [load], only_whether=True), remap(new, new, observations, [load])
+    assert not agreeing.residual and not agreeing.incomplete
     assert (agreeing.occupancy.state == at_once.occupancy.state).all()
 
 
@@ -185,14 +185,14 @@ def test_lattices_on_which_looks_fall_alike_are_told_the_same(aside: float) -> N
     observations = [
         observation._replace(place=(observation.place[0] + 0.1, observation.place[1])) for observation in observations
     ]
-    occupancy = relaid(believed, believed, observations, [load]).occupancy
+    occupancy = remap(believed, believed, observations, [load]).occupancy
     layings = RemapCache(believed, occupancy, observations, {"o1": load})
     one, other = (Frame(3, (CENTRE[0] + part, CENTRE[1])) for part in (aside, aside * 1.01))
-    assert layings.on(believed).occupancy is occupancy
-    found = layings.on(one)
+    assert layings.remapped(believed).occupancy is occupancy
+    found = layings.remapped(one)
     assert found.occupancy is not occupancy
-    assert layings.on(other).occupancy is found.occupancy
-    assert (found.occupancy.state == relaid(one, believed, observations, [load]).occupancy.state).all()
+    assert layings.remapped(other).occupancy is found.occupancy
+    assert (found.occupancy.state == remap(one, believed, observations, [load]).occupancy.state).all()
 
 
 def test_what_was_cut_is_laid_in_full_when_more_is_asked() -> None:
@@ -203,8 +203,8 @@ def test_what_was_cut_is_laid_in_full_when_more_is_asked() -> None:
         observations[0]._replace(ranges=observations[0].ranges * 0, moved=()),
         *observations[1:],
     ]
-    layings = RemapCache(new, relaid(new, new, contradicted, [load]).occupancy, contradicted, {"o1": load})
+    layings = RemapCache(new, remap(new, new, contradicted, [load]).occupancy, contradicted, {"o1": load})
     askew = Frame(5)
-    assert layings.on(askew, whether=True).cut
-    assert layings.on(askew).loads.keys() == {"o1"}
-    assert not layings.on(askew, whether=True).cut
+    assert layings.remapped(askew, only_whether=True).incomplete
+    assert layings.remapped(askew).loads.keys() == {"o1"}
+    assert not layings.remapped(askew, only_whether=True).incomplete

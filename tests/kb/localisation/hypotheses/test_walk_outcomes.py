@@ -7,8 +7,15 @@ import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from kb.localisation.hypotheses.frames import CENTRED, Observation, contradictions
-from kb.localisation.hypotheses.walk_outcomes import HAIR, MotionHypothesis, crossings, next_square, retold, retold_both
+from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation, count_contradictions
+from kb.localisation.hypotheses.walk_outcomes import (
+    LINE_DISTANCE,
+    MotionHypothesis,
+    entered_square,
+    line_crossings,
+    reestimate_two_walks,
+    reestimate_walk,
+)
 from kb.mapping.occupancy import FULL, OccupancyMap
 from kb.perception.frame import Frame, turned
 from kb.perception.retina import count_ranges
@@ -35,7 +42,7 @@ def test_the_squares_entered_are_those_on_the_way_in_their_order(x: float, y: fl
         square = math.floor(x + part * east), math.floor(y + part * north)
         if square != met[-1]:
             met.append(square)
-    entered = [(0, 0)] + [crossing.entered for crossing in crossings((x, y), (east, north))]
+    entered = [(0, 0)] + [crossing.entered for crossing in line_crossings((x, y), (east, north))]
     steps = [abs(a[0] - b[0]) + abs(a[1] - b[1]) for a, b in pairwise(entered)]
     assert set(steps) <= {1}
     assert set(met) <= set(entered)
@@ -46,21 +53,21 @@ def test_the_squares_entered_are_those_on_the_way_in_their_order(x: float, y: fl
 def test_a_line_has_a_square_on_either_side(x: float, y: float, east: float, north: float) -> None:
     assume(not passes_corner(x, y, east, north))
     here = (0, 0)
-    for crossing in crossings((x, y), (east, north)):
+    for crossing in line_crossings((x, y), (east, north)):
         assert (math.floor(crossing.before[0]), math.floor(crossing.before[1])) == here
         assert (math.floor(crossing.after[0]), math.floor(crossing.after[1])) == crossing.entered
-        assert math.dist(crossing.before, crossing.after) <= 2.1 * HAIR
+        assert math.dist(crossing.before, crossing.after) <= 2.1 * LINE_DISTANCE
         here = crossing.entered
 
 
 def test_who_stays_in_his_square_crosses_nothing() -> None:
-    assert crossings((0.5, 0.5), (0.4, -0.4)) == ()
-    assert crossings((0.5, 0.5), (0.0, 0.0)) == ()
+    assert line_crossings((0.5, 0.5), (0.4, -0.4)) == ()
+    assert line_crossings((0.5, 0.5), (0.0, 0.0)) == ()
 
 
 def test_the_square_ahead_lies_on_the_way() -> None:
-    assert next_square((0.5, 0.5), (0.5, 9.5)) == (0, 1)
-    assert next_square((0.5, 0.5), (-3.5, 0.5)) == (-1, 0)
+    assert entered_square((0.5, 0.5), (0.5, 9.5)) == (0, 1)
+    assert entered_square((0.5, 0.5), (-3.5, 0.5)) == (-1, 0)
 
 
 @settings(max_examples=15, deadline=None)
@@ -73,7 +80,7 @@ def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
     free = [(i, j) for i, j in squares if not occupied(i, j)]
     x, y = free[int(rng.integers(len(free)))]
     way = (float(rng.uniform(-14, 14)), float(rng.uniform(-14, 14)))
-    met = crossings((x + 0.5, y + 0.5), turned(*way, heading))
+    met = line_crossings((x + 0.5, y + 0.5), turned(*way, heading))
     stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
     assume(stop is not None and not passes_corner(0.5, 0.5, *turned(*way, heading)))
     assert stop is not None
@@ -86,38 +93,40 @@ def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
         i, j = (math.floor(v) for v in frame.place_from_utak(*place))
         seen = count_ranges(impression(occupied, (i + x, j + y), heading).retina)
         observations.append(Observation(seen, (place[0] + shift[0], place[1] + shift[1])))
-    assume(math.dist(own, way) > 2 * HAIR)
-    found = list(retold(MotionHypothesis(1, way, CENTRED), Frame(), observations))
+    assume(math.dist(own, way) > 2 * LINE_DISTANCE)
+    found = list(reestimate_walk(MotionHypothesis(1, way, CENTRED_HYPOTHESES), Frame(), observations))
     right = [
         one
         for one in found
         if one.hypothesis.angle == heading and math.dist(one.correction.observations(observations)[1].place, own) < 1e-3
     ]
     assert right
-    assert all(one.correction.since == 1 and one.misfits == 0 for one in right)
+    assert all(one.correction.since == 1 and one.residual == 0 for one in right)
     for one in found:
-        assert not contradictions(one.hypothesis.frame, one.correction.observations(observations))
+        assert not count_contradictions(one.hypothesis.frame, one.correction.observations(observations))
         assert one.correction.observations(observations)[0] == observations[0]
-        assert math.dist(one.correction.observations(observations)[2].place, observations[2].place) > HAIR
+        assert math.dist(one.correction.observations(observations)[2].place, observations[2].place) > LINE_DISTANCE
 
 
 def test_who_met_nothing_has_nothing_to_tell_otherwise() -> None:
     occupied = world_of(["." * 80] * 80)
     seen = [count_ranges(impression(occupied, (x, 40)).retina) for x in (30, 35)]
     observations = [Observation(seen[0], (0.0, 0.0)), Observation(seen[1], (5.0, 0.0))]
-    told = list(retold(MotionHypothesis(1, (5.0, 0.0), CENTRED[:1]), Frame(), observations))
+    told = list(reestimate_walk(MotionHypothesis(1, (5.0, 0.0), CENTRED_HYPOTHESES[:1]), Frame(), observations))
     assert told == []
 
 
 @given(st.sampled_from([(1, 1), (1, -1), (-1, 1), (-1, -1)]), st.integers(1, 9))
 def test_at_a_corner_he_may_look_from_any_of_its_four_squares(way: tuple[int, int], far: int) -> None:
-    met = crossings((0.5, 0.5), (way[0] * far, way[1] * far))
+    met = line_crossings((0.5, 0.5), (way[0] * far, way[1] * far))
     assert len(met) == 3 * far
     for number in range(far):
         corner = [0.5 + side * (number + 0.5) for side in way]
         there = met[3 * number : 3 * number + 3]
         assert all(
-            math.dist(place, corner) < 2 * HAIR for crossing in there for place in (crossing.before, crossing.after)
+            math.dist(place, corner) < 2 * LINE_DISTANCE
+            for crossing in there
+            for place in (crossing.before, crossing.after)
         )
         squares = {(math.floor(x), math.floor(y)) for crossing in there for x, y in (crossing.before, crossing.after)}
         beyond = number * way[0] + way[0], number * way[1] + way[1]
@@ -136,7 +145,7 @@ def test_two_stops_in_a_row_are_told_together(seed: int) -> None:
     x, y = free[int(rng.integers(len(free)))]
     way = (float(rng.uniform(-14, 14)), float(rng.uniform(-14, 14)))
     assume(not passes_corner(0.5, 0.5, *way))
-    met = crossings((x + 0.5, y + 0.5), way)
+    met = line_crossings((x + 0.5, y + 0.5), way)
     stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
     assume(stop is not None)
     assert stop is not None
@@ -147,12 +156,12 @@ def test_two_stops_in_a_row_are_told_together(seed: int) -> None:
     first = Observation(count_ranges(impression(occupied, (x, y)).retina), (0.0, 0.0))
     beside = Observation(count_ranges(impression(occupied, here).retina), way)
     observations = [first, beside, beside._replace(place=(way[0] + into[0], way[1] + into[1]))]
-    motions = MotionHypothesis(1, way, CENTRED[:1]), MotionHypothesis(2, into, CENTRED[:1])
-    found = list(retold_both(*motions, CENTRED[0], observations))
+    motions = MotionHypothesis(1, way, CENTRED_HYPOTHESES[:1]), MotionHypothesis(2, into, CENTRED_HYPOTHESES[:1])
+    found = list(reestimate_two_walks(*motions, CENTRED_HYPOTHESES[0], observations))
     for one in found:
         told = [*one.correction.observations(observations)[:2], observations[2]._replace(place=one.newest)]
-        assert one.known
-        assert not contradictions(Frame(), told)
+        assert one.contact_known
+        assert not count_contradictions(Frame(), told)
     known = known_to_be_occupied(occupied, (x, y), here, stop.entered)
     short = away[0] - way[0], away[1] - way[1]
     assert not known or any(

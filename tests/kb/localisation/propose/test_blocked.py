@@ -8,8 +8,8 @@ from shapely.affinity import translate
 
 from geometry.motion.se2 import Translate
 from kb.body import Move, Push
-from kb.localisation.hypotheses.frames import CENTRED
-from kb.localisation.propose.blocked import RISK, halts
+from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES
+from kb.localisation.propose.blocked import NEGLIGIBLE_CONTACT_CHANCE, possible_ends
 from kb.localisation.state import TrackerState
 from kb.localisation.tracker import Tracker
 from kb.mapping.completions import NO_PICTURES, ground_of, pictured
@@ -27,7 +27,7 @@ BRICK = shapely.box(0, 0, 2, 4)
 def looking(room: Occupied, square: tuple[int, int], thing: shapely.Polygon | None = None) -> Tracker:
     """One who wakes on a square of the table and knows how the lattice lies, with a thing in hand if there is one."""
     occupied = room if thing is None else around(thing, room)
-    tracker = Tracker(TrackerState(hypotheses=CENTRED[:1]))
+    tracker = Tracker(TrackerState(hypotheses=CENTRED_HYPOTHESES[:1]))
     tracker.wake(impression(occupied, square))
     if thing is not None:
         lies = translate(thing, -square[0], -square[1])
@@ -40,22 +40,22 @@ def looking(room: Occupied, square: tuple[int, int], thing: shapely.Polygon | No
 def test_a_motion_that_comes_upon_nothing_is_not_asked_about() -> None:
     tracker = looking(world_of(LARGE_ROOM), (20, 20))
     surprise = tracker.state.surprise(Move(3.0, 0.0), count_ranges(impression(world_of(LARGE_ROOM), (23, 20)).retina))
-    assert halts(surprise, None, Translate(3.0, 0.0)) == []
+    assert possible_ends(surprise, None, Translate(3.0, 0.0)) == []
 
 
 @pytest.mark.parametrize("far", [18.0, 21.0, 24.0])
 def test_the_halts_of_a_motion_are_all_there_may_be(far: float) -> None:
     tracker = looking(world_of(LARGE_ROOM), (20, 20))
     surprise = tracker.state.surprise(Move(far, 0.0), count_ranges(impression(world_of(LARGE_ROOM), (42, 20)).retina))
-    whole, *others = halts(surprise, None, Translate(far, 0.0))
+    whole, *others = possible_ends(surprise, None, Translate(far, 0.0))
     assert whole.how == "predicted" and {other.how for other in others} == {"blocked"}
-    assert whole.place == (0.5 + far, 0.5) and not whole.against
+    assert whole.place == (0.5 + far, 0.5) and not whole.contact_squares
     assert 0.95 < whole.chance + sum(halt.chance for halt in others) <= 1 + 1e-9
-    assert whole.chance < 1 - RISK
+    assert whole.chance < 1 - NEGLIGIBLE_CONTACT_CHANCE
     assert [halt.chance for halt in others] == sorted((halt.chance for halt in others), reverse=True)
     for halt in others:
         assert abs(halt.place[0] - round(halt.place[0])) < 1e-5  # on a line, to either side of it
-        assert halt.against == {(round(halt.place[0]), 0)}
+        assert halt.contact_squares == {(round(halt.place[0]), 0)}
 
 
 def test_who_is_stopped_right_beyond_the_eye_knows_where() -> None:
@@ -86,8 +86,8 @@ def test_who_leads_what_he_pulls_looks_from_either_side_of_the_line_that_stops_h
     for view in (at_line, (at_line[0] + side, 4)):  # how the table is turned he does not know
         again = looking(room, square, thing)
         again.accommodate(Push(side * 21.0, 0.0), impression(around(moved, room), view))
-        assert again.place[0] == pytest.approx(wall - square[0], abs=1e-5)
-        assert again.loads["o1"].polygon.hausdorff_distance(translate(moved, -square[0], -square[1])) < 1e-5
+        assert again.state.place[0] == pytest.approx(wall - square[0], abs=1e-5)
+        assert again.state.loads["o1"].polygon.hausdorff_distance(translate(moved, -square[0], -square[1])) < 1e-5
     assert tracker.state.place == (0.5, 0.5)
 
 

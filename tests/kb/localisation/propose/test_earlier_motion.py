@@ -12,11 +12,11 @@ from shapely.affinity import translate
 from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Translate
 from kb.body import Move, Push
-from kb.localisation.hypotheses.frames import CENTRED, Observation
-from kb.localisation.hypotheses.remap import laid, relaid
+from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
+from kb.localisation.hypotheses.remap import object_pose, remap
 from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
 from kb.localisation.hypotheses.what_if import Surprise
-from kb.localisation.propose.earlier_motion import ReestimatedMotion, recalled, recalled_elsewhere
+from kb.localisation.propose.earlier_motion import ReestimatedMotion, reestimate_motions, reestimate_with_origin
 from kb.objects.held_object import HeldObject
 from kb.perception.frame import CENTRE, Frame
 from kb.perception.retina import count_ranges
@@ -57,18 +57,18 @@ def right(
     motion: MotionHypothesis,
     shift: Point,
     thing: shapely.Polygon,
-    told: Callable[[Surprise, list[MotionHypothesis]], list[ReestimatedMotion]] = recalled,
+    told: Callable[[Surprise, list[MotionHypothesis]], list[ReestimatedMotion]] = reestimate_motions,
 ) -> list[ReestimatedMotion]:
     """What is told that is right of both: by how much he was elsewhere, and where the thing is."""
     found = told(surprise, [motion])
     for one in found:
-        assert one.supposed.misfits == 0
-        assert one.retold.correction.since == motion.number
-    near = [one for one in found if math.dist(one.retold.correction.shift, shift) < 5e-3]
+        assert one.what_if.residual == 0
+        assert one.walk.correction.since == motion.number
+    near = [one for one in found if math.dist(one.walk.correction.shift, shift) < 5e-3]
     loads = [
-        (one, one.supposed.outcome.polygon)
-        if one.supposed.outcome is not None
-        else (one, one.retold.correction.loads(surprise.loads, surprise.frame)["o1"].polygon)
+        (one, one.what_if.outcome.polygon)
+        if one.what_if.outcome is not None
+        else (one, one.walk.correction.loads(surprise.loads, surprise.frame)["o1"].polygon)
         for one in near
     ]
     return [one for one, polygon in loads if polygon.hausdorff_distance(thing) < 5e-3]
@@ -78,10 +78,12 @@ def surprised(
     command: Move | Push, after: Observation, observations: list[Observation], load: HeldObject, held: bool
 ) -> Surprise:
     frame = Frame()
-    occupancy = relaid(frame, frame, observations, [load]).occupancy
+    occupancy = remap(frame, frame, observations, [load]).occupancy
     place = frame.place_from_utak(*observations[-1].place)
     name = load.name if held else None
-    return Surprise(command, after.ranges, frame, place, occupancy, observations, {load.name: load}, name, CENTRED[:1])
+    return Surprise(
+        command, after.ranges, frame, place, occupancy, observations, {load.name: load}, name, CENTRED_HYPOTHESES[:1]
+    )
 
 
 def room_with_a_thing(rng: np.random.Generator) -> tuple[Occupied, shapely.Polygon, tuple[int, int]]:
@@ -130,11 +132,11 @@ def walked_and_pushed(rng: np.random.Generator) -> Told | None:
         observe(occupied, stopped, way),
         observe(occupied, truly, believed),
     ]
-    observations.append(observations[-1]._replace(moved=(laid(load, frame),)))
+    observations.append(observations[-1]._replace(moved=(object_pose(load, frame),)))
     after = observe(around(translate(thing, *far), room), plus(truly, far), plus(believed, far))
     surprise = surprised(Push(*far), after, observations, load, held=True)
     true = translate(thing, far[0] + CENTRE[0] - origin[0], far[1] + CENTRE[1] - origin[1])
-    return surprise, MotionHypothesis(1, way, CENTRED[:1]), shift, true
+    return surprise, MotionHypothesis(1, way, CENTRED_HYPOTHESES[:1]), shift, true
 
 
 @settings(max_examples=15, deadline=None)
@@ -150,7 +152,7 @@ def test_such_a_push_is_told_again_together_with_where_he_woke(seed: int) -> Non
     rng = np.random.default_rng(seed)
     beside = (round(float(rng.uniform(0.05, 0.95)), 2), round(float(rng.uniform(0.05, 0.95)), 2))
     told = first_of(pushed_and_walked(rng, beside) for _ in range(300))
-    assert right(*told, told=recalled_elsewhere)
+    assert right(*told, told=reestimate_with_origin)
 
 
 @settings(max_examples=5, deadline=None)
@@ -158,7 +160,7 @@ def test_such_a_push_is_told_again_together_with_where_he_woke(seed: int) -> Non
 def test_where_nothing_was_in_hand_nothing_is_told_together_with_where_he_woke(seed: int) -> None:
     rng = np.random.default_rng(seed)
     surprise, motion, *_ = first_of(pushed_and_walked(rng) for _ in range(300))
-    assert recalled_elsewhere(surprise, [motion._replace(load=None)]) == []
+    assert reestimate_with_origin(surprise, [motion._replace(load=None)]) == []
 
 
 def pushed_and_walked(rng: np.random.Generator, beside: Point = CENTRE) -> Told | None:
@@ -182,7 +184,7 @@ def pushed_and_walked(rng: np.random.Generator, beside: Point = CENTRE) -> Told 
     lies = translate(thing, -math.floor(origin[0]), -math.floor(origin[1]))
     load = HeldObject("o1", translate(lies, *way), lies, since=1, proven=True)
     first = observe(around(thing, room), origin, (0.0, 0.0))
-    taken = first._replace(moved=(laid(HeldObject("o1", lies, lies, since=1), frame),))
-    pushed = observe(there, plus(origin, went), way)._replace(moved=(laid(load, frame),))
+    taken = first._replace(moved=(object_pose(HeldObject("o1", lies, lies, since=1), frame),))
+    pushed = observe(there, plus(origin, went), way)._replace(moved=(object_pose(load, frame),))
     surprise = surprised(Move(*walk), observe(there, end, plus(way, walk)), [first, taken, pushed], load, held=False)
-    return surprise, MotionHypothesis(2, way, CENTRED[:1], load="o1"), shift, translate(lies, *went)
+    return surprise, MotionHypothesis(2, way, CENTRED_HYPOTHESES[:1], load="o1"), shift, translate(lies, *went)

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
 from kb.body import Turn
-from kb.localisation.hypotheses.frames import CENTRED, points
-from kb.localisation.propose.origin_from_turns import Part
+from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, origin_grid
+from kb.localisation.propose.origin_from_turns import TurnOriginCell
 from kb.localisation.score import MAX_FRAME_SEARCHES
 from kb.localisation.tracker import Tracker
 from kb.mapping.occupancy import OPEN
@@ -55,13 +55,13 @@ def test_a_turn_that_was_stopped_tells_where_he_woke_and_how_far_it_went(
     lies = translate(thing, -20, -20)
     tracker.grasp(HeldObject("o1", lies, lies, proven=True))
     tracker.state = replace(
-        tracker.state, hypotheses=CENTRED[:1], searches=MAX_FRAME_SEARCHES
+        tracker.state, hypotheses=CENTRED_HYPOTHESES[:1], search_count=MAX_FRAME_SEARCHES
     )  # how the lattice is turned is known
     for i, j in ((x, y), (x - 1, y), (x, y + 1), (x + 1, y + 1)):  # not looked at closely
         tracker.state.occupancy.state[tracker.state.occupancy.index(i - 20, j - 20)] = OPEN
     after = rotate(thing, degrees, origin=about)
     found = tracker.accommodate(Turn(90.0), impression(around(after, room), (20, 20))).explanation
-    assert found.misfits == 0
+    assert found.residual == 0
     assert found.how in ("turned", "blocked")
     load, true = tracker.state.loads["o1"], translate(after, -20, -20)
     assert load.polygon.hausdorff_distance(true) < load.play + 0.3
@@ -79,33 +79,33 @@ def test_who_was_stopped_a_hair_beside_a_line_turns_things_a_hair_aside() -> Non
     after = rotate(thing, 90, origin=(20.5 + 1e-6, 20.5))  # on some squares by a hair
     tracker = Tracker()
     tracker.wake(impression(around(thing, PLAIN), (20, 20)))
-    tracker.state = replace(tracker.state, hypotheses=CENTRED[:1])
+    tracker.state = replace(tracker.state, hypotheses=CENTRED_HYPOTHESES[:1])
     lies = translate(thing, -20, -20)
     tracker.grasp(HeldObject("o1", lies, lies, proven=True))
     stopped = tracker.state.observations[0]._replace(place=(0.5 - 1e-6, 0.0))
     tracker.state = replace(tracker.state, observations=(stopped,))  # there he was stopped
     found = tracker.accommodate(Turn(90.0), impression(around(after, PLAIN), (20, 20))).explanation
     assert found.how == "predicted"
-    assert found.misfits == 0
+    assert found.residual == 0
     assert tracker.state.frame.origin == CENTRE
     assert tracker.state.loads["o1"].polygon.hausdorff_distance(translate(after, -20, -20)) < 1e-5
 
 
 def test_a_part_is_cut_into_parts_that_fill_it() -> None:
-    part = Part((0.0, 1.0), (0.2, 0.6), (0.5, 0.9))
+    part = TurnOriginCell((0.0, 1.0), (0.2, 0.6), (0.5, 0.9))
     parts = part.cut(5, 2, 3)
     assert len(parts) == 30
     volume = sum(math.prod(end - begin for begin, end in one) for one in parts)
     assert volume == pytest.approx(0.16)
     assert len(set(parts)) == 30
     assert part.origin == pytest.approx((0.4, 0.7))
-    assert part.far == pytest.approx(math.hypot(0.2, 0.2))
+    assert part.radius == pytest.approx(math.hypot(0.2, 0.2))
     assert all(0.2 < one.origin[0] < 0.6 and 0.5 < one.origin[1] < 0.9 for one in parts)
-    assert max(one.far for one in parts) < part.far
+    assert max(one.radius for one in parts) < part.radius
 
 
 def test_points_of_a_grid_lie_amid_his_square() -> None:
     tracker = Tracker()
     tracker.wake(impression(PLAIN, (20, 20)))
-    where = points(Frame(), tracker.state.observations)
+    where = origin_grid(Frame(), tracker.state.observations)
     assert all(0 < point.box[0] < 1 and 0 < point.box[1] < 1 for point in where)
