@@ -56,8 +56,8 @@ SETTLED_SPREAD = math.radians(5)  # orientations that differ by less hardly caus
 
 
 @dataclass(frozen=True)
-class WalkEnds:
-    """What dead reckoning says of the end of a walk.
+class DeadReckoning:
+    """The end of a walk by dead reckoning.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class WalkEnds:
     blocked: tuple[Position, ...]
 
 
-def explain_walk(state: TrackerState, ranges: FieldRanges, ends: WalkEnds, command: Command | None) -> Judgement:
+def explain_walk(state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, command: Command | None) -> Judgement:
     """Return the explanation chosen for an observation after a walk, or after another motion of an empty hand.
 
     ranges : (160, 2) least and greatest counts of the fields. command : None on waking.
@@ -80,7 +80,7 @@ def explain_walk(state: TrackerState, ranges: FieldRanges, ends: WalkEnds, comma
 class _WalkExplainer:
     """The proposals for one observation, in the order in which they are made; each is made only when it is needed."""
 
-    def __init__(self, state: TrackerState, ranges: FieldRanges, ends: WalkEnds, command: Command | None) -> None:
+    def __init__(self, state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, command: Command | None) -> None:
         self._state, self._ranges, self._blocked_places, self._command = state, ranges, ends.blocked, command
         self._budget = SearchBudget(state.search_count)
         ahead = [self._explanation("predicted", place, ends.predicted) for place in observation_places(ends.predicted)]
@@ -135,8 +135,8 @@ class _WalkExplainer:
         explanations = [first]
         explanations += [one for one in self._possible_ends if one.how != "predicted"]
         explanations += [
-            self._explanation("blocked", stop, self._predicted)
-            for stop in self._blocked_places
+            self._explanation("blocked", place, self._predicted)
+            for place in self._blocked_places
             if not self._possible_ends
         ]
         explanations += [
@@ -159,7 +159,7 @@ class _WalkExplainer:
         surprise = self._state.surprise(command, self._ranges)
         motion = Translate(*self._state.frame.to_lattice(command.east, command.north))
         found = possible_ends(surprise, None, motion)
-        ended = [(halt, self._explanation(halt.how, halt.place, found[0].place)) for halt in found]
+        ended = [(end, self._explanation(end.how, end.place, found[0].place)) for end in found]
         return consistent_ends(surprise, ended)
 
     def _earlier_walks(self, turned: list[Explanation], others: list[Explanation]) -> list[Explanation]:
@@ -201,12 +201,10 @@ class _WalkExplainer:
         state, newest, found = self._state, self._state.motions[-1], []
         held = [hypothesis for hypothesis in newest.hypotheses if hypothesis.frame == state.frame][:1]
         pairs = [(motion, hypothesis) for hypothesis in held for motion in reversed(state.earlier)]
-        for walks in (
-            one for motion, h in pairs for one in reestimate_two_walks(motion, newest, h, self._observations)
-        ):
-            far = math.hypot(*walks.correction.shift) + math.dist(walks.newest, self._observation.place)
-            place = state.frame.place_from_utak(*walks.newest)
-            found.append(Explanation("misled", place, state.frame, 0, far, None, state.hypotheses, walks))
+        for walk in (one for motion, h in pairs for one in reestimate_two_walks(motion, newest, h, self._observations)):
+            distance = math.hypot(*walk.correction.shift) + math.dist(walk.newest, self._observation.place)
+            place = state.frame.place_from_utak(*walk.newest)
+            found.append(Explanation("misled", place, state.frame, 0, distance, None, state.hypotheses, walk))
         return found
 
     def _best_prior(self, ended: Sequence[Explanation], left: tuple[FrameHypothesis, ...]) -> Explanation:

@@ -25,7 +25,7 @@ from kb.objects.held_object import HeldObject
 MAX_FRAME_SEARCHES = 6  # searches over all frames before slips are blamed for residuals; tuned on random worlds
 MAX_FAILED_SEARCHES = 18  # searches that explained nothing, after which no slow proposal is made; tuned likewise
 CONTRADICTION_RESIDUAL = 2  # fields that a contradiction of observations counts as: more than any other frame costs
-T = TypeVar("T")
+Found = TypeVar("Found")
 
 
 class SearchBudget:
@@ -49,7 +49,7 @@ class SearchBudget:
         """Return whether no slow proposal may be made any more."""
         return self.spent >= MAX_FAILED_SEARCHES
 
-    def search(self, propose: Callable[[], list[T]]) -> list[T]:
+    def search(self, propose: Callable[[], list[Found]]) -> list[Found]:
         """Return what a slow proposal finds; nothing, without asking it, when the budget is exhausted."""
         if self.exhausted:
             return []

@@ -18,7 +18,7 @@ from kb.localisation.after_carry import (
     objects_astray,
     refined_extent,
 )
-from kb.localisation.after_walk import WalkEnds, explain_walk
+from kb.localisation.after_walk import DeadReckoning, explain_walk
 from kb.localisation.hypotheses.explanation import Accommodated, Explanation, field_statuses
 from kb.localisation.hypotheses.frames import ALL_HYPOTHESES, FieldRanges, Observation, Position
 from kb.localisation.hypotheses.remap import RemapCache, RemappedMap, object_pose, remap
@@ -76,7 +76,7 @@ class Tracker:
         Accommodated
             The chosen explanation, and how each of the 160 fields is accounted for.
         """
-        return self._after_walk(count_ranges(impression.retina), WalkEnds(self.state.place, ()), None)
+        return self._after_walk(count_ranges(impression.retina), DeadReckoning(self.state.place, ()), None)
 
     def accommodate(self, command: Command, impression: Impression) -> Accommodated:
         """Explain and integrate the impression that followed a command.
@@ -100,7 +100,9 @@ class Tracker:
         if isinstance(command, Move) and state.held is None:
             shift = state.frame.to_lattice(command.east, command.north)
         x, y = state.place
-        return self._after_walk(ranges, WalkEnds((x + shift[0], y + shift[1]), blocked_ends((x, y), shift)), command)
+        return self._after_walk(
+            ranges, DeadReckoning((x + shift[0], y + shift[1]), blocked_ends((x, y), shift)), command
+        )
 
     def grasp(self, load: HeldObject) -> None:
         """Believe that an object is in the hand.
@@ -127,7 +129,7 @@ class Tracker:
 
     # -- after a walk, on waking, after a release ------------------------------------------------
 
-    def _after_walk(self, ranges: FieldRanges, walk: WalkEnds, command: Command | None) -> Accommodated:
+    def _after_walk(self, ranges: FieldRanges, walk: DeadReckoning, command: Command | None) -> Accommodated:
         """Explain and integrate an observation after a walk, or after a command that leaves everything in place."""
         if walk.blocked and isinstance(command, Move):
             self._remember(command)

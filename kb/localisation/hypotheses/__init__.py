@@ -1,4 +1,6 @@
-"""Hypotheses: the values that proposals are made of, and how each is evaluated. In reading order:
+"""Hypotheses: the values that proposals are made of, and how each is evaluated.
+
+In reading order:
 
 frames  frame hypotheses: orientation and origin of the grid, judged by contradictions of observations
 remap  all observations and held objects in another frame

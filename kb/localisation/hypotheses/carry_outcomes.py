@@ -31,7 +31,7 @@ SLIP_OFFSETS = sorted(
 
 
 class CarryOutcome(NamedTuple):
-    """What a motion with an object in hand may have led to.
+    """A possible outcome of a motion with an object in hand.
 
     Attributes
     ----------

@@ -20,7 +20,7 @@ MIN_CHANCE = 1e-9  # probability below which an end of a motion is no less likel
 
 
 class CellStatus(StrEnum):
-    """How a field of an impression is accounted for."""
+    """The status of a field of an impression: predicted, explained by squares that were open, or noise."""
 
     PREDICTED = "predicted"
     EXPLAINED = "explained"
@@ -79,7 +79,7 @@ class Explanation(NamedTuple):
 
 
 class Accommodated(NamedTuple):
-    """What one impression led to.
+    """The result of localisation for one impression.
 
     Attributes
     ----------

@@ -99,7 +99,7 @@ ALL_HYPOTHESES = tuple(FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in
 
 
 class ObjectPose(NamedTuple):
-    """Where an object that was ever held lay when an observation was made.
+    """The pose of an object that was ever held, at the time of an observation.
 
     Attributes
     ----------

@@ -1,4 +1,6 @@
-"""Proposals: explanations of an observation, one kind a module, in the order in which they are asked for:
+"""Proposals: explanations of an observation, one kind a module.
+
+In the order in which they are asked for:
 
 blocked  the newest motion was blocked: every possible end, with its chance
 contradicted_motion  a carrying motion was blocked, where the observation contradicts only what it itself settles

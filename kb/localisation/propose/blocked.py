@@ -27,7 +27,7 @@ MIN_END_CHANCE = 1e-4  # probability above which an end of a motion is considere
 MAX_ENDS = 24  # ends that are considered: bounds the time of one explanation; tuned
 
 
-T = TypeVar("T", "BlockedMotion", ContactHypothesis)
+EndOrContact = TypeVar("EndOrContact", "BlockedMotion", ContactHypothesis)
 
 
 class BlockedMotion(NamedTuple):
@@ -69,7 +69,7 @@ def possible_ends(surprise: Surprise, load: HeldObject | None, motion: Motion) -
     return [*whole, *likeliest_ends(contacts)]
 
 
-def likeliest_ends(ends: Iterable[T]) -> list[T]:
+def likeliest_ends(ends: Iterable[EndOrContact]) -> list[EndOrContact]:
     """Return the MAX_ENDS likeliest ends, or contacts, above MIN_END_CHANCE, the likeliest first."""
     return sorted((end for end in ends if end.chance > MIN_END_CHANCE), key=lambda end: -end.chance)[:MAX_ENDS]
 

@@ -1,4 +1,4 @@
-"""What else than what is believed is thought of when a look is explained."""
+"""Proposals of earlier motions: which of them are re-estimated when an observation is explained."""
 
 from collections.abc import Sequence
 from typing import cast
@@ -23,14 +23,14 @@ NO_SURPRISE = cast(Surprise, None)
 @pytest.mark.parametrize(
     ("likely", "simple", "asked"),
     [
-        (0.3, STUCK, [1]),  # the push before may well have ended there
+        (0.3, STUCK, [1]),  # the push before was in doubt
         (0.01, STUCK, []),
-        (0.3, STUCK._replace(how="blocked", chance=0.5), None),  # how likely that is is known
-        (0.3, STUCK._replace(how="slipped"), [1, 2]),  # nothing simple explains it: all is thought of
+        (0.3, STUCK._replace(how="blocked", chance=0.5), None),  # the chance of the simple explanation is known
+        (0.3, STUCK._replace(how="slipped"), [1, 2]),  # nothing simple explains it: all are re-estimated
         (0.3, STUCK._replace(residual=3), [1, 2]),
     ],
 )
-def test_what_likely_was_otherwise_is_thought_of_where_something_odd_explains_a_look(
+def test_only_doubtful_motions_are_reestimated_where_something_simple_explains_an_observation(
     likely: float, simple: Explanation, asked: list[int] | None
 ) -> None:
     observations = tuple(Observation(np.zeros((160, 2), np.int16), (float(n), 0.0)) for n in range(3))
@@ -45,12 +45,12 @@ def test_what_likely_was_otherwise_is_thought_of_where_something_odd_explains_a_
     )
     calls: list[list[int]] = []
 
-    def recalled(_: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
+    def reestimate(_: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
         calls.append([motion.number for motion in motions])
         return [told] * bool(motions)
 
     state, budget = TrackerState(observations=observations, motions=moved), SearchBudget(0)
-    proposers = EARLIER_MOTION_PROPOSERS._replace(in_frame=recalled)
+    proposers = EARLIER_MOTION_PROPOSERS._replace(in_frame=reestimate)
     found = propose_earlier_motions(state, NO_SURPRISE, [simple], budget, proposers)
     assert calls == ([] if asked is None else [asked])
     assert len(found) == bool(asked)

@@ -1,4 +1,4 @@
-"""How an impression that differs from the predicted one is explained."""
+"""The tracker: how an impression that differs from the predicted one is explained, and what is believed then."""
 
 import math
 from dataclasses import replace
@@ -37,7 +37,7 @@ def test_exact_moves_are_predicted() -> None:
     assert walk.model.place == pytest.approx((-1.5, 4.5))
 
 
-def test_every_new_cell_is_explained_and_every_old_one_predicted() -> None:
+def test_new_fields_are_explained_and_old_ones_predicted() -> None:
     tracker, occupied, square = Tracker(), world_of(ROOM), utak_in(ROOM)
     first = tracker.wake(impression(occupied, square))
     assert set(first.cells) <= {CellStatus.EXPLAINED, CellStatus.PREDICTED}
@@ -47,17 +47,17 @@ def test_every_new_cell_is_explained_and_every_old_one_predicted() -> None:
     assert set(fovea) == {CellStatus.PREDICTED}
 
 
-def test_a_motion_that_was_stopped_is_understood() -> None:
+def test_a_blocked_walk_is_recognised() -> None:
     walk = walked(ROOM, [(2, 0), (0, 3)])
     x, y = utak_in(ROOM)
     tracker, occupied = walk.knowledge.tracker, world_of(ROOM)
-    found = tracker.accommodate(Move(0.0, -9.0), impression(occupied, (x + 2, y - 3)))  # stopped after 6 of 9
+    found = tracker.accommodate(Move(0.0, -9.0), impression(occupied, (x + 2, y - 3)))  # blocked after 6 of 9
     assert found.explanation.how == "blocked"
     assert tracker.state.place == pytest.approx((2.5, -3.0), abs=1e-5)
     assert (2, -4) in tracker.state.blocked_squares
 
 
-def test_a_slip_of_one_who_slips_is_understood() -> None:
+def test_a_slip_is_recognised_after_earlier_slips() -> None:
     walk = walked(ROOM, [(2, 0), (0, 3), (1, 0), (0, 1), (-1, 0), (0, -1)])
     x, y = utak_in(ROOM)
     tracker = walk.knowledge.tracker
@@ -67,10 +67,10 @@ def test_a_slip_of_one_who_slips_is_understood() -> None:
     assert tracker.state.place == pytest.approx((-0.5, 4.5))
 
 
-def test_a_turned_table_is_noticed() -> None:
+def test_another_orientation_of_the_frame_is_recognised() -> None:
     tracker, occupied, (x, y) = Tracker(), world_of(ROOM), utak_in(ROOM)
     hows = [tracker.wake(impression(occupied, (x, y), heading=30)).explanation.how]
-    for n in range(1, 7):  # north in his frame: 30 degrees from the table's north
+    for n in range(1, 7):  # north in Utak's own frame: 30 degrees from the table's north
         px, py = x + 0.5 - 0.5 * n, y + 0.5 + 0.8660254 * n
         hows.append(
             tracker.accommodate(Move(0.0, 1.0), impression(occupied, (int(px), int(py)), heading=30)).explanation.how
@@ -80,7 +80,7 @@ def test_a_turned_table_is_noticed() -> None:
     assert tracker.state.occupancy.overruled == 0
 
 
-def test_one_who_runs_against_something_on_a_turned_table_finds_out_both() -> None:
+def test_a_contact_and_an_unknown_orientation_are_found_together() -> None:
     far, off = [], []
     for seed in range(30):
         rng = np.random.default_rng(seed)
@@ -91,7 +91,7 @@ def test_one_who_runs_against_something_on_a_turned_table_finds_out_both() -> No
         way, middle = (9 * math.cos(angle), 9 * math.sin(angle)), (x + 0.5, y + 0.5)
         tracker = Tracker()
         tracker.wake(impression(occupied, (x, y), heading))
-        stop = ran(occupied, middle, way, heading)
+        stop = first_contact(occupied, middle, way, heading)
         seen = impression(occupied, (math.floor(stop[0]), math.floor(stop[1])), heading)
         tracker.accommodate(Move(*way), seen)
         walked = math.dist(tracker.state.frame.place_to_utak(*tracker.state.place), (0, 0))
@@ -103,19 +103,19 @@ def test_one_who_runs_against_something_on_a_turned_table_finds_out_both() -> No
     assert sum(squares <= 0.3 for squares in far) >= 0.75 * len(far)
 
 
-def test_what_stopped_him_where_is_found_out_by_the_next_looks() -> None:
-    """Who is stopped on an unknown table may take himself for elsewhere: what he sees fits more than one place."""
-    walks = [walk for walk in (stopped_and_walked(seed, True) for seed in range(24)) if walk is not None]
+def test_later_observations_tell_where_a_walk_was_blocked() -> None:
+    """After a contact in an unknown frame one observation may fit more than one place."""
+    walks = [walk for walk in (errors_after_a_contact(seed, True) for seed in range(24)) if walk is not None]
     assert len(walks) >= 12
     assert sum(at_once < 0.1 for at_once, *_ in walks) >= 0.7 * len(walks)
     assert sum(then < 0.1 for _, then, _ in walks) >= 0.9 * len(walks)
-    assert all(then < 0.1 and later < 0.1 for at_once, then, later in walks if at_once < 0.1)  # what was right stays so
+    assert all(then < 0.1 and later < 0.1 for at_once, then, later in walks if at_once < 0.1)  # right stays right
 
 
 @pytest.mark.parametrize("seed", [1047, 1096, 1098, 1147, 1161])
-def test_what_was_told_wrongly_is_told_again_by_the_next_looks(seed: int) -> None:
-    """A stop that he has overlooked, or took for one further on, while one who remembers no motion stays wrong."""
-    remembered, forgotten = stopped_and_walked(seed, True), stopped_and_walked(seed, False)
+def test_a_wrong_end_of_a_walk_is_corrected_by_later_observations(seed: int) -> None:
+    """A contact was overlooked, or placed too far on; without re-estimation of motions the place stays wrong."""
+    remembered, forgotten = errors_after_a_contact(seed, True), errors_after_a_contact(seed, False)
     assert remembered is not None and forgotten is not None
     assert min(remembered[0], *forgotten) > 0.1
     assert remembered[-1] < 0.1
@@ -123,8 +123,8 @@ def test_what_was_told_wrongly_is_told_again_by_the_next_looks(seed: int) -> Non
 
 @pytest.mark.parametrize("known", [True, False])
 @pytest.mark.parametrize("other", [Frame(0, (0.97, 0.97)), Frame(7)])
-def test_a_stop_at_what_is_known_is_believed_rather_than_another_lattice(known: bool, other: Frame) -> None:
-    """Just where an earlier motion would have been stopped something stands, and all looks agree then."""
+def test_a_contact_with_something_known_is_preferred_to_another_frame(known: bool, other: Frame) -> None:
+    """Something known stands just where an earlier motion would have been blocked, and all observations agree then."""
     told = ReestimatedWalk(CENTRED_HYPOTHESES[0], WalkCorrection(1, (0.5, -0.5)), known, 0)
     explanations = [
         Explanation("predicted", (9.5, 0.5), Frame(), 6, 0.0),
@@ -136,10 +136,10 @@ def test_a_stop_at_what_is_known_is_believed_rather_than_another_lattice(known: 
     assert chosen.how == ("misled" if known else "turned")
 
 
-def stopped_and_walked(seed: int, remember: bool) -> list[float] | None:
-    """How far he is from where he believes himself, in squares: where he was stopped, and after two free moves.
+def errors_after_a_contact(seed: int, remember: bool) -> list[float] | None:
+    """Return the error of the believed place in squares: after a contact, and after each of two free moves.
 
-    remember : may earlier motions be told otherwise? None when nothing stops anybody there.
+    None when nothing blocks any walk there. remember : whether earlier motions may be re-estimated.
     """
     rng = np.random.default_rng(seed)
     occupied, heading = world_of(random_room(rng, 30, 30, 14)), int(rng.choice([0, 0, *range(-44, 46)]))
@@ -150,7 +150,7 @@ def stopped_and_walked(seed: int, remember: bool) -> list[float] | None:
     for far in (12, 6, 6):
         for angle in rng.uniform(0, 2 * math.pi, 30):
             way = (far * math.cos(angle), far * math.sin(angle))
-            end = ran(occupied, here, way, heading)
+            end = first_contact(occupied, here, way, heading)
             if (math.dist(end, here) < far - 1e-2) == (far == 12):
                 break
         else:
@@ -164,10 +164,10 @@ def stopped_and_walked(seed: int, remember: bool) -> list[float] | None:
     return off
 
 
-def ran(
+def first_contact(
     occupied: Occupied, start: tuple[float, float], way: tuple[float, float], heading: float
 ) -> tuple[float, float]:
-    """Where one is stopped who goes some way of his own frame, from a point of the table."""
+    """Return where a walk is blocked, table frame. way : in Utak's own frame. heading : of that frame, degrees."""
     c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
     ahead = way[0] * c - way[1] * s, way[0] * s + way[1] * c
     for part in np.linspace(0, 1, 8001)[1:]:
@@ -177,18 +177,18 @@ def ran(
     return start[0] + ahead[0], start[1] + ahead[1]
 
 
-def test_where_a_motion_ends_need_not_be_floor() -> None:
+def test_the_square_beyond_a_contact_is_not_taken_for_floor() -> None:
     tracker, occupied, (x, y) = Tracker(), world_of(ROOM), utak_in(ROOM)
     tracker.wake(impression(occupied, (x, y)))
     wall = len(ROOM[0]) - 1
-    tracker.accommodate(Move(wall - x, 0.0), impression(occupied, (wall, y)))  # stopped as he touched it
+    tracker.accommodate(Move(wall - x, 0.0), impression(occupied, (wall, y)))  # blocked as it was touched
     assert tracker.state.place == pytest.approx((wall - x, 0.5), abs=1e-5)
     assert tracker.state.place[0] < wall - x
     assert tracker.state.occupancy.state[tracker.state.occupancy.index(wall - x, 0)] != FREE
     assert tracker.state.occupancy.state[tracker.state.occupancy.index(0, 0)] == FREE
 
 
-def test_turning_what_is_held_moves_nobody() -> None:
+def test_a_turn_does_not_move_utak() -> None:
     tracker, occupied, square = Tracker(), world_of(ROOM), utak_in(ROOM)
     tracker.wake(impression(occupied, square))
     found = tracker.accommodate(Turn(90.0), impression(occupied, square))
@@ -201,7 +201,7 @@ PLAIN = world_of(LARGE_ROOM)
 
 
 def holding(thing: shapely.Polygon, place: tuple[float, float], room: Occupied = PLAIN) -> Tracker:
-    """One who has just taken a thing of the table, where he woke."""
+    """Return a tracker that has just grasped an object at the place of waking. thing, place : table frame."""
     tracker, square = Tracker(), (math.floor(place[0]), math.floor(place[1]))
     tracker.wake(impression(around(thing, room), square))
     lies = translate(thing, -square[0], -square[1])
@@ -210,7 +210,7 @@ def holding(thing: shapely.Polygon, place: tuple[float, float], room: Occupied =
 
 
 @pytest.mark.parametrize("place", [(20.85, 20.05), (20.2, 20.6), (20.4, 20.1)])
-def test_where_a_turn_leaves_a_thing_tells_where_in_his_square_he_stands(place: tuple[float, float]) -> None:
+def test_a_turned_object_tells_the_origin_of_the_frame(place: tuple[float, float]) -> None:
     thing = translate(ELL, 21, 18)
     tracker = holding(thing, place)
     after = rotate(thing, 90, origin=place)
@@ -230,8 +230,8 @@ def test_where_a_turn_leaves_a_thing_tells_where_in_his_square_he_stands(place: 
     assert tracker.state.loads["o1"].play == 0
 
 
-def test_what_looks_as_before_after_a_push_did_not_move() -> None:
-    thing = translate(ELL, 38, 18)  # it stands against the wall already
+def test_an_unchanged_impression_after_a_push_means_that_nothing_moved() -> None:
+    thing = translate(ELL, 38, 18)  # against the wall already
     tracker = holding(thing, (37.5, 20.5))
     # how the frame lies is known:
     tracker.state = replace(tracker.state, hypotheses=(FrameHypothesis(0, CENTRE + CENTRE),), confirmations=20)
@@ -242,7 +242,7 @@ def test_what_looks_as_before_after_a_push_did_not_move() -> None:
     assert tracker.state.loads["o1"].stuck == 1
 
 
-def test_a_turn_by_one_who_stands_amid_his_square_teaches_nothing() -> None:
+def test_a_turn_about_the_middle_of_the_square_leaves_the_origin_there() -> None:
     thing = translate(ELL, 21, 18)
     tracker = holding(thing, (20.5, 20.5))
     found = tracker.accommodate(Turn(90.0), impression(around(rotate(thing, 90, origin=(20.5, 20.5)), PLAIN), (20, 20)))
@@ -251,7 +251,7 @@ def test_a_turn_by_one_who_stands_amid_his_square_teaches_nothing() -> None:
     assert tracker.state.loads["o1"].play == 0
 
 
-def test_a_halt_beside_the_middle_tells_where_in_his_square_he_woke() -> None:
+def test_an_observation_beside_the_middle_tells_the_origin() -> None:
     room = world_of(ROOM)
     x, y = utak_in(ROOM)
     truly = (x + 0.8, y + 0.3)
@@ -270,7 +270,7 @@ def test_a_halt_beside_the_middle_tells_where_in_his_square_he_woke() -> None:
     assert south <= 0.3 - tracker.state.frame.origin[1] <= north
 
 
-def test_what_stops_a_thing_unawares_makes_the_squares_before_it_suspect() -> None:
+def test_an_unknown_contact_makes_the_squares_ahead_suspected() -> None:
     def posts(i: int, j: int) -> bool:
         return PLAIN(i, j) or (j == 16 and i % 7 == 0)
 
@@ -279,7 +279,7 @@ def test_what_stops_a_thing_unawares_makes_the_squares_before_it_suspect() -> No
     # how the frame lies is known:
     tracker.state = replace(tracker.state, hypotheses=CENTRED_HYPOTHESES[:1], search_count=99)
     row, column = tracker.state.occupancy.index(29 - 21, -1)
-    tracker.state.occupancy.state[row - 3 : row + 6, column] = OPEN  # not looked at closely
+    tracker.state.occupancy.state[row - 3 : row + 6, column] = OPEN  # not seen closely
     stopped = translate(thing, 2, 0)  # of 6
     found = tracker.accommodate(Push(6.0, 0.0), impression(around(stopped, posts), (23, 19)))
     assert found.explanation.how == "blocked"
@@ -299,7 +299,7 @@ def test_what_stops_a_thing_unawares_makes_the_squares_before_it_suspect() -> No
         (True, OPEN, FREE, True),
     ],
 )
-def test_what_seemed_to_stop_him_and_is_seen_to_be_free_is_free(
+def test_a_blocked_square_that_is_seen_to_be_free_is_open_again(
     slips: bool, state: int, about: int, closed: bool
 ) -> None:
     tracker = walked(ROOM, [(2, 0)]).knowledge.tracker

@@ -1,4 +1,4 @@
-"""Where a motion crosses the lines between squares."""
+"""Walk outcomes: crossings of grid lines, and re-estimation of blocked walks."""
 
 import math
 from itertools import pairwise
@@ -26,7 +26,7 @@ POINT = st.floats(0.05, 0.95).map(lambda v: round(v, 3) + 0.0003)
 
 
 def passes_corner(x: float, y: float, east: float, north: float) -> bool:
-    """Does a motion cross two lines nearly at once?"""
+    """Return whether a motion crosses two grid lines nearly at once."""
     parts = [(line - x) / east for line in range(-12, 13) if east] + [
         (line - y) / north for line in range(-12, 13) if north
     ]
@@ -35,7 +35,7 @@ def passes_corner(x: float, y: float, east: float, north: float) -> bool:
 
 
 @given(POINT, POINT, AWAY, AWAY)
-def test_the_squares_entered_are_those_on_the_way_in_their_order(x: float, y: float, east: float, north: float) -> None:
+def test_squares_are_entered_in_the_order_of_the_way(x: float, y: float, east: float, north: float) -> None:
     assume(not passes_corner(x, y, east, north))
     met = [(0, 0)]
     for part in (n / 20000 for n in range(1, 20001)):
@@ -50,7 +50,7 @@ def test_the_squares_entered_are_those_on_the_way_in_their_order(x: float, y: fl
 
 
 @given(POINT, POINT, AWAY, AWAY)
-def test_a_line_has_a_square_on_either_side(x: float, y: float, east: float, north: float) -> None:
+def test_a_crossing_has_a_place_on_either_side_of_the_line(x: float, y: float, east: float, north: float) -> None:
     assume(not passes_corner(x, y, east, north))
     here = (0, 0)
     for crossing in line_crossings((x, y), (east, north)):
@@ -60,20 +60,20 @@ def test_a_line_has_a_square_on_either_side(x: float, y: float, east: float, nor
         here = crossing.entered
 
 
-def test_who_stays_in_his_square_crosses_nothing() -> None:
+def test_a_motion_within_a_square_crosses_nothing() -> None:
     assert line_crossings((0.5, 0.5), (0.4, -0.4)) == ()
     assert line_crossings((0.5, 0.5), (0.0, 0.0)) == ()
 
 
-def test_the_square_ahead_lies_on_the_way() -> None:
+def test_the_entered_square_lies_on_the_way() -> None:
     assert entered_square((0.5, 0.5), (0.5, 9.5)) == (0, 1)
     assert entered_square((0.5, 0.5), (-3.5, 0.5)) == (-1, 0)
 
 
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
-    """He believes that a motion went as commanded, which a wall had stopped, and then goes on."""
+def test_the_true_end_of_a_blocked_walk_is_among_its_reestimations(seed: int) -> None:
+    """A wall blocked a motion that is believed to have gone as commanded; another motion follows."""
     rng = np.random.default_rng(seed)
     occupied, heading = world_of(random_room(rng, 26, 26, 8)), int(rng.integers(-44, 46))
     squares = [(i, j) for i in range(3, 23) for j in range(3, 23)]
@@ -85,7 +85,7 @@ def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
     assume(stop is not None and not passes_corner(0.5, 0.5, *turned(*way, heading)))
     assert stop is not None
     frame = Frame(heading)
-    own = frame.place_to_utak(stop.before[0] - x, stop.before[1] - y)  # of a lattice whose origin is where he woke
+    own = frame.place_to_utak(stop.before[0] - x, stop.before[1] - y)  # of a frame with the true origin
     back = (-own[0], -own[1])
     truth = [(0.0, 0.0), own, (own[0] + 0.5 * back[0], own[1] + 0.5 * back[1])]
     observations = []
@@ -108,7 +108,7 @@ def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
         assert math.dist(one.correction.observations(observations)[2].place, observations[2].place) > LINE_DISTANCE
 
 
-def test_who_met_nothing_has_nothing_to_tell_otherwise() -> None:
+def test_a_walk_that_met_nothing_is_not_reestimated() -> None:
     occupied = world_of(["." * 80] * 80)
     seen = [count_ranges(impression(occupied, (x, 40)).retina) for x in (30, 35)]
     observations = [Observation(seen[0], (0.0, 0.0)), Observation(seen[1], (5.0, 0.0))]
@@ -117,7 +117,7 @@ def test_who_met_nothing_has_nothing_to_tell_otherwise() -> None:
 
 
 @given(st.sampled_from([(1, 1), (1, -1), (-1, 1), (-1, -1)]), st.integers(1, 9))
-def test_at_a_corner_he_may_look_from_any_of_its_four_squares(way: tuple[int, int], far: int) -> None:
+def test_at_a_corner_the_observation_may_be_made_from_four_squares(way: tuple[int, int], far: int) -> None:
     met = line_crossings((0.5, 0.5), (way[0] * far, way[1] * far))
     assert len(met) == 3 * far
     for number in range(far):
@@ -137,8 +137,8 @@ def test_at_a_corner_he_may_look_from_any_of_its_four_squares(way: tuple[int, in
 
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_two_stops_in_a_row_are_told_together(seed: int) -> None:
-    """He believes that a motion went as commanded, which a wall had stopped, and goes on against that wall."""
+def test_two_contacts_in_a_row_are_reestimated_together(seed: int) -> None:
+    """A wall blocked a motion that is believed to have gone as commanded; the next goes against that wall, too."""
     rng = np.random.default_rng(seed)
     occupied = world_of(random_room(rng, 26, 26, 8))
     free = [(i, j) for i in range(3, 23) for j in range(3, 23) if not occupied(i, j)]
@@ -172,7 +172,7 @@ def test_two_stops_in_a_row_are_told_together(seed: int) -> None:
 def known_to_be_occupied(
     occupied: Occupied, start: tuple[int, int], here: tuple[int, int], wall: tuple[int, int]
 ) -> bool:
-    """Is a square known to be occupied by all that is seen from two others?"""
+    """Return whether a square is settled as occupied by the observations from two others."""
     occupancy = OccupancyMap()
     for number, (i, j) in enumerate((start, here)):
         samples = Frame().samples()

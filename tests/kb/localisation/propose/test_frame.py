@@ -1,4 +1,4 @@
-"""A push that was stopped, of one who did not wake amid his square: both are told together."""
+"""A blocked push and an origin off the middle are found together."""
 
 import math
 from dataclasses import replace
@@ -33,10 +33,10 @@ from tests.kb.localisation.propose.test_earlier_motion import (
 Point = tuple[float, float]
 
 
-def stopped_himself(rng: np.random.Generator, beside: Point) -> tuple[Surprise, Point, shapely.Polygon] | None:
-    """One who took a thing, and ran against something himself as he pushed it; where he is then, and the thing.
+def blocked_push_of_utak(rng: np.random.Generator, beside: Point) -> tuple[Surprise, Point, shapely.Polygon] | None:
+    """Return the surprise after a contact of Utak in a push, the true place and outline then; None if there is no contact.
 
-    beside : where in his square he woke.
+    beside : the true origin.
     """
     room, thing, (x, y) = room_with_a_thing(rng)
     origin = (x + 1 + beside[0], y - 1 + beside[1])
@@ -59,9 +59,9 @@ def stopped_himself(rng: np.random.Generator, beside: Point) -> tuple[Surprise, 
 
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(COARSE_ORIGINS))
-def test_where_he_himself_ran_against_something_is_told_with_where_he_woke(seed: int, beside: Point) -> None:
+def test_a_contact_of_utak_in_a_push_is_found_with_the_origin(seed: int, beside: Point) -> None:
     rng = np.random.default_rng(seed)
-    made = (stopped_himself(rng, beside) for _ in range(2000))
+    made = (blocked_push_of_utak(rng, beside) for _ in range(2000))
     surprise, there, thing = next(one for one in made if one is not None)
     found = blocked_pushes_with_origin(surprise)
     near = []
@@ -76,9 +76,9 @@ def test_where_he_himself_ran_against_something_is_told_with_where_he_woke(seed:
     assert beside in near, (seed, beside, square_of(there))
 
 
-def test_what_is_turned_or_not_in_hand_is_not_told_so() -> None:
+def test_turned_objects_and_empty_hands_are_not_asked() -> None:
     rng = np.random.default_rng(1)
-    surprise, *_ = next(one for one in (stopped_himself(rng, CENTRE) for _ in range(2000)) if one is not None)
+    surprise, *_ = next(one for one in (blocked_push_of_utak(rng, CENTRE) for _ in range(2000)) if one is not None)
     assert blocked_pushes_with_origin(surprise)
     for command in (Turn(30.0), Move(1.0, 0.0)):
         held = surprise.held if isinstance(command, Turn) else None

@@ -1,4 +1,4 @@
-"""A thing that is drawn out of what seemed to be wall shows how far it went on: eyes.py tells what is seen."""
+"""An object drawn out of what seemed to be wall shows how far it went on; eyes.py makes the impressions."""
 
 import pytest
 import shapely
@@ -12,21 +12,22 @@ from kb.objects.held_object import HeldObject
 from tests.kb.eyes import Occupied, impression, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
 
-HERE = (17, 12)  # of the table: (0, 0) of the lattice
+HERE = (17, 12)  # table frame: (0, 0) of the map frame
 DOOR = ["b" + "." * 19 + "..." + "." * 17 + "b"] * 5
 NO_DOOR = ["b" + "." * 19 + "bbb" + "." * 17 + "b"] * 5
 
 
 def hall(middle: list[str]) -> Occupied:
-    """Two rooms, and between them a wall of three squares; five rows of it from the tenth on are given."""
+    """Return two rooms and a wall of three squares between them. middle : five rows of it, from the tenth on."""
     wall = "b" + "." * 19 + "bbb" + "." * 17 + "b"
     return world_of(["b" * 40, *[wall] * 10, *middle, *[wall] * 9, "b" * 40])
 
 
 def drawn(room: Occupied, deep: int, by: float) -> tuple[Tracker, str]:
-    """What one believes who felt two columns of a thing right before a wall, takes it and draws it back to the west.
+    """Return the tracker, and the kind of its explanation, after an object before a wall was drawn back to the west.
 
-    room : without it. deep : squares that it goes on in the wall. And how he explains what he sees then.
+    Two columns of the object stick out of the wall. room : without it. deep : squares that it goes on in the wall.
+    by : squares that it is drawn.
     """
     thing = shapely.box(18, 10, 20 + deep, 15)
     tracker = Tracker()
@@ -42,7 +43,7 @@ def drawn(room: Occupied, deep: int, by: float) -> tuple[Tracker, str]:
 
 @pytest.mark.parametrize("deep", [1, 2, 3])
 @pytest.mark.parametrize("by", [2.0, 4.0])
-def test_what_is_drawn_out_of_a_door_is_as_large_as_it_is(deep: int, by: float) -> None:
+def test_an_object_drawn_out_of_a_door_shows_its_true_size(deep: int, by: float) -> None:
     tracker, how = drawn(hall(DOOR), deep, by)
     assert how == "larger"
     load, occupancy = tracker.state.loads["o1"], tracker.state.occupancy
@@ -55,21 +56,21 @@ def test_what_is_drawn_out_of_a_door_is_as_large_as_it_is(deep: int, by: float) 
 
 
 @pytest.mark.parametrize("by", [2.0, 4.0])
-def test_what_stood_before_a_wall_is_no_larger_than_it_seemed(by: float) -> None:
+def test_an_object_before_a_wall_is_no_larger_than_it_seemed(by: float) -> None:
     tracker, how = drawn(hall(NO_DOOR), 0, by)
     assert how == "predicted"
     assert tracker.state.loads["o1"].polygon.equals(translate(shapely.box(18, 10, 20, 15), -HERE[0] - by, -HERE[1]))
     assert tracker.state.occupancy.state[tracker.state.occupancy.index(3, 0)] == FULL
 
 
-def test_what_was_moved_before_is_no_larger_than_it_seemed() -> None:
+def test_an_object_that_was_moved_before_is_no_larger_than_it_seemed() -> None:
     tracker, _ = drawn(hall(DOOR), 1, 2.0)
     again = around(shapely.box(14, 10, 17, 15), hall(DOOR))
     assert tracker.accommodate(Push(-2.0, 0.0), impression(again, (13, 12))).explanation.how == "predicted"
 
 
-def test_its_shape_is_told_anew() -> None:
-    """A brick that stuck out of a door as a square."""
+def test_the_shape_class_of_a_larger_object_is_measured_anew() -> None:
+    """A brick looks like a square while it sticks out of a door."""
     knowledge, wide = Knowledge(), shapely.box(15, 10, 22, 15)
     before, after = around(wide, hall(DOOR)), around(translate(wide, -3.0), hall(DOOR))
     here = (14, 12)

@@ -1,4 +1,4 @@
-"""A walk that was stopped, of one who did not wake amid his square: both are told together."""
+"""A blocked walk and an origin off the middle are found together."""
 
 import math
 
@@ -25,8 +25,8 @@ from tests.kb.localisation.hypotheses.test_walk_outcomes import passes_corner
 Point = tuple[float, float]
 
 
-def received(one: Explanation, observations: list[Observation]) -> list[Observation]:
-    """The looks where they were received by an explanation."""
+def corrected(one: Explanation, observations: list[Observation]) -> list[Observation]:
+    """Return the observations where they were made by an explanation."""
     assert one.reestimated is not None
     *before, newest = one.reestimated.correction.observations(observations)
     return [*before, newest._replace(place=one.reestimated.newest)]
@@ -34,8 +34,8 @@ def received(one: Explanation, observations: list[Observation]) -> list[Observat
 
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(COARSE_ORIGINS))
-def test_of_what_is_told_the_truth_is_one(seed: int, origin: Point) -> None:
-    """He is stopped by a wall, does not notice, and goes back some of the way."""
+def test_the_true_origin_and_contact_are_among_the_proposals(seed: int, origin: Point) -> None:
+    """A wall blocks a walk unnoticed; the next motion goes back some of the way."""
     rng = np.random.default_rng(seed)
     occupied, heading = world_of(random_room(rng, 26, 26, 8)), int(rng.integers(-44, 46))
     free = [(i, j) for i in range(3, 23) for j in range(3, 23) if not occupied(i, j)]
@@ -55,7 +55,7 @@ def test_of_what_is_told_the_truth_is_one(seed: int, origin: Point) -> None:
         seen = count_ranges(impression(occupied, (i + x, j + y), heading).retina)
         observations.append(Observation(seen, (place[0] + east, place[1] + north)))
     found = blocked_walks_with_origin([MotionHypothesis(1, way, CENTRED_HYPOTHESES)], held, observations)
-    squares = [observation_squares(one.frame, received(one, observations)).tolist() for one in found]
+    squares = [observation_squares(one.frame, corrected(one, observations)).tolist() for one in found]
     assert (
         observation_squares(
             true, [observation._replace(place=place) for observation, place in zip(observations, places, strict=True)]
@@ -65,11 +65,11 @@ def test_of_what_is_told_the_truth_is_one(seed: int, origin: Point) -> None:
     for one in found:
         assert one.frame.angle == heading and one.residual == 0
         assert one.how == "misled" and one.prior_cost >= 0
-        assert not count_contradictions(one.frame, received(one, observations))
+        assert not count_contradictions(one.frame, corrected(one, observations))
 
 
-def test_the_larger_part_of_his_square_is_the_likelier_one() -> None:
-    """A wall stopped him two squares too early; whether he looks from this row or the next one, nothing tells."""
+def test_a_larger_part_of_the_square_is_a_likelier_origin() -> None:
+    """A wall blocked the walk two squares early; nothing tells the row from which the last observation was made."""
     room = world_of(["b" * 40, *["b" + "." * 30 + "b" * 9] * 70, "b" * 40])
     seen = [count_ranges(impression(room, square).retina) for square in ((20, 35), (30, 35), (26, 35))]
     observations = [
@@ -82,11 +82,11 @@ def test_the_larger_part_of_his_square_is_the_likelier_one() -> None:
         assert one.prior_cost == pytest.approx(OFF_CENTRE_COST - math.log(share))
     again = blocked_walks_with_origin(
         [MotionHypothesis(1, (12.0, 0.0), CENTRED_HYPOTHESES)], Frame(0, (0.4, 0.5)), observations
-    )  # that he woke there is known
+    )  # the origin is known
     assert [one.prior_cost for one in again] == pytest.approx([one.prior_cost - OFF_CENTRE_COST for one in found])
 
 
-def test_who_met_nothing_has_nothing_to_tell() -> None:
+def test_a_walk_that_met_nothing_is_not_reestimated() -> None:
     occupied = world_of(["." * 80] * 80)
     seen = [count_ranges(impression(occupied, (x, 40)).retina) for x in (30, 35)]
     observations = [Observation(seen[0], (0.0, 0.0)), Observation(seen[1], (5.0, 0.0))]

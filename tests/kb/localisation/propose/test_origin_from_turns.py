@@ -1,4 +1,4 @@
-"""A turn that was stopped tells how far it went and what it was about, as shapely turned it."""
+"""A blocked turn tells how far it went and what it was about, by shapely."""
 
 import math
 from dataclasses import replace
@@ -23,23 +23,21 @@ from tests.kb.localisation.hypotheses.test_remap import around
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
 PLAIN = world_of(LARGE_ROOM)
-FINE = 0.02  # degrees between the turns that are tried
+TURN_STEP = 0.02  # degrees between the turns that are tried
 within = st.floats(0.06, 0.94).map(lambda v: round(v, 2))
 
 
 def turned_until(thing: shapely.Polygon, about: tuple[float, float], post: shapely.Polygon, most: float) -> float:
-    """By how many degrees a thing can be turned before it goes into a post: by trying."""
-    for step in range(1, math.ceil(most / FINE)):
-        if rotate(thing, step * FINE, origin=about).intersection(post).area > 1e-6:
-            return (step - 1) * FINE
+    """Return by how many degrees an object can be turned before it enters a post, by trying; `most` at most."""
+    for step in range(1, math.ceil(most / TURN_STEP)):
+        if rotate(thing, step * TURN_STEP, origin=about).intersection(post).area > 1e-6:
+            return (step - 1) * TURN_STEP
     return most
 
 
 @settings(max_examples=6, deadline=None)
 @given(within, within, st.sampled_from([(25, 24), (26, 23), (24, 25)]))
-def test_a_turn_that_was_stopped_tells_where_he_woke_and_how_far_it_went(
-    fx: float, fy: float, post_at: tuple[int, int]
-) -> None:
+def test_a_blocked_turn_tells_the_origin_and_how_far_it_went(fx: float, fy: float, post_at: tuple[int, int]) -> None:
     about = (20 + fx, 20 + fy)
     thing = translate(ELL, 21, 18)
     x, y = post_at
@@ -56,8 +54,8 @@ def test_a_turn_that_was_stopped_tells_where_he_woke_and_how_far_it_went(
     tracker.grasp(HeldObject("o1", lies, lies, proven=True))
     tracker.state = replace(
         tracker.state, hypotheses=CENTRED_HYPOTHESES[:1], search_count=MAX_FRAME_SEARCHES
-    )  # how the lattice is turned is known
-    for i, j in ((x, y), (x - 1, y), (x, y + 1), (x + 1, y + 1)):  # not looked at closely
+    )  # the orientation is known
+    for i, j in ((x, y), (x - 1, y), (x, y + 1), (x + 1, y + 1)):  # not seen closely
         tracker.state.occupancy.state[tracker.state.occupancy.index(i - 20, j - 20)] = OPEN
     after = rotate(thing, degrees, origin=about)
     found = tracker.accommodate(Turn(90.0), impression(around(after, room), (20, 20))).explanation
@@ -74,16 +72,16 @@ def test_a_turn_that_was_stopped_tells_where_he_woke_and_how_far_it_went(
         assert south - 0.15 <= fy - origin[1] <= north + 0.15
 
 
-def test_who_was_stopped_a_hair_beside_a_line_turns_things_a_hair_aside() -> None:
+def test_a_turn_beside_a_grid_line_needs_no_other_origin() -> None:
     thing = translate(ELL, 21, 18)
-    after = rotate(thing, 90, origin=(20.5 + 1e-6, 20.5))  # on some squares by a hair
+    after = rotate(thing, 90, origin=(20.5 + 1e-6, 20.5))  # into some squares by 1e-6
     tracker = Tracker()
     tracker.wake(impression(around(thing, PLAIN), (20, 20)))
     tracker.state = replace(tracker.state, hypotheses=CENTRED_HYPOTHESES[:1])
     lies = translate(thing, -20, -20)
     tracker.grasp(HeldObject("o1", lies, lies, proven=True))
     stopped = tracker.state.observations[0]._replace(place=(0.5 - 1e-6, 0.0))
-    tracker.state = replace(tracker.state, observations=(stopped,))  # there he was stopped
+    tracker.state = replace(tracker.state, observations=(stopped,))  # a contact at the line
     found = tracker.accommodate(Turn(90.0), impression(around(after, PLAIN), (20, 20))).explanation
     assert found.how == "predicted"
     assert found.residual == 0
@@ -91,7 +89,7 @@ def test_who_was_stopped_a_hair_beside_a_line_turns_things_a_hair_aside() -> Non
     assert tracker.state.loads["o1"].polygon.hausdorff_distance(translate(after, -20, -20)) < 1e-5
 
 
-def test_a_part_is_cut_into_parts_that_fill_it() -> None:
+def test_the_parts_of_a_cell_fill_it() -> None:
     part = TurnOriginCell((0.0, 1.0), (0.2, 0.6), (0.5, 0.9))
     parts = part.cut(5, 2, 3)
     assert len(parts) == 30
@@ -104,7 +102,7 @@ def test_a_part_is_cut_into_parts_that_fill_it() -> None:
     assert max(one.radius for one in parts) < part.radius
 
 
-def test_points_of_a_grid_lie_amid_his_square() -> None:
+def test_points_of_an_origin_grid_lie_inside_the_square() -> None:
     tracker = Tracker()
     tracker.wake(impression(PLAIN, (20, 20)))
     where = origin_grid(Frame(), tracker.state.observations)
