@@ -1,6 +1,7 @@
 """Who is at a loss with what looks contradicted gives up what he believes, and begins anew."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import cast
 
 import shapely
@@ -44,10 +45,10 @@ def at_a_loss(slipped: bool) -> tuple[Robot, Undecided]:
     robot.wake()
     robot.decision, robot.finished = Decision(Move(0.0, 0.0), "he looks"), False
     robot.decider = cast(Decider, undecided)
-    robot.knowledge.memory.slipped = slipped
+    robot.knowledge.tracker.state = replace(robot.knowledge.memory, slipped=slipped)
     if slipped:
         thing = shapely.box(4, 2, 8, 4)
-        robot.knowledge.memory.grasp(HeldObject("o1", thing, thing))
+        robot.knowledge.tracker.grasp(HeldObject("o1", thing, thing))
     robot.step()
     return robot, undecided
 
@@ -61,7 +62,7 @@ def test_who_is_at_a_loss_begins_anew_once_if_looks_contradicted_what_he_believe
     assert undecided.asked == [False, True]
     assert robot.model.anew and not robot.model.shaken and not robot.model.object("o1")
     assert robot.finished and robot.verdict.verdict == "limit"
-    robot.knowledge.memory.slipped = True
+    robot.knowledge.tracker.state = replace(robot.knowledge.memory, slipped=True)
     robot.decision, robot.finished = Decision(Move(0.0, 0.0), "he looks"), False
     robot.step()
     assert robot.finished and undecided.asked == [False, True, True]
