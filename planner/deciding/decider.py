@@ -65,6 +65,7 @@ class Decider:
         pull: bool = True,
         bound: Mapping[str, str] | None = None,
         executor: PlanExecutor | None = None,
+        pursuer: Pursuer | None = None,
     ) -> None:
         """Make a decider that has decided nothing.
 
@@ -76,6 +77,7 @@ class Decider:
         pull : whether a held object may be pulled.
         bound : what parameters of the task are known to mean.
         executor : follows manipulation plans; a new one if None. It belongs to this decider from now on.
+        pursuer : walks after subgoals; a new one if None. It belongs to this decider from now on.
         """
         self.task, self.paths, self.rules = task, paths, rules
         self.bound: Mapping[str, str] = bound or {}
@@ -83,7 +85,7 @@ class Decider:
         self.attained = 0
         self.rooms: Rooms = NOTHING
         self.corners: Mapping[str, Corner] = {}
-        self.pursuer = Pursuer(paths)
+        self.pursuer = pursuer or Pursuer(paths)
         self.executor = executor or PlanExecutor(pull)
         self._verifier = Verifier()
         self._tools = Tools(self.executor, self.pursuer, self._verifier)

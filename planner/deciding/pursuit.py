@@ -27,18 +27,24 @@ from planner.subgoal_kind import SubgoalKind
 class Pursuer:
     """Walks after subgoals, and remembers the present route and the commands that led round in circles."""
 
-    def __init__(self, paths: str, contacts: Callable[[Situation], Sequence[Subgoal]] = contact_subgoals) -> None:
+    def __init__(
+        self,
+        paths: str,
+        contacts: Callable[[Situation], Sequence[Subgoal]] = contact_subgoals,
+        circles: LoopGuard | None = None,
+    ) -> None:
         """Make a pursuer that has no route yet.
 
         Parameters
         ----------
         paths : the path-finder of planner.navigation.routes: skeleton, visibility or grid.
         contacts : returns what is felt before the robot gives up.
+        circles : detects loops; a new guard if None. It belongs to this pursuer from now on.
         """
         self._paths = paths
         self._contacts = contacts
         self._kept = StickyRoute()
-        self._circles = LoopGuard()
+        self._circles = circles or LoopGuard()
         self._feeling = False  # whether the robot is about to feel what may stand against a wall
 
     def closes_loop(self, model: WorldModel, command: Command) -> bool:
