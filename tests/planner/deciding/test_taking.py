@@ -198,7 +198,7 @@ def test_who_was_lost_does_not_say_that_a_thing_is_in_the_next_room(
     after = situation_of(replace(situation.model, anew=lost), situation.binding)
     decision = decider.transporter.towards(stage.goals[0], stage, after, Reconciled({}, (), (), ()))
     if lost:
-        assert decision is not None and decision.verdict == "limit" and "he was lost" in decision.why
+        assert decision is not None and decision.verdict == "limit" and "the robot was lost" in decision.why
     else:
         assert decision is None
 
