@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.cspace.cell_tree import MAX_CELL_DEPTH, CellTree, is_splittable, next_link_to_leaf
+from geometry.cspace.search_tree import SearchTree, add_cell, cut_off, new_search_tree, set_parent, sort_cells
 from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.bounded_heap import pop, push
 from geometry.kernels.jit import bare
@@ -53,11 +54,11 @@ class ChannelSearch(NamedTuple):
     ----------
     cost_to_go : (capacity,) estimated cost from a cell to the goal, weighted.
     cost : (capacity,) cost of the cheapest path found to a cell.
-    parent : (capacity,) the cell before it on that path; -1 at the start.
+    paths : the tree of these paths.
     state : (capacity,) NODE_NEW, NODE_QUEUED (on the heap), NODE_SETTLED, or NODE_POSTPONED (a settled cell that may
         hold a goal and is on the heap again).
-    cut_verdict : (capacity,) scratch of the repair: twice the number of the search, plus 1 for a cell that is cut off.
-    seen : (2,) number of cells that have a state; 1 if the last channel ends at a postponed cell, else 0.
+    seen : (3,) number of cells that have a state; 1 if the last channel ends at a postponed cell, else 0; number of
+        cells of the last channel.
     key, item, size : the heap, see bounded_heap.
     channel : the cells of the last channel, the start's first.
     unattached : scratch of the repair.
@@ -67,9 +68,8 @@ class ChannelSearch(NamedTuple):
 
     cost_to_go: Floats
     cost: Floats
-    parent: Ints
+    paths: SearchTree
     state: npt.NDArray[np.int8]
-    cut_verdict: Ints
     seen: npt.NDArray[np.int64]
     key: Floats
     item: Ints
@@ -85,16 +85,15 @@ def new_channel_search(capacity: int, distances: Floats, disc_centre: Floats) ->
 
     `distances` and `disc_centre` : as in ChannelSearch.
     """
-    parent, channel, unattached = (np.empty(capacity, np.int32) for _ in range(3))
-    cut_verdict, item = np.zeros(capacity, np.int32), np.empty(8 * capacity, np.int32)
-    numbers = np.zeros(2, np.int64), np.empty(8 * capacity), item, np.zeros(2, np.int64)
+    channel, unattached = (np.empty(capacity, np.int32) for _ in range(2))
+    item = np.empty(8 * capacity, np.int32)
+    numbers = np.zeros(3, np.int64), np.empty(8 * capacity), item, np.zeros(2, np.int64)
     state = np.empty(capacity, np.int8)
     return ChannelSearch(
         np.empty(capacity),
         np.empty(capacity),
-        parent,
+        new_search_tree(capacity),
         state,
-        cut_verdict,
         *numbers,
         channel,
         unattached,
@@ -112,7 +111,6 @@ def find_channel(
     search: ChannelSearch,
     start: int,
     goal: int,
-    search_number: int,
     through_given_up: bool,
 ) -> int:
     """Go on searching for a channel from cell `start` to the goal; return its number of cells, 0 if there is none.
@@ -124,15 +122,14 @@ def find_channel(
     tree, body, nearby : the cells, and the body among obstacles.
     region : the complement of the goal region, as obstacles; not used unless `goal` is REGION_GOAL.
     start, goal : cells; `goal` may be REGION_GOAL.
-    search_number : number of this search, counted from 1.
     through_given_up : whether the channel may run through cells given up. Then search.seen must have been set to 0
         before, which forgets all earlier searches.
     """
-    _repair_search(tree, body, nearby, search, search_number)
+    _repair_search(tree, body.radius, nearby, search)
     if tree.kind[start] == CELL_GIVEN_UP and not through_given_up:
         return 0
     if search.state[start] == NODE_NEW:
-        search.cost[start], search.parent[start], search.state[start] = 0.0, -1, NODE_QUEUED
+        search.cost[start], search.state[start] = 0.0, NODE_QUEUED
         push(search.key, search.item, search.size, 0.0, start)
     while search.size[0] > 0:
         key, cell = pop(search.key, search.item, search.size)
@@ -146,7 +143,8 @@ def find_channel(
             search.state[cell] = NODE_SETTLED
             search.seen[1] = int(postponed)
             _relax_neighbours(tree, search, body.radius, cell, through_given_up)
-            return _write_channel(search.parent, search.channel, cell)
+            search.seen[2] = _write_channel(search.paths.parent, search.channel, cell)
+            return int(search.seen[2])
         search.state[cell] = NODE_SETTLED
         _relax_neighbours(tree, search, body.radius, cell, through_given_up)
         if goal_kind == CELL_UNDECIDED and (through_given_up or is_splittable(tree, cell, body)):
@@ -169,19 +167,21 @@ def _kind_in_goal(tree: CellTree, body: MovingBody, region: NearbyEdges, cell: i
 
 
 @bare
-def _repair_search(
-    tree: CellTree, body: MovingBody, nearby: NearbyEdges, search: ChannelSearch, search_number: int
-) -> None:
-    """Cut off what hung on cells that were split or given up; attach it and the new cells again."""
+def _repair_search(tree: CellTree, radius: float, nearby: NearbyEdges, search: ChannelSearch) -> None:
+    """Cut off what hung on cells that were split or given up; attach it and the new cells again.
+
+    Only cells of the last channel are split or given up between two searches (geometry.cspace.refine).
+    """
     unattached = 0
-    for cell in range(search.seen[0]):
-        if search.state[cell] != NODE_NEW and _is_cut_off(
-            tree.child, tree.kind, search.parent, search.cut_verdict, cell, search_number
-        ):
-            search.state[cell] = NODE_NEW
-            search.unattached[unattached] = cell
-            unattached += 1
+    for k in range(search.seen[2] if search.seen[0] > 0 else 0):
+        root = search.channel[k]
+        if search.state[root] != NODE_NEW and (tree.child[root] >= 0 or tree.kind[root] > CELL_UNDECIDED):
+            first, unattached = unattached, cut_off(search.paths, root, search.unattached, unattached)
+            for n in range(first, unattached):
+                search.state[search.unattached[n]] = NODE_NEW
+    sort_cells(search.unattached, unattached)
     for cell in range(search.seen[0], tree.used[0]):
+        add_cell(search.paths, cell)
         search.state[cell] = NODE_NEW
         search.cost_to_go[cell] = _cost_to_go(tree.middle, search.distances, search.disc_centre, nearby.frame, cell)
         search.unattached[unattached] = cell
@@ -190,25 +190,7 @@ def _repair_search(
     for k in range(unattached):
         cell = search.unattached[k]
         if tree.child[cell] < 0 and tree.kind[cell] <= CELL_UNDECIDED:
-            _attach(tree, search, body.radius, cell)
-
-
-@bare
-def _is_cut_off(
-    child: Ints, kind: npt.NDArray[np.int8], parent: Ints, cut_verdict: Ints, cell: int, search_number: int
-) -> bool:
-    """Return whether the path to a cell runs through one that was split or given up; note it in `cut_verdict`."""
-    at = cell
-    while at >= 0 and cut_verdict[at] // 2 != search_number and child[at] < 0 and kind[at] <= CELL_UNDECIDED:
-        at = parent[at]
-    cut = 0
-    if at >= 0:
-        cut = cut_verdict[at] % 2 if cut_verdict[at] // 2 == search_number else 1
-    stop, at = at, cell
-    while at != stop:
-        cut_verdict[at] = 2 * search_number + cut
-        at = parent[at]
-    return cut == 1
+            _attach(tree, search, radius, cell)
 
 
 @bare
@@ -225,7 +207,8 @@ def _attach(tree: CellTree, search: ChannelSearch, radius: float, cell: int) -> 
                 best, by = cost, other
         link = next_link_to_leaf(child, head, links, cell, link)
     if by >= 0:
-        search.cost[cell], search.parent[cell], search.state[cell] = best, by, NODE_QUEUED
+        search.cost[cell], search.state[cell] = best, NODE_QUEUED
+        set_parent(search.paths, cell, by)
         push(search.key, search.item, search.size, best + search.cost_to_go[cell], cell)
 
 
@@ -239,7 +222,8 @@ def _relax_neighbours(tree: CellTree, search: ChannelSearch, radius: float, cell
         if search.state[other] < NODE_SETTLED and (kind[other] != CELL_GIVEN_UP or through_given_up):
             cost = search.cost[cell] + _step_cost(middle, kind, tree.box, radius, cell, other)
             if search.state[other] == NODE_NEW or cost < search.cost[other]:
-                search.cost[other], search.parent[other], search.state[other] = cost, cell, NODE_QUEUED
+                search.cost[other], search.state[other] = cost, NODE_QUEUED
+                set_parent(search.paths, other, cell)
                 push(search.key, search.item, search.size, cost + search.cost_to_go[other], other)
         link = next_link_to_leaf(child, head, links, cell, link)
 

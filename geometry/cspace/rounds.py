@@ -28,7 +28,7 @@ def run_rounds(
         far.
     """
     while True:
-        length = next_channel(tree, context, region, search, hops, round_number, False)
+        length = next_channel(tree, context, region, search, hops, False)
         if length == 0:
             return SEARCH_EXHAUSTED, round_number
         if follow_channel(tree, context, search.channel, length, search.seen[1] != 0, hops) == 0:
@@ -45,10 +45,9 @@ def next_channel(
     region: NearbyEdges,
     search: ChannelSearch,
     hops: HopSequence,
-    round_number: int,
     through_given_up: bool,
 ) -> int:
-    """Find the channel of a round; return its number of cells, 0 if there is none.
+    """Find the next channel; return its number of cells, 0 if there is none.
 
     `through_given_up` : whether it may run through cells given up.
     """
@@ -57,4 +56,4 @@ def next_channel(
     last = leaf_at(tree, goal[0], goal[1], goal[2]) if len(goal) > 0 else REGION_GOAL
     if first < 0 or last == -1:
         return 0
-    return find_channel(tree, context.body, context.nearby, region, search, first, last, round_number, through_given_up)
+    return find_channel(tree, context.body, context.nearby, region, search, first, last, through_given_up)

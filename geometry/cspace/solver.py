@@ -137,7 +137,7 @@ class MotionSolver:
         given_up = bool(self.search.size[1])
         self.search.seen[0] = self.search.size[0] = 0
         self.rounds += 1
-        given_up = given_up or next_channel(self.tree, context, self.region, self.search, hops, self.rounds, True) > 0
+        given_up = given_up or next_channel(self.tree, context, self.region, self.search, hops, True) > 0
         return "limit" if given_up else "impossible", ()
 
     @property
