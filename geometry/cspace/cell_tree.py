@@ -17,7 +17,14 @@ import numpy.typing as npt
 
 from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
-from geometry.motion.cell_clearance import CELL_BLOCKED, CELL_UNDECIDED, MovingBody, NearbyEdges, classify_cell
+from geometry.motion.cell_clearance import (
+    CELL_BLOCKED,
+    CELL_GIVEN_UP,
+    CELL_UNDECIDED,
+    MovingBody,
+    NearbyEdges,
+    classify_cell,
+)
 
 MAX_HALVINGS = 24  # halvings of place, and of angle, at most; a convention: units of cells fit 32 bits
 ROOT_UNITS = 1 << MAX_HALVINGS  # sides of the root cell in whole-number units of place and of angle
@@ -43,6 +50,8 @@ class CellTree(NamedTuple):
     head : (capacity,) first link of each cell; -1 for none.
     links : (1,) number of links.
     middle : (capacity, 3) the pose in the middle of each cell: x, y, radians.
+    changed : (capacity,) the cells that were split or given up since the last search for a channel.
+    changes : (1,) number of such cells.
     """
 
     box: Ints
@@ -55,6 +64,8 @@ class CellTree(NamedTuple):
     head: Ints
     links: npt.NDArray[np.int64]
     middle: Floats
+    changed: Ints
+    changes: npt.NDArray[np.int64]
 
 
 def new_cell_tree(x: float, y: float, side: float, radius: float, resolution: float, capacity: int) -> CellTree:
@@ -84,6 +95,8 @@ def new_cell_tree(x: float, y: float, side: float, radius: float, resolution: fl
         np.empty(capacity, np.int32),
         np.zeros(1, np.int64),
         np.empty((capacity, 3)),
+        np.empty(capacity, np.int32),
+        np.zeros(1, np.int64),
     )
     tree.middle[0] = x + side / 2, y + side / 2, math.pi
     tree.box[0], tree.child[0], tree.kind[0], tree.head[0] = 0, -1, CELL_UNDECIDED, -1
@@ -110,6 +123,7 @@ def split_cell(tree: CellTree, cell: int, body: MovingBody, nearby: NearbyEdges)
     count = 4 if place < tree.sizes[depth - 1, 0] else 2
     tree.child[cell] = first
     tree.used[0] += count
+    _note_change(tree, cell)
     spread = place * tree.frame[2] / math.sqrt(2.0)
     half = angle * tree.frame[3] / 2
     for n in range(count):
@@ -137,6 +151,20 @@ def split_cell(tree: CellTree, cell: int, body: MovingBody, nearby: NearbyEdges)
         if tree.child[other] < 0:
             for new in range(first, first + count):
                 _link_if_face(tree, new, other)
+
+
+@bare
+def give_up_cell(tree: CellTree, cell: int) -> None:
+    """Mark a leaf as given up: no channel may run through it any more."""
+    tree.kind[cell] = CELL_GIVEN_UP
+    _note_change(tree, cell)
+
+
+@bare
+def _note_change(tree: CellTree, cell: int) -> None:
+    """Add a cell to those that were changed since the last search."""
+    tree.changed[tree.changes[0]] = cell
+    tree.changes[0] += 1
 
 
 @bare

@@ -57,8 +57,7 @@ class ChannelSearch(NamedTuple):
     paths : the tree of these paths.
     state : (capacity,) NODE_NEW, NODE_QUEUED (on the heap), NODE_SETTLED, or NODE_POSTPONED (a settled cell that may
         hold a goal and is on the heap again).
-    seen : (3,) number of cells that have a state; 1 if the last channel ends at a postponed cell, else 0; number of
-        cells of the last channel.
+    seen : (2,) number of cells that have a state; 1 if the last channel ends at a postponed cell, else 0.
     key, item, size : the heap, see bounded_heap.
     channel : the cells of the last channel, the start's first.
     unattached : scratch of the repair.
@@ -87,7 +86,7 @@ def new_channel_search(capacity: int, distances: Floats, disc_centre: Floats) ->
     """
     channel, unattached = (np.empty(capacity, np.int32) for _ in range(2))
     item = np.empty(8 * capacity, np.int32)
-    numbers = np.zeros(3, np.int64), np.empty(8 * capacity), item, np.zeros(2, np.int64)
+    numbers = np.zeros(2, np.int64), np.empty(8 * capacity), item, np.zeros(2, np.int64)
     state = np.empty(capacity, np.int8)
     return ChannelSearch(
         np.empty(capacity),
@@ -143,8 +142,7 @@ def find_channel(
             search.state[cell] = NODE_SETTLED
             search.seen[1] = int(postponed)
             _relax_neighbours(tree, search, body.radius, cell, through_given_up)
-            search.seen[2] = _write_channel(search.paths.parent, search.channel, cell)
-            return int(search.seen[2])
+            return _write_channel(search.paths.parent, search.channel, cell)
         search.state[cell] = NODE_SETTLED
         _relax_neighbours(tree, search, body.radius, cell, through_given_up)
         if goal_kind == CELL_UNDECIDED and (through_given_up or is_splittable(tree, cell, body)):
@@ -168,17 +166,15 @@ def _kind_in_goal(tree: CellTree, body: MovingBody, region: NearbyEdges, cell: i
 
 @bare
 def _repair_search(tree: CellTree, radius: float, nearby: NearbyEdges, search: ChannelSearch) -> None:
-    """Cut off what hung on cells that were split or given up; attach it and the new cells again.
-
-    Only cells of the last channel are split or given up between two searches (geometry.cspace.refine).
-    """
+    """Cut off what hung on cells that were split or given up; attach it and the new cells again."""
     unattached = 0
-    for k in range(search.seen[2] if search.seen[0] > 0 else 0):
-        root = search.channel[k]
-        if search.state[root] != NODE_NEW and (tree.child[root] >= 0 or tree.kind[root] > CELL_UNDECIDED):
+    for k in range(tree.changes[0]):
+        root = tree.changed[k]
+        if root < search.seen[0] and search.state[root] != NODE_NEW:
             first, unattached = unattached, cut_off(search.paths, root, search.unattached, unattached)
             for n in range(first, unattached):
                 search.state[search.unattached[n]] = NODE_NEW
+    tree.changes[0] = 0
     sort_cells(search.unattached, unattached)
     for cell in range(search.seen[0], tree.used[0]):
         add_cell(search.paths, cell)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.cspace.cell_tree import CellTree, is_splittable, split_cell
+from geometry.cspace.cell_tree import CellTree, give_up_cell, is_splittable, split_cell
 from geometry.cspace.local_planner import BLOCKED, HopContext, copy_pose, hop
 from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
@@ -196,5 +196,5 @@ def _split_or_give_up(tree: CellTree, context: HopContext, cell: int) -> int:
     if is_splittable(tree, cell, context.body):
         split_cell(tree, cell, context.body, context.nearby)
     else:
-        tree.kind[cell] = CELL_GIVEN_UP
+        give_up_cell(tree, cell)
     return 1

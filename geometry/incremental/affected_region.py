@@ -65,7 +65,8 @@ def find_affected(square: SquaredDistances, boxes: Ints, bounds: Ints) -> None:
 @bare
 def widen(square: SquaredDistances, boxes: Ints, k: int, row: int, bounds: Ints) -> bool:
     """Include the cells of a row and of the two beside it that a box may change; returns whether there may be any
-    further off."""
+    further off.
+    """
     left, right = boxes[k, 2], boxes[k, 3]
     off = boxes[k, 0] - row if row < boxes[k, 0] else row - boxes[k, 1]
     tall = (2 * off - 1) ** 2 if off > 0 else 0

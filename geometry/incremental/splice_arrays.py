@@ -133,7 +133,8 @@ def merge_chains(
     notes: Ints,
 ) -> int:
     """The chains kept of a stretch and the new ones, in order; returns how many. Those ``ahead`` only learn what their
-    last ends are called now."""
+    last ends are called now.
+    """
     size, k = 0, 0
     for chain in range(ahead.shape[0]):
         if ahead[chain, 1] >= 4 * low:

@@ -48,7 +48,8 @@ SCRATCH: dict[int, Scratch] = {}
 
 def take_buffers(tenant: Tenant, shape: tuple[int, int], kind: type[np.int16] | type[np.int32]) -> Buffers:
     """A set for a tenant, spare again when it dies; ``square`` is of that kind or a larger one. All but the padding of
-    ``words`` is arbitrary."""
+    ``words`` is arbitrary.
+    """
     buffers = SPARE.pop(shape, None)
     if buffers is None or buffers.square.dtype < kind:
         cells = shape[0] * shape[1]

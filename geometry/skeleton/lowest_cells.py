@@ -38,7 +38,8 @@ def lowest_of(notes: Ints, first: int, last: int, heights: SquaredDistances) -> 
 @bare
 def settle(notes: Ints, values: Ints, noted: int, heights: SquaredDistances, chain: int, neck: Ints) -> None:
     """Find the necks of successive chains, from ``chain`` on, of which there are so many notes. ``values`` is
-    scratch. No branches: they are not to be foreseen."""
+    scratch. No branches: they are not to be foreseen.
+    """
     for k in range(noted):
         cell = int(notes[k])
         values[k] = heights[cell if cell >= 0 else ~cell]

@@ -38,7 +38,8 @@ CLIMBED, SADDLE, SUMMIT, HALT = 16, 32, 64, 128  # HALT: a node chosen on a ring
 @bare
 def flag(e: Truth, ne: Truth, n: Truth, nw: Truth, w: Truth, sw: Truth, s: Truth, se: Truth) -> np.uint8:
     """The flag of a cell whose higher neighbours are so. A group ends behind each edge that the corner between does not
-    join to the next edge; where two end, the cell is a saddle."""
+    join to the next edge; where two end, the cell is a saddle.
+    """
     a, b, c, d = e & ~(ne & n), n & ~(nw & w), w & ~(sw & s), s & ~(se & e)
     several = (a | b) & (c | d) | a & b | c & d
     return np.uint8(np.uint8(several) << np.uint8(5) | np.uint8(~(e | n | w | s)) << np.uint8(6))
@@ -55,7 +56,8 @@ KINDS = kinds()
 
 def edge_groups() -> NDArray[np.uint16]:
     """The groups of a set of higher neighbours: for each, from the lowest four bits on, the edges by which it touches
-    the cell (bits as the links of ``state``)."""
+    the cell (bits as the links of ``state``).
+    """
     table = np.zeros(256, dtype=np.uint16)
     for higher in range(255):
         ring = [bool(higher >> k & 1) for k in range(8)]
@@ -152,7 +154,8 @@ def higher_about(cell: int, heights: Heights, width: int) -> int:
 @bare
 def highest_of(cell: int, edges: int, heights: Heights, width: int) -> int:
     """The direction of the highest among some edge neighbours of a cell (a set of links). No branches: they are not
-    to be foreseen."""
+    to be foreseen.
+    """
     south = np.int64(heights[cell - width]) << 2
     west = np.int64(heights[cell - 1]) << 2 | 1
     east = np.int64(heights[cell + 1]) << 2 | 2
@@ -176,7 +179,8 @@ def highest(cell: int, heights: Heights, width: int) -> int:
 @bare
 def climb(cell: int, direction: int, heights: Heights, states: Flags, width: int, first: int) -> int:
     """Link a cell to a higher neighbour and go on up from there, until a way already trodden; returns -1, or the cell
-    from which the way leads on to one before ``first``."""
+    from which the way leads on to one before ``first``.
+    """
     while True:
         other = cell + stride(direction, width)
         if other < first:

@@ -92,9 +92,9 @@ def test_a_repaired_search_finds_a_channel_when_there_is_one(seed: int) -> None:
     rng = np.random.default_rng(seed)
     tree = new_cell_tree(0.0, 0.0, 10.0, BODY.radius, 0.05, 5000)
     search = new_channel_search(5000, FIELD.disc_distances(FIELD.pixel_mask(8.0, 2.0), 0.5), np.zeros(2))
-    for number in range(1, 60):
+    for _ in range(59):
         first, last = leaf_at(tree, 2.0, 2.0, 1.5), leaf_at(tree, 8.0, 2.0, 1.5)
-        length = find_channel(tree, BODY, NEARBY, NEARBY, search, first, last, number, False)
+        length = find_channel(tree, BODY, NEARBY, NEARBY, search, first, last, False)
         current = leaves(tree)
         graph = nx.Graph([(a, b) for a in current for b in linked(tree, a)])
         graph.add_nodes_from(current)
