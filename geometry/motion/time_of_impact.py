@@ -45,7 +45,7 @@ NO_IMPACT = 1e9  # a time or angle later than the end of any motion
 EDGE_END_TOLERANCE = 1e-9  # squares: an edge reaches this far beyond its ends, so that nothing slips between two edges
 ENTRY_DEPTH_TOLERANCE = 1e-11  # squares: a point at most this deep behind an edge meets it at once; bounds rounding
 BROAD_PHASE_MARGIN = 1e-6  # squares: by how much the boxes of the broad phase are enlarged; bounds skin and rounding
-MIN_APPROACH = 1e-12  # a component of motion towards an edge below this is taken for rounding
+MIN_APPROACH = 1e-12  # squares: a component of motion towards an edge below this is taken for rounding
 COSINE_TOLERANCE = 1e-9  # squares squared: by how much the cosine test must be surpassed; bounds rounding
 FULL_TURN = 2 * math.pi  # radians
 
