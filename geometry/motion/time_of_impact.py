@@ -78,9 +78,9 @@ def turn_impact_angle(
 ) -> float:
     """Return after how many radians the point (x, y), turning about (cx, cy), enters through edge j, or NO_IMPACT.
 
-    `sign` is 1.0 for a counter-clockwise turn, -1.0 for a clockwise one. NO_IMPACT also stands for an entry that is not
-    before the angle `until`, whose cosine is `cosine`. The circle cuts the edge's line twice and enters at one of the
-    two: no angle is needed to know where, and only its cosine to know whether it is soon enough.
+    `sign` is 1.0 for a counter-clockwise turn, -1.0 for a clockwise one. NO_IMPACT is also returned for an entry
+    clearly after the angle `until`, whose cosine is `cosine`. The circle cuts the edge's line twice and enters at one
+    of the two: no angle is needed to know where, and only its cosine to know whether it is soon enough.
     """
     nx, ny = edges[j, 4], edges[j, 5]
     hx, hy = cx - edges[j, 0], cy - edges[j, 1]
