@@ -2,7 +2,7 @@
 
 # Strategy: a site t squares off adds (2t - 1)^2 to a cell's squared distance, so only sites with (2t - 1)^2 below the
 value found so far matter. Clearance grows by at most one square from row to row: in each stretch of columns the
-greatest value of the row before says how far to look. Near walls that is few steps of 16-bit arithmetic on many cells
+maximum of the row before says how far to look. Near walls that is few steps of 16-bit arithmetic on many cells
 at once, many times as fast as an envelope. Far from them the envelope of distance_transform takes over.
 """
 
