@@ -1,4 +1,4 @@
-"""Spatial reasoning: rasters, skeletons, pathgraphs, routes, rigid motion and manipulation. Imports nothing else of Utak.
+"""Spatial reasoning: rasters, skeletons, routes, rigid motion and manipulation. Imports nothing else of Utak.
 
 Points are (x, y) in squares, table frame; the centre of square (i, j) is (i + 0.5, j + 0.5). Rasters are indexed
 [row, column], row 0 in the south. Angles are in degrees, counter-clockwise positive.

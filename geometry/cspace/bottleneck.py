@@ -20,9 +20,9 @@ from geometry.kernels.arrays import Bools, Floats
 from geometry.kernels.jit import compiled
 from geometry.motion.obstacle_field import ObstacleField, cheapest_path_costs
 
-StatusQuery = Callable[[Any, bool], str]
+StatusQuery = Callable[[Any, bool], str]  # the status of planning among obstacles; whether to search with all cells
 WIDTH_PRECISION = 0.02  # squares: the bisection for the missing width ends at this; a convention
-LONG_SEARCH_PRECISION = 0.25  # squares: above this width of the bisection, undecided questions are asked with all cells
+LONG_SEARCH_PRECISION = 0.25  # squares: while the bisection's interval is wider, undecided questions get all cells
 MIN_WALL_COPIES = 9  # translated copies of the free space that stand for moving a wall, at least; a convention
 MAX_WALL_COPIES = 129  # at most; in a slit the copies lie as close as it is wide, lest bars are left between them
 NARROWER_PIXEL_COST = 1000.0  # cost of entering a pixel narrower than the widest path is, against at most 1 for others
@@ -257,15 +257,8 @@ def widening_suffices(obstacles: Any, bottleneck: Bottleneck, radius: float, sta
     radius : of the body, squares.
     status_with : as for missing_width.
     """
-    return (
-        _decided_status(
-            widen_bottleneck(
-                obstacles, bottleneck, _max_widening(bottleneck, radius), _window_radius(bottleneck, radius)
-            ),
-            status_with,
-        )
-        == "found"
-    )
+    extra, reach = _max_widening(bottleneck, radius), _window_radius(bottleneck, radius)
+    return _decided_status(widen_bottleneck(obstacles, bottleneck, extra, reach), status_with) == "found"
 
 
 def missing_width(obstacles: Any, bottleneck: Bottleneck, radius: float, status_with: StatusQuery) -> float:
@@ -286,9 +279,8 @@ def missing_width(obstacles: Any, bottleneck: Bottleneck, radius: float, status_
     while high - low > WIDTH_PRECISION:
         middle = (low + high) / 2
         walls = widen_bottleneck(obstacles, bottleneck, middle, reach)
-        status = (
-            status_with(walls, False) if high - low <= LONG_SEARCH_PRECISION else _decided_status(walls, status_with)
-        )
+        few_cells = high - low <= LONG_SEARCH_PRECISION
+        status = status_with(walls, False) if few_cells else _decided_status(walls, status_with)
         if status == "limit":
             return middle
         if status == "found":

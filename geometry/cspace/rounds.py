@@ -20,12 +20,12 @@ def run_rounds(
     round_number: int,
     last_round: int,
 ) -> tuple[int, int]:
-    """Run the rounds from `round_number`, counted from 1, to `last_round`; return the outcome and the round it came in.
+    """Run the rounds from `round_number`, counted from 1, to `last_round` at most.
 
     Returns
     -------
-    SEARCH_FOUND : the path in `hops` is free. SEARCH_EXHAUSTED : no channel is left. SEARCH_UNFINISHED : neither, so
-        far.
+    The outcome, and the number of the round that it came in. SEARCH_FOUND : the path in `hops` is free.
+    SEARCH_EXHAUSTED : no channel is left. SEARCH_UNFINISHED : neither, so far.
     """
     while True:
         length = next_channel(tree, context, region, search, hops, False)

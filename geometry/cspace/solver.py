@@ -172,7 +172,7 @@ class MotionSolver:
         return "limit", ()
 
     def _path_by_disc(self, obstacles: Any, bounds: Floats) -> Floats | None:
-        """Return poses (n, 3) from start to goal by way of where the enclosing disc fits; None if a hop is not free."""
+        """Return poses (n, 3) from start to goal where the enclosing disc fits between them; None if none are found."""
         if bounds[2] <= bounds[0] or bounds[3] <= bounds[1]:
             return None
         start, end = ((float(pose[0]), float(pose[1])) for pose in (self.start, self.end))

@@ -40,6 +40,7 @@ class Kernel(Generic[Arguments, Returned]):
         self._numba: Callable[Arguments, Returned] | None = None
 
     def __call__(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Returned:
+        """Call the kernel; compile it first if this is its first call."""
         if self._compiled is None:
             dispatcher = self.dispatcher()
             _compile(dispatcher, args)

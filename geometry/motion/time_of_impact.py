@@ -45,7 +45,7 @@ NO_IMPACT = 1e9  # a time or angle later than the end of any motion
 EDGE_END_TOLERANCE = 1e-9  # squares: an edge reaches this far beyond its ends, so that nothing slips between two edges
 ENTRY_DEPTH_TOLERANCE = 1e-11  # squares: a point at most this deep behind an edge meets it at once; bounds rounding
 BROAD_PHASE_MARGIN = 1e-6  # squares: by how much the boxes of the broad phase are enlarged; bounds skin and rounding
-MIN_APPROACH = 1e-12  # a component of motion towards an edge below this is taken for rounding
+MIN_APPROACH = 1e-12  # squares: a component of motion towards an edge below this is taken for rounding
 COSINE_TOLERANCE = 1e-9  # squares squared: by how much the cosine test must be surpassed; bounds rounding
 FULL_TURN = 2 * math.pi  # radians
 
@@ -78,9 +78,9 @@ def turn_impact_angle(
 ) -> float:
     """Return after how many radians the point (x, y), turning about (cx, cy), enters through edge j, or NO_IMPACT.
 
-    `sign` is 1.0 for a counter-clockwise turn, -1.0 for a clockwise one. NO_IMPACT also stands for an entry that is not
-    before the angle `until`, whose cosine is `cosine`. The circle cuts the edge's line twice and enters at one of the
-    two: no angle is needed to know where, and only its cosine to know whether it is soon enough.
+    `sign` is 1.0 for a counter-clockwise turn, -1.0 for a clockwise one. NO_IMPACT is also returned for an entry
+    clearly after the angle `until`, whose cosine is `cosine`. The circle cuts the edge's line twice and enters at one
+    of the two: no angle is needed to know where, and only its cosine to know whether it is soon enough.
     """
     nx, ny = edges[j, 4], edges[j, 5]
     hx, hy = cx - edges[j, 0], cy - edges[j, 1]

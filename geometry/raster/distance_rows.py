@@ -2,7 +2,7 @@
 
 # Strategy: a site t squares off adds (2t - 1)^2 to a cell's squared distance, so only sites with (2t - 1)^2 below the
 value found so far matter. Clearance grows by at most one square from row to row: in each stretch of columns the
-greatest value of the row before says how far to look. Near walls that is few steps of 16-bit arithmetic on many cells
+maximum of the row before says how far to look. Near walls that is few steps of 16-bit arithmetic on many cells
 at once, many times as fast as an envelope. Far from them the envelope of distance_transform takes over.
 """
 
@@ -126,7 +126,7 @@ def minimise_over_four(west: Gaps, east: Gaps, t: int, value: Gaps) -> None:
 
 @bare
 def copy_row(value: Gaps, out: SquaredDistances) -> int:
-    """Copy the values to `out` and return the greatest."""
+    """Copy the values to `out` and return the largest."""
     largest = np.int16(0)
     for j in range(value.shape[0]):
         out[j] = value[j]
@@ -136,7 +136,7 @@ def copy_row(value: Gaps, out: SquaredDistances) -> int:
 
 @bare
 def greatest(out: SquaredDistances) -> int:
-    """Return the greatest of some squared distances."""
+    """Return the largest of some squared distances."""
     largest = 0 * out[0]
     for j in range(out.shape[0]):
         largest = out[j] if out[j] > largest else largest

@@ -2,7 +2,7 @@
 
 # Strategy: no square is ever intersected with the shape. Each boundary edge is cut where it crosses a grid line, so
 # that every piece lies in one square. A piece that climbs by dy covers, in its own square, the area to its right, and
-# in every square further right the whole height dy. Summing the signed areas along each row gives the exact area of
+# in every square further right the whole height dy. Summing the signed parts along each row gives the exact area of
 # the shape in every square (the accumulation buffer of font renderers: Levien, font-rs, 2016). Edges that run along a
 # grid line add nothing beyond it, as the definition demands.
 """

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from geometry.kernels.arrays import Square
 from geometry.kernels.jit import compiled
 
-MOST = 2  # largest magnitude of a crossing number: sheets go from -MOST to MOST; a convention
+MOST = 2  # largest magnitude of a crossing number: one sheet for each number; a convention
 WINDING_STEP, WINDING_DIAGONAL = 5, 7  # fifths of squares: lengths of steps; 7 / 5 is within 1.1 % of sqrt(2)
 
 

@@ -33,7 +33,8 @@ def haul(
 ) -> Longs:
     """Return the nodes of the cheapest path from the first grasp to the goal, in order; empty if there is none.
 
-    A node is ((hold * 4 + quarter turn) * 9 + direction) * squares + place, with direction STILL while the body lies.
+    A node is ((hold * 4 + quarter turn) * 9 + direction) * squares + place.
+    The direction is STILL while the body lies.
 
     Parameters
     ----------
@@ -43,8 +44,8 @@ def haul(
     grasp_costs : (holds,) cost of having walked to each hold and grasped the body; -1 where the robot cannot.
     place : where the body lies, unturned.
     redirect_cost : cost of going on in another direction in the same push.
-    weight : weight of the heuristic in quarters. CALM finds the cheapest path; a larger weight finds one sooner that
-        may cost more by the same factor.
+    weight : weight of the heuristic in quarters. CALM finds the cheapest path.
+        A larger weight finds a path sooner that may cost more by the same factor.
     max_settled : number of nodes that are settled at most.
     cost, parent : scratch, a number for each node; all costs 0.
 

@@ -26,12 +26,13 @@ def guess(lattice: StateLattice, end_costs: Costs, redirect_cost: int) -> Costs:
     ----------
     lattice : the state lattice.
     end_costs : (4, squares) cost of ending at a pose, -1 where the goal is not met; below bucket_queue.BUCKETS.
-    redirect_cost : cost of going on in another direction in the same push; COMMAND stands for starting another push.
+    redirect_cost : cost of going on in another direction in the same push.
+        COMMAND stands for starting another push.
 
     Returns
     -------
-    (4, 9, squares) int32, direction STILL for a body that lies. NEVER where the goal cannot be reached; -1 where a body
-    that lies would overlap something.
+    (4, 9, squares) int32, with direction STILL for a body that lies.
+    NEVER where the goal cannot be reached; -1 where a body that lies would overlap something.
     """
     squares = end_costs.shape[1]
     remaining = np.full((4, 9, squares), NEVER, np.int32)
