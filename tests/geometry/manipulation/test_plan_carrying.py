@@ -285,8 +285,8 @@ def test_what_lies_askew_is_laid_straight_where_it_would_reach_too_far_from_a_co
 
 
 def test_what_no_plan_by_squares_lays_straight_is_laid_so_by_one_hold(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("geometry.manipulation.plan_carrying.carry_straightened", lambda _: None)
-    monkeypatch.setattr("geometry.manipulation.plan_carrying.carry_freed", lambda _: None)
+    monkeypatch.setattr("geometry.manipulation.plan_carrying.plan_aligned", lambda _: None)
+    monkeypatch.setattr("geometry.manipulation.plan_carrying.plan_by_freeing", lambda _: None)
     free, square = two_rooms(3), affinity.rotate(box(8, 4, 12, 8), 33)
     goal = InCorner(24, 22, 1, 1, within=(4.5, 4.5))
     plan = plan_carrying(square, free, (3.5, 3.5), goal)
