@@ -1,9 +1,9 @@
 """Gibbs sampling of rasters that agree with counts: samples of a map of which only counts under fields are known.
 
-A raster costs EDGE for each edge between an occupied and a free square, CORNER for each corner of their
-outline, and COUNT_ERROR_COST for each square by which a field's count is wrong. Rasters are sampled with a probability
-that falls with their cost: each is changed a little, many times over, and a change is kept with the probability that
-its cost allows.
+A raster costs EDGE for each edge between an occupied and a free square, CORNER for each corner of their outline, and
+COUNT_ERROR_COST for each square by which a field's count is wrong. Rasters are sampled with a probability that falls
+with their cost: each is changed a little, many times over, and a change is kept with the probability that its cost
+allows.
 
 Source: Geman and Geman (1984), simulated annealing and the Gibbs sampler on an Ising prior. Besides the flip of a
 single square there are two more moves. Two squares of one field are exchanged, which leaves its count as it is. A
@@ -36,7 +36,7 @@ MAX_MOVED_LENGTH = 60  # squares, of an edge that is moved at once
 EDGE_MOVE_INTERVAL = 4  # a move of the edge is tried at one in so many squares at an outline
 
 # Neighbours as steps (rows, columns); the numbers of opposite ones add to 7.
-NEIGHBOURS = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
+NEIGHBOUR_STEPS = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
 ACROSS = (1, 6, 3, 4)  # by side of a square: the neighbour beyond the edge there
 ALONG_EDGE = (4, 4, 6, 6)  # by side of a square: the next neighbour on the same edge
 
@@ -101,8 +101,7 @@ def pictures(
 
     Parameters
     ----------
-    ground : (rows, columns) int8: FREE, FULL, DRAWN (to be sampled) or UNSEEN (no part of the raster, drawn
-        as 0).
+    ground : (rows, columns) int8: FREE, FULL, DRAWN (to be sampled) or UNSEEN (no part of the raster, drawn as 0).
     counts : counts under fields, of squares of the ground.
     first : (m, rows, columns) int8, the rasters with which the m samples begin.
     sweeps : the number of sweeps over all squares, from the inverse temperature `hot` to FINAL_INVERSE_TEMPERATURE.
@@ -130,9 +129,8 @@ def costs(
     ----------
     images : (m, rows, columns) int8, as sampled.
     ground, counts : those with which they were sampled.
-    edge_cost : the cost of an edge. It is 0 where rasters of grounds of different sizes are compared, because a
-        wall that
-        goes on straight is what is to be expected.
+    edge_cost : the cost of an edge. It is 0 where rasters of grounds of different sizes are compared, because a wall
+        that goes on straight is what is to be expected.
     """
     seen = ground != UNSEEN
     all_seen = seen[:-1, :-1] & seen[1:, :-1] & seen[:-1, 1:] & seen[1:, 1:]
@@ -170,7 +168,7 @@ def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
         squares,
         rank,
         shown_corners,
-        np.array([rows * columns + across for rows, across in NEIGHBOURS]),
+        np.array([rows * columns + across for rows, across in NEIGHBOUR_STEPS]),
         ends.astype(np.int32),
         field.astype(np.int32),
         counts.weight[field, entry].astype(np.int32),
@@ -191,7 +189,7 @@ def _flip_costs() -> NDArray[np.float32]:
     for point in range(4):
         across, rows = 1 - 2 * (point % 2), 1 - 2 * (point // 2)
         horizontal, vertical, diagonal = (
-            around >> NEIGHBOURS.index(at) & 1 for at in ((0, across), (rows, 0), (rows, across))
+            around >> NEIGHBOUR_STEPS.index(at) & 1 for at in ((0, across), (rows, 0), (rows, across))
         )
         change += (shown_corners >> point & 1) * (
             _corner_cost(1 - was, horizontal, vertical, diagonal) - _corner_cost(was, horizontal, vertical, diagonal)

@@ -17,7 +17,7 @@ LANDMARK_COUNT = 6  # landmarks of a pathgraph, at most; tuned on the benchmark 
 
 
 class Landmarks(NamedTuple):
-    """What routing knows of a pathgraph with n nodes and m chains, besides the chains and the strips.
+    """Precomputed routing data of a pathgraph with n nodes and m chains.
 
     An arc is a chain with a direction: its code is twice the chain's number, plus 1 when walked backwards (see
     astar.py).

@@ -25,9 +25,8 @@ class LegExtraction:
     Parameters
     ----------
     query : the query that was searched.
-    before_nudge : the query before the robot, holding the shape, was assumed to have pushed it so that the robot
-        stands at
-        the centre of a square; else the same query.
+    before_nudge : the query before the robot, holding the shape, was assumed to have pushed it so that the robot stands
+        at the centre of a square; else the same query.
     body, grid : footprints of the shape, and the grid of the state lattice.
     ends : (4, cells), the cost of ending at each pose.
     """

@@ -41,9 +41,8 @@ class InCorner:
     x, y : the corner, where the walls meet, in squares.
     sx, sy : 1 for an eastern or northern corner, else -1.
     slack : the greatest gap to each wall, in squares.
-    within : how far from the two walls the box may reach at most, in squares, the lesser and the greater; a shape
-        that is
-        not aligned with the walls reaches further.
+    within : how far from the two walls the box may reach at most, in squares, the lesser and the greater; a shape that
+        is not aligned with the walls reaches further.
     press : squares beyond `slack` from the walls at which a body may end on the lattice, to be pressed on from there.
     """
 

@@ -31,14 +31,12 @@ class Leg:
     Attributes
     ----------
     place : (x, y) in squares, table frame, where the robot stands to grasp the body: the centre of a square, or the
-        robot's
-        own place when it holds the body already.
-    direction_square : (columns, rows) from the robot's own square to the square of the body that it grasps, each
-        -1, 0, 1.
+        robot's own place when it holds the body already.
+    direction_square : (columns, rows) from the robot's own square to the square of the body that it grasps, each -1, 0,
+        1.
     motions : Translate (push) and Rotate (turn about the robot's place at that time), each free by exact first contact.
-    hold : (x, y) in squares, the offset of the grasp: the robot's place relative to the body's centroid, in the
-        frame of
-        the body as it lay when the plan was asked for. To be given as `avoid` when the grasp fails.
+    hold : (x, y) in squares, the offset of the grasp: the robot's place relative to the body's centroid, in the frame
+        of the body as it lay when the plan was asked for. To be given as `avoid` when the grasp fails.
     walk : squares to walk to get to the place, along rows and columns (an estimate).
     taken : whether the robot holds the body already: it neither walks nor grasps. Only of the first leg of a plan.
     """

@@ -49,12 +49,10 @@ class CarryingPlan:
         proved either.
     legs : what the robot does, in order; () unless found, or when the goal is met already.
     pose : the end of the body: turned about its centroid by degrees, then moved by (x, y) squares, as in At; None
-        unless
-        found.
+        unless found.
     polygon : the body as it ends; None unless found.
     reason : when not found, what was in the way: "body" (the body by itself cannot pass), "hold" (it could, but the
-        robot
-        with it was not found to), "start" (it overlaps a wall where it lies), "goal" (no such end); else "".
+        robot with it was not found to), "start" (it overlaps a wall where it lies), "goal" (no such end); else "".
     body : the motion plan of the body by itself, when that was planned; else None.
     held : whether the robot held the body when the plan was asked for. Unless the first leg goes on with that grasp
         (`Leg.taken`) it releases first.
@@ -130,28 +128,23 @@ def plan_carrying(
     ----------
     shape : shapely Polygon where it lies, in squares, table frame.
     free : (rows, columns) bool, row 0 in the south: squares that nothing but the body may cover. All else, and all
-        outside
-        the array, is wall for the body and for the robot.
+        outside the array, is wall for the body and for the robot.
     utak : (x, y) of the robot, in squares.
     goal : At(pose), Inside(polygons), InCorner(x, y, sx, sy) or Between(x, y, walls).
     margin : squares of clearance that pushes and turns of the body should keep from walls; kept where that needs no
-        long
-        detour.
+        long detour.
     pull : False: every push must have a component from the robot towards the body's centroid.
     avoid : offsets of grasps that must not be used, as in `Leg.hold`.
-    walk : (rows, columns) bool, where the robot may walk with empty hands, from square to square by their edges;
-        None for
-        `free`. The squares under the body are closed wherever it then lies; where it lay they open when it has gone.
-    walls : shapely geometry, the walls where they are known better than by squares; `free` are then the squares
-        that they
-        leave whole. None for all that is not free.
+    walk : (rows, columns) bool, where the robot may walk with empty hands, from square to square by their edges; None
+        for `free`. The squares under the body are closed wherever it then lies; where it lay they open when it has
+        gone.
+    walls : shapely geometry, the walls where they are known better than by squares; `free` are then the squares that
+        they leave whole. None for all that is not free.
     held : whether the robot, where it stands, holds the body. The plan then goes on with that grasp where that costs no
         more than to release, walk and grasp; `taken` of its first leg says so, which begins at the robot's place. A
-        grasp
-        in `avoid` is released.
-    turn : how many commands a turn counts for, 1 to MAX_TURN_COST: more where turns should be avoided. Only plans
-        by whole
-        squares depend on it.
+        grasp in `avoid` is released.
+    turn : how many commands a turn counts for, 1 to MAX_TURN_COST: more where turns should be avoided. Only plans by
+        whole squares depend on it.
 
     Returns
     -------

@@ -23,8 +23,7 @@ class Workspace:
     ----------
     free : (rows, columns) bool.
     walls : shapely geometry, the walls among and around the squares; None for all that is not free. Where walls are
-        known
-        better than by squares, `free` are those squares that they leave whole.
+        known better than by squares, `free` are those squares that they leave whole.
 
     Attributes
     ----------

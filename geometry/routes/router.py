@@ -114,7 +114,7 @@ STRAIGHT_ENOUGH = 1.02  # times the straight line: a route no longer than this e
 
 
 class RoutingData(NamedTuple):
-    """What the kernels read of a layer, flat where it is read by cell.
+    """Arrays of a layer as the kernels read them, flat where they are read by cell.
 
     Attributes
     ----------

@@ -14,7 +14,7 @@ from geometry.counts.gibbs import (
     FINAL_INVERSE_TEMPERATURE,
     FREE,
     FULL,
-    NEIGHBOURS,
+    NEIGHBOUR_STEPS,
     UNSEEN,
     Counts,
     _flip_costs,
@@ -112,7 +112,7 @@ def test_the_price_of_a_change_is_the_difference_of_two_pictures(image: np.ndarr
     for point in range(4):
         row, column = 2 - point // 2, 2 - point % 2
         shown |= int((ground[row : row + 2, column : column + 2] != UNSEEN).all()) << point
-    near = sum(int(image[2 + rows, 2 + across]) << n for n, (rows, across) in enumerate(NEIGHBOURS))
+    near = sum(int(image[2 + rows, 2 + across]) << n for n, (rows, across) in enumerate(NEIGHBOUR_STEPS))
     price = _flip_costs()[(shown << 9) + (near << 1) + int(image[2, 2])]
     assert price == pytest.approx(cost(changed, ground) - cost(image, ground), abs=1e-5)
 
