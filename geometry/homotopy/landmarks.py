@@ -209,7 +209,8 @@ def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start:
     Parameters
     ----------
     cell : index of a padded cell of the skeleton.
-    states : the skeleton's states, flat. width : columns of the padded grid.
+    states : the skeleton's states, flat.
+    width : columns of the padded grid.
     node, leave, start, cells : those of the chains.
     """
     if is_node(0 + states[cell]):

@@ -122,8 +122,10 @@ def number_parts(free: Bools, closed: Bools, label: Labels, stack: Ints) -> int:
 
     Parameters
     ----------
-    free : (rows + 2, columns + 2) bool. closed : (2, rows + 2, columns + 2) bool, the steps that are cut.
-    label : (rows + 2, columns + 2) int, 0 at first. stack : (cells,) scratch.
+    free : (rows + 2, columns + 2) bool.
+    closed : (2, rows + 2, columns + 2) bool, the steps that are cut.
+    label : (rows + 2, columns + 2) int, 0 at first.
+    stack : (cells,) scratch.
     """
     width = free.shape[1]
     open_cells, labels = free.reshape(-1), label.reshape(-1)

@@ -158,10 +158,10 @@ def test_a_present_grasp_that_must_be_avoided_is_released() -> None:
     assert plan.legs == unheld.legs and plan.commands == unheld.commands + 1  # the release
 
 
-def test_a_present_grasp_from_which_no_plan_leads_is_released() -> None:
-    """The robot is in front of a brick in a blind alley as wide as the brick.
+def test_a_brick_leaves_a_blind_alley_only_when_held_from_behind() -> None:
+    """The alley is as wide as the brick.
 
-    It would have to walk round, and cannot; or it releases the brick behind it.
+    In front of it the robot would have to walk round, and cannot. From behind it pushes the brick out.
     """
     free = np.zeros((8, 30), bool)
     free[2:6, 1:29] = True
