@@ -158,16 +158,10 @@ def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
     ends = np.searchsorted(where[field, entry], np.append(squares, len(flat)))
     rank = np.where(flat == UNSEEN, np.int32(RANK_UNSEEN), np.int32(RANK_FIXED))
     rank[squares] = np.arange(len(squares))
-    seen = flat != UNSEEN
-    shown_corners = np.zeros(len(squares), np.int32)
-    for point in range(4):
-        corner = squares - point % 2 - point // 2 * columns  # the lower left of the four squares about it
-        all_seen = seen[corner] & seen[corner + 1] & seen[corner + columns] & seen[corner + columns + 1]
-        shown_corners |= all_seen.astype(np.int32) << point
     return _Raster(
         squares,
         rank,
-        shown_corners,
+        _shown_corners(flat != UNSEEN, squares, columns),
         np.array([rows * columns + across for rows, across in NEIGHBOUR_STEPS]),
         ends.astype(np.int32),
         field.astype(np.int32),
@@ -176,6 +170,16 @@ def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
         used,
         np.stack([counts.low, counts.high], axis=1).astype(np.int32),
     )
+
+
+def _shown_corners(seen: NDArray[np.bool_], squares: NDArray[np.int64], columns: int) -> NDArray[np.int32]:
+    """Return as bits, (n,), the corners of each square about which all four squares were seen."""
+    shown = np.zeros(len(squares), np.int32)
+    for point in range(4):
+        corner = squares - point % 2 - point // 2 * columns  # the lower left of the four squares about it
+        all_seen = seen[corner] & seen[corner + 1] & seen[corner + columns] & seen[corner + columns + 1]
+        shown |= all_seen.astype(np.int32) << point
+    return shown
 
 
 @cache

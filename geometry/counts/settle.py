@@ -30,6 +30,10 @@ def residue(
 ) -> tuple[NDArray[np.bool_], Longs, Longs, Longs]:
     """Return what remains of every field once settled squares are taken out.
 
+    Parameters
+    ----------
+    state, where, weight, low, high : states of squares, and fields (see the module's description).
+
     Returns
     -------
     open : (n, m) bool, the entries on squares that are not settled.
@@ -60,6 +64,7 @@ def misfits(state: States, where: Ints, weight: Numbers, low: Numbers, high: Num
 
     Parameters
     ----------
+    state, where, weight, low, high : states of squares, and fields (see the module's description).
     wrong : (n,) bool, filled.
     """
     found = 0
@@ -87,7 +92,15 @@ def settle(
     fresh: NDArray[np.bool_],
     impression: int,
 ) -> None:
-    """Settle in place all squares that the counts settle, as impression number `impression`."""
+    """Settle in place all squares that the counts settle.
+
+    Parameters
+    ----------
+    state, settled_by : states of squares, and what settled them; changed.
+    where, weight, low, high : the fields (see the module's description).
+    fresh : (n,) bool, the fields not compared yet; all False afterwards.
+    impression : the number of the present impression, written to `settled_by`.
+    """
     verdicts, newly_settled = np.zeros(where.size, np.int8), np.zeros(len(state), np.bool_)
     for _ in range(MAX_ROUNDS):
         changed = False

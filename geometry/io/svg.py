@@ -57,7 +57,24 @@ def draw(
     bar = columns * scale * 0.25
     height = max(rows * scale + LEGEND_ROW_HEIGHT + SCALE_BAR_GAP, len(listed) * LEGEND_ROW_HEIGHT) + 2 * PICTURE_MARGIN
     width = max(columns * scale, bar + 90) + LEGEND_WIDTH + 3 * PICTURE_MARGIN
-    parts = [
+    parts = _squares(screen, width, height, scale)
+    if pathgraph:
+        parts += draw_pathgraph(screen, 1.0 / scale)
+    parts += [_passage_line(passage, scale) for passage in passages]
+    parts += [_line(number, route, width_of(number, len(routes), scale)) for number, route in _below_first(routes)]
+    parts.append("</g>")
+    if ends is not None:
+        parts += _marks([_pixel(end, rows, scale) for end in ends])
+    parts += _scale_bar(bar / scale, scale, PICTURE_MARGIN, PICTURE_MARGIN + rows * scale + LEGEND_ROW_HEIGHT)
+    left = width - LEGEND_WIDTH - PICTURE_MARGIN
+    parts += [row(left, PICTURE_MARGIN + LEGEND_ROW_HEIGHT * (number + 0.7)) for number, row in enumerate(listed)]
+    return "\n".join([*parts, "</svg>", ""])
+
+
+def _squares(screen: Screen, width: float, height: float, scale: float) -> list[str]:
+    """Return the beginning of the document: the page, and the free squares, blocked squares and skeleton on it."""
+    rows, columns = screen.shape
+    return [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" width="{width:g}" '
         f'height="{height:g}"><style>{TEXT_STYLE}</style>',
         f'<rect width="{width:g}" height="{height:g}" fill="#ffffff"/>',
@@ -67,20 +84,13 @@ def draw(
         f'<path class="blocked" d="{rectangles_of(~screen.free)}" fill="#5c5c5c"/>',
         f'<path class="skeleton" d="{rectangles_of(screen.skeleton)}" fill="#d9d9d9"/>',
     ]
-    if pathgraph:
-        parts += draw_pathgraph(screen, 1.0 / scale)
-    for passage in passages:
-        (ax, ay), (bx, by) = passage.a, passage.b
-        style = f'stroke="#8e44ad" stroke-width="{3 / scale:g}"'
-        parts.append(f'<path class="passage" d="M{ax:g} {ay:g}L{bx:g} {by:g}" {style}/>')
-    parts += [_line(number, route, width_of(number, len(routes), scale)) for number, route in _below_first(routes)]
-    parts.append("</g>")
-    if ends is not None:
-        parts += _marks([_pixel(end, rows, scale) for end in ends])
-    parts += _scale_bar(bar / scale, scale, PICTURE_MARGIN, PICTURE_MARGIN + rows * scale + LEGEND_ROW_HEIGHT)
-    left = width - LEGEND_WIDTH - PICTURE_MARGIN
-    parts += [row(left, PICTURE_MARGIN + LEGEND_ROW_HEIGHT * (number + 0.7)) for number, row in enumerate(listed)]
-    return "\n".join([*parts, "</svg>", ""])
+
+
+def _passage_line(passage: Passage, scale: float) -> str:
+    """Return the SVG of a passage: a line from its left to its right end."""
+    (ax, ay), (bx, by) = passage.a, passage.b
+    style = f'stroke="#8e44ad" stroke-width="{3 / scale:g}"'
+    return f'<path class="passage" d="M{ax:g} {ay:g}L{bx:g} {by:g}" {style}/>'
 
 
 def width_of(number: int, count: int, scale: float) -> float:

@@ -92,17 +92,20 @@ class CarryingPlan:
 
     @cached_property
     def passage(self) -> Bottleneck | None:
-        """The neck that is too narrow for the body; None unless impossible because of one. Computed on first access."""
+        """Return the neck that is too narrow for the body; None unless the plan is impossible because of one.
+
+        Computed on first access.
+        """
         return None if self.body is None else self.body.passage
 
     @cached_property
     def opens(self) -> bool:
-        """Whether widening the passage would be enough. Computed on first access."""
+        """Return whether widening the passage would be enough. Computed on first access."""
         return self.body is not None and self.body.opens
 
     @cached_property
     def missing(self) -> float:
-        """The width that the passage lacks, in squares (see MotionPlan.missing); nan unless there is one.
+        """Return the width that the passage lacks, in squares (see MotionPlan.missing); nan unless there is a passage.
 
         Computed on first access.
         """

@@ -47,7 +47,7 @@ class Workspace:
 
     @cached_property
     def floor(self) -> ObstacleField:
-        """The walls prepared for plan_motion."""
+        """Return the walls prepared for plan_motion. Computed on first access."""
         rows, columns = self.free.shape
         return ObstacleField(self.walls, (0.0, 0.0, float(columns), float(rows)))
 

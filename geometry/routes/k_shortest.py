@@ -55,7 +55,9 @@ def k_shortest_paths(
     Parameters
     ----------
     ends : (m, 2) the end nodes of the chains.
-    landmarks, query, search, store : the pathgraph, the query, and scratch.
+    landmarks : arcs of the pathgraph and distances from landmarks.
+    query : the start's and the goal's arcs, and what is closed.
+    search, store : scratch, and the paths found.
     """
     start = landmarks.head.shape[0]
     search.stamp[1] = 0

@@ -100,7 +100,7 @@ def cells_of_word(layer: Layer, ends: Ends, word: Ints) -> list[int]:
 def lift_word(
     heights: Heights, states: Flags, width: int, chains: Chains, strips: Strips, ends: Ends, word: Ints, trail: Trail
 ) -> int:
-    """Write the least square and the chains of a word's path over the skeleton to the trail's queue.
+    """Write the least squared clearance and the chains of a word's path over the skeleton to the trail's queue.
 
     Returns how many numbers these are, or TRAIL_OVERFLOW when there is no room.
     """
