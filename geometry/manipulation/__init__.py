@@ -2,7 +2,7 @@
 
 Modules, in reading order:
 
-goals  What a goal of carrying is, whether it is met, and what each end pose costs.
+goals  What a goal of carrying is, whether it is reached, and what each end pose costs.
 workspace  Free squares and the walls around them, ready for exact first contact.
 legs  Legs of a plan: walk, grasp, push and turn, release.
 query  A manipulation query: body, workspace, robot, goal, wishes.

@@ -127,7 +127,7 @@ def met(goal: End, shape: Any, now: Any) -> bool:
 
     Parameters
     ----------
-    goal : any goal; a `Roomy` goal is never met for certain, so the answer is False.
+    goal : any goal; a `Roomy` goal is never reached for certain, so the answer is False.
     shape : the shape as it was when the goal was set.
     now : the shape as it lies now.
     """
@@ -163,7 +163,7 @@ def moved(goal: End, dx: float, dy: float) -> End:
 
 
 def end_costs(goal: End, shape: Any, footprints: Footprints, lattice: StateLattice, grid: Grid) -> Costs:
-    """Return the cost of ending at each pose of the lattice, (4, cells) int32; -1 where the goal is not met.
+    """Return the cost of ending at each pose of the lattice, (4, cells) int32; -1 where the goal is not reached.
 
     For a goal pose off the lattice, the places beside it count when it is a whole number of quarter turns away.
 

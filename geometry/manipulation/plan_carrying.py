@@ -47,7 +47,7 @@ class CarryingPlan:
     ----------
     status : "found"; "impossible": proved, the body cannot be moved there even by itself; "limit": not found, and not
         proved either.
-    legs : what the robot does, in order; () unless found, or when the goal is met already.
+    legs : what the robot does, in order; () unless found, or when the goal holds already.
     pose : the end of the body: turned about its centroid by degrees, then moved by (x, y) squares, as in At; None
         unless found.
     polygon : the body as it ends; None unless found.
