@@ -1,9 +1,9 @@
 """Gibbs sampling of rasters that agree with counts: samples of a map of which only counts under fields are known.
 
-A raster costs EDGE for each edge between an occupied and a free square, CORNER for each corner of their outline, and
-COUNT_ERROR_COST for each square by which a field's count is wrong. Rasters are sampled with a probability that falls
-with their cost: each is changed a little, many times over, and a change is kept with the probability that its cost
-allows.
+A raster costs EDGE for each edge between an occupied and a free square, CORNER for each corner of their
+outline, and COUNT_ERROR_COST for each square by which a field's count is wrong. Rasters are sampled with a probability
+that falls with their cost: each is changed a little, many times over, and a change is kept with the probability that
+its cost allows.
 
 Source: Geman and Geman (1984), simulated annealing and the Gibbs sampler on an Ising prior. Besides the flip of a
 single square there are two more moves. Two squares of one field are exchanged, which leaves its count as it is. A
@@ -101,7 +101,7 @@ def pictures(
 
     Parameters
     ----------
-    ground : (rows, columns) int8: FREE, FULL, DRAWN (to be sampled) or UNSEEN (no part of the raster, drawn as 0).
+    ground : (rows, columns) int8: FREE, FULL, DRAWN (to be sampled) or UNSEEN (outside the raster, drawn as 0).
     counts : counts under fields, of squares of the ground.
     first : (m, rows, columns) int8, the rasters with which the m samples begin.
     sweeps : the number of sweeps over all squares, from the inverse temperature `hot` to FINAL_INVERSE_TEMPERATURE.

@@ -61,7 +61,8 @@ def draw(
     if pathgraph:
         parts += draw_pathgraph(screen, 1.0 / scale)
     parts += [_passage_line(passage, scale) for passage in passages]
-    parts += [_line(number, route, width_of(number, len(routes), scale)) for number, route in _below_first(routes)]
+    for number, route in _below_first(routes):
+        parts.append(_line(number, route, width_of(number, len(routes), scale)))
     parts.append("</g>")
     if ends is not None:
         parts += _marks([_pixel(end, rows, scale) for end in ends])
