@@ -24,7 +24,7 @@ from geometry.state_lattice.lattice import AWKWARD, COMMAND, REGRASP, Costs, new
 PLACE_DIGITS = 8  # decimal digits of places; rounding of motions moves a body by less than the last one
 # Weight of the heuristic and greatest number of nodes of each stage; tuned for time on random worlds.
 SEARCH_STAGES = ((CALM, 60_000), (2 * CALM, 400_000))
-BEND_COSTS = (COMMAND, COMMAND // 2)  # of another direction in the same push: as much as a push, or half of it
+BEND_COSTS = (COMMAND, COMMAND // 2)  # of a bend within a push: as much as a push, or half of it
 MAX_NUDGES = 2  # pushes to the centre of a square that are tried; convention, for time
 
 

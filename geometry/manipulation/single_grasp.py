@@ -175,6 +175,7 @@ def _motions(
         return (), plan.cells
     mover = new_mover(body, [utak], utak)
     way = np.array([centre_pose(mover, pose) for pose in plan.poses])
-    fewest = fewest_motions(new_scene(mover, floor.ground(mover), floor.surface), way, slant(query.shape))
+    scene = new_scene(mover, floor.ground(mover), floor.surface)
+    fewest = fewest_motions(scene, way, slant(query.shape))
     motions = fewest if fewest and len(fewest) < len(plan.motions) else plan.motions
     return with_pivots_at_robot(place, [round_motion(motion) for motion in motions]), plan.cells
