@@ -24,13 +24,14 @@ from geometry.kernels.jit import bare
 DRAWN = 2  # a square whose state is drawn
 UNSEEN = 3  # a square that is no part of the raster; drawn as 0
 
-# Costs are negative log probabilities at the inverse temperature 1; tuned on random worlds (benchmarks.campaign).
+# Costs are negative log probabilities at the inverse temperature 1. EDGE and CORNER: docs/benchmarks-worlds.md;
+# of the other numbers no measurement is on record.
 EDGE = 0.3  # of an edge between an occupied and a free square
 CORNER = 1.5  # of a corner of their outline
 COUNT_ERROR_COST = 4.0  # of each square by which a field's count is wrong
-FINAL_INVERSE_TEMPERATURE = 2.5  # at which a sample is taken; tuned in the same way
+FINAL_INVERSE_TEMPERATURE = 2.5  # at which a sample is taken
 
-# The moves of edges; tuned for time in the same way.
+# The moves of edges; no measurement on record.
 MAX_MOVED_THICKNESS = 4  # squares, of a strip that is moved as a whole
 MAX_MOVED_LENGTH = 60  # squares, of an edge that is moved at once
 EDGE_MOVE_INTERVAL = 4  # a move of the edge is tried at one in so many squares at an outline

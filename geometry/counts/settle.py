@@ -18,7 +18,7 @@ from geometry.kernels.arrays import Ints, Longs
 from geometry.kernels.jit import compiled
 
 OPEN, FREE, FULL = -1, 0, 1  # states of a square: not settled, settled as free, settled as occupied
-MAX_ROUNDS = 20  # rounds of both rules; convention: a bound on time that real counts do not reach
+MAX_ROUNDS = 20  # rounds of both rules; convention, a bound on time
 
 States = NDArray[np.int8]
 Numbers = NDArray[np.int16]
@@ -158,7 +158,7 @@ def _settle_by_single_fields(
             verdicts[i * entries + k] = verdict
     if not found:
         return False
-    for value in (FREE, FULL):  # where two fields contradict each other, one that needs a square wins
+    for value in (FREE, FULL):  # if two fields contradict each other, the one that needs the square wins
         for i in range(fields):
             for k in range(entries):
                 if verdicts[i * entries + k] == value:

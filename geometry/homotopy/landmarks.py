@@ -13,7 +13,7 @@ from geometry.skeleton.chains import Chains
 from geometry.skeleton.graph import find, first_way, is_node, onward
 from geometry.skeleton.skeleton import Flags, Heights, steepest, stride
 
-LANDMARK_COUNT = 6  # landmarks of a pathgraph, at most; tuned on the benchmark maps
+LANDMARK_COUNT = 6  # landmarks of a pathgraph, at most; chosen, no measurement on record
 
 
 class Landmarks(NamedTuple):

@@ -10,7 +10,7 @@ from geometry.manipulation.goals import At, Between, InCorner, Inside
 from geometry.manipulation.query import ManipulationQuery
 from geometry.motion.se2 import Pose
 
-MAX_FREE_BODY_CELLS = 60_000  # cells of configuration space examined at most; tuned for time on random worlds
+MAX_FREE_BODY_CELLS = 60_000  # cells of configuration space examined at most; a bound on time, no measurement on record
 
 
 def plan_body_alone(query: ManipulationQuery) -> MotionPlan:

@@ -20,7 +20,7 @@ Extent = TypeVar("Extent", float, npt.NDArray[np.float64])
 
 GOAL_TOLERANCE = 1e-6  # squares; rounding by which an end may miss a region's border
 ROOMY_RADIUS = 10.0  # squares; convention: a roomy place further than this from the wished one does not count
-TIGHT_END_COST = 2 * COMMAND // 5  # of an end that only just meets the goal; tuned on random worlds
+TIGHT_END_COST = 2 * COMMAND // 5  # of an end that only just meets the goal; chosen, no measurement on record
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from geometry.state_lattice.heuristic import NEVER, STILL, guess
 from geometry.state_lattice.lattice import AWKWARD, COMMAND, REGRASP, Costs, new_board, new_grid
 
 PLACE_DIGITS = 8  # decimal digits of places; rounding of motions moves a body by less than the last one
-# Weight of the heuristic and greatest number of nodes of each stage; tuned for time on random worlds.
+# Weight of the heuristic and greatest number of nodes of each stage; bounds on time, no measurement on record.
 SEARCH_STAGES = ((CALM, 60_000), (2 * CALM, 400_000))
 BEND_COSTS = (COMMAND, COMMAND // 2)  # of a bend within a push: as much as a push, or half of it
 MAX_NUDGES = 2  # pushes to the centre of a square that are tried; convention, for time

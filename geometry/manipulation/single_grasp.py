@@ -37,7 +37,7 @@ from geometry.manipulation.workspace import ROBOT_CLEARANCE, padded_shape
 from geometry.motion.body import centre_pose, new_mover
 from geometry.motion.se2 import Motion, Pose
 
-# Bounds for time, tuned on random worlds.
+# Bounds on time; no measurement on record.
 MAX_GRASPS = 6  # grasps that are asked
 FEW_MOTIONS = 9  # a leg with at most so many motions ends the search
 SUFFICIENT_LEGS = 3  # so many legs end the search; the best of them is taken

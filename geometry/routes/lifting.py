@@ -114,7 +114,7 @@ def lift_word(
     while link >= 0:
         here = 0 + cell[link]
         lowest = heights[here] if heights[here] < lowest else lowest
-        if states[here] != 0 and here != last:  # the steepest ways up to the skeleton are no part of it
+        if states[here] != 0 and here != last:  # the steepest ascents to the skeleton are no part of it
             if last >= 0 and is_node(0 + states[last]):
                 out[size] = chains.leave[find(chains.node, last), direction_of(here - last)]
                 size += 1

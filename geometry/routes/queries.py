@@ -32,7 +32,7 @@ from geometry.routes.router import (
 from geometry.routes.tighten import tight_route
 from geometry.skeleton.chains import Chains
 
-# Paths tried beyond those wanted, since their order changes when they are pulled tight; tuned on the benchmark maps.
+# Paths tried beyond those wanted, since their order changes when they are pulled tight; see docs/geometry.md.
 EXTRA_PATHS = 8  # on pathgraphs of at most SMALL_PATHGRAPH chains
 EXTRA_PATHS_IF_LARGE = 1  # on larger pathgraphs
 SMALL_PATHGRAPH = 128  # chains

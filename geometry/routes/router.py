@@ -109,7 +109,7 @@ def new_router_buffers(
 
 
 ROUTER_OVERFLOW = -1  # returned when some scratch is too small
-BIASES = 0.2, 6.0, 1.0  # shares of arc length (see set_bias); tuned: the best three on the benchmark maps
+BIASES = 0.2, 6.0, 1.0  # shares of arc length (see set_bias); by trial among the best three on the benchmark maps
 STRAIGHT_ENOUGH = 1.02  # times the straight line: a route no longer than this ends the search for a shorter one
 
 

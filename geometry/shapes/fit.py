@@ -34,7 +34,7 @@ CLASSES = {
 }  # ordered by the number of their parameters, then as the eye prefers them; convention
 RIM = 2  # squares of known floor around the image that count; convention
 DISC_CORNERS = 32  # corners of the polygon that stands for a disc; convention
-MAX_SLIGHT_NOTCH = 0.3  # share of the sides; an L with a smaller notch is likelier a disc; tuned on random discs
+MAX_SLIGHT_NOTCH = 0.3  # share of the sides; an L with a smaller notch counts as a disc; chosen
 
 
 @dataclass(frozen=True)
