@@ -24,19 +24,20 @@ from geometry.kernels.jit import bare
 DRAWN = 2  # a square whose state is drawn
 UNSEEN = 3  # a square that is no part of the raster; drawn as 0
 
-# Costs are negative log probabilities at the inverse temperature 1; tuned on random worlds (benchmarks.campaign).
+# Costs are negative log probabilities at the inverse temperature 1. EDGE and CORNER: docs/benchmarks-worlds.md;
+# of the other numbers no measurement is on record.
 EDGE = 0.3  # of an edge between an occupied and a free square
 CORNER = 1.5  # of a corner of their outline
 COUNT_ERROR_COST = 4.0  # of each square by which a field's count is wrong
-FINAL_INVERSE_TEMPERATURE = 2.5  # at which a sample is taken; tuned in the same way
+FINAL_INVERSE_TEMPERATURE = 2.5  # at which a sample is taken
 
-# The moves of edges; tuned for time in the same way.
+# The moves of edges; no measurement on record.
 MAX_MOVED_THICKNESS = 4  # squares, of a strip that is moved as a whole
 MAX_MOVED_LENGTH = 60  # squares, of an edge that is moved at once
 EDGE_MOVE_INTERVAL = 4  # a move of the edge is tried at one in so many squares at an outline
 
 # Neighbours as steps (rows, columns); the numbers of opposite ones add to 7.
-NEIGHBOURS = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
+NEIGHBOUR_STEPS = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
 ACROSS = (1, 6, 3, 4)  # by side of a square: the neighbour beyond the edge there
 ALONG_EDGE = (4, 4, 6, 6)  # by side of a square: the next neighbour on the same edge
 
@@ -101,8 +102,7 @@ def pictures(
 
     Parameters
     ----------
-    ground : (rows, columns) int8: FREE, FULL, DRAWN (to be sampled) or UNSEEN (no part of the raster, drawn
-        as 0).
+    ground : (rows, columns) int8: FREE, FULL, DRAWN (to be sampled) or UNSEEN (outside the raster, drawn as 0).
     counts : counts under fields, of squares of the ground.
     first : (m, rows, columns) int8, the rasters with which the m samples begin.
     sweeps : the number of sweeps over all squares, from the inverse temperature `hot` to FINAL_INVERSE_TEMPERATURE.
@@ -130,9 +130,8 @@ def costs(
     ----------
     images : (m, rows, columns) int8, as sampled.
     ground, counts : those with which they were sampled.
-    edge_cost : the cost of an edge. It is 0 where rasters of grounds of different sizes are compared, because a
-        wall that
-        goes on straight is what is to be expected.
+    edge_cost : the cost of an edge. It is 0 where rasters of grounds of different sizes are compared, because a wall
+        that goes on straight is what is to be expected.
     """
     seen = ground != UNSEEN
     all_seen = seen[:-1, :-1] & seen[1:, :-1] & seen[:-1, 1:] & seen[1:, 1:]
@@ -160,17 +159,11 @@ def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
     ends = np.searchsorted(where[field, entry], np.append(squares, len(flat)))
     rank = np.where(flat == UNSEEN, np.int32(RANK_UNSEEN), np.int32(RANK_FIXED))
     rank[squares] = np.arange(len(squares))
-    seen = flat != UNSEEN
-    shown_corners = np.zeros(len(squares), np.int32)
-    for point in range(4):
-        corner = squares - point % 2 - point // 2 * columns  # the lower left of the four squares about it
-        all_seen = seen[corner] & seen[corner + 1] & seen[corner + columns] & seen[corner + columns + 1]
-        shown_corners |= all_seen.astype(np.int32) << point
     return _Raster(
         squares,
         rank,
-        shown_corners,
-        np.array([rows * columns + across for rows, across in NEIGHBOURS]),
+        _shown_corners(flat != UNSEEN, squares, columns),
+        np.array([rows * columns + across for rows, across in NEIGHBOUR_STEPS]),
         ends.astype(np.int32),
         field.astype(np.int32),
         counts.weight[field, entry].astype(np.int32),
@@ -178,6 +171,16 @@ def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
         used,
         np.stack([counts.low, counts.high], axis=1).astype(np.int32),
     )
+
+
+def _shown_corners(seen: NDArray[np.bool_], squares: NDArray[np.int64], columns: int) -> NDArray[np.int32]:
+    """Return as bits, (n,), the corners of each square about which all four squares were seen."""
+    shown = np.zeros(len(squares), np.int32)
+    for point in range(4):
+        corner = squares - point % 2 - point // 2 * columns  # the lower left of the four squares about it
+        all_seen = seen[corner] & seen[corner + 1] & seen[corner + columns] & seen[corner + columns + 1]
+        shown |= all_seen.astype(np.int32) << point
+    return shown
 
 
 @cache
@@ -191,7 +194,7 @@ def _flip_costs() -> NDArray[np.float32]:
     for point in range(4):
         across, rows = 1 - 2 * (point % 2), 1 - 2 * (point // 2)
         horizontal, vertical, diagonal = (
-            around >> NEIGHBOURS.index(at) & 1 for at in ((0, across), (rows, 0), (rows, across))
+            around >> NEIGHBOUR_STEPS.index(at) & 1 for at in ((0, across), (rows, 0), (rows, across))
         )
         change += (shown_corners >> point & 1) * (
             _corner_cost(1 - was, horizontal, vertical, diagonal) - _corner_cost(was, horizontal, vertical, diagonal)

@@ -18,7 +18,7 @@ from geometry.kernels.arrays import Ints, Longs
 from geometry.kernels.jit import compiled
 
 OPEN, FREE, FULL = -1, 0, 1  # states of a square: not settled, settled as free, settled as occupied
-MAX_ROUNDS = 20  # rounds of both rules; convention: a bound on time that real counts do not reach
+MAX_ROUNDS = 20  # rounds of both rules; convention, a bound on time
 
 States = NDArray[np.int8]
 Numbers = NDArray[np.int16]
@@ -29,6 +29,10 @@ def residue(
     state: States, where: Ints, weight: Numbers, low: Numbers, high: Numbers
 ) -> tuple[NDArray[np.bool_], Longs, Longs, Longs]:
     """Return what remains of every field once settled squares are taken out.
+
+    Parameters
+    ----------
+    state, where, weight, low, high : states of squares, and fields (see the module's description).
 
     Returns
     -------
@@ -60,6 +64,7 @@ def misfits(state: States, where: Ints, weight: Numbers, low: Numbers, high: Num
 
     Parameters
     ----------
+    state, where, weight, low, high : states of squares, and fields (see the module's description).
     wrong : (n,) bool, filled.
     """
     found = 0
@@ -87,7 +92,15 @@ def settle(
     fresh: NDArray[np.bool_],
     impression: int,
 ) -> None:
-    """Settle in place all squares that the counts settle, as impression number `impression`."""
+    """Settle in place all squares that the counts settle.
+
+    Parameters
+    ----------
+    state, settled_by : states of squares, and what settled them; changed.
+    where, weight, low, high : the fields (see the module's description).
+    fresh : (n,) bool, the fields not compared yet; all False afterwards.
+    impression : the number of the present impression, written to `settled_by`.
+    """
     verdicts, newly_settled = np.zeros(where.size, np.int8), np.zeros(len(state), np.bool_)
     for _ in range(MAX_ROUNDS):
         changed = False
@@ -145,7 +158,7 @@ def _settle_by_single_fields(
             verdicts[i * entries + k] = verdict
     if not found:
         return False
-    for value in (FREE, FULL):  # where two fields contradict each other, one that needs a square wins
+    for value in (FREE, FULL):  # if two fields contradict each other, the one that needs the square wins
         for i in range(fields):
             for k in range(entries):
                 if verdicts[i * entries + k] == value:

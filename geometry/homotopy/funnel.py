@@ -1,8 +1,8 @@
 """Funnel algorithm (string pulling): the shortest path through a word of portals.
 
 # Strategy: the funnel of Lee and Preparata (1984). The shortest paths to the two ends of the last portal form a funnel:
-two chains of corners that bend outwards from a common apex. Each new end removes the corners that its shortest path
-no longer touches. The corners are multiples of half a square, on which cross products of floats are exact, so only the
+two chains of corners that bend outwards from a common apex. Each new end removes the corners that its shortest path no
+longer touches. The corners are multiples of half a square, on which cross products of floats are exact, so only the
 free ends of the path round at all.
 """
 
@@ -97,8 +97,7 @@ def pull_tight(xs: Floats, ys: Floats, via: Ints, queue: Ints, last: int) -> Non
     """Fill `via` with the corner before each one on the shortest path to it.
 
     Corner 0 is the start, then come the left and right ends of the portals in turn, and `last` is the goal. `queue`
-    holds
-    the funnel: its entries from `left` to `apex` are the left chain, those from `apex` to `right` the right one.
+    holds the funnel: its entries from `left` to `apex` are the left chain, those from `apex` to `right` the right one.
     """
     left = apex = right = queue.shape[0] // 2
     queue[apex] = 0

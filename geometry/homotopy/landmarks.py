@@ -13,11 +13,11 @@ from geometry.skeleton.chains import Chains
 from geometry.skeleton.graph import find, first_way, is_node, onward
 from geometry.skeleton.skeleton import Flags, Heights, steepest, stride
 
-LANDMARK_COUNT = 6  # landmarks of a pathgraph, at most; tuned on the benchmark maps
+LANDMARK_COUNT = 6  # landmarks of a pathgraph, at most; chosen, no measurement on record
 
 
 class Landmarks(NamedTuple):
-    """What routing knows of a pathgraph with n nodes and m chains, besides the chains and the strips.
+    """Precomputed routing data of a pathgraph with n nodes and m chains.
 
     An arc is a chain with a direction: its code is twice the chain's number, plus 1 when walked backwards (see
     astar.py).
@@ -209,7 +209,8 @@ def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start:
     Parameters
     ----------
     cell : index of a padded cell of the skeleton.
-    states : the skeleton's states, flat. width : columns of the padded grid.
+    states : the skeleton's states, flat.
+    width : columns of the padded grid.
     node, leave, start, cells : those of the chains.
     """
     if is_node(0 + states[cell]):

@@ -12,7 +12,9 @@ WALL_TOLERANCE = 1e-9  # squares; rounding by which a line's corner may miss the
 
 
 def word_of_line(strips: Strips, points: Sequence[Sequence[float]]) -> Ints:
-    """Return the reduced word of a polyline: the signed portals that it crosses. It may touch walls and their corners.
+    """Return the reduced word of a polyline: the signed portals that it crosses, (n,) int32, in order.
+
+    The line may touch walls and their corners.
 
     Parameters
     ----------
@@ -118,7 +120,7 @@ def best_portal(strips: Strips, strip: int, row: int, p: XY, q: XY) -> int:
 
 
 def join_words(*words: Ints) -> Ints:
-    """Return the words one after the other, as one reduced word."""
+    """Return the words one after the other, as one reduced word (n,) of signed portals."""
     whole = np.empty(sum(len(word) for word in words) + 1, np.int32)
     size = 0
     for word in words:
@@ -128,6 +130,12 @@ def join_words(*words: Ints) -> Ints:
 
 
 def crossings_of(strips: Strips, word: Ints) -> tuple[int, ...]:
-    """Return the signed crossing numbers of a reduced word: the signature of its class."""
+    """Return the signed crossing numbers of a reduced word: the signature of its class.
+
+    Parameters
+    ----------
+    strips : the strips of free space.
+    word : (n,) signed portals.
+    """
     numbers = strips.crossing[np.abs(word) - 1] * np.sign(word)
     return tuple(numbers[numbers != 0].tolist())

@@ -2,8 +2,8 @@
 
 A strip is a maximal horizontal row of free squares. A portal is the overlap of a strip with a strip in the row above.
 The class of a path is the word of portals that it crosses, without neighbouring inverses: portals are counted from 1,
-positive when crossed upwards, negative when crossed downwards. All portals but those of a spanning forest of the
-strips get a crossing number. With the ends fixed, the crossing numbers of a reduced word name its class.
+positive when crossed upwards, negative when crossed downwards. All portals but those of a spanning forest of the strips
+get a crossing number. With the ends fixed, the crossing numbers of a reduced word name its class.
 """
 
 from typing import NamedTuple

@@ -1,1 +1,9 @@
-"""."""
+"""Files of geometry: maps to read, and pictures to write.
+
+Modules, in reading order:
+
+movingai  Maps and scenario files of the Moving AI benchmarks (Sturtevant 2012).
+svg  A screen drawn as SVG, with skeleton, pathgraph and routes.
+
+Public names: `read_map`, `parse_map`, `MapError`, `read_trips`, `Trip`, `draw`.
+"""

@@ -1,11 +1,11 @@
-"""The map format of the Moving AI benchmarks (Sturtevant 2012), and their scenario files.
+"""Maps and scenario files of the Moving AI benchmarks (Sturtevant 2012).
 
     file = head "map" row { row } blank lines
     head = { "type" word | "height" number | "width" number }     each once, a line each, in any order
 
-Words of the head are parted by blanks or tabs, and blanks or tabs may end any line; lines end in LF or CR LF. There are
-`height` rows of `width` squares, and only blank lines follow. A map's first row of text is its north edge; screens have
-row 0 in the south, so rows are turned over.
+Words of the head are separated by blanks or tabs, and blanks or tabs may end any line; lines end in LF or CR LF. There
+are `height` rows of `width` squares, and only blank lines follow. A map's first row of text is its north edge; screens
+have row 0 in the south, so rows are reversed.
 """
 
 import re
@@ -16,16 +16,24 @@ import numpy as np
 
 from geometry.kernels.arrays import Bools
 
-PASSABLE = ".GS"
-KNOWN = PASSABLE + "@OTW"
-HEAD = ("type", "height", "width")
-NO_HEAD = "this is no line of a head ('type W', 'height N', 'width N'), and 'map' is missing before it"
-DIGITS = 9  # of a number in the head, at most: no file has room for more rows or squares in one
-WORD = re.compile(r"[^ \t]+")
+PASSABLE_LETTERS = ".GS"
+MAP_LETTERS = PASSABLE_LETTERS + "@OTW"
+HEADER_FIELDS = ("type", "height", "width")
+NO_HEADER = "this is no line of a head ('type W', 'height N', 'width N'), and 'map' is missing before it"
+MAX_HEADER_DIGITS = 9  # digits of a number in the head; derived: no file has room for more rows, or squares in a row
+HEADER_WORD = re.compile(r"[^ \t]+")
 
 
 class MapError(ValueError):
-    """A text is no map: the `line`, and `column` to `end` of it (from 1), where it goes wrong, and `what` is wrong."""
+    """An error in the text of a map.
+
+    Attributes
+    ----------
+    line : the line, counted from 1.
+    column : the first column where it goes wrong, counted from 1.
+    end : the last such column.
+    what : what is wrong, in words.
+    """
 
     def __init__(self, line: int, column: int, what: str, end: int | None = None) -> None:
         self.line, self.column, self.end, self.what = line, column, max(column, end or column), what
@@ -33,20 +41,29 @@ class MapError(ValueError):
 
 
 class Trip(NamedTuple):
-    """One problem of a scenario file, in the coordinates of the turned-over screen."""
+    """One problem of a scenario file, in squares of the screen (row 0 in the south).
+
+    Attributes
+    ----------
+    start : (x, y), the centre of the first square.
+    goal : (x, y), the centre of the last square.
+    octile : the length of the optimal path over eight directions, as the file says.
+    """
 
     start: tuple[float, float]
-    """Centre of the first square."""
     goal: tuple[float, float]
-    """Centre of the last square."""
     octile: float
-    """The optimum for eight directions, as the file says."""
 
 
 def read_map(path: str | Path) -> Bools:
-    """(rows, columns) bool: where one may be.
+    """Return the free squares of a map file, (rows, columns) bool, row 0 in the south.
 
-    Raises ValueError when the file is no such map; the message has file and line. OSError when it cannot be read.
+    Raises
+    ------
+    ValueError
+        When the file is no such map; the message has file and line.
+    OSError
+        When it cannot be read.
     """
     try:
         return parse_map(Path(path).read_bytes())
@@ -55,15 +72,20 @@ def read_map(path: str | Path) -> Bools:
 
 
 def parse_map(raw: bytes) -> Bools:
-    """(rows, columns) bool: where one may be on the map that a file of these bytes describes.
+    r"""Return the free squares of the map that these bytes describe, (rows, columns) bool, row 0 in the south.
 
-    Raises MapError when it is none.
+    Raises
+    ------
+    MapError
+        When they describe none.
 
-    >>> parse_map(b"type octile\\nheight 2\\nwidth 3\\nmap\\n..@\\n.@.\\n").tolist()
+    Examples
+    --------
+    >>> parse_map(b"type octile\nheight 2\nwidth 3\nmap\n..@\n.@.\n").tolist()
     [[True, False, True], [True, True, False]]
     """
     lines = [line.removesuffix("\r").rstrip(" \t") for line in raw.decode("latin-1").split("\n")]
-    first, height, width = _head(lines)
+    first, height, width = _header(lines)
     rows = lines[first : first + height]
     while rows and not rows[-1]:
         rows.pop()
@@ -74,22 +96,22 @@ def parse_map(raw: bytes) -> Bools:
     for number, line in enumerate(lines[first + height :], first + height + 1):
         if line:
             raise MapError(number, 1, f"the map has more than {height} rows", len(line))
-    return np.array([[square in PASSABLE for square in row] for row in reversed(rows)], np.bool_)
+    return np.array([[square in PASSABLE_LETTERS for square in row] for row in reversed(rows)], np.bool_)
 
 
-def _head(lines: list[str]) -> tuple[int, int, int]:
-    """The number of lines before the first row, the height and the width."""
+def _header(lines: list[str]) -> tuple[int, int, int]:
+    """Return the number of lines before the first row, the height and the width."""
     found: dict[str, int] = {}
     for number, line in enumerate(lines, 1):
-        words = list(WORD.finditer(line))
+        words = list(HEADER_WORD.finditer(line))
         if [word.group() for word in words] == ["map"]:
-            for name in HEAD[1:]:
+            for name in HEADER_FIELDS[1:]:
                 if name not in found:
                     raise MapError(number, 1, f"a line that says '{name} N' is missing before this one")
             return number, found["height"], found["width"]
-        if not words or words[0].group() not in HEAD:
+        if not words or words[0].group() not in HEADER_FIELDS:
             at = words[0].start() + 1 if words else 1
-            raise MapError(number, at, NO_HEAD, len(line))
+            raise MapError(number, at, NO_HEADER, len(line))
         name = words[0].group()
         if name in found:
             raise MapError(number, words[0].start() + 1, f"{name} is given twice", words[0].end())
@@ -101,22 +123,24 @@ def _head(lines: list[str]) -> tuple[int, int, int]:
 
 
 def _number(line: int, name: str, word: "re.Match[str]") -> int:
+    """Return the number that a word of the head gives, or raise MapError."""
     text = word.group()
-    if not re.fullmatch("[0-9]+", text) or len(text) > DIGITS or int(text) == 0:
+    if not re.fullmatch("[0-9]+", text) or len(text) > MAX_HEADER_DIGITS or int(text) == 0:
         raise MapError(line, word.start() + 1, f"{name} must be a whole number above 0, not {text[:20]!r}", word.end())
     return int(text)
 
 
 def _check_row(number: int, row: str, width: int) -> None:
+    """Raise MapError when a row has unknown letters or another width."""
     for column, square in enumerate(row[:width], 1):
-        if square not in KNOWN:
-            raise MapError(number, column, f"unknown square {square!r}; known are {' '.join(KNOWN)}")
+        if square not in MAP_LETTERS:
+            raise MapError(number, column, f"unknown square {square!r}; known are {' '.join(MAP_LETTERS)}")
     if len(row) != width:
         raise MapError(number, min(len(row), width) + 1, f"the row has {len(row)} squares, not {width}", len(row))
 
 
 def read_trips(path: str | Path) -> list[Trip]:
-    """The problems of a scenario file."""
+    """Return the problems of a scenario file; lines that do not have nine words are skipped."""
     trips = []
     for line in Path(path).read_text(encoding="ascii").splitlines():
         words = line.split()

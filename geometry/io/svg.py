@@ -1,4 +1,4 @@
-"""A screen drawn as SVG: squares, skeleton, pathgraph and routes, with a legend, a scale and the ends."""
+"""A screen drawn as SVG: squares, skeleton, pathgraph and routes, with a legend, a scale and the ends of the routes."""
 
 from collections.abc import Callable, Iterable, Sequence
 from math import floor, isnan, log10
@@ -10,18 +10,19 @@ from geometry.passages.necks import Passage
 from geometry.routes.route import Route
 from geometry.screen import Screen
 
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
-"""Colours that colour-blind readers tell apart (Okabe and Ito 2008)."""
-DASHES = ("", "3 2", "1 1.5", "5 1.5 1 1.5")  # in widths of the line; with the colours every route of 28 has its own
-SIZE = 960.0  # pixels of the longer side
-MOST_SCALE = 48.0  # pixels a square
-MARGIN, LEGEND, ROW, GAP = 16.0, 290.0, 20.0, 8.0  # pixels
-LISTED = 24  # routes in the legend
-STYLE = "text{font:13px sans-serif;fill:#222}"
+# Colours that colour-blind readers can tell apart (Okabe and Ito 2008).
+ROUTE_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
+# Dashes and gaps in line widths; convention: with the colours, each of 28 routes has a style of its own.
+ROUTE_DASHES = ("", "3 2", "1 1.5", "5 1.5 1 1.5")
+PICTURE_SIZE = 960.0  # pixels, of the longer side; convention
+MAX_SCALE = 48.0  # pixels a square; convention
+PICTURE_MARGIN, LEGEND_WIDTH, LEGEND_ROW_HEIGHT, SCALE_BAR_GAP = 16.0, 290.0, 20.0, 8.0  # pixels; layout
+MAX_LISTED_ROUTES = 24  # in the legend; convention
+TEXT_STYLE = "text{font:13px sans-serif;fill:#222}"
 
 
 def place(point: XY) -> str:
-    """A point in words, in squares east and north of the south-west corner."""
+    """Return a point in words, in squares east and north of the south-west corner."""
     return f"({point[0]:g}, {point[1]:g})"
 
 
@@ -34,89 +35,112 @@ def draw(
     ends: tuple[XY, XY] | None = None,
     words: Callable[[XY], str] = place,
 ) -> str:
-    """An SVG document. North is up.
+    """Return an SVG document that shows a screen, north up.
 
     Parameters
     ----------
-    scale : pixels a square; by default what makes the longer side 960 pixels, or 48 pixels a square if that is less.
+    screen : the screen.
+    routes : routes to draw; the first one is on top.
+    passages : passages to draw.
+    pathgraph : whether to draw the pathgraph.
+    scale : pixels a square; by default such that the longer side has 960 pixels, but at most 48 pixels a square.
     ends : (start, goal) in squares; those of the first route by default.
     words : how the legend writes a point.
     """
     routes = list(routes)
     rows, columns = screen.shape
-    scale = scale or min(MOST_SCALE, SIZE / max(rows, columns))
+    scale = scale or min(MAX_SCALE, PICTURE_SIZE / max(rows, columns))
     if ends is None and routes:
         (ax, ay), (bx, by) = routes[0].points[[0, -1]].tolist()
         ends = (ax, ay), (bx, by)
     listed = _legend(routes, ends, words, pathgraph)
     bar = columns * scale * 0.25
-    height = max(rows * scale + ROW + GAP, len(listed) * ROW) + 2 * MARGIN
-    width = max(columns * scale, bar + 90) + LEGEND + 3 * MARGIN
-    parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" width="{width:g}" '
-        f'height="{height:g}"><style>{STYLE}</style>',
-        f'<rect width="{width:g}" height="{height:g}" fill="#ffffff"/>',
-        f'<g transform="translate({MARGIN:g} {MARGIN + rows * scale:g}) scale({scale:g} {-scale:g})" fill="none" '
-        'stroke-linecap="round" stroke-linejoin="round">',
-        f'<rect width="{columns}" height="{rows}" fill="#f7f7f7" stroke="#999999" stroke-width="{1 / scale:g}"/>',
-        f'<path class="blocked" d="{runs_of(~screen.free)}" fill="#5c5c5c"/>',
-        f'<path class="skeleton" d="{runs_of(screen.skeleton)}" fill="#d9d9d9"/>',
-    ]
+    height = max(rows * scale + LEGEND_ROW_HEIGHT + SCALE_BAR_GAP, len(listed) * LEGEND_ROW_HEIGHT) + 2 * PICTURE_MARGIN
+    width = max(columns * scale, bar + 90) + LEGEND_WIDTH + 3 * PICTURE_MARGIN
+    parts = _squares(screen, width, height, scale)
     if pathgraph:
         parts += draw_pathgraph(screen, 1.0 / scale)
-    for passage in passages:
-        (ax, ay), (bx, by) = passage.a, passage.b
-        wide = f'stroke="#8e44ad" stroke-width="{3 / scale:g}"'
-        parts.append(f'<path class="passage" d="M{ax:g} {ay:g}L{bx:g} {by:g}" {wide}/>')
-    parts += [_line(number, route, width_of(number, len(routes), scale)) for number, route in _below_first(routes)]
+    parts += [_passage_line(passage, scale) for passage in passages]
+    for number, route in _below_first(routes):
+        parts.append(_line(number, route, width_of(number, len(routes), scale)))
     parts.append("</g>")
     if ends is not None:
         parts += _marks([_pixel(end, rows, scale) for end in ends])
-    parts += _bar(bar / scale, scale, MARGIN, MARGIN + rows * scale + ROW)
-    left = width - LEGEND - MARGIN
-    parts += [row(left, MARGIN + ROW * (number + 0.7)) for number, row in enumerate(listed)]
+    parts += _scale_bar(bar / scale, scale, PICTURE_MARGIN, PICTURE_MARGIN + rows * scale + LEGEND_ROW_HEIGHT)
+    left = width - LEGEND_WIDTH - PICTURE_MARGIN
+    parts += [row(left, PICTURE_MARGIN + LEGEND_ROW_HEIGHT * (number + 0.7)) for number, row in enumerate(listed)]
     return "\n".join([*parts, "</svg>", ""])
 
 
-def width_of(number: int, count: int, scale: float) -> float:
-    """How wide a route is drawn, in squares: at most a quarter, while that can be seen.
+def _squares(screen: Screen, width: float, height: float, scale: float) -> list[str]:
+    """Return the beginning of the document: the page, and the free squares, blocked squares and skeleton on it."""
+    rows, columns = screen.shape
+    return [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" width="{width:g}" '
+        f'height="{height:g}"><style>{TEXT_STYLE}</style>',
+        f'<rect width="{width:g}" height="{height:g}" fill="#ffffff"/>',
+        f'<g transform="translate({PICTURE_MARGIN:g} {PICTURE_MARGIN + rows * scale:g}) scale({scale:g} {-scale:g})" '
+        'fill="none" stroke-linecap="round" stroke-linejoin="round">',
+        f'<rect width="{columns}" height="{rows}" fill="#f7f7f7" stroke="#999999" stroke-width="{1 / scale:g}"/>',
+        f'<path class="blocked" d="{rectangles_of(~screen.free)}" fill="#5c5c5c"/>',
+        f'<path class="skeleton" d="{rectangles_of(screen.skeleton)}" fill="#d9d9d9"/>',
+    ]
 
-    Where routes run together those beneath are a little wider, up to twice the width of the first.
+
+def _passage_line(passage: Passage, scale: float) -> str:
+    """Return the SVG of a passage: a line from its left to its right end."""
+    (ax, ay), (bx, by) = passage.a, passage.b
+    style = f'stroke="#8e44ad" stroke-width="{3 / scale:g}"'
+    return f'<path class="passage" d="M{ax:g} {ay:g}L{bx:g} {by:g}" {style}/>'
+
+
+def width_of(number: int, count: int, scale: float) -> float:
+    """Return the width at which a route is drawn, in squares: at most a quarter, as long as that can be seen.
+
+    Where routes run together, those beneath are a little wider, up to twice the width of the first.
+
+    Parameters
+    ----------
+    number, count : the number of the route, from 0, and of how many.
+    scale : pixels a square.
     """
     thinnest = min(3.0, max(1.5, 0.125 * scale)) / scale
     return thinnest * (1.0 + number / max(1, count - 1))
 
 
 def _below_first(routes: Sequence[Route]) -> list[tuple[int, Route]]:
-    """The routes by number, the first one last, which is on top."""
+    """Return the routes by number, the first one last, because it is on top."""
     return list(reversed(list(enumerate(routes))))
 
 
-def _look(number: int, wide: float) -> str:
-    """The colour, dashes and width of a route's line."""
-    dashes = DASHES[number // len(COLOURS) % len(DASHES)]
-    pattern = " ".join(f"{float(part) * wide:g}" for part in dashes.split())
+def _line_style(number: int, width: float) -> str:
+    """Return the SVG attributes for the colour, dashes and width of a route's line."""
+    dashes = ROUTE_DASHES[number // len(ROUTE_COLOURS) % len(ROUTE_DASHES)]
+    pattern = " ".join(f"{float(part) * width:g}" for part in dashes.split())
     dashed = f' stroke-dasharray="{pattern}"' if pattern else ""
-    return f'stroke="{COLOURS[number % len(COLOURS)]}" stroke-width="{wide:g}"{dashed}'
+    return f'stroke="{ROUTE_COLOURS[number % len(ROUTE_COLOURS)]}" stroke-width="{width:g}"{dashed}'
 
 
-def _told(number: int, route: Route) -> str:
+def _route_text(number: int, route: Route) -> str:
+    """Return number, length and clearance of a route in words."""
     clearance = "not known" if isnan(route.clearance) else f"{route.clearance:g}"
     return f"{number + 1}: length {route.length:.3f}, clearance {clearance}"
 
 
-def _line(number: int, route: Route, wide: float) -> str:
+def _line(number: int, route: Route, width: float) -> str:
+    """Return the SVG of a route."""
     points = "L".join(f"{x:g} {y:g}" for x, y in route.points.tolist())
-    title = f"<title>route {_told(number, route)}</title>"
-    return f'<path class="route" d="M{points}" {_look(number, wide)}>{title}</path>'
+    title = f"<title>route {_route_text(number, route)}</title>"
+    return f'<path class="route" d="M{points}" {_line_style(number, width)}>{title}</path>'
 
 
 def _pixel(point: XY, rows: int, scale: float) -> XY:
-    return MARGIN + point[0] * scale, MARGIN + (rows - point[1]) * scale
+    """Return a point in pixels of the picture."""
+    return PICTURE_MARGIN + point[0] * scale, PICTURE_MARGIN + (rows - point[1]) * scale
 
 
 def _marks(ends: Sequence[XY]) -> list[str]:
-    """A ring at the start and a diamond at the goal."""
+    """Return the SVG of a ring at the start and a diamond at the goal."""
     (ax, ay), (bx, by) = ends
     return [
         f'<circle class="start" cx="{ax:g}" cy="{ay:g}" r="6" fill="#ffffff" stroke="#000000" stroke-width="2.5"/>',
@@ -124,62 +148,69 @@ def _marks(ends: Sequence[XY]) -> list[str]:
     ]
 
 
-def _bar(most: float, scale: float, x: float, y: float) -> list[str]:
-    """A bar of a round number of squares, with its length."""
-    power = 10.0 ** floor(log10(max(most, 1.0)))
-    squares = max(digit * power for digit in (1, 2, 5) if digit * power <= max(most, 1.0))
-    told = f"{squares:g} square" + "s" * (squares != 1)
+def _scale_bar(longest: float, scale: float, x: float, y: float) -> list[str]:
+    """Return the SVG of a bar of a round number of squares, at most `longest`, with its length in words."""
+    power = 10.0 ** floor(log10(max(longest, 1.0)))
+    squares = max(digit * power for digit in (1, 2, 5) if digit * power <= max(longest, 1.0))
+    text = f"{squares:g} square" + "s" * (squares != 1)
     return [
         f'<path class="scale" d="M{x:g} {y - 5:g}v5h{squares * scale:g}v-5" fill="none" stroke="#222222" '
         'stroke-width="1.5"/>',
-        f'<text x="{x + squares * scale + 8:g}" y="{y + 3:g}">{told}; north is up</text>',
+        f'<text x="{x + squares * scale + 8:g}" y="{y + 3:g}">{text}; north is up</text>',
     ]
 
 
-Row = Callable[[float, float], str]
+LegendRow = Callable[[float, float], str]
 
 
 def _legend(
     routes: Sequence[Route], ends: tuple[XY, XY] | None, words: Callable[[XY], str], pathgraph: bool
-) -> list[Row]:
-    """The rows of the legend: each gives its SVG at a place."""
-    rows: list[Row] = []
+) -> list[LegendRow]:
+    """Return the rows of the legend: functions that give a row's SVG at a place."""
+    rows: list[LegendRow] = []
     if ends is not None:
         ring, diamond = _marks([(0.0, 0.0), (0.0, 0.0)])
-        rows += [_row(ring, f"from {words(ends[0])}"), _row(diamond, f"to {words(ends[1])}")]
-    for number, route in list(enumerate(routes))[:LISTED]:
-        rows.append(_row(f'<path d="M-12 0h24" fill="none" {_look(number, 3.0)}/>', _told(number, route)))
-    if len(routes) > LISTED:
-        rows.append(_row("", f"... and {len(routes) - LISTED} more"))
-    rows.append(_row('<rect x="-8" y="-6" width="16" height="12" fill="#5c5c5c"/>', "blocked"))
-    rows.append(_row('<rect x="-8" y="-6" width="16" height="12" fill="#d9d9d9"/>', "skeleton"))
+        rows += [_legend_row(ring, f"from {words(ends[0])}"), _legend_row(diamond, f"to {words(ends[1])}")]
+    for number, route in list(enumerate(routes))[:MAX_LISTED_ROUTES]:
+        rows.append(
+            _legend_row(f'<path d="M-12 0h24" fill="none" {_line_style(number, 3.0)}/>', _route_text(number, route))
+        )
+    if len(routes) > MAX_LISTED_ROUTES:
+        rows.append(_legend_row("", f"... and {len(routes) - MAX_LISTED_ROUTES} more"))
+    rows.append(_legend_row('<rect x="-8" y="-6" width="16" height="12" fill="#5c5c5c"/>', "blocked"))
+    rows.append(_legend_row('<rect x="-8" y="-6" width="16" height="12" fill="#d9d9d9"/>', "skeleton"))
     if pathgraph:
         sample = '<path d="M-12 0h24" stroke="#888888"/><circle r="2.5" fill="#444444"/>'
-        rows.append(_row(sample, "pathgraph"))
+        rows.append(_legend_row(sample, "pathgraph"))
     return rows
 
 
-def _row(sample: str, told: str) -> Row:
-    """A sample and what it stands for."""
+def _legend_row(sample: str, text: str) -> LegendRow:
+    """Return the row of a sample and the text that explains it."""
     return lambda x, y: (
-        f'<g class="legend" transform="translate({x + 12:g} {y:g})">{sample}<text x="22" y="4">{told}</text></g>'
+        f'<g class="legend" transform="translate({x + 12:g} {y:g})">{sample}<text x="22" y="4">{text}</text></g>'
     )
 
 
 def draw_pathgraph(screen: Screen, pixel: float) -> list[str]:
-    """Chains as lines and nodes as dots. pixel : in squares."""
+    """Return the SVG of the pathgraph: chains as lines, nodes as dots.
+
+    Parameters
+    ----------
+    pixel : the size of a pixel, in squares.
+    """
     parts = []
     thin, dot = min(0.15, pixel), min(0.3, 2.5 * pixel)
     for _, _, edge in screen.pathgraph.edges(data=True):
-        line = "L".join(f"{x:g} {y:g}" for x, y in corners(edge["points"]).tolist())
+        line = "L".join(f"{x:g} {y:g}" for x, y in without_straight_points(edge["points"]).tolist())
         parts.append(f'<path class="chain" d="M{line}" stroke="#888888" stroke-width="{thin:g}"/>')
     for _, node in screen.pathgraph.nodes(data=True):
         parts.append(f'<circle class="node" cx="{node["x"]:g}" cy="{node["y"]:g}" r="{dot:g}" fill="#444444"/>')
     return parts
 
 
-def corners(points: Floats) -> Floats:
-    """A polyline without the points on straight stretches."""
+def without_straight_points(points: Floats) -> Floats:
+    """Return a polyline (n, 2) without the points on straight stretches."""
     if len(points) < 3:
         return points
     step = np.diff(points, axis=0)
@@ -188,8 +219,8 @@ def corners(points: Floats) -> Floats:
     return points[keep]
 
 
-def runs_of(mask: Bools) -> str:
-    """Path data of the horizontal runs of a mask."""
+def rectangles_of(mask: Bools) -> str:
+    """Return SVG path data of the horizontal runs of a mask."""
     edges = np.diff(np.pad(mask.astype(np.int8), ((0, 0), (1, 1))), axis=1)
     starts, ends = np.argwhere(edges == 1).tolist(), np.argwhere(edges == -1).tolist()
     return "".join(f"M{a} {row}h{b - a}v1h{a - b}z" for (row, a), (_, b) in zip(starts, ends, strict=True))

@@ -1,6 +1,6 @@
-"""Laying a body straight first: a turn that brings its sides along the axes, and a push that brings it to the lattice.
+"""Alignment: a first leg that turns a body until its sides lie along the axes, and pushes it onto the lattice.
 
-What lies askew covers more squares than it need. Laid straight it passes where its shape passes, and its place is known
+A body at an angle covers more squares than it need. Aligned, it passes where its shape passes, and its place is known
 for certain.
 """
 
@@ -12,57 +12,64 @@ import shapely
 
 from geometry.cspace.fewest_motions import askew
 from geometry.kernels.arrays import XY
-from geometry.manipulation.grasps import holds_about
-from geometry.manipulation.lattice_planner import carry_squarewise
-from geometry.manipulation.legs import Leg, commands, grip_square, may_push, rounded
-from geometry.manipulation.query import ManipulationQuery, after, joined
+from geometry.manipulation.grasps import grasp_candidates
+from geometry.manipulation.lattice_planner import plan_on_lattice
+from geometry.manipulation.legs import Leg, commands, direction_to_grasp, may_push, round_motion
+from geometry.manipulation.query import ManipulationQuery, join_legs, query_after
 from geometry.motion.se2 import Motion, Rotate, Translate
 
-LEAST = 1e-6  # degrees or squares: less is no motion
-TRIES = 4  # holds with which the rest is planned
+MIN_ALIGNMENT = 1e-6  # degrees or squares; rounding: less is no motion
+MAX_ALIGNMENTS = 4  # first legs for which the rest is planned; convention, for time
 
 
-def carry_straightened(errand: ManipulationQuery, tries: int = TRIES) -> list[Leg] | None:
-    """Legs of which the first lays the body straight and the others go by whole squares; None when none are found."""
+def plan_aligned(query: ManipulationQuery, max_alignments: int = MAX_ALIGNMENTS) -> list[Leg] | None:
+    """Return legs of which the first aligns the body and the others go by whole squares; None when none are found.
+
+    Parameters
+    ----------
+    max_alignments : the number of first legs for which the rest is planned.
+    """
     best: list[Leg] | None = None
-    for _, first in zip(range(tries), _ways(errand), strict=False):
-        rest = carry_squarewise(after(errand, [first]))
+    for _, first in zip(range(max_alignments), _aligning_legs(query), strict=False):
+        rest = plan_on_lattice(query_after(query, [first]))
         if rest is not None:
-            legs = joined([first], rest)
+            legs = join_legs([first], rest)
             best = min([legs, best] if best else [legs], key=commands)
     return best
 
 
-def _ways(errand: ManipulationQuery) -> Iterator[Leg]:
-    """The ways to lay the body straight, those with short walks first."""
-    over = askew(errand.shape)
-    for hold in holds_about(errand):
-        relative = errand.hold_from(hold.place)
-        square = grip_square(errand.shape, hold.place)
-        if square is None and not hold.taken:
+def _aligning_legs(query: ManipulationQuery) -> Iterator[Leg]:
+    """Yield the legs that align the body, those with short walks first."""
+    tilt = askew(query.shape)
+    for candidate in grasp_candidates(query):
+        relative = query.grasp_offset(candidate.place)
+        square = direction_to_grasp(query.shape, candidate.place)
+        if square is None and not candidate.taken:
             continue
-        for degrees in sorted((-over, 90.0 - over), key=abs):
-            motions = _straight(errand, hold.place, degrees)
+        for degrees in sorted((-tilt, 90.0 - tilt), key=abs):
+            motions = _aligning_motions(query, candidate.place, degrees)
             if motions:
-                yield Leg(hold.place, square or (0, 0), motions, relative, hold.walk, hold.taken)
+                yield Leg(candidate.place, square or (0, 0), motions, relative, candidate.walk, candidate.taken)
                 break
 
 
-def _straight(errand: ManipulationQuery, utak: XY, degrees: float) -> tuple[Motion, ...]:
-    """The turn and the push that lay the body straight; () when they are not free, or nothing is to be done."""
+def _aligning_motions(query: ManipulationQuery, utak: XY, degrees: float) -> tuple[Motion, ...]:
+    """Return the turn by `degrees` and the push that align the body; () when not free or nothing is to be done."""
     motions: list[Motion] = []
-    shape = errand.shape
-    if LEAST < abs(degrees) < 90.0 - LEAST:
-        motions.append(rounded(Rotate(degrees, utak)))
-        if not errand.yard.lets(shape, utak, motions[0]):
+    shape = query.shape
+    if MIN_ALIGNMENT < abs(degrees) < 90.0 - MIN_ALIGNMENT:
+        motions.append(round_motion(Rotate(degrees, utak)))
+        if not query.workspace.lets(shape, utak, motions[0]):
             return ()
         shape = motions[0].carry(shape)
     x, y = shapely.get_coordinates(shape)[0]
-    across, up = ([v, v - math.copysign(1.0, v)] if abs(v) > LEAST else [0.0] for v in (round(x) - x, round(y) - y))
+    across, up = (
+        [v, v - math.copysign(1.0, v)] if abs(v) > MIN_ALIGNMENT else [0.0] for v in (round(x) - x, round(y) - y)
+    )
     for dx, dy in sorted(product(across, up), key=lambda move: math.hypot(*move)):
-        push = rounded(Translate(float(dx), float(dy)))
-        if math.hypot(dx, dy) < LEAST:
+        push = round_motion(Translate(float(dx), float(dy)))
+        if math.hypot(dx, dy) < MIN_ALIGNMENT:
             return tuple(motions)
-        if errand.yard.lets(shape, utak, push) and (errand.pull or may_push(shape, utak, dx, dy)):
+        if query.workspace.lets(shape, utak, push) and (query.pull or may_push(shape, utak, dx, dy)):
             return (*motions, push)
     return ()

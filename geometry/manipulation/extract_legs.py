@@ -1,4 +1,4 @@
-"""The nodes of a search by whole squares told as legs: as few pushes as can be, the last ones right to the goal."""
+"""From the nodes of a lattice search to legs: as few pushes as possible, the last ones straight to the goal."""
 
 import math
 from itertools import groupby, pairwise
@@ -7,127 +7,139 @@ import numpy as np
 
 from geometry.kernels.arrays import XY, Floats, Longs
 from geometry.manipulation.goals import At, placed
-from geometry.manipulation.legs import Leg, PushSegment, at_utak, grip_square, rounded
+from geometry.manipulation.legs import Leg, PushSegment, direction_to_grasp, round_motion, with_pivots_at_robot
 from geometry.manipulation.query import ManipulationQuery
-from geometry.manipulation.workspace import padded
+from geometry.manipulation.workspace import padded_shape
 from geometry.motion.se2 import Motion, Rotate, Translate
 from geometry.state_lattice.footprints import Footprints, quarter
 from geometry.state_lattice.lattice import Costs, Grid
 
-ENDS = 300  # of a push that are looked at
-MIDDLE = 1e-7  # squares: who is no further from the middle of his square is there
-Step = tuple[int, int, int, int]  # hold, quarter, direction, place
+MAX_END_SAMPLES = 300  # ends of a push that are tried; convention, for time
+CENTRE_TOLERANCE = 1e-7  # squares; rounding: a robot this near to the centre of its square is at it
+Step = tuple[int, int, int, int]  # grasp, quarter turn, direction, cell
 
 
 class LegExtraction:
-    """The nodes of a search told as legs.
+    """The translation of a search's nodes into legs.
 
-    errand : what was searched for. begun : the errand as it was before Utak, with hold of the shape, was thought to
-    have pushed it so that he stands in the middle of a square. ends : the price of ending at each pose.
+    Parameters
+    ----------
+    query : the query that was searched.
+    before_nudge : the query before the robot, holding the shape, was assumed to have pushed it so that the robot stands
+        at the centre of a square; else the same query.
+    body, grid : footprints of the shape, and the grid of the state lattice.
+    ends : (4, cells), the cost of ending at each pose.
     """
 
     def __init__(
-        self, errand: ManipulationQuery, begun: ManipulationQuery, body: Footprints, grid: Grid, ends: Costs
+        self, query: ManipulationQuery, before_nudge: ManipulationQuery, body: Footprints, grid: Grid, ends: Costs
     ) -> None:
-        self.errand, self.body, self.grid, self.ends = errand, body, grid, ends
+        self.query, self.body, self.grid, self.ends = query, body, grid, ends
         self.holds = [quarter(body.holds, k) for k in range(4)]
-        self.begun = begun
-        self.shape = errand.shape
-        self.at = errand.square
+        self.before_nudge = before_nudge
+        self.shape = query.shape
+        self.at = query.square
 
     def legs(self, nodes: Longs) -> list[Leg]:
-        """The legs, one for each run of nodes with the same hold."""
+        """Return the legs, one for each group of successive nodes with the same grasp."""
         count = (self.grid.rows + 2 * self.grid.pad) * self.grid.stride
         steps = [(n // count // 36, n // count // 9 % 4, n // count % 9, n % count) for n in nodes.tolist()]
-        runs = [list(run) for _, run in groupby(steps, key=lambda step: step[0])]
-        return [self._leg(run, run is runs[0], run is runs[-1]) for run in runs]
+        groups = [list(group) for _, group in groupby(steps, key=lambda step: step[0])]
+        return [self._leg(group, group is groups[0], group is groups[-1]) for group in groups]
 
-    def _utak(self, step: Step) -> XY:
-        """The middle of Utak's square at a step."""
+    def _robot_place(self, step: Step) -> XY:
+        """Return the centre of the robot's square at a step, (x, y) in squares."""
         x, y = self.holds[step[1]][step[0]].tolist()
         column, row = self.grid.square(step[3])
         return column + x + 0.5, row + y + 0.5
 
-    def _leg(self, run: list[Step], first: bool, last: bool) -> Leg:
-        middle = place = self._utak(run[0])
-        taken = self.errand.held and first and self._square(run[0]) == self.errand.square
+    def _leg(self, group: list[Step], first: bool, last: bool) -> Leg:
+        """Return the leg of a group of steps with the same grasp, and move the shape along."""
+        middle = place = self._robot_place(group[0])
+        taken = self.query.held and first and self._square(group[0]) == self.query.square
         walk = 0 if taken else abs(math.floor(place[0]) - self.at[0]) + abs(math.floor(place[1]) - self.at[1])
         if taken:
-            place, self.shape = self.begun.utak, self.begun.shape
-        square = grip_square(self.shape, place)
+            place, self.shape = self.before_nudge.utak, self.before_nudge.shape
+        square = direction_to_grasp(self.shape, place)
         assert taken or square is not None
         motions: list[Motion] = []
-        quarters = run[0][1]
-        for k, group in groupby(run, key=lambda step: step[1]):
-            steps = list(group)
+        quarters = group[0][1]
+        for k, same_quarter in groupby(group, key=lambda step: step[1]):
+            steps = list(same_quarter)
             if k != quarters:
-                motions.append(self._turned((k - quarters) % 4, self._utak(steps[0])))
+                motions.append(self._turn((k - quarters) % 4, self._robot_place(steps[0])))
             quarters = k
-            before = [place] if steps[0] is run[0] and math.dist(place, middle) > MIDDLE else []
-            motions += self._pushed(before, steps, last and steps[-1] is run[-1])
-        x, y = self.body.holds[run[0][0]].tolist()
-        hold = self.errand.hold_from((x + self.body.home[0] + 0.5, y + self.body.home[1] + 0.5))
-        self.at = self._square(run[-1])
-        return Leg(place, square or (0, 0), at_utak(place, motions), hold, walk, taken)
+            before = [place] if steps[0] is group[0] and math.dist(place, middle) > CENTRE_TOLERANCE else []
+            motions += self._pushes(before, steps, last and steps[-1] is group[-1])
+        x, y = self.body.holds[group[0][0]].tolist()
+        hold = self.query.grasp_offset((x + self.body.home[0] + 0.5, y + self.body.home[1] + 0.5))
+        self.at = self._square(group[-1])
+        return Leg(place, square or (0, 0), with_pivots_at_robot(place, motions), hold, walk, taken)
 
     def _square(self, step: Step) -> tuple[int, int]:
-        """Utak's square at a step."""
-        x, y = self._utak(step)
+        """Return (column, row) of the robot's square at a step."""
+        x, y = self._robot_place(step)
         return math.floor(x), math.floor(y)
 
-    def _turned(self, quarters: int, utak: XY) -> Motion:
-        """Turn the shape; half a turn the way that has more room."""
+    def _turn(self, quarters: int, utak: XY) -> Motion:
+        """Return the turn of the shape by quarters, and turn the shape; half a turn goes the way that has more room."""
         ways = [90.0] if quarters == 1 else [-90.0] if quarters == 3 else [180.0, -180.0]
         turns = [Rotate(degrees, utak) for degrees in ways]
-        roomy = padded(self.shape, self.errand.margin)
-        for shape in (roomy, self.shape):
+        with_margin = padded_shape(self.shape, self.query.margin)
+        for shape in (with_margin, self.shape):
             for turn in turns:
-                if self.errand.yard.lets(shape, utak, turn):
+                if self.query.workspace.lets(shape, utak, turn):
                     self.shape = turn.carry(self.shape)
                     return turn
         self.shape = turns[0].carry(self.shape)
         return turns[0]
 
-    def _pushed(self, before: list[XY], steps: list[Step], last: bool) -> list[Motion]:
-        """The pushes along the steps of one quarter turn, as few as can be; the last ones right to the goal.
+    def _pushes(self, before: list[XY], steps: list[Step], last: bool) -> list[Motion]:
+        """Return the pushes along the steps of one quarter turn, as few as possible, and move the shape along.
 
-        before : where Utak is before he comes to the first of the steps.
+        Parameters
+        ----------
+        before : the robot's place before it comes to the first step, if it is another one.
+        last : whether these are the last pushes, which go straight to the goal.
         """
         stops, corners = self._stops(before, steps)
-        goal = self.errand.goal
+        goal = self.query.goal
         if last and isinstance(goal, At):
-            end, here = placed(self.errand.shape, goal.pose).centroid, self.shape.centroid
+            end, here = placed(self.query.shape, goal.pose).centroid, self.shape.centroid
             final = stops[0] + np.array([end.x - here.x, end.y - here.y])
             if np.abs(final - stops[-1]).max() > 1e-9:
                 corners = np.append(corners, len(stops))
                 stops = np.vstack([stops, final])
         ends = self._ends(steps[0]) if last and not isinstance(goal, At) else np.empty((0, 2))
-        push = PushSegment(self.shape, stops, corners, ends, self.errand.margin, self.errand.pull)
+        push = PushSegment(self.shape, stops, corners, ends, self.query.margin, self.query.pull)
         motions: list[Motion] = []
-        for (x, y), (u, v) in pairwise(push.pieces(self.errand.yard).tolist()):
-            motions.append(rounded(Translate(u - x, v - y)))
+        for (x, y), (u, v) in pairwise(push.pieces(self.query.workspace).tolist()):
+            motions.append(round_motion(Translate(u - x, v - y)))
             self.shape = motions[-1].carry(self.shape)
         return motions
 
     def _ends(self, step: Step) -> Floats:
-        """Where Utak is when the shape, held and turned as in a step, lies well at the goal: (n, 2), some of them."""
+        """Return places of the robot, (n, 2), at which the shape, held and turned as in a step, lies well at the goal.
+
+        At most about MAX_END_SAMPLES of them are returned.
+        """
         hold, quarters, _, _ = step
         places = np.flatnonzero(self.ends[quarters] == 0)
-        row, column = np.divmod(places[:: math.ceil(len(places) / ENDS) or 1], self.grid.stride)
+        row, column = np.divmod(places[:: math.ceil(len(places) / MAX_END_SAMPLES) or 1], self.grid.stride)
         ends: Floats = np.column_stack([column, row]) - self.grid.pad + self.holds[quarters][hold] + 0.5
         return ends
 
     def _stops(self, before: list[XY], steps: list[Step]) -> tuple[Floats, Longs]:
-        """Where Utak is at each place on the way (n, 2), and at which of them the way turns, both ends among them."""
-        stops = [*before, self._utak(steps[0])]
-        corners, heading = [0], 8
-        for here, after in pairwise(steps):
-            if after[3] == here[3]:
+        """Return the robot's places on the path, (n, 2), and the indices of those where it turns, ends included."""
+        stops = [*before, self._robot_place(steps[0])]
+        corners, direction = [0], 8
+        for here, following in pairwise(steps):
+            if following[3] == here[3]:
                 continue
-            if after[2] != heading and len(stops) > 1:
+            if following[2] != direction and len(stops) > 1:
                 corners.append(len(stops) - 1)
-            heading = after[2]
-            stops.append(self._utak(after))
+            direction = following[2]
+            stops.append(self._robot_place(following))
         if len(stops) > 1:
             corners.append(len(stops) - 1)
         return np.array(stops), np.array(corners, dtype=np.int64)

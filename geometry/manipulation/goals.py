@@ -1,4 +1,4 @@
-"""Where something that is carried shall end: at a pose, inside a region, in a corner; and what such an end is worth."""
+"""Goals of carrying: at a pose, inside a region, in a corner, between walls; and the cost of each end pose."""
 
 import math
 from dataclasses import dataclass, replace
@@ -18,25 +18,30 @@ __all__ = ["At", "Between", "End", "InCorner", "Inside"]
 
 Extent = TypeVar("Extent", float, npt.NDArray[np.float64])
 
-CLOSE = 1e-6  # squares: by which an end may miss a region's border
-VICINITY = 10.0  # squares: how near is near
-UNEASY = 2 * COMMAND // 5  # the price of an end that meets the goal only just
+GOAL_TOLERANCE = 1e-6  # squares; rounding by which an end may miss a region's border
+ROOMY_RADIUS = 10.0  # squares; convention: a roomy place further than this from the wished one does not count
+TIGHT_END_COST = 2 * COMMAND // 5  # of an end that only just meets the goal; chosen, no measurement on record
 
 
 @dataclass(frozen=True)
 class At:
-    """A goal: the shape turned about its own centroid by pose.degrees and then moved by (pose.x, pose.y)."""
+    """A goal: the shape turned about its own centroid by pose.degrees, then moved by (pose.x, pose.y) squares."""
 
     pose: Pose
 
 
 @dataclass(frozen=True)
 class InCorner:
-    """A goal: the containing rectangle of the shape within `slack` squares of both walls of a corner, at any angle.
+    """A goal: the shape's bounding box within `slack` squares of both walls of a corner, at any angle of the shape.
 
-    x, y : the corner, where the walls meet, in squares. sx, sy : 1 when it is an eastern, a northern corner, else -1.
-    within : how far from the two walls it may reach at most, the lesser and the greater; what lies askew reaches more.
-    press : squares further from its walls at which a body may come by whole squares, to be pressed on from there.
+    Attributes
+    ----------
+    x, y : the corner, where the walls meet, in squares.
+    sx, sy : 1 for an eastern or northern corner, else -1.
+    slack : the greatest gap to each wall, in squares.
+    within : how far from the two walls the box may reach at most, in squares, the lesser and the greater; a shape that
+        is not aligned with the walls reaches further.
+    press : squares beyond `slack` from the walls at which a body may end on the lattice, to be pressed on from there.
     """
 
     x: float
@@ -48,26 +53,31 @@ class InCorner:
     press: float = 0.0
 
     def gaps(self, bounds: tuple[Extent, Extent, Extent, Extent]) -> tuple[Extent, Extent]:
-        """How far rectangles x0, y0, x1, y1 are from the two walls; negative beyond them."""
+        """Return the gaps between bounding boxes (x0, y0, x1, y1) and the two walls, in squares; negative beyond."""
         x = self.x - bounds[2] if self.sx > 0 else bounds[0] - self.x
         y = self.y - bounds[3] if self.sy > 0 else bounds[1] - self.y
         return x, y
 
     def admits(self, bounds: tuple[Extent, Extent, Extent, Extent]) -> Any:
-        """Whether containing rectangles x0, y0, x1, y1 lie in the corner: a bool, or an array of them."""
+        """Return whether bounding boxes (x0, y0, x1, y1) lie in the corner: a bool, or an array of bool."""
         x, y = self.gaps(bounds)
         across, up = x + bounds[2] - bounds[0], y + bounds[3] - bounds[1]
         near, far = np.minimum(across, up), np.maximum(across, up)
-        close = (np.minimum(x, y) >= -CLOSE) & (np.maximum(x, y) <= self.slack + CLOSE)
-        return close & (near <= self.within[0] + CLOSE) & (far <= self.within[1] + CLOSE)
+        close = (np.minimum(x, y) >= -GOAL_TOLERANCE) & (np.maximum(x, y) <= self.slack + GOAL_TOLERANCE)
+        return close & (near <= self.within[0] + GOAL_TOLERANCE) & (far <= self.within[1] + GOAL_TOLERANCE)
 
 
 @dataclass(frozen=True)
 class Between:
     """A goal: the shape within `slack` squares of two straight walls that meet in a corner at any angle.
 
-    x, y : the corner, in squares. walls : the unit normals of its walls, outward. The shape may lie beyond them: where
-    just they are is told by what stops it.
+    The shape may lie beyond the walls: their exact place shows only when they stop it.
+
+    Attributes
+    ----------
+    x, y : the corner, in squares.
+    walls : the unit normals of its walls, outward.
+    slack : the greatest gap to each wall, in squares.
     """
 
     x: float
@@ -76,18 +86,18 @@ class Between:
     slack: float = 1.0
 
     def gaps(self, shape: Any) -> tuple[float, float]:
-        """How far a shape is from the two walls; negative beyond them."""
+        """Return the gaps between a shape and the two walls, in squares; negative beyond them."""
         points = shapely.get_coordinates(shape)
         one, two = (float(np.dot(n, (self.x, self.y)) - (points @ np.array(n)).max()) for n in self.walls)
         return one, two
 
     def move(self, gaps: tuple[float, float]) -> tuple[float, float]:
-        """The translation that brings a shape nearer to the walls by so much each."""
+        """Return the translation (dx, dy) that reduces the gaps to the walls by these amounts, in squares."""
         dx, dy = np.linalg.solve(np.array(self.walls), np.array(gaps)).tolist()
         return dx, dy
 
     def about(self, reach: float) -> Any:
-        """The area no further from both walls than so many squares, and up to as far beyond them."""
+        """Return the area (shapely Polygon) at most `reach` squares from both walls, and at most so far beyond them."""
         ends = [
             self.move((-far, -wide))
             for far, wide in ((-reach, -reach), (-reach, reach), (reach, reach), (reach, -reach))
@@ -97,9 +107,11 @@ class Between:
 
 @dataclass(frozen=True)
 class Roomy:
-    """A goal on the way to others: two free squares all round, so that Utak can take the shape wherever he likes.
+    """A goal on the way to others: two free squares all round, so that the robot can grasp the shape from any side.
 
-    near : (x, y) that the shape's centroid shall be near to, the nearer the better; None for anywhere.
+    Attributes
+    ----------
+    near : (x, y) in squares, the wished place of the shape's centroid: the nearer, the cheaper; None for anywhere.
     """
 
     near: tuple[float, float] | None = None
@@ -109,26 +121,36 @@ End = At | Inside | InCorner | Between | Roomy
 
 
 def met(goal: End, shape: Any, now: Any) -> bool:
-    """Whether a shape that began as `shape` meets the goal as it lies now."""
+    """Return whether a shape meets the goal as it lies now.
+
+    Parameters
+    ----------
+    goal : any goal; a `Roomy` goal is never reached for certain, so the answer is False.
+    shape : the shape as it was when the goal was set.
+    now : the shape as it lies now.
+    """
     if isinstance(goal, Inside):
-        return any(part.buffer(CLOSE).covers(now) for part in shapely.get_parts(goal.polygon))
+        return any(part.buffer(GOAL_TOLERANCE).covers(now) for part in shapely.get_parts(goal.polygon))
     if isinstance(goal, InCorner):
         return bool(goal.admits(now.bounds))
     if isinstance(goal, Between):
-        return max(goal.gaps(now)) <= goal.slack + CLOSE
+        return max(goal.gaps(now)) <= goal.slack + GOAL_TOLERANCE
     if isinstance(goal, Roomy):
         return False
-    return bool(shapely.hausdorff_distance(placed(shape, goal.pose), now) <= CLOSE)
+    return bool(shapely.hausdorff_distance(placed(shape, goal.pose), now) <= GOAL_TOLERANCE)
 
 
 def placed(shape: Any, pose: Pose) -> Any:
-    """A shape turned about its centroid by pose.degrees, then moved by (pose.x, pose.y)."""
+    """Return a shape turned about its centroid by pose.degrees, then moved by (pose.x, pose.y) squares."""
     middle = np.array([shape.centroid.x, shape.centroid.y])
     return shapely.transform(shape, lambda p: turned(p - middle, pose.degrees) + middle + np.array([pose.x, pose.y]))
 
 
 def moved(goal: End, dx: float, dy: float) -> End:
-    """A goal, so much further east and north, for a shape that is moved as far."""
+    """Return a goal translated by (dx, dy) squares, for a shape that is translated as far.
+
+    An `At` goal is relative to the shape and stays the same.
+    """
     if isinstance(goal, Inside):
         return Inside(shapely.transform(goal.polygon, lambda p: p + np.array([dx, dy])))
     if isinstance(goal, InCorner | Between):
@@ -138,84 +160,104 @@ def moved(goal: End, dx: float, dy: float) -> End:
     return goal
 
 
-def prices(goal: End, shape: Any, body: Footprints, board: StateLattice, grid: Grid) -> Costs:
-    """The price of ending at each pose of the board, -1 where the goal is not met: (4, squares).
+def end_costs(goal: End, shape: Any, footprints: Footprints, lattice: StateLattice, grid: Grid) -> Costs:
+    """Return the cost of ending at each pose of the lattice, (4, cells) int32; -1 where the goal is not reached.
 
-    For a pose off the lattice the places beside it count, when it is a whole number of quarter turns away.
+    For a goal pose off the lattice, the places beside it count when it is a whole number of quarter turns away.
+
+    Parameters
+    ----------
+    shape : the shape as it lies.
+    footprints, lattice, grid : the state lattice on which is searched.
     """
     if isinstance(goal, At):
-        return _beside(goal.pose, shape, body, grid)
+        return _costs_at_pose(goal.pose, shape, footprints, grid)
     if isinstance(goal, Inside):
-        found = [_inside(goal, quarter(body.lying, k), board, grid) for k in range(4)]
+        found = [_costs_inside(goal, quarter(footprints.lying, k), lattice, grid) for k in range(4)]
     elif isinstance(goal, Between):
-        found = [_between(goal, shape, body, k, grid) for k in range(4)]
+        found = [_costs_between(goal, shape, footprints, k, grid) for k in range(4)]
     elif isinstance(goal, Roomy):
-        found = [_roomy(goal, quarter(body.lying, k), board, grid) for k in range(4)]
+        found = [_costs_roomy(goal, quarter(footprints.lying, k), lattice, grid) for k in range(4)]
     else:
-        found = [_cornered(goal, shape, body, k, grid) for k in range(4)]
-    return np.where(board.lies, np.array(found), -1).astype(np.int32)
+        found = [_costs_in_corner(goal, shape, footprints, k, grid) for k in range(4)]
+    return np.where(lattice.lies, np.array(found), -1).astype(np.int32)
 
 
-def _inside(goal: Inside, lying: npt.NDArray[np.int64], board: StateLattice, grid: Grid) -> Costs:
-    """The prices of one quarter: dear where the body, were it a square larger, would reach free squares outside."""
-    price = np.full(len(board.solid), -1, np.int32)
-    fat = np.unique(np.vstack([lying, *(lying + np.array(step) for step in DIRECTIONS)]), axis=0)
+def _costs_inside(goal: Inside, offsets: npt.NDArray[np.int64], lattice: StateLattice, grid: Grid) -> Costs:
+    """Return the costs of one quarter turn: higher where the body has less than a free square about it.
+
+    Squares outside the region count as blocked unless they are free.
+    """
+    cost = np.full(len(lattice.solid), -1, np.int32)
+    grown = np.unique(np.vstack([offsets, *(offsets + np.array(step) for step in DIRECTIONS)]), axis=0)
     for part in shapely.get_parts(goal.polygon):
-        outside = grid.padded(areas(part, grid.columns, grid.rows) < 1 - CLOSE, True)
-        inside, easy = grid.clear(outside, lying), grid.clear(outside & ~board.solid, fat)
-        price[inside & (price != 0)] = UNEASY
-        price[inside & easy] = 0
-    return price
+        outside = grid.padded(areas(part, grid.columns, grid.rows) < 1 - GOAL_TOLERANCE, True)
+        inside, easy = grid.clear(outside, offsets), grid.clear(outside & ~lattice.solid, grown)
+        cost[inside & (cost != 0)] = TIGHT_END_COST
+        cost[inside & easy] = 0
+    return cost
 
 
-def _roomy(goal: Roomy, lying: npt.NDArray[np.int64], board: StateLattice, grid: Grid) -> Costs:
-    """The prices of one quarter where all squares within two of the body's are free: a tenth of a command a square."""
+def _costs_roomy(goal: Roomy, offsets: npt.NDArray[np.int64], lattice: StateLattice, grid: Grid) -> Costs:
+    """Return the costs of one quarter turn where all squares within two of the body's are free.
+
+    The cost is a tenth of a command for each square from the wished place.
+    """
     reach = range(-2, 3)
-    fat = np.unique(np.vstack([lying + np.array((dx, dy)) for dx in reach for dy in reach]), axis=0)
-    roomy = grid.clear(board.solid, fat)
+    grown = np.unique(np.vstack([offsets + np.array((dx, dy)) for dx in reach for dy in reach]), axis=0)
+    roomy = grid.clear(lattice.solid, grown)
     if goal.near is None:
         return np.where(roomy, 0, -1).astype(np.int32)
     row, column = np.divmod(np.arange(len(roomy)), grid.stride)
     far = np.hypot(column - grid.pad + 0.5 - goal.near[0], row - grid.pad + 0.5 - goal.near[1])
-    return np.where(roomy & (far <= VICINITY), np.round(far * COMMAND / 10), -1).astype(np.int32)
+    return np.where(roomy & (far <= ROOMY_RADIUS), np.round(far * COMMAND / 10), -1).astype(np.int32)
 
 
-def _cornered(goal: InCorner, shape: Any, body: Footprints, k: int, grid: Grid) -> Costs:
-    """The prices of one quarter: dear where a gap to a wall is more than half of what is allowed."""
-    x0, y0, x1, y1 = lying_at(shape, body, k, body.home).bounds
+def _costs_in_corner(goal: InCorner, shape: Any, footprints: Footprints, k: int, grid: Grid) -> Costs:
+    """Return the costs of quarter turn k: higher where a gap to a wall is more than half of what is allowed."""
+    x0, y0, x1, y1 = shape_in_pose(shape, footprints, k, footprints.home).bounds
     row, column = np.divmod(np.arange((grid.rows + 2 * grid.pad) * grid.stride), grid.stride)
-    dx, dy = column - grid.pad - body.home[0], row - grid.pad - body.home[1]
+    dx, dy = column - grid.pad - footprints.home[0], row - grid.pad - footprints.home[1]
     bounds = x0 + dx, y0 + dy, x1 + dx, y1 + dy
     gap, most = np.maximum(*goal.gaps(bounds)), replace(goal, slack=goal.slack + goal.press)
-    return np.where(most.admits(bounds), np.where(gap <= goal.slack / 2 + CLOSE, 0, UNEASY), -1).astype(np.int32)
+    return np.where(
+        most.admits(bounds), np.where(gap <= goal.slack / 2 + GOAL_TOLERANCE, 0, TIGHT_END_COST), -1
+    ).astype(np.int32)
 
 
-def _between(goal: Between, shape: Any, body: Footprints, k: int, grid: Grid) -> Costs:
-    """The prices of one quarter: dear where a gap to a wall is more than half of what is allowed."""
-    gaps = goal.gaps(lying_at(shape, body, k, body.home))
+def _costs_between(goal: Between, shape: Any, footprints: Footprints, k: int, grid: Grid) -> Costs:
+    """Return the costs of quarter turn k: higher where a gap to a wall is more than half of what is allowed."""
+    gaps = goal.gaps(shape_in_pose(shape, footprints, k, footprints.home))
     row, column = np.divmod(np.arange((grid.rows + 2 * grid.pad) * grid.stride), grid.stride)
-    dx, dy = column - grid.pad - body.home[0], row - grid.pad - body.home[1]
+    dx, dy = column - grid.pad - footprints.home[0], row - grid.pad - footprints.home[1]
     gap = np.maximum(*(gap - x * dx - y * dy for gap, (x, y) in zip(gaps, goal.walls, strict=True)))
-    return np.where(gap <= goal.slack + CLOSE, np.where(gap <= goal.slack / 2, 0, UNEASY), -1).astype(np.int32)
+    return np.where(gap <= goal.slack + GOAL_TOLERANCE, np.where(gap <= goal.slack / 2, 0, TIGHT_END_COST), -1).astype(
+        np.int32
+    )
 
 
-def lying_at(shape: Any, body: Footprints, k: int, place: tuple[int, int]) -> Any:
-    """The shape in a pose of the board: k quarter turns about the middle of its home square, then moved."""
-    home = np.array(body.home) + 0.5
+def shape_in_pose(shape: Any, footprints: Footprints, k: int, place: tuple[int, int]) -> Any:
+    """Return the shape in a pose of the lattice: k quarter turns about the centre of its home square, then moved.
+
+    Parameters
+    ----------
+    place : (column, row) to which the home square goes.
+    """
+    home = np.array(footprints.home) + 0.5
     move = np.array(place) + 0.5
     return shapely.transform(shape, lambda p: turned(p - home, 90.0 * k) + move)
 
 
-def _beside(pose: Pose, shape: Any, body: Footprints, grid: Grid) -> Costs:
-    """The pose's own place on the board, or the up to four about it."""
+def _costs_at_pose(pose: Pose, shape: Any, footprints: Footprints, grid: Grid) -> Costs:
+    """Return the costs of the pose's own place on the lattice, or of the up to four places about it."""
     found = np.full((4, (grid.rows + 2 * grid.pad) * grid.stride), -1, np.int32)
     k = round(pose.degrees / 90.0)
     if abs(pose.degrees - 90.0 * k) > 1e-7:
         return found
-    there, here = placed(shape, pose).centroid, lying_at(shape, body, k, body.home).centroid
-    dx, dy = there.x - here.x + body.home[0], there.y - here.y + body.home[1]
-    for x in {math.floor(dx + CLOSE), math.ceil(dx - CLOSE)}:
-        for y in {math.floor(dy + CLOSE), math.ceil(dy - CLOSE)}:
+    there, here = placed(shape, pose).centroid, shape_in_pose(shape, footprints, k, footprints.home).centroid
+    dx, dy = there.x - here.x + footprints.home[0], there.y - here.y + footprints.home[1]
+    for x in {math.floor(dx + GOAL_TOLERANCE), math.ceil(dx - GOAL_TOLERANCE)}:
+        for y in {math.floor(dy + GOAL_TOLERANCE), math.ceil(dy - GOAL_TOLERANCE)}:
             if 0 <= x < grid.columns and 0 <= y < grid.rows:
                 found[k % 4, grid.number(x, y)] = round(100 * math.hypot(x - dx, y - dy))
     return found

@@ -1,4 +1,4 @@
-"""Where Utak can take a body as it lies, and what may be hoped of each such place."""
+"""Grasp candidates: places from which the robot can grasp a body as it lies, and the order in which to try them."""
 
 import math
 from dataclasses import dataclass
@@ -13,15 +13,19 @@ from geometry.raster.geodesic import reach
 from geometry.raster.rasterize import squares
 from geometry.state_lattice.footprints import DIRECTIONS
 
-SAMPLES = 60  # of a track
-FIFTHS = 5  # of a square: the unit of geometry.raster.geodesic
+MAX_TRACK_SAMPLES = 60  # poses of a track that are looked at; convention, for time
+FIFTHS_PER_SQUARE = 5  # derived: the unit of distances in geometry.raster.geodesic is a fifth of a square
 
 
 @dataclass(frozen=True)
-class Grasp:
-    """A place where Utak can take the body where it lies: (x, y), the middle of a square, and the squares to walk.
+class GraspCandidate:
+    """A place from which the robot can grasp the body where it lies.
 
-    taken : he is there and has hold of it.
+    Attributes
+    ----------
+    place : (x, y) in squares, the centre of a square, or the robot's own place.
+    walk : squares to walk to it.
+    taken : whether the robot is there and holds the body already.
     """
 
     place: XY
@@ -29,38 +33,50 @@ class Grasp:
     taken: bool = False
 
 
-def holds_about(errand: ManipulationQuery) -> list[Grasp]:
-    """The hold that he has, then those that he can walk to, the nearest first, without those refuted."""
-    shape, utak = errand.shape, errand.utak
-    rows, columns = errand.walk.shape
-    lying = squares(shape, columns, rows)
-    walk = errand.walk & ~lying
+def grasp_candidates(query: ManipulationQuery) -> list[GraspCandidate]:
+    """Return the present grasp if there is one, then those that the robot can walk to, nearest first.
+
+    Grasps that must be avoided are left out.
+    """
+    shape, utak = query.shape, query.utak
+    rows, columns = query.walk.shape
+    covered = squares(shape, columns, rows)
+    walk = query.walk & ~covered
     at = (min(max(math.floor(utak[0]), 0), columns - 1), min(max(math.floor(utak[1]), 0), rows - 1))
     walk[at[1], at[0]] = True
-    ways = reach(walk, *at)
-    beside = np.zeros_like(lying)
-    framed = np.pad(lying, 1)
+    distances = reach(walk, *at)
+    beside = np.zeros_like(covered)
+    framed = np.pad(covered, 1)
     for dx, dy in DIRECTIONS:
         beside |= framed[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns]
-    found = np.argwhere(beside & ~lying & errand.yard.free & (ways >= 0))
-    holds = [Grasp((column + 0.5, row + 0.5), int(ways[row, column]) // FIFTHS) for row, column in found.tolist()]
-    fit = [hold for hold in holds if not errand.avoids(*errand.hold_from(hold.place))]
-    own = [Grasp(utak, 0, True)] if errand.held else []
-    return own + sorted(fit, key=lambda hold: (hold.walk, hold.place))
+    found = np.argwhere(beside & ~covered & query.workspace.free & (distances >= 0))
+    candidates = [
+        GraspCandidate((column + 0.5, row + 0.5), int(distances[row, column]) // FIFTHS_PER_SQUARE)
+        for row, column in found.tolist()
+    ]
+    allowed = [candidate for candidate in candidates if not query.is_avoided(*query.grasp_offset(candidate.place))]
+    present = [GraspCandidate(utak, 0, True)] if query.held else []
+    return present + sorted(allowed, key=lambda candidate: (candidate.walk, candidate.place))
 
 
-def promise(errand: ManipulationQuery, hold: Grasp, track: Floats) -> tuple[bool, int, float, int, XY]:
-    """How good a hold is likely to be, the least the best: the hold that he has before all others.
+def grasp_rank(query: ManipulationQuery, candidate: GraspCandidate, track: Floats) -> tuple[bool, int, float, int, XY]:
+    """Return a sort key for grasps: the most promising has the least.
 
-    Then: how often the track would bring Utak into a wall; how far the furthest corner is; how far he has to walk.
+    Its parts are: whether it is not the present grasp; how often the track would bring the robot into a wall; the
+    distance of the body's furthest corner; the squares to walk; the place.
+
+    Parameters
+    ----------
+    track : (n, 3) float64, a path of the body alone: x, y in squares and angle in radians of some point of it; may be
+        empty.
     """
-    inside = 0
+    in_walls = 0
     if len(track):
-        way = evenly(track, 1.0, SAMPLES)
-        away = np.array(hold.place) - way[0, :2]
+        way = evenly(track, 1.0, MAX_TRACK_SAMPLES)
+        away = np.array(candidate.place) - way[0, :2]
         turn = way[:, 2] - way[0, 2]
         x = way[:, 0] + np.cos(turn) * away[0] - np.sin(turn) * away[1]
         y = way[:, 1] + np.sin(turn) * away[0] + np.cos(turn) * away[1]
-        inside = int(shapely.contains_xy(shapely.union_all(errand.yard.walls), x, y).sum())
-    far = round(float(shapely.hausdorff_distance(errand.shape, shapely.Point(hold.place))), 6)
-    return not hold.taken, inside, far, hold.walk, hold.place
+        in_walls = int(shapely.contains_xy(shapely.union_all(query.workspace.walls), x, y).sum())
+    far = round(float(shapely.hausdorff_distance(query.shape, shapely.Point(candidate.place))), 6)
+    return not candidate.taken, in_walls, far, candidate.walk, candidate.place

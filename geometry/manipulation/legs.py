@@ -1,7 +1,7 @@
-"""Legs of carrying: Utak walks to a place, takes the body, pushes and turns it, lets go. Nodes of a search made legs.
+"""Legs of a carrying plan: the robot walks to a place, grasps the body, pushes and turns it, releases it.
 
-# Strategy: the search pushes by steps along eight directions. Of the places that a push passes on the board as few as
-# can be are kept, those that see each other straight (exact first contact, with the margins wished for).
+# Strategy: the lattice search pushes by steps along eight directions. Of the places that a push passes, as few as
+# possible are kept: those from which the next one can be reached straight (exact first contact, with the margins).
 """
 
 import math
@@ -14,29 +14,31 @@ import numpy as np
 import shapely
 
 from geometry.kernels.arrays import XY, Bools, Floats, Longs
-from geometry.manipulation.workspace import Workspace, broad
+from geometry.manipulation.workspace import Workspace, widened_body
 from geometry.motion.se2 import Motion, Rotate, Translate
 from geometry.raster.rasterize import areas
 from geometry.state_lattice.footprints import DIRECTIONS
 
-STOPS = 40  # of a push that are looked at, or all where it turns
-NUMBERS = 9  # digits that commands are given with
-STRIDE = 12  # squares walked by a command, about
+MAX_STOPS = 40  # stops of a push that are tried as its corners, besides those where it turns; convention, for time
+COMMAND_DIGITS = 9  # decimal digits of the numbers in commands; convention
+WALK_SQUARES_PER_COMMAND = 12  # squares; estimate, as the cost of walking on the state lattice has it
 
 
 @dataclass(frozen=True)
 class Leg:
-    """What Utak does with the body from taking it to letting go.
+    """All that the robot does with the body from grasp to release.
 
     Attributes
     ----------
-    place : (x, y) where he stands to take it, table frame: the middle of a square, or where he is when he has it.
-    direction_square : (columns, rows) from his own square to the one of the body that he takes, each -1, 0 or 1.
-    motions : Translate (push) and Rotate (turn about where he then is), each free by exact first contact.
-    hold : (x, y) his place relative to the body's centroid, seen in the frame of the body as it lay when the plan was
-        asked for: if the body were turned back to how it lay then. To be given as `avoid` when the grasp fails.
+    place : (x, y) in squares, table frame, where the robot stands to grasp the body: the centre of a square, or the
+        robot's own place when it holds the body already.
+    direction_square : (columns, rows) from the robot's own square to the square of the body that it grasps, each -1, 0,
+        1.
+    motions : Translate (push) and Rotate (turn about the robot's place at that time), each free by exact first contact.
+    hold : (x, y) in squares, the offset of the grasp: the robot's place relative to the body's centroid, in the frame
+        of the body as it lay when the plan was asked for. To be given as `avoid` when the grasp fails.
     walk : squares to walk to get to the place, along rows and columns (an estimate).
-    taken : whether he has hold of the body already: he neither walks nor grasps. Only of the first leg of a plan.
+    taken : whether the robot holds the body already: it neither walks nor grasps. Only of the first leg of a plan.
     """
 
     place: XY
@@ -48,12 +50,16 @@ class Leg:
 
     @property
     def commands(self) -> int:
-        """About how many commands this takes: walks, grasp, pushes, turns, release."""
-        return math.ceil(self.walk / STRIDE) + (0 if self.taken else 1) + len(self.motions) + 1
+        """Return about how many commands the leg takes: walks, grasp, pushes, turns, release."""
+        return math.ceil(self.walk / WALK_SQUARES_PER_COMMAND) + (0 if self.taken else 1) + len(self.motions) + 1
 
 
-def grip_square(shape: Any, place: XY) -> tuple[int, int] | None:
-    """Which of the eight squares about Utak's own the body covers most, a straight one first; None when none."""
+def direction_to_grasp(shape: Any, place: XY) -> tuple[int, int] | None:
+    """Return the step (columns, rows) from the robot's square to the neighbour that the body covers most.
+
+    Of equally covered squares one that shares an edge comes first. None when the body covers none of the eight
+    neighbours.
+    """
     column, row = math.floor(place[0]) - 1, math.floor(place[1]) - 1
     near = shapely.transform(shape, lambda p: p - np.array([column, row]))
     covered = areas(near, 3, 3)
@@ -61,43 +67,56 @@ def grip_square(shape: Any, place: XY) -> tuple[int, int] | None:
     return best if covered[best[1] + 1, best[0] + 1] > 1e-9 else None
 
 
-def rounded(motion: Motion) -> Motion:
-    """A motion with its numbers as they will be commanded."""
+def round_motion(motion: Motion) -> Motion:
+    """Return a motion with its numbers rounded as they will be commanded."""
     if isinstance(motion, Translate):
-        return Translate(round(motion.dx, NUMBERS) + 0.0, round(motion.dy, NUMBERS) + 0.0)
-    return Rotate(round(motion.degrees, NUMBERS) + 0.0, motion.about)
+        return Translate(round(motion.dx, COMMAND_DIGITS) + 0.0, round(motion.dy, COMMAND_DIGITS) + 0.0)
+    return Rotate(round(motion.degrees, COMMAND_DIGITS) + 0.0, motion.about)
 
 
 def commands(legs: Sequence[Leg]) -> int:
-    """About how many commands some legs take."""
+    """Return about how many commands some legs take."""
     return sum(leg.commands for leg in legs)
 
 
-def at_utak(place: XY, motions: Sequence[Motion]) -> tuple[Motion, ...]:
-    """The motions with turns about where Utak is at that time, free of rounding."""
-    told: list[Motion] = []
+def with_pivots_at_robot(place: XY, motions: Sequence[Motion]) -> tuple[Motion, ...]:
+    """Return the motions with each turn about the robot's place at that time, exactly.
+
+    Parameters
+    ----------
+    place : (x, y) of the robot before the first motion, in squares.
+    """
+    pivoted: list[Motion] = []
     for motion in motions:
         if isinstance(motion, Translate):
             place = (place[0] + motion.dx, place[1] + motion.dy)
-            told.append(motion)
+            pivoted.append(motion)
         else:
-            told.append(motion._replace(about=place))
-    return tuple(told)
+            pivoted.append(motion._replace(about=place))
+    return tuple(pivoted)
 
 
 def shifted(leg: Leg, dx: float, dy: float) -> Leg:
-    """A leg, with all of it so much further east and north."""
+    """Return a leg with all of it translated by (dx, dy) squares."""
     place = leg.place[0] + dx, leg.place[1] + dy
-    return replace(leg, place=place, motions=at_utak(place, leg.motions))
+    return replace(leg, place=place, motions=with_pivots_at_robot(place, leg.motions))
 
 
 def may_push(shape: Any, utak: XY, dx: float, dy: float) -> bool:
-    """Whether a push leads away from Utak towards the body: it has a component along the line to its centroid."""
+    """Return whether a push (dx, dy) leads from the robot towards the body.
+
+    It must have a positive component along the line from the robot to the body's centroid.
+    """
     return bool(dx * (shape.centroid.x - utak[0]) + dy * (shape.centroid.y - utak[1]) > 1e-9)
 
 
 def only_pushes(shape: Any, place: XY, motions: Sequence[Motion]) -> bool:
-    """Whether no push goes backwards. shape, place : as the shape lies and where Utak is before the first motion."""
+    """Return whether no motion pulls.
+
+    Parameters
+    ----------
+    shape, place : the shape and the robot's place (x, y) before the first motion.
+    """
     for motion in motions:
         if isinstance(motion, Translate):
             if not may_push(shape, place, motion.dx, motion.dy):
@@ -109,11 +128,16 @@ def only_pushes(shape: Any, place: XY, motions: Sequence[Motion]) -> bool:
 
 @dataclass(frozen=True)
 class PushSegment:
-    """A push in several pieces that shall have fewer.
+    """A push in several straight pieces, to be replaced by one with fewer.
 
-    shape : as it lies when the push begins. stops : (n, 2) places of Utak on the way that is known, the first where he
-    is. corners : of the stops, those where it turns, both ends among them. ends : (m, 2) other places where it may end.
-    margin : of clearance for the shape. pull : whether he may go backwards.
+    Attributes
+    ----------
+    shape : the body as it lies when the push begins.
+    stops : (n, 2) places of the robot on the known path, in squares; the first is where it stands.
+    corners : indices of the stops at which the path turns, both ends among them.
+    ends : (m, 2) other places where the push may end.
+    margin : clearance for the shape, in squares.
+    pull : whether the robot may pull.
     """
 
     shape: Any
@@ -123,29 +147,29 @@ class PushSegment:
     margin: float
     pull: bool
 
-    def pieces(self, yard: Workspace) -> Floats:
-        """The stops to keep, so that the push has the fewest straight pieces, then the shortest: (k, 2)."""
+    def pieces(self, workspace: Workspace) -> Floats:
+        """Return the stops to keep, (k, 2), so that the push has the fewest straight pieces, then the least length."""
         if len(self.corners) <= 2:
             return self.stops[self.corners]
-        some = np.union1d(self.corners, np.arange(0, len(self.stops), math.ceil(len(self.stops) / STOPS)))
-        stops, corners = self.stops[some], np.searchsorted(some, self.corners)
+        sampled = np.union1d(self.corners, np.arange(0, len(self.stops), math.ceil(len(self.stops) / MAX_STOPS)))
+        stops, corners = self.stops[sampled], np.searchsorted(sampled, self.corners)
         known = {(int(a), int(b)) for a, b in pairwise(corners)}
         best: list[tuple[int, float, int]] = [(0, 0.0, -1)] + [(len(stops), math.inf, -1)] * (len(stops) - 1)
         for i in range(len(stops) - 1):
-            for j, free in enumerate(self._free(yard, stops[i], stops[i + 1 :]), i + 1):
+            for j, free in enumerate(self._free_pushes(workspace, stops[i], stops[i + 1 :]), i + 1):
                 if free or (i, j) in known:
-                    told = (best[i][0] + 1, best[i][1] + math.dist(stops[i], stops[j]), i)
-                    best[j] = min(best[j], told)
-        return self._traced(yard, stops, best)
+                    candidate = (best[i][0] + 1, best[i][1] + math.dist(stops[i], stops[j]), i)
+                    best[j] = min(best[j], candidate)
+        return self._traced_stops(workspace, stops, best)
 
-    def _traced(self, yard: Workspace, stops: Floats, best: list[tuple[int, float, int]]) -> Floats:
-        """The stops of the best way to the last one, or to another end where that takes fewer pieces."""
+    def _traced_stops(self, workspace: Workspace, stops: Floats, best: list[tuple[int, float, int]]) -> Floats:
+        """Return the stops of the best path to the last one, or to another end where that takes fewer pieces."""
         final, at = (best[-1][0], best[-1][1]), len(stops) - 1
         kept: list[Floats] = []
         for i in range(len(stops) - 1):
             if best[i][0] + 1 >= final[0] or not len(self.ends):
                 continue
-            free = self._free(yard, stops[i], self.ends)
+            free = self._free_pushes(workspace, stops[i], self.ends)
             if free.any():
                 far = np.where(free, np.hypot(*(self.ends - stops[i]).T), np.inf)
                 n = int(np.argmin(far))
@@ -155,24 +179,33 @@ class PushSegment:
             at = best[at][2]
         return np.array(kept[::-1])
 
-    def _free(self, yard: Workspace, here: Floats, there: Floats) -> Bools:
-        """To which of some places (n, 2) he can push straight from one: (n,)."""
+    def _free_pushes(self, workspace: Workspace, here: Floats, there: Floats) -> Bools:
+        """Return to which of the places `there` (n, 2) the robot can push straight from `here`, (n,) bool."""
         utak = (float(self.stops[0, 0]), float(self.stops[0, 1]))
         vectors = there - here
-        free = yard.far(broad(self.shape, utak, self.margin).after(Translate(*(here - self.stops[0]))), vectors)
+        free = workspace.far(
+            widened_body(self.shape, utak, self.margin).after(Translate(*(here - self.stops[0]))), vectors
+        )
         if not self.pull:
             free &= [may_push(self.shape, utak, dx, dy) for dx, dy in vectors.tolist()]
         return free
 
 
-def verified(yard: Workspace, shape: Any, legs: Sequence[Leg]) -> Any:
-    """The shape after all legs; None when one of the motions is not free or a grasp reaches nothing."""
+def verified(workspace: Workspace, shape: Any, legs: Sequence[Leg]) -> Any:
+    """Return the shape after all legs; None when a motion is not free or a grasp reaches nothing.
+
+    Parameters
+    ----------
+    workspace : where body and robot may be.
+    shape : the body as it lies.
+    legs : the legs to verify by exact first contact.
+    """
     for leg in legs:
         at = leg.place
-        if not leg.taken and grip_square(shape, at) is None:
+        if not leg.taken and direction_to_grasp(shape, at) is None:
             return None
         for motion in leg.motions:
-            if not yard.lets(shape, at, motion):
+            if not workspace.lets(shape, at, motion):
                 return None
             shape = motion.carry(shape)
             if isinstance(motion, Translate):

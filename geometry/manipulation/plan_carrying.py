@@ -1,13 +1,12 @@
-"""CarryingPlan: how Utak brings a body to a goal, letting go of it and taking it again where he must.
+"""Carrying plans: how the robot brings a body to a goal, releasing and grasping it again where it must.
 
     plan = plan_carrying(brick, free, (3.5, 3.5), Inside(room))
     for leg in plan.legs:
         ...  # walk to leg.place, grasp, push and turn, release
 
-# Strategy: first by whole squares and quarter turns (geometry.manipulation.lattice_planner): all stays on the
-# lattice, and what Utak
-# believes of places stays certain. Only where that finds nothing are the body alone (a proof when it cannot pass) and
-# any place and angle tried.
+# Strategy: first by whole squares and quarter turns (geometry.manipulation.lattice_planner): all stays on the lattice,
+and the robot's estimate of places stays certain. Only where that finds nothing, the body alone is planned (a proof when
+it cannot pass), and then any place and angle.
 """
 
 import math
@@ -21,40 +20,42 @@ import numpy as np
 from geometry.cspace.bottleneck import Bottleneck
 from geometry.cspace.plan_motion import MotionPlan
 from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.align import carry_straightened
-from geometry.manipulation.free_body import move_alone
+from geometry.manipulation.align import plan_aligned
+from geometry.manipulation.free_body import plan_body_alone
 from geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, met
-from geometry.manipulation.lattice_planner import carry_squarewise
+from geometry.manipulation.lattice_planner import plan_on_lattice
 from geometry.manipulation.legs import Leg, commands, shifted, verified
-from geometry.manipulation.press import pressed
+from geometry.manipulation.press import press_into_corner
 from geometry.manipulation.query import ManipulationQuery
-from geometry.manipulation.single_grasp import carry_freed, carry_held
+from geometry.manipulation.single_grasp import plan_by_freeing, plan_with_one_grasp
 from geometry.manipulation.workspace import Workspace
 from geometry.motion.first_contact import boundary_edges
 from geometry.motion.se2 import Pose, Rotate, Translate
 from geometry.motion.validation import check, sound
 
-LEAST_ANGLE = 0.1  # the sine of that at which two walls of a corner meet
-DEAREST_TURN = 2.5  # commands: with what a tight one costs besides, still below geometry.kernels.bucket_queue.RING
+MIN_CORNER_SINE = 0.1  # sine of the angle between the two walls of a corner, at least; convention
+# Commands; derived: with the extra cost of a tight turn it stays below geometry.kernels.bucket_queue.RING.
+MAX_TURN_COST = 2.5
 __all__ = ["At", "Between", "CarryingPlan", "InCorner", "Inside", "Leg", "Pose", "plan_carrying"]
 
 
 @dataclass(frozen=True)
 class CarryingPlan:
-    """What plan_carrying found.
+    """The result of plan_carrying.
 
     Attributes
     ----------
     status : "found"; "impossible": proved, the body cannot be moved there even by itself; "limit": not found, and not
         proved either.
-    legs : what Utak does, in order; () unless found, or when the goal is met already.
-    pose : how the body ends: turned about its centroid by degrees, then moved by (x, y), as in At.
-    polygon : the body as it ends. Both None unless found.
-    reason : when not found, what was in the way: "body" (the body by itself cannot pass), "hold" (it could, but Utak
-        with it was not found to), "start" (it overlaps a wall where it lies), "goal" (no such end); else "".
-    body : the plan of the body by itself, when that was asked; None else.
-    held : whether Utak had hold of the body when the plan was asked for. Unless the first leg goes on with that hold
-        (Leg.taken) he lets go first.
+    legs : what the robot does, in order; () unless found, or when the goal holds already.
+    pose : the end of the body: turned about its centroid by degrees, then moved by (x, y) squares, as in At; None
+        unless found.
+    polygon : the body as it ends; None unless found.
+    reason : when not found, what was in the way: "body" (the body by itself cannot pass), "hold" (it could, but the
+        robot with it was not found to), "start" (it overlaps a wall where it lies), "goal" (no such end); else "".
+    body : the motion plan of the body by itself, when that was planned; else None.
+    held : whether the robot held the body when the plan was asked for. Unless the first leg goes on with that grasp
+        (`Leg.taken`) it releases first.
     """
 
     status: str
@@ -67,41 +68,47 @@ class CarryingPlan:
 
     @property
     def goes_on(self) -> bool:
-        """Does it begin with the hold that Utak has?"""
+        """Return whether the plan begins with the grasp that the robot has."""
         return len(self.legs) > 0 and self.legs[0].taken
 
     @property
     def commands(self) -> int:
-        """About how many commands this takes: walks, grasps, pushes, turns, releases."""
+        """Return about how many commands the plan takes: walks, grasps, pushes, turns, releases."""
         lets_go_first = self.held and len(self.legs) > 0 and not self.goes_on
         return commands(self.legs) + int(lets_go_first)
 
     @property
     def length(self) -> float:
-        """How far the body's centroid is pushed, in squares, turns left out; nan unless found."""
+        """Return how far the body's centroid is pushed, in squares, turns left out; nan unless found."""
         if self.status != "found":
             return math.nan
         pushes = [m for leg in self.legs for m in leg.motions if isinstance(m, Translate)]
         return math.fsum(math.hypot(push.dx, push.dy) for push in pushes)
 
     def shifted(self, dx: float, dy: float) -> "CarryingPlan":
-        """The same plan so much further east and north; for one that was found."""
+        """Return the same plan translated by (dx, dy) squares."""
         polygon = None if self.polygon is None else Translate(dx, dy).carry(self.polygon)
         return replace(self, legs=tuple(shifted(leg, dx, dy) for leg in self.legs), polygon=polygon)
 
     @cached_property
     def passage(self) -> Bottleneck | None:
-        """The neck that is too narrow for the body; None unless impossible for want of one. Worked out when asked."""
+        """Return the neck that is too narrow for the body; None unless the plan is impossible because of one.
+
+        Computed on first access.
+        """
         return None if self.body is None else self.body.passage
 
     @cached_property
     def opens(self) -> bool:
-        """Would widening it alone help? Worked out when asked."""
+        """Return whether widening the passage would be enough. Computed on first access."""
         return self.body is not None and self.body.opens
 
     @cached_property
     def missing(self) -> float:
-        """By how much it is too narrow, in squares: see MotionPlan.missing. nan unless there is a passage."""
+        """Return the width that the passage lacks, in squares (see MotionPlan.missing); nan unless there is a passage.
+
+        Computed on first access.
+        """
         return math.nan if self.body is None else self.body.missing
 
 
@@ -118,36 +125,39 @@ def plan_carrying(
     held: bool = False,
     turn: float = 1.0,
 ) -> CarryingPlan:
-    """MotionPlan how Utak carries a body to a goal.
+    """Return a plan by which the robot carries a body to a goal.
 
     Parameters
     ----------
     shape : shapely Polygon where it lies, in squares, table frame.
     free : (rows, columns) bool, row 0 in the south: squares that nothing but the body may cover. All else, and all
-        outside the array, is wall for the body and for Utak.
-    utak : (x, y) where he stands.
+        outside the array, is wall for the body and for the robot.
+    utak : (x, y) of the robot, in squares.
     goal : At(pose), Inside(polygons), InCorner(x, y, sx, sy) or Between(x, y, walls).
-    margin : squares of clearance that pushes and turns of the body should keep from walls; kept where that is possible
-        without going far out of the way.
-    pull : False: every push must have a component from Utak towards the body's centroid.
-    avoid : holds not to be used, as told by Leg.hold.
-    walk : (rows, columns) bool: where Utak may walk with empty hands, from square to square by their edges; None for
-        `free`. The squares under the body are closed wherever it then lies; where it lay they open when it has gone.
+    margin : squares of clearance that pushes and turns of the body should keep from walls; kept where that needs no
+        long detour.
+    pull : False: every push must have a component from the robot towards the body's centroid.
+    avoid : offsets of grasps that must not be used, as in `Leg.hold`.
+    walk : (rows, columns) bool, where the robot may walk with empty hands, from square to square by their edges; None
+        for `free`. The squares under the body are closed wherever it then lies; where it lay they open when it has
+        gone.
     walls : shapely geometry, the walls where they are known better than by squares; `free` are then the squares that
         they leave whole. None for all that is not free.
-    held : whether Utak, where he stands, has hold of the body. The plan then goes on with that hold where that is no
-        dearer than to let go, walk and grasp, and says so by `taken` of its first leg, which begins just there. A hold
-        named in `avoid` is let go.
-    turn : how many commands a turn counts for, 1 to DEAREST_TURN: more where turns had better be avoided. Only plans by
-        whole squares go by it.
+    held : whether the robot, where it stands, holds the body. The plan then goes on with that grasp where that costs no
+        more than to release, walk and grasp; `taken` of its first leg says so, which begins at the robot's place. A
+        grasp in `avoid` is released.
+    turn : how many commands a turn counts for, 1 to MAX_TURN_COST: more where turns should be avoided. Only plans by
+        whole squares depend on it.
 
     Returns
     -------
-    CarryingPlan : every motion free by exact first contact for body and Utak as one, with its numbers as they are told.
+    CarryingPlan
+        Every motion is free by exact first contact for body and robot as one, with its numbers as they are commanded.
 
     Raises
     ------
-    ValueError : when the body has no area, or shapes of arrays or numbers do not make sense.
+    ValueError
+        When the body has no area, or shapes of arrays or numbers do not make sense.
     """
     free = np.ascontiguousarray(free, dtype=bool)
     _check(free, utak, margin, avoid, walk, turn)
@@ -158,45 +168,45 @@ def plan_carrying(
         return CarryingPlan("impossible", reason="start", held=held)
     margin = min(margin, float(max(free.shape)))
     walk = free if walk is None else np.ascontiguousarray(walk, dtype=bool)
-    errand = ManipulationQuery(shape, Workspace(free, walls), utak, goal, margin, pull, tuple(avoid), walk, turn=turn)
-    errand = replace(errand, held=held and not errand.avoids(*errand.hold_from(utak)))
+    query = ManipulationQuery(shape, Workspace(free, walls), utak, goal, margin, pull, tuple(avoid), walk, turn=turn)
+    query = replace(query, held=held and not query.is_avoided(*query.grasp_offset(utak)))
     if met(goal, shape, shape):
         return CarryingPlan("found", pose=Pose(0.0, 0.0), polygon=shape, held=held)
-    return replace(_planned(errand), held=held)
+    return replace(_first_plan(query), held=held)
 
 
-def _planned(errand: ManipulationQuery) -> CarryingPlan:
-    """The word of the first planner that finds something, or why none does."""
-    plan = _told(errand, pressed(errand, carry_squarewise(errand)))
-    if plan is None and isinstance(errand.goal, InCorner) and errand.goal.press:
-        errand = replace(errand, goal=replace(errand.goal, press=0.0))
-        plan = _told(errand, carry_squarewise(errand))
-    plan = plan or _told(errand, carry_straightened(errand))
+def _first_plan(query: ManipulationQuery) -> CarryingPlan:
+    """Return the plan of the first planner that finds one, or the reason why none does."""
+    plan = _plan_of(query, press_into_corner(query, plan_on_lattice(query)))
+    if plan is None and isinstance(query.goal, InCorner) and query.goal.press:
+        query = replace(query, goal=replace(query.goal, press=0.0))
+        plan = _plan_of(query, plan_on_lattice(query))
+    plan = plan or _plan_of(query, plan_aligned(query))
     if plan is not None:
         return plan
-    body = move_alone(errand)
+    body = plan_body_alone(query)
     if body.status == "impossible":
         return CarryingPlan("impossible", reason=body.reason or "body", body=body)
     if body.status == "found":
-        plan = _told(errand, carry_held(errand, body.track)) or _told(errand, carry_freed(errand))
-    else:  # where it lies too tightly to be told what it can do, it had better be brought out first
-        plan = _told(errand, carry_freed(errand)) or _told(errand, carry_held(errand, body.track))
+        plan = _plan_of(query, plan_with_one_grasp(query, body.track)) or _plan_of(query, plan_by_freeing(query))
+    else:  # it lies too tightly for an answer: first bring it out
+        plan = _plan_of(query, plan_by_freeing(query)) or _plan_of(query, plan_with_one_grasp(query, body.track))
     return plan or CarryingPlan("limit", reason="hold" if body.status == "found" else "body", body=body)
 
 
 def _check(free: Bools, utak: XY, margin: float, avoid: Sequence[XY], walk: Bools | None, turn: float) -> None:
-    """Raise for what makes no sense."""
+    """Raise ValueError for arguments that make no sense."""
     if free.ndim != 2 or free.size == 0 or (walk is not None and walk.shape != free.shape):
         raise ValueError("free and walk must be arrays of the same rows and columns, of which there must be some")
     check([*utak, *(v for hold in avoid for v in hold)], "utak and avoid")
     if not math.isfinite(margin) or margin < 0.0:
         raise ValueError("the margin must be finite and not negative")
-    if not 1.0 <= turn <= DEAREST_TURN:
-        raise ValueError(f"a turn counts for 1 to {DEAREST_TURN} commands, not {turn}")
+    if not 1.0 <= turn <= MAX_TURN_COST:
+        raise ValueError(f"a turn counts for 1 to {MAX_TURN_COST} commands, not {turn}")
 
 
 def _body(shape: Any) -> Any:
-    """The body, when it makes sense."""
+    """Return the body as a valid polygon with an area, or raise ValueError."""
     body = sound(shape, "the body")
     if body is None or body.geom_type != "Polygon" or not len(boundary_edges(body)):
         raise ValueError("the body must be a polygon with an area")
@@ -204,7 +214,7 @@ def _body(shape: Any) -> Any:
 
 
 def _check_goal(goal: End) -> None:
-    """Raise for a goal that makes no sense."""
+    """Raise ValueError for a goal that makes no sense."""
     if isinstance(goal, At):
         check(goal.pose, "the goal")
     elif isinstance(goal, InCorner):
@@ -212,20 +222,20 @@ def _check_goal(goal: End) -> None:
         if abs(goal.sx) != 1 or abs(goal.sy) != 1 or min(goal.slack, goal.press) < 0.0:
             raise ValueError("a corner's sx and sy must be 1 or -1, its slack and press not negative")
         if not goal.within[0] <= goal.within[1]:
-            raise ValueError("the lesser and the greater way within a corner must be told in this order")
+            raise ValueError("within must be the lesser and the greater distance in this order")
     elif isinstance(goal, Between):
         check([goal.x, goal.y, goal.slack, *goal.walls[0], *goal.walls[1]], "the goal")
-        if goal.slack < 0.0 or abs(float(np.linalg.det(np.array(goal.walls)))) < LEAST_ANGLE:
+        if goal.slack < 0.0 or abs(float(np.linalg.det(np.array(goal.walls)))) < MIN_CORNER_SINE:
             raise ValueError("two walls must meet at an angle, and the slack must not be negative")
     elif not isinstance(goal, Inside | Roomy):
         raise ValueError(f"the goal must be At, Inside, InCorner or Between, not {goal!r}")
 
 
-def _told(errand: ManipulationQuery, legs: Sequence[Leg] | None) -> CarryingPlan | None:
-    """The plan of some legs, when they are free and lead to the goal; else None."""
-    shape = errand.shape
-    end = None if legs is None else verified(errand.yard, shape, legs)
-    if legs is None or end is None or not met(errand.goal, shape, end):
+def _plan_of(query: ManipulationQuery, legs: Sequence[Leg] | None) -> CarryingPlan | None:
+    """Return the plan of some legs when they are free and lead to the goal; else None."""
+    shape = query.shape
+    end = None if legs is None else verified(query.workspace, shape, legs)
+    if legs is None or end is None or not met(query.goal, shape, end):
         return None
     degrees = math.fsum(m.degrees for leg in legs for m in leg.motions if isinstance(m, Rotate))
     dx, dy = end.centroid.x - shape.centroid.x, end.centroid.y - shape.centroid.y

@@ -1,6 +1,7 @@
 """Pressing a body into a corner: the last push is made longer where whole squares leave it too far from the walls.
 
-Utak may stand between body and wall: then whole squares leave a square free, and what he can still go is less than one.
+The robot may stand between body and wall. Then whole squares leave a square free, and the free distance left is less
+than a square.
 """
 
 from collections.abc import Sequence
@@ -8,58 +9,63 @@ from dataclasses import replace
 from functools import partial
 from itertools import product
 
-from geometry.manipulation.goals import CLOSE, InCorner
-from geometry.manipulation.legs import Leg, only_pushes, rounded, verified
+from geometry.manipulation.goals import GOAL_TOLERANCE, InCorner
+from geometry.manipulation.legs import Leg, only_pushes, round_motion, verified
 from geometry.manipulation.query import ManipulationQuery
 from geometry.motion.se2 import Motion, Rotate, Translate
 
 
-def pressed(errand: ManipulationQuery, legs: Sequence[Leg] | None) -> Sequence[Leg] | None:
-    """Legs after which the body lies in a corner, of such as bring it nearly there; the same where that is not free.
+def press_into_corner(query: ManipulationQuery, legs: Sequence[Leg] | None) -> Sequence[Leg] | None:
+    """Return legs after which the body lies in the corner, made from legs that bring it nearly there.
 
-    The last push is made longer, or else another one is made.
+    The last push is made longer, or another push is added. The legs stay the same where the goal is no corner with
+    `press`, where the body lies in the corner already, or where no such push is free.
     """
-    goal, shape = errand.goal, errand.shape
-    if legs is None or not isinstance(goal, InCorner) or not goal.press or not (legs or errand.held):
+    goal, shape = query.goal, query.shape
+    if legs is None or not isinstance(goal, InCorner) or not goal.press or not (legs or query.held):
         return legs
-    legs = legs or [Leg(errand.utak, (0, 0), (), errand.hold_from(errand.utak), taken=True)]
-    end = verified(errand.yard, shape, legs)
+    legs = legs or [Leg(query.utak, (0, 0), (), query.grasp_offset(query.utak), taken=True)]
+    end = verified(query.workspace, shape, legs)
     if end is None or goal.admits(end.bounds):
         return legs
     motions: list[Motion]
     last: Motion
     *motions, last = [Translate(0.0, 0.0), *legs[-1].motions]
     presses = [
-        Translate(goal.sx * x, goal.sy * y) for x, y in product(*map(partial(_steps, goal), goal.gaps(end.bounds)))
+        Translate(goal.sx * x, goal.sy * y)
+        for x, y in product(*map(partial(_press_distances, goal), goal.gaps(end.bounds)))
     ]
-    ways: list[list[Motion]] = [[*motions, last, press] for press in presses]
+    variants: list[list[Motion]] = [[*motions, last, press] for press in presses]
     if isinstance(last, Translate):
-        ways = [[*motions, Translate(last.dx + press.dx, last.dy + press.dy)] for press in presses] + ways
-    for way in ways:
-        longer = [*legs[:-1], replace(legs[-1], motions=tuple(rounded(motion) for motion in way if _moves(motion)))]
-        there = verified(errand.yard, shape, longer)
-        if there is not None and goal.admits(there.bounds) and _may(errand, longer):
+        variants = [[*motions, Translate(last.dx + press.dx, last.dy + press.dy)] for press in presses] + variants
+    for variant in variants:
+        longer = [
+            *legs[:-1],
+            replace(legs[-1], motions=tuple(round_motion(motion) for motion in variant if _is_motion(motion))),
+        ]
+        there = verified(query.workspace, shape, longer)
+        if there is not None and goal.admits(there.bounds) and _last_leg_may_push(query, longer):
             return longer
     return legs
 
 
-def _steps(goal: InCorner, gap: float) -> list[float]:
-    """How far to press on towards a wall that is so far away: up to it, or else as far as must be."""
+def _press_distances(goal: InCorner, gap: float) -> list[float]:
+    """Return how far to press on towards a wall at a distance `gap`: up to it, or else as far as the goal needs."""
     if gap <= goal.slack:
         return [0.0]
-    return [gap, gap - goal.slack] if gap <= goal.slack + goal.press + CLOSE else []
+    return [gap, gap - goal.slack] if gap <= goal.slack + goal.press + GOAL_TOLERANCE else []
 
 
-def _moves(motion: Motion) -> bool:
-    """Whether a motion is one at all."""
+def _is_motion(motion: Motion) -> bool:
+    """Return whether a motion is not null."""
     return isinstance(motion, Rotate) or any(motion)
 
 
-def _may(errand: ManipulationQuery, legs: Sequence[Leg]) -> bool:
-    """Whether no push of the last leg goes backwards where that is forbidden."""
-    if errand.pull:
+def _last_leg_may_push(query: ManipulationQuery, legs: Sequence[Leg]) -> bool:
+    """Return whether no motion of the last leg pulls, where pulling is forbidden."""
+    if query.pull:
         return True
-    shape = errand.shape
+    shape = query.shape
     for leg in legs[:-1]:
         for motion in leg.motions:
             shape = motion.carry(shape)

@@ -1,4 +1,4 @@
-"""An errand: what is to be carried where, by whom, among what."""
+"""A manipulation query: which body the robot shall bring where, and among what."""
 
 import math
 from collections.abc import Sequence
@@ -13,21 +13,29 @@ from geometry.manipulation.legs import Leg
 from geometry.manipulation.workspace import Workspace
 from geometry.motion.se2 import Pose, Rotate, Translate, turned
 
-NEAR = 0.25  # squares: a hold within this of one to be avoided is avoided
+GRASP_AVOID_DISTANCE = 0.25  # squares; convention: a grasp this near to one that failed is the same grasp
 
 
 @dataclass(frozen=True)
 class ManipulationQuery:
-    """What plan_carrying was asked.
+    """The arguments of plan_carrying, checked; all in squares, table frame.
 
-    shape : as it lies. yard : where it and Utak may be. utak : where he is. goal : where the shape shall end. margin :
-    clearance that pushes and turns should keep. pull : whether he may go backwards. avoid : holds not to be used, see
-    Leg.hold. walk : (rows, columns) squares where he may walk with empty hands. held : whether he has hold of the shape
-    already, by a hold that is not to be avoided. turn : how many commands a turn counts for.
+    Attributes
+    ----------
+    shape : shapely Polygon, the body where it lies.
+    workspace : where the body and the robot may be.
+    utak : (x, y) of the robot.
+    goal : where the shape shall end.
+    margin : clearance that pushes and turns should keep.
+    pull : whether the robot may pull; otherwise every push leads towards the body.
+    avoid : offsets of grasps that must not be used (see `Leg.hold`).
+    walk : (rows, columns) bool, squares where the robot may walk with empty hands.
+    held : whether the robot holds the shape already, by a grasp that need not be avoided.
+    turn : how many commands a turn counts for.
     """
 
     shape: Any
-    yard: Workspace
+    workspace: Workspace
     utak: XY
     goal: End
     margin: float
@@ -39,63 +47,65 @@ class ManipulationQuery:
 
     @property
     def square(self) -> tuple[int, int]:
-        """The (column, row) of Utak's own square, on the board."""
+        """Return (column, row) of the robot's square, clipped to the grid."""
         rows, columns = self.walk.shape
         column, row = math.floor(self.utak[0]), math.floor(self.utak[1])
         return min(max(column, 0), columns - 1), min(max(row, 0), rows - 1)
 
-    def hold_from(self, place: XY) -> XY:
-        """Where a place is relative to the centroid of the shape as it lies now: see Leg.hold."""
+    def grasp_offset(self, place: XY) -> XY:
+        """Return a place relative to the centroid of the shape as it lies now, in squares: see `Leg.hold`."""
         return place[0] - self.shape.centroid.x, place[1] - self.shape.centroid.y
 
-    def avoids(self, x: float, y: float) -> bool:
-        """Whether a hold, relative to the centroid of the shape as it lies now, is one to be avoided."""
-        return any(math.dist((x, y), refuted) <= NEAR for refuted in self.avoid)
+    def is_avoided(self, x: float, y: float) -> bool:
+        """Return whether a grasp must be avoided; x, y are its offset from the centroid of the shape as it lies now."""
+        return any(math.dist((x, y), refuted) <= GRASP_AVOID_DISTANCE for refuted in self.avoid)
 
 
-def after(errand: ManipulationQuery, legs: Sequence[Leg], held: bool = False) -> ManipulationQuery:
-    """The errand that is left after some legs: shape and Utak are elsewhere, the goal is the same.
+def query_after(query: ManipulationQuery, legs: Sequence[Leg], held: bool = False) -> ManipulationQuery:
+    """Return the query that is left after some legs: shape and robot are elsewhere, the goal is the same.
 
-    held : whether he has not let go at the end of them.
+    Parameters
+    ----------
+    held : whether the robot still holds the shape at the end of the legs.
     """
-    shape, utak = errand.shape, errand.utak
+    shape, utak = query.shape, query.utak
     for leg in legs:
         utak = leg.place
         for motion in leg.motions:
             shape = motion.carry(shape)
             utak = (utak[0] + motion.dx, utak[1] + motion.dy) if isinstance(motion, Translate) else utak
-    degrees = turned_by(legs)
-    avoid = tuple(_turned(hold, degrees) for hold in errand.avoid)
-    goal = _goal_after(errand.goal, errand.shape, shape, degrees)
-    return replace(errand, shape=shape, utak=utak, goal=goal, avoid=avoid, held=held)
+    degrees = total_rotation(legs)
+    avoid = tuple(_rotated_offset(offset, degrees) for offset in query.avoid)
+    goal = _goal_after(query.goal, query.shape, shape, degrees)
+    return replace(query, shape=shape, utak=utak, goal=goal, avoid=avoid, held=held)
 
 
-def joined(first: Sequence[Leg], then: Sequence[Leg]) -> list[Leg]:
-    """Legs and the legs of the errand after them, their holds told in the frame of the errand before.
+def join_legs(first: Sequence[Leg], following: Sequence[Leg]) -> list[Leg]:
+    """Return legs followed by the legs of the query after them, with all grasp offsets in the frame of the first query.
 
-    Where these go on with the hold that he has, the legs on both sides become one.
+    Where the following legs go on with the grasp that the robot has, the legs on both sides become one.
     """
-    degrees = turned_by(first)
-    rest = [replace(leg, hold=_turned(leg.hold, -degrees)) for leg in then]
+    degrees = total_rotation(first)
+    rest = [replace(leg, hold=_rotated_offset(leg.hold, -degrees)) for leg in following]
     if first and rest and rest[0].taken:
         return [*first[:-1], replace(first[-1], motions=first[-1].motions + rest[0].motions), *rest[1:]]
     return [*first, *rest]
 
 
-def turned_by(legs: Sequence[Leg]) -> float:
-    """By how much legs turn the shape, in degrees."""
+def total_rotation(legs: Sequence[Leg]) -> float:
+    """Return the angle by which legs turn the shape, in degrees, counter-clockwise positive."""
     return sum(motion.degrees for leg in legs for motion in leg.motions if isinstance(motion, Rotate))
 
 
 def _goal_after(goal: End, before: Any, now: Any, degrees: float) -> End:
-    """The same goal for a shape that has been moved."""
+    """Return the same goal for a shape that has been moved."""
     if not isinstance(goal, At):
         return goal
     there, here = placed(before, goal.pose).centroid, now.centroid
     return At(Pose(there.x - here.x, there.y - here.y, round(goal.pose.degrees - degrees, 7)))
 
 
-def _turned(hold: XY, degrees: float) -> XY:
-    """A hold in a frame turned by some degrees."""
-    x, y = turned(np.array([hold]), degrees)[0]
+def _rotated_offset(offset: XY, degrees: float) -> XY:
+    """Return a grasp offset rotated by an angle in degrees, counter-clockwise positive."""
+    x, y = turned(np.array([offset]), degrees)[0]
     return float(x), float(y)

@@ -1,4 +1,4 @@
-"""Free squares as a place to carry things in: the walls around them as polygons, ready for exact first contact."""
+"""Workspace: free squares and the walls around them as polygons, ready for exact first contact."""
 
 from functools import cached_property
 from typing import Any
@@ -11,79 +11,96 @@ from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Motion
 
-EDGE = 4.0  # squares: how thick the outside of the array is drawn
-ARM = 0.45  # squares: how far Utak should keep from walls, where he can
-WHOLE = 1.0 - 1e-12
+OUTER_WALL_THICKNESS = 4.0  # squares; convention: the thickness of the wall that surrounds the array
+ROBOT_CLEARANCE = 0.45  # squares; convention: the robot keeps so far from walls where it can, less than half a square
+FULL_MOTION = 1.0 - 1e-12  # fraction of a motion; rounding: free up to here counts as free to the end
 
 
 class Workspace:
-    """The squares on which a body and Utak may be; all else, and all outside the array, is wall.
+    """The squares on which a body and the robot may be; all else, and all outside the array, is wall.
 
     Parameters
     ----------
     free : (rows, columns) bool.
-    walls : shapely geometry, what is wall among and around the squares; None for all that is not free. Where walls are
+    walls : shapely geometry, the walls among and around the squares; None for all that is not free. Where walls are
         known better than by squares, `free` are those squares that they leave whole.
+
+    Attributes
+    ----------
+    free : (rows, columns) bool.
+    outer : shapely Polygon, the box to whose edge the surrounding wall reaches.
+    floor_polygon : shapely geometry, where a body may be.
+    walls : list of shapely Polygon.
+    obstacles : the walls, prepared for exact first contact.
     """
 
     def __init__(self, free: Bools, walls: Any = None) -> None:
         rows, columns = free.shape
         self.free = free
-        self.outer = shapely.box(-EDGE, -EDGE, columns + EDGE, rows + EDGE)
-        whole = shapely.union_all(_strips(free)) if free.any() else shapely.Polygon()
+        self.outer = shapely.box(
+            -OUTER_WALL_THICKNESS, -OUTER_WALL_THICKNESS, columns + OUTER_WALL_THICKNESS, rows + OUTER_WALL_THICKNESS
+        )
+        whole = shapely.union_all(_free_rectangles(free)) if free.any() else shapely.Polygon()
         self.floor_polygon = whole if walls is None else shapely.box(0, 0, columns, rows).difference(walls)
         self.walls = list(shapely.get_parts(self.outer.difference(self.floor_polygon)))
         self.obstacles = Obstacles(self.walls)
 
     @cached_property
     def floor(self) -> ObstacleField:
-        """The walls prepared for plan_motion."""
+        """Return the walls prepared for plan_motion. Computed on first access."""
         rows, columns = self.free.shape
         return ObstacleField(self.walls, (0.0, 0.0, float(columns), float(rows)))
 
     def lets(self, shape: Any, utak: tuple[float, float], motion: Motion) -> bool:
-        """Whether shape and Utak as one body can make a motion."""
-        return self.frees(ContactBody(shape, [utak]), motion)
+        """Return whether shape and robot as one rigid body can make a motion to its end."""
+        return self.is_free(ContactBody(shape, [utak]), motion)
 
-    def frees(self, body: ContactBody, motion: Motion) -> bool:
-        """Whether a body can make a motion to the end."""
-        return self.obstacles.first_contact(body, motion).fraction >= WHOLE
+    def is_free(self, body: ContactBody, motion: Motion) -> bool:
+        """Return whether a body can make a motion to its end."""
+        return self.obstacles.first_contact(body, motion).fraction >= FULL_MOTION
 
     def far(self, body: ContactBody, vectors: Floats) -> Bools:
-        """Which pushes (n, 2) a body can make to the end: (n,)."""
-        free: Bools = self.obstacles.pushes(body, vectors) >= WHOLE
+        """Return which pushes a body can make to their ends, (n,) bool.
+
+        Parameters
+        ----------
+        vectors : (n, 2) float64, the pushes (dx, dy) in squares.
+        """
+        free: Bools = self.obstacles.pushes(body, vectors) >= FULL_MOTION
         return free
 
 
-def broad(shape: Any, utak: tuple[float, float], margin: float) -> ContactBody:
-    """Shape and Utak with all the room about them that they should have: a margin, and an arm's length."""
-    return ContactBody(shapely.MultiPolygon(shapely.get_parts([padded(shape, margin), arms(utak)])))
+def widened_body(shape: Any, utak: tuple[float, float], margin: float) -> ContactBody:
+    """Return shape and robot as one body, widened by a margin (squares) and by ROBOT_CLEARANCE."""
+    return ContactBody(shapely.MultiPolygon(shapely.get_parts([padded_shape(shape, margin), clear_square(utak)])))
 
 
-def padded(shape: Any, margin: float) -> Any:
-    """A shape with a margin around it, its corners kept sharp."""
+def padded_shape(shape: Any, margin: float) -> Any:
+    """Return a shape with a margin (squares) around it, its corners kept sharp."""
     return shape.buffer(margin, join_style="mitre") if margin > 0.0 else shape
 
 
-def arms(utak: tuple[float, float]) -> Any:
-    """The square about Utak that should stay free."""
-    return shapely.box(utak[0] - ARM, utak[1] - ARM, utak[0] + ARM, utak[1] + ARM)
+def clear_square(utak: tuple[float, float]) -> Any:
+    """Return the square about the robot that should stay free."""
+    return shapely.box(
+        utak[0] - ROBOT_CLEARANCE, utak[1] - ROBOT_CLEARANCE, utak[0] + ROBOT_CLEARANCE, utak[1] + ROBOT_CLEARANCE
+    )
 
 
-def _strips(free: Bools) -> Any:
-    """The free squares as few rectangles: runs along rows, joined with the same runs of the rows that follow."""
-    strips = []
+def _free_rectangles(free: Bools) -> Any:
+    """Return the free squares as few rectangles: runs along rows, joined with equal runs of the rows that follow."""
+    rectangles = []
     growing: dict[tuple[int, int], int] = {}
     for row in range(len(free) + 1):
-        runs = _runs(free[row]) if row < len(free) else set()
+        runs = _row_runs(free[row]) if row < len(free) else set()
         for (x0, x1), since in sorted(growing.items()):
             if (x0, x1) not in runs:
-                strips.append(shapely.box(x0, since, x1, row))
+                rectangles.append(shapely.box(x0, since, x1, row))
         growing = {run: growing.get(run, row) for run in runs}
-    return strips
+    return rectangles
 
 
-def _runs(line: Bools) -> set[tuple[int, int]]:
-    """The runs of True in a row as (first, stop)."""
+def _row_runs(line: Bools) -> set[tuple[int, int]]:
+    """Return the runs of True in a row as (first, stop)."""
     change = np.flatnonzero(np.diff(np.concatenate([[False], line, [False]]).astype(np.int8)))
     return {(int(a), int(b)) for a, b in change.reshape(-1, 2)}

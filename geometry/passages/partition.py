@@ -46,12 +46,10 @@ def cut_floor(floor: Bools, passages: Iterable[Passage]) -> tuple[Labels, Bools]
 
     Returns
     -------
-    label : (rows + 2, columns + 2) int, the number of the piece, from 1; 0 off the floor and on squares whose
-        centres lie
-        on a mouth.
-    closed : (2, rows + 2, columns + 2) bool, the steps from each cell to the east (0) and to the north (1). Two
-        cells have
-        one label exactly when steps that are not closed lead from one to the other.
+    label : (rows + 2, columns + 2) int, the number of the piece, from 1; 0 off the floor and on squares whose centres
+        lie on a mouth.
+    closed : (2, rows + 2, columns + 2) bool, the steps from each cell to the east (0) and to the north (1). Two cells
+        have one label exactly when steps that are not closed lead from one to the other.
     """
     closed, whole = np.zeros((2, *floor.shape), np.bool_), floor.copy()
     for mouth in dict.fromkeys(mouth for passage in passages for mouth in passage.mouths):
@@ -124,8 +122,10 @@ def number_parts(free: Bools, closed: Bools, label: Labels, stack: Ints) -> int:
 
     Parameters
     ----------
-    free : (rows + 2, columns + 2) bool. closed : (2, rows + 2, columns + 2) bool, the steps that are cut.
-    label : (rows + 2, columns + 2) int, 0 at first. stack : (cells,) scratch.
+    free : (rows + 2, columns + 2) bool.
+    closed : (2, rows + 2, columns + 2) bool, the steps that are cut.
+    label : (rows + 2, columns + 2) int, 0 at first.
+    stack : (cells,) scratch.
     """
     width = free.shape[1]
     open_cells, labels = free.reshape(-1), label.reshape(-1)

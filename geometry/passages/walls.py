@@ -54,7 +54,7 @@ def find_walls(free: Bools) -> Walls:
     """
     floor = np.pad(free, 1)
     corners, triangles = _triangulate(floor)
-    middle = corners[triangles].sum(axis=1) // 3 + 1  # of a triangle that is free all squares about it are
+    middle = corners[triangles].sum(axis=1) // 3 + 1  # about the middle of a free triangle all squares are free
     triangles = triangles[floor[middle[:, 1], middle[:, 0]]]
     edges, sides, opposite = _shared(triangles)
     ends = corners[edges]

@@ -33,11 +33,9 @@ class Nodes(NamedTuple):
     Attributes
     ----------
     span : (room, 3) west and east end of the interval (x, in squares), and the length of the path to the root, in
-        squares;
-        a goal node has east < west.
+        squares; a goal node has east < west.
     link : (room, 3) the signed portal entered, from 1, or 0 for a bend between two portals of one strip; the root,
-        which
-        is the corner that sees the interval; the node before, -1 for none.
+        which is the corner that sees the interval; the node before, -1 for none.
     key : (room,) heap: the least length of a path through the node, in squares.
     heap : (room,) heap: the node.
     best : (2 portals,) the length of the shortest path known to a corner, in squares.

@@ -80,7 +80,8 @@ def leaves_own_square(padded: Bools, points: Floats, here: int, other: int) -> b
     Parameters
     ----------
     padded : (rows + 2, columns + 2) bool, the free squares with a blocked frame.
-    points : (n, 2), start first, goal last. here, other : indices of the line's ends.
+    points : (n, 2), start first, goal last.
+    here, other : indices of the line's ends.
     """
     last = len(points) - 1
     for end, far in ((here, other), (other, here)):

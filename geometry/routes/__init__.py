@@ -15,5 +15,6 @@ goal_routes  Routes to the nearest of many squares.
 loops  Closed paths that wind once about given blocked squares.
 queries  All queries about one layer, and their scratch.
 
-Public names: `Route`, `Layer`, `level_of`, `LayerQueries`, `routes_to_area`, `checked_goal`, `word_of_crossings`.
+Public names: `Route`, `Layer`, `least_squared_clearance`, `LayerQueries`, `routes_to_area`, `checked_goal`,
+`word_of_crossings`.
 """

@@ -16,7 +16,7 @@ from geometry.kernels.heap import pop, push
 from geometry.kernels.jit import bare
 from geometry.skeleton.skeleton import States
 
-PATH_SLACK = 1.05  # factor on the lower bound in biased searches; tuned on random squares: a third of the time
+PATH_SLACK = 1.05  # factor on the lower bound in biased searches; on random squares a third of the time, paths as good
 
 
 class RouteQuery(NamedTuple):
@@ -27,9 +27,8 @@ class RouteQuery(NamedTuple):
     joint : (4,) the nodes to which the start's two arcs lead, and those from which the goal's two arcs come.
     cost : (5,) the lengths of the five arcs, in squares; infinite where there is none.
     sight : (2, landmarks) the goal's distances from the landmarks, and the start's, in squares.
-    line : (4,) a point of the straight line from start to goal, and the line's normal, scaled: an arc's cost grows
-        by the
-        share that the product of this normal and the offset of the arc's head from the point gives; 0 for no bias.
+    line : (4,) a point of the straight line from start to goal, and the line's normal, scaled: an arc's cost grows by
+        the share that the product of this normal and the offset of the arc's head from the point gives; 0 for no bias.
     closed : (m,) 0 for chains that may be walked from end to end; bit 0: closed on request, bit 1: split by an end.
     closed_steps : (b, 2) chain and position of the steps that may not be taken: each from that position to the next
         one.

@@ -37,12 +37,12 @@ class Barrier(NamedTuple):
     closed_steps: Ints
 
     def separates(self, one: int, other: int) -> bool:
-        """Return whether two padded cells lie in different parts, or one of them on a cut."""
+        """Return whether two cells (indices in the flat padded grid) lie in different parts, or one on a cut."""
         label = self.label.reshape(-1)
         return bool(one != other and (label[one] != label[other] or not label[one]))
 
     def is_closed(self, cell: int, other: int) -> bool:
-        """Return whether the step between two edge neighbours is cut."""
+        """Return whether the step between two edge neighbours, indices in the flat padded grid, is cut."""
         low = min(cell, other)
         return bool(self.closed[int(abs(cell - other) > 1)].reshape(-1)[low])
 

@@ -104,8 +104,8 @@ class GoalArea:
     def cut_at_set(self, route: Route, region: GoalRegion) -> tuple[Ints, int]:
         """Return the word of a route to a representative up to the first cell of the set, and that cell.
 
-        The whole word is returned where the path from square to square, unlike the route, leads through a passage
-        to avoid.
+        The whole word is returned where the path from square to square, unlike the route, leads through a passage to
+        avoid.
         """
         strips, goal = self.layer.runs, self.queries.centre(region.cell)
         word = word_of_line(strips, route.points.tolist())
@@ -126,7 +126,10 @@ class GoalArea:
             tight, word, cell = better
 
     def moved_end(self, word: Ints, cell: int, step: int) -> tuple[Route, Ints, int] | None:
-        """Return the route, word and cell with the end moved by a step; None if that leaves the set or the step is cut."""
+        """Return the route, word and cell with the end moved by a step; None when the end may not move so.
+
+        The new cell must be in the set, and the step must not be cut.
+        """
         other = cell + step
         if other not in self.region_of or (self.barrier is not None and self.barrier.is_closed(cell, other)):
             return None

@@ -1,8 +1,8 @@
 """Goals that are sets of squares: a route may end anywhere in the set, and classes do not tell apart where.
 
-Each connected part of the set has a representative, its square of greatest clearance. Routes to it end where they
-first enter the set, and the end then moves from square to square as long as that shortens the route. Routes whose ends
-can be moved into each other within the set are of one class. The nearest square of all is found separately.
+Each connected part of the set has a representative, its square of greatest clearance. Routes to it end where they first
+enter the set, and the end then moves from square to square as long as that shortens the route. Routes whose ends can be
+moved into each other within the set are of one class. The nearest square of all is found separately.
 """
 
 from itertools import pairwise

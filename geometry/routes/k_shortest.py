@@ -15,9 +15,8 @@ from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
 from geometry.routes.astar import RouteQuery, Search, fill_goal_distances, find_path_to_goal
 
-LARGE_PATHGRAPH = (
-    2000  # chains; goal distances are first filled to 1.1 shortest paths from here on, to 1.5 below; tuned
-)
+# Chains; goal distances are first filled up to 1.1 shortest paths from here on, to 1.5 below; no measurement on record.
+LARGE_PATHGRAPH = 2000
 
 
 class PathStore(NamedTuple):
@@ -56,7 +55,9 @@ def k_shortest_paths(
     Parameters
     ----------
     ends : (m, 2) the end nodes of the chains.
-    landmarks, query, search, store : the pathgraph, the query, and scratch.
+    landmarks : arcs of the pathgraph and distances from landmarks.
+    query : the start's and the goal's arcs, and what is closed.
+    search, store : scratch, and the paths found.
     """
     start = landmarks.head.shape[0]
     search.stamp[1] = 0
@@ -77,7 +78,7 @@ def k_shortest_paths(
                 have = add_deviations(ends, landmarks, query, search, store, taken - 1, have, wanted)
         if limit == np.inf or (taken == wanted and store.cost[taken - 1] <= limit):
             return taken
-        limit = np.inf  # ways beyond the survey's limit may be missing
+        limit = np.inf  # paths beyond the limit of the distances may be missing
 
 
 @bare

@@ -100,7 +100,7 @@ def cells_of_word(layer: Layer, ends: Ends, word: Ints) -> list[int]:
 def lift_word(
     heights: Heights, states: Flags, width: int, chains: Chains, strips: Strips, ends: Ends, word: Ints, trail: Trail
 ) -> int:
-    """Write the least square and the chains of a word's path over the skeleton to the trail's queue.
+    """Write the least squared clearance and the chains of a word's path over the skeleton to the trail's queue.
 
     Returns how many numbers these are, or TRAIL_OVERFLOW when there is no room.
     """
@@ -114,7 +114,7 @@ def lift_word(
     while link >= 0:
         here = 0 + cell[link]
         lowest = heights[here] if heights[here] < lowest else lowest
-        if states[here] != 0 and here != last:  # the steepest ways up to the skeleton are no part of it
+        if states[here] != 0 and here != last:  # the steepest ascents to the skeleton are no part of it
             if last >= 0 and is_node(0 + states[last]):
                 out[size] = chains.leave[find(chains.node, last), direction_of(here - last)]
                 size += 1

@@ -1,8 +1,8 @@
 """Loops: closed paths over the pathgraph that wind once about given blocked squares.
 
-# Strategy: a ray from one of those squares to the screen's edge is crossed by some chains. A closed path winds as
-often as it crosses the ray, so the search runs on nodes times windings. Paths that never turn back on a chain are the
-classes of loops; the shortest are found by A* with exact distances.
+# Strategy: a ray from one of those squares to the screen's edge is crossed by some chains. A closed path winds as often
+as it crosses the ray, so the search runs on nodes times windings. Paths that never turn back on a chain are the classes
+of loops; the shortest are found by A* with exact distances.
 """
 
 from heapq import heappop, heappush

@@ -32,7 +32,7 @@ from geometry.routes.router import (
 from geometry.routes.tighten import tight_route
 from geometry.skeleton.chains import Chains
 
-# Paths tried beyond those wanted, since their order changes when they are pulled tight; tuned on the benchmark maps.
+# Paths tried beyond those wanted, since their order changes when they are pulled tight; see docs/geometry.md.
 EXTRA_PATHS = 8  # on pathgraphs of at most SMALL_PATHGRAPH chains
 EXTRA_PATHS_IF_LARGE = 1  # on larger pathgraphs
 SMALL_PATHGRAPH = 128  # chains
@@ -276,11 +276,11 @@ class LayerQueries:
         return Route(points, polyline_length(points), route.clearance, route.signature, route.chains)
 
     def cell(self, point: XY) -> int:
-        """Return the padded cell of a point's square."""
+        """Return the index, in the flat padded grid, of the cell of a point's square."""
         return (int(point[1]) + 1) * self._width + int(point[0]) + 1
 
     def centre(self, cell: int) -> XY:
-        """Return the centre of a padded cell, (x, y) in squares."""
+        """Return the centre (x, y), in squares, of a cell given by its index in the flat padded grid."""
         return cell % self._width - 0.5, cell // self._width - 0.5
 
     def _squared_clearance(self, point: XY) -> int:

@@ -109,12 +109,12 @@ def new_router_buffers(
 
 
 ROUTER_OVERFLOW = -1  # returned when some scratch is too small
-BIASES = 0.2, 6.0, 1.0  # shares of arc length (see set_bias); tuned: the best three on the benchmark maps
+BIASES = 0.2, 6.0, 1.0  # shares of arc length (see set_bias); by trial among the best three on the benchmark maps
 STRAIGHT_ENOUGH = 1.02  # times the straight line: a route no longer than this ends the search for a shorter one
 
 
 class RoutingData(NamedTuple):
-    """What the kernels read of a layer, flat where it is read by cell.
+    """Arrays of a layer as the kernels read them, flat where they are read by cell.
 
     Attributes
     ----------

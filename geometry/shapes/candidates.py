@@ -23,7 +23,7 @@ from geometry.shapes.misfit import (
     disagreement,
 )
 
-# All tuned on random shapes (tests/geometry/shapes), for the right class in reasonable time.
+# Chosen; no measurement on record. tests/geometry/shapes tells how often the class is right.
 DESCENT_STEPS = 150  # steps of a descent, at most
 DESCENT_STARTS = 4  # candidates from which a descent begins
 FAN_ANGLES = 24  # angles of candidates in a whole turn

@@ -34,7 +34,7 @@ CLASSES = {
 }  # ordered by the number of their parameters, then as the eye prefers them; convention
 RIM = 2  # squares of known floor around the image that count; convention
 DISC_CORNERS = 32  # corners of the polygon that stands for a disc; convention
-MAX_SLIGHT_NOTCH = 0.3  # share of the sides; an L with a smaller notch is likelier a disc; tuned on random discs
+MAX_SLIGHT_NOTCH = 0.3  # share of the sides; an L with a smaller notch counts as a disc; chosen
 
 
 @dataclass(frozen=True)
@@ -50,9 +50,8 @@ class Fit:
     width : in squares, of the rectangle that holds the shape, in the shape's own frame; of a disc the diameter, of a
         triangle the longest side.
     height : in squares, of that rectangle; of a disc the diameter, of a triangle the height on its longest side.
-    thick : in squares, of the arms or walls; 0 where there are none; of an L with arms of two widths that of its
-        foot, the
-        arm as long as the rectangle is wide.
+    thick : in squares, of the arms or walls; 0 where there are none; of an L with arms of two widths that of its foot,
+        the arm as long as the rectangle is wide.
     degrees : the angle by which the shape is turned, 0 to 360, counter-clockwise.
     """
 

@@ -21,7 +21,7 @@ Image = npt.NDArray[np.int8]
 IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN = 0, 1, 2  # states of a square of an image
 SQUARE_CLASS, BRICK_CLASS, ELL_CLASS, TEE_CLASS, HORSESHOE_CLASS, TRIANGLE_CLASS, DISC_CLASS = 0, 1, 2, 3, 4, 5, 6
 PARAMETER_COUNT = 7  # numbers of a shape, of whatever class
-AGREEMENT_MARGIN = 0.02  # squares; a gap with the right sign still costs below this; tuned on random shapes
+AGREEMENT_MARGIN = 0.02  # squares; a gap with the right sign still costs below this; chosen
 MIN_FEATURE = 0.7  # squares; convention: arms, gaps and notches of a proper shape are at least so long
 MIN_BRICK_RATIO = 1.15  # length by width; convention: a brick is at least so much longer than wide
 

@@ -29,10 +29,10 @@ from geometry.shapes.misfit import (
     count_wrong_squares,
 )
 
-SAMPLES_PER_STAGE = 2000  # shapes of the random walk, and then of the box; tuned for a spread of a few percent
+SAMPLES_PER_STAGE = 2000  # shapes of the random walk, and as many in the box; chosen, no measurement on record
 VOLUME_SEED = 1  # convention
-STEP_SCALES = 5  # step lengths of the walk, each half of the one before; tuned with the number of samples
-BOX_DEVIATIONS = 2.0  # standard deviations from the mean to the sides of the box; tuned with the number of samples
+STEP_SCALES = 5  # step lengths of the walk, each half of the one before; chosen
+BOX_DEVIATIONS = 2.0  # standard deviations from the mean to the sides of the box; chosen
 SIZE_RANGE, WIDTH_RANGE = 5.0, 2.0  # squares; prior: lengths and widths of arms are uniform over such ranges
 CORNER_RANGE = 10.0  # squares; prior: offsets of a triangle's corners from its third are uniform over such a range
 

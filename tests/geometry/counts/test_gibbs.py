@@ -1,4 +1,4 @@
-"""Pictures that agree with counts, and the parts of a picture."""
+"""Rasters sampled to agree with counts, and the parts of a raster."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ from geometry.counts.gibbs import (
     FINAL_INVERSE_TEMPERATURE,
     FREE,
     FULL,
-    NEIGHBOURS,
+    NEIGHBOUR_STEPS,
     UNSEEN,
     Counts,
     _flip_costs,
@@ -24,8 +24,8 @@ from geometry.counts.gibbs import (
 from geometry.counts.moments import blobs
 
 
-def counted(truth: np.ndarray, side: int, shift: int = 0) -> Counts:
-    """The exact counts of fields of side x side squares laid over a picture."""
+def counts_of(truth: np.ndarray, side: int, shift: int = 0) -> Counts:
+    """Return the exact counts of fields of side x side squares laid over a raster."""
     rows, columns = truth.shape
     flat = np.arange(truth.size).reshape(truth.shape)
     fields = [
@@ -38,7 +38,7 @@ def counted(truth: np.ndarray, side: int, shift: int = 0) -> Counts:
     return Counts(where, np.ones(where.shape, np.int16), count, count)
 
 
-def together(one: Counts, two: Counts) -> Counts:
+def joined_counts(one: Counts, two: Counts) -> Counts:
     return Counts(*(np.concatenate(pair) for pair in zip(one, two, strict=True)))
 
 
@@ -54,39 +54,39 @@ def square_world() -> np.ndarray:
     return truth
 
 
-def test_pictures_show_what_the_counts_of_two_looks_leave_no_doubt_about() -> None:
+def test_samples_show_what_the_counts_of_two_observations_determine() -> None:
     truth = square_world()
     ground = np.full(truth.shape, DRAWN, np.int8)
-    counts = together(counted(truth, 4), counted(truth, 4, 2))
+    counts = joined_counts(counts_of(truth, 4), counts_of(truth, 4, 2))
     drawn = pictures(ground, counts, np.zeros((8, *truth.shape), np.int8), 60, 0.5)
     assert np.abs(drawn.mean(0) - truth).mean() < 0.02
 
 
-def test_pictures_agree_with_what_is_settled_and_show_nothing_unseen() -> None:
+def test_samples_keep_fixed_squares_and_show_nothing_unseen() -> None:
     truth = square_world()
     ground = np.full(truth.shape, DRAWN, np.int8)
     ground[9:14, 10:15], ground[20:], ground[5, 5] = FULL, UNSEEN, FREE
-    drawn = pictures(ground, counted(truth, 4), np.ones((3, *truth.shape), np.int8), 10, 0.5)
+    drawn = pictures(ground, counts_of(truth, 4), np.ones((3, *truth.shape), np.int8), 10, 0.5)
     assert drawn.shape == (3, 24, 24)
     assert (drawn[:, 9:14, 10:15] == 1).all()
     assert not drawn[:, 20:].any()
     assert not drawn[:, 5, 5].any()
 
 
-def test_a_wall_that_lies_a_square_off_is_moved_as_a_whole() -> None:
+def test_a_wall_one_square_off_is_moved_as_a_whole() -> None:
     truth = np.zeros((20, 20), np.int8)
     truth[:, 7:9] = 1
     ground = np.full(truth.shape, DRAWN, np.int8)
     ground[:, [0, -1]] = ground[[0, -1]] = UNSEEN
     beside = np.roll(truth, 1, axis=1)
-    counts = together(counted(truth, 4, 1), counted(truth, 4, 3))
+    counts = joined_counts(counts_of(truth, 4, 1), counts_of(truth, 4, 3))
     drawn = pictures(ground, counts, np.repeat(beside[None], 6, 0), 4, FINAL_INVERSE_TEMPERATURE)
     shown = ground == DRAWN
     assert (drawn[:, shown] == truth[shown]).mean() > 0.97
 
 
 def cost(image: np.ndarray, ground: np.ndarray, edge: float = EDGE) -> float:
-    """What the outline of a picture costs, edge by edge and corner by corner."""
+    """Return the cost of the outline of a raster, edge by edge and corner by corner."""
     total = 0.0
     for row, column in np.ndindex(image.shape[0] - 1, image.shape[1] - 1):
         part = slice(row, row + 2), slice(column, column + 2)
@@ -103,7 +103,7 @@ def cost(image: np.ndarray, ground: np.ndarray, edge: float = EDGE) -> float:
     arrays(np.int8, (5, 5), elements=st.integers(0, 1)),
     arrays(np.int8, (5, 5), elements=st.sampled_from([DRAWN, DRAWN, DRAWN, UNSEEN])),
 )
-def test_the_price_of_a_change_is_the_difference_of_two_pictures(image: np.ndarray, ground: np.ndarray) -> None:
+def test_the_cost_of_a_flip_is_the_difference_of_two_rasters(image: np.ndarray, ground: np.ndarray) -> None:
     ground[2, 2] = DRAWN
     image[ground == UNSEEN] = 0
     changed = image.copy()
@@ -112,9 +112,9 @@ def test_the_price_of_a_change_is_the_difference_of_two_pictures(image: np.ndarr
     for point in range(4):
         row, column = 2 - point // 2, 2 - point % 2
         shown |= int((ground[row : row + 2, column : column + 2] != UNSEEN).all()) << point
-    near = sum(int(image[2 + rows, 2 + across]) << n for n, (rows, across) in enumerate(NEIGHBOURS))
-    price = _flip_costs()[(shown << 9) + (near << 1) + int(image[2, 2])]
-    assert price == pytest.approx(cost(changed, ground) - cost(image, ground), abs=1e-5)
+    neighbours = sum(int(image[2 + rows, 2 + across]) << n for n, (rows, across) in enumerate(NEIGHBOUR_STEPS))
+    change = _flip_costs()[(shown << 9) + (neighbours << 1) + int(image[2, 2])]
+    assert change == pytest.approx(cost(changed, ground) - cost(image, ground), abs=1e-5)
 
 
 @given(
@@ -123,22 +123,22 @@ def test_the_price_of_a_change_is_the_difference_of_two_pictures(image: np.ndarr
     arrays(np.int8, (6, 7), elements=st.integers(0, 1)),
     st.sampled_from([EDGE, 0.0]),
 )
-def test_a_picture_costs_its_outline_and_what_counts_say_against_it(
+def test_a_raster_costs_its_outline_and_the_errors_of_its_counts(
     images: np.ndarray, ground: np.ndarray, truth: np.ndarray, edge: float
 ) -> None:
     images[:, ground == UNSEEN] = 0
-    counts = counted(truth, 3)
+    counts = counts_of(truth, 3)
     where = counts.where.reshape(-1, 9)
     for image, found in zip(images, costs(images, ground, counts, edge), strict=True):
         off = abs(image.ravel()[where].sum(1, dtype=int) - truth.ravel()[where].sum(1, dtype=int)).sum()
         assert found == pytest.approx(cost(image, ground, edge) + COUNT_ERROR_COST * off)
 
 
-def test_the_same_arguments_give_the_same_pictures() -> None:
+def test_the_same_arguments_give_the_same_samples() -> None:
     truth = square_world()
     ground = np.full(truth.shape, DRAWN, np.int8)
     first, again = (
-        pictures(ground, counted(truth, 4), np.zeros((4, *truth.shape), np.int8), 20, 0.5) for _ in range(2)
+        pictures(ground, counts_of(truth, 4), np.zeros((4, *truth.shape), np.int8), 20, 0.5) for _ in range(2)
     )
     assert np.array_equal(first, again)
 
@@ -147,13 +147,13 @@ def test_straight_sides_are_preferred() -> None:
     truth = np.zeros((16, 16), np.int8)
     truth[:, :6] = 1  # a field of side 4 is half full wherever the wall's edge lies in it
     drawn = pictures(
-        np.full(truth.shape, DRAWN, np.int8), counted(truth, 4), np.zeros((8, *truth.shape), np.int8), 80, 0.5
+        np.full(truth.shape, DRAWN, np.int8), counts_of(truth, 4), np.zeros((8, *truth.shape), np.int8), 80, 0.5
     )
     assert np.abs(drawn.mean(0) - truth).mean() < 0.08
 
 
 @pytest.mark.parametrize("begun", [0, 1])
-def test_a_square_under_no_field_is_drawn_as_makes_the_picture_simple(begun: int) -> None:
+def test_a_square_under_no_field_is_drawn_so_that_the_raster_is_simple(begun: int) -> None:
     truth = square_world()
     ground = truth.copy()
     corner, middle, floor, wall = (9, 10), (11, 12), (16, 5), (3, 20)
@@ -188,5 +188,5 @@ def test_parts_that_touch_at_a_corner_are_two() -> None:
     assert found.labels.max() == 4
 
 
-def test_no_part_no_blob() -> None:
+def test_an_empty_raster_has_no_parts() -> None:
     assert blobs(np.zeros((4, 4), np.int8), np.full((4, 4), DRAWN, np.int8)).area.tolist() == []

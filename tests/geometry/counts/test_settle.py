@@ -1,4 +1,4 @@
-"""Kernels of what counts settle do what the same rules do that are written down plainly."""
+"""The kernels that settle squares against the same rules written down simply."""
 
 import numpy as np
 from hypothesis import given, settings
@@ -6,47 +6,54 @@ from hypothesis import strategies as st
 
 from geometry.counts.settle import FREE, FULL, OPEN, misfits, residue, settle
 
-SQUARES, MOST = 12, 6
+SQUARE_COUNT, MAX_FIELD_SQUARES = 12, 6
 
 
-def plainly(state, where, weight, low, high):
-    """All squares settled by the rules, one after another, until none tells any more; states by square."""
+def settled_by_rules(state, where, weight, low, high):
+    """Return the states of all squares, settled by the rules one after another until none settles any more."""
     state = dict(enumerate(state))
     while True:
-        told = {}
-        left = []
+        settled = {}
+        remaining = []
         for squares, weights, least, most in zip(where, weight, low, high, strict=True):
             open_ = {s: w for s, w in zip(squares, weights, strict=True) if w and state[s] == OPEN}
             full = sum(w for s, w in zip(squares, weights, strict=True) if state[s] == FULL)
             room = sum(open_.values())
-            left.append((open_, max(least - full, 0), min(most - full, room)))
+            remaining.append((open_, max(least - full, 0), min(most - full, room)))
         for value in (FREE, FULL):
-            for open_, least, most in left:
+            for open_, least, most in remaining:
                 room = sum(open_.values())
                 free = {s for s, w in open_.items() if w > most}
                 full = {s for s, w in open_.items() if w > room - least} - free
-                told |= dict.fromkeys(free if value == FREE else full, value)
-        if not told:
-            plain = [one for one in left if one[0] and max(one[0].values()) == 1]
-            pairs = [(a, b) for a in plain for b in plain if a is not b and a[0].keys() & b[0].keys()]
+                settled |= dict.fromkeys(free if value == FREE else full, value)
+        if not settled:
+            single_weight = [one for one in remaining if one[0] and max(one[0].values()) == 1]
+            pairs = [(a, b) for a in single_weight for b in single_weight if a is not b and a[0].keys() & b[0].keys()]
             for value in (FULL, FREE):
                 for (one, least, most), (two, fewest, greatest) in pairs:
                     only, common = one.keys() - two.keys(), len(one.keys() & two.keys())
-                    none = most - max(fewest - (len(two) - common), 0) <= 0
-                    every = least - min(greatest, common) >= len(only)
-                    if only and (none if value == FREE else every):
-                        told |= dict.fromkeys(only, value)
-        if not told:
-            return [state[s] for s in range(SQUARES)]
-        state |= told
+                    none_occupied = most - max(fewest - (len(two) - common), 0) <= 0
+                    all_occupied = least - min(greatest, common) >= len(only)
+                    if only and (none_occupied if value == FREE else all_occupied):
+                        settled |= dict.fromkeys(only, value)
+        if not settled:
+            return [state[s] for s in range(SQUARE_COUNT)]
+        state |= settled
 
 
 @st.composite
 def fields(draw):
-    """Some fields over a few squares, each of single or double squares, with counts that the same truth allows."""
-    truth = draw(st.lists(st.booleans(), min_size=SQUARES, max_size=SQUARES))
-    chosen = draw(st.lists(st.sets(st.integers(0, SQUARES - 1), min_size=1, max_size=MOST), min_size=1, max_size=9))
-    where, weight = np.zeros((len(chosen), MOST), np.int32), np.zeros((len(chosen), MOST), np.int16)
+    """Draw some fields over a few squares, each of single or double squares, with counts that one truth allows."""
+    truth = draw(st.lists(st.booleans(), min_size=SQUARE_COUNT, max_size=SQUARE_COUNT))
+    chosen = draw(
+        st.lists(
+            st.sets(st.integers(0, SQUARE_COUNT - 1), min_size=1, max_size=MAX_FIELD_SQUARES), min_size=1, max_size=9
+        )
+    )
+    where, weight = (
+        np.zeros((len(chosen), MAX_FIELD_SQUARES), np.int32),
+        np.zeros((len(chosen), MAX_FIELD_SQUARES), np.int16),
+    )
     low, high = np.zeros((2, len(chosen)), np.int16)
     for n, squares in enumerate(chosen):
         where[n, : len(squares)] = sorted(squares)
@@ -58,23 +65,23 @@ def fields(draw):
 
 @settings(max_examples=150, deadline=None)
 @given(fields(), st.data())
-def test_what_is_settled_look_by_look_is_what_the_rules_settle_of_all_fields_at_once(given_, data) -> None:
+def test_fields_added_in_turn_settle_the_same_squares_as_all_at_once(given_, data) -> None:
     where, weight, low, high = given_
-    state, by = np.full(SQUARES, OPEN, np.int8), np.full(SQUARES, -1, np.int16)
+    state, by = np.full(SQUARE_COUNT, OPEN, np.int8), np.full(SQUARE_COUNT, -1, np.int16)
     fresh = np.zeros(len(low), np.bool_)
     cuts = sorted({data.draw(st.integers(1, len(low))), len(low)})
     for number, (start, stop) in enumerate(zip([0, *cuts], cuts, strict=False)):
         fresh[start:stop] = True
         settle(state, by, where[:stop], weight[:stop], low[:stop], high[:stop], fresh[:stop], number)
-    wanted = plainly([OPEN] * SQUARES, where.tolist(), weight.tolist(), low.tolist(), high.tolist())
+    wanted = settled_by_rules([OPEN] * SQUARE_COUNT, where.tolist(), weight.tolist(), low.tolist(), high.tolist())
     assert state.tolist() == wanted
     assert (by >= 0).tolist() == [one != OPEN for one in wanted]
     assert not fresh.any()
 
 
 @settings(max_examples=50, deadline=None)
-@given(fields(), st.lists(st.sampled_from([OPEN, FREE, FULL]), min_size=SQUARES, max_size=SQUARES))
-def test_what_is_left_of_fields_and_which_cannot_be_right(given_, states) -> None:
+@given(fields(), st.lists(st.sampled_from([OPEN, FREE, FULL]), min_size=SQUARE_COUNT, max_size=SQUARE_COUNT))
+def test_remaining_counts_and_contradicted_fields(given_, states) -> None:
     where, weight, low, high = given_
     state, wrong = np.array(states, np.int8), np.zeros(len(low), np.bool_)
     found = misfits(state, where, weight, low, high, wrong)

@@ -1,4 +1,4 @@
-"""Maps of the Moving AI benchmarks: what is read as their users write it, and where anything else goes wrong."""
+"""Maps of the Moving AI benchmarks: texts that are read, and the places of errors in all others."""
 
 import pytest
 from hypothesis import given, settings
@@ -48,12 +48,12 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("case", READ)
-def test_what_users_write_is_read(case: str) -> None:
+def test_maps_as_users_write_them_are_read(case: str) -> None:
     assert parse_map(READ[case].encode()).tolist() == FREE
 
 
 @pytest.mark.parametrize("case", REFUSED)
-def test_anything_else_is_refused_where_it_goes_wrong(case: str) -> None:
+def test_other_texts_are_refused_with_the_place_of_the_error(case: str) -> None:
     text, place, what = REFUSED[case]
     with pytest.raises(MapError) as caught:
         parse_map(text.encode())
@@ -68,7 +68,7 @@ pieces = st.sampled_from(
 
 @settings(max_examples=200, deadline=None)
 @given(st.data())
-def test_mutated_maps_are_read_or_refused_with_their_place(data: st.DataObject) -> None:
+def test_mutated_maps_are_read_or_refused_with_a_place(data: st.DataObject) -> None:
     text = GOOD
     for _ in range(data.draw(st.integers(1, 4))):
         start, length = data.draw(st.integers(0, len(text))), data.draw(st.integers(0, 9))

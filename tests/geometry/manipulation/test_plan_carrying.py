@@ -1,4 +1,4 @@
-"""CarryingPlan plans: done again with shapely alone, and refused where closed forms say so."""
+"""Plans of plan_carrying: replayed with shapely alone, and refused where closed forms say so."""
 
 import math
 
@@ -21,7 +21,10 @@ ROOM = box(26, 2, 50, 22)
 
 
 def two_rooms(door: int, thick: int = 2) -> np.ndarray:
-    """Two rooms about 22 x 20 and a door so wide between them, from row 10 up."""
+    """Return the free squares of two rooms of about 22 x 20 with a door between them, from row 10 up.
+
+    `door` is its width in squares, `thick` the thickness of the wall.
+    """
     free = np.zeros((24, 52), bool)
     free[2:22, 2 : 26 - thick] = free[2:22, 26:50] = True
     free[10 : 10 + door, 26 - thick : 26] = True
@@ -41,7 +44,7 @@ def test_bodies_are_carried_into_the_next_room(shape: shapely.Polygon, goal: Ins
         assert max(goal.gaps(end.bounds)) <= goal.slack
 
 
-def test_all_stays_on_the_lattice() -> None:
+def test_a_body_on_the_lattice_ends_on_the_lattice() -> None:
     plan = plan_carrying(affinity.translate(ELL, 8, 8), two_rooms(5), (3.5, 18.5), Inside([ROOM]))
     for motion in [motion for leg in plan.legs for motion in leg.motions]:
         numbers = motion[:2] if isinstance(motion, Translate) else [motion.degrees / 90]
@@ -51,7 +54,7 @@ def test_all_stays_on_the_lattice() -> None:
 
 @given(st.floats(-4, 4), st.floats(-5, 5), st.booleans())
 @settings(max_examples=30, deadline=None)
-def test_where_one_push_will_do_it_is_one(dx: float, dy: float, held: bool) -> None:
+def test_one_push_is_planned_where_one_is_enough(dx: float, dy: float, held: bool) -> None:
     shape, free = box(8, 9, 12, 11), two_rooms(5)
     utak = (7.5, 10.5) if held else (3.5, 18.5)
     plan = plan_carrying(shape, free, utak, At(Pose(dx, dy, 0.0)), held=held)
@@ -71,12 +74,12 @@ def test_a_pose_is_reached_exactly(pose: Pose) -> None:
     assert plan.pose is not None and plan.pose[:2] == pytest.approx(pose[:2])
 
 
-def test_what_is_there_needs_no_legs() -> None:
+def test_a_goal_that_is_met_needs_no_legs() -> None:
     plan = plan_carrying(box(30, 5, 34, 7), two_rooms(5), (3.5, 18.5), Inside([ROOM]))
     assert (plan.status, plan.legs, plan.commands) == ("found", (), 0)
 
 
-def test_too_narrow_a_door_is_proved_impossible() -> None:
+def test_a_door_that_is_too_narrow_is_proved_impossible() -> None:
     plan = plan_carrying(box(5, 5, 8, 8), two_rooms(2), (3.5, 18.5), Inside([ROOM]))
     assert plan.status == "impossible"
     assert plan.passage is not None and plan.passage.width == pytest.approx(2, abs=0.02)
@@ -90,7 +93,7 @@ def test_a_held_body_is_only_pushed() -> None:
     replay(plan, shape, two_rooms(5), (18.5, 10.5), pull=False)
 
 
-def test_refuted_holds_are_not_used_again() -> None:
+def test_grasps_to_avoid_are_not_used() -> None:
     shape, refuted = box(8, 9, 12, 11), []
     for _ in range(4):
         plan = plan_carrying(shape, two_rooms(5), (3.5, 18.5), Inside([ROOM]), avoid=refuted)
@@ -113,8 +116,8 @@ def test_a_margin_keeps_turns_from_walls() -> None:
 
 @pytest.mark.parametrize("pull", [True, False])
 @pytest.mark.parametrize("utak", [(7.5, 9.5), (7.7, 10.3), (8.0, 8.2)])
-def test_who_has_hold_already_goes_on_with_it(utak: tuple[float, float], pull: bool) -> None:
-    """On the lattice or off it: neither released nor taken again, and a straight push is one command."""
+def test_the_present_grasp_is_used(utak: tuple[float, float], pull: bool) -> None:
+    """On the lattice or off it: neither released nor grasped again, and a straight push is one command."""
     dx, dy = utak[0] - 7.5, utak[1] - 9.5
     shape = affinity.translate(box(8, 9, 12, 11), dx, dy)
     free = two_rooms(5)
@@ -126,8 +129,8 @@ def test_who_has_hold_already_goes_on_with_it(utak: tuple[float, float], pull: b
 
 
 @pytest.mark.parametrize(("dx", "dy"), [(0.0, 0.0), (0.35, 0.06), (-0.4, 0.49)])
-def test_a_thing_on_the_lattice_stays_there_wherever_in_his_square_he_holds_it(dx: float, dy: float) -> None:
-    """Two squares along the wall that it lies against, into the corner: not a push to the middle of a square first."""
+def test_a_body_on_the_lattice_stays_there_when_held_off_the_centre_of_a_square(dx: float, dy: float) -> None:
+    """Two squares along the wall that it touches, into the corner; no push to the centre of a square first."""
     free, utak = two_rooms(5), (18.5 + dx, 19.5 + dy)
     square = box(19, 17, 22, 22)
     plan = plan_carrying(square, free, utak, InCorner(24, 22, 1, 1, slack=0.5), held=True)
@@ -136,7 +139,7 @@ def test_a_thing_on_the_lattice_stays_there_wherever_in_his_square_he_holds_it(d
     assert replay(plan, square, free, utak).bounds == (21.0, 17.0, 24.0, 22.0)
 
 
-def test_who_holds_a_thing_off_the_middle_turns_it_from_the_middle() -> None:
+def test_a_body_held_off_the_centre_is_turned_from_the_centre() -> None:
     """A turn about another place would leave it between the squares."""
     free, utak = two_rooms(3), (7.7, 9.4)
     brick = box(8, 8, 10, 13)
@@ -145,18 +148,21 @@ def test_who_holds_a_thing_off_the_middle_turns_it_from_the_middle() -> None:
     assert turns and all(np.allclose(np.array(turn.about) % 1, 0.5) for turn in turns)
 
 
-def test_a_hold_that_was_refuted_is_let_go() -> None:
+def test_a_present_grasp_that_must_be_avoided_is_released() -> None:
     shape, free, utak = box(8, 9, 12, 11), two_rooms(5), (7.5, 9.5)
     middle = shape.centroid
     refuted = [(utak[0] - middle.x, utak[1] - middle.y)]
     plan = plan_carrying(shape, free, utak, Inside([ROOM]), avoid=refuted, held=True)
     assert plan.status == "found" and not plan.legs[0].taken
-    bare = plan_carrying(shape, free, utak, Inside([ROOM]), avoid=refuted)
-    assert plan.legs == bare.legs and plan.commands == bare.commands + 1  # the release
+    unheld = plan_carrying(shape, free, utak, Inside([ROOM]), avoid=refuted)
+    assert plan.legs == unheld.legs and plan.commands == unheld.commands + 1  # the release
 
 
-def test_a_hold_that_leads_nowhere_is_let_go() -> None:
-    """Utak is in front of a brick in a blind alley as wide as it: he must walk round, and cannot; or let go behind."""
+def test_a_brick_leaves_a_blind_alley_only_when_held_from_behind() -> None:
+    """The alley is as wide as the brick.
+
+    In front of it the robot would have to walk round, and cannot. From behind it pushes the brick out.
+    """
     free = np.zeros((8, 30), bool)
     free[2:6, 1:29] = True
     shape, utak = box(20, 2.2, 22, 5.8), (22.5, 3.5)
@@ -166,8 +172,8 @@ def test_a_hold_that_leads_nowhere_is_let_go() -> None:
     assert behind.status == "found" and behind.legs[0].taken and behind.commands == 2
 
 
-def test_who_has_hold_of_what_is_askew_goes_on() -> None:
-    """A brick through a door that lets it through straight only: the first leg is the hold that he has."""
+def test_the_present_grasp_of_a_body_at_an_angle_is_used() -> None:
+    """A brick through a door that it passes only when aligned: the first leg uses the present grasp."""
     free, utak = two_rooms(3), (7.6, 6.1)
     brick = affinity.rotate(box(8, 4, 12, 7), 13)
     plan = plan_carrying(brick, free, utak, Inside([ROOM]), held=True)
@@ -184,7 +190,7 @@ def test_who_has_hold_of_what_is_askew_goes_on() -> None:
     st.sampled_from([Inside([ROOM]), InCorner(2, 22, -1, 1), At(Pose(24, 3, 30))]),
     st.booleans(),
 )
-def test_any_hold_anywhere_can_be_gone_on_with(
+def test_any_present_grasp_can_be_used(
     x: float, y: float, degrees: float, side: int, goal: At | Inside | InCorner, pull: bool
 ) -> None:
     free, shape = two_rooms(5), affinity.rotate(box(x, y, x + 4, y + 2), degrees)
@@ -202,7 +208,7 @@ def test_any_hold_anywhere_can_be_gone_on_with(
 
 @st.composite
 def bricks_and_doors(draw: st.DrawFn) -> tuple[shapely.Polygon, np.ndarray, int]:
-    """A brick in the western of two rooms, any way round; the floor; how much wider the door is than the brick."""
+    """Draw a brick at any angle in the western of two rooms; the floor; how much wider the door is."""
     thin, more, door = draw(st.integers(1, 3)), draw(st.integers(0, 3)), draw(st.integers(1, 5))
     brick = affinity.translate(box(0, 0, thin + more, thin), draw(st.integers(6, 13)), draw(st.integers(6, 13)))
     degrees = draw(st.sampled_from([0, 0, 90, 17, -38, 45, 131]))
@@ -225,14 +231,14 @@ def test_a_brick_passes_just_the_doors_that_are_wide_enough(
 
 
 def exact(floor: shapely.Polygon, columns: int = 25, rows: int = 12) -> tuple[np.ndarray, shapely.Polygon]:
-    """The squares that a floor covers whole, and its walls."""
+    """Return the squares that a floor covers whole, and its walls."""
     x, y = np.meshgrid(np.arange(columns), np.arange(rows))
     free = shapely.covers(floor, box(x, y, x + 1, y + 1))
     return free, box(-4, -4, columns + 4, rows + 4).difference(floor)
 
 
 def door_of(width: float) -> shapely.Polygon:
-    """Two rooms of 12 x 12, a door in a wall 1 thick between them."""
+    """Return the floor of two rooms of 12 x 12 with a door in a wall 1 square thick between them."""
     return box(0, 0, 12, 12).union(box(13, 0, 25, 12)).union(box(12, 6 - width / 2, 13, 6 + width / 2))
 
 
@@ -265,7 +271,7 @@ def test_a_brick_round_a_corner_on_both_sides_of_the_threshold(part: float, stat
     replay(plan, brick, free, (0.5, 0.5), walls=walls)
 
 
-def test_what_lies_askew_is_laid_straight_where_it_must_be() -> None:
+def test_a_body_at_an_angle_is_aligned_where_it_must_be() -> None:
     free, brick = two_rooms(3), affinity.rotate(box(8, 4, 12, 7), 33)
     plan = plan_carrying(brick, free, (3.5, 3.5), Inside([ROOM]))
     assert plan.status == "found" and len(plan.legs) == 2
@@ -273,20 +279,20 @@ def test_what_lies_askew_is_laid_straight_where_it_must_be() -> None:
     assert np.abs(shapely.get_coordinates(end) - shapely.get_coordinates(end).round()).max() < 1e-7
 
 
-def test_what_lies_askew_is_laid_straight_where_it_would_reach_too_far_from_a_corner() -> None:
+def test_a_body_at_an_angle_is_aligned_where_it_would_reach_too_far_from_a_corner() -> None:
     free, square = two_rooms(3), affinity.rotate(box(8, 4, 12, 8), 33)
-    askew = plan_carrying(square, free, (3.5, 3.5), InCorner(24, 22, 1, 1))
-    assert askew.status == "found" and len(askew.legs) == 1
+    at_an_angle = plan_carrying(square, free, (3.5, 3.5), InCorner(24, 22, 1, 1))
+    assert at_an_angle.status == "found" and len(at_an_angle.legs) == 1
     goal = InCorner(24, 22, 1, 1, within=(4.5, 4.5))
     plan = plan_carrying(square, free, (3.5, 3.5), goal)
     assert plan.status == "found"
     end = replay(plan, square, free, (3.5, 3.5))
-    assert goal.admits(end.bounds) and not goal.admits(askew.polygon.bounds)
+    assert goal.admits(end.bounds) and not goal.admits(at_an_angle.polygon.bounds)
 
 
-def test_what_no_plan_by_squares_lays_straight_is_laid_so_by_one_hold(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("geometry.manipulation.plan_carrying.carry_straightened", lambda _: None)
-    monkeypatch.setattr("geometry.manipulation.plan_carrying.carry_freed", lambda _: None)
+def test_a_body_that_no_lattice_plan_aligns_is_aligned_with_one_grasp(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("geometry.manipulation.plan_carrying.plan_aligned", lambda _: None)
+    monkeypatch.setattr("geometry.manipulation.plan_carrying.plan_by_freeing", lambda _: None)
     free, square = two_rooms(3), affinity.rotate(box(8, 4, 12, 8), 33)
     goal = InCorner(24, 22, 1, 1, within=(4.5, 4.5))
     plan = plan_carrying(square, free, (3.5, 3.5), goal)
@@ -294,7 +300,7 @@ def test_what_no_plan_by_squares_lays_straight_is_laid_so_by_one_hold(monkeypatc
     assert goal.admits(replay(plan, square, free, (3.5, 3.5)).bounds)
 
 
-def test_the_body_is_taken_again_from_the_other_side() -> None:
+def test_the_body_is_grasped_again_from_the_other_side() -> None:
     free = np.zeros((12, 20), bool)
     free[1:3, 1:19] = free[9:11, 1:19] = free[1:11, 1:3] = free[1:11, 17:19] = True  # a ring two squares wide
     brick = box(6, 1, 10, 3)
@@ -311,7 +317,7 @@ def turns_of(plan: CarryingPlan) -> int:
     return sum(isinstance(motion, Rotate) for leg in plan.legs for motion in leg.motions)
 
 
-def test_who_stands_on_the_wrong_side_walks_round_where_turns_are_dear() -> None:
+def test_the_robot_walks_round_instead_of_turning_where_turns_cost_more() -> None:
     brick, utak, corner = box(8, 9, 12, 11), (12.5, 9.5), InCorner(24, 22, 1, 1, 0.1)
     turned, walked = (plan_carrying(brick, two_rooms(5), utak, corner, turn=turn) for turn in (1.0, 2.5))
     assert turns_of(turned) == 1
@@ -323,16 +329,18 @@ def test_who_stands_on_the_wrong_side_walks_round_where_turns_are_dear() -> None
 
 @pytest.mark.parametrize("task", [6, 7, 9])
 @pytest.mark.parametrize("seed", range(6))
-def test_dear_turns_are_made_only_where_they_save_more(task: int, seed: int) -> None:
+def test_costly_turns_are_made_only_where_they_save_more(task: int, seed: int) -> None:
     world = scenario(task, 40 + seed)
     if not world.possible:
         return
     shape, free, goal = world.things[0].polygon, free_squares(world), goal_of(world)
-    cheap, dear = (plan_carrying(shape, free, (world.utak.x, world.utak.y), goal, turn=turn) for turn in (1.0, 2.5))
-    assert dear.status == cheap.status == "found"
-    assert faults(dear, shape, free, goal) == []
-    assert turns_of(dear) <= turns_of(cheap)
-    assert dear.commands + 1.5 * turns_of(dear) <= cheap.commands + 1.5 * turns_of(cheap) + 1  # walks count by length
+    cheap, costly = (plan_carrying(shape, free, (world.utak.x, world.utak.y), goal, turn=turn) for turn in (1.0, 2.5))
+    assert costly.status == cheap.status == "found"
+    assert faults(costly, shape, free, goal) == []
+    assert turns_of(costly) <= turns_of(cheap)
+    assert (
+        costly.commands + 1.5 * turns_of(costly) <= cheap.commands + 1.5 * turns_of(cheap) + 1
+    )  # walks count by length
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -363,7 +371,7 @@ def test_random_worlds(task: int, seed: int) -> None:
         {"turn": math.nan},
     ],
 )
-def test_nonsense_is_refused(wrong: dict[str, object]) -> None:
+def test_arguments_that_make_no_sense_are_refused(wrong: dict[str, object]) -> None:
     goal = At(Pose(1, 0))
     asked: dict[str, object] = {"shape": box(2, 2, 4, 4), "free": two_rooms(5), "utak": (9.5, 9.5), "goal": goal}
     with pytest.raises(ValueError):
@@ -372,7 +380,7 @@ def test_nonsense_is_refused(wrong: dict[str, object]) -> None:
 
 @given(st.integers(0, 40), st.integers(0, 40))
 @settings(max_examples=20, deadline=None)
-def test_what_is_asked_elsewhere_is_answered_there(dx: int, dy: int) -> None:
+def test_a_translated_query_has_a_translated_plan(dx: int, dy: int) -> None:
     free, shape, goal = two_rooms(4), box(5, 3, 8, 6), Inside(ROOM)
     plan = plan_carrying(shape, free, (3.5, 18.5), goal)
     framed = np.pad(free, ((dy, 3), (dx, 3)))
@@ -384,7 +392,7 @@ def test_what_is_asked_elsewhere_is_answered_there(dx: int, dy: int) -> None:
 
 
 @pytest.mark.parametrize("goal", [InCorner(50, 22, 1, 1, 0.5, (3.0, 4.0)), At(Pose(3, -2, 90)), Roomy(), Roomy((3, 4))])
-def test_a_goal_is_moved_and_back(goal: InCorner | At | Roomy) -> None:
+def test_a_goal_moved_there_and_back_is_the_same(goal: InCorner | At | Roomy) -> None:
     shape = box(0, 0, 3, 4)
     away = moved(goal, 7, -3)
     assert moved(away, -7, 3) == goal
@@ -396,7 +404,7 @@ def test_a_goal_is_moved_and_back(goal: InCorner | At | Roomy) -> None:
 
 @pytest.mark.parametrize("degrees", [10, 25, 45, 70])
 def test_a_body_is_brought_between_walls_at_any_angle(degrees: float) -> None:
-    """Seen as squares they are stairs; the body ends near both lines, behind which the true walls lie."""
+    """As squares the walls are stairs; the body ends near both lines, behind which the true walls are."""
     room = affinity.translate(affinity.rotate(box(0, 0, 18, 14), degrees, origin=(9, 7)), 4, 6)
     columns, rows = np.meshgrid(np.arange(28), np.arange(28))
     free = shapely.covers(room, shapely.box(columns, rows, columns + 1, rows + 1))

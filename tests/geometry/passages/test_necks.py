@@ -1,4 +1,4 @@
-"""Necks of the floor, the parts they cut it into, and ways that avoid them."""
+"""Necks of the floor, the parts into which they cut it, and routes that avoid them."""
 
 import math
 
@@ -45,7 +45,7 @@ THREE_ROOMS = """
 """
 
 
-def picture(text):
+def floor_of(text):
     return np.array([[c == "." for c in row] for row in text.split()[::-1]])
 
 
@@ -54,7 +54,7 @@ def doors(screen):
 
 
 def test_a_door_in_a_thick_wall_is_one_passage():
-    screen = Screen(picture(TWO_ROOMS))
+    screen = Screen(floor_of(TWO_ROOMS))
     (door,) = doors(screen)
     assert door.width == 3.0
     assert 10 <= door.place[0] <= 12
@@ -63,7 +63,7 @@ def test_a_door_in_a_thick_wall_is_one_passage():
 
 
 def test_rooms_are_the_parts_between_doors():
-    screen = Screen(picture(THREE_ROOMS))
+    screen = Screen(floor_of(THREE_ROOMS))
     found = doors(screen)
     assert [door.width for door in found] == [2.0, 2.0, 2.0]
     label = screen.parts(found)
@@ -80,7 +80,7 @@ def test_rooms_are_the_parts_between_doors():
 
 
 def test_routes_avoid_a_passage():
-    screen = Screen(picture(THREE_ROOMS))
+    screen = Screen(floor_of(THREE_ROOMS))
     found = doors(screen)
     assert screen.routes((4.5, 10.5), (13.5, 10.5))
     label = screen.parts(found)
@@ -95,14 +95,14 @@ def test_routes_avoid_a_passage():
 
 @settings(max_examples=150, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_doors_are_the_same_however_a_floor_is_turned_and_cut_it_where_they_say(seed):
+def test_doors_do_not_depend_on_the_orientation_of_the_floor_and_cut_it_at_their_mouths(seed):
     assert not doorways.disagreements(doorways.random_floor(np.random.default_rng(seed)))
 
 
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_the_floor_is_so_wide_on_both_sides_of_a_neck(seed):
-    """By shapely: drawn in by a little more than half the neck, it leaves room for those circles, apart."""
+def test_the_floor_has_the_stated_width_on_both_sides_of_a_neck(seed):
+    """By shapely: reduced by a little more than half the neck, the floor holds those circles in separate parts."""
     free = doorways.random_floor(np.random.default_rng(seed))
     rows, columns = np.nonzero(free)
     floor = shapely.union_all(shapely.box(columns, rows, columns + 1, rows + 1))
@@ -111,8 +111,10 @@ def test_the_floor_is_so_wide_on_both_sides_of_a_neck(seed):
         assert door.width <= min(door.sides) + 1e-6
         drawn_in = shapely.get_parts(floor.buffer(-door.width / 2 - 0.02, quad_segs=32))
         room = min(door.sides) - door.width / 2 - 0.05
-        wide = [part for part in drawn_in if shapely.maximum_inscribed_circle(part, tolerance=0.01).length >= room]
-        assert wide
+        wide_parts = [
+            part for part in drawn_in if shapely.maximum_inscribed_circle(part, tolerance=0.01).length >= room
+        ]
+        assert wide_parts
         assert not any(shapely.LineString(mouth).intersects(part) for mouth in door.mouths for part in drawn_in)
 
 
@@ -132,43 +134,43 @@ def test_every_free_square_is_in_one_part_or_in_a_doorway(free):
 
 @settings(max_examples=100, deadline=None)
 @given(oracles.screens(most=14))
-def test_a_passage_avoided_is_a_neck_cut(free):
+def test_avoiding_a_passage_equals_cutting_its_neck(free):
     screen = Screen(free)
     for passage in doors(screen):
         label = screen.parts([passage])
         (x, y), (u, v) = passage.gates
-        ways = screen.routes((x, y), (u, v), avoid=[passage])
-        assert bool(ways) == (label[int(y), int(x)] == label[int(v), int(u)])
+        routes = screen.routes((x, y), (u, v), avoid=[passage])
+        assert bool(routes) == (label[int(y), int(x)] == label[int(v), int(u)])
 
 
-@pytest.mark.parametrize("wide", [1, 2, 3, 4, 5])
-@pytest.mark.parametrize("thick", [1, 2, 3, 6])
-def test_one_door_for_every_width_and_thickness(wide, thick):
-    free = np.zeros((18, 30 + thick), bool)
+@pytest.mark.parametrize("width", [1, 2, 3, 4, 5])
+@pytest.mark.parametrize("thickness", [1, 2, 3, 6])
+def test_a_door_of_any_width_and_thickness_is_one_door(width, thickness):
+    free = np.zeros((18, 30 + thickness), bool)
     free[1:17, 1:15] = True
-    free[1:17, 15 + thick : 29 + thick] = True
-    free[6 : 6 + wide, 15 : 15 + thick] = True
+    free[1:17, 15 + thickness : 29 + thickness] = True
+    free[6 : 6 + width, 15 : 15 + thickness] = True
     screen = Screen(free)
     (door,) = doors(screen)
-    assert door.width == wide
+    assert door.width == width
     label = screen.parts([door])
-    assert label[3, 3] != label[3, 20 + thick]
+    assert label[3, 3] != label[3, 20 + thickness]
     assert label.max() == 2
 
 
 @pytest.mark.parametrize("turn", range(4))
 @pytest.mark.parametrize("mirrored", [False, True])
-@pytest.mark.parametrize("wide", [1, 2, 3, 4, 5, 6, 7])
-def test_a_door_flush_with_a_wall_is_a_door(wide, mirrored, turn):
-    """Along that wall the clearance is the same to both sides of the neck as in it."""
+@pytest.mark.parametrize("width", [1, 2, 3, 4, 5, 6, 7])
+def test_a_door_flush_with_a_wall_is_a_door(width, mirrored, turn):
+    """Along that wall the clearance on both sides of the neck is the same as in it."""
     free, mark = np.zeros((20, 36), bool), np.zeros((20, 36), int)
     free[2:18, 2:17] = free[2:18, 19:34] = True
-    free[2 : 2 + wide, 17:19] = True
+    free[2 : 2 + width, 17:19] = True
     mark[10, 7], mark[10, 31] = 1, 2
     free, mark = (np.ascontiguousarray(np.rot90(a[:, ::-1] if mirrored else a, turn)) for a in (free, mark))
     screen = Screen(free)
     (door,) = doors(screen)
-    assert door.width == wide
+    assert door.width == width
     label = screen.parts([door])
     assert label.max() == 2
     assert label[mark == 1] != label[mark == 2]
@@ -217,7 +219,7 @@ BULGE = """
 
 
 def test_a_corridor_with_a_bend_is_one_doorway():
-    screen = Screen(picture(L_CORRIDOR))
+    screen = Screen(floor_of(L_CORRIDOR))
     (door,) = screen.passages()
     assert door.width == 1.0
     assert {frozenset(mouth) for mouth in door.mouths} == {
@@ -227,14 +229,14 @@ def test_a_corridor_with_a_bend_is_one_doorway():
     assert screen.parts([door]).max() == 2
 
 
-def test_doors_one_behind_the_other_have_a_room_between_them_when_it_is_wide():
-    screen = Screen(picture(ONE_BEHIND_THE_OTHER))
+def test_two_doors_in_a_row_have_a_room_between_them_when_it_is_wide():
+    screen = Screen(floor_of(ONE_BEHIND_THE_OTHER))
     assert [door.width for door in screen.passages()] == [1.0, 1.0]
     assert screen.parts(screen.passages()).max() == 3
 
 
 def test_two_necks_with_nothing_wide_between_them_are_one_doorway():
-    screen = Screen(picture(BULGE))
+    screen = Screen(floor_of(BULGE))
     (door,) = screen.passages()
     assert {mouth[0][0] for mouth in door.mouths} == {7.0, 13.0}
     assert screen.parts([door]).max() == 2

@@ -1,4 +1,4 @@
-"""The shortest way against an exact visibility graph; the baselines; maps and pictures."""
+"""The shortest route against an exact visibility graph; the path-finders to compare with; maps and pictures."""
 
 from pathlib import Path
 from xml.etree import ElementTree
@@ -19,7 +19,7 @@ from tests.geometry.routes.test_routes import polygon, trips
 
 
 def pinches(free):
-    """Tiny squares about the points where two blocked squares touch at a corner."""
+    """Return tiny squares about the points where two blocked squares touch at a corner."""
     padded = np.pad(free, 1)
     return [
         shapely.box(x - 1e-7, y - 1e-7, x + 1e-7, y + 1e-7)
@@ -30,7 +30,7 @@ def pinches(free):
 
 
 def exact_length(free, start, goal):
-    """The shortest way in an exact visibility graph made with shapely."""
+    """Return the length of the shortest path in an exact visibility graph made with shapely, in squares."""
     space = polygon(free).buffer(1e-9, join_style="mitre").difference(shapely.union_all(pinches(free)).buffer(0))
     points = [tuple(start), tuple(goal), *map(tuple, oracles.corners_of(free))]
     graph = nx.Graph()
@@ -45,7 +45,7 @@ def exact_length(free, start, goal):
 
 @settings(max_examples=40, deadline=None)
 @given(trips(most=6))
-def test_shortest_is_the_exact_optimum(trip):
+def test_the_shortest_route_is_the_exact_optimum(trip):
     free, start, goal = trip
     if pinches(free):
         free = free.copy()
@@ -60,7 +60,7 @@ def test_shortest_is_the_exact_optimum(trip):
 
 @settings(max_examples=100, deadline=None)
 @given(trips(most=14))
-def test_shortest_is_never_longer_than_any_other(trip):
+def test_the_shortest_route_is_never_longer_than_another(trip):
     free, start, goal = trip
     screen = Screen(free)
     route, others = screen.shortest(start, goal), screen.routes(start, goal, k=12)
@@ -76,7 +76,7 @@ def test_shortest_is_never_longer_than_any_other(trip):
 
 @settings(max_examples=60, deadline=None)
 @given(trips())
-def test_grid_ways_are_legal_and_shortest_on_the_grid(trip):
+def test_grid_paths_are_legal_and_shortest_on_the_grid(trip):
     free, start, goal = trip
     graph = nx.Graph()
     rows, columns = free.shape
@@ -116,7 +116,7 @@ def test_maps_are_read_south_first(tmp_path: Path):
         (MAP.replace("map", "mop"), "'map' is missing"),
     ],
 )
-def test_bad_maps_are_named(tmp_path: Path, text, message):
+def test_errors_of_maps_name_the_line(tmp_path: Path, text, message):
     path = tmp_path / "a.map"
     path.write_text(text)
     with pytest.raises(ValueError, match=message):

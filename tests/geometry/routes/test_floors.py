@@ -1,4 +1,4 @@
-"""Routes on random small floors beside exact answers, and the floors on which they were once wrong."""
+"""Routes on random small floors against exact answers, and on floors where they were wrong before."""
 
 import numpy as np
 import pytest
@@ -12,16 +12,16 @@ from geometry.pathfinders.visibility_graph import visibility_way
 from geometry.routes.lifting import lift_to_skeleton
 from geometry.routes.tighten import word_of_crossings
 
-SEED = 20  # other floors than those of the campaign
+FLOOR_SEED = 20  # other floors than those of the campaign
 
 
 def floor(*rows: str) -> np.ndarray:
-    """A floor drawn north row first; # is blocked."""
+    """Return a floor drawn north row first; # is blocked."""
     return np.array([[square != "#" for square in row] for row in rows[::-1]])
 
 
-def marked(mark: str, *rows: str) -> np.ndarray:
-    """The squares with a mark, drawn north row first."""
+def squares_marked(mark: str, *rows: str) -> np.ndarray:
+    """Return the squares with a mark, drawn north row first."""
     return np.array([[square == mark for square in row] for row in rows[::-1]])
 
 
@@ -29,10 +29,10 @@ def marked(mark: str, *rows: str) -> np.ndarray:
 @settings(max_examples=40, deadline=None, derandomize=True)
 @given(number=st.integers(0, 2**31))
 def test_floors_are_answered_exactly(check: str, number: int) -> None:
-    assert disagreements(check, SEED, number) == []
+    assert disagreements(check, FLOOR_SEED, number) == []
 
 
-def test_a_line_that_ends_between_two_rows_is_in_the_upper_one() -> None:
+def test_a_line_that_ends_between_two_rows_ends_in_the_upper_one() -> None:
     screen = Screen(floor("......", "....#.", "....#.", "..#..."))
     routes = screen.routes((3.5, 1.5), (5.0, 3.0), k=2)
     assert len({route.signature for route in routes}) == 2
@@ -54,13 +54,13 @@ def test_a_route_to_a_set_keeps_out_of_blocked_squares() -> None:
 
 def test_a_route_to_a_set_ends_at_the_nearest_square() -> None:
     rows = "...#gg", "...g..", "gggggg"
-    route = Screen(floor(*rows)).routes((0.5, 1.5), marked("g", *rows))[0]
+    route = Screen(floor(*rows)).routes((0.5, 1.5), squares_marked("g", *rows))[0]
     assert (route.length, route.points[-1].tolist()) == (1.0, [0.5, 0.5])
 
 
 def test_blocked_squares_of_a_set_make_no_difference() -> None:
     rows = "ggg", "gg#", ".g."
-    free, goal = floor(*rows), marked("g", *rows)
+    free, goal = floor(*rows), squares_marked("g", *rows)
     without = Screen(free).routes((2.5, 0.5), goal)
     goal[1, 2] = True
     assert [route.points.tolist() for route in Screen(free).routes((2.5, 0.5), goal)] == [
@@ -69,9 +69,9 @@ def test_blocked_squares_of_a_set_make_no_difference() -> None:
     assert without
 
 
-def test_routes_to_a_set_whose_ends_can_be_moved_into_each_other_round_a_pillar_are_one() -> None:
+def test_routes_to_a_set_are_one_class_when_their_ends_can_move_into_each_other_round_a_pillar() -> None:
     rows = ".......", ".ggggg.", ".g.#.g.", ".g.#.g.", ".ggggg.", "......."
-    goal = marked("g", *rows)
+    goal = squares_marked("g", *rows)
     goal[2:4, 2] = goal[2:4, 4] = False
     routes = Screen(floor(*rows)).routes((0.5, 0.5), goal, k=5)
     assert len(routes) == 1
@@ -79,7 +79,7 @@ def test_routes_to_a_set_whose_ends_can_be_moved_into_each_other_round_a_pillar_
 
 
 @pytest.mark.parametrize("radius", [0.51, 0.6, 0.7, 0.7071])
-def test_a_corridor_aslant_lets_through_what_has_room_on_its_squares(radius: float) -> None:
+def test_a_diagonal_corridor_admits_a_body_with_room_on_its_squares(radius: float) -> None:
     i, j = np.indices((14, 14))
     screen = Screen(abs(i - j) <= 2)
     graph = screen.pathgraph_for(radius)
@@ -90,7 +90,7 @@ def test_a_corridor_aslant_lets_through_what_has_room_on_its_squares(radius: flo
 
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 2**31), st.floats(0.0, 4.0))
-def test_every_radius_has_the_squares_with_that_clearance(number: int, radius: float) -> None:
+def test_a_body_may_be_on_the_squares_with_its_clearance(number: int, radius: float) -> None:
     rng = np.random.default_rng(number)
     free = rng.random(rng.integers(2, 14, 2)) >= 0.1
     free[0, 0] = True
@@ -112,7 +112,7 @@ def test_an_end_nearer_to_a_wall_than_the_radius_is_refused(point: tuple[float, 
     assert bool(screen.routes(point, {(3, 3)}, radius=1.4)) == admitted
 
 
-def test_a_body_that_stays_where_it_is_goes_no_way() -> None:
+def test_a_route_from_a_place_to_itself_has_length_zero() -> None:
     screen = Screen(np.ones((7, 7), bool))
     (route,) = screen.routes((3.2, 3.7), (3.2, 3.7), radius=1.0)
     assert (route.length, route.points.tolist()) == (0.0, [[3.2, 3.7]])
@@ -127,7 +127,7 @@ def test_the_visibility_graph_does_not_look_through_a_pinch_from_the_pinch() -> 
     assert visibility_way(free, (1.0, 1.0), (1.5, 1.5)) is not None
 
 
-def test_an_edge_round_one_blocked_square_is_as_long_as_its_points() -> None:
+def test_the_length_of_an_edge_round_one_blocked_square_is_that_of_its_points() -> None:
     graph = Screen(floor(".#.", "...")).pathgraph
     ((_, _, edge),) = graph.edges(data=True)
     assert edge["length"] == np.hypot(*np.diff(edge["points"], axis=0).T).sum() == 4.0
@@ -152,7 +152,7 @@ def test_no_clearance_is_missing_among_random_squares() -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 2**31), st.sampled_from([0.0, 0.6, 1.2]))
-def test_a_class_is_lifted_to_the_way_by_which_it_was_found(number: int, radius: float) -> None:
+def test_a_class_is_lifted_to_the_path_by_which_it_was_found(number: int, radius: float) -> None:
     rng = np.random.default_rng(number)
     free = rng.random(rng.integers(2, 14, 2)) >= rng.choice([0.05, 0.2, 0.4])
     free[0, 0] = True

@@ -1,4 +1,4 @@
-"""Loops round objects, and goals that are sets of squares."""
+"""Loops about objects, and goals that are sets of squares."""
 
 from itertools import pairwise
 
@@ -11,8 +11,8 @@ from geometry import Screen
 from tests.geometry import oracles
 
 
-def winding(points, x, y):
-    """Turns of a closed polyline about a point that it does not meet."""
+def winding_number(points, x, y):
+    """Return how often a closed polyline winds about a point that it does not meet, counter-clockwise positive."""
     fine = np.concatenate([np.linspace(p, q, 50) for p, q in pairwise(points)])
     angle = np.unwrap(np.arctan2(fine[:, 1] - y, fine[:, 0] - x))
     return round(float(angle[-1] - angle[0]) / (2 * np.pi))
@@ -24,12 +24,12 @@ def test_a_loop_hugs_the_object():
     screen = Screen(free)
     (loop,) = screen.loops((2.5, 4.5), ~free, k=1)
     assert loop.points[0].tolist() == loop.points[-1].tolist() == [2.5, 4.5]
-    assert winding(loop.points, 6.5, 5.0) == 1
+    assert winding_number(loop.points, 6.5, 5.0) == 1
     assert {(5.0, 4.0), (8.0, 4.0), (8.0, 6.0), (5.0, 6.0)} <= set(map(tuple, loop.points.tolist()))
     assert loop.length == pytest.approx(oracles.length([(2.5, 4.5), (5, 4), (8, 4), (8, 6), (5, 6), (2.5, 4.5)]))
 
 
-def test_no_loop_about_the_outer_wall_or_through_a_gap_too_narrow():
+def test_no_loop_leads_about_the_outer_wall_or_through_a_gap_that_is_too_narrow():
     free = np.ones((9, 12), bool)
     free[0:6, 5:8] = False
     assert Screen(free).loops((2.5, 4.5), ~free) == []
@@ -50,7 +50,7 @@ def test_every_loop_winds_once(free):
         loops = screen.loops((start[1] + 0.5, start[0] + 0.5), mask, k=3)
         assert len({loop.signature for loop in loops}) == len(loops)
         for loop in loops:
-            assert winding(loop.points, j + 0.5, i + 0.5) == 1
+            assert winding_number(loop.points, j + 0.5, i + 0.5) == 1
 
 
 @settings(max_examples=80, deadline=None)

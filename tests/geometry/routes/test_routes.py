@@ -1,4 +1,4 @@
-"""Routes: in free space, tight, distinct, and the best there are, against brute force and shapely."""
+"""Routes are in free space, tight, distinct and the best of all, against brute force and shapely."""
 
 from itertools import islice, pairwise
 
@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from geometry import Route, Screen
 from tests.geometry import oracles
 
-MANY = 500  # ways over a pathgraph: screens with more are left out, for there may be any number
+MAX_PATHS = 500  # ways over a pathgraph: screens with more are left out, for there may be any number
 
 
 def polygon(free):
@@ -21,7 +21,7 @@ def polygon(free):
 
 @st.composite
 def trips(draw, most=10):
-    """A screen and two points in free squares."""
+    """Draw a screen and two points in free squares."""
     free = draw(oracles.screens(most=most))
     squares = np.argwhere(free)
     picks = draw(st.tuples(*[st.integers(0, len(squares) - 1)] * 2))
@@ -30,8 +30,8 @@ def trips(draw, most=10):
     return free, (b + shifts[0], a + shifts[1]), (d + shifts[2], c + shifts[3])
 
 
-def shortcut_free(points, space):
-    """No corner of the rope can be cut, however little."""
+def is_tight(points, space):
+    """Return whether no corner of a route can be cut, however little."""
     for a, v, b in zip(points, points[1:], points[2:], strict=False):
         p, q = v + (a - v) * 1e-3, v + (b - v) * 1e-3
         triangle = shapely.Polygon([p, v, q])
@@ -40,28 +40,29 @@ def shortcut_free(points, space):
     return True
 
 
-def graph_routes(screen, start, goal):
-    """Every simple way over the pathgraph as a polyline of centres, its ends attached by walking up."""
+def pathgraph_polylines(screen, start, goal):
+    """Yield every simple path over the pathgraph as a polyline of centres, its ends attached by steepest ascents."""
     graph = nx.MultiGraph()
     for a, b, key, edge in screen.pathgraph.edges(keys=True, data=True):
         for n, (p, q) in enumerate(pairwise(map(tuple, edge["points"].tolist()))):
             graph.add_edge(p, q, key=(a, b, key, n))
     graph.add_nodes_from((d["x"], d["y"]) for _, d in screen.pathgraph.nodes(data=True))
-    up, down = (walk_up(screen, p, graph) for p in (start, goal))
+    up, down = (ascent(screen, p, graph) for p in (start, goal))
     between = [[up[-1]]] if up[-1] == down[-1] else nx.all_simple_paths(graph, up[-1], down[-1])
-    yield from ([start, *up, *way[1:-1], *down[::-1], goal] for way in between)
+    yield from ([start, *up, *path[1:-1], *down[::-1], goal] for path in between)
 
 
-def walk_up(screen, point, graph):
+def ascent(screen, point, graph):
+    """Return the centres from a point's square up to the pathgraph along the steepest ascent."""
     x, y = int(point[0]) + 0.5, int(point[1]) + 0.5
-    way = [(x, y)]
+    path = [(x, y)]
     rank = {}
     for (j, i), c in np.ndenumerate(screen.clearance):
         rank[i + 0.5, j + 0.5] = (round(4 * c * c), j, i)
     while not graph.has_node((x, y)):
         x, y = max(((x + 1, y), (x, y + 1), (x - 1, y), (x, y - 1)), key=lambda p: rank.get(p, (-1,)))
-        way.append((x, y))
-    return way
+        path.append((x, y))
+    return path
 
 
 @settings(max_examples=150, deadline=None)
@@ -77,7 +78,7 @@ def test_routes_lie_in_free_space_and_are_tight_and_distinct(trip):
         assert tuple(route.points[-1]) == goal
         assert route.length == pytest.approx(oracles.length(route.points), abs=1e-9)
         assert start == goal or space.buffer(1e-9).covers(shapely.LineString(route.points))
-        assert shortcut_free(route.points, space)
+        assert is_tight(route.points, space)
 
 
 @settings(max_examples=100, deadline=None)
@@ -87,9 +88,9 @@ def test_routes_are_the_best_classes_of_all(trip):
     screen = Screen(free)
     if not screen.routes(start, goal, k=1):
         return
-    ways = list(islice(graph_routes(screen, start, goal), MANY + 1))
-    assume(len(ways) <= MANY)
-    best = sorted(oracles.length(oracles.rubber_band(way, free)) for way in ways)
+    paths = list(islice(pathgraph_polylines(screen, start, goal), MAX_PATHS + 1))
+    assume(len(paths) <= MAX_PATHS)
+    best = sorted(oracles.length(oracles.rubber_band(path, free)) for path in paths)
     found = [route.length for route in screen.routes(start, goal, k=5)]
     assert found == pytest.approx(best[:5], abs=1e-9)
 
@@ -125,7 +126,7 @@ def test_a_body_keeps_its_distance(trip, radius):
 
 @settings(max_examples=80, deadline=None)
 @given(trips())
-def test_tightening_and_words_find_the_same_rope_again(trip):
+def test_tightening_and_words_find_the_same_route_again(trip):
     free, start, goal = trip
     screen = Screen(free)
     for route in screen.routes(start, goal, k=4):
@@ -135,7 +136,7 @@ def test_tightening_and_words_find_the_same_rope_again(trip):
         assert named.points.tolist() == route.points.tolist()
 
 
-def test_a_loose_rope_is_tightened():
+def test_a_loose_route_is_tightened():
     free = np.ones((7, 9), bool)
     free[3, 3:6] = False
     screen = Screen(free)
@@ -163,7 +164,7 @@ def test_a_loose_rope_is_tightened():
         (("east", 0.5), (0.5, 0.5), "start must be a point"),
     ],
 )
-def test_bad_ends_are_named(start, goal, message):
+def test_errors_name_the_bad_end(start, goal, message):
     free = np.ones((3, 3), bool)
     free[1, 1] = False
     with pytest.raises(ValueError, match=message):
@@ -176,6 +177,6 @@ def test_bad_ends_are_named(start, goal, message):
     ids=str,
 )
 @pytest.mark.parametrize("goal", [(2.5, 2.5), {(2, 2)}], ids=["point", "set"])
-def test_bad_numbers_are_named(goal, wish):
+def test_errors_name_the_bad_number(goal, wish):
     with pytest.raises(ValueError, match=f"{next(iter(wish))} must be"):
         Screen(np.ones((3, 3), bool)).routes((0.5, 0.5), goal, **wish)

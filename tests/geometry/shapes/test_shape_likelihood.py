@@ -1,4 +1,4 @@
-"""How much room a class has for an image: counted again with shapes laid at random."""
+"""The volume of a class's parameters for an image: counted again with shapes placed at random."""
 
 import math
 from collections import Counter
@@ -34,7 +34,7 @@ def disc(rng: np.random.Generator) -> shapely.Polygon:
 
 
 def image_of(shape: shapely.Polygon) -> np.ndarray:
-    """Its squares, with a rim of PAD squares."""
+    """Return the squares of a shape, with a rim of PAD squares."""
     covered = squares(shape, 30, 30)
     rows, columns = np.nonzero(covered)
     cut = covered[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1]
@@ -46,7 +46,7 @@ def image_of(shape: shapely.Polygon) -> np.ndarray:
     [(misfit.SQUARE_CLASS, square), (misfit.BRICK_CLASS, brick), (misfit.DISC_CLASS, disc)],
     ids=["square", "brick", "disc"],
 )
-def test_an_image_is_as_likely_as_it_is_frequent(kind: int, draw: Draw) -> None:
+def test_the_likelihood_of_an_image_is_its_frequency(kind: int, draw: Draw) -> None:
     """Among shapes of many sizes, turned and moved at random."""
     rng, number = np.random.default_rng(kind), 4000
     seen: Counter[tuple[tuple[int, ...], bytes]] = Counter()
@@ -54,21 +54,21 @@ def test_an_image_is_as_likely_as_it_is_frequent(kind: int, draw: Draw) -> None:
         turned = affinity.rotate(draw(rng), rng.uniform(0, 360), origin=(0, 0))
         image = image_of(affinity.translate(turned, *(15 + rng.random(2))))
         seen[image.shape, image.tobytes()] += 1
-    apart = []
-    for (shape, told), count in seen.most_common(12):
-        image = np.frombuffer(told, np.int8).reshape(shape)
+    differences = []
+    for (shape, image_bytes), count in seen.most_common(12):
+        image = np.frombuffer(image_bytes, np.int8).reshape(shape)
         laid, wrong = best_turned_shape(kind, image)
         if wrong:
             continue
-        apart.append(parameter_volume(kind, laid, image, 0).log_likelihood - math.log(count / number))
-    assert len(apart) >= 8
-    assert abs(np.median(apart)) < 0.7
-    assert np.abs(apart).max() < 2.0
+        differences.append(parameter_volume(kind, laid, image, 0).log_likelihood - math.log(count / number))
+    assert len(differences) >= 8
+    assert abs(np.median(differences)) < 0.7
+    assert np.abs(differences).max() < 2.0
 
 
-def test_the_middle_of_what_agrees_is_told() -> None:
-    """Nearer to what was laid than what settles, which stops as soon as all agrees."""
-    rng, settled, amid = np.random.default_rng(4), [], []
+def test_the_mean_of_the_shapes_that_agree_is_nearer_than_the_descended_shape() -> None:
+    """A descent stops as soon as all squares agree."""
+    rng, settled, of_mean = np.random.default_rng(4), [], []
     for _ in range(30):
         angle, x, y, side = rng.uniform(0, math.pi / 2), *(15 + rng.random(2)), rng.uniform(4, 6)
         turned = affinity.rotate(shapely.box(-side / 2, -side / 2, side / 2, side / 2), angle, use_radians=True)
@@ -78,12 +78,12 @@ def test_the_middle_of_what_agrees_is_told() -> None:
             mean = parameter_volume(misfit.SQUARE_CLASS, laid, image, 0).mean
             assert misfit.count_wrong_squares(misfit.SQUARE_CLASS, mean, image, math.inf) == 0
             settled.append(abs(laid[3] - side))
-            amid.append(abs(mean[3] - side))
-    assert len(amid) >= 25
-    assert np.mean(amid) < np.mean(settled)
+            of_mean.append(abs(mean[3] - side))
+    assert len(of_mean) >= 25
+    assert np.mean(of_mean) < np.mean(settled)
 
 
-def test_what_is_unknown_leaves_more_room() -> None:
+def test_unknown_squares_make_an_image_likelier() -> None:
     image = np.pad(np.ones((4, 4), np.int8), PAD)
     laid, _ = best_turned_shape(misfit.DISC_CLASS, image)
     known = parameter_volume(misfit.DISC_CLASS, laid, image, 0).log_likelihood
