@@ -15,7 +15,7 @@ from tests.geometry.measuring import measure
 def in_place(request, monkeypatch):
     """Changes on small screens affect much of them; here they are made in place nevertheless."""
     if request.param == "always":
-        monkeypatch.setattr(update, "ALL", 1.0)
+        monkeypatch.setattr(update, "MAX_AFFECTED_SHARE", 1.0)
 
 
 def same(screen, other):

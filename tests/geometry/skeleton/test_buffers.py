@@ -9,7 +9,7 @@ from geometry.skeleton import buffers
 
 @pytest.fixture(autouse=True)
 def nothing_spare():
-    buffers.SPARE.clear()
+    buffers.SPARE_BUFFERS.clear()
 
 
 @pytest.mark.parametrize("kind", [np.int16, np.int32])

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from geometry import Screen
 from geometry.skeleton import bit_parallel, lowest_cells
-from geometry.skeleton.graph import AHEAD, is_node
+from geometry.skeleton.graph import WORDS_AHEAD, is_node
 from geometry.skeleton.skeleton import HALT
 from tests.geometry import lookalikes, oracles
 
@@ -48,17 +48,17 @@ def assert_same(screen):
 
 
 @settings(max_examples=200, deadline=None)
-@given(oracles.screens(most=24), st.sampled_from([16, 20, lowest_cells.MOST]))
+@given(oracles.screens(most=24), st.sampled_from([16, 20, lowest_cells.MAX_NOTES]))
 def test_nodes_and_chains_are_those_of_plain_walks_however_little_room_there_is_for_notes(free, room):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(lowest_cells, "LEAST", room)
+        patch.setattr(lowest_cells, "MIN_NOTES", room)
         assert_same(Screen(free))
 
 
 @pytest.mark.parametrize("kind", lookalikes.KINDS)
 def test_chains_that_lead_beyond_what_is_listed_are_right(kind):
     free = lookalikes.lookalike(kind, 600, 1, 30)
-    assert free.size > 16 * AHEAD
+    assert free.size > 16 * WORDS_AHEAD
     assert_same(Screen(free))
 
 
@@ -77,11 +77,11 @@ def test_words_say_what_their_cells_say(cells, thin):
     base, since = np.empty(-(-len(words) // 16), np.int32), np.empty(len(words), np.uint8)
     node = [c for c in range(len(states)) if is_node(int(states[c]))]
     links = [int(here & 15).bit_count() for here in states]
-    assert bit_parallel.count(words, base, since) == (len(node), sum(links[c] for c in node), sum(links) // 2)
+    assert bit_parallel.count_nodes(words, base, since) == (len(node), sum(links[c] for c in node), sum(links) // 2)
     listed = np.empty(len(node) + 1, np.int32)
     middle = len(words) // 2
-    found = bit_parallel.collect(
-        words, middle, len(words) + 3, listed, bit_parallel.collect(words, 0, middle, listed, 0)
+    found = bit_parallel.list_nodes(
+        words, middle, len(words) + 3, listed, bit_parallel.list_nodes(words, 0, middle, listed, 0)
     )
     assert listed[:found].tolist() == node
-    assert [bit_parallel.number(c, words, base, since) for c in node] == list(range(len(node)))
+    assert [bit_parallel.node_number(c, words, base, since) for c in node] == list(range(len(node)))

@@ -96,7 +96,7 @@ def test_skeleton_is_thin_and_connected_as_free_space_is(free):
 def test_bands_leave_no_trace(free, band):
     whole = Screen(free)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sweep, "BAND", band)
+        patch.setattr(sweep, "BAND_CELLS", band)
         parts = Screen(free)
     for mine, other in zip(parts._skeleton_at(1), whole._skeleton_at(1), strict=True):
         assert all(np.array_equal(a, b) for a, b in zip(mine, other, strict=True))
