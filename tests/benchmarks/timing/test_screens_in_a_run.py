@@ -8,7 +8,7 @@ from geometry import Screen
 
 
 def test_all_screens_and_questions_are_counted_and_screen_is_left_as_it_was():
-    methods = {name: Screen.__dict__[name] for name in ("__init__", *screens_in_a_run.QUESTIONS)}
+    methods = {name: Screen.__dict__[name] for name in ("__init__", *screens_in_a_run.SCREEN_QUESTIONS)}
     free = np.ones((4, 6), bool)
     with screens_in_a_run.watched_screens() as (seconds, made):
         Screen(free).passages()

@@ -1,4 +1,4 @@
-"""The contracted skeleton against plain walks, one cell at a time, and words of states against single cells."""
+"""The contracted skeleton compared with walks one cell at a time, and words of states with single cells."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from tests.geometry import lookalikes, oracles
 
 
 def plain_walks(screen):
-    """Nodes, and (first end, last end, lowest cell, steps) of all chains, from the links of single cells."""
+    """Return the nodes, and (first end, last end, lowest cell, steps) of all chains, from the links of single cells."""
     state, heights = screen._skeleton_at(1)[0], screen._square.ravel()
     width = state.shape[1]
     ways = {c: [d for d in range(4) if here >> d & 1] for c, here in enumerate(state.ravel().tolist()) if here}
@@ -31,7 +31,7 @@ def plain_walks(screen):
 
 
 def plain_walk(cell, direction, ways, numbers, width):
-    """The cells of a chain, and the direction back from the last."""
+    """Return the cells of a chain, and the direction back from the last."""
     cells = [cell]
     while True:
         cells.append(cells[-1] + (1, width, -1, -width)[direction])
@@ -49,20 +49,20 @@ def assert_same(screen):
 
 @settings(max_examples=200, deadline=None)
 @given(oracles.screens(most=24), st.sampled_from([16, 20, lowest_cells.MAX_NOTES]))
-def test_nodes_and_chains_are_those_of_plain_walks_however_little_room_there_is_for_notes(free, room):
+def test_nodes_and_chains_are_those_of_plain_walks_for_any_room_for_notes(free, room):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(lowest_cells, "MIN_NOTES", room)
         assert_same(Screen(free))
 
 
 @pytest.mark.parametrize("kind", lookalikes.KINDS)
-def test_chains_that_lead_beyond_what_is_listed_are_right(kind):
+def test_chains_that_lead_beyond_the_listed_nodes_are_right(kind):
     free = lookalikes.lookalike(kind, 600, 1, 30)
     assert free.size > 16 * WORDS_AHEAD
     assert_same(Screen(free))
 
 
-def test_rings_without_junctions_and_chains_beside_them():
+def test_rings_without_junctions_next_to_chains():
     free = np.ones((12, 30), bool)
     free[4:8, 4:8] = free[:, 12:14] = free[3:5, 20:24] = free[8, 20:24] = False
     assert_same(Screen(free))
@@ -70,7 +70,7 @@ def test_rings_without_junctions_and_chains_beside_them():
 
 
 @given(st.lists(st.integers(0, 255), min_size=1, max_size=700), st.integers(1, 4))
-def test_words_say_what_their_cells_say(cells, thin):
+def test_words_of_states_agree_with_their_cells(cells, thin):
     states = np.zeros(-(-len(cells) // 8) * 8, np.uint8)
     states[: len(cells) : thin] = cells[::thin]
     words = states.view(np.int64)
