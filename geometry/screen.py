@@ -29,7 +29,7 @@ from geometry.routes.tighten import word_of_crossings
 from geometry.skeleton.buffers import Tenant, take_buffers
 from geometry.skeleton.chains import Chains, find_chains
 from geometry.skeleton.graph import SkeletonGraph, contract
-from geometry.skeleton.pathgraph_arrays import PathgraphArrays, pathgraph_arrays
+from geometry.skeleton.pathgraph_arrays import PathgraphArrays, build_pathgraph_arrays
 from geometry.skeleton.skeleton import States, Words
 from geometry.skeleton.sweep import survey
 
@@ -233,7 +233,7 @@ class Screen:
     def _new_arrays(self, radius: float) -> PathgraphArrays:
         """Return the pathgraph of a body in new, writable arrays."""
         state, _, bones = self._skeleton_at(level_of(radius))
-        return pathgraph_arrays(self._square, state, bones)
+        return build_pathgraph_arrays(self._square, state, bones)
 
     def routes(
         self,

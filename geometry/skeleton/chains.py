@@ -52,12 +52,12 @@ def find_chains(bones: SkeletonGraph, state: States) -> Chains:
     np.cumsum(bones.steps + 1, out=start[1:])
     cells, neck = np.empty(start[-1], np.int32), np.empty(size, np.int32)
     leave = np.full((len(bones.node), 4), -1, np.int32)
-    fill(states, width, bones.node, bones.port, bones.neck, start, cells, neck, leave)
+    fill_cells(states, width, bones.node, bones.port, bones.neck, start, cells, neck, leave)
     return Chains(bones.node, leave, bones.port >> 2, start, cells, neck)
 
 
 @bare
-def fill(
+def fill_cells(
     states: Flags, width: int, node: Ints, port: Ints, lowest: Ints, start: Ints, cells: Ints, neck: Ints, leave: Ints
 ) -> None:
     """Walk every chain from its first end, and fill ``cells``, ``neck`` and ``leave`` (-1 at first)."""

@@ -55,6 +55,10 @@ def contract(square: SquaredDistances, state: States, words: Words) -> SkeletonG
         Links and flags of the skeleton (see skeleton.py).
     words : (n,) uint64
         The memory of ``state`` by eights.
+
+    Returns
+    -------
+    SkeletonGraph
     """
     heights, states, width = square.reshape(-1), state.reshape(-1), state.shape[1]
     eights, size, notes = words.view(np.int64), len(words), new_notes(len(states))
