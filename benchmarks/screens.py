@@ -9,7 +9,7 @@ waits: on a quiet machine wall-clock time is the same, and on a busy one it meas
 import argparse
 import time
 import tracemalloc
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +20,7 @@ from geometry import Screen
 from geometry.io.movingai import Trip, read_map, read_trips
 
 MAPS = Path(__file__).resolve().parents[2] / "shared" / "data" / "movingai"
+ROUNDS = 6  # in which calls that are compared have their turns (a convention)
 LARGE_MAP = 512 * 512  # squares: maps of so many and more count for the median ratios (a convention)
 RATIO_GOALS = (("built", 15, 7), ("as arrays", 30, 15), ("as networkx", 15, 1))
 """Ratios wanted of a screen built, its arrays and its networkx graph: median over large maps, least of all maps."""
@@ -114,18 +115,21 @@ def build(maps: dict[Path, np.ndarray], _: int) -> None:
 def paired_times(free: np.ndarray) -> np.ndarray:
     """Return the least milliseconds of a build, the arrays and the networkx graph (builds included), and the peer.
 
-    By turns, because the speed of the processor changes from second to second. The peer's is nan where sknw kills its
-    process.
+    By turns, because the speed of the processor changes from second to second. All in a child process: where that dies
+    with the peer, ours are measured once more and the peer's time is nan.
     """
-    calls: list[Callable[[], object]] = [
+    ours: list[Callable[[], object]] = [
         lambda: Screen(free),
         lambda: Screen(free).pathgraph_arrays,
         lambda: Screen(free).pathgraph,
     ]
-    if peers.survives(free):
-        calls.append(lambda: peers.skeleton_graph(free))
-    times = np.min([[least(call, 3 if k < 3 else 1) for k, call in enumerate(calls)] for _ in range(6)], axis=0)
-    return np.append(times, np.nan)[:4]
+    times = peers.in_child(lambda: least_by_turns([*ours, lambda: peers.skeleton_graph(free)]))
+    return np.append(least_by_turns(ours), np.nan) if times is None else times
+
+
+def least_by_turns(calls: Sequence[Callable[[], object]]) -> np.ndarray:
+    """Return the least milliseconds of each call in some rounds, in each of which every call has its turn."""
+    return np.min([[least(call, 2) for call in calls] for _ in range(ROUNDS)], axis=0)
 
 
 def fresh_ratio(free: np.ndarray) -> float:
