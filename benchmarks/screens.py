@@ -20,7 +20,8 @@ from geometry import Screen
 from geometry.io.movingai import Trip, read_map, read_trips
 
 MAPS = Path(__file__).resolve().parents[2] / "shared" / "data" / "movingai"
-ROUNDS = 6  # in which calls that are compared have their turns (a convention)
+TIMED_ROUNDS = 6  # in which calls that are compared have their turns (a convention)
+MAX_CALLS, TURN_SECONDS = 20, 0.02  # a turn ends after so many calls, or so many seconds and two calls (a convention)
 LARGE_MAP = 512 * 512  # squares: maps of so many and more count for the median ratios (a convention)
 RATIO_GOALS = (("built", 15, 7), ("as arrays", 30, 15), ("as networkx", 15, 1))
 """Ratios wanted of a screen built, its arrays and its networkx graph: median over large maps, least of all maps."""
@@ -129,7 +130,7 @@ def paired_times(free: np.ndarray) -> np.ndarray:
 
 def least_by_turns(calls: Sequence[Callable[[], object]]) -> np.ndarray:
     """Return the least milliseconds of each call in some rounds, in each of which every call has its turn."""
-    return np.min([[least(call, 2) for call in calls] for _ in range(ROUNDS)], axis=0)
+    return np.min([[least(call, MAX_CALLS, TURN_SECONDS) for call in calls] for _ in range(TIMED_ROUNDS)], axis=0)
 
 
 def fresh_ratio(free: np.ndarray) -> float:
