@@ -1,10 +1,10 @@
-"""Doors of random floors: the same however a floor is turned, mirrored and moved, and cut where they say.
+"""Doors of random floors: the same however a floor is turned, mirrored and moved, and cut along their mouths.
 
     python -m benchmarks.doorways [--count N] [--seed S]
 
-Of each floor the passages are compared with those of its eight images under the symmetries of the grid, each moved by
-another frame of walls; the cut floor is compared with the pieces that shapely cuts. Prints how many floors and doors
-were looked at, and each disagreement as a picture; exits 1 when there is one.
+The passages of each floor are compared with those of its eight images under the symmetries of the grid, each moved by
+another frame of walls. The cut floor is compared with the pieces that shapely cuts. Prints the numbers of floors and
+passages, and each disagreement with a picture of the floor; the exit code is 1 when there is one.
 """
 
 import argparse
@@ -23,12 +23,12 @@ from geometry import Passage, Screen
 Mask = NDArray[np.bool_]
 Labels = NDArray[np.int32]
 Outline = tuple[object, ...]
-MOST = 26  # squares a side
-THIN = 1e-6  # squares: half the width of a cut in shapely
+MAX_FLOOR_SIDE = 26  # squares (a convention)
+CUT_HALF_WIDTH = 1e-6  # squares: of a cut in shapely (a convention)
 
 
 def random_floor(rng: np.random.Generator) -> Mask:
-    """(rows, columns): a random floor with at least one free square: clutter, or rooms, some of them slanted."""
+    """Return a random floor (rows, columns) with at least one free square: clutter, or rooms, some of them oblique."""
     make = (_cluttered, _walled, _slanted, _with_corridors)[int(rng.integers(4))]
     free = make(rng)
     free[int(rng.integers(free.shape[0])), int(rng.integers(free.shape[1]))] = True
@@ -36,14 +36,14 @@ def random_floor(rng: np.random.Generator) -> Mask:
 
 
 def _cluttered(rng: np.random.Generator) -> Mask:
-    """Single squares at random."""
+    """Return a floor with single squares blocked at random."""
     free: Mask = rng.random(rng.integers(1, 16, size=2)) >= rng.choice([0.0, 0.08, 0.25, 0.4])
     return free
 
 
 def _walled(rng: np.random.Generator) -> Mask:
-    """Walls across, each with a door anywhere: in the middle, flush with another wall, or in a corner."""
-    free = np.ones(rng.integers(6, MOST, size=2), np.bool_)
+    """Return a floor with walls across, each with doors anywhere: in the middle or flush with another wall."""
+    free = np.ones(rng.integers(6, MAX_FLOOR_SIDE, size=2), np.bool_)
     for _ in range(int(rng.integers(1, 4))):
         view = free if rng.random() < 0.5 else free.T
         place, thick = int(rng.integers(1, view.shape[0] - 1)), int(rng.integers(1, 5))
@@ -57,7 +57,7 @@ def _walled(rng: np.random.Generator) -> Mask:
 
 
 def _slanted(rng: np.random.Generator) -> Mask:
-    """Rooms with a wall between, all turned by any angle: a square that walls touch is blocked."""
+    """Return two rooms with a door between, turned by any angle; squares that walls touch are blocked."""
     high, wide = (float(v) for v in rng.uniform(5, 11, size=2))
     left, gap = float(rng.uniform(4, 9)), float(rng.uniform(0.6, 3.5))
     door = float(rng.uniform(1, 0.5 * high))
@@ -72,8 +72,8 @@ def _slanted(rng: np.random.Generator) -> Mask:
 
 
 def _with_corridors(rng: np.random.Generator) -> Mask:
-    """Rooms joined by corridors with a bend."""
-    free = np.zeros(rng.integers(10, MOST, size=2), np.bool_)
+    """Return rooms joined by corridors with a bend."""
+    free = np.zeros(rng.integers(10, MAX_FLOOR_SIDE, size=2), np.bool_)
     high, wide = free.shape
     middles = []
     for _ in range(int(rng.integers(2, 5))):
@@ -89,16 +89,16 @@ def _with_corridors(rng: np.random.Generator) -> Mask:
 
 
 def disagreements(free: Mask) -> list[str]:
-    """What is wrong with the passages of a floor, each in a sentence; none when all is well."""
+    """Return what is wrong with the passages of a floor, each as a sentence."""
     passages = Screen(free).passages()
     labels = Screen(free).parts(passages)
-    told = Counter(_outline(passage, lambda point: point) for passage in passages)
+    expected = Counter(_outline(passage, lambda point: point) for passage in passages)
     found = []
     for number, (turns, mirrored) in enumerate((t, m) for m in (False, True) for t in range(4)):
         image = np.pad(_turned(free, turns, mirrored), [(number % 3, 1), (2, number % 2)])
         seen = Screen(image).passages()
         back = _way_back(free.shape, turns, mirrored, (2.0, float(number % 3)))
-        if Counter(_outline(passage, back) for passage in seen) != told:
+        if Counter(_outline(passage, back) for passage in seen) != expected:
             found.append(f"turned {turns} times, mirrored {mirrored}: other passages")
         parts = Screen(image).parts(seen)[number % 3 : -1, 2 : image.shape[1] - number % 2]
         if not _same_parts(_turned(labels, turns, mirrored), parts):
@@ -107,7 +107,7 @@ def disagreements(free: Mask) -> list[str]:
 
 
 def _outline(passage: Passage, back: Callable[[tuple[float, float]], tuple[float, float]]) -> Outline:
-    """A passage without the order of its sides and ends, its points taken back to the frame of another floor."""
+    """Return a passage without the order of its sides and ends, its points mapped by ``back``."""
     sides = sorted(
         (tuple(sorted(map(back, mouth))), side) for mouth, side in zip(passage.mouths, passage.sides, strict=True)
     )
@@ -116,14 +116,14 @@ def _outline(passage: Passage, back: Callable[[tuple[float, float]], tuple[float
 
 
 def _turned(grid: NDArray[np.generic], turns: int, mirrored: bool) -> NDArray[np.generic]:
-    """A grid mirrored left to right, if asked, then turned by so many quarters."""
+    """Return a grid mirrored left to right, if asked, then turned by so many quarters."""
     return np.ascontiguousarray(np.rot90(grid[:, ::-1] if mirrored else grid, turns))
 
 
 def _way_back(
     shape: tuple[int, ...], turns: int, mirrored: bool, frame: tuple[float, float]
 ) -> Callable[[tuple[float, float]], tuple[float, float]]:
-    """What takes a point (x, y) of a turned and framed floor back to that floor, which has that shape."""
+    """Return the map from points (x, y) of a turned and framed floor back to the floor, which has that shape."""
 
     def back(point: tuple[float, float]) -> tuple[float, float]:
         x, y = point[0] - frame[0], point[1] - frame[1]
@@ -140,13 +140,13 @@ def _way_back(
 
 
 def _same_parts(one: NDArray[np.generic], other: NDArray[np.generic]) -> bool:
-    """Do two grids of labels divide the squares alike?"""
+    """Return whether two grids of labels divide the squares alike."""
     pairs = {*zip(one.ravel().tolist(), other.ravel().tolist(), strict=True)}
     return len(pairs) == len({a for a, _ in pairs}) == len({b for _, b in pairs}) and (0, 0) in pairs | {(0, 0)}
 
 
 def _badly_cut(free: Mask, passages: list[Passage], labels: Labels) -> Iterator[str]:
-    """What is wrong with the cuts of passages, by an exact cut of the floor as a polygon."""
+    """Yield what is wrong with the cuts along passages, compared with an exact cut of the floor as a polygon."""
     rows, columns = np.nonzero(free)
     floor = shapely.union_all(shapely.box(columns, rows, columns + 1, rows + 1))
     lines = shapely.MultiLineString([mouth for passage in passages for mouth in passage.mouths])
@@ -157,7 +157,9 @@ def _badly_cut(free: Mask, passages: list[Passage], labels: Labels) -> Iterator[
             )
             if not shapely.contains_properly(floor, inner).all():
                 yield f"the mouth {mouth} leaves the floor"
-    pieces = shapely.get_parts(floor.difference(lines.buffer(THIN, cap_style="square")).buffer(-THIN))
+    pieces = shapely.get_parts(
+        floor.difference(lines.buffer(CUT_HALF_WIDTH, cap_style="square")).buffer(-CUT_HALF_WIDTH)
+    )
     where = shapely.STRtree(pieces)
     known = np.argwhere(labels > 0)
     points = shapely.points(known[:, 1] + 0.5, known[:, 0] + 0.5)
@@ -176,7 +178,7 @@ def _badly_cut(free: Mask, passages: list[Passage], labels: Labels) -> Iterator[
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Look at so many random floors."""
+    """Check random floors, print what is wrong, and return 1 when anything is, else 0."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--count", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=0)
@@ -186,11 +188,11 @@ def main(argv: list[str] | None = None) -> int:
     for number in range(options.count):
         free = random_floor(rng)
         doors += len(Screen(free).passages())
-        told = disagreements(free)
-        wrong += bool(told)
-        if told:
+        expected = disagreements(free)
+        wrong += bool(expected)
+        if expected:
             picture = "\n".join("".join(".#"[not square] for square in row) for row in free[::-1])
-            print(f"floor {number}:", *told, picture, "", sep="\n")
+            print(f"floor {number}:", *expected, picture, "", sep="\n")
     print(f"{options.count} floors, {doors} passages, {wrong} floors with a disagreement")
     return int(wrong > 0)
 

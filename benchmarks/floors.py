@@ -1,10 +1,9 @@
-"""Routes on random small floors beside exact answers.
+"""Routes on random small floors, compared with exact answers.
 
     python -m benchmarks.floors --count 10000 [--seed 1] [--only words,shortest,sets,bodies,avoid,images,chains]
 
-Each floor is asked everything once, from a place of its own; what differs from brute force
-(benchmarks/engine/exact.py) is
-printed with the floor's number, and the number of disagreements is the exit code's reason: 1 unless it is 0.
+Every floor goes through every check once, with a random start and goal. What differs from brute force
+(benchmarks/engine/exact.py) is printed with the floor's number. The exit code is 1 when anything differs.
 """
 
 import argparse
@@ -20,31 +19,30 @@ from numpy.typing import NDArray
 
 from benchmarks.engine.exact import Exact, clearances, labels
 from geometry import Route, Screen
+from geometry.kernels.arrays import XY, Bools
 from geometry.pathfinders.visibility_graph import visibility_way
 
-Bools = NDArray[np.bool_]
-XY = tuple[float, float]
-DIAGONAL = 0.7075  # squares: half of a square's, and what the polygons that stand for circles lack
-NEAR = 1e-9  # squares by which lengths may differ for rounding
-RADII = [0.3, 0.5, 0.55, 0.6, 0.7071, 0.75, 1.0, 1.2, 1.5, 1.55, 1.5811, 2.0, 2.52, 2.5495, 3.0]
+HALF_DIAGONAL = 0.7075  # squares: of a square, and what the polygons that stand for circles lack (derived)
+LENGTH_TOLERANCE = 1e-9  # squares by which lengths may differ because of rounding (a convention)
+BODY_RADII = [0.3, 0.5, 0.55, 0.6, 0.7071, 0.75, 1.0, 1.2, 1.5, 1.55, 1.5811, 2.0, 2.52, 2.5495, 3.0]
 
 
 def random_floor(rng: np.random.Generator) -> Bools:
-    """A floor of at most 12 x 12 with at least two free squares: noise, rooms, a corridor aslant, or a maze."""
+    """Return a floor of at most 12 x 12, at least two squares of it free: noise, rooms, oblique corridor, or maze."""
     while True:
         rows, columns = (int(v) for v in rng.integers(2, 13, 2))
-        free = MAKERS[int(rng.integers(len(MAKERS)))](rng, rows, columns)
+        free = FLOOR_MAKERS[int(rng.integers(len(FLOOR_MAKERS)))](rng, rows, columns)
         if free.sum() >= 2:
             return free
 
 
 def noise(rng: np.random.Generator, rows: int, columns: int) -> Bools:
-    """Squares blocked at random."""
+    """Return a floor with squares blocked at random."""
     return rng.random((rows, columns)) >= rng.choice([0.05, 0.15, 0.3, 0.45, 0.6])
 
 
 def rooms(rng: np.random.Generator, rows: int, columns: int) -> Bools:
-    """Walls across the floor, each with a gap or two."""
+    """Return a floor with walls across it, each with one or two gaps."""
     free = np.ones((rows, columns), np.bool_)
     for axis, size in ((0, rows), (1, columns)):
         for at in rng.choice(size, min(size, int(rng.integers(0, 3))), replace=False):
@@ -56,8 +54,8 @@ def rooms(rng: np.random.Generator, rows: int, columns: int) -> Bools:
     return free
 
 
-def aslant(rng: np.random.Generator, rows: int, columns: int) -> Bools:
-    """A corridor across the grid, with some squares blocked."""
+def oblique(rng: np.random.Generator, rows: int, columns: int) -> Bools:
+    """Return a corridor oblique to the grid, with some squares blocked."""
     i, j = np.indices((rows, columns))
     steep = rng.choice([-1.0, -0.5, 0.5, 1.0, 2.0])
     free: Bools = np.abs(i - rows / 2 - steep * (j - columns / 2)) <= rng.integers(1, 6)
@@ -65,7 +63,7 @@ def aslant(rng: np.random.Generator, rows: int, columns: int) -> Bools:
 
 
 def maze(rng: np.random.Generator, rows: int, columns: int) -> Bools:
-    """Pillars at even places with a wall from each to one side."""
+    """Return a maze: pillars at odd rows and columns, each with a wall to one side."""
     free = np.ones((rows, columns), np.bool_)
     for i in range(1, rows - 1, 2):
         for j in range(1, columns - 1, 2):
@@ -74,11 +72,11 @@ def maze(rng: np.random.Generator, rows: int, columns: int) -> Bools:
     return free
 
 
-MAKERS = [noise, noise, rooms, aslant, maze]
+FLOOR_MAKERS = [noise, noise, rooms, oblique, maze]
 
 
 def random_point(rng: np.random.Generator, free: Bools) -> XY:
-    """A point in a free square: its centre, or a quarter off, or on its southern or western edge."""
+    """Return a point in a free square: its centre, or a quarter off, or on its southern or western edge."""
     squares = np.argwhere(free)
     row, column = squares[int(rng.integers(len(squares)))].tolist()
     x, y = rng.choice([0.0, 0.25, 0.5, 0.5, 0.75], 2).tolist()
@@ -86,7 +84,17 @@ def random_point(rng: np.random.Generator, free: Bools) -> XY:
 
 
 class Case:
-    """A floor with a start and a goal. ``rng`` chooses the rest."""
+    """A random floor with its exact answers, a screen, a start and a goal.
+
+    Attributes
+    ----------
+    rng : numpy.random.Generator
+        Draws whatever else a check needs; the same for the same seed and number.
+    free : (rows, columns) bool
+    exact : Exact
+    screen : Screen
+    start, goal : (x, y) in squares
+    """
 
     def __init__(self, seed: int, number: int) -> None:
         self.rng = np.random.default_rng([seed, number])
@@ -95,7 +103,7 @@ class Case:
         self.start, self.goal = random_point(self.rng, self.free), random_point(self.rng, self.free)
 
     def walk(self) -> NDArray[np.float64] | None:
-        """A line from start to goal over the centres of edge neighbours, at random; None when it does not get there."""
+        """Return a random walk from start to goal over centres of edge neighbours; None when it does not arrive."""
         here, there = ((int(p[0]), int(p[1])) for p in (self.start, self.goal))
         line: list[XY] = [self.start]
         for _ in range(400):
@@ -111,14 +119,17 @@ class Case:
 
 
 def words(case: Case) -> Iterator[str]:
-    """Signatures tell classes apart, and lines of one class have one signature, however they run."""
+    """Yield faults of signatures: two lines of one class must have one signature, of two classes two."""
     routes = case.screen.routes(case.start, case.goal, k=6)
     lines = [route.points for route in routes]
     for route in routes:
         if case.screen.tighten(route).signature != route.signature:
             yield "a route that is tightened has another signature"
         (named,) = case.screen.routes(case.start, case.goal, word=route.signature)
-        if abs(named.length - route.length) > NEAR or abs(named.clearance - route.clearance) > NEAR:
+        if (
+            abs(named.length - route.length) > LENGTH_TOLERANCE
+            or abs(named.clearance - route.clearance) > LENGTH_TOLERANCE
+        ):
             yield f"the route of a signature is {named.length} long, clearance {named.clearance}, not as the route"
     signatures = [route.signature for route in routes]
     walk = case.walk()
@@ -140,39 +151,39 @@ def words(case: Case) -> Iterator[str]:
 
 
 def shortest(case: Case) -> Iterator[str]:
-    """The shortest way of all is exact and comes first; routes are free, as long as told, and of known clearance."""
+    """Yield faults of shortest routes: exact lengths, first in order, in free space, with a clearance."""
     least = float(case.exact.distances(case.start, [case.goal])[0])
     best = case.screen.shortest(case.start, case.goal)
-    if (least == np.inf) != (best is None) or (best is not None and abs(best.length - least) > NEAR):
+    if (least == np.inf) != (best is None) or (best is not None and abs(best.length - least) > LENGTH_TOLERANCE):
         yield f"shortest says {best and best.length}, not {least}"
     seen = visibility_way(case.free, case.start, case.goal)
     long = np.inf if seen is None else float(np.hypot(*np.diff(seen, axis=0).T).sum())
-    if abs(long - least) > NEAR and long != least:
+    if abs(long - least) > LENGTH_TOLERANCE and long != least:
         yield f"the visibility graph says {long}, not {least}"
     for k in (1, 2, 3, 5):
         routes = case.screen.routes(case.start, case.goal, k=k)
         if bool(routes) != (least < np.inf):
             yield f"k = {k}: {len(routes)} routes"
-        if routes and k > 1 and abs(routes[0].length - least) > NEAR:
+        if routes and k > 1 and abs(routes[0].length - least) > LENGTH_TOLERANCE:
             yield f"k = {k}: the first is {routes[0].length} long, not {least}"
         for route in routes:
             yield from faults(case, route, case.start, case.goal)
 
 
 def faults(case: Case, route: Route, start: XY, goal: XY) -> Iterator[str]:
-    """What is wrong with a point's route."""
+    """Yield what is wrong with a route of a point between two ends."""
     if not case.exact.is_free(route.points):
         yield f"a route leaves free space: {route.points.tolist()}"
     if tuple(route.points[0]) != start or tuple(route.points[-1]) != goal:
         yield "a route has other ends"
-    if abs(route.length - float(np.hypot(*np.diff(route.points, axis=0).T).sum())) > NEAR:
-        yield "a route is not as long as told"
+    if abs(route.length - float(np.hypot(*np.diff(route.points, axis=0).T).sum())) > LENGTH_TOLERANCE:
+        yield "a route's length is not that of its points"
     if not 0.0 < route.clearance < np.inf:
         yield f"a route's clearance is {route.clearance}"
 
 
 def sets(case: Case) -> Iterator[str]:
-    """A route to a set of squares ends at the nearest; blocked squares in it count for nothing."""
+    """Yield faults of routes to sets of squares: the first must end at the nearest, blocked squares do not count."""
     goal = case.rng.random(case.free.shape) < case.rng.choice([0.05, 0.2, 0.5, 0.9])
     if case.rng.random() < 0.3:
         i, j = (int(v) for v in case.rng.integers(0, case.free.shape))
@@ -181,7 +192,7 @@ def sets(case: Case) -> Iterator[str]:
     least = float(case.exact.distances(case.start, centres).min(initial=np.inf)) if centres else np.inf
     for k in (1, 3):
         routes = case.screen.routes(case.start, goal, k=k)
-        if bool(routes) != (least < np.inf) or (routes and abs(routes[0].length - least) > NEAR):
+        if bool(routes) != (least < np.inf) or (routes and abs(routes[0].length - least) > LENGTH_TOLERANCE):
             yield f"k = {k}: the nearest of a set is {routes and routes[0].length} away, not {least}"
         for route in routes:
             end = (float(route.points[-1][0]), float(route.points[-1][1]))
@@ -196,11 +207,11 @@ def sets(case: Case) -> Iterator[str]:
 
 
 def bodies(case: Case) -> Iterator[str]:
-    """A body moves over the squares whose centres have room for it, and keeps its distance everywhere.
+    """Yield faults of routes of a body: it must keep its radius from walls, and have the topology of its free space.
 
-    Where a disc larger by half a square's diagonal can go, it finds a way.
+    Where a disc larger by half the diagonal of a square can go, there must be a route.
     """
-    radius = float(case.rng.choice(RADII))
+    radius = float(case.rng.choice(BODY_RADII))
     room = clearances(case.free) >= radius - 1e-12
     graph, number = case.screen.pathgraph_for(radius), labels(room, corners=False)
     parts = number_of_parts(graph)
@@ -217,19 +228,22 @@ def bodies(case: Case) -> Iterator[str]:
             yield f"radius {radius}: {len(routes)} routes between parts {a} and {b}"
     if len({route.signature for route in routes}) < len(routes):
         yield f"radius {radius}: two routes are of one class"
-    ample = shapely.box(0, 0, *case.free.shape[::-1]).difference(walls.buffer(radius + DIAGONAL, quad_segs=64))
+    ample = shapely.box(0, 0, *case.free.shape[::-1]).difference(walls.buffer(radius + HALF_DIAGONAL, quad_segs=64))
     for part in shapely.get_parts(ample):
         if part.covers(shapely.Point(start)) and part.covers(shapely.Point(goal)) and not routes:
-            yield f"radius {radius}: no routes where there is room for a disc of {radius + DIAGONAL}"
-    askew = case.screen.routes(case.start, case.goal, k=2, radius=radius)
-    if askew and not routes:
-        yield f"radius {radius}: routes from askew alone"
-    for route in [*routes, *askew]:
+            yield f"radius {radius}: no routes where there is room for a disc of {radius + HALF_DIAGONAL}"
+    off_centre = case.screen.routes(case.start, case.goal, k=2, radius=radius)
+    if off_centre and not routes:
+        yield f"radius {radius}: routes only from points off the centres"
+    for route in [*routes, *off_centre]:
         line = shapely.LineString(route.points) if len(route.points) > 1 else shapely.Point(route.points[0])
-        if line.distance(walls) < radius - NEAR or not radius - NEAR <= route.clearance < np.inf:
+        if (
+            line.distance(walls) < radius - LENGTH_TOLERANCE
+            or not radius - LENGTH_TOLERANCE <= route.clearance < np.inf
+        ):
             yield f"radius {radius}: a route comes as near as {line.distance(walls)}, clearance {route.clearance}"
-        if abs(route.length - line.length) > NEAR:
-            yield f"radius {radius}: a route is not as long as told"
+        if abs(route.length - line.length) > LENGTH_TOLERANCE:
+            yield f"radius {radius}: a route's length is not that of its points"
     for point in (case.start, start):
         for route in case.screen.routes(point, point, k=1, radius=radius):
             if route.length != 0.0:
@@ -237,14 +251,14 @@ def bodies(case: Case) -> Iterator[str]:
 
 
 def number_of_parts(graph: object) -> int:
-    """The number of connected components of a pathgraph."""
+    """Return the number of connected components of a pathgraph."""
     import networkx
 
     return int(networkx.number_connected_components(graph))
 
 
 def avoid(case: Case) -> Iterator[str]:
-    """Routes that avoid passages exist exactly within the parts into which these cut the floor."""
+    """Yield faults of routes that avoid passages: they must exist exactly within the parts cut by these."""
     passages = case.screen.passages()
     if not passages:
         return
@@ -267,7 +281,7 @@ def avoid(case: Case) -> Iterator[str]:
 
 
 def images(case: Case) -> Iterator[str]:
-    """What is told of a floor holds of its mirror image and its quarter turn."""
+    """Yield answers that differ between a floor and its mirror image or its quarter turn."""
     rows, columns = case.free.shape
     squares = np.argwhere(case.free)
     (i, j), (m, n) = (squares[int(k)].tolist() for k in case.rng.integers(0, len(squares), 2))
@@ -281,15 +295,15 @@ def images(case: Case) -> Iterator[str]:
         return rows - y, x
 
     start, end = (j + 0.5, i + 0.5), (n + 0.5, m + 0.5)
-    told = answers(case.screen, start, end, goal, radius)
+    expected = answers(case.screen, start, end, goal, radius)
     for image, place in ((np.fliplr, mirrored), (lambda a: np.fliplr(a.T), turned)):
         again = answers(Screen(image(case.free)), place(*start), place(*end), image(goal), radius)
-        if not np.allclose(told, again, rtol=0, atol=NEAR):
-            yield f"{told} on the floor and {again} on its image"
+        if not np.allclose(expected, again, rtol=0, atol=LENGTH_TOLERANCE):
+            yield f"{expected} on the floor and {again} on its image"
 
 
 def answers(screen: Screen, start: XY, end: XY, goal: Bools, radius: float) -> list[float]:
-    """What does not depend on how a floor lies: the shortest length, that to a set, routes of a body."""
+    """Return what no symmetry changes: shortest lengths to a point and to a set, number of routes, cycles."""
     first = screen.routes(start, end, k=3)
     nearest = screen.routes(start, goal, k=2)
     body = screen.routes(start, end, k=1, radius=radius)
@@ -303,19 +317,19 @@ def answers(screen: Screen, start: XY, end: XY, goal: Bools, radius: float) -> l
 
 
 def chains(case: Case) -> Iterator[str]:
-    """A pathgraph's edge is as long as its points say, and no shorter than the shortest way of its class."""
+    """Yield faults of the edges of the pathgraph: their length, clearance and points must agree."""
     for _, _, edge in case.screen.pathgraph.edges(data=True):
         points = edge["points"]
         long = float(np.hypot(*np.diff(points, axis=0).T).sum())
-        if abs(edge["length"] - long) > NEAR:
-            yield f"an edge is told {edge['length']} long, its points say {long}"
+        if abs(edge["length"] - long) > LENGTH_TOLERANCE:
+            yield f"an edge has length {edge['length']}, its points {long}"
         if not case.exact.is_free(points):
             yield "an edge leaves free space"
-        if case.screen.tighten(Route(points, 0.0, 0.0, (), ())).length > edge["length"] + NEAR:
+        if case.screen.tighten(Route(points, 0.0, 0.0, (), ())).length > edge["length"] + LENGTH_TOLERANCE:
             yield "an edge is shorter than the shortest way of its class"
         lowest = min(case.screen.clearance[int(y), int(x)] for x, y in points)
         if edge["clearance"] != lowest:
-            yield f"an edge's clearance is told {edge['clearance']}, it is {lowest}"
+            yield f"an edge has clearance {edge['clearance']}, its squares {lowest}"
         if any(abs(p - q).sum() != 1.0 for p, q in pairwise(points)):
             yield "an edge jumps"
 
@@ -326,12 +340,12 @@ CHECKS: dict[str, Callable[[Case], Iterator[str]]] = {
 
 
 def disagreements(check: str, seed: int, number: int) -> list[str]:
-    """What a floor's answers have wrong in one respect; the same for the same numbers."""
+    """Return what one check finds wrong on the floor of a seed and number, each as a sentence."""
     return list(CHECKS[check](Case(seed, number)))
 
 
 def main() -> int:
-    """Ask the floors and print what is wrong; 1 when anything is."""
+    """Check random floors, print what is wrong, and return 1 when anything is, else 0."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=10000, help="floors")
     parser.add_argument("--seed", type=int, default=1)

@@ -1,4 +1,8 @@
-"""A screen: free and blocked squares, and what a point or a round body can do among them."""
+"""A screen: a grid of free and blocked squares, and what a point or a round body can do on it.
+
+Building a screen measures all clearances and finds the skeleton and its graph. Everything else is computed when it is
+first asked for, and kept: chains with their squares, and one layer of routing data for each radius.
+"""
 
 from collections.abc import Iterable, Sequence
 from functools import cached_property
@@ -25,7 +29,7 @@ from geometry.routes.tighten import word_of_crossings
 from geometry.skeleton.buffers import Tenant, take_buffers
 from geometry.skeleton.chains import Chains, find_chains
 from geometry.skeleton.graph import SkeletonGraph, contract
-from geometry.skeleton.pathgraph_arrays import PathgraphArrays, pathgraph_arrays
+from geometry.skeleton.pathgraph_arrays import PathgraphArrays, build_pathgraph_arrays
 from geometry.skeleton.skeleton import States, Words
 from geometry.skeleton.sweep import survey
 
@@ -33,25 +37,36 @@ if TYPE_CHECKING:
     import networkx
 
 Point = Sequence[float]
+MAX_SIDE = 32766  # squares: with its frame a column of them can be counted in 16 bits with a sign (derived)
 
 
 class Screen:
-    """Free space on a grid of squares; a point passes between squares that share an edge, never through a mere corner.
+    """Free space on a grid of squares.
 
-    Points are (x, y) in squares; the centre of the square in column i and row j is (i + 0.5, j + 0.5).
+    Points are (x, y) in squares, x to the east and y to the north; the square in column i and row j has its centre at
+    (i + 0.5, j + 0.5). A point passes between squares that share an edge. It may touch the corners of blocked squares,
+    but never passes between two blocked squares that touch at a corner.
 
     Parameters
     ----------
     free : (rows, columns) array of bool
-        True where a point may be. Everything outside is blocked.
+        True where a point may be; row 0 is the southernmost. Everything outside is blocked. The array is copied.
+
+    Attributes
+    ----------
+    shape : (int, int)
+        Numbers of rows and columns.
 
     Raises
     ------
     ValueError
-        When ``free`` is not a two-dimensional array of truth values with at least one free square.
+        When ``free`` is not a two-dimensional array of bool of at most 32766 squares a side with at least one free
+        square.
 
     Examples
     --------
+    Two routes lead around a blocked square, one on each side:
+
     >>> import numpy as np
     >>> free = np.ones((3, 5), dtype=bool)
     >>> free[1, 2] = False
@@ -70,15 +85,39 @@ class Screen:
         self._questions: dict[float, LayerQueries] = {}
 
     def changed(self, rows: ArrayLike, columns: ArrayLike, values: ArrayLike) -> "Screen":
-        """Set some squares free (True) or blocked (False), in place, much faster than a new screen; returns itself.
+        """Set some squares free or blocked, in place, and return the screen itself.
 
-        Everything asked of the screen afterwards is as of a new screen of the changed squares. Crossing numbers, chain
-        numbers and passages given out before no longer hold.
+        Everything asked afterwards is as of a new screen of the changed squares, bit for bit. A change of few squares
+        takes a small part of the time of a new screen. Passages, crossing numbers (signatures) and chain numbers given
+        out before no longer hold; arrays and graphs given out before keep their values.
+
+        Parameters
+        ----------
+        rows, columns : (n,) array of int
+            Row and column of each square. Of a square named more than once the last value counts.
+        values : (n,) array of bool, or bool
+            True where the square becomes free, False where it becomes blocked; one value for all squares or one for
+            each.
+
+        Returns
+        -------
+        Screen
+            This screen.
 
         Raises
         ------
         ValueError
-            When a square lies outside, the three do not match, or no square would be left free (nothing changes then).
+            When a square lies outside, the lengths or types do not match, or no square would be left free. Nothing
+            changes then.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> screen = Screen(np.ones((3, 5), dtype=bool))
+        >>> screen.shortest((0.5, 1.5), (4.5, 1.5)).length
+        4.0
+        >>> screen.changed([1], [2], False).shortest((0.5, 1.5), (4.5, 1.5)).points.tolist()
+        [[0.5, 1.5], [2.0, 1.0], [3.0, 1.0], [4.5, 1.5]]
         """
         where = checked_squares(rows, columns, values, self.shape)
         state, words, old = self._skeletons[1]
@@ -91,48 +130,110 @@ class Screen:
 
     @property
     def free(self) -> Bools:
-        """(rows, columns) bool, True where a point may be."""
+        """The free squares: a new (rows, columns) array of bool, True where a point may be."""
         return self._square[1:-1, 1:-1] > 0
 
     @cached_property
     def clearance(self) -> NDArray[np.float64]:
-        """(rows, columns): distance from each square's centre to the nearest square that is not free, 0 on those."""
+        """The clearance of each square: (rows, columns) float64, in squares.
+
+        The Euclidean distance from the centre of the square to the nearest point of a square that is not free,
+        everything outside included; 0 on squares that are not free. Exact but for the rounding of one square root.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> Screen(np.ones((3, 4), dtype=bool)).clearance.tolist()
+        [[0.5, 0.5, 0.5, 0.5], [0.5, 1.5, 1.5, 0.5], [0.5, 0.5, 0.5, 0.5]]
+        """
         return 0.5 * np.sqrt(self._square[1:-1, 1:-1], dtype=np.float64)
 
     @cached_property
     def skeleton(self) -> Bools:
-        """(rows, columns) bool: thin, with as many components and holes as the free space."""
+        """The skeleton of the free squares: (rows, columns) bool.
+
+        Thin, with as many edge-connected components and as many holes as the free squares. It follows the ridges of
+        the clearance from each of its saddles up to the maxima.
+        """
         from geometry.skeleton.thinning import thin_skeleton
 
         return thin_skeleton(self._square, self._skeleton_at(1)[0])
 
     @cached_property
     def pathgraph(self) -> "networkx.MultiGraph[int]":
-        """Junctions and ends as nodes, chains as edges (see networkx_export.py for what they carry)."""
+        """The pathgraph: an ordinary networkx.MultiGraph with the components and independent cycles of free space.
+
+        Nodes are the junctions and ends of the skeleton, numbered from 0, with the attributes ``x``, ``y`` and
+        ``clearance``. Edges are the chains between them, with ``length`` (of the polyline through their squares),
+        ``clearance`` (the least on the chain) and ``points`` ((k, 2) float64, from one end to the other); the key of an
+        edge is its number. All in squares. ``pathgraph_arrays`` gives the same, sooner, without networkx.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> free = np.ones((3, 3), dtype=bool)
+        >>> free[1, 1] = False
+        >>> graph = Screen(free).pathgraph
+        >>> graph.nodes[0], graph.number_of_edges(), graph.edges[0, 0, 0]["length"]
+        ({'x': 0.5, 'y': 0.5, 'clearance': 0.5}, 1, 8.0)
+        """
         return self.pathgraph_for(0.0)
 
     def pathgraph_for(self, radius: float) -> "networkx.MultiGraph[int]":
-        """The pathgraph of a body: that of the squares whose clearance is at least its radius."""
+        """Return the pathgraph of a round body.
+
+        Parameters
+        ----------
+        radius : float
+            Radius of the body, in squares.
+
+        Returns
+        -------
+        networkx.MultiGraph
+            As ``pathgraph``, of the squares whose clearance is at least the radius; empty when there are none. A new
+            graph at each call.
+
+        Raises
+        ------
+        ValueError
+            When the radius is negative or no finite number.
+        """
         from geometry.skeleton.networkx_export import networkx_graph
 
         return networkx_graph(self._new_arrays(radius))
 
     @cached_property
     def pathgraph_arrays(self) -> PathgraphArrays:
-        """The same pathgraph in arrays."""
+        """The pathgraph as arrays of nodes, edges, points and adjacency, all read-only (see ``PathgraphArrays``)."""
         return self.pathgraph_arrays_for(0.0)
 
     def pathgraph_arrays_for(self, radius: float) -> PathgraphArrays:
-        """The pathgraph of a body in arrays."""
+        """Return the pathgraph of a round body as arrays.
+
+        Parameters
+        ----------
+        radius : float
+            Radius of the body, in squares.
+
+        Returns
+        -------
+        PathgraphArrays
+            Of the squares whose clearance is at least the radius: new, read-only arrays.
+
+        Raises
+        ------
+        ValueError
+            When the radius is negative or no finite number.
+        """
         arrays = self._new_arrays(radius)
         for array in arrays:
             array.flags.writeable = False
         return arrays
 
     def _new_arrays(self, radius: float) -> PathgraphArrays:
-        """Return the pathgraph of a body in new arrays."""
+        """Return the pathgraph of a body in new, writable arrays."""
         state, _, bones = self._skeleton_at(level_of(radius))
-        return pathgraph_arrays(self._square, state, bones)
+        return build_pathgraph_arrays(self._square, state, bones)
 
     def routes(
         self,
@@ -143,30 +244,54 @@ class Screen:
         avoid: Iterable[Passage] = (),
         word: Sequence[int] | None = None,
     ) -> list[Route]:
-        """Topologically distinct tight routes, shortest first; an empty list when there is none.
+        """Return topologically distinct routes, each the shortest of its class, the shortest first.
+
+        Two routes are of one class when one can be deformed into the other over free space with its ends fixed.
 
         Parameters
         ----------
         start : (x, y)
-        goal : (x, y), or (rows, columns) array of bool, or set of squares (column, row)
-            Of a set any square will do: a route ends where that makes it shortest.
+            Where every route begins, in squares.
+        goal : (x, y), or (rows, columns) array of bool, or set of (column, row)
+            Where every route ends. Of an array or a set the centre of any free square will do: each route ends where
+            that makes it shortest, and routes whose ends can be moved into each other within the set are one.
         k : int
-            How many at most. Routes pass no junction of the pathgraph twice, but for the shortest of all, which for
-            a point and from 2 on comes first.
+            How many routes at most. Their paths over the pathgraph pass no junction twice. Only the shortest of all,
+            which for a point as goal and ``k`` of 2 or more comes first, may be of another class.
         radius : float
-            Of a round body about the point, in squares. It moves from centre to centre of squares that are at least
-            so far from all walls, and straight between its ends and the centres of theirs; there is no route where
-            it has no room for that.
-        avoid : passages
-            Routes must not lead through these: there are some exactly within each of ``parts(avoid)``.
-        word : crossing numbers
-            Only the route of this signature (which may wind as it likes), whatever k and avoid.
+            Radius of a round body about the point, in squares. It moves from centre to centre of squares whose
+            clearance is at least the radius, and straight between start or goal and the centre of its square. There
+            is no route when start or goal have no room for that.
+        avoid : iterable of Passage
+            Passages through which routes must not lead: there are routes exactly between squares of one part of
+            ``parts(avoid)``.
+        word : sequence of int, optional
+            A signature. Only the route of this class is returned, however it winds; ``k`` and ``avoid`` do not count.
+            Only for a point as goal.
+
+        Returns
+        -------
+        list of Route
+            Empty when there is no route.
 
         Raises
         ------
         ValueError
-            When start or goal lie outside the screen or in a blocked square or are none, the word is not of this
-            screen, k is no number of routes or radius none of squares.
+            When a point lies outside the screen or in a blocked square, when the goal is none of the three kinds, the
+            word is not one of this screen, ``k`` no positive whole number, or the radius negative or not finite.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> free = np.ones((5, 7), dtype=bool)
+        >>> free[2, 3] = False
+        >>> screen = Screen(free)
+        >>> [round(route.length, 3) for route in screen.routes((0.5, 2.5), (6.5, 2.5), k=2)]
+        [6.099, 6.099]
+        >>> screen.routes((1.5, 2.5), (5.5, 2.5), k=1, radius=1.0)
+        []
+        >>> screen.routes((0.5, 2.5), {(6, 0), (5, 4)}, k=1)[0].points[-1].tolist()
+        [5.5, 4.5]
         """
         check_count(k)
         questions = self._ask(radius)
@@ -186,21 +311,62 @@ class Screen:
         return [] if symbols is None else [questions.of_word(begin, end, symbols)]
 
     def shortest(self, start: Point, goal: Point) -> Route | None:
-        """The shortest route of all, at any angle; None when there is none. Its clearance and chains are not known."""
+        """Return the shortest route of all, at any angle.
+
+        Found exactly, without the pathgraph (Polyanya: Cui, Harabor and Grastien 2017).
+
+        Parameters
+        ----------
+        start, goal : (x, y)
+            Its ends, in squares.
+
+        Returns
+        -------
+        Route or None
+            None when there is no route. The ``clearance`` of the route is nan and its ``chains`` are empty;
+            ``tighten`` finds both.
+
+        Raises
+        ------
+        ValueError
+            When a point lies outside the screen or in a blocked square.
+        """
         begin, end = self._checked(start, "start"), self._checked(goal, "goal")
         return self._ask(0.0).shortest(begin, end)
 
     def loops(self, start: Point, around: ArrayLike, k: int = 1, radius: float = 0.0) -> list[Route]:
-        """Closed tight routes that wind once, counter-clockwise, about blocked squares; shortest first.
+        """Return closed routes that wind once, counter-clockwise, around blocked squares, the shortest first.
 
         Parameters
         ----------
         start : (x, y)
-            Where every loop begins and ends.
+            Where every loop begins and ends, in squares.
         around : (rows, columns) array of bool
-            The blocked squares, of one object. No loops when it is part of the outer wall.
-        k, radius
-            As for ``routes``.
+            The blocked squares of one object. There are no loops when it is part of the outer wall.
+        k : int
+            How many loops at most, no two of one class.
+        radius : float
+            Radius of a round body, in squares, as for ``routes``.
+
+        Returns
+        -------
+        list of Route
+            Empty when there is no loop.
+
+        Raises
+        ------
+        ValueError
+            When ``around`` is no array of bool of the screen's shape, holds a free square or none at all, when the
+            start lies outside the screen or in a blocked square, or ``k`` or the radius are out of range.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> free = np.ones((5, 5), dtype=bool)
+        >>> free[2, 2] = False
+        >>> [loop] = Screen(free).loops((0.5, 0.5), ~free)
+        >>> loop.points.tolist()
+        [[0.5, 0.5], [3.0, 2.0], [3.0, 3.0], [2.0, 3.0], [0.5, 0.5]]
         """
         mask = np.asarray(around)
         if mask.shape != self.shape or mask.dtype != np.bool_ or not mask.any():
@@ -213,12 +379,24 @@ class Screen:
         return questions.loops(begin, mask, k) if questions.admits(begin) else []
 
     def tighten(self, route: Route, radius: float = 0.0) -> Route:
-        """The locally shortest route of the same class, between the same ends.
+        """Return the shortest route of the same class, between the same ends.
+
+        Parameters
+        ----------
+        route : Route
+            Any polyline over free space; only its ``points`` count.
+        radius : float
+            Radius of a round body, in squares, as for ``routes``.
+
+        Returns
+        -------
+        Route
+            With its length, clearance, signature and chains.
 
         Raises
         ------
         ValueError
-            When the route leaves free space.
+            When the route leaves free space, or the radius is negative or not finite.
         """
         questions = self._ask(radius)
         word = word_of_line(questions.layer.runs, route.points.tolist())
@@ -226,33 +404,63 @@ class Screen:
         return questions.of_word(start, goal, word)
 
     def passages(self, pinch: float = DOOR) -> list[Passage]:
-        """The necks of free space, by place (see necks.py).
+        """Return the necks of free space, ordered by place.
 
-        pinch : only those on both sides of which the floor is at least so many times as wide.
+        A neck is a straight line from wall to wall that is shorter than all near it (see necks.py).
+
+        Parameters
+        ----------
+        pinch : float
+            Only necks on both sides of which the floor is at least so many times as wide. The default is the
+            definition of a door.
+
+        Returns
+        -------
+        list of Passage
         """
         return find_passages(self._walls, pinch)
 
     def narrows(self, passage: Passage, spare: float) -> set[tuple[int, int]]:
-        """The squares (column, row) about a passage where lines from wall to wall are at most so much longer than it.
+        """Return the squares around a passage where the floor is nearly as narrow as there.
 
-        spare : in squares (see narrow_stretches.py).
+        Parameters
+        ----------
+        passage : Passage
+            One of ``passages()``.
+        spare : float
+            How much longer than the width of the passage a line from wall to wall may be, in squares.
+
+        Returns
+        -------
+        set of (column, row)
+            Squares of which a part lies between two such lines, as far as these follow each other without a gap from
+            the passage on.
         """
         return narrow_squares(self._walls, passage, spare)
 
     @cached_property
     def _walls(self) -> Walls:
-        """The floor between the corners of its walls."""
+        """The triangulated floor between the corners of its walls."""
         return find_walls(self.free)
 
     def parts(self, passages: Iterable[Passage]) -> Labels:
-        """(rows, columns) int: the number of the part of the floor, cut along the passages' mouths, or 0.
+        """Return the parts of the floor when it is cut along the mouths of passages.
 
-        0 on blocked squares, on those whose centres lie on a mouth, and between two mouths (see partition.py).
+        Parameters
+        ----------
+        passages : iterable of Passage
+
+        Returns
+        -------
+        (rows, columns) array of int32
+            The number of the part of each square, from 1 in the order of the parts' first squares (row by row from the
+            south). 0 on blocked squares, on squares whose centre lies on a mouth, and on the floor between the two
+            mouths of a passage.
         """
         return find_parts(self.free, passages)
 
     def _checked(self, point: Point, name: str) -> tuple[float, float]:
-        """A point in a free square."""
+        """Return a point as two floats; raise ValueError, with its ``name``, when it does not lie in a free square."""
         try:
             x, y = map(float, point)
         except (TypeError, ValueError):
@@ -264,18 +472,18 @@ class Screen:
         return x, y
 
     def _rent(self, kind: type[np.int16] | type[np.int32]) -> None:
-        """Have memory for squared clearances of that kind."""
+        """Take memory for squared clearances of that type of integers."""
         self._tenant = Tenant()
         self._square, self._words = take_buffers(self._tenant, (self.shape[0] + 2, self.shape[1] + 2), kind)
 
     def _survey(self, grid: Bools) -> tuple[States, Words, SkeletonGraph]:
-        """Measure all clearances and find the skeleton and pathgraph of free squares."""
+        """Measure all clearances of free squares; return the skeleton (twice: by cells, by words) and its graph."""
         state, words = new_state(self._square.shape, self._words)
         survey(grid, self._square, state, words)
         return state, words, contract(self._square, state, words)
 
     def _survey_changed(self, rows: Ints, columns: Ints, values: Bools) -> tuple[States, Words, SkeletonGraph]:
-        """The same with some squares changed."""
+        """Return the same as ``_survey`` with some squares changed, all measured anew."""
         grid = self.free
         grid[rows, columns] = values
         kind = type_of_squares(grid)
@@ -284,7 +492,7 @@ class Screen:
         return self._survey(grid)
 
     def _skeleton_at(self, level: int) -> tuple[States, Words, SkeletonGraph]:
-        """The skeleton and pathgraph of the squares of at least that level."""
+        """Return the skeleton and graph of the squares whose squared clearance (half squares) is at least ``level``."""
         found = self._skeletons.get(level)
         if found is None:
             state, words = new_state(self._square.shape)
@@ -293,7 +501,7 @@ class Screen:
         return found
 
     def _chains_at(self, level: int) -> Chains:
-        """The same pathgraph with the cells of its chains."""
+        """Return the same graph with the cells of its chains."""
         found = self._chains.get(level)
         if found is None:
             state, _, bones = self._skeleton_at(level)
@@ -301,7 +509,7 @@ class Screen:
         return found
 
     def _ask(self, radius: float) -> LayerQueries:
-        """What answers questions for a body of that radius."""
+        """Return the object that answers questions for a body of that radius (squares)."""
         found = self._questions.get(radius)
         if found is None:
             key = level_of(radius), radius > 0.0
@@ -313,21 +521,21 @@ class Screen:
 
 
 def checked_grid(free: ArrayLike) -> Bools:
-    """The free squares as an array, or an error that says what is wrong with them."""
+    """Return the free squares as an array of bool; raise ValueError when they are none."""
     grid = np.asarray(free)
     if grid.ndim != 2:
         raise ValueError(f"free must have two dimensions (rows, columns), not {grid.ndim}")
     if grid.dtype != np.bool_:
         raise ValueError(f"free must be an array of bool, not of {grid.dtype}")
-    if max(grid.shape) > 32766:
-        raise ValueError(f"free must not be larger than 32766 squares a side, not {grid.shape}")
+    if max(grid.shape) > MAX_SIDE:
+        raise ValueError(f"free must not be larger than {MAX_SIDE} squares a side, not {grid.shape}")
     if not grid.any():
         raise ValueError("free has no free square")
     return grid
 
 
 def check_count(k: int) -> None:
-    """An error unless k is a number of routes."""
+    """Raise ValueError unless k is a positive whole number."""
     if not isinstance(k, Integral) or k < 1:
         raise ValueError(f"k must be a whole number and at least 1, but is {k!r}")
 
@@ -335,7 +543,7 @@ def check_count(k: int) -> None:
 def checked_squares(
     rows: ArrayLike, columns: ArrayLike, values: ArrayLike, shape: tuple[int, int]
 ) -> tuple[Ints, Ints, Bools]:
-    """Rows, columns and values as arrays of one length, each square once (the last value counts)."""
+    """Return rows, columns and values as arrays of one length, each square once (the last value counts)."""
     i, j = (np.atleast_1d(np.asarray(v)).ravel() for v in (rows, columns))
     value = np.asarray(values)
     if len(i) == len(j) == value.size == 0:

@@ -1,7 +1,8 @@
-"""Exact answers about small floors, by brute force and in whole numbers; nothing here uses the code under test.
+"""Exact answers about small floors, by brute force and in whole numbers.
 
-Points are (x, y) in squares and multiples of a quarter. A point on a line between squares belongs to the square north-
-east of it. Two blocked squares that touch at a corner block the way between them.
+Nothing here uses the code under test but the names of its array types. Points are (x, y) in squares and multiples of a
+quarter; inside they are whole numbers of quarters. A point on a line between squares belongs to the square northeast of
+it. Two blocked squares that touch at a corner block the passage between them.
 """
 
 from collections import deque
@@ -10,69 +11,77 @@ from functools import cached_property
 from itertools import pairwise, product
 
 import numpy as np
-from numpy.typing import NDArray
 
-Bools = NDArray[np.bool_]
-Floats = NDArray[np.float64]
-Whole = NDArray[np.int64]
-XY = tuple[float, float]
-PARTS = 4  # of a square: the points' grid
+from geometry.kernels.arrays import XY, Bools, Floats, Labels, Longs
+
+QUARTERS = 4  # of a square: the grid of points
 
 
 class Exact:
-    """A floor with an exact visibility graph. free : (rows, columns) bool."""
+    """A floor with an exact visibility graph between the corners of its blocked squares.
+
+    Parameters
+    ----------
+    free : (rows, columns) bool
+        Free squares; everything outside is blocked.
+
+    Attributes
+    ----------
+    padded : (rows + 2, columns + 2) bool
+        The same with a blocked frame.
+    """
 
     def __init__(self, free: Bools) -> None:
         self.free = free
         self.padded = np.pad(free, 1)
 
     @cached_property
-    def blocked(self) -> Whole:
-        """(n, 2) lower corners of the blocked squares and of those around the floor, in parts."""
-        return PARTS * (np.argwhere(~self.padded)[:, ::-1] - 1)
+    def blocked(self) -> Longs:
+        """Southwest corners (n, 2) of the blocked squares, those of the frame included, in quarters."""
+        return QUARTERS * (np.argwhere(~self.padded)[:, ::-1] - 1)
 
-    def _corners(self, blocked: int, diagonal: bool) -> Whole:
-        """Corners with so many blocked squares about them; two of them only where they lie across."""
+    def _corners(self, blocked: int, diagonal: bool) -> Longs:
+        """Return the corners (n, 2) around which so many squares are blocked; ``diagonal``: only opposite ones."""
         p = self.padded
         about = np.stack([p[:-1, :-1], p[1:, 1:], p[1:, :-1], p[:-1, 1:]])
         chosen = (~about).sum(axis=0) == blocked
         if diagonal:
             chosen &= (about[0] == about[1]) & (about[2] == about[3])
-        return PARTS * np.argwhere(chosen)[:, ::-1]
+        return QUARTERS * np.argwhere(chosen)[:, ::-1]
 
     @cached_property
-    def corners(self) -> Whole:
-        """(n, 2) where the shortest ways may bend, in parts."""
+    def corners(self) -> Longs:
+        """Points (n, 2) where shortest paths may bend, in quarters."""
         return self._corners(1, False)
 
     @cached_property
-    def pinches(self) -> Whole:
-        """(n, 2) where two blocked squares touch at a corner, in parts."""
+    def pinches(self) -> Longs:
+        """Points (n, 2) where two blocked squares touch only at a corner, in quarters."""
         return self._corners(2, True)
 
     @cached_property
-    def seams(self) -> tuple[Whole, Whole]:
-        """The lower ends of the upright and of the level edges between two blocked squares, in parts."""
+    def seams(self) -> tuple[Longs, Longs]:
+        """Lower ends (n, 2) of the vertical, and of the horizontal, edges between two blocked squares, in quarters."""
         wall = ~self.padded
         upright = np.argwhere(wall[:, 1:] & wall[:, :-1])[:, ::-1] - (0, 1)
         level = np.argwhere(wall[1:] & wall[:-1])[:, ::-1] - (1, 0)
-        return PARTS * upright, PARTS * level
+        return QUARTERS * upright, QUARTERS * level
 
-    def sees(self, p: Whole, q: Whole) -> Bools:
-        """(n, m) whether the segments between points (n, 2) and (m, 2), in parts, stay in free space."""
+    def sees(self, p: Longs, q: Longs) -> Bools:
+        """Return (n, m) whether the segments between points (n, 2) and (m, 2), in quarters, stay in free space."""
         a, b = p[:, None, None, :], q[None, :, None, :]
         d = b - a
         low, high = np.minimum(a, b), np.maximum(a, b)
         box = self.blocked[None, None]
-        apart = ((high <= box) | (low >= box + PARTS)).any(axis=3)
-        sides = [cross(d, box + PARTS * np.array(side) - a) for side in ((0, 0), (0, 1), (1, 0), (1, 1))]
+        apart = ((high <= box) | (low >= box + QUARTERS)).any(axis=3)
+        sides = [cross(d, box + QUARTERS * np.array(side) - a) for side in ((0, 0), (0, 1), (1, 0), (1, 1))]
         apart |= (np.min(sides, axis=0) >= 0) | (np.max(sides, axis=0) <= 0)
         open_ = apart.all(axis=2)
         for axis, seam in enumerate(self.seams):
             ends = seam[None, None]
             along = (a[..., axis] == b[..., axis]) & (a[..., axis] == ends[..., axis])
             other = 1 - axis
-            over = (low[..., other] < ends[..., other] + PARTS) & (high[..., other] > ends[..., other])
+            over = (low[..., other] < ends[..., other] + QUARTERS) & (high[..., other] > ends[..., other])
             open_ &= ~(along & over).any(axis=2)
         pinch = self.pinches[None, None]
         on = (cross(d, pinch - a) == 0) & ((pinch - a) * (pinch - b)).sum(axis=3).__lt__(0)
@@ -84,12 +93,12 @@ class Exact:
 
     @cached_property
     def _between_corners(self) -> Floats:
-        """(n, n) lengths of the segments between corners; infinite where they do not see each other."""
+        """Lengths (n, n) of the segments between corners, in squares; infinite where they leave free space."""
         return lengths(self.corners, self.corners, self.sees(self.corners, self.corners))
 
     def distances(self, start: XY, goals: Sequence[XY]) -> Floats:
-        """(n,) exact lengths of the shortest ways from a point to others; infinite where there is none."""
-        p, q = parts([start]), parts(goals)
+        """Return the exact lengths (n,) of the shortest paths from a point to others, in squares; inf where none is."""
+        p, q = in_quarters([start]), in_quarters(goals)
         best = lengths(p, self.corners, self.sees(p, self.corners))[0]
         done = np.zeros(len(best), np.bool_)
         while (~done & (best < np.inf)).any():
@@ -103,13 +112,13 @@ class Exact:
         return np.minimum(direct, (best[:, None] + last).min(axis=0))
 
     def is_free(self, points: Floats) -> bool:
-        """Whether a polyline, all of whose points are corners or multiples of a quarter, stays in free space."""
-        q = parts(points.tolist())
+        """Return whether a polyline whose points are multiples of a quarter stays in free space."""
+        q = in_quarters(points.tolist())
         return all(bool(self.sees(q[k : k + 1], q[k + 1 : k + 2])[0, 0]) for k in range(len(q) - 1))
 
     @cached_property
     def _rays(self) -> list[XY]:
-        """A point in each bounded group of blocked squares, from which a ray runs north."""
+        """A point in each bounded group of blocked squares, from which a ray runs to the north."""
         number = labels(~self.padded, corners=True)
         outer = number[0, 0]
         found = []
@@ -120,7 +129,7 @@ class Exact:
         return found
 
     def word(self, points: Floats) -> tuple[int, ...]:
-        """The homotopy class of a polyline between its ends: the rays that it crosses, without what cancels."""
+        """Return the homotopy class of a polyline with fixed ends: the signed rays that it crosses, reduced."""
         symbols: list[int] = []
         for p, q in pairwise(points.tolist()):
             crossed = []
@@ -137,28 +146,28 @@ class Exact:
         return tuple(symbols)
 
 
-def parts(points: Sequence[Sequence[float]]) -> Whole:
-    """Points in whole parts of a square."""
-    scaled = PARTS * np.array(points, np.float64).reshape(-1, 2)
+def in_quarters(points: Sequence[Sequence[float]]) -> Longs:
+    """Return points as whole quarters of squares; raise ValueError when they are no multiples of a quarter."""
+    scaled = QUARTERS * np.array(points, np.float64).reshape(-1, 2)
     rounded = np.round(scaled).astype(np.int64)
     if (rounded != scaled).any():
         raise ValueError("points must be multiples of a quarter")
     return rounded
 
 
-def cross(a: Whole, b: Whole) -> Whole:
-    """The cross products of vectors along the last axis."""
+def cross(a: Longs, b: Longs) -> Longs:
+    """Return the cross products of vectors along the last axis."""
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
-def lengths(p: Whole, q: Whole, seen: Bools) -> Floats:
-    """(n, m) distances in squares where the points see each other; else infinite."""
-    d = (p[:, None] - q[None]) / PARTS
+def lengths(p: Longs, q: Longs, seen: Bools) -> Floats:
+    """Return the distances (n, m) between points, in squares, where ``seen`` is True; else inf."""
+    d = (p[:, None] - q[None]) / QUARTERS
     return np.where(seen, np.hypot(d[..., 0], d[..., 1]), np.inf)
 
 
-def labels(mask: Bools, corners: bool) -> NDArray[np.int32]:
-    """Numbers from 1 of the parts connected by edges, or also by corners; 0 outside the mask."""
+def labels(mask: Bools, corners: bool) -> Labels:
+    """Return the number of each square's part, from 1; parts connect by edges, or also by corners. 0 off the mask."""
     steps = [s for s in product((-1, 0, 1), repeat=2) if s != (0, 0) and (corners or 0 in s)]
     number = np.zeros(mask.shape, np.int32)
     count = 0
@@ -179,7 +188,7 @@ def labels(mask: Bools, corners: bool) -> NDArray[np.int32]:
 
 
 def clearances(free: Bools) -> Floats:
-    """Distance from each centre to the nearest point of a square that is not free."""
+    """Return the distance (squares) from each centre to the nearest point of a square that is not free."""
     padded = np.pad(free, 1)
     blocked = np.argwhere(~padded)
     gap = np.maximum(np.abs(np.argwhere(padded)[:, None] - blocked[None]) - 0.5, 0.0)

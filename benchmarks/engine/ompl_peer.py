@@ -1,4 +1,4 @@
-"""OMPL's planners on a scene, with a numba checker. `pip install ompl` (a development dependency)."""
+"""OMPL's planners on a scene, with a compiled validity checker. ompl comes with the extra `bench`."""
 
 import math
 import statistics
@@ -14,11 +14,22 @@ from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Pose
 
 PLANNERS = ("RRTConnect", "LBKPIECE1", "BKPIECE1", "KPIECE1", "PRM")
-FINE = 0.002  # of the space's extent between two checked states: coarser, and half of the motions go through walls
+VALIDITY_RESOLUTION = 0.002
+"""Of the space's extent between two checked states; coarser, and half of the motions pass through walls (measured)."""
 
 
 def best_planner(scene: Any, runs: int, limit: float) -> tuple[str, float]:
-    """The planner with the least median of seconds over some runs; a run that finds nothing counts as the limit."""
+    """Return the planner with the least median time, and that median in seconds.
+
+    Parameters
+    ----------
+    scene : Any
+        With ``body``, ``obstacles``, ``bounds``, ``start`` and ``goal``, as for ``plan_motion``.
+    runs : int
+        Runs of each planner.
+    limit : float
+        Seconds after which a run ends; a run that finds nothing counts as so long.
+    """
     quiet()
     medians = {}
     for name in PLANNERS:
@@ -33,7 +44,7 @@ def best_planner(scene: Any, runs: int, limit: float) -> tuple[str, float]:
 
 
 def quiet() -> None:
-    """No chatter on stdout."""
+    """Turn OMPL's messages off."""
     if hasattr(util, "noOutputHandler"):
         util.noOutputHandler()
     if hasattr(util, "setLogLevel"):
@@ -41,7 +52,7 @@ def quiet() -> None:
 
 
 def way_exists(scene: Any, limit: float) -> bool:
-    """Whether RRTConnect finds a way whose states, looked at finely, are all free."""
+    """Return whether RRTConnect finds a path within ``limit`` seconds whose densely sampled states are all free."""
     quiet()
     setup, _ = _search(scene, "RRTConnect", limit)
     if not setup.haveExactSolutionPath():
@@ -55,13 +66,13 @@ def way_exists(scene: Any, limit: float) -> bool:
 
 
 def _solve(scene: Any, name: str, limit: float) -> float:
-    """Seconds until an exact solution is found; the limit when none is."""
+    """Return the seconds until an exact solution is found; the limit when none is."""
     setup, taken = _search(scene, name, limit)
     return taken if setup.haveExactSolutionPath() else limit
 
 
 def _search(scene: Any, name: str, limit: float) -> tuple[Any, float]:
-    """OMPL's set-up after a search, and how many seconds that took."""
+    """Return OMPL's set-up after a search, and how many seconds the search took."""
     mover = new_mover(scene.body)
     ground = ObstacleField(scene.obstacles, scene.bounds).ground(mover)
     ox, oy = (float(v) for v in mover.reference)
@@ -79,7 +90,7 @@ def _search(scene: Any, name: str, limit: float) -> tuple[Any, float]:
     space.setBounds(box)
     setup = geometric.SimpleSetup(space)
     setup.setStateValidityChecker(is_valid)
-    setup.getSpaceInformation().setStateValidityCheckingResolution(FINE)
+    setup.getSpaceInformation().setStateValidityCheckingResolution(VALIDITY_RESOLUTION)
     ends = []
     for pose in (scene.start, scene.goal):
         state = space.allocState()

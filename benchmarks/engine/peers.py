@@ -18,7 +18,6 @@ from sknw import build_sknw
 from geometry.kernels.arrays import XY
 
 Finder = Callable[[XY, XY], object]
-TRIAL_RUNS = 6  # of sknw in another process: where it corrupts memory, fewer runs may still end well (observed)
 
 
 def skeleton_graph(free: np.ndarray) -> tuple[nx.MultiGraph, np.ndarray]:
@@ -40,14 +39,23 @@ def skeleton_graph(free: np.ndarray) -> tuple[nx.MultiGraph, np.ndarray]:
     return build_sknw(skeletonize(padded).astype(np.uint16), multi=True), distance_transform_edt(padded)
 
 
-def survives(free: np.ndarray) -> bool:
-    """Return whether sknw leaves its process alive on a map, which on some it does not; tried in a child process."""
+def in_child(call: Callable[[], np.ndarray]) -> np.ndarray | None:
+    """Return the float64 array that a call returns, run in a child process; None when the child dies.
+
+    On some maps sknw corrupts the memory of its process, which then dies sooner or later.
+    """
+    reading, writing = os.pipe()
     child = os.fork()
     if child == 0:
-        for _ in range(TRIAL_RUNS):
-            skeleton_graph(free)
-        os._exit(0)
-    return os.waitpid(child, 0)[1] == 0
+        try:
+            os.write(writing, call().tobytes())
+            os._exit(0)
+        finally:
+            os._exit(1)
+    os.close(writing)
+    with os.fdopen(reading, "rb") as pipe:
+        answer = pipe.read()
+    return np.frombuffer(answer) if os.waitpid(child, 0)[1] == 0 else None
 
 
 def components_and_holes(free: np.ndarray) -> tuple[int, int]:

@@ -1,20 +1,25 @@
 """An exact visibility graph of a raster map, searched no further than a length that it is to confirm.
 
-It shares with geometry/ the definition of extreme points and open lines (visibility.py, tested against shapely), and
-nothing with the search that it checks.
+It shares with geometry the definition of extreme points and of open lines (visibility_graph.py, which is tested against
+shapely), and nothing with the search that it checks.
 """
 
 import numpy as np
 
+from geometry.kernels.arrays import XY
 from geometry.kernels.heap import pop, push
 from geometry.kernels.jit import compiled
 from geometry.pathfinders.visibility_graph import extreme_points, line_open
 
-XY = tuple[float, float]
-
 
 class Sightlines:
-    """Shortest ways over straight lines between the extreme points of a map."""
+    """Shortest paths along straight lines between the extreme points of a map.
+
+    Parameters
+    ----------
+    free : (rows, columns) bool
+        Free squares.
+    """
 
     def __init__(self, free: np.ndarray) -> None:
         self._padded = np.pad(free, 1)
@@ -25,7 +30,7 @@ class Sightlines:
         self._sides = np.stack([np.where(west, -1.0, 1.0), np.where(south, -1.0, 1.0)], axis=1)
 
     def length(self, start: XY, goal: XY, limit: float) -> float:
-        """The length of the shortest way; infinite when there is none up to the limit."""
+        """Return the length of the shortest path in squares; inf when there is none of at most ``limit``."""
         offsets = [np.hypot(*(self._corners - end).T) for end in (start, goal)]
         near = offsets[0] + offsets[1] <= limit
         points = np.vstack([[start], self._corners[near], [goal]])
@@ -46,10 +51,11 @@ def shortest_length(
     key: np.ndarray,
     item: np.ndarray,
 ) -> float:
-    """A* over the points, first to last; lines are looked along only where they would make a way shorter.
+    """Return the length of the shortest path from the first to the last point, by A*; inf when none is within a limit.
 
-    A rope bends only about a blocked square: its line passes beside the square on which ``sides`` (n, 2) the corner
-    has it, neither over that square nor over the one opposite.
+    A line is tested only where it would shorten a path. A tight path bends only around a blocked square: ``sides``
+    (n, 2) says on which side of a corner that square lies, and lines over it or over the opposite square are skipped.
+    ``best``, ``done``, ``key`` and ``item`` are scratch.
     """
     last = points.shape[0] - 1
     best[0] = 0.0

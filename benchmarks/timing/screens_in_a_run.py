@@ -34,13 +34,13 @@ from simulator.scenario.settings import Settings
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 SCENARIOS = ("go_northeast_rooms", "go_next_room_hidden_door", "push_square_three_rooms")
-QUESTIONS = ("routes", "shortest", "tighten", "loops", "passages", "narrows", "parts")
+SCREEN_QUESTIONS = ("routes", "shortest", "tighten", "loops", "passages", "narrows", "parts")
 HEADS = ("commands", "ms each", "screens", "building", "asking", "followed", "changed", "anew", "by change", "saved")
 REPLAYS = 5  # of the screens of a run, each way; the quickest counts
 
 
 class ScreensOfRun(NamedTuple):
-    """What a run did with screens.
+    """Screens of a run: what was made of them, and the time it took.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class ScreensOfRun(NamedTuple):
     made: dict[str, list[Bools]]
 
 
-class Replay(NamedTuple):
+class ScreenReplay(NamedTuple):
     """The screens of a run made again.
 
     Attributes
@@ -111,7 +111,7 @@ def watched_screens() -> Iterator[tuple[dict[str, float], dict[str, list[Bools]]
     seconds: dict[str, float] = {"building": 0.0, "asking": 0.0}
     made: dict[str, list[Bools]] = defaultdict(list)
     whole: Any = Screen
-    kept = {name: whole.__dict__[name] for name in ("__init__", *QUESTIONS)}
+    kept = {name: whole.__dict__[name] for name in ("__init__", *SCREEN_QUESTIONS)}
 
     def timed(name: str, kind: str) -> Callable[..., Any]:
         def call(screen: Screen, *args: Any, **kwargs: Any) -> Any:
@@ -134,7 +134,7 @@ def watched_screens() -> Iterator[tuple[dict[str, float], dict[str, list[Bools]]
             setattr(whole, name, method)
 
 
-def replay(made: dict[str, list[Bools]]) -> Replay:
+def replay(made: dict[str, list[Bools]]) -> ScreenReplay:
     """Make the screens of a run again, anew and by change, each several times."""
     anew, by_change = [], []
     for _ in range(REPLAYS):
@@ -153,7 +153,7 @@ def replay(made: dict[str, list[Bools]]) -> Replay:
         for one, other in pairwise(grids)
         if one.shape == other.shape
     ]
-    return Replay(min(anew), min(by_change), shares)
+    return ScreenReplay(min(anew), min(by_change), shares)
 
 
 def changed_in_turn(grids: Sequence[Bools]) -> None:

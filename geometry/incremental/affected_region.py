@@ -1,9 +1,9 @@
-"""Which clearances a change of a few squares can alter.
+"""The cells whose clearance a change of a few squares can alter, as an interval of columns for each row.
 
-# Strategy: a clearance can change only where the changed squares are not further off than the nearest wall was. About
-one box of squares that part of the plane is star-shaped, so looking on in a direction may end at the first row without
-any of it. And since neither of the two distances grows by more than the way between two cells, their difference says
-how many cells can be skipped, and one cell of nine, with a margin, speaks for all.
+# Strategy: a clearance can change only where the changed squares are no further away than the nearest wall was. For one
+box of squares that part of the plane is star-shaped, so a scan in one direction may end at the first row without any of
+it. Neither of the two distances grows by more than the distance between two cells. So their difference says how many
+cells can be skipped, and one cell of nine, with a margin, stands for all nine.
 """
 
 import numpy as np
@@ -11,28 +11,41 @@ import numpy as np
 from geometry.kernels.arrays import Ints, SquaredDistances
 from geometry.kernels.jit import bare
 
-TILE = 32  # changed squares in one tile of so many squares a side are taken together
-STEP = 3  # rows and columns, the middle ones of which are looked at
-MARGIN = (
-    3.1  # squares; within a step aslant (2.83), or to half way between two such cells (3), no difference grows more
-)
+CHANGE_TILE = 32  # squares a side: changed squares in one tile share a box (tuned by benchmarks.screens --only change)
+SCAN_STEP = 3  # rows and columns in a block of cells of which the middle one is looked at
+SCAN_MARGIN = 3.1
+"""Squares by which no difference of distances grows further: within a diagonal step of SCAN_STEP (2.83), or to halfway
+between two cells that are looked at (3); derived."""
 
 
 def boxes_of(cells: Ints, shape: tuple[int, ...]) -> Ints:
-    """(n, 4) first and last row, first and last column of the boxes about changed cells, tile by tile."""
+    """Return the boxes around changed cells, one for each tile with such cells.
+
+    Parameters
+    ----------
+    cells : (k,) int32
+        Flat indices of changed cells in the padded screen.
+    shape : (int, int)
+        Padded shape of the screen.
+
+    Returns
+    -------
+    (n, 4) int32
+        First and last row, first and last column of each box.
+    """
     rows, width = shape
     boxes = np.empty((len(cells), 4), np.int32)
-    slot = np.full((rows // TILE + 1) * (width // TILE + 1), -1, np.int32)
+    slot = np.full((rows // CHANGE_TILE + 1) * (width // CHANGE_TILE + 1), -1, np.int32)
     return boxes[: fill_boxes(cells, width, slot, boxes)]
 
 
 @bare
 def fill_boxes(cells: Ints, width: int, slot: Ints, boxes: Ints) -> int:
-    """Fill the boxes; returns how many. ``slot`` has, per tile, the number of its box, -1 for none."""
+    """Fill the boxes and return their number. ``slot`` holds for each tile the number of its box, -1 for none."""
     found = 0
     for k in range(cells.shape[0]):
         row, column = cells[k] // width, cells[k] % width
-        tile = row // TILE * (width // TILE + 1) + column // TILE
+        tile = row // CHANGE_TILE * (width // CHANGE_TILE + 1) + column // CHANGE_TILE
         box = slot[tile]
         if box < 0:
             slot[tile] = box = found
@@ -47,25 +60,30 @@ def fill_boxes(cells: Ints, width: int, slot: Ints, boxes: Ints) -> int:
 
 @bare
 def find_affected(square: SquaredDistances, boxes: Ints, bounds: Ints) -> None:
-    """Fill the first two columns of ``bounds`` (rows, 2 or more), per row the first and last cell that may change."""
+    """Fill ``bounds`` (rows, 2 or more) with the first and last column of each row whose clearance may change.
+
+    Where none may change the first is the width of the screen and the last -1. ``square`` holds the clearances before
+    the change.
+    """
     last = square.shape[0] - 2
     for row in range(bounds.shape[0]):
         bounds[row, 0], bounds[row, 1] = square.shape[1], -1
     for k in range(boxes.shape[0]):
         row = boxes[k, 0] + 0
         while widen(square, boxes, k, row, bounds) and row > 1:
-            row = row - STEP if row > STEP else 1
+            row = row - SCAN_STEP if row > SCAN_STEP else 1
         row = boxes[k, 0] + 0
         while row < last:
-            row = row + STEP if row + STEP < last else last
+            row = row + SCAN_STEP if row + SCAN_STEP < last else last
             if not widen(square, boxes, k, row, bounds) and row > boxes[k, 1]:
                 break
 
 
 @bare
 def widen(square: SquaredDistances, boxes: Ints, k: int, row: int, bounds: Ints) -> bool:
-    """Include the cells of a row and of the two beside it that a box may change; returns whether there may be any
-    further off.
+    """Widen the bounds of a row and of the rows next to it by the cells whose clearance the k-th box may change.
+
+    Returns whether there may be such cells in rows further away.
     """
     left, right = boxes[k, 2], boxes[k, 3]
     off = boxes[k, 0] - row if row < boxes[k, 0] else row - boxes[k, 1]
@@ -80,14 +98,14 @@ def widen(square: SquaredDistances, boxes: Ints, k: int, row: int, bounds: Ints)
                 break  # what is further on is nearer to this wall
             far = tall + ((2 * gap - 1) ** 2 if gap > 0 else 0)
             spare = 0.5 * (np.sqrt(float(here)) - np.sqrt(float(far)))
-            if spare >= -MARGIN:
+            if spare >= -SCAN_MARGIN:
                 first = column if column < first else first
                 last = column if column > last else last
-            skip = int(0.5 * (abs(spare) - MARGIN))
-            if skip <= STEP:
-                skip = STEP
+            skip = int(0.5 * (abs(spare) - SCAN_MARGIN))
+            if skip <= SCAN_STEP:
+                skip = SCAN_STEP
                 if side == 0 and column < right:
-                    skip = STEP if right - column > STEP else right - column  # the box is not stepped over
+                    skip = SCAN_STEP if right - column > SCAN_STEP else right - column  # the box is not stepped over
                 elif square[row, column + step] == 0 or square[row, column + 2 * step] == 0:
                     break
             column += skip * step

@@ -1,8 +1,8 @@
-"""Nodes and chains of a changed stretch put in the place of the old ones, in arrays that have some room.
+"""New nodes and chains of a changed stretch spliced into the arrays of the old ones, which have spare room.
 
-# Strategy: nodes and chains are ordered by cells, so what a small change alters lies in one short stretch of either.
-Before it everything stays where it is, but for ends further on; behind it everything moves by the same number of
-places and its ends change by the same number. Only the stretch itself is merged piece by piece.
+# Strategy: nodes and chains are ordered by cells, so what a small change alters lies in one short stretch of either
+array. Before the stretch everything stays in place, but for last ends in the stretch or behind it. Behind it everything
+moves by the same number of places and its ends change by the same number. Only the stretch itself is merged one by one.
 """
 
 from bisect import bisect_left
@@ -13,32 +13,51 @@ from numpy.typing import NDArray
 
 from geometry.kernels.arrays import Ints, Longs
 from geometry.kernels.jit import bare
-from geometry.skeleton.graph import SkeletonGraph, find, pace
+from geometry.skeleton.graph import SkeletonGraph, find, walk_chain
 from geometry.skeleton.lowest_cells import lowest_of, new_notes
 from geometry.skeleton.skeleton import Flags, Heights
 
 Array = TypeVar("Array", bound=NDArray[Any])
 
-
-ROOM = 64  # nodes or chains, and a sixteenth of what there are: so many more fit into new arrays
+SPARE_ROOM = 64  # nodes or chains, and a sixteenth of what there are: so many more fit into new arrays (a convention)
 
 
 class Splice(NamedTuple):
-    """Nodes after a change."""
+    """The nodes after a change, and their numbers before and after it.
+
+    Attributes
+    ----------
+    node : (n,) int32
+        Cells of all nodes after the change.
+    low, high : int
+        Number of the first old node of the stretch that is merged, and of the one behind its last.
+    number : (high - low,) int64
+        New number of each of these old nodes; -1 for nodes that are gone.
+    shift : int
+        How much the numbers of the nodes behind the stretch grow.
+    """
 
     node: Ints
-    """All nodes."""
     low: int
-    """The first old node of the stretch that is merged, and the one behind the last."""
     high: int
     number: Longs
-    """(high - low,) what each of these old nodes is called now, or -1."""
     shift: int
-    """By how much the numbers of the nodes behind grow."""
 
 
 def splice_nodes(old: Ints, low: int, high: int, open_ends: Flags, grown: Ints) -> Splice:
-    """Merge the nodes that stay in a stretch with those that have grown there; ``open_ends`` tells which are gone."""
+    """Return the nodes of a stretch that stay merged with new ones.
+
+    Parameters
+    ----------
+    old : (n,) int32
+        Cells of all nodes before the change.
+    low, high : int
+        The stretch: old nodes ``low <= k < high``.
+    open_ends : (n,) uint8
+        For each old node the bits of the ends whose chains are gone; 16 and more when the node itself is gone.
+    grown : (k,) int32
+        Cells of the new nodes.
+    """
     stretch, stays = old[low:high], open_ends[low:high] < 16
     merged = np.concatenate([stretch[stays], grown])
     merged.sort()
@@ -55,7 +74,21 @@ def splice_nodes(old: Ints, low: int, high: int, open_ends: Flags, grown: Ints) 
 def splice_chains(
     heights: Heights, states: Flags, width: int, bones: SkeletonGraph, splice: Splice, open_ends: Flags, seeds: Ints
 ) -> SkeletonGraph:
-    """Walk new chains from the seeds, and merge them with those that stay."""
+    """Return the graph after a change: new chains walked from the seeds, merged with the chains that stay.
+
+    Parameters
+    ----------
+    heights, states, width
+        Squared clearances and states of the padded screen, flat, and its width.
+    bones : SkeletonGraph
+        The graph before the change; its arrays are reused where they have room.
+    splice : Splice
+        The nodes after the change.
+    open_ends : (n,) uint8
+        For each old node the bits of the ends whose chains are gone.
+    seeds : (k,) int32
+        Ends (4 times the new node plus direction) from which new chains may lead, ascending.
+    """
     old, (node, low, high, number, shift) = len(bones.port), splice
     first, last = (bisect_left(bones.port[:, 0], 4 * n) for n in (low, high))
     stretch = bones.port[first:last], bones.neck[first:last], bones.steps[first:last]
@@ -93,18 +126,18 @@ def splice_chains(
 
 
 def with_room(array: Array, size: int) -> Array:
-    """The array that this one is the beginning of when it has that length, else a longer copy."""
+    """Return the array of which ``array`` is the beginning if that has at least ``size`` rows, else a longer copy."""
     whole = array.base
     if isinstance(whole, np.ndarray) and whole.ndim == array.ndim and len(whole) >= size:
         return cast(Array, whole)
-    longer = np.empty((size + size // 16 + ROOM, *array.shape[1:]), array.dtype)
+    longer = np.empty((size + size // 16 + SPARE_ROOM, *array.shape[1:]), array.dtype)
     longer[: len(array)] = array
     return cast(Array, longer)
 
 
 @bare
 def renamed(end: int, low: int, high: int, number: Longs, shift: int) -> int:
-    """What an end is called now."""
+    """Return the new code of an end (4 times the node plus direction) whose code before the change was ``end``."""
     node = end >> 2
     if node < low:
         return end
@@ -132,8 +165,10 @@ def merge_chains(
     steps: Ints,
     notes: Ints,
 ) -> int:
-    """The chains kept of a stretch and the new ones, in order; returns how many. Those ``ahead`` only learn what their
-    last ends are called now.
+    """Fill ``port``, ``neck`` and ``steps`` with the old chains of a stretch that stay and the new ones, in order.
+
+    Returns their number. The chains ``ahead`` of the stretch only get the new codes of their last ends. ``seeds`` are
+    ascending ends from which new chains are walked; ``notes`` is scratch (see lowest_cells.py).
     """
     size, k = 0, 0
     for chain in range(ahead.shape[0]):
@@ -147,7 +182,7 @@ def merge_chains(
                 continue
             first, last = renamed(a, low, high, number, shift), renamed(b, low, high, number, shift)
         while k < seeds.shape[0] and seeds[k] < first:
-            end, back, long, noted = pace(node[seeds[k] >> 2], seeds[k] & 3, heights, states, width, notes, 0)
+            end, back, long, noted = walk_chain(node[seeds[k] >> 2], seeds[k] & 3, heights, states, width, notes, 0)
             other = 4 * find(node, end) + back
             if seeds[k] < other:
                 port[size, 0], port[size, 1], neck[size], steps[size] = (

@@ -1,11 +1,9 @@
-"""A few squares change: what hangs on them is made anew, and the rest stands.
+"""A change of a few squares: what depends on them is computed anew, and the rest stays.
 
-# Strategy: the clearances that a change can alter (affected_region.py) are measured anew (update_distance.py),
-# with the walls of a
-block about them so large that none beyond it counts. Where they really differ, and one cell about, the skeleton is
-grown again (update_skeleton.py) and the pathgraph joined again (update_graph.py). When they are much of the
-screen, all had
-better be made anew.
+# Strategy: the clearances that a change can alter (affected_region.py) are measured anew (update_distance.py), with the
+walls of a block around them that is so large that none beyond it counts. Where they really differ, and one cell around,
+the skeleton is grown again (update_skeleton.py) and the graph joined again (update_graph.py). When they are much of the
+screen, it is quicker to compute everything anew.
 """
 
 import numpy as np
@@ -21,21 +19,39 @@ from geometry.skeleton.graph import SkeletonGraph
 from geometry.skeleton.skeleton import States
 
 Block = tuple[int, int, int, int]
-"""First and last row, first and last column."""
+"""First and last row, first and last column, in padded cells."""
 
-ALL = 0.5  # share of the screen
+MAX_AFFECTED_SHARE = 0.5  # of the screen's cells: when a change may alter more, all is computed anew (a convention)
 
 
 def change_squares(
     square: SquaredDistances, state: States, bones: SkeletonGraph, rows: Ints, columns: Ints, free: Bools
 ) -> SkeletonGraph | None:
-    """Change squares (unpadded rows and columns) in ``square`` and ``state``; returns the changed pathgraph, or None,
-    and changes nothing, when all had better be made anew.
+    """Set squares free or blocked in the clearances and the skeleton of a screen, and return the changed graph.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int16 or int32
+        Squared clearances in half squares; changed in place.
+    state : (rows + 2, columns + 2) uint8
+        Links and flags of the skeleton; changed in place.
+    bones : SkeletonGraph
+        The graph before the change. Its arrays may become those of the result.
+    rows, columns : (n,) int32
+        The squares, without the padding; none twice.
+    free : (n,) bool
+        True where a square becomes free.
+
+    Returns
+    -------
+    SkeletonGraph or None
+        None when the change may alter much of the screen, or ``square`` is of a type too small for it. Nothing is
+        changed then, and all has to be computed anew.
 
     Raises
     ------
     ValueError
-        When no square would be left free (nothing changes then).
+        When no square would be left free. Nothing is changed then.
     """
     heights, width = square.reshape(-1), square.shape[1]
     cells = (rows + 1) * width + columns + 1
@@ -48,7 +64,7 @@ def change_squares(
     cells, old, free = cells[turned], old[turned], free[turned]
     bounds = np.empty((square.shape[0], 3), np.int32)
     find_affected(square, boxes_of(cells, square.shape), bounds)
-    if np.maximum(bounds[:, 1] - bounds[:, 0] + 1, 0).sum() > ALL * len(heights):
+    if np.maximum(bounds[:, 1] - bounds[:, 0] + 1, 0).sum() > MAX_AFFECTED_SHARE * len(heights):
         return None
     low, high, west, _ = block = block_about(square, bounds)
     fresh = clearances_in(square, block, bounds, cells, free)
@@ -67,9 +83,10 @@ def change_squares(
 def clearances_in(
     square: SquaredDistances, block: Block, bounds: Ints, cells: Ints, free: Bools
 ) -> SquaredDistances | None:
-    """Clearances in a block with one cell about, when cells change; right within the bounds, arbitrary elsewhere.
+    """Return squared clearances of a block and one cell around it after a change, or None if their type is too small.
 
-    None when ``square`` is of a type that does not hold them.
+    They are right within the bounds and arbitrary elsewhere. ``cells`` are the flat indices of the cells that change,
+    ``free`` tells which become free.
     """
     (low, high, west, east), width = block, square.shape[1]
     rows, columns = cells // width - low, cells % width - west
@@ -87,9 +104,9 @@ def clearances_in(
 
 @bare
 def block_about(square: SquaredDistances, bounds: Ints) -> Block:
-    """First and last row, first and last column of a block in which the cells within the bounds can be measured.
+    """Return a block whose walls suffice to measure the cells within the bounds.
 
-    Beside the bounds clearances stay, and none between exceeds theirs by more than its distance from them.
+    Next to the bounds clearances stay as they were. None between exceeds theirs by more than its distance from them.
     """
     low, high, west, east = bounds.shape[0], -1, square.shape[1], -1
     for row in range(bounds.shape[0]):
@@ -107,13 +124,13 @@ def block_about(square: SquaredDistances, bounds: Ints) -> Block:
 
 @bare
 def reach_of(square: SquaredDistances, row: int, column: int) -> int:
-    """A whole number of squares above a cell's clearance."""
+    """Return a whole number of squares greater than a cell's clearance."""
     return int(0.5 * np.sqrt(float(square[row, column])) + 2.0)
 
 
 @bare
 def keep_lower(square: SquaredDistances, fresh: SquaredDistances, low: int, west: int, bounds: Ints) -> None:
-    """Put old clearances that are lower into ``fresh``, which begins in row ``low`` and column ``west``."""
+    """Lower ``fresh`` to the old clearances within the bounds. It begins in row ``low`` and column ``west``."""
     for row in range(bounds.shape[0]):
         first, size = bounds[row, 0], bounds[row, 1] - bounds[row, 0] + 1
         if size > 0:
@@ -124,9 +141,10 @@ def keep_lower(square: SquaredDistances, fresh: SquaredDistances, low: int, west
 
 @bare
 def narrow(square: SquaredDistances, fresh: SquaredDistances, low: int, west: int, bounds: Ints) -> None:
-    """Narrow the bounds to the cells that differ; their third column gets where in ``fresh``, flat, the first one is.
+    """Narrow the bounds to the cells that differ, and fill their third column.
 
-    ``fresh`` begins in row ``low`` and column ``west``.
+    That is the flat index in ``fresh`` of the first such cell of a row. ``fresh`` begins in row ``low`` and column
+    ``west``.
     """
     width = fresh.shape[1]
     for row in range(bounds.shape[0]):

@@ -1,8 +1,9 @@
-"""Clearances measured anew in part of a block: only in some columns of each row.
+"""Clearances measured anew in a part of a block: in an interval of columns for each row.
 
-# Strategy: columns are counted in the whole block, which costs little. Along a row the sites that count for some of its
-cells are no further out than that which is nearest to the first of them and that which is nearest to the last: of two
-sites on the same side of a cell the one that is nearer to it stays so for all cells on the other side.
+# Strategy: columns are counted in the whole block, which costs little. Along a row the sites (see
+distance_transform.py) that count for an interval of cells are no further out than the site nearest to its first cell
+and the one nearest to its last: of two sites on the same side of a cell, the one nearer to it is nearer to all cells on
+its other side too.
 """
 
 import numpy as np
@@ -13,18 +14,27 @@ from geometry.raster.distance_rows import greatest
 from geometry.raster.distance_transform import Gaps, Sites, count_columns, count_steps, measure_run, roof_of
 
 Span = tuple[int, int]
-EVERYWHERE: Span = (1, 0)
+"""First and last column."""
+ALL_SITES: Span = (1, 0)  # an empty interval of columns: sites are not restricted
 
 
 def measure_within(
-    free: Bools, bounds: Ints, low: int, west: int, square: SquaredDistances, sites: Span = EVERYWHERE
+    free: Bools, bounds: Ints, low: int, west: int, square: SquaredDistances, sites: Span = ALL_SITES
 ) -> bool:
-    """Fill ``square`` (rows + 2, columns + 2) within the bounds; returns whether its type holds it.
+    """Measure squared clearances within bounds, and return whether the type of ``square`` holds them.
 
-    free : (rows, columns) of a block, outside of which everything counts as blocked.
-    bounds : (all rows, 2 or more) first and last column per row; none lie outside the block. Row 0 and column 0 of
-    ``square`` are row ``low`` and column ``west`` of these.
-    sites : first and last of the columns of ``square`` outside of which walls need not count.
+    Parameters
+    ----------
+    free : (rows, columns) bool
+        Free squares of a block; everything outside counts as blocked.
+    bounds : (all rows, 2 or more) int32
+        First and last column to be measured in each row of the screen; none lies outside the block.
+    low, west : int
+        Row and column of the screen that are row 0 and column 0 of ``square``.
+    square : (rows + 2, columns + 2) int16 or int32
+        Filled within the bounds with squared clearances in half squares, arbitrary elsewhere.
+    sites : (int, int)
+        First and last column of ``square`` between which walls count; ``ALL_SITES`` when all may count.
     """
     steps, width = square.view(np.int16), square.shape[1]
     count_columns(free, steps)
@@ -45,8 +55,12 @@ def measure_parts(
     sites: Sites,
     heights: Sites,
 ) -> bool:
-    """As ``measure_within``, from the steps to the nearest blocked square below; ``gap`` is 0 as it is north of all."""
-    roof, fits, told = roof_of(square), True, first <= last
+    """Measure as ``measure_within`` does, from the steps to the nearest blocked square below in each column.
+
+    ``first`` and ``last`` are the columns between which walls count; when ``first`` is greater, all may count. ``gap``
+    (width,) is 0, as it is north of the block; ``sites`` and ``heights`` are scratch.
+    """
+    roof, fits, restricted = roof_of(square), True, first <= last
     for row in range(square.shape[0] - 2, 0, -1):
         count_steps(steps[row], gap)
         out, column, end = square[row], bounds[row + low, 0] - west, bounds[row + low, 1] - west + 1
@@ -58,7 +72,7 @@ def measure_parts(
             begin = column
             while column < end and gap[column] != 0:
                 column += 1
-            if not told:
+            if not restricted:
                 first, last = outermost(gap, begin, -1), outermost(gap, column - 1, 1)
             measure_run(gap, out, first, last + 1, begin, column, roof, sites, heights)
             fits &= greatest(out[begin:column]) < roof
@@ -67,7 +81,10 @@ def measure_parts(
 
 @bare
 def outermost(gap: Gaps, column: int, step: int) -> int:
-    """The furthest column in a direction, the edge behind which may count for a free column or those before it."""
+    """Return the furthest column whose site counts for a free column, or for columns on its other side.
+
+    ``step`` is the direction of the search: 1 to the east, -1 to the west. The site is the edge behind that column.
+    """
     found, off = column, 1
     least = 1 + site_of(gap, column, column - step)
     while off * off < least:
@@ -83,7 +100,7 @@ def outermost(gap: Gaps, column: int, step: int) -> int:
 
 @bare
 def site_of(gap: Gaps, one: int, other: int) -> int:
-    """The squared distance, in half squares, from the edge between two columns to the nearest wall beside it."""
+    """Return the squared distance (half squares) from the edge between two columns to the nearest wall along it."""
     lower = gap[one] if gap[one] < gap[other] else gap[other]
     edge = 2 * np.int64(lower) - 1 if lower > 0 else np.int64(0)
     return int(edge * edge)

@@ -1,9 +1,8 @@
-"""The pathgraph of a skeleton that has changed in places: chains that no change meets are kept.
+"""The graph of a skeleton that has changed in places: chains that no change meets are kept.
 
-# Strategy: from every changed cell the old links lead to the ends of the chains it lay on, which go. Changed cells
-that are nodes now, and the ends left open, are where new chains start. They are walked and spliced in
-(splice_arrays.py)
-in the order that graph.py would give them.
+# Strategy: from every changed cell the old links lead to the ends of the chains it lay on, and these chains go. New
+chains start at changed cells that are nodes now and at the ends left open. They are walked and spliced in
+(splice_arrays.py) in the order that graph.py would give them.
 """
 
 from bisect import bisect_left
@@ -17,14 +16,26 @@ from geometry.kernels.jit import bare
 from geometry.skeleton.graph import SkeletonGraph, find, first_way, is_node, onward
 from geometry.skeleton.skeleton import HALT, LINKS, Flags, Heights, stride
 
-NODES = np.array([bool(state) and is_node.function(state) for state in range(256)])
-"""Whether a cell of a state is a node."""
+IS_NODE_STATE = np.array([bool(state) and is_node.function(state) for state in range(256)])
+"""(256,) bool by state: whether a cell of that state is a node."""
 
-GONE = 31  # a node that is none any more, or has changed: all its ends are open
+NODE_GONE = 31  # open ends of a node that is no longer one, or has changed: all four, and a mark
 
 
 def rejoin(heights: Heights, width: int, bones: SkeletonGraph, journal: ChangeLog) -> SkeletonGraph:
-    """The pathgraph after a change, in the memory of the one before when there is room."""
+    """Return the graph after a change of the skeleton.
+
+    Parameters
+    ----------
+    heights : (cells,) int16 or int32
+        Squared clearances in half squares after the change, flat.
+    width : int
+        Width of the padded screen.
+    bones : SkeletonGraph
+        The graph before the change. Its arrays may be reused for the result.
+    journal : ChangeLog
+        The cells that may have changed, with their states before.
+    """
     states, mark = journal.states, journal.mark
     keys = np.empty(int(journal.size[0]), np.int64)
     keys = keys[: find_changed(journal, keys)]
@@ -38,7 +49,7 @@ def rejoin(heights: Heights, width: int, bones: SkeletonGraph, journal: ChangeLo
     rings = find_rings(states, mark, width, cells, bases)
     if rings:
         cells = np.unique(np.concatenate([cells, bases[:rings]]))
-    grown = cells[NODES[states[cells]]]
+    grown = cells[IS_NODE_STATE[states[cells]]]
     if len(grown):
         low, high = min(low, bisect_left(bones.node, grown[0])), max(high, bisect_left(bones.node, grown[-1]))
     if low > high:
@@ -52,7 +63,7 @@ def rejoin(heights: Heights, width: int, bones: SkeletonGraph, journal: ChangeLo
 
 @bare
 def find_changed(journal: ChangeLog, keys: Longs) -> int:
-    """Mark and list the touched cells that differ, as 256 cell + state before; returns how many."""
+    """Mark the touched cells that differ, list each as 256 times the cell plus its state before, and count them."""
     found = 0
     for k in range(journal.size[0]):
         cell = journal.touched[k]
@@ -67,15 +78,16 @@ def find_changed(journal: ChangeLog, keys: Longs) -> int:
 def find_open(
     states: Flags, mark: Flags, width: int, cells: Ints, before: Flags, node: Ints, open_ends: Flags
 ) -> tuple[int, int]:
-    """Set the ends, as bits per node, of all chains on which one lay.
+    """Set ``open_ends``: for each old node the bits of the ends of all chains on which a changed cell lay.
 
-    Returns the first node that has such an end and the one behind the last.
+    ``before`` holds the states of ``cells`` before the change. Returns the numbers of the first node with such an end
+    and of the one behind the last.
     """
     low, high = node.shape[0], 0
     for k in range(cells.shape[0]):
         if is_node(before[k]):
             here = find(node, cells[k])
-            open_ends[here] = GONE
+            open_ends[here] = NODE_GONE
             low, high = here if here < low else low, here + 1 if here >= high else high
         states[cells[k]] &= 255 - HALT
         for first in range(4):
@@ -92,7 +104,7 @@ def find_open(
             low, high = here if here < low else low, here + 1 if here >= high else high
             if states[cell] & HALT:  # the ring that this cell stood for has changed
                 states[cell] &= 255 - HALT
-                open_ends[here] = GONE
+                open_ends[here] = NODE_GONE
             else:
                 open_ends[here] |= 1 << (direction ^ 2)
     return low, high
@@ -100,9 +112,9 @@ def find_open(
 
 @bare
 def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints) -> int:
-    """Flag the first cell of every ring without a junction on which a changed cell lies; returns how many.
+    """Flag the first cell of every ring without a junction on which a changed cell lies; return the number of rings.
 
-    Of the changed cells on a chain only the first is followed, and one more that the way of that did not pass.
+    Fills ``bases`` with these first cells. Each chain is followed only from changed cells that no earlier walk passed.
     """
     found = 0
     for k in range(cells.shape[0]):
@@ -127,7 +139,11 @@ def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints)
 
 @bare
 def find_seeds(states: Flags, node: Ints, grown: Ints, low: int, number: Longs, open_ends: Flags, seeds: Ints) -> int:
-    """The ends (4 node + direction) where new chains may start; returns how many."""
+    """Fill ``seeds`` with the ends where new chains may start, and return their number.
+
+    An end is 4 times the new number of the node plus the direction. ``number`` holds the new numbers of the old nodes
+    from ``low`` on, -1 for those that are gone; ``grown`` the cells of new nodes.
+    """
     found = 0
     for k in range(grown.shape[0]):
         for direction in range(4):

@@ -1,8 +1,8 @@
-"""The skeleton where clearances change: ways up that may lead elsewhere are taken back, and taken anew.
+"""The skeleton where clearances change: ascents that may lead elsewhere are taken back, and climbed again.
 
-# Strategy: a link leads from a cell to a higher one, and hangs on the clearances about the lower cell alone. So only
-links that leave a cell on or beside a changed one go; then, from where they led, every way that nothing leads to any
-more. What is left is part of the new skeleton, and the rest grows back as it first grew (skeleton.py).
+# Strategy: a link leads from a cell to a higher one, and depends on the clearances around the lower cell alone. So only
+links that leave a cell at or next to a changed one are removed; then, from where they led, every ascent that no other
+leads into any more. What is left is part of the new skeleton, and the rest is grown as at first (skeleton.py).
 """
 
 from typing import NamedTuple
@@ -30,44 +30,65 @@ from geometry.skeleton.skeleton import (
     stride,
 )
 
-TOUCHED, MOVED = 1, 2  # marks of cells: state may differ, clearance differs
-JOINED, PASSED = 4, 8  # to be joined again; passed on the way along a chain
+TOUCHED, MOVED = 1, 2  # bits of marks: the cell's state may differ, its clearance differs
+JOINED, PASSED = 4, 8  # bits of marks: the cell has to be joined again, a walk along a chain has passed it
 
 
 class ChangeLog(NamedTuple):
-    """What has changed."""
+    """A log of the cells whose state or clearance a change may have altered.
+
+    Attributes
+    ----------
+    states : (cells,) uint8
+        The states of the skeleton, which are changed in place.
+    mark : (cells,) uint8
+        TOUCHED, MOVED and the like, 0 for all other cells.
+    touched : (cells,) int32
+        Room for the touched cells, of which the first ``size[0]`` are listed.
+    before : (cells,) uint8
+        The states of these before the change.
+    size : (1,) int32
+        Number of touched cells.
+    """
 
     states: Flags
     mark: Flags
-    """(cells,) TOUCHED and MOVED."""
     touched: Ints
-    """The touched cells."""
     before: Flags
-    """Their states before."""
     size: Ints
-    """(1,) how many."""
 
 
 def regrow(
     square: SquaredDistances, state: States, bounds: Ints, fresh: SquaredDistances, scratch: Scratch
 ) -> ChangeLog:
-    """Set new clearances and grow the skeleton again.
+    """Set new clearances, grow the skeleton again where they differ, and return the log of what may have changed.
 
-    bounds : (rows, 3 or more) first and last column that change, and where in ``fresh`` their values start.
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int16 or int32
+        Squared clearances in half squares; changed in place.
+    state : (rows + 2, columns + 2) uint8
+        Links and flags of the skeleton; changed in place.
+    bounds : (rows + 2, 3) int32
+        For each row the first and last column that change, and the index in ``fresh`` of the value of the first.
+    fresh : (n,) int16 or int32
+        New squared clearances.
+    scratch : Scratch
+        Becomes part of the log.
     """
     heights, states, width = square.reshape(-1), state.reshape(-1), square.shape[1]
     journal = ChangeLog(states, *scratch, np.zeros(1, np.int32))
     about = np.empty((len(bounds), 2), np.int32)
-    spread(bounds, width, about)
+    find_columns_about(bounds, width, about)
     prune(heights, width, about, journal)
-    settle(heights, width, bounds, fresh, about, np.empty(width, np.uint8), journal)
+    set_clearances(heights, width, bounds, fresh, about, np.empty(width, np.uint8), journal)
     grow(heights, width, about, journal)
     return journal
 
 
 @bare
-def spread(bounds: Ints, width: int, about: Ints) -> None:
-    """The columns on or beside a changed cell, per row."""
+def find_columns_about(bounds: Ints, width: int, about: Ints) -> None:
+    """Fill ``about`` (rows, 2) with the first and last column of each row at or next to a changed cell."""
     rows = bounds.shape[0]
     for row in range(rows):
         about[row, 0], about[row, 1] = width, -1
@@ -82,7 +103,7 @@ def spread(bounds: Ints, width: int, about: Ints) -> None:
 
 @bare
 def touch(journal: ChangeLog, cell: int) -> None:
-    """Remember a cell's state before it changes."""
+    """Log a cell and its state before the state changes, once."""
     if not journal.mark[cell] & TOUCHED:
         journal.mark[cell] |= TOUCHED
         k = journal.size[0]
@@ -91,7 +112,7 @@ def touch(journal: ChangeLog, cell: int) -> None:
 
 @bare
 def prune(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None:
-    """Take back all ways up from the cells about, and what hangs on them."""
+    """Remove the links that lead up from the cells within ``about``, and the ascents that depend on them."""
     states = journal.states
     for row in range(about.shape[0]):
         for cell in range(row * width + about[row, 0], row * width + about[row, 1] + 1):
@@ -102,13 +123,13 @@ def prune(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None
                 other = cell + stride(direction, width)
                 if states[cell] >> direction & 1 and above(other, cell, heights):
                     unlink(journal, cell, other, direction)
-                    wither(heights, width, about, journal, other)
+                    prune_ascent(heights, width, about, journal, other)
             states[cell] &= LINKS | SADDLE | SUMMIT
 
 
 @bare
 def unlink(journal: ChangeLog, cell: int, other: int, direction: int) -> None:
-    """Take back a link."""
+    """Remove the link from a cell to another in a direction."""
     touch(journal, cell)
     touch(journal, other)
     journal.states[cell] &= 255 - (1 << direction)
@@ -116,8 +137,8 @@ def unlink(journal: ChangeLog, cell: int, other: int, direction: int) -> None:
 
 
 @bare
-def wither(heights: Heights, width: int, about: Ints, journal: ChangeLog, cell: int) -> None:
-    """Take back the way up from a cell outside that nothing leads to any more."""
+def prune_ascent(heights: Heights, width: int, about: Ints, journal: ChangeLog, cell: int) -> None:
+    """Remove the ascent from a cell outside ``about`` up to where another ascent still leads into it."""
     states = journal.states
     while not states[cell] & (SADDLE | SUMMIT):
         row = cell // width
@@ -139,10 +160,10 @@ def wither(heights: Heights, width: int, about: Ints, journal: ChangeLog, cell: 
 
 
 @bare
-def settle(
+def set_clearances(
     heights: Heights, width: int, bounds: Ints, fresh: SquaredDistances, about: Ints, flags: Flags, journal: ChangeLog
 ) -> None:
-    """Set the new clearances, and the flags of the cells about. ``flags`` (width,) is scratch."""
+    """Set the new clearances, and the flags of the cells within ``about``. ``flags`` (width,) is scratch."""
     states = journal.states
     for row in range(bounds.shape[0]):
         size = bounds[row, 1] - bounds[row, 0] + 1
@@ -163,7 +184,7 @@ def settle(
 
 @bare
 def replace(heights: Heights, fresh: Heights, mark: Flags) -> None:
-    """Set new clearances, and mark those that differ."""
+    """Copy ``fresh`` into ``heights``, and mark the cells that differ as MOVED."""
     for k in range(heights.shape[0]):
         mark[k] |= np.uint8(MOVED) if heights[k] != fresh[k] else np.uint8(0)
         heights[k] = fresh[k]
@@ -171,7 +192,7 @@ def replace(heights: Heights, fresh: Heights, mark: Flags) -> None:
 
 @bare
 def differ(states: Flags, flags: Flags) -> bool:
-    """Whether any state has other flags."""
+    """Return whether any state has other flags (SADDLE, SUMMIT) than given."""
     other = np.uint8(0)
     for k in range(states.shape[0]):
         other |= flags[k] ^ states[k] & np.uint8(SADDLE | SUMMIT)
@@ -180,7 +201,7 @@ def differ(states: Flags, flags: Flags) -> bool:
 
 @bare
 def grow(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None:
-    """Go up again from the saddles about, and from where ways from outside come in."""
+    """Climb again from the saddles within ``about``, and from where ascents from outside lead into it."""
     states = journal.states
     for row in range(about.shape[0]):
         for cell in range(row * width + about[row, 0], row * width + about[row, 1] + 1):
@@ -197,7 +218,7 @@ def grow(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None:
 
 @bare
 def climb(cell: int, direction: int, heights: Heights, width: int, journal: ChangeLog) -> None:
-    """As in skeleton.py, with a journal."""
+    """Link a cell to a higher neighbour and ascend from there, as in skeleton.py, and log every cell."""
     states = journal.states
     while True:
         other = cell + stride(direction, width)

@@ -1,8 +1,8 @@
-"""States by eights: what eight cells that lie in one word say, counted at once.
+"""Nodes of the skeleton counted and listed eight cells at a time, with bit operations on words of eight states.
 
-# Strategy: most words of a skeleton are empty and few have a node, so looking at each cell costs more in wrong guesses
-of the processor than in work. Sums of bits within each byte of a word need no guess: a byte, one cell, holds what it
-counts in its lowest bits, and nothing ever carries to the next.
+# Strategy: most words of a skeleton are empty and few have a node, so testing each cell costs more in mispredicted
+branches than in work. Sums of bits within each byte of a word need no branch: a byte, one cell, holds its count in its
+lowest bits, and no sum ever carries to the next byte.
 """
 
 import numpy as np
@@ -12,66 +12,70 @@ from geometry.kernels.arrays import Ints
 from geometry.kernels.jit import bare
 
 Eights = NDArray[np.int64]
-"""(words,) states of eight cells each, the first in the lowest byte; what is beyond the last cell is 0."""
+"""(words,) states of eight cells each, the first in the lowest byte; bytes beyond the last cell are 0."""
 Flags = NDArray[np.uint8]
 
-LOWEST = 0x0101010101010101
-BYTES, PAIRS, FOURS = 0x00FF00FF00FF00FF, 0x0000FFFF0000FFFF, 0xFFFFFFFF
+LOWEST_BITS = 0x0101010101010101  # of each byte
+EVEN_BYTES, EVEN_PAIRS, LOWER_HALF = 0x00FF00FF00FF00FF, 0x0000FFFF0000FFFF, 0xFFFFFFFF  # masks for sums of bytes
 
 
 @bare
 def degrees(word: int) -> int:
-    """The links of each cell, byte by byte."""
-    return (word & LOWEST) + (word >> 1 & LOWEST) + (word >> 2 & LOWEST) + (word >> 3 & LOWEST)
+    """Return a word with the number of links of each cell in its byte."""
+    return (word & LOWEST_BITS) + (word >> 1 & LOWEST_BITS) + (word >> 2 & LOWEST_BITS) + (word >> 3 & LOWEST_BITS)
 
 
 @bare
-def marks(word: int, degree: int) -> int:
-    """1 in the byte of each node: a cell flagged by the highest bit, or with links or flags but not two links."""
+def node_marks(word: int, degree: int) -> int:
+    """Return a word with 1 in the byte of each node, 0 elsewhere.
+
+    A node is a cell flagged by the highest bit, or one with links or flags but not two links.
+    """
     two = degree >> 1 & ~degree
     some = word | word >> 4
     some |= some >> 2
-    return (some | some >> 1) & (~two | word >> 7) & LOWEST
+    return (some | some >> 1) & (~two | word >> 7) & LOWEST_BITS
 
 
 @bare
-def fold(word: int) -> int:
-    """The sum of the bytes; the highest is less than 128."""
-    pairs = (word & BYTES) + (word >> 8 & BYTES)
-    fours = (pairs & PAIRS) + (pairs >> 16 & PAIRS)
-    return (fours & FOURS) + (fours >> 32)
+def sum_of_bytes(word: int) -> int:
+    """Return the sum of the bytes of a word whose highest byte is less than 128."""
+    pairs = (word & EVEN_BYTES) + (word >> 8 & EVEN_BYTES)
+    fours = (pairs & EVEN_PAIRS) + (pairs >> 16 & EVEN_PAIRS)
+    return (fours & LOWER_HALF) + (fours >> 32)
 
 
 @bare
-def count(words: Eights, base: Ints, since: Flags) -> tuple[int, int, int]:
-    """Nodes, chain ends at nodes, and links of the whole skeleton.
+def count_nodes(words: Eights, base: Ints, since: Flags) -> tuple[int, int, int]:
+    """Return the numbers of nodes, of chain ends at nodes, and of links of the whole skeleton.
 
-    ``base`` gets the number of nodes before each sixteen words, ``since`` that of those between and each word.
+    Fills ``base`` with the number of nodes before each group of sixteen words, and ``since`` with the number of nodes
+    from the start of its group up to each word.
     """
     nodes, ends, links, start, lots = 0, 0, 0, 0, 0
     for k in range(words.shape[0]):
         if k & 15 == 0:
             base[k >> 4] = start = nodes
-            links += fold(lots)
+            links += sum_of_bytes(lots)
             lots = 0
         since[k] = nodes - start
         degree = degrees(words[k])
-        mark = marks(words[k], degree)
+        mark = node_marks(words[k], degree)
         lots += degree
         if mark != 0:
-            nodes += fold(mark)
-            ends += fold(degree & 7 * mark)
-    return nodes, ends, (links + fold(lots)) // 2
+            nodes += sum_of_bytes(mark)
+            ends += sum_of_bytes(degree & 7 * mark)
+    return nodes, ends, (links + sum_of_bytes(lots)) // 2
 
 
 @bare
-def collect(words: Eights, first: int, last: int, node: Ints, found: int) -> int:
-    """List the nodes of the words ``first <= k < last`` behind so many found; returns how many there are then.
+def list_nodes(words: Eights, first: int, last: int, node: Ints, found: int) -> int:
+    """Append the cells of the nodes in the words ``first <= k < last`` to ``node``, and return their number so far.
 
-    ``node`` has room for one more than there are nodes.
+    ``found`` nodes are listed already; ``node`` has room for one more than there are nodes.
     """
     for k in range(first, last if last < words.shape[0] else words.shape[0]):
-        mark = marks(words[k], degrees(words[k]))
+        mark = node_marks(words[k], degrees(words[k]))
         if mark != 0:
             for cell in range(8 * k, 8 * k + 8):
                 node[found] = cell  # stands if it is a node
@@ -81,8 +85,8 @@ def collect(words: Eights, first: int, last: int, node: Ints, found: int) -> int
 
 
 @bare
-def number(cell: int, words: Eights, base: Ints, since: Flags) -> int:
-    """The number of nodes before a cell, from what ``count`` noted."""
+def node_number(cell: int, words: Eights, base: Ints, since: Flags) -> int:
+    """Return the number of nodes before a cell, from ``base`` and ``since`` as ``count_nodes`` filled them."""
     k = cell >> 3
-    before = marks(words[k], degrees(words[k])) & (1 << 8 * (cell & 7)) - 1
-    return int(base[k >> 4] + since[k] + fold(before))
+    before = node_marks(words[k], degrees(words[k])) & (1 << 8 * (cell & 7)) - 1
+    return int(base[k >> 4] + since[k] + sum_of_bytes(before))

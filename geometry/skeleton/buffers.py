@@ -1,8 +1,8 @@
-"""Memory of dead screens, kept for the next one of the same shape.
+"""Memory of dead screens, kept for the next screen of the same shape.
 
-A screen writes every byte of its arrays; on memory fresh from the system that can cost as much as the measuring itself.
-One set is kept, the latest, and likewise the scratch of the latest change.
-No array of a set is ever handed to a user, so nothing can still look at it.
+A screen writes every byte of its arrays; in memory fresh from the system that can cost as much as the measuring itself.
+One set of arrays is kept, the latest, and likewise the scratch of the latest change. No array of a set is ever handed
+to a user, so nothing else can still refer to it.
 """
 
 import sys
@@ -17,40 +17,73 @@ from numpy.typing import NDArray
 from geometry.kernels.arrays import SquaredDistances
 from geometry.skeleton.skeleton import States, Waiting, Words
 
-PAGE = 4096  # bytes; the system's own may be larger
-LEAST, MOST = 1 << 16, 1 << 22  # bytes: less is not worth a call, and for more numpy asks for large pages
-POPULATE_WRITE = 23  # of Linux's madvise, since 5.14
+PAGE_BYTES = 4096  # to which addresses are rounded down; the system's pages may be larger
+MIN_POPULATED_BYTES = 1 << 16  # less is not worth a system call (tuned by benchmarks.screens)
+MAX_POPULATED_BYTES = 1 << 22  # for arrays of so much and more numpy itself asks for large pages
+MADV_POPULATE_WRITE = 23  # of Linux's madvise, since 5.14
 
 
 class Buffers(NamedTuple):
-    """The arrays of a screen, by padded shape."""
+    """The arrays of a screen, which has a padded shape of (rows + 2, columns + 2).
+
+    Attributes
+    ----------
+    square : (rows + 2, columns + 2) int16 or int32
+        Room for squared clearances in half squares.
+    words : (n,) uint64
+        Room for the states of the skeleton, eight cells a word.
+    """
 
     square: SquaredDistances
     words: Words
 
 
 class Tenant:
-    """Whoever holds a set, as long as it lives."""
+    """The holder of a set of arrays: when it dies, the set is spare."""
 
 
 class Scratch(NamedTuple):
-    """What a change of a screen notes, by cells. Little of it is ever written."""
+    """Scratch for a change of a screen, of which little is ever written.
+
+    Attributes
+    ----------
+    mark : (cells,) uint8
+        Marks of cells, all 0 before and after a change.
+    touched : (cells,) int32
+        Room for the list of cells whose state may have changed.
+    before : (cells,) uint8
+        Room for the states of these before the change.
+    """
 
     mark: States
-    """All 0 before and after."""
     touched: Waiting
     before: States
 
 
-SPARE: dict[tuple[int, int], Buffers] = {}
-SCRATCH: dict[int, Scratch] = {}
+SPARE_BUFFERS: dict[tuple[int, int], Buffers] = {}
+"""The latest set that no screen holds, by its padded shape."""
+SPARE_SCRATCH: dict[int, Scratch] = {}
+"""The scratch of the latest change, by its number of cells."""
 
 
 def take_buffers(tenant: Tenant, shape: tuple[int, int], kind: type[np.int16] | type[np.int32]) -> Buffers:
-    """A set for a tenant, spare again when it dies; ``square`` is of that kind or a larger one. All but the padding of
-    ``words`` is arbitrary.
+    """Return a set of arrays for a tenant, which is spare again when the tenant dies.
+
+    Parameters
+    ----------
+    tenant : Tenant
+        Its life is the time for which the set is in use.
+    shape : (int, int)
+        Padded shape: (rows + 2, columns + 2).
+    kind : type
+        Least type of ``square``; a spare set of the larger type serves as well.
+
+    Returns
+    -------
+    Buffers
+        With arbitrary values, but for the bytes of ``words`` beyond the last cell, which are 0.
     """
-    buffers = SPARE.pop(shape, None)
+    buffers = SPARE_BUFFERS.pop(shape, None)
     if buffers is None or buffers.square.dtype < kind:
         cells = shape[0] * shape[1]
         share, eighth = -(-cells * np.dtype(kind).itemsize // 8), -(-cells // 8)
@@ -65,40 +98,40 @@ def take_buffers(tenant: Tenant, shape: tuple[int, int], kind: type[np.int16] | 
 
 
 def give_back(shape: tuple[int, int], buffers: Buffers) -> None:
-    """Keep a set, and only this one."""
-    SPARE.clear()
-    SPARE[shape] = buffers
+    """Keep a set of arrays as the only spare one."""
+    SPARE_BUFFERS.clear()
+    SPARE_BUFFERS[shape] = buffers
 
 
 def take_scratch(cells: int) -> Scratch:
-    """Scratch for a screen of so many cells, that of the last change if it was of that size."""
-    scratch = SCRATCH.pop(cells, None)
+    """Return scratch for a screen of so many cells: that of the last change if it was of that size, else new."""
+    scratch = SPARE_SCRATCH.pop(cells, None)
     if scratch is None:
         scratch = Scratch(np.zeros(cells, np.uint8), np.empty(cells, np.int32), np.empty(cells, np.uint8))
     return scratch
 
 
 def keep_scratch(scratch: Scratch) -> None:
-    """Keep scratch for the next change, and only this."""
-    SCRATCH.clear()
-    SCRATCH[len(scratch.mark)] = scratch
+    """Keep scratch for the next change, as the only spare one."""
+    SPARE_SCRATCH.clear()
+    SPARE_SCRATCH[len(scratch.mark)] = scratch
 
 
 def populate(array: NDArray[Any]) -> None:
-    """Have the system find the memory of an array at once, which is quicker than page by page as it is written.
+    """Ask the system to provide the memory of an array at once, which is faster than page by page as it is written.
 
-    This is advice: where it is not understood nothing happens.
+    Only advice: where the system does not know it, nothing happens.
     """
     advise = adviser()
-    if advise is not None and LEAST <= array.nbytes < MOST:
+    if advise is not None and MIN_POPULATED_BYTES <= array.nbytes < MAX_POPULATED_BYTES:
         begin = array.ctypes.data
-        first = begin - begin % PAGE
-        advise(first, begin + array.nbytes - first, POPULATE_WRITE)
+        first = begin - begin % PAGE_BYTES
+        advise(first, begin + array.nbytes - first, MADV_POPULATE_WRITE)
 
 
 @cache
 def adviser() -> Callable[[int, int, int], int] | None:
-    """Linux's madvise, or None elsewhere."""
+    """Return Linux's madvise, or None on other systems."""
     if not sys.platform.startswith("linux"):
         return None
     import ctypes

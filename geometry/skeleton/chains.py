@@ -1,4 +1,4 @@
-"""The cells of chains: the graph of graph.py with everything that routes need of it, in arrays."""
+"""The pathgraph with the cells of its chains, in arrays: everything that searches for routes need of it."""
 
 from typing import NamedTuple
 
@@ -11,38 +11,56 @@ from geometry.skeleton.skeleton import Flags, States, stride
 
 
 class Chains(NamedTuple):
-    """The pathgraph in arrays, for n nodes and m chains; cells are padded indices (see distance_transform.py)."""
+    """The pathgraph of n nodes and m chains, by cells: flat indices into the padded screen (see distance_transform.py).
+
+    Attributes
+    ----------
+    node : (n,) int32
+        Cell of each node, ascending.
+    leave : (n, 4) int32
+        Number of the chain that leaves a node to the east, north, west, south; -1 where none does.
+    ends : (m, 2) int32
+        Numbers of the first and the last node of each chain.
+    start : (m + 1,) int32
+        Index into ``cells`` at which the cells of each chain start.
+    cells : (start[m],) int32
+        Cells of all chains, one chain after the other, both end nodes included.
+    neck : (m,) int32
+        Index into ``cells`` of the lowest cell of each chain in the total order of skeleton.py.
+    """
 
     node: Ints
-    """(n,) cell of each node, ascending."""
     leave: Ints
-    """(n, 4) the chain that leaves a node to the east, north, west, south; -1 where none does."""
     ends: Ints
-    """(m, 2) first and last node of each chain."""
     start: Ints
-    """(m + 1,) where each chain's cells start in ``cells``."""
     cells: Ints
-    """Cells of all chains, end nodes included."""
     neck: Ints
-    """(m,) index into ``cells`` of each chain's lowest cell in the order of skeleton.py."""
 
 
 def find_chains(bones: SkeletonGraph, state: States) -> Chains:
-    """Walk all chains."""
+    """Return a graph with the cells of its chains, found by walking them.
+
+    Parameters
+    ----------
+    bones : SkeletonGraph
+        Nodes and chains of the skeleton.
+    state : (rows + 2, columns + 2) uint8
+        Links of the skeleton.
+    """
     states, width, size = state.reshape(-1), state.shape[1], len(bones.steps)
     start = np.zeros(size + 1, np.int32)
     np.cumsum(bones.steps + 1, out=start[1:])
     cells, neck = np.empty(start[-1], np.int32), np.empty(size, np.int32)
     leave = np.full((len(bones.node), 4), -1, np.int32)
-    fill(states, width, bones.node, bones.port, bones.neck, start, cells, neck, leave)
+    fill_cells(states, width, bones.node, bones.port, bones.neck, start, cells, neck, leave)
     return Chains(bones.node, leave, bones.port >> 2, start, cells, neck)
 
 
 @bare
-def fill(
+def fill_cells(
     states: Flags, width: int, node: Ints, port: Ints, lowest: Ints, start: Ints, cells: Ints, neck: Ints, leave: Ints
 ) -> None:
-    """Fill ``cells``, ``neck`` and ``leave``."""
+    """Walk every chain from its first end, and fill ``cells``, ``neck`` and ``leave`` (-1 at first)."""
     for chain in range(port.shape[0]):
         cell, direction = node[port[chain, 0] >> 2] + 0, port[chain, 0] & 3
         leave[port[chain, 0] >> 2, direction] = chain

@@ -1,9 +1,11 @@
-"""Junctions and chains in short: the skeleton's links contracted to a graph, without the cells between.
+"""The skeleton contracted to a graph of nodes and chains, without the cells between.
 
-A node is a skeleton cell with other than two links (or one cell on a ring that has no such cell). A chain is a
-maximal way of linked cells between two nodes, both included. Nodes come in the order of their cells, chains in the
-order of their first node and direction, so equal skeletons give equal arrays. The cells of a chain are not kept:
-``state`` links them, and chains.py walks them when routes are asked for.
+A node is a skeleton cell with other than two links, or the first cell of a ring that has no such cell. A chain is a
+maximal sequence of linked cells between two nodes, both included. Nodes come in ascending order of their cells, chains
+in ascending order of their first node and direction, so equal skeletons give equal arrays. The cells of a chain are not
+kept: ``state`` links them, and chains.py and pathgraph_arrays.py walk them again when they are asked for.
+
+Directions are numbered counter-clockwise from the east: 0 east, 1 north, 2 west, 3 south.
 """
 
 from typing import NamedTuple
@@ -12,37 +14,60 @@ import numpy as np
 
 from geometry.kernels.arrays import Ints, SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.skeleton.bit_parallel import Eights, collect, count, number
-from geometry.skeleton.lowest_cells import Notes, lowest_of, new_notes, settle
+from geometry.skeleton.bit_parallel import Eights, count_nodes, list_nodes, node_number
+from geometry.skeleton.lowest_cells import Notes, find_lowest, lowest_of, new_notes
 from geometry.skeleton.skeleton import HALT, LINKS, SADDLE, Flags, Heights, States, Words, above, stride
 
-LOOK = 4  # steps of a walk after which it looks whether there is room for as many notes more
-AHEAD = 1 << 14  # words of states: twice as many fit into a processor's own cache beside what a walk needs
+NOTES_CHECK_STEPS = 4  # steps of a walk between two checks that there is room for as many notes more (a convention)
+WORDS_AHEAD = 1 << 14  # words of states listed ahead of the walk: twice as many (256 kB) fit into a core's own cache
 
 
 class SkeletonGraph(NamedTuple):
-    """The pathgraph of n nodes and m chains; cells are padded indices (see distance_transform.py)."""
+    """The pathgraph of n nodes and m chains, by cells: flat indices into the padded screen (see distance_transform.py).
+
+    Attributes
+    ----------
+    node : (n,) int32
+        Cell of each node, ascending.
+    port : (m, 2) int32
+        First and last end of each chain, as 4 times the number of the node plus the direction in which the chain leaves
+        it (0 east, 1 north, 2 west, 3 south). The first ends ascend, and each is less than its last end.
+    neck : (m,) int32
+        Lowest cell of each chain in the total order of skeleton.py: its narrowest place.
+    steps : (m,) int32
+        Number of steps from square to square from end to end of each chain.
+    """
 
     node: Ints
-    """(n,) cell of each node, ascending."""
     port: Ints
-    """(m, 2) first and last end of each chain: 4 node + direction of leaving (east, north, west, south); ascending."""
     neck: Ints
-    """(m,) each chain's lowest cell in the order of skeleton.py."""
     steps: Ints
-    """(m,) how many steps from square to square it takes from end to end."""
 
 
 def contract(square: SquaredDistances, state: States, words: Words) -> SkeletonGraph:
-    """The chains of the skeleton that ``state`` links."""
+    """Return the graph of a skeleton, and flag the first cells of rings without a junction as nodes in ``state``.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int16 or int32
+        Squared clearances in half squares.
+    state : (rows + 2, columns + 2) uint8
+        Links and flags of the skeleton (see skeleton.py).
+    words : (n,) uint64
+        The memory of ``state`` by eights.
+
+    Returns
+    -------
+    SkeletonGraph
+    """
     heights, states, width = square.reshape(-1), state.reshape(-1), state.shape[1]
     eights, size, notes = words.view(np.int64), len(words), new_notes(len(states))
     base, since = np.empty((size + 15) // 16, np.int32), np.empty(size, np.uint8)
-    nodes, ends, links = count(eights, base, since)
+    nodes, ends, links = count_nodes(eights, base, since)
     node, port = np.empty(nodes + 1, np.int32), np.empty((ends // 2, 2), np.int32)
     neck, steps = np.empty(ends // 2, np.int32), np.empty(ends // 2, np.int32)
     seen = np.zeros(nodes, np.uint8)
-    walked = pace_all(heights, states, eights, width, base, since, node, port, neck, steps, seen, notes)
+    walked = walk_chains(heights, states, eights, width, base, since, node, port, neck, steps, seen, notes)
     found = SkeletonGraph(node[:nodes], port, neck, steps)
     if walked < links:
         halt_rings(heights, states, width, words)
@@ -51,12 +76,12 @@ def contract(square: SquaredDistances, state: States, words: Words) -> SkeletonG
 
 
 def insert_rings(heights: Heights, states: Flags, width: int, bones: SkeletonGraph, notes: Ints) -> SkeletonGraph:
-    """Return the graph with the rings added whose first cells are flagged. ``notes`` is scratch."""
+    """Return ``bones`` with the rings added whose first cells are flagged in ``states``. ``notes`` is scratch."""
     cells = np.flatnonzero(states >= HALT).astype(np.int32)
     place = bones.node.searchsorted(cells)
     node, ring = np.insert(bones.node, place, cells), (place + np.arange(len(cells))).astype(np.int32)
     port, neck, steps = np.empty((len(ring), 2), np.int32), np.empty(len(ring), np.int32), np.empty(len(ring), np.int32)
-    pace_rings(heights, states, width, node, ring, port, neck, steps, notes)
+    walk_rings(heights, states, width, node, ring, port, neck, steps, notes)
     shift = 4 * np.bincount(place, minlength=len(bones.node)).cumsum(dtype=np.int32)
     old = bones.port + shift[bones.port >> 2]
     place = old[:, 0].searchsorted(port[:, 0])
@@ -69,7 +94,7 @@ def insert_rings(heights: Heights, states: Flags, width: int, bones: SkeletonGra
 
 
 @bare
-def pace_rings(
+def walk_rings(
     heights: Heights,
     states: Flags,
     width: int,
@@ -84,14 +109,14 @@ def pace_rings(
     for k in range(ring.shape[0]):
         cell = int(node[ring[k]])
         direction = first_way(int(states[cell] & LINKS))
-        _, back, steps[k], noted = pace(cell, direction, heights, states, width, notes, 0)
+        _, back, steps[k], noted = walk_chain(cell, direction, heights, states, width, notes, 0)
         port[k, 0], port[k, 1] = 4 * ring[k] + direction, 4 * ring[k] + back
         neck[k] = lowest_of(notes, 0, noted, heights)
 
 
 @bare
 def halt_rings(heights: Heights, states: Flags, width: int, words: Words) -> None:
-    """Flag the first cell of every ring that has no junction. On each there is a lowest cell, a saddle."""
+    """Flag the first cell of every ring that has no junction, found from the saddle that is its lowest cell."""
     for word in range(words.shape[0]):
         if words[word] == 0:
             continue
@@ -104,7 +129,10 @@ def halt_rings(heights: Heights, states: Flags, width: int, words: Words) -> Non
 
 @bare
 def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> int:
-    """The first cell of the ring without a node of which a saddle is the lowest; -1 when it is not."""
+    """Return the first cell of the ring on which a saddle lies and is the lowest cell.
+
+    -1 when the ring has a node or a lower saddle.
+    """
     cell, direction, first = saddle, first_way(int(states[saddle])), saddle
     while True:
         cell += stride(direction, width)
@@ -119,13 +147,13 @@ def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> i
 
 @bare
 def is_node(here: int) -> bool:
-    """Whether a cell of this state is a node: flagged, or one that has links or flags but not two links."""
+    """Return whether a cell of this state is a node: flagged HALT, or with links or flags but not two links."""
     links = (here & 5) + (here >> 1 & 5)
     return bool((here != 0) & ((here & HALT != 0) | ((links & 3) + (links >> 2) != 2)))
 
 
 @bare
-def pace_all(
+def walk_chains(
     heights: Heights,
     states: Flags,
     words: Eights,
@@ -139,28 +167,28 @@ def pace_all(
     seen: States,
     notes: Notes,
 ) -> int:
-    """List the nodes and walk every chain once from its first end; returns the links walked.
+    """List the nodes, walk every chain once from its first end, and return the number of links walked.
 
-    ``seen`` has the ends met, as bits. Nodes are listed some way ahead of the walk, which then finds the states there
-    in the processor's cache.
+    Fills ``node``, ``port``, ``neck`` and ``steps``. ``seen`` (nodes,) is 0 at first and notes the ends met, as bits by
+    direction. Nodes are listed some way ahead of the walk, which then finds the states there in the processor's cache.
     """
     chain, settled, noted, walked, n, found = 0, 0, 0, 0, 0, 0
-    for first in range(-AHEAD, words.shape[0], AHEAD):
-        listed, found = found, collect(words, first + AHEAD, first + 2 * AHEAD, node, found)
+    for first in range(-WORDS_AHEAD, words.shape[0], WORDS_AHEAD):
+        listed, found = found, list_nodes(words, first + WORDS_AHEAD, first + 2 * WORDS_AHEAD, node, found)
         while n < listed:
             cell = int(node[n])
             ends = int(states[cell]) & LINKS & ~int(seen[n])
             while ends != 0:
                 direction = first_way(ends)
-                last, back, steps[chain], noted = pace(cell, direction, heights, states, width, notes[0], noted)
-                other = number(last, words, base, since)
+                last, back, steps[chain], noted = walk_chain(cell, direction, heights, states, width, notes[0], noted)
+                other = node_number(last, words, base, since)
                 seen[n] |= 1 << direction
                 seen[other] |= 1 << back
                 port[chain, 0], port[chain, 1] = 4 * n + direction, 4 * other + back
                 walked += steps[chain]
                 chain += 1
                 if noted > notes.shape[1] >> 1 or chain == neck.shape[0]:
-                    settle(notes[0], notes[1], noted, heights, settled, neck)
+                    find_lowest(notes[0], notes[1], noted, heights, settled, neck)
                     settled, noted = chain, 0
                 ends &= ~int(seen[n])
             n += 1
@@ -168,13 +196,12 @@ def pace_all(
 
 
 @bare
-def pace(
+def walk_chain(
     cell: int, direction: int, heights: Heights, states: Flags, width: int, notes: Ints, noted: int
 ) -> tuple[int, int, int, int]:
-    """Walk one chain.
+    """Walk one chain from a node; return its last cell, the direction back from there, its steps, and the notes so far.
 
-    Returns its last cell, the direction back from there, the number of steps, and that of notes: its ends and saddles,
-    one of which is its lowest cell, are added to the ``noted`` ones.
+    Its ends and saddles, one of which is its lowest cell, are added to the ``noted`` notes (see lowest_cells.py).
     """
     steps, first = 0, noted
     notes[noted] = ~cell
@@ -189,7 +216,7 @@ def pace(
         notes[noted] = cell  # stands if it may be the lowest
         noted += int(end | (here & SADDLE != 0))
         back = way >> 2 | (way & 3) << 2
-        if (end or steps % LOOK == 0) and noted + LOOK >= notes.shape[0]:
+        if (end or steps % NOTES_CHECK_STEPS == 0) and noted + NOTES_CHECK_STEPS >= notes.shape[0]:
             notes[first] = ~lowest_of(notes, first, noted, heights)
             noted = first + 1
         if end:
@@ -199,21 +226,21 @@ def pace(
 
 @bare
 def onward(here: int, back: int) -> int:
-    """The other direction of a cell with two links."""
+    """Return the direction of the other link of a cell that has two links. ``back`` : the direction of the one."""
     rest = int(here & LINKS) ^ (1 << back)
     return (rest >> 1) - (rest >> 3)
 
 
 @bare
 def first_way(here: int) -> int:
-    """The first direction of a cell with links."""
+    """Return the first direction in which a cell of this state (links only, not 0) has a link."""
     first = here & -here
     return (first >> 1) - (first >> 3)
 
 
 @bare
 def find(node: Ints, cell: int) -> int:
-    """The node of a cell, or the next one, by bisection."""
+    """Return the number of the first node at or after a cell, by bisection. ``node`` : cells of nodes, ascending."""
     low, high = 0, node.shape[0]
     while low < high:
         middle = (low + high) >> 1

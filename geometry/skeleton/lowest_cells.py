@@ -1,10 +1,10 @@
-"""Necks: the lowest cells of chains, found for many chains at once.
+"""The lowest cells of chains (their narrowest places), found for many chains at once.
 
-# Strategy: on a large screen the clearance of a saddle is far from the processor, and to wait for one at each saddle
-takes longer than the walk. So a walk only notes the cells that may be lowest, and the clearances of many notes are
-fetched together.
+# Strategy: on a large screen the clearance of a saddle is in main memory, and waiting for it takes longer than the walk
+along the chain. So a walk only notes the cells that may be lowest, the ends and saddles of the chain, and
+the clearances of many notes are fetched together.
 
-``notes`` lists cells, chain by chain; the first of each chain is noted as ~cell.
+``notes`` lists cells, chain by chain; the first note of each chain is ~cell, which is negative.
 """
 
 import numpy as np
@@ -14,17 +14,17 @@ from geometry.kernels.jit import bare
 
 Notes = Ints
 
-LEAST, MOST = 32, 1024  # notes
+MIN_NOTES, MAX_NOTES = 32, 1024  # room on the smallest and the largest screens (tuned by benchmarks.screens)
 
 
 def new_notes(cells: int) -> Notes:
-    """(2, many) room for notes and for the clearances of as many: little on a small screen."""
-    return np.empty((2, min(max(LEAST, cells >> 6), MOST)), np.int32)
+    """Return scratch (2, size) for notes and for as many clearances; the size grows with the number of cells."""
+    return np.empty((2, min(max(MIN_NOTES, cells >> 6), MAX_NOTES)), np.int32)
 
 
 @bare
 def lowest_of(notes: Ints, first: int, last: int, heights: SquaredDistances) -> int:
-    """The lowest of one chain's notes, ``first <= k < last``, in the order of skeleton.py."""
+    """Return the lowest cell of one chain's notes ``first <= k < last``, in the total order of skeleton.py."""
     lowest = int(~notes[first])
     low = heights[lowest]
     for k in range(first + 1, last):
@@ -36,9 +36,10 @@ def lowest_of(notes: Ints, first: int, last: int, heights: SquaredDistances) -> 
 
 
 @bare
-def settle(notes: Ints, values: Ints, noted: int, heights: SquaredDistances, chain: int, neck: Ints) -> None:
-    """Find the necks of successive chains, from ``chain`` on, of which there are so many notes. ``values`` is
-    scratch. No branches: they are not to be foreseen.
+def find_lowest(notes: Ints, values: Ints, noted: int, heights: SquaredDistances, chain: int, neck: Ints) -> None:
+    """Fill ``neck`` with the lowest cells of successive chains, from number ``chain`` on, by their ``noted`` notes.
+
+    ``values`` is scratch. The loop has no branches, because none could be predicted.
     """
     for k in range(noted):
         cell = int(notes[k])

@@ -101,7 +101,7 @@ class PathgraphArrays(NamedTuple):
         return self.points[self.offsets[edge] : self.offsets[edge + 1]]
 
 
-def pathgraph_arrays(square: SquaredDistances, state: States, bones: SkeletonGraph) -> PathgraphArrays:
+def build_pathgraph_arrays(square: SquaredDistances, state: States, bones: SkeletonGraph) -> PathgraphArrays:
     """Return the pathgraph of a skeleton as new arrays, which share no memory with the arguments.
 
     Parameters
@@ -112,6 +112,11 @@ def pathgraph_arrays(square: SquaredDistances, state: States, bones: SkeletonGra
         Links and flags of the skeleton (see skeleton.py).
     bones : SkeletonGraph
         The nodes and chains of ``state``.
+
+    Returns
+    -------
+    PathgraphArrays
+        Writable arrays.
     """
     n, m = len(bones.node), len(bones.steps)
     offsets = np.zeros(m + 1, np.int32)
@@ -130,12 +135,12 @@ def pathgraph_arrays(square: SquaredDistances, state: States, bones: SkeletonGra
         neighbours=np.empty(2 * m, np.int32),
     )
     arrays: Any = graph
-    fill(square.reshape(-1), state.reshape(-1), state.shape[1], *bones, *arrays)
+    fill_arrays(square.reshape(-1), state.reshape(-1), state.shape[1], *bones, *arrays)
     return graph._replace(adjacency_offsets=graph.adjacency_offsets[:-1])
 
 
 @bare
-def fill(
+def fill_arrays(
     heights: Heights,
     states: Flags,
     width: int,

@@ -1,18 +1,18 @@
-"""The skeleton of a screen: steepest ways up from every saddle of the clearance.
+"""The skeleton of a screen: the steepest ascents from every saddle of the clearance.
 
-# Strategy: cells are totally ordered by (squared clearance, index). Seen from a cell, the neighbours above it in
-that order fall into groups along the ring of eight; a group counts when it touches the cell by an edge. A cell with
-no higher edge neighbour is a maximum, one with two groups or more a saddle. Clearance has no interior minimum, so
-discrete Morse theory gives maxima - sum of (groups - 1) over saddles = components - holes of the free space
-(4-connected, as DESIGN has it). From each saddle one steepest way up per group, until a way already trodden: the
-union has the homotopy type of free space, and so has its part at or above any level, which is free space for a body
-of that radius.
+# Strategy: cells are totally ordered by (squared clearance, index). The neighbours of a cell that are above it in that
+order fall into groups along its ring of eight neighbours; a group counts when it touches the cell by an edge. A cell
+without a higher edge neighbour is a maximum (summit), one with two groups or more a saddle. Clearance has no interior
+minimum, so by discrete Morse theory (Forman 1998) maxima - sum of (groups - 1) over saddles = components - holes of the
+free space, connected through edges. From each saddle one steepest ascent leads up per group, until it meets an earlier
+one. The union has the homotopy type of free space, and so has its part at or above any level, which is free space for a
+body of that radius.
 
-Rows are classified and climbed in bands from the north, while they are in the processor's cache. A way that leads
+Rows are classified and climbed in bands from the north, while they are in the processor's cache. An ascent that leads
 south out of the rows done so far waits at the last of them.
 
-``state`` holds one byte a cell: bits 0-3 the links to the east, north, west and south neighbours, then the flags
-below.
+``state`` holds one byte a cell: bits 0 to 3 are the links to the east, north, west and south neighbours, the others the
+flags below. Directions are numbered 0 east, 1 north, 2 west, 3 south.
 """
 
 import numpy as np
@@ -23,22 +23,26 @@ from geometry.kernels.jit import bare
 
 States = NDArray[np.uint8]
 Heights = SquaredDistances
-"""(cells,) squares, flat."""
+"""(cells,) squared clearances in half squares, flat."""
 Flags = States
 """(cells,) states, flat."""
 Words = NDArray[np.uint64]
+"""(cells / 8, rounded up) the memory of states, eight cells a word."""
 Truth = np.bool_
 Waiting = NDArray[np.int32]
+"""Cells at which ascents wait that lead out of the rows done so far."""
 
-LINKS = 15
-SOUTH = 3  # a direction: from the east counter-clockwise
-CLIMBED, SADDLE, SUMMIT, HALT = 16, 32, 64, 128  # HALT: a node chosen on a ring that has no junction
+LINKS = 15  # bits of a state: the four links
+SOUTH = 3  # a direction, counted from the east counter-clockwise
+CLIMBED, SADDLE, SUMMIT, HALT = 16, 32, 64, 128  # bits of a state; HALT: the node chosen on a ring without a junction
 
 
 @bare
 def flag(e: Truth, ne: Truth, n: Truth, nw: Truth, w: Truth, sw: Truth, s: Truth, se: Truth) -> np.uint8:
-    """The flag of a cell whose higher neighbours are so. A group ends behind each edge that the corner between does not
-    join to the next edge; where two end, the cell is a saddle.
+    """Return SADDLE, SUMMIT or 0 for a cell, given which of its eight neighbours are higher.
+
+    A group ends behind each edge neighbour that the corner neighbour between does not join to the next edge neighbour.
+    Where two groups end the cell is a saddle.
     """
     a, b, c, d = e & ~(ne & n), n & ~(nw & w), w & ~(sw & s), s & ~(se & e)
     several = (a | b) & (c | d) | a & b | c & d
@@ -46,7 +50,10 @@ def flag(e: Truth, ne: Truth, n: Truth, nw: Truth, w: Truth, sw: Truth, s: Truth
 
 
 def kinds() -> States:
-    """The flag of a cell by the set of its higher neighbours: bits from the east counter-clockwise; 255 is no cell."""
+    """Return the flag (SADDLE, SUMMIT, 0) by the set of higher neighbours, as bits from the east counter-clockwise.
+
+    Set 255 does not occur, because clearance has no interior minimum.
+    """
     sets = [[np.bool_(higher >> k & 1) for k in range(8)] for higher in range(255)]
     return np.array([flag.function(*ring) for ring in sets] + [0], np.uint8)
 
@@ -55,8 +62,9 @@ KINDS = kinds()
 
 
 def edge_groups() -> NDArray[np.uint16]:
-    """The groups of a set of higher neighbours: for each, from the lowest four bits on, the edges by which it touches
-    the cell (bits as the links of ``state``).
+    """Return the groups by the set of higher neighbours: four bits a group, from the lowest on.
+
+    The bits of a group are the edges by which it touches the cell, as the links of ``state``.
     """
     table = np.zeros(256, dtype=np.uint16)
     for higher in range(255):
@@ -87,13 +95,12 @@ def grow(
     waiting: Waiting,
     waits: int,
 ) -> int:
-    """Classify rows from ``north`` down to ``south`` and link the ways up from their saddles, among the cells whose
-    square is at least ``level``.
+    """Classify rows from ``north`` down to ``south``, link the ascents from their saddles, and return how many wait.
 
-    The rows further north are done already, and in the one further south clearances are known. ``words`` is
-    ``states`` by eights. ``waiting`` (width,) has the cells, so many, whose way up leads out of the rows done so far:
-    on entry those of row ``north + 1``, on return, which tells their number, those of row ``south``. ``flags`` (width,)
-    is scratch.
+    Only cells whose squared clearance is at least ``level`` count. The rows further north are done already, and in the
+    next row further south clearances are known. ``words`` is ``states`` by eights. ``waiting`` (width,) holds the cells
+    whose ascent leads out of the rows done so far: on entry ``waits`` of row ``north + 1``, on return those of row
+    ``south``. ``flags`` (width,) is scratch.
     """
     for row in range(south, north + 1):
         classify(heights, states, width, level, row, flags)
@@ -118,7 +125,7 @@ def grow(
 
 @bare
 def classify(heights: Heights, states: Flags, width: int, level: int, row: int, flags: States) -> None:
-    """Clear the states of a row and flag its summits and saddles."""
+    """Clear the states of a row and flag its summits and saddles. ``flags`` is scratch."""
     first = row * width
     out = states[first : first + width]
     find_flags(heights, width, first + 1, level, flags[: width - 2])
@@ -130,11 +137,11 @@ def classify(heights: Heights, states: Flags, width: int, level: int, row: int, 
 
 @bare
 def find_flags(heights: Heights, width: int, first: int, level: int, flags: Flags) -> None:
-    """Find the flags of so many cells of a row from ``first`` on, of those at least as high as a level."""
+    """Fill ``flags`` for as many cells of a row from ``first`` on; 0 for cells lower than ``level``."""
     size, least = flags.shape[0] + 2, heights.dtype.type(level)
     below, here = heights[first - width - 1 : first - width - 1 + size], heights[first - 1 : first - 1 + size]
     above = heights[first + width - 1 : first + width - 1 + size]
-    for j in range(size - 2):  # from 0, lest the loop have to allow for indices from the end
+    for j in range(size - 2):  # from 0, so that no index can count from the end
         own = here[j + 1]
         e, ne, n, nw = here[j + 2] >= own, above[j + 2] >= own, above[j + 1] >= own, above[j] >= own
         w, sw, s, se = here[j] > own, below[j] > own, below[j + 1] > own, below[j + 2] > own
@@ -143,7 +150,7 @@ def find_flags(heights: Heights, width: int, first: int, level: int, flags: Flag
 
 @bare
 def higher_about(cell: int, heights: Heights, width: int) -> int:
-    """The set of a cell's higher neighbours: bits from the east counter-clockwise."""
+    """Return the set of a cell's higher neighbours, as bits from the east counter-clockwise."""
     own = heights[cell]
     higher = int(heights[cell + 1] >= own) | int(heights[cell + width + 1] >= own) << 1
     higher |= int(heights[cell + width] >= own) << 2 | int(heights[cell + width - 1] >= own) << 3
@@ -153,8 +160,9 @@ def higher_about(cell: int, heights: Heights, width: int) -> int:
 
 @bare
 def highest_of(cell: int, edges: int, heights: Heights, width: int) -> int:
-    """The direction of the highest among some edge neighbours of a cell (a set of links). No branches: they are not
-    to be foreseen.
+    """Return the direction of the highest among some edge neighbours of a cell, given as bits like links.
+
+    Without branches, because at saddles none could be predicted.
     """
     south = np.int64(heights[cell - width]) << 2
     west = np.int64(heights[cell - 1]) << 2 | 1
@@ -169,7 +177,7 @@ def highest_of(cell: int, edges: int, heights: Heights, width: int) -> int:
 
 @bare
 def highest(cell: int, heights: Heights, width: int) -> int:
-    """The direction of the highest edge neighbour of a cell. With branches: along a chain they are."""
+    """Return the direction of the highest edge neighbour. With branches, which along a chain are predictable."""
     east, north, west, south = heights[cell + 1], heights[cell + width], heights[cell - 1], heights[cell - width]
     if (north if north >= east else east) >= (west if west >= south else south):
         return 1 if north >= east else 0
@@ -178,8 +186,9 @@ def highest(cell: int, heights: Heights, width: int) -> int:
 
 @bare
 def climb(cell: int, direction: int, heights: Heights, states: Flags, width: int, first: int) -> int:
-    """Link a cell to a higher neighbour and go on up from there, until a way already trodden; returns -1, or the cell
-    from which the way leads on to one before ``first``.
+    """Link a cell to a higher neighbour and ascend from there until a saddle, a summit or an earlier ascent.
+
+    Returns -1, or the cell from which the ascent leads on to a cell before ``first``, where it has to wait.
     """
     while True:
         other = cell + stride(direction, width)
@@ -195,32 +204,32 @@ def climb(cell: int, direction: int, heights: Heights, states: Flags, width: int
 
 @bare
 def link(cell: int, other: int, direction: int, states: Flags) -> None:
-    """Set the two link bits between edge neighbours."""
+    """Set the two link bits between edge neighbours; ``direction`` leads from ``cell`` to ``other``."""
     states[cell] |= 1 << direction
     states[other] |= 1 << (direction ^ 2)
 
 
 @bare
 def steepest(cell: int, heights: Heights, width: int) -> int:
-    """The highest edge neighbour of a cell that is no summit."""
+    """Return the highest edge neighbour of a cell that is no summit."""
     return int(cell + stride(highest(cell, heights, width), width))
 
 
 @bare
 def above(cell: int, other: int, heights: Heights) -> bool:
-    """The total order of cells."""
+    """Return whether a cell is above another in the total order (clearance, then index)."""
     return bool(heights[cell] > heights[other] or (heights[cell] == heights[other] and cell > other))
 
 
 @bare
 def stride(direction: int, width: int) -> int:
-    """The index step to the east, north, west or south."""
+    """Return the difference of flat indices of one step in a direction (0 east, 1 north, 2 west, 3 south)."""
     return (1 - (direction & 2)) * (width if direction & 1 else 1)
 
 
 @bare
 def beside(k: int, width: int) -> int:
-    """The index step to the k-th of the eight neighbours, from the east counter-clockwise."""
+    """Return the difference of flat indices to the k-th of the eight neighbours, from the east counter-clockwise."""
     k %= 8
     if k < 4:
         return 1 if k == 0 else width + 2 - k

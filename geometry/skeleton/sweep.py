@@ -1,8 +1,8 @@
-"""Clearance and skeleton of a whole screen in one sweep over its rows.
+"""Clearance and skeleton of a whole screen, computed in one sweep over its rows.
 
-# Strategy: on large screens memory is slower than arithmetic. So distances are taken up the columns once, in the memory
-where clearances are to stand; then the rows are measured, classified and climbed band by band from the north, each band
-while it is in the processor's cache.
+# Strategy: on large screens memory is slower than arithmetic. So distances along columns are counted once, in the
+memory that will hold the clearances. Then rows are measured, classified and climbed band by band from the north, each
+band while it is in the processor's cache.
 """
 
 import numpy as np
@@ -13,24 +13,43 @@ from geometry.raster.distance_rows import RowWindow, measure_rows, new_window
 from geometry.raster.distance_transform import Gaps, count_columns
 from geometry.skeleton.skeleton import Flags, Heights, States, Waiting, Words, grow
 
-BAND = 1 << 16  # cells in a band, about: 5 bytes each, a fraction of a processor's own cache
+BAND_CELLS = 1 << 16  # about so many cells in a band: of 3 to 5 bytes each, which fit into a core's own cache
 
 
 def survey(free: Bools, square: SquaredDistances, state: States, words: Words) -> None:
-    """Fill ``square`` and ``state`` (rows + 2, columns + 2) for free squares (rows, columns).
+    """Measure the clearance of all free squares and find their skeleton.
 
-    ``words`` is ``state`` by eights.
+    Parameters
+    ----------
+    free : (rows, columns) bool
+        Free squares.
+    square : (rows + 2, columns + 2) int16 or int32
+        Filled with squared clearances in half squares (see distance_transform.py); its type must hold them.
+    state : (rows + 2, columns + 2) uint8
+        Filled with the links and flags of the skeleton (see skeleton.py).
+    words : (n,) uint64
+        The memory of ``state`` by eights, 0 beyond its last cell.
     """
     width, steps = square.shape[1], square.view(np.int16)
     count_columns(free, steps)
     square[0], square[-1], state[0], state[-1] = 0, 0, 0, 0
     flags, waiting = np.empty(width, np.uint8), np.empty(width, np.int32)
     flat = square.reshape(-1), state.reshape(-1), words
-    sweep(square, steps, *flat, max(1, BAND // width), new_window(width), flags, waiting)
+    sweep(square, steps, *flat, max(1, BAND_CELLS // width), new_window(width), flags, waiting)
 
 
 def grow_all(square: SquaredDistances, level: int, state: States, words: Words) -> None:
-    """Fill ``state`` for the cells whose ``square`` is at least ``level``."""
+    """Find the skeleton of the cells whose squared clearance is at least ``level``.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int16 or int32
+        Squared clearances in half squares.
+    level : int
+        The least squared clearance, in half squares, that counts as free.
+    state, words
+        Filled, as by ``survey``.
+    """
     width, level = square.shape[1], min(level, int(np.iinfo(square.dtype).max))
     state[0], state[-1] = 0, 0
     flags, waiting = np.empty(width, np.uint8), np.empty(width, np.int32)
@@ -49,7 +68,7 @@ def sweep(
     flags: States,
     waiting: Waiting,
 ) -> None:
-    """Measure and grow bands of so many rows."""
+    """Measure, classify and climb bands of ``band`` rows from the north to the south."""
     last, width = square.shape[0] - 2, square.shape[1]
     measured, waits = last + 1, 0
     for north in range(last, 0, -band):

@@ -1,9 +1,10 @@
-"""The skeleton as a picture: the cells of all chains, thin and connected exactly as free space is.
+"""The skeleton as a raster: the cells of all chains, thinned, with the components and holes of free space.
 
-Two chains may run side by side in cells that touch although the chains do not meet there. # Strategy: cells
-enclosed between chains with no blocked square among them are filled in, which restores the holes of free space;
-then every cell whose removal changes neither components nor holes goes, in the order of cells, but for the ends of
-lines.
+Two chains may run in cells that touch although the chains do not meet there.
+
+# Strategy: cells enclosed between chains with no blocked square among them are filled in, which restores the holes of
+free space. Then every cell whose removal changes neither components nor holes (a simple point) is removed, in the order
+of cells, but for the ends of lines.
 """
 
 import numpy as np
@@ -14,7 +15,20 @@ from geometry.skeleton.skeleton import KINDS, States, beside
 
 
 def thin_skeleton(square: SquaredDistances, state: States) -> Bools:
-    """(rows, columns) bool: the skeleton's cells."""
+    """Return the thin skeleton.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int16 or int32
+        Squared clearances; 0 on blocked squares.
+    state : (rows + 2, columns + 2) uint8
+        Links and flags of the skeleton.
+
+    Returns
+    -------
+    (rows, columns) bool
+        True on the squares of the skeleton.
+    """
     line = state > 0
     reached = square == 0
     flood(line, reached, np.flatnonzero(reached).astype(np.int32), np.empty(square.size, np.int32))
@@ -26,7 +40,7 @@ def thin_skeleton(square: SquaredDistances, state: States) -> Bools:
 
 @bare
 def flood(line: Bools, reached: Bools, seeds: Ints, stack: Ints) -> None:
-    """Reach all cells off the line from the seeds, through sides and corners."""
+    """Set ``reached`` for all cells off the line that the seeds reach by sides and corners. ``stack`` is scratch."""
     width, cells = line.shape[1], line.size
     lines, reach = line.reshape(-1), reached.reshape(-1)
     for seed in seeds:
@@ -45,7 +59,10 @@ def flood(line: Bools, reached: Bools, seeds: Ints, stack: Ints) -> None:
 
 @bare
 def thin(line: Bools, kind: States) -> bool:
-    """Remove, one after the other, all cells that do not matter; returns whether there were any."""
+    """Remove, one after the other, all simple points of the line but its ends; return whether there were any.
+
+    ``kind`` : flags by the set of neighbours on the line (KINDS).
+    """
     width = line.shape[1]
     lines = line.reshape(-1)
     removed = False

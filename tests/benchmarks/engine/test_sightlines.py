@@ -1,4 +1,4 @@
-"""The sight lines that confirm shortest ways find them, and nothing beyond their limit."""
+"""The visibility graph that confirms shortest paths finds them, and nothing beyond its limit."""
 
 import numpy as np
 import pytest

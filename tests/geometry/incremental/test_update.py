@@ -1,4 +1,4 @@
-"""A changed screen is a new screen of the changed squares."""
+"""A changed screen equals a new screen of the changed squares."""
 
 import numpy as np
 import pytest
@@ -13,9 +13,9 @@ from tests.geometry.measuring import measure
 
 @pytest.fixture(autouse=True, params=["always", "if little"])
 def in_place(request, monkeypatch):
-    """Changes on small screens affect much of them; here they are made in place nevertheless."""
+    """Make changes in place even where they affect much of a small screen, and as usual."""
     if request.param == "always":
-        monkeypatch.setattr(update, "ALL", 1.0)
+        monkeypatch.setattr(update, "MAX_AFFECTED_SHARE", 1.0)
 
 
 def same(screen, other):
@@ -46,7 +46,7 @@ def test_changes_give_what_a_fresh_build_gives(free, seed, times):
 
 
 @pytest.mark.parametrize("most", [12, 40, 90])
-def test_all_that_changes_is_thought_of(most):
+def test_every_clearance_that_changes_lies_within_the_bounds(most):
     rng = np.random.default_rng(most)
     for _ in range(400):
         free = rng.random(rng.integers(1, most, 2)) < rng.choice([0.5, 0.8, 0.97, 0.997, 1.0])
@@ -64,7 +64,7 @@ def test_all_that_changes_is_thought_of(most):
 
 
 @pytest.mark.parametrize("texture", ["rooms", "noise", "open", "wide"])
-def test_many_changes_in_a_row_leave_no_trace(texture):
+def test_many_changes_in_a_row_give_what_a_new_screen_gives(texture):
     rng = np.random.default_rng(7)
     share = {"rooms": 0.0, "noise": 0.3, "open": 0.003, "wide": 0.0}[texture]
     free = rng.random((150, 300) if texture == "wide" else (60, 70)) > share
@@ -117,12 +117,12 @@ def test_routes_follow_a_change():
         (([0.5], [0], True), "whole numbers"),
     ],
 )
-def test_bad_changes_are_named(change, message):
+def test_bad_changes_are_rejected_with_a_reason(change, message):
     with pytest.raises(ValueError, match=message):
         Screen(np.ones((5, 5), bool)).changed(*change)
 
 
-def test_no_change_is_none():
+def test_an_empty_change_changes_nothing():
     screen = Screen(np.ones((3, 4), bool))
     before = screen.clearance.copy()
     same(screen.changed([], [], []), Screen(np.ones((3, 4), bool)))

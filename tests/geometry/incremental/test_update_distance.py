@@ -1,4 +1,4 @@
-"""What is measured anew in part of a block is what is measured anew in all of it."""
+"""Clearances measured in a part of a block equal those measured in all of it."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Memory of screens: new where none is spare, and used again when a screen has died."""
+"""Memory of screens: new when none is spare, and used again when a screen has died."""
 
 import numpy as np
 import pytest
@@ -8,8 +8,8 @@ from geometry.skeleton import buffers
 
 
 @pytest.fixture(autouse=True)
-def nothing_spare():
-    buffers.SPARE.clear()
+def no_spare_buffers():
+    buffers.SPARE_BUFFERS.clear()
 
 
 @pytest.mark.parametrize("kind", [np.int16, np.int32])
@@ -50,14 +50,14 @@ def test_memory_for_small_clearances_is_not_used_for_large_ones():
     assert (again.clearance == fresh.clearance).all()
 
 
-def test_advice_changes_nothing_that_is_written():
+def test_populating_an_array_keeps_its_values():
     for length in (10, 70_000, 1_000_000):
         array = np.arange(length)
         buffers.populate(array[1:-1])
         assert (array == np.arange(length)).all()
 
 
-def test_where_there_is_no_such_advice_nothing_happens(monkeypatch):
+def test_populating_does_nothing_on_systems_without_madvise(monkeypatch):
     monkeypatch.setattr(buffers, "adviser", lambda: None)
     buffers.populate(np.zeros(100_000))
     monkeypatch.undo()

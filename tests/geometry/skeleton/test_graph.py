@@ -1,4 +1,4 @@
-"""The contracted skeleton against plain walks, one cell at a time, and words of states against single cells."""
+"""The contracted skeleton compared with walks one cell at a time, and words of states with single cells."""
 
 import numpy as np
 import pytest
@@ -7,13 +7,13 @@ from hypothesis import strategies as st
 
 from geometry import Screen
 from geometry.skeleton import bit_parallel, lowest_cells
-from geometry.skeleton.graph import AHEAD, is_node
+from geometry.skeleton.graph import WORDS_AHEAD, is_node
 from geometry.skeleton.skeleton import HALT
 from tests.geometry import lookalikes, oracles
 
 
 def plain_walks(screen):
-    """Nodes, and (first end, last end, lowest cell, steps) of all chains, from the links of single cells."""
+    """Return the nodes, and (first end, last end, lowest cell, steps) of all chains, from the links of single cells."""
     state, heights = screen._skeleton_at(1)[0], screen._square.ravel()
     width = state.shape[1]
     ways = {c: [d for d in range(4) if here >> d & 1] for c, here in enumerate(state.ravel().tolist()) if here}
@@ -31,7 +31,7 @@ def plain_walks(screen):
 
 
 def plain_walk(cell, direction, ways, numbers, width):
-    """The cells of a chain, and the direction back from the last."""
+    """Return the cells of a chain, and the direction back from the last."""
     cells = [cell]
     while True:
         cells.append(cells[-1] + (1, width, -1, -width)[direction])
@@ -48,21 +48,21 @@ def assert_same(screen):
 
 
 @settings(max_examples=200, deadline=None)
-@given(oracles.screens(most=24), st.sampled_from([16, 20, lowest_cells.MOST]))
-def test_nodes_and_chains_are_those_of_plain_walks_however_little_room_there_is_for_notes(free, room):
+@given(oracles.screens(most=24), st.sampled_from([16, 20, lowest_cells.MAX_NOTES]))
+def test_nodes_and_chains_are_those_of_plain_walks_for_any_room_for_notes(free, room):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(lowest_cells, "LEAST", room)
+        patch.setattr(lowest_cells, "MIN_NOTES", room)
         assert_same(Screen(free))
 
 
 @pytest.mark.parametrize("kind", lookalikes.KINDS)
-def test_chains_that_lead_beyond_what_is_listed_are_right(kind):
+def test_chains_that_lead_beyond_the_listed_nodes_are_right(kind):
     free = lookalikes.lookalike(kind, 600, 1, 30)
-    assert free.size > 16 * AHEAD
+    assert free.size > 16 * WORDS_AHEAD
     assert_same(Screen(free))
 
 
-def test_rings_without_junctions_and_chains_beside_them():
+def test_rings_without_junctions_next_to_chains():
     free = np.ones((12, 30), bool)
     free[4:8, 4:8] = free[:, 12:14] = free[3:5, 20:24] = free[8, 20:24] = False
     assert_same(Screen(free))
@@ -70,18 +70,18 @@ def test_rings_without_junctions_and_chains_beside_them():
 
 
 @given(st.lists(st.integers(0, 255), min_size=1, max_size=700), st.integers(1, 4))
-def test_words_say_what_their_cells_say(cells, thin):
+def test_words_of_states_agree_with_their_cells(cells, thin):
     states = np.zeros(-(-len(cells) // 8) * 8, np.uint8)
     states[: len(cells) : thin] = cells[::thin]
     words = states.view(np.int64)
     base, since = np.empty(-(-len(words) // 16), np.int32), np.empty(len(words), np.uint8)
     node = [c for c in range(len(states)) if is_node(int(states[c]))]
     links = [int(here & 15).bit_count() for here in states]
-    assert bit_parallel.count(words, base, since) == (len(node), sum(links[c] for c in node), sum(links) // 2)
+    assert bit_parallel.count_nodes(words, base, since) == (len(node), sum(links[c] for c in node), sum(links) // 2)
     listed = np.empty(len(node) + 1, np.int32)
     middle = len(words) // 2
-    found = bit_parallel.collect(
-        words, middle, len(words) + 3, listed, bit_parallel.collect(words, 0, middle, listed, 0)
+    found = bit_parallel.list_nodes(
+        words, middle, len(words) + 3, listed, bit_parallel.list_nodes(words, 0, middle, listed, 0)
     )
     assert listed[:found].tolist() == node
-    assert [bit_parallel.number(c, words, base, since) for c in node] == list(range(len(node)))
+    assert [bit_parallel.node_number(c, words, base, since) for c in node] == list(range(len(node)))

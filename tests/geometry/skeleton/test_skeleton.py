@@ -1,4 +1,4 @@
-"""Clearance, skeleton and pathgraph against brute force: they have the space's own components and holes."""
+"""Clearance, skeleton and pathgraph compared with brute force: they have the components and holes of free space."""
 
 import networkx as nx
 import numpy as np
@@ -54,7 +54,7 @@ def test_16_bits_are_used_only_where_they_hold_all_clearances(across, margins, r
 
 @settings(max_examples=200, deadline=None)
 @given(oracles.screens(most=16))
-def test_both_types_of_squares_give_the_same(free):
+def test_both_types_of_squared_clearances_give_the_same_graph(free):
     screen = Screen(free)
     square = np.empty(screen._square.shape, np.int32)
     assert measure(free, square) and (square[1:-1] == screen._square[1:-1]).all()
@@ -84,7 +84,7 @@ def test_skeleton_is_thin_and_connected_as_free_space_is(free):
     assert not (skeleton & ~free).any()
     assert oracles.components_and_holes(skeleton) == oracles.components_and_holes(free)
     block = skeleton[1:, 1:] & skeleton[:-1, 1:] & skeleton[1:, :-1] & skeleton[:-1, :-1]
-    for i, j in np.argwhere(block):  # only where four ways meet so closely that each of the four cells is needed
+    for i, j in np.argwhere(block):  # only where four chains meet and each of the four cells is needed
         for cell in ((i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)):
             without = skeleton.copy()
             without[cell] = False
@@ -93,10 +93,10 @@ def test_skeleton_is_thin_and_connected_as_free_space_is(free):
 
 @settings(deadline=None)
 @given(oracles.screens(most=16), st.sampled_from([1, 20, 40]))
-def test_bands_leave_no_trace(free, band):
+def test_results_do_not_depend_on_the_size_of_bands(free, band):
     whole = Screen(free)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sweep, "BAND", band)
+        patch.setattr(sweep, "BAND_CELLS", band)
         parts = Screen(free)
     for mine, other in zip(parts._skeleton_at(1), whole._skeleton_at(1), strict=True):
         assert all(np.array_equal(a, b) for a, b in zip(mine, other, strict=True))
@@ -116,7 +116,7 @@ def test_saddles_are_where_several_groups_of_higher_neighbours_touch_by_edges():
 
 @settings(deadline=None)
 @given(oracles.screens())
-def test_chains_are_unbroken_and_their_clearance_is_that_of_their_narrowest_place(free):
+def test_chains_are_unbroken_and_their_clearance_is_the_least_on_them(free):
     screen = Screen(free)
     graph = screen.pathgraph
     for a, b, edge in graph.edges(data=True):
@@ -157,7 +157,7 @@ def test_a_corridor_of_one_square_has_half_a_square_of_clearance():
         (np.zeros((0, 2), bool), "no free square"),
     ],
 )
-def test_bad_screens_are_named(free, message):
+def test_bad_screens_are_rejected_with_a_reason(free, message):
     with pytest.raises(ValueError, match=message):
         Screen(free)
 
