@@ -20,10 +20,11 @@ from kb.reasoning.rule_solver import Response, read_rule_text, solve_with_rules
 from kb.three_valued.aliases import rename_utak_to_org
 from kb.three_valued.clauses import Clause, ClauseError, global_variables, translate_rule
 from kb.three_valued.derivation import derive
-from kb.three_valued.evaluation import Bindings, find_bindings
+from kb.three_valued.evaluation import find_bindings
 from kb.three_valued.join_order import unsafe_variable_error
 from kb.three_valued.known_words import check_body, names_in_facts
 from kb.three_valued.open_world import Beliefs, FactRow
+from kb.three_valued.term_values import Bindings
 from kb.three_valued.uncertain_values import Value
 
 MAX_MEMORY_BYTES = 1_500_000_000  # bytes of address space; a convention
