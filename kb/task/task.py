@@ -59,7 +59,7 @@ class Claim:
 
 @dataclass(frozen=True)
 class Task:
-    """What the robot is given to do.
+    """The task of the robot.
 
     Attributes
     ----------

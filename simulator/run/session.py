@@ -25,7 +25,7 @@ class StepReportProtocol(Protocol):
 
     @property
     def impression(self) -> Impression:
-        """What the body returned."""
+        """The impression that the body returned."""
 
     @property
     def belief(self) -> dict[str, Any]:

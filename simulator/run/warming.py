@@ -37,16 +37,16 @@ def warm(carrying: bool, paths: str = "skeleton") -> None:
         return
     tell()
     mine, others = PROCESS_SPLIT[carrying] if search in missing else ((), ())
-    _compile_beside([*mine, *(use for use in missing if use not in (*mine, *others))], others)
+    _compile_in_two_processes([*mine, *(use for use in missing if use not in (*mine, *others))], others)
 
 
 def warm_all() -> None:
     """Compile the kernels for all uses in two processes; kernels in the cache are loaded."""
     mine, others = PROCESS_SPLIT[True]
-    _compile_beside((*mine, move), (*others, sightlines, change))
+    _compile_in_two_processes((*mine, move), (*others, sightlines, change))
 
 
-def _compile_beside(mine: Sequence[Callable[[], None]], others: Sequence[Callable[[], None]]) -> None:
+def _compile_in_two_processes(mine: Sequence[Callable[[], None]], others: Sequence[Callable[[], None]]) -> None:
     """Compile for some uses here, and for others in a second process, which ends when this one ends."""
     if not others:
         compile_for(mine)
@@ -90,7 +90,7 @@ def _caches() -> list[Path]:
 
 
 def compile_modules() -> None:
-    """Write the bytecode of our modules beside their sources.
+    """Write the bytecode of our modules next to their sources.
 
     With PYTHONDONTWRITEBYTECODE, as in many containers, Python compiles a checkout again at every start. That takes a
     third of the time to the first command.
