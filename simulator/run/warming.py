@@ -51,8 +51,7 @@ def _compile_in_two_processes(mine: Sequence[Callable[[], None]], others: Sequen
     if not others:
         compile_for(mine)
         return
-    command = beside("simulator.run.warming", *(use.__name__ for use in others))
-    quiet = subprocess.DEVNULL
+    command, quiet = second_process_command(others), subprocess.DEVNULL
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=quiet, stderr=quiet) as other:
         try:
             compile_for(mine)
@@ -62,6 +61,11 @@ def _compile_in_two_processes(mine: Sequence[Callable[[], None]], others: Sequen
         except BaseException:
             other.kill()
             raise
+
+
+def second_process_command(uses: Sequence[Callable[[], None]]) -> list[str]:
+    """Return the command line of the process that compiles for some uses."""
+    return beside("simulator.run.warming", *(use.__name__ for use in uses))
 
 
 def uncompiled(uses: Collection[Callable[[], None]]) -> list[Callable[[], None]]:

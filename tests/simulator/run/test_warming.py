@@ -38,7 +38,7 @@ def test_the_second_process_compiles_its_uses(monkeypatch) -> None:
 def test_the_first_run_announces_the_compilation(monkeypatch) -> None:
     announced, done = [], []
     monkeypatch.setattr(warming, "uncompiled", list)
-    monkeypatch.setattr(warming, "beside", lambda *_: [sys.executable, "-I", "-c", ""])
+    monkeypatch.setattr(warming, "second_process_command", lambda *_: [sys.executable, "-I", "-c", ""])
     monkeypatch.setattr(warming, "tell", lambda: announced.append(True))
     monkeypatch.setattr(warming, "compile_for", done.extend)
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
@@ -56,7 +56,7 @@ def test_bytecode_is_kept_where_python_keeps_none(monkeypatch, tmp_path) -> None
     (tmp_path / "broken.py").write_text("ANSWER =\n")
     monkeypatch.setattr(warming, "PACKAGES", [tmp_path, tmp_path / "absent"])
     monkeypatch.setattr(warming, "uncompiled", list)
-    monkeypatch.setattr(warming, "beside", lambda *_: [sys.executable, "-I", "-c", ""])
+    monkeypatch.setattr(warming, "second_process_command", lambda *_: [sys.executable, "-I", "-c", ""])
     monkeypatch.setattr(warming, "tell", lambda: None)
     monkeypatch.setattr(warming, "compile_for", lambda _: None)
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
