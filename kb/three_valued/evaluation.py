@@ -50,7 +50,7 @@ from kb.three_valued.uncertain_values import (
     narrow,
 )
 
-NO_VARIABLES: frozenset[str] = frozenset()
+NO_VARIABLES: frozenset[str] = frozenset()  # no confidence is fixed
 
 
 def find_bindings(

@@ -13,8 +13,9 @@ import clingo
 from kb.language.integers import MAX_INT32, MIN_INT32
 from kb.three_valued.arithmetic import calculate
 
-TruthValue = bool | None
+TruthValue = bool | None  # None: not known
 Value = Any  # int, clingo.Symbol or Unknown
+# By the sign in ASP syntax.
 COMPARISON_OPERATORS: Mapping[str, Callable[[Any, Any], bool]] = {
     "<": operator.lt,
     "<=": operator.le,

@@ -70,6 +70,7 @@ class RobotProtocol(Protocol):
         """The verdict at the end."""
 
 
+# Makes a robot from its body, its task and the options of the run.
 RobotMaker = Callable[[Body, Task, Settings], RobotProtocol]
 
 

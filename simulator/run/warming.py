@@ -19,6 +19,7 @@ from geometry.kernels.jit import tell
 from kb.language.operating_system import end_with_parent, read_lines_from_parent
 from utak_command import beside
 
+# The folders of our packages.
 PACKAGES = [Path(geometry.__file__).parent.with_name(name) for name in ("geometry", "kb", "planner", "simulator")]
 
 
