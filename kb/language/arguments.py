@@ -125,5 +125,5 @@ def wkt_argument(name: str, *kinds: str) -> ArgumentType:
     return ArgumentType(name, check)
 
 
-NAME_ARGUMENT = ArgumentType("name", _check_name)
-COLOUR_ARGUMENT = ArgumentType("colour", _check_colour)
+NAME_ARGUMENT = ArgumentType("name", _check_name)  # any name without arguments
+COLOUR_ARGUMENT = ArgumentType("colour", _check_colour)  # one lower-case letter

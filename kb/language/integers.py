@@ -12,7 +12,7 @@ from kb.language.tokens import tokenize
 
 MIN_INT32, MAX_INT32 = -(2**31), 2**31 - 1  # the range of clingo's integers
 INTEGER_BASES = {"0x": 16, "0o": 8, "0b": 2}  # by the prefix of a literal of gringo's language
-INTEGER_LITERAL = re.compile(r"0x[0-9A-Fa-f]+|0o[0-7]+|0b[01]+|[0-9]+")
+INTEGER_LITERAL = re.compile(r"0x[0-9A-Fa-f]+|0o[0-7]+|0b[01]+|[0-9]+")  # integers as clingo reads them
 # A minus sign after one of these tokens, or after a directive, is a sign and no subtraction.
 TOKENS_BEFORE_A_TERM = frozenset("(,;=<>+*/\\&?^|{:[@") | {"<=", ">=", "!=", "..", "**", ":-", ":~", "not", "#count"}
 MAX_DIGITS_CONVERTED = 40  # a literal with more digits is beyond 32 bits in every base; its value is not computed

@@ -24,8 +24,8 @@ MAX_TERM_DEPTH = 64  # terms nested in each other (docs/files.md)
 INT32_RANGE = range(-(2**31), 2**31)  # the range of clingo's integers
 MAX_FACTS = 100_000  # facts of one file (docs/files.md)
 ASP_KEYWORDS = frozenset({"not"})  # words of the ASP language that cannot be names
-ESCAPE_SEQUENCE = re.compile(r"\\.")
-ESCAPED_CHARACTERS = {"\\n": "\n", '\\"': '"', "\\\\": "\\"}
+ESCAPE_SEQUENCE = re.compile(r"\\.")  # a backslash and the character after it
+ESCAPED_CHARACTERS = {"\\n": "\n", '\\"': '"', "\\\\": "\\"}  # the valid escapes
 
 
 def read_facts(path: Path | str) -> tuple[Source, tuple[Fact, ...]]:

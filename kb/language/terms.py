@@ -70,5 +70,5 @@ class Symbol:
         return f"{self.name}({','.join(map(str, self.args))})" if self.args else self.name
 
 
-Term = Number | Text | Symbol
-Fact = Symbol
+Term = Number | Text | Symbol  # an argument of a fact
+Fact = Symbol  # a whole fact

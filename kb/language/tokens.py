@@ -7,6 +7,7 @@ from typing import NamedTuple
 from kb.language.diagnostics import Problem, Span
 from kb.language.source_text import Source
 
+# Every character of a text belongs to exactly one match; the name of its group is its kind.
 TOKEN_PATTERN = re.compile(
     r"""
     (?P<space>[ \t\r\n]+)
@@ -22,7 +23,7 @@ TOKEN_PATTERN = re.compile(
     """,
     re.VERBOSE,
 )
-BLOCK_COMMENT_MARK = re.compile(r"%\*|\*%")
+BLOCK_COMMENT_MARK = re.compile(r"%\*|\*%")  # the begin or the end of a block comment
 
 
 class Token(NamedTuple):

@@ -20,14 +20,17 @@ from kb.language.source_text import Source
 from kb.language.terms import Fact, Symbol, Term
 
 Signature = tuple[str, int]  # the name of a predicate and its number of arguments
-Vocabulary = Mapping[str, tuple[ArgumentType, ...]]
+Vocabulary = Mapping[str, tuple[ArgumentType, ...]]  # argument types by predicate
 
+# The shape classes of objects (docs/files.md).
 SHAPE_CLASSES = ("square", "brick", "rectangle", "l_shape", "t_shape", "u_shape", "triangle", "disc", "polygon")
-CORNER_NAMES = ("northeast", "northwest", "southeast", "southwest")
+CORNER_NAMES = ("northeast", "northwest", "southeast", "southwest")  # in Utak's frame (docs/files.md)
+# Words of goals that cannot name parameters.
 RESERVED_PARAMETER_NAMES = frozenset({"utak", "start", "next", "corner", "room", "verge", *CORNER_NAMES})
-DEGREES_ARGUMENT = integer_argument("an angle in degrees", -36000, 36000)
+DEGREES_ARGUMENT = integer_argument("an angle in degrees", -36000, 36000)  # counter-clockwise positive
 MAX_TABLE_SIDE = 4096  # squares along each side of a table (docs/files.md)
 
+# The predicates of world.lp.
 WORLD: Vocabulary = {
     "table": (
         integer_argument("a table's width", 1, MAX_TABLE_SIDE),
@@ -39,7 +42,8 @@ WORLD: Vocabulary = {
     "utak": (wkt_argument("Utak's place", "POINT"), DEGREES_ARGUMENT),
 }
 
-WKT_ANY_SHAPE = wkt_argument("a place", "POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")
+WKT_ANY_SHAPE = wkt_argument("a place", "POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")  # a shape of any kind
+# The predicates of expect.lp.
 EXPECT: Vocabulary = {
     "inside": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
     "near": (NAME_ARGUMENT, WKT_ANY_SHAPE, integer_argument("a distance in squares", 0, MAX_TABLE_SIDE)),
@@ -83,10 +87,12 @@ def _fact_of(name: str, vocabulary: Vocabulary) -> ArgumentType:
     return ArgumentType(name, check)
 
 
+# The claims about objects in start.lp.
 CLAIMS: Vocabulary = {
     "shape": (NAME_ARGUMENT, word_argument("shape", SHAPE_CLASSES)),
     "colour": (NAME_ARGUMENT, COLOUR_ARGUMENT),
 }
+# The predicates of start.lp.
 START: Vocabulary = {
     "object": (NAME_ARGUMENT,),
     "door": (NAME_ARGUMENT,),
@@ -94,6 +100,7 @@ START: Vocabulary = {
     **CLAIMS,
     "confidence": (_fact_of("what is claimed", CLAIMS), integer_argument("a confidence", 0, 100)),
 }
+# The conditions that goals state.
 GOAL_CONDITIONS: Vocabulary = {
     "at": (NAME_ARGUMENT, _compound("corner", word_argument("corner", CORNER_NAMES), "northeast")),
     "in": (NAME_ARGUMENT, _compound("room", word_argument("room", ["next"]), "next")),
@@ -104,6 +111,7 @@ GOAL_CONDITIONS: Vocabulary = {
     "pose": (NAME_ARGUMENT, wkt_argument("a place", "POINT"), DEGREES_ARGUMENT),
     "not_through": (NAME_ARGUMENT, NAME_ARGUMENT),
 }
+# The predicates of goal.lp.
 GOAL: Vocabulary = {
     **GOAL_CONDITIONS,
     "first": (_fact_of("a goal", GOAL_CONDITIONS),),
@@ -142,14 +150,15 @@ class BeliefPredicate(NamedTuple):
     settled: frozenset[str] = frozenset()
 
 
+# A node of the world model.
 THING_ARGUMENT = pattern_argument("thing", "org|floor|verge|o[0-9]+", "o1, floor, verge, or org, which is Utak")
-ROOM_ARGUMENT = pattern_argument("room", "r[0-9]+", "r1")
-DOOR_ARGUMENT = pattern_argument("door", "d[0-9]+", "d1")
-CONFIDENCE_ARGUMENT = integer_argument("a confidence", 0, 100)
-LENGTH_ARGUMENT = integer_argument("a length in hundredths of squares", -(2**31), 2**31 - 1)
-COUNT_ARGUMENT = integer_argument("a count", 0, 2**31 - 1)
-KIND_ARGUMENT = word_argument("kind", ("utak", "floor", "verge", "object"))
-NEVER_OBJECTS = frozenset({"org", "floor", "verge"})
+ROOM_ARGUMENT = pattern_argument("room", "r[0-9]+", "r1")  # a room of the world model
+DOOR_ARGUMENT = pattern_argument("door", "d[0-9]+", "d1")  # a door of the world model
+CONFIDENCE_ARGUMENT = integer_argument("a confidence", 0, 100)  # percent
+LENGTH_ARGUMENT = integer_argument("a length in hundredths of squares", -(2**31), 2**31 - 1)  # Utak's frame
+COUNT_ARGUMENT = integer_argument("a count", 0, 2**31 - 1)  # any 32-bit count
+KIND_ARGUMENT = word_argument("kind", ("utak", "floor", "verge", "object"))  # the kinds of nodes
+NEVER_OBJECTS = frozenset({"org", "floor", "verge"})  # nodes without a shape class, colour and movability
 # The predicates of the world model (kb/asp/belief.lp), and object/1; by name and number of arguments.
 BELIEF: Mapping[tuple[str, int], BeliefPredicate] = {
     ("node", 1): BeliefPredicate((THING_ARGUMENT,), Open.UNSEEN),

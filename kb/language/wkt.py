@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 
 import shapely
 
-WKT_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
-WKT_WORD = re.compile(r"[(),]|[^\s(),]+")
-WKT_KINDS = ("POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")
+WKT_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")  # a decimal number
+WKT_WORD = re.compile(r"[(),]|[^\s(),]+")  # a mark, or characters up to the next mark or blank
+WKT_KINDS = ("POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")  # the kinds of shapes that are read
 MAX_COORDINATE = 1e6  # squares; no coordinate has a greater absolute value (a convention)
 
 _Point = tuple[float, float]

@@ -23,11 +23,11 @@ from kb.language.vocabulary import (
     Signature,
 )
 
-Interface = Mapping[Signature, tuple[ArgumentType, ...]]
+Interface = Mapping[Signature, tuple[ArgumentType, ...]]  # argument types by predicate
 
 MAX_AMOUNT = 1_000_000  # the greatest count, price or length that users' rules may derive; a convention
-AMOUNT_ARGUMENT = integer_argument("an amount", 0, MAX_AMOUNT)
-NUMBER_ARGUMENT = integer_argument("a number", 0, MAX_AMOUNT)
+AMOUNT_ARGUMENT = integer_argument("an amount", 0, MAX_AMOUNT)  # a count, a length or a price
+NUMBER_ARGUMENT = integer_argument("a number", 0, MAX_AMOUNT)  # the number of a thing
 
 
 def _name_argument(name: str) -> ArgumentType:
@@ -43,10 +43,10 @@ def _number_argument(name: str) -> ArgumentType:
 REGION_ARGUMENT, CANDIDATE_ARGUMENT, PARAMETER_ARGUMENT = (
     _name_argument(name) for name in ("region", "candidate", "parameter")
 )
-NODE_ARGUMENT = pattern_argument("thing", "o[0-9]+", "o1")
+NODE_ARGUMENT = pattern_argument("thing", "o[0-9]+", "o1")  # an object of the world model
 NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT = _number_argument("neck"), _number_argument("convex corner")
-PROPERTY_ARGUMENT = word_argument("property", ("shape", "colour"))
-SHAPE_ARGUMENT = word_argument("shape", SHAPE_CLASSES)
+PROPERTY_ARGUMENT = word_argument("property", ("shape", "colour"))  # what claims are about
+SHAPE_ARGUMENT = word_argument("shape", SHAPE_CLASSES)  # a shape class
 # By the name of an argument type: the predicates whose facts name all such things, and the index of that argument.
 DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
     "region": ((("region", 3), 0),),

@@ -20,10 +20,11 @@ from kb.reasoning.rule_solver import Response, read_rule_text, solve_with_rules
 from kb.three_valued.aliases import rename_utak_to_org
 from kb.three_valued.clauses import Clause, ClauseError, global_variables, translate_rule
 from kb.three_valued.derivation import derive
-from kb.three_valued.evaluation import Bindings, find_bindings
+from kb.three_valued.evaluation import find_bindings
 from kb.three_valued.join_order import unsafe_variable_error
 from kb.three_valued.known_words import check_body, names_in_facts
 from kb.three_valued.open_world import Beliefs, FactRow
+from kb.three_valued.term_values import Bindings
 from kb.three_valued.uncertain_values import Value
 
 MAX_MEMORY_BYTES = 1_500_000_000  # bytes of address space; a convention
@@ -59,7 +60,7 @@ class QueryError(Exception):
         super().__init__(what)
 
 
-def answer(
+def answer_query(
     facts: Iterable[Sequence[int | str]], query: str, rules: Sequence[str] = (), max_rows: int | None = None
 ) -> Response:
     """Return the answer to a query over facts.
@@ -185,7 +186,7 @@ def _respond(line: bytes) -> Response:
             return read_rule_text(request["read"])
         if "program" in request:
             return solve_with_rules(request["program"], request["rules"], request["heads"], request["conflicts"])
-        found = answer(request["facts"], request["query"], request["rules"], request.get("max_rows"))
+        found = answer_query(request["facts"], request["query"], request["rules"], request.get("max_rows"))
     except QueryError as error:
         return {"error": error.what, "at": error.at, "hint": ""}
     except RuleError as bad:
@@ -210,7 +211,7 @@ def main() -> None:
     operating_system.limit_resource("CORE", 0)
     # One request of each kind, so that all modules are imported before the limit on open files.
     json.loads('{"a": [1.5, "b"]}')
-    answer([["room", "r1"]], "room(X), not room(r2)")
+    answer_query([["room", "r1"]], "room(X), not room(r2)")
     did_you_mean("room", ["door"])
     requests = operating_system.read_lines_from_parent()
     operating_system.limit_resource("NOFILE", 3)

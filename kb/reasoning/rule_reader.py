@@ -23,7 +23,7 @@ from clingo.ast import (
 from kb.three_valued.arithmetic import CalculationError, calculate
 from kb.three_valued.clauses import BINARY_SIGNS, UNARY_SIGNS, ClauseError, place_of
 
-KEPT_STATEMENTS = (ASTType.Rule, ASTType.Minimize, ASTType.Defined)
+KEPT_STATEMENTS = (ASTType.Rule, ASTType.Minimize, ASTType.Defined)  # statements with an effect in an encoding
 # Constants are substituted, and queries decide what is shown: these statements have no effect of their own.
 IGNORED_STATEMENTS = ("Definition", "ShowSignature", "ShowTerm", "Program", "Comment")
 REFUSED_STATEMENTS = {  # by clingo's name of the statement: the message

@@ -8,7 +8,7 @@ import clingo
 from kb.reasoning.rule_reader import Calculator, RuleSyntaxError, read_statements
 from kb.three_valued.clauses import ClauseError
 
-Response = dict[str, Any]
+Response = dict[str, Any]  # JSON values for the parent process
 MAX_RULES_TRIED = 200  # rules left out in turn, one solving each, to find those that contradict; a convention
 
 

@@ -30,6 +30,7 @@ INTERNAL_PREDICATES: Mapping[Signature, tuple[str, ...]] = {
     ("trust", 1): ("accommodation",), ("slips", 0): ("accommodation",), ("proven", 0): ("accommodation",),
     ("clear", 0): ("accommodation",), ("uneven", 0): ("accommodation",), ("unchanged", 0): ("accommodation",),
 }  # fmt: skip
+# The predicates that rules may use, by encoding.
 PREDICATES_BY_ENCODING: Mapping[str, frozenset[Signature]] = {
     **{name: frozenset(interface) for name, interface in REACHED.items()},
     QUERY_INTERFACE: frozenset(BELIEF),

@@ -13,7 +13,7 @@ from typing import IO, Any
 from utak_command import beside
 
 MAX_START_SECONDS = 30.0  # seconds of wall-clock time until a worker must be ready; a convention
-LineQueue = queue.SimpleQueue[bytes]
+LineQueue = queue.SimpleQueue[bytes]  # the lines that a worker has written
 
 
 class Worker:

@@ -11,7 +11,7 @@ from kb.language.terms import Fact, Number, Symbol, Term
 from kb.language.vocabulary import GOAL, RESERVED_PARAMETER_NAMES, START, Vocabulary, check_facts
 
 CERTAIN_CONFIDENCE = 100  # percent; the confidence of a claim that stands alone
-PARAMETER_KINDS = ("object", "door", "room")
+PARAMETER_KINDS = ("object", "door", "room")  # the predicates that introduce parameters
 # The shape classes that a shape class includes; everything is a polygon, too.
 SHAPE_SUBCLASSES = {"rectangle": {"square", "brick"}}
 # By the name of a goal: the kinds of parameters that each argument accepts; None where an argument is no parameter.
@@ -59,7 +59,7 @@ class Claim:
 
 @dataclass(frozen=True)
 class Task:
-    """What the robot is given to do.
+    """The task of the robot.
 
     Attributes
     ----------

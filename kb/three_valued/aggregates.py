@@ -6,7 +6,7 @@ from kb.language.integers import MAX_INT32, MIN_INT32
 from kb.three_valued.arithmetic import require_int32
 from kb.three_valued.uncertain_values import Unknown, Value, as_clingo, bounds
 
-ValueTuple = tuple[Value, ...]
+ValueTuple = tuple[Value, ...]  # a tuple of an aggregate
 
 
 class Tally:

@@ -42,6 +42,7 @@ def _power(a: int, b: int) -> int:
     return int(a ** (b if abs(a) > 1 else min(b, 2 + b % 2)))  # the powers of 0, 1 and -1 repeat after two exponents
 
 
+# By the operator in ASP syntax.
 BINARY_OPERATIONS: Mapping[str, Callable[[int, int], int]] = {
     "+": lambda a, b: a + b,
     "-": lambda a, b: a - b,
@@ -53,6 +54,7 @@ BINARY_OPERATIONS: Mapping[str, Callable[[int, int], int]] = {
     "?": lambda a, b: a | b,
     "^": lambda a, b: a ^ b,
 }
+# By the operator in ASP syntax.
 UNARY_OPERATIONS: Mapping[str, Callable[[int], int]] = {"-": lambda a: -a, "~": lambda a: ~a, "|": abs}
 
 

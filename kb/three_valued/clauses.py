@@ -84,7 +84,7 @@ class Compound:
     at: tuple[int, int]
 
 
-ClauseTerm = Constant | Variable | Operation | Compound
+ClauseTerm = Constant | Variable | Operation | Compound  # an argument of an atom, or a side of a comparison
 
 
 @dataclass(frozen=True)
@@ -165,7 +165,7 @@ class BooleanLiteral:
     at: tuple[int, int]
 
 
-Literal = Atom | Comparison | Aggregate | ConditionalLiteral | BooleanLiteral
+Literal = Atom | Comparison | Aggregate | ConditionalLiteral | BooleanLiteral  # a part of a body
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,9 @@ from collections.abc import Iterable, Sequence
 
 from kb.language.vocabulary import Signature
 from kb.three_valued.clauses import Aggregate, Atom, Clause, ClauseError, ConditionalLiteral, Literal, atoms_of
-from kb.three_valued.evaluation import find_bindings, fixed_confidence_variables, value_of
+from kb.three_valued.evaluation import find_bindings, fixed_confidence_variables
 from kb.three_valued.open_world import Beliefs
+from kb.three_valued.term_values import value_of
 
 
 def derive(clauses: Sequence[Clause], beliefs: Beliefs) -> None:
@@ -34,7 +35,7 @@ def _apply(clause: Clause, beliefs: Beliefs, possible: bool) -> int:
     assert clause.head is not None
     head, fixed_confidences = clause.head, fixed_confidence_variables(clause.body, ())
     found = list(find_bindings(clause.body, {}, beliefs, possible, fixed_confidences))
-    rows = [tuple(value_of(part, one, beliefs) for part in head.parts) for one in found]
+    rows = [tuple(value_of(part, one) for part in head.parts) for one in found]
     return sum(beliefs.add_derived(head.signature, row, possible) for row in rows)
 
 

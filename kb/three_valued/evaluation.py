@@ -6,13 +6,12 @@ the facts that `Beliefs` leaves open. `not A` is certain when A is not possible,
 certain.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import product
 from typing import Any
 
 import clingo
 
-from kb.language.integers import MAX_INT32, MIN_INT32
 from kb.three_valued.aggregates import Tally
 from kb.three_valued.arithmetic import CalculationError, calculate
 from kb.three_valued.clauses import (
@@ -25,28 +24,33 @@ from kb.three_valued.clauses import (
     Comparison,
     Compound,
     ConditionalLiteral,
-    Constant,
     Literal,
     Operation,
     Variable,
     variables_of,
 )
-from kb.three_valued.join_order import assigned_variable, assignment, order_literals, unsafe_variable_error
+from kb.three_valued.join_order import assigned_variable, assignment, order_literals
 from kb.three_valued.open_world import Beliefs
+from kb.three_valued.term_values import (
+    Bindings,
+    deciding_numbers,
+    from_clingo,
+    is_interval,
+    number_of,
+    value_of,
+    values_of,
+)
 from kb.three_valued.uncertain_values import (
     MIRRORED_SIGNS,
     TruthValue,
     Unknown,
     Value,
-    as_clingo,
-    bounds,
     calculate_uncertain,
     compare,
     narrow,
 )
 
-Bindings = Mapping[str, Value]
-NO_VARIABLES: frozenset[str] = frozenset()
+NO_VARIABLES: frozenset[str] = frozenset()  # no confidence is fixed
 
 
 def find_bindings(
@@ -157,7 +161,7 @@ class _Search:
     def settled_value(self, term: ClauseTerm, given: Bindings) -> Value:
         """Return the value of an argument; None when it is unbound or not known."""
         if set(variables_of(term)) <= given.keys():
-            value = self.value(term, given)
+            value = value_of(term, given)
             return None if isinstance(value, Unknown) else value
         return None
 
@@ -179,7 +183,7 @@ class _Search:
             return self.unify_compound(term, value, given, possible)
         if isinstance(term, Operation) and not set(variables_of(term)) <= given.keys():
             return self.unify_inverse(term, value, given, possible)
-        return given if self.may_equal(self.value(term, given), value, possible) else None
+        return given if self.may_equal(value_of(term, given), value, possible) else None
 
     def may_equal(self, a: Value, b: Value, possible: bool) -> bool:
         """Return whether two values are equal; in the possible mode, whether they may be equal."""
@@ -207,7 +211,7 @@ class _Search:
             return self.unify(term.parts[0], calculate_uncertain("-", value), given, possible)
         left, right = term.parts
         first = set(variables_of(left)) <= given.keys()
-        other, pattern = (self.number(left, given), right) if first else (self.number(right, given), left)
+        other, pattern = (number_of(left, given), right) if first else (number_of(right, given), left)
         try:
             if term.sign == "+":
                 return self.unify(pattern, calculate_uncertain("-", value, other), given, possible)
@@ -224,41 +228,6 @@ class _Search:
         except CalculationError:
             return None  # no 32-bit integer solves the equation
 
-    # ---- terms ----
-
-    def value(self, term: ClauseTerm, given: Bindings) -> Value:
-        """Return the value of a term whose variables are all bound."""
-        if isinstance(term, Constant):
-            return term.value
-        if isinstance(term, Variable):
-            if term.name not in given:
-                raise unsafe_variable_error(term.name, term.at)
-            return given[term.name]
-        if isinstance(term, Compound):
-            parts = [self.value(part, given) for part in term.parts]
-            if any(isinstance(part, Unknown) for part in parts):
-                return Unknown()
-            return clingo.Function(term.name, [as_clingo(part) for part in parts])
-        numbers = [self.number(part, given) for part in term.parts]
-        try:
-            return calculate_uncertain(term.sign, *numbers)
-        except CalculationError as error:
-            raise ClauseError(f"{error}, in {_calculation_text(term.sign, numbers)}", term.at) from None
-
-    def number(self, term: ClauseTerm, given: Bindings) -> Value:
-        """Return the value of a term that must be a number, known or not."""
-        value = self.value(term, given)
-        if isinstance(value, int | Unknown):
-            return value
-        raise ClauseError(f"operation undefined: {value} is no number", term.at)
-
-    def interval(self, term: Operation, given: Bindings) -> range | None:
-        """Return the numbers of an interval; None when an end is not known."""
-        low, high = (self.number(part, given) for part in term.parts)
-        if isinstance(low, Unknown) or isinstance(high, Unknown):
-            return None
-        return range(low, high + 1)
-
     # ---- comparisons ----
 
     def satisfy_comparison(self, literal: Comparison, given: Bindings) -> Iterator[Bindings]:
@@ -266,7 +235,7 @@ class _Search:
         found = assignment(literal, set(given))
         if found is not None:
             pattern, source = found
-            for value in self.values(source, given):
+            for value in values_of(source, given):
                 bound = self.unify(pattern, value, given, self.possible)
                 if bound is not None:
                     yield from self.satisfy_comparison(literal, bound)
@@ -274,13 +243,6 @@ class _Search:
         truth = self.truth_of_comparison(literal, given)
         if self.passes(truth):
             yield self.narrow_bindings(literal, given) if truth is None else given
-
-    def values(self, term: ClauseTerm, given: Bindings) -> Iterable[Value]:
-        """Return the values of a term: all numbers of an interval, or one value."""
-        if isinstance(term, Operation) and term.sign == "..":
-            among = self.interval(term, given)
-            return [Unknown(*_ends(term, given, self))] if among is None else among
-        return [self.value(term, given)]
 
     def truth_of_comparison(self, literal: Comparison, given: Bindings) -> TruthValue:
         """Return whether all comparisons of a chain hold; when the chain is negated, whether one does not."""
@@ -295,8 +257,8 @@ class _Search:
     def truth_of_pair(self, sign: str, left: ClauseTerm, right: ClauseTerm, given: Bindings) -> TruthValue:
         """Return the truth of one comparison; between intervals, whether it holds for some of their numbers."""
         names = self.beliefs.known_names
-        firsts, seconds = self.values(left, given), self.values(right, given)
-        pairs = product(_telling(firsts, seconds), _telling(seconds, firsts))
+        firsts, seconds = values_of(left, given), values_of(right, given)
+        pairs = product(deciding_numbers(firsts, seconds), deciding_numbers(seconds, firsts))
         truths = {compare(sign, a, b, names) for a, b in pairs}
         return True if True in truths else None if None in truths else False
 
@@ -307,8 +269,8 @@ class _Search:
         ((sign, right),) = literal.rest
         found = dict(given)
         for one, way, other in ((literal.first, sign, right), (right, MIRRORED_SIGNS[sign], literal.first)):
-            if isinstance(one, Variable) and isinstance(found[one.name], Unknown) and not _is_interval(other):
-                found[one.name] = narrow(found[one.name], way, self.value(other, found))
+            if isinstance(one, Variable) and isinstance(found[one.name], Unknown) and not is_interval(other):
+                found[one.name] = narrow(found[one.name], way, value_of(other, found))
         return found
 
     # ---- aggregates and conditions ----
@@ -346,7 +308,7 @@ class _Search:
         found = given if variable is None else {**given, variable.name: value}
         truth: TruthValue = True
         for sign, term in literal.guards:
-            held = compare(sign, self.value(term, found), value, self.beliefs.known_names)
+            held = compare(sign, value_of(term, found), value, self.beliefs.known_names)
             truth = False if held is False else None if held is None and truth is not False else truth
         if self.passes(truth if not literal.negated or truth is None else not truth):
             yield found
@@ -356,12 +318,7 @@ class _Search:
         fixed_confidences = self.fixed_confidences | fixed_confidence_variables(element.condition, element.terms)
         for possible in (False, True):
             for found in find_bindings(element.condition, given, self.beliefs, possible, fixed_confidences):
-                tally.add(tuple(self.value(term, found) for term in element.terms), possible)
-
-
-def value_of(term: ClauseTerm, given: Bindings, beliefs: Beliefs) -> Value:
-    """Return the value of a term whose variables are all bound; raise ClauseError when it has none."""
-    return _Search(beliefs, True, NO_VARIABLES).value(term, given)
+                tally.add(tuple(value_of(term, found) for term in element.terms), possible)
 
 
 def fixed_confidence_variables(body: Sequence[Literal], given_out: Any) -> frozenset[str]:
@@ -378,46 +335,3 @@ def fixed_confidence_variables(body: Sequence[Literal], given_out: Any) -> froze
             names = set(variables_of(literal))
             found |= names if len(names) > 1 else set()
     return frozenset(found)
-
-
-def from_clingo(value: clingo.Symbol) -> Value:
-    """Return a clingo symbol as a value: numbers become Python integers."""
-    return value.number if value.type == clingo.SymbolType.Number else value
-
-
-def _telling(values: Iterable[Value], others: Iterable[Value]) -> Iterable[Value]:
-    """Return those numbers of an interval that decide how it compares with other values.
-
-    These are its ends, and the ends of the other values that lie within it. Other values are returned as they are.
-    """
-    if not isinstance(values, range) or not values:
-        return values
-    if isinstance(others, range):
-        edges: list[int] = [others[0], others[-1]] if others else []
-    else:
-        edges = [edge for other in others for edge in _edges(other)]
-    return sorted({values[0], values[-1], *(edge for edge in edges if edge in values)})
-
-
-def _edges(value: Value) -> list[int]:
-    """Return a number, or the bounds of a number that is not known, in a list."""
-    if isinstance(value, Unknown):
-        return [edge for edge in (value.low, value.high) if edge is not None]
-    return [value] if isinstance(value, int) else []
-
-
-def _is_interval(term: ClauseTerm) -> bool:
-    """Return whether a term is an interval."""
-    return isinstance(term, Operation) and term.sign == ".."
-
-
-def _ends(term: Operation, given: Bindings, search: _Search) -> tuple[int, int]:
-    """Return the least and the greatest number of an interval whose ends are not both known."""
-    low, high = (bounds(search.number(part, given)) or (MIN_INT32, MAX_INT32) for part in term.parts)
-    return low[0], high[1]
-
-
-def _calculation_text(sign: str, numbers: Sequence[Value]) -> str:
-    """Return a calculation as messages show it."""
-    shown = ["?" if isinstance(number, Unknown) else str(number) for number in numbers]
-    return f" {sign} ".join(shown) if len(shown) == 2 else f"|{shown[0]}|" if sign == "|" else f"{sign}{shown[0]}"

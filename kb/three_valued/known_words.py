@@ -22,7 +22,7 @@ from kb.three_valued.clauses import (
 )
 from kb.three_valued.uncertain_values import Value
 
-ConstantNames = Mapping[str, frozenset[str]]
+ConstantNames = Mapping[str, frozenset[str]]  # constants as text, by the name of the argument type
 NO_PLACE = Span(1, 1, 1)  # the place of values that stand in no file
 
 

@@ -6,8 +6,8 @@ from typing import Any
 from kb.language.vocabulary import BELIEF, BeliefPredicate, Open, Signature
 from kb.three_valued.uncertain_values import Unknown, Value, compare
 
-FactRow = tuple[Value, ...]
-OBJECT_SIGNATURE = ("object", 1)
+FactRow = tuple[Value, ...]  # the arguments of one fact
+OBJECT_SIGNATURE = ("object", 1)  # object(N) stands for kind(N, object, C)
 
 
 class Beliefs:

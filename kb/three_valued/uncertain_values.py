@@ -13,9 +13,10 @@ import clingo
 from kb.language.integers import MAX_INT32, MIN_INT32
 from kb.three_valued.arithmetic import calculate
 
-TruthValue = bool | None
+TruthValue = bool | None  # None: not known
 Value = Any  # int, clingo.Symbol or Unknown
-ORDERS: Mapping[str, Callable[[Any, Any], bool]] = {
+# By the sign in ASP syntax.
+COMPARISON_OPERATORS: Mapping[str, Callable[[Any, Any], bool]] = {
     "<": operator.lt,
     "<=": operator.le,
     ">": operator.gt,
@@ -61,8 +62,8 @@ def compare(sign: str, a: Value, b: Value, known: frozenset[str]) -> TruthValue:
     """
     if not isinstance(a, Unknown) and not isinstance(b, Unknown):
         if isinstance(a, int) and isinstance(b, int):
-            return ORDERS[sign](a, b)
-        return ORDERS[sign](as_clingo(a), as_clingo(b))
+            return COMPARISON_OPERATORS[sign](a, b)
+        return COMPARISON_OPERATORS[sign](as_clingo(a), as_clingo(b))
     if a is b:
         return sign in ("=", "<=", ">=")
     if any(isinstance(value, Unknown) and value.anything for value in (a, b)):
@@ -73,7 +74,7 @@ def compare(sign: str, a: Value, b: Value, known: frozenset[str]) -> TruthValue:
     if sign in ("=", "!=") and _differ(a, b, known):
         return sign == "!="
     if (one is None) != (other is None):  # clingo orders numbers before all other terms
-        return ORDERS[sign](0, 1) if one is not None else ORDERS[sign](1, 0)
+        return COMPARISON_OPERATORS[sign](0, 1) if one is not None else COMPARISON_OPERATORS[sign](1, 0)
     return None
 
 
@@ -91,7 +92,7 @@ def _within(sign: str, a: tuple[int, int], b: tuple[int, int]) -> TruthValue:
     if sign in (">", ">="):
         return _within(MIRRORED_SIGNS[sign], b, a)
     if sign in ("<", "<="):
-        order = ORDERS[sign]
+        order = COMPARISON_OPERATORS[sign]
         return True if order(a[1], b[0]) else None if order(a[0], b[1]) else False
     apart = a[1] < b[0] or b[1] < a[0]
     return (sign == "!=") if apart else None

@@ -4,7 +4,8 @@ import argparse
 
 from simulator.cli.commands import check, new, query, repl, routes, run, show, test, warm
 
-COMMANDS = (run, test, check, show, new, query, repl, routes, warm)
+COMMANDS = (run, test, check, show, new, query, repl, routes, warm)  # in the order of the help text
+# The end of the help text.
 EXIT_CODES = (
     "exit codes: 0 done; 1 ran, goal not reached; 2 usage; 65 bad input; 66 cannot open; 70 our bug; "
     "74 a standard stream failed; 75 limit; 130 interrupted; 141 the reader of the output went away"

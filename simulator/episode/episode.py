@@ -18,11 +18,11 @@ from kb.language.source_text import read_bytes
 from simulator.episode.output_files import is_episode, keep_first, opened
 from simulator.episode.wellformed import HEADER_CHECK, RESULT_CHECK, STEP_CHECK, KeyPath, column
 
-EPISODE_VERSION = 1
-STANDARD_OUTPUT = "-"
+EPISODE_VERSION = 1  # of the form of episodes; docs/files.md
+STANDARD_OUTPUT = "-"  # the value of --log for the standard output
 MAX_EPISODE_BYTES = 500_000_000  # bytes; a convention
 
-EpisodeLine = dict[str, Any]
+EpisodeLine = dict[str, Any]  # the JSON object of one line
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,8 @@ from kb.language.diagnostics import CannotOpenError
 from kb.language.operating_system import WRITE_FLAGS, lock_file
 
 HEAD_BYTES = 4096  # first bytes of a file, from which its kind is told
-EPISODE_START = b'{"utak":"episode"'
-Kind = Callable[[bytes], bool]
+EPISODE_START = b'{"utak":"episode"'  # the first bytes of every episode
+Kind = Callable[[bytes], bool]  # whether a file with these first bytes may be overwritten
 
 
 def is_episode(head: bytes) -> bool:

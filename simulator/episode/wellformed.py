@@ -11,13 +11,13 @@ from kb.body import DIRECTIONS
 from kb.language.vocabulary import MAX_TABLE_SIDE
 
 KeyPath = tuple[str, ...]  # the keys that lead to a value
-LineComplaint = tuple[KeyPath, str]
-ValueCheck = Callable[[Any, KeyPath], Iterator[LineComplaint]]
+LineComplaint = tuple[KeyPath, str]  # the place of a value, and what is wrong with it
+ValueCheck = Callable[[Any, KeyPath], Iterator[LineComplaint]]  # yields the complaints about a value
 
 MAX_TEXT_CHARACTERS = 100_000  # characters of a string; a convention
 MAX_COMMAND_VALUE = 1e9  # squares or degrees in commands and motions, in absolute value; a convention
 TABLE_MARGIN = 1.0  # squares beyond the table in which points may lie; a convention
-FACT_PATTERN = re.compile(r"-?_*[a-z][A-Za-z0-9_']*(\([ -~]*\))?\.")
+FACT_PATTERN = re.compile(r"-?_*[a-z][A-Za-z0-9_']*(\([ -~]*\))?\.")  # a fact of `belief.facts`, by its form only
 
 
 def number(low: float, high: float) -> ValueCheck:
@@ -130,10 +130,12 @@ def motion(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
     )(value, at)
 
 
+# The keys of a straight motion, in squares of Utak's frame.
 STRAIGHT_KEYS = {
     "east": number(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE),
     "north": number(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE),
 }
+# The keys of a command besides `do`, by its kind.
 ACTION_KEYS: dict[str, dict[str, ValueCheck]] = {
     "move": STRAIGHT_KEYS,
     "push": STRAIGHT_KEYS,
@@ -141,10 +143,11 @@ ACTION_KEYS: dict[str, dict[str, ValueCheck]] = {
     "grasp": {"direction": one_of(*DIRECTIONS)},
     "release": {},
 }
-POINT_CHECK = list_of(number(-TABLE_MARGIN, MAX_TABLE_SIDE + TABLE_MARGIN), 2, 2)
-RING_CHECK = list_of(POINT_CHECK, 3)
-RINGS_CHECK = list_of(RING_CHECK, 1)
-THING_CHECK = keys({"colour": text(), "rings": RINGS_CHECK})
+POINT_CHECK = list_of(number(-TABLE_MARGIN, MAX_TABLE_SIDE + TABLE_MARGIN), 2, 2)  # (x, y) in squares, table frame
+RING_CHECK = list_of(POINT_CHECK, 3)  # a closed boundary
+RINGS_CHECK = list_of(RING_CHECK, 1)  # the outer ring and the holes of a polygon
+THING_CHECK = keys({"colour": text(), "rings": RINGS_CHECK})  # a thing in the header
+# The first line of an episode.
 HEADER_CHECK = keys(
     {
         "options": keys(
@@ -177,6 +180,7 @@ HEADER_CHECK = keys(
         ),
     }
 )
+# The line of a step.
 STEP_CHECK = keys(
     {
         "action": or_null(action),
@@ -190,6 +194,7 @@ STEP_CHECK = keys(
         "why": text(),
     }
 )
+# The last line of an episode.
 RESULT_CHECK = keys(
     {
         "result": keys(

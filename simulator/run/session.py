@@ -25,7 +25,7 @@ class StepReportProtocol(Protocol):
 
     @property
     def impression(self) -> Impression:
-        """What the body returned."""
+        """The impression that the body returned."""
 
     @property
     def belief(self) -> dict[str, Any]:
@@ -70,6 +70,7 @@ class RobotProtocol(Protocol):
         """The verdict at the end."""
 
 
+# Makes a robot from its body, its task and the options of the run.
 RobotMaker = Callable[[Body, Task, Settings], RobotProtocol]
 
 

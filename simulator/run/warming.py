@@ -19,6 +19,7 @@ from geometry.kernels.jit import tell
 from kb.language.operating_system import end_with_parent, read_lines_from_parent
 from utak_command import beside
 
+# The folders of our packages.
 PACKAGES = [Path(geometry.__file__).parent.with_name(name) for name in ("geometry", "kb", "planner", "simulator")]
 
 
@@ -37,22 +38,21 @@ def warm(carrying: bool, paths: str = "skeleton") -> None:
         return
     tell()
     mine, others = PROCESS_SPLIT[carrying] if search in missing else ((), ())
-    _compile_beside([*mine, *(use for use in missing if use not in (*mine, *others))], others)
+    _compile_in_two_processes([*mine, *(use for use in missing if use not in (*mine, *others))], others)
 
 
 def warm_all() -> None:
     """Compile the kernels for all uses in two processes; kernels in the cache are loaded."""
     mine, others = PROCESS_SPLIT[True]
-    _compile_beside((*mine, move), (*others, sightlines, change))
+    _compile_in_two_processes((*mine, move), (*others, sightlines, change))
 
 
-def _compile_beside(mine: Sequence[Callable[[], None]], others: Sequence[Callable[[], None]]) -> None:
+def _compile_in_two_processes(mine: Sequence[Callable[[], None]], others: Sequence[Callable[[], None]]) -> None:
     """Compile for some uses here, and for others in a second process, which ends when this one ends."""
     if not others:
         compile_for(mine)
         return
-    command = beside("simulator.run.warming", *(use.__name__ for use in others))
-    quiet = subprocess.DEVNULL
+    command, quiet = second_process_command(others), subprocess.DEVNULL
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=quiet, stderr=quiet) as other:
         try:
             compile_for(mine)
@@ -62,6 +62,11 @@ def _compile_beside(mine: Sequence[Callable[[], None]], others: Sequence[Callabl
         except BaseException:
             other.kill()
             raise
+
+
+def second_process_command(uses: Sequence[Callable[[], None]]) -> list[str]:
+    """Return the command line of the process that compiles for some uses."""
+    return beside("simulator.run.warming", *(use.__name__ for use in uses))
 
 
 def uncompiled(uses: Collection[Callable[[], None]]) -> list[Callable[[], None]]:
@@ -90,7 +95,7 @@ def _caches() -> list[Path]:
 
 
 def compile_modules() -> None:
-    """Write the bytecode of our modules beside their sources.
+    """Write the bytecode of our modules next to their sources.
 
     With PYTHONDONTWRITEBYTECODE, as in many containers, Python compiles a checkout again at every start. That takes a
     third of the time to the first command.

@@ -6,7 +6,7 @@ from pathlib import Path
 from kb.language.diagnostics import CannotOpenError
 from kb.language.source_text import lies_outside
 
-SCENARIO_FILES = ("world.lp", "world.txt", "start.lp", "goal.lp", "expect.lp")
+SCENARIO_FILES = ("world.lp", "world.txt", "start.lp", "goal.lp", "expect.lp")  # all files of a scenario
 
 
 def add_untrusted_option(part: argparse.ArgumentParser) -> None:

@@ -17,7 +17,7 @@ from simulator.world.world import VERGE_COLOUR, Thing, World
 
 MAX_TOUCHING_AREA = 1e-9  # square squares; shapes with a smaller common area only touch (docs/files.md)
 MIN_THING_AREA = 1e-4  # square squares; a smaller thing is taken for a mistake; a convention
-RESERVED_THING_NAMES = ("utak", "verge")
+RESERVED_THING_NAMES = ("utak", "verge")  # names that objects cannot have
 # Squares; a narrower gap between shapes is no floor, because the physics does not resolve it (docs/files.md).
 MIN_GAP_WIDTH = 1e-6
 # Squares; shrinking and cutting corners moves the edge of the floor by less than this from its true place.

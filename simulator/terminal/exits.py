@@ -2,15 +2,15 @@
 
 from collections.abc import Iterable
 
-SUCCESS = 0
+SUCCESS = 0  # the goal is reached, or the command did its work
 NOT_REACHED = 1  # the run ended without reaching the goal; the verdict gives the reason
-USAGE = 2
-BAD_INPUT = 65
-CANNOT_OPEN = 66
-OUR_BUG = 70
+USAGE = 2  # the command line is wrong
+BAD_INPUT = 65  # a file has errors (EX_DATAERR of sysexits.h)
+CANNOT_OPEN = 66  # a file cannot be read or written (EX_NOINPUT)
+OUR_BUG = 70  # an unexpected exception (EX_SOFTWARE)
 LOST_OUTPUT = 74  # a standard stream cannot be read or written
-LIMIT = 75
-INTERRUPTED = 130
+LIMIT = 75  # a stated limit was reached (EX_TEMPFAIL)
+INTERRUPTED = 130  # Ctrl-C (128 + SIGINT)
 NO_READER = 141  # the reader of the output ended (SIGPIPE)
 
 # From the most severe code on; docs/files.md.

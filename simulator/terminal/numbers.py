@@ -3,7 +3,8 @@
 import argparse
 import re
 
-WHOLE_NUMBER = re.compile(r"[-+]?[0-9]{1,19}")
+WHOLE_NUMBER = re.compile(r"[-+]?[0-9]{1,19}")  # at most 19 digits
+# Digits with at most one point, and an exponent.
 DECIMAL_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 
 

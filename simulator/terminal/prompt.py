@@ -14,6 +14,7 @@ from simulator.run.story import Story
 from simulator.terminal.action_in_words import describe
 from simulator.terminal.streams import StreamError, escape_controls
 
+# The answer to `help`.
 HELP = """\
 ?- QUERY.     ask what Utak believes: ?- object(X), shape(X, square, C).
 facts [WORD]  the world model as facts; with a word those that name it
@@ -25,6 +26,7 @@ quit          leave (so does the end of the input)
 
 In facts, places and lengths are whole hundredths of a square, in the robot's frame: east and north from where it woke,
 north being the way it faced then. Confidences are percent. The robot is called utak in questions, and org in facts."""
+# Printed above every picture of the truth.
 TRUE_TABLE_NOTICE = "the true table, which the robot may believe to be otherwise:"
 
 

@@ -10,7 +10,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from simulator.world.table import Indices, Table
+from simulator.world.table import SquareIndices, Table
 
 VIEW_REACH = 16  # squares; the offsets of the retina's squares run from -16 to 15
 VIEW_ZONES = ((4, 1), (8, 2), (16, 4))  # (reach, side of a field) of each zone, in squares, from the fovea outwards
@@ -84,7 +84,7 @@ class Senses:
         return i, j
 
 
-def _fields_of_squares() -> tuple[Indices, npt.NDArray[np.int_]]:
+def _fields_of_squares() -> tuple[SquareIndices, npt.NDArray[np.int_]]:
     """Return the index of the field of each of the 32 x 32 squares, and the sides of the fields in squares.
 
     The squares are in rows from the south.

@@ -11,6 +11,7 @@ from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, Spa
 from simulator.scenario.untrusted import add_untrusted_option, refuse_links
 from simulator.terminal import exits
 
+# The words of the summary, by exit code.
 OUTCOME_WORDS = {
     exits.SUCCESS: "ok",
     exits.BAD_INPUT: "bad",

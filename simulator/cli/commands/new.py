@@ -7,6 +7,7 @@ from typing import Any
 from kb.language.diagnostics import CannotOpenError
 from simulator.terminal import exits
 
+# The files of the new scenario: text by name.
 NEW_SCENARIO_FILES = {
     "world.txt": """\
 bbbbbbbbbbbbbbbbbbbbbbbb

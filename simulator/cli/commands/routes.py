@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 MAX_MAP_BYTES = 200_000_000  # bytes of a map file; a convention
 MAX_ROUTES = 1000  # the greatest -k; a convention
 MAX_POINT_COORDINATE = 1e6  # squares; the greatest absolute value in --from and --to; a convention
+# The end of the help text.
 ORIGIN_HELP = (
     "Points are in squares, with fractions. With --origin bottom, the default, (0, 0) is the south-west corner, x goes "
     "east and y north, as in scenarios. With --origin top, (0, 0) is the north-west corner, x goes east and y SOUTH, "

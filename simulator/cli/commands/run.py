@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from simulator.run.session import Result, Session
     from simulator.scenario.settings import Settings
 
-PATH_FINDERS = ("skeleton", "visibility", "grid")
+PATH_FINDERS = ("skeleton", "visibility", "grid")  # the choices of --paths
 
 
 def add(parts: Any) -> None:

@@ -17,7 +17,7 @@ import scripted_robot
 from random_scenes import write_scene
 
 from kb.reasoning.query import QueryEngine
-from simulator.cli.commands.new import FILES
+from simulator.cli.commands.new import NEW_SCENARIO_FILES
 from simulator.run.interrupts import defer_interrupt
 from simulator.run.story import Story, open_story
 from simulator.scenario.settings import Settings
@@ -93,7 +93,7 @@ def test_a_step_interrupted_anywhere_did_not_happen(tmp_path: Path, scripted: No
 
 
 def test_the_robot_continues_unchanged_after_an_interrupted_step(tmp_path: Path) -> None:
-    for name, text in FILES.items():
+    for name, text in NEW_SCENARIO_FILES.items():
         (tmp_path / name).write_text(text)
     whole = finished(open_story(tmp_path, Settings()))
     story, draw = open_story(tmp_path, Settings()), random.Random(2)

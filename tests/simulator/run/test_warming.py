@@ -14,12 +14,12 @@ COMPILED = os.environ.get("NUMBA_DISABLE_JIT", "0") == "0"
 
 
 def test_each_use_works_by_itself() -> None:
-    for use in {use for halves in warming.HALVES.values() for half in halves for use in half}:
+    for use in {use for halves in warming.PROCESS_SPLIT.values() for half in halves for use in half}:
         use()
 
 
 def test_two_processes_share_the_work() -> None:
-    walking, carrying = ([use for half in warming.HALVES[kind] for use in half] for kind in (False, True))
+    walking, carrying = ([use for half in warming.PROCESS_SPLIT[kind] for use in half] for kind in (False, True))
     assert len(set(walking)) == len(walking)
     assert len(set(carrying)) == len(carrying)
     assert set(carrying) - set(walking) == {warming.carry}
@@ -29,7 +29,7 @@ def test_two_processes_share_the_work() -> None:
 def test_the_second_process_compiles_its_uses(monkeypatch) -> None:
     done = []
     monkeypatch.setattr(warming, "compile_for", done.extend)
-    for halves in warming.HALVES.values():
+    for halves in warming.PROCESS_SPLIT.values():
         done.clear()
         warming.main([use.__name__ for use in halves[1]])
         assert sorted(done, key=repr) == sorted(halves[1], key=repr)
@@ -38,13 +38,13 @@ def test_the_second_process_compiles_its_uses(monkeypatch) -> None:
 def test_the_first_run_announces_the_compilation(monkeypatch) -> None:
     announced, done = [], []
     monkeypatch.setattr(warming, "uncompiled", list)
-    monkeypatch.setattr(warming, "beside", lambda *_: [sys.executable, "-I", "-c", ""])
+    monkeypatch.setattr(warming, "second_process_command", lambda *_: [sys.executable, "-I", "-c", ""])
     monkeypatch.setattr(warming, "tell", lambda: announced.append(True))
     monkeypatch.setattr(warming, "compile_for", done.extend)
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
     warming.warm(carrying=False)
     assert announced
-    assert done == list(warming.HALVES[False][0])
+    assert done == list(warming.PROCESS_SPLIT[False][0])
     monkeypatch.setattr(warming, "uncompiled", lambda uses: [])
     warming.warm(carrying=True)
     assert len(announced) == 1
@@ -56,7 +56,7 @@ def test_bytecode_is_kept_where_python_keeps_none(monkeypatch, tmp_path) -> None
     (tmp_path / "broken.py").write_text("ANSWER =\n")
     monkeypatch.setattr(warming, "PACKAGES", [tmp_path, tmp_path / "absent"])
     monkeypatch.setattr(warming, "uncompiled", list)
-    monkeypatch.setattr(warming, "beside", lambda *_: [sys.executable, "-I", "-c", ""])
+    monkeypatch.setattr(warming, "second_process_command", lambda *_: [sys.executable, "-I", "-c", ""])
     monkeypatch.setattr(warming, "tell", lambda: None)
     monkeypatch.setattr(warming, "compile_for", lambda _: None)
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
@@ -72,7 +72,7 @@ def test_every_package_of_the_robot_is_among_those_whose_bytecode_is_kept() -> N
 
 def test_uncompiled_uses_are_found_one_by_one(monkeypatch, tmp_path) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    uses = list(warming.INDEX)
+    uses = list(warming.LONGEST_KERNEL)
     assert warming.uncompiled(uses) == uses
     (tmp_path / "geometry_1234").mkdir()
     (tmp_path / "geometry_1234" / "router.itineraries-17.py311.nbi").touch()
@@ -120,7 +120,7 @@ def test_kernels_are_kept_in_the_users_cache_where_the_installation_cannot_be_wr
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     assert tmp_path / "numba" in warming._caches()
-    assert list((tmp_path / "numba").rglob("rope.measure_line-*.nbi"))
+    assert list((tmp_path / "numba").rglob("funnel.measure_line-*.nbi"))
 
 
 @pytest.mark.skipif(not COMPILED, reason="nothing is compiled")

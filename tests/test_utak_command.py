@@ -1,4 +1,4 @@
-"""No file of a user's is executed as a module, whatever is called what, and processes beside ours end with ours."""
+"""Isolation of our processes: no file of a user is executed as a module, and child processes end with their parent."""
 
 import json
 import os
@@ -50,7 +50,7 @@ COMMANDS = {
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A scenario in whose folder lie modules that write down that they were executed."""
+    """Return a scenario in a folder with modules that record their own execution."""
     place = tmp_path / "here"
     for name in PACKAGES:
         (place / name).mkdir(parents=True)
@@ -63,12 +63,12 @@ def folder(tmp_path: Path) -> Path:
 
 
 def executed(place: Path) -> str:
-    """A module that writes its name into a file, and works no further."""
+    """Return the source of a module that writes its name into a file and exits."""
     return f"open({str(place / 'executed')!r}, 'a').write(__name__ + '\\n')\nraise SystemExit(99)\n"
 
 
 def cold_cache(place: Path) -> dict[str, str]:
-    """Settings under which kernels would be compiled by a process beside ours, which must not be waited for."""
+    """Return an environment without compiled kernels, in which a second process compiles them."""
     return {"NUMBA_CACHE_DIR": str(place / "cache")}
 
 
@@ -84,7 +84,7 @@ def test_nothing_in_the_working_directory_is_executed(command: str, folder: Path
     assert done.returncode in (0, 1, 75), done.stderr.decode()
 
 
-def test_a_package_of_the_users_on_the_path_does_no_harm(folder: Path) -> None:
+def test_users_packages_on_the_path_are_not_executed(folder: Path) -> None:
     for name in BAIT:
         (folder / f"{name}.py").unlink()
     environment = os.environ | {"PYTHONPATH": str(folder)}
@@ -94,8 +94,8 @@ def test_a_package_of_the_users_on_the_path_does_no_harm(folder: Path) -> None:
     assert done.returncode in (0, 75), done.stderr.decode()
 
 
-def test_no_process_is_started_but_beside() -> None:
-    """Whoever starts Python by `-m` or `-c` takes the working directory for a place of modules."""
+def test_every_process_is_started_in_isolation() -> None:
+    """Python started with `-m` or `-c` would import modules from the working directory."""
     for package in (*PACKAGES, "benchmarks"):
         for path in sorted((ROOT / package).rglob("*.py")):
             text = path.read_text()
@@ -109,13 +109,13 @@ ENDLESS = "X = 1..100000000, Y = 1..100000000"
 
 
 def workers(of: int) -> list[int]:
-    """The processes that a process has started."""
+    """Return the processes that a process has started."""
     found = Path(f"/proc/{of}/task/{of}/children")
     return [int(word) for word in found.read_text().split()] if found.exists() else []
 
 
 def runs(process: int) -> bool:
-    """Whether a process is there and no zombie."""
+    """Return whether a process exists and is no zombie."""
     try:
         return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except OSError:
@@ -123,7 +123,7 @@ def runs(process: int) -> bool:
 
 
 def episode(place: Path) -> Path:
-    """An episode of one step."""
+    """Return an episode of one step."""
     path = place / "ep.jsonl"
     done = subprocess.run([*UTAK, "run", ".", "--max-steps", "0", "--log", str(path)], cwd=place, capture_output=True)
     assert done.returncode == 75, done.stderr
@@ -131,7 +131,7 @@ def episode(place: Path) -> Path:
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs /proc")
-def test_a_worker_ends_with_whoever_asks(tmp_path: Path) -> None:
+def test_a_worker_ends_with_its_parent(tmp_path: Path) -> None:
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)
     path = episode(tmp_path)
@@ -154,8 +154,8 @@ def test_a_worker_ends_with_whoever_asks(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("module", ["kb.reasoning.query_worker", "simulator.run.warming"])
-def test_a_process_beside_ends_with_its_input_also_while_it_works(module: str, tmp_path: Path) -> None:
-    """Where no signal tells of the parent's end, the end of the input does."""
+def test_an_isolated_process_ends_with_its_input_while_it_works(module: str, tmp_path: Path) -> None:
+    """The end of the input is noticed on systems without a signal for the parent's end."""
     names = ["search", "carry"] if module == "simulator.run.warming" else []
     environment = os.environ | cold_cache(tmp_path)
     pipe = subprocess.PIPE
@@ -177,10 +177,10 @@ def test_a_process_beside_ends_with_its_input_also_while_it_works(module: str, t
 
 
 @pytest.mark.filterwarnings("ignore:'kb.language.terms' found in sys.modules")
-def test_what_is_installed_for_one_user_alone_is_found_by_a_process_beside(
+def test_an_isolated_process_finds_packages_installed_for_one_user(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Isolated Python looks at no user's folder: where the packages of others are is handed on."""
+    """Isolated Python ignores the user's folder of packages, so the folders of dependencies are passed on."""
     (tmp_path / "of_the_user.py").write_text("")
     monkeypatch.setattr(sys, "path", list(sys.path))
     monkeypatch.setattr(sys, "argv", list(sys.argv))
@@ -192,7 +192,7 @@ def test_what_is_installed_for_one_user_alone_is_found_by_a_process_beside(
     assert str(ROOT) not in beside("kb.reasoning.query_worker")[3].split(os.pathsep)
 
 
-def test_a_process_beside_that_has_done_its_work_ends_in_order() -> None:
-    """Its input is still open then, and a thread waits for it."""
+def test_an_isolated_process_ends_with_exit_code_0_after_its_work() -> None:
+    """Its input is still open at that time, and a thread waits for it."""
     with subprocess.Popen(beside("simulator.run.warming"), stdin=subprocess.PIPE, stderr=subprocess.PIPE) as worker:
         assert worker.wait(30) == 0, worker.stderr and worker.stderr.read().decode()
