@@ -66,7 +66,7 @@ class MotionHypothesis(NamedTuple):
     shift : the commanded motion, (east, north) in squares, Utak's own frame.
     hypotheses : the frame hypotheses before that observation.
     blocked : whether it is believed to have been blocked.
-    load : the name of the object in hand; None when there was none.
+    in_hand : the name of the object in hand; None when there was none.
     alternative_ends : other ends that agree with that observation, Utak's own frame, each with its probability.
     """
 
@@ -74,7 +74,7 @@ class MotionHypothesis(NamedTuple):
     shift: Position
     hypotheses: tuple[FrameHypothesis, ...]
     blocked: bool = False
-    load: str | None = None
+    in_hand: str | None = None
     alternative_ends: tuple[tuple[Position, float], ...] = ()
 
     def likely_ends(self, min_chance: float) -> list[Position]:
@@ -95,13 +95,13 @@ class WalkCorrection(NamedTuple):
     since : the number of the first observation that is shifted.
     shift : from the believed place to the corrected one, (east, north) in squares, Utak's own frame.
     seen : objects that were first held since, by name, each with the shift of where it lies and lay, same frame.
-    hauled : the name of the object in hand on the motion that is corrected; None when there was none.
+    in_hand : the name of the object in hand on the motion that is corrected; None when there was none.
     """
 
     since: int
     shift: Position
     seen: tuple[tuple[str, Position], ...] = ()
-    hauled: str | None = None
+    in_hand: str | None = None
 
     def place(self, place: Position) -> Position:
         """Return a place since the motion as corrected, Utak's own frame."""
@@ -115,28 +115,28 @@ class WalkCorrection(NamedTuple):
         ]
         return [*observations[: self.since], *since]
 
-    def loads(self, loads: Mapping[str, HeldObject], frame: Frame) -> dict[str, HeldObject]:
-        """Return all held objects where they lie and lay as corrected. frame : the map frame of `loads`."""
-        return {name: self._load(load, frame) for name, load in loads.items()}
+    def held_objects(self, held_objects: Mapping[str, HeldObject], frame: Frame) -> dict[str, HeldObject]:
+        """Return all held objects where they lie and lay as corrected. frame : the map frame of `held_objects`."""
+        return {name: self._corrected_object(held, frame) for name, held in held_objects.items()}
 
     def _pose(self, pose: ObjectPose) -> ObjectPose:
         """Return the corrected pose of an object at an observation since the motion."""
         aside = self._aside(pose.name)
-        if pose.name != self.hauled:
+        if pose.name != self.in_hand:
             pose = pose._replace(taken=add(pose.taken, aside))
         return pose._replace(middle=add(pose.middle, aside))
 
-    def _load(self, load: HeldObject, frame: Frame) -> HeldObject:
+    def _corrected_object(self, held: HeldObject, frame: Frame) -> HeldObject:
         """Return an object where it lies as corrected."""
-        aside = Translate(*frame.to_lattice(*self._aside(load.name)))
+        aside = Translate(*frame.to_lattice(*self._aside(held.name)))
         if not any(aside):
-            return load
-        first = load.first if load.name == self.hauled else aside.carry(load.first)
-        return replace(load.lying(aside.carry(load.polygon), load.slack), first=first)
+            return held
+        first = held.first if held.name == self.in_hand else aside.carry(held.first)
+        return replace(held.lying(aside.carry(held.polygon), held.slack), first=first)
 
     def _aside(self, name: str) -> Position:
         """Return the shift of an object, Utak's own frame."""
-        return self.shift if name == self.hauled else dict(self.seen).get(name, (0.0, 0.0))
+        return self.shift if name == self.in_hand else dict(self.seen).get(name, (0.0, 0.0))
 
 
 class ReestimatedWalk(NamedTuple):
@@ -360,7 +360,7 @@ def reestimate_two_walks(
 def remap_if_consistent(
     frame: Frame,
     observations: Sequence[Observation],
-    loads: Iterable[HeldObject] = (),
+    held_objects: Iterable[HeldObject] = (),
     unsettled: Sequence[UnsettledDisc] = (),
     recent: int = MAX_CHECKED_OBSERVATIONS + 1,
     begun: Replay | None = None,
@@ -368,13 +368,13 @@ def remap_if_consistent(
 ) -> RemappedMap | None:
     """Return the map of all observations in a frame; None when two of the last observations contradict each other.
 
-    loads : all held objects, in that frame. unsettled : where observations need not agree. recent : how many of the
-    last observations are compared. begun, only_whether : as for kb.localisation.hypotheses.remap.remap.
+    held_objects : all held objects, in that frame. unsettled : where observations need not agree. recent : how many of
+    the last observations are compared. begun, only_whether : as for kb.localisation.hypotheses.remap.remap.
     """
     squares = observation_squares(frame, observations)
     if not _are_consistent(frame, squares, stack_ranges(observations), unsettled, recent):
         return None
-    return remap(frame, frame, observations, loads, begun, only_whether)
+    return remap(frame, frame, observations, held_objects, begun, only_whether)
 
 
 def _are_consistent(
