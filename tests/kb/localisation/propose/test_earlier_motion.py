@@ -57,10 +57,10 @@ def right(
     motion: MotionHypothesis,
     shift: Point,
     thing: shapely.Polygon,
-    told: Callable[[Surprise, list[MotionHypothesis]], list[ReestimatedMotion]] = reestimate_motions,
+    propose: Callable[[Surprise, list[MotionHypothesis]], list[ReestimatedMotion]] = reestimate_motions,
 ) -> list[ReestimatedMotion]:
     """Return the proposals that are right about both the shift of the motion and the place of the object."""
-    found = told(surprise, [motion])
+    found = propose(surprise, [motion])
     for one in found:
         assert one.what_if.residual == 0
         assert one.walk.correction.since == motion.number
@@ -95,10 +95,10 @@ def room_with_a_thing(rng: np.random.Generator) -> tuple[Occupied, shapely.Polyg
 
 def first_of(attempts: Iterator[Scene | None]) -> Scene:
     """Return the first scene that could be made; skip the test in the rare case that none could."""
-    told = next((one for one in attempts if one is not None), None)
-    assume(told is not None)
-    assert told is not None
-    return told
+    scene = next((one for one in attempts if one is not None), None)
+    assume(scene is not None)
+    assert scene is not None
+    return scene
 
 
 @settings(max_examples=15, deadline=None)
@@ -151,8 +151,8 @@ def test_a_push_blocked_unnoticed_is_reestimated_with_the_object_in_hand(seed: i
 def test_such_a_push_is_reestimated_together_with_the_origin(seed: int) -> None:
     rng = np.random.default_rng(seed)
     beside = (round(float(rng.uniform(0.05, 0.95)), 2), round(float(rng.uniform(0.05, 0.95)), 2))
-    told = first_of(pushed_and_walked(rng, beside) for _ in range(300))
-    assert right(*told, told=reestimate_with_origin)
+    scene = first_of(pushed_and_walked(rng, beside) for _ in range(300))
+    assert right(*scene, propose=reestimate_with_origin)
 
 
 @settings(max_examples=5, deadline=None)

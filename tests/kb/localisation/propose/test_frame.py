@@ -54,7 +54,7 @@ def blocked_push_of_utak(rng: np.random.Generator, beside: Point) -> tuple[Surpr
     observations = [first, first._replace(moved=(object_pose(held, Frame()),))]
     after = observe(around(translate(thing, *went), room), plus(origin, went), way)
     there = plus(beside, went)
-    return surprised(Push(*way), after, observations, held, held=True), there, translate(lies, *went)
+    return surprised(Push(*way), after, observations, held, in_hand=True), there, translate(lies, *went)
 
 
 @settings(max_examples=15, deadline=None)
