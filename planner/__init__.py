@@ -1,1 +1,18 @@
-"""Deciding: task, route, transport and the action cycle. Imports geometry and kb."""
+"""The planner: from the task and what is believed to the next command. Imports geometry and kb, never the simulator.
+
+cycle         the action cycle: wake, then act, perceive and decide until the task ends
+decision      a decision: the next command, or the verdict
+stages        the stages of a task
+situation     what a decision depends on: beliefs, cost maps, rooms, what parameters mean
+advice        what the plan executor advises
+subgoal_kind  the kinds of subgoals
+deciding      which goal is pursued next, and how (a room)
+carrying      manipulation plans and their execution (a room)
+skills        commands where no plan gives them (a room)
+goals         where goals hold (a room)
+navigation    subgoals and routes of the robot (a room)
+sights        viewpoints (a room)
+screen        cost maps and straight moves (a room)
+
+Public names: Robot, Options, Decision, TaskVerdict, Situation, Stage, SubgoalKind.
+"""

@@ -1,6 +1,6 @@
-"""The action cycle of the paper (section 3.1).
+"""The action cycle of the paper (section 3.1), run by `Robot`.
 
-Initialise, plan, then test, act, perceive and replan until the task is done.
+Initialise and plan; then test, act, perceive and replan until the task is done.
 """
 
 from dataclasses import dataclass
@@ -13,14 +13,19 @@ from kb.localisation.hypotheses.explanation import Accommodated
 from kb.task.task import Task
 from kb.world.facts import Places, belief
 from planner.deciding.decider import Decider
-from planner.decision import Decision
+from planner.decision import Decision, TaskVerdict
 
 
 @dataclass(frozen=True)
 class Options:
-    """paths: which path-finder (skeleton, visibility, grid). kb_files: the user's own encodings. max_steps.
+    """How the robot works.
 
-    Commands until he gives up. pull: may what is held be pulled, or only pushed?
+    Attributes
+    ----------
+    paths : the path-finder: skeleton, visibility or grid.
+    kb_files : the user's own encodings.
+    max_steps : the number of commands after which the robot gives up.
+    pull : whether a held object may be pulled; False when it may only be pushed.
     """
 
     paths: str = "skeleton"
@@ -30,9 +35,14 @@ class Options:
 
 
 class StepReport(NamedTuple):
-    """One turn of the cycle. command: None on waking. belief: ready for JSON. why.
+    """One turn of the cycle.
 
-    The reason of the command, in words.
+    Attributes
+    ----------
+    command : the command that was given; None on waking.
+    impression : what the body returned after it.
+    belief : what is believed since, ready for JSON.
+    why : the reason of the command, in words.
     """
 
     command: Command | None
@@ -42,71 +52,107 @@ class StepReport(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """How it ended: verdict is done, impossible, possible_if or limit.
+    """How the task ended.
 
-    Believed tells whether Utak holds the task for done.
+    Attributes
+    ----------
+    believed : whether the robot believes that the task is done.
+    verdict : the kind of the end.
+    reason : why, in words.
     """
 
     believed: bool
-    verdict: str
+    verdict: TaskVerdict
     reason: str
 
 
 class Robot:
-    """Utak's mind. The numbers in brackets are the steps of the paper.
+    """The mind of Utak. The numbers in comments are the steps of the paper.
 
     Attributes
     ----------
-    model : what is believed now. finished, verdict : whether and how it ended. steps : commands given.
+    knowledge : what the robot knows; model : what it believes now. Only this class changes the two.
+    decider : what chooses the commands.
+    decision : what is done next.
+    finished, verdict : whether and how the task ended.
+    steps : how many commands were given.
     """
 
-    def __init__(self, body: Body, task: Task, options: Options | None = None) -> None:
+    def __init__(self, body: Body, task: Task, options: Options | None = None, decider: Decider | None = None) -> None:
+        """Make a robot that sleeps.
+
+        Parameters
+        ----------
+        body : what senses and acts.
+        task : the goals and what is said of their parameters.
+        options : how the robot works; the defaults if None.
+        decider : what chooses the commands; a new Decider of this task if None. It belongs to this robot from now on.
+        """
         self.body = body
         self.options = options or Options()
         rules = tuple(Path(file) for file in self.options.kb_files)
         self.knowledge = Knowledge(rules)  # (1) the default world model
-        self.decider = Decider(task, self.options.paths, rules, self.options.pull)  # (6) the task
-        self.verdict = Verdict(False, "limit", "not awake yet")
+        self.decider = decider or Decider(task, self.options.paths, rules, self.options.pull)  # (6) the task
+        self.verdict = Verdict(False, TaskVerdict.LIMIT, "the robot has not been woken yet")
         self.finished = False
         self.steps = 0
-        self._gives_up = False  # does he give up what he believes, as soon as his hand is empty?
-        self._gave_up = False
+        self._must_restart = False  # whether all beliefs are given up as soon as the hand is empty
+        self._has_restarted = False
 
     def wake(self) -> StepReport:
-        """Steps 1 to 7: see for the first time, interpret, make the first plan."""
+        """Receive the first impression, interpret it and make the first plan (steps 1 to 7).
+
+        Returns
+        -------
+        StepReport
+            The first impression and what is believed after it; its command is None.
+        """
         impression = self.body.wake()  # (2)
         self.model, accommodated = self.knowledge.wake(impression)  # (3, 4, 5)
         self._decide()  # (6, 7)
         self._test()
-        return self._report(None, impression, accommodated, "he wakes")
+        return self._report(None, impression, accommodated, "the robot wakes")
 
     def step(self) -> StepReport:
-        """Steps 8 to 13: act, perceive, and see whether the plan still holds."""
+        """Give the decided command, perceive, and decide anew (steps 8 to 13).
+
+        Returns
+        -------
+        StepReport
+            The command that was given, and what is believed after it.
+
+        Raises
+        ------
+        ValueError
+            When the task has ended.
+        """
         command, why = self.decision.command, self.decision.why  # (9)
         if command is None:
             raise ValueError("the run is finished")
         impression = self.body.act(command)  # (10)
         self.steps += 1
         self.model, accommodated = self.knowledge.perceive(command, impression)  # (11)
-        if not self._gives_up:
+        if not self._must_restart:
             self._decide()  # (12, 13)
-            at_a_loss = self.decision.verdict == "limit"
-            self._gives_up = at_a_loss and self.model.shaken and not self._gave_up
-        if self._gives_up:
-            accommodated = self._give_up(impression) or accommodated
+            stuck = self.decision.verdict == TaskVerdict.LIMIT
+            self._must_restart = stuck and self.model.shaken and not self._has_restarted
+        if self._must_restart:
+            accommodated = self._restart(impression) or accommodated
         self._test()
         return self._report(command, impression, accommodated, why)
 
     def _decide(self) -> None:
+        """Choose the next command, or the verdict."""
         self.decision: Decision = self.decider.decide(self.model, self.knowledge.memory.track)
 
-    def _give_up(self, impression: Impression) -> Accommodated | None:
-        """Begin anew, who is at a loss with what looks contradicted; None while he has to let go of something first."""
+    def _restart(self, impression: Impression) -> Accommodated | None:
+        """Forget all beliefs and begin anew from an impression; release a held object first and return None then."""
         held = self.model.held
         if held is not None:
-            self.decision = Decision(Release(), f"{held} is let go, to begin anew; {self.decision.why}")
+            why = f"{held} is released, because the robot forgets its map and begins anew; {self.decision.why}"
+            self.decision = Decision(Release(), why)
             return None
-        self._gives_up, self._gave_up = False, True
+        self._must_restart, self._has_restarted = False, True
         self.model, accommodated = self.knowledge.begin_anew(impression)
         self._decide()
         return accommodated
@@ -114,16 +160,19 @@ class Robot:
     def _report(
         self, command: Command | None, impression: Impression, accommodated: Accommodated, why: str
     ) -> StepReport:
+        """Return the report of one turn of the cycle."""
         places = Places(self.decider.rooms, self.decider.corners)
         believed = belief(self.model, places, accommodated, self.decider.bound)
         return StepReport(command, impression, believed, why)
 
     def _test(self) -> None:
-        """Step 8: stop when the task is complete, when it cannot be, or when the limit is reached."""
+        """Finish when the task is done, when it cannot be done, or when the limit of commands is reached (step 8)."""
         decision = self.decision
         if decision.command is None:
-            self.verdict = Verdict(decision.verdict == "done", decision.verdict, decision.why)
+            assert decision.verdict is not None
+            self.verdict = Verdict(decision.verdict == TaskVerdict.DONE, decision.verdict, decision.why)
             self.finished = True
         elif self.steps >= self.options.max_steps:
-            self.verdict = Verdict(False, "limit", f"not done after {self.steps} commands; next: {decision.why}")
+            reason = f"not done after {self.steps} commands; the next one would be: {decision.why}"
+            self.verdict = Verdict(False, TaskVerdict.LIMIT, reason)
             self.finished = True

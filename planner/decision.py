@@ -1,20 +1,44 @@
-"""What the robot does next, or how the task ended: the value that every part of planning returns."""
+"""A decision: the next command, or the verdict with which the task ends. Every part of planning returns one."""
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 from kb.body import Command
 
 
+class TaskVerdict(StrEnum):
+    """How a task ended, as episodes write it.
+
+    Attributes
+    ----------
+    DONE : every goal is believed to hold.
+    IMPOSSIBLE : no plan exists, whatever is still unknown.
+    POSSIBLE_IF : no plan is left, but a named open fact would allow one.
+    LIMIT : the robot gave up, and nothing is proved.
+    """
+
+    DONE = "done"
+    IMPOSSIBLE = "impossible"
+    POSSIBLE_IF = "possible_if"
+    LIMIT = "limit"
+
+
 @dataclass(frozen=True)
 class Decision:
-    """The next command and why; or no command, and the verdict.
+    """The next command and its reason; or no command, and the verdict.
 
+    Attributes
+    ----------
+    command : what the body does next; None when the task has ended.
+    why : the reason of the command or of the verdict, in words.
+    verdict : how the task ended; None while it goes on.
     unless : the open fact that would overturn the verdict, in words; "" when none is known yet, None when there can be
-    none. near : the place (x, y) that the verdict is about, in the frame of the view's arrays.
+        none.
+    near : the place (x, y) that the verdict is about, in squares, frame of the view's arrays; None for no such place.
     """
 
     command: Command | None
     why: str
-    verdict: str = ""
+    verdict: TaskVerdict | None = None
     unless: str | None = ""
     near: tuple[float, float] | None = None

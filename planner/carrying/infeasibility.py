@@ -1,73 +1,116 @@
-"""Why something cannot be carried to where it should be: what geometry proved, and what speaks against the proof."""
+"""Infeasibility certificates: why an object cannot be carried to where it should be, and how far that is proved."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from geometry.manipulation.plan_carrying import CarryingPlan
 from kb.objects.held_object import is_whole
 from kb.world.model import Node, WorldModel
-from planner.carrying.open_facts import width_open
+from planner.carrying.open_facts import possible_width
 from planner.goals.placement import lies_askew
 
 Place = tuple[float, float]
 
 
+@dataclass(frozen=True, eq=False)
+class Refutation:
+    """What geometry refuted: no way leads to any of the ends of an object.
+
+    The passages that are too narrow take time to find. They are worked out when a method asks for them.
+
+    Attributes
+    ----------
+    name : of the object.
+    plans : each refuted plan with the certainty level of the squares that it was asked for, in the order of asking.
+    model : what was believed.
+    """
+
+    name: str
+    plans: tuple[tuple[int, CarryingPlan], ...]
+    model: WorldModel
+
+    def neck(self) -> Place | None:
+        """Return the middle (x, y) of the passage that is too narrow, frame of the view's arrays; None for none."""
+        passage = closest_refuted(self.plans).passage
+        return None if passage is None else passage.place
+
+    def reason(self) -> str:
+        """Return why the object cannot be carried there, in words."""
+        closest = closest_refuted(self.plans)
+        passage = closest.passage
+        if passage is None:
+            return f"{self.name} cannot be carried there"
+        where = f"{passage.width:.2f} squares wide at {self.model.point_in_words(passage.place)}"
+        if _is_blocked_elsewhere(closest):
+            why = f"the passage, {where}, is too narrow, and a wider one would not help"
+            return f"{self.name} cannot be carried there: {why}"
+        return f"the passage for {self.name}, {where}, is too narrow by {closest.missing:.2f} squares"
+
+    def unless(self) -> str:
+        """Return the open fact by which the passage may be wide enough, in words; "" for none."""
+        closest = closest_refuted(self.plans)
+        passage = closest.passage
+        if passage is None or _is_blocked_elsewhere(closest):
+            return ""
+        return possible_width(passage.width, closest.missing, passage.sides, self.model.point_in_words(passage.place))
+
+
 @dataclass(frozen=True)
 class Infeasibility:
-    """No way was found.
+    """No way was found to carry an object; perhaps with a certificate that there is none.
 
-    proved : there is none, whatever the unseen holds. reason : in words; neck : the middle of the passage that is too
-    narrow, in the view's frame, if it is for want of one; unless : the open fact by which it may be wide enough, in
-    words, "" for none. All three are worked out when asked.
+    Attributes
+    ----------
+    proved : whether there is none, whatever the unseen squares hold.
+    message : why, in words; "" where the refutation tells it.
+    refutation : what geometry refuted; None when nothing was proved.
     """
 
     proved: bool
-    reason: Callable[[], str]
-    neck: Callable[[], Place | None] = lambda: None
-    unless: Callable[[], str] = lambda: ""
+    message: str = ""
+    refutation: Refutation | None = None
+
+    def reason(self) -> str:
+        """Return why nothing can be done, in words. May take time, to find the passage that is too narrow."""
+        return self.message or (self.refutation.reason() if self.refutation is not None else "")
+
+    def neck(self) -> Place | None:
+        """Return the middle (x, y) of the passage that is too narrow, frame of the view's arrays; None for none."""
+        return None if self.refutation is None else self.refutation.neck()
+
+    def unless(self) -> str:
+        """Return the open fact by which the passage may be wide enough, in words; "" for none."""
+        return "" if self.refutation is None else self.refutation.unless()
 
 
-def refusal(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> Infeasibility:
-    """Why nothing was found. It is proved when every target was refuted, whatever lies in the unseen."""
+def certify(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> Infeasibility:
+    """Return why no way was found for an object.
+
+    Parameters
+    ----------
+    node : the object.
+    plans : every plan that geometry did not find, with the certainty level of the squares that it was asked for, in the
+        order of asking.
+    model : what is believed.
+
+    Returns
+    -------
+    Infeasibility
+        Proved when every plan was refuted, whatever the unseen squares hold, and the object surely lies where it is
+        believed to lie.
+    """
     if not plans:
-        return Infeasibility(False, lambda: f"nothing is known of where {node.name} could be carried")
+        return Infeasibility(False, f"it is not known where {node.name} could be carried")
     if any(plan.status != "impossible" for _, plan in plans):
-        return Infeasibility(
-            False, lambda: f"no way was found to carry {node.name} there, and no proof that there is none"
-        )
+        return Infeasibility(False, f"no way was found to carry {node.name} there, and no proof that there is none")
     doubt = _doubt(node, plans, model)
     if doubt:
-        return Infeasibility(False, lambda: f"where {node.name} lies is not known well: {doubt}")
-
-    def neck() -> Place | None:
-        passage = nearest_to_done(plans).passage
-        return None if passage is None else passage.place
-
-    def reason() -> str:
-        closest = nearest_to_done(plans)
-        passage = closest.passage
-        if passage is None:
-            return f"{node.name} cannot be carried there"
-        where = f"{passage.width:.2f} squares wide at {model.point_in_words(passage.place)}"
-        if _hopeless(closest):
-            return f"{node.name} cannot be carried there: even were the passage, {where}, as wide as it, it could not"
-        return f"the passage for {node.name}, {where}, is too narrow by {closest.missing:.2f} squares"
-
-    def unless() -> str:
-        closest = nearest_to_done(plans)
-        passage = closest.passage
-        if passage is None or _hopeless(closest):
-            return ""
-        return width_open(passage.width, closest.missing, passage.sides, model.point_in_words(passage.place))
-
-    return Infeasibility(True, reason, neck, unless)
+        return Infeasibility(False, f"it is not known well where {node.name} lies: {doubt}")
+    return Infeasibility(True, refutation=Refutation(node.name, tuple(plans), model))
 
 
 def _doubt(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> str:
-    """What speaks against that a thing lies where it is believed to, in words; nothing when nothing does.
-
-    plans : all that are impossible, the last one asked for last.
-    """
+    """Return why an object may lie elsewhere than believed, in words; "" for no reason. plans : all refuted."""
     _, last = plans[-1]
     if last.reason == "start":  # nothing lies in a wall
         return "it would overlap a wall"
@@ -75,23 +118,27 @@ def _doubt(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldMo
         return "what is seen does not agree with it"
     if node.stuck and not model.view.sure:
         return "it did not move where there seemed to be room"
-    if lies_askew(node):  # and what is wall beside it is not known well either
+    if lies_askew(node):  # then the walls beside it are not known well either
         return "it was turned askew"
-    # Who began anew forgot what he had moved. What lies askew he may have turned himself, against walls, too.
+    # After a restart it is forgotten which objects were moved. One that lies askew may have been turned, against walls.
     if model.anew and node.polygon is not None and not is_whole(node.polygon):
         return "it lies askew, and may have been turned before all was forgotten"
-    # He has brought it there. When no wider passage would let it go on, it rather is elsewhere.
-    amid_squares = node.moved and not is_whole(node.polygon)
-    return "it was stopped on its way there" if amid_squares and _hopeless(nearest_to_done(plans)) else ""
+    # The robot has brought it there. When no wider passage would let it go on, it is more likely elsewhere.
+    off_grid = node.moved and not is_whole(node.polygon)
+    return "it was stopped on its way there" if off_grid and _is_blocked_elsewhere(closest_refuted(plans)) else ""
 
 
-def nearest_to_done(plans: Sequence[tuple[int, CarryingPlan]]) -> CarryingPlan:
-    """Of plans that are impossible the last that is so by a passage, over as many squares as any of them."""
-    widest = max(level for level, _ in plans)
-    asked = [plan for level, plan in reversed(plans) if level == widest]
+def closest_refuted(plans: Sequence[tuple[int, CarryingPlan]]) -> CarryingPlan:
+    """Return the refuted plan that comes closest to leading somewhere.
+
+    It is the last one of the most permissive level that a wider passage would make possible; if there is none, the last
+    one of that level. plans : each with its level.
+    """
+    most_permissive = max(level for level, _ in plans)
+    asked = [plan for level, plan in reversed(plans) if level == most_permissive]
     return next((plan for plan in asked if plan.opens), asked[0])
 
 
-def _hopeless(plan: CarryingPlan) -> bool:
-    """Is there a passage that is too narrow, and it is not for want of that alone?"""
+def _is_blocked_elsewhere(plan: CarryingPlan) -> bool:
+    """Return whether a passage is too narrow for a refuted plan, and to widen it alone would not help."""
     return plan.passage is not None and not plan.opens

@@ -1,12 +1,14 @@
-"""Asking geometry how something can be carried, in the order that planner/asp/transport.lp chooses.
+"""Manipulation oracle: geometry is asked how an object can be carried.
 
-Choices are tried one after the other: what geometry proves impossible comes back as a fact, and rules out all that is
-harder still. What it finds may lead over squares that are not surely free: then they are what must be seen first.
+planner/asp/transport.lp chooses the order of the options, and they are tried one after the other. What geometry proves
+impossible comes back as a fact, and rules out every harder option. A plan that is found may lead over squares that are
+not surely free: then these must be seen first.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,9 +24,9 @@ from kb.objects.held_object import is_whole
 from kb.perception.frame import AROUND
 from kb.reasoning.solver import solve
 from kb.world.model import Node, WorldModel
-from planner.carrying.infeasibility import Infeasibility, refusal
+from planner.carrying.infeasibility import Infeasibility, certify
 from planner.goals.optimistic import BEYOND, BOLD, framed, hoped_floor
-from planner.goals.placement import LIKELY, SURELY, Ends, barred, hidden_behind, in_view, region_of
+from planner.goals.placement import LIKELY, SURELY, barred, hidden_behind, in_view, region_of
 from planner.navigation.subgoals import ASP
 from planner.screen.moves import is_open
 from planner.screen.projection import UNSEEN, grown
@@ -32,26 +34,44 @@ from planner.situation import Situation
 
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
-LEVELS = (0, BOLD, UNSEEN)  # of certainty, that are tried
-FEWEST = 2  # commands of a plan: to push once, and to let go
-MOST_ROUNDS = 12  # choices that geometry is asked to verify
-STRIDE = 0.25  # squares between the places at which the squares of a motion are taken down
-OFTEN = 2  # times that a thing stood against something unawares before its way must leave room for its being otherwise
-KEPT = 0.15  # squares that it keeps from walls then
-MARGIN = 0.3  # squares kept free about a thing whose outline is not whole
-WIDEST = 0.6  # at most: what is kept free on either side must leave a way through doors
+EndsFunction = Callable[[], Mapping[str, End]]  # ends by their names; it is called only where they are needed
+TRIED_LEVELS = (0, BOLD, UNSEEN)  # certainty levels of squares (planner.screen.projection), the surest first
+MIN_PLAN_COMMANDS = 2  # commands of the shortest plan with an object in hand: one push and the release (derived)
+MAX_ORACLE_ROUNDS = 12  # options that geometry is asked about for one request; a bound on time
+SWEEP_STRIDE = 0.25  # squares between the sampled places of a motion; a convention, well below one square
+CONTACTS_FOR_CLEARANCE = 2  # unexpected contacts of an object, from which on its plan must keep WALL_CLEARANCE; tuned
+WALL_CLEARANCE = 0.15  # squares that such a plan keeps from walls; tuned on random worlds (benchmarks.campaign)
+OUTLINE_MARGIN = 0.3  # squares kept free about an object off the grid, and for each contact; tuned likewise
+MAX_MARGIN = 0.6  # squares: the most that is kept free, so that doors stay passable; tuned likewise
+TURN_ARM = 0.4  # squares that a point of an object moves for each degree that it is turned, about; a convention
+MAX_REMEMBERED = 64  # answers of geometry that are remembered; a bound on memory
+
+
+class OtherObjects(StrEnum):
+    """What a plan does about the other objects, as planner/asp/transport.lp knows it.
+
+    Attributes
+    ----------
+    CLEAR : lead round all of them.
+    ASIDE : lead as if those that may be moved were not there.
+    """
+
+    CLEAR = "clear"
+    ASIDE = "aside"
 
 
 @dataclass(frozen=True)
 class ManipulationPlan:
-    """A way to carry something that geometry verified.
+    """A manipulation plan: a way to carry an object that geometry verified.
 
     Attributes
     ----------
-    plan : frame of the view's arrays. target : where to. level : of certainty of the squares it needs.
-    swept : (rows, columns) the squares that the object or Utak holding it cross.
-    aside : nodes that must be moved out of the way first. hopes : it leads over squares that are hoped to be free, and
-    is begun without a look at them.
+    plan : what geometry found, in squares, frame of the view's arrays.
+    target : the name of the end that it leads to.
+    level : the certainty level of the squares that it needs, 0 the surest.
+    swept : (rows, columns) bool, the squares that the object, or the robot holding it, crosses.
+    aside : the names of objects that must be moved out of the way first.
+    hopes : whether it is begun over squares that are only hoped to be free, without a look at them first.
     """
 
     plan: CarryingPlan
@@ -63,41 +83,50 @@ class ManipulationPlan:
 
     @property
     def askew(self) -> bool:
-        """Is the thing turned otherwise than by quarter turns?"""
+        """Return whether the object is turned otherwise than by quarter turns."""
         turns = (m for leg in self.plan.legs for m in leg.motions if isinstance(m, Rotate))
         return any(turn.degrees % 90.0 != 0.0 for turn in turns)
 
     @property
-    def short(self) -> bool:
-        """Is it done by one hold and a push or two?"""
+    def is_simple(self) -> bool:
+        """Return whether it takes one grasp, one or two pushes and no turn."""
         legs = self.plan.legs
         return len(legs) == 1 and len(legs[0].motions) <= 2 and all(isinstance(m, Translate) for m in legs[0].motions)
 
 
 @dataclass(frozen=True)
 class Request:
-    """What is to be carried, and where to. avoid : holds that failed. last : the target chosen last.
+    """A question to the oracle: how can an object be carried to one of several ends?
 
-    tight : how often it stood against something unawares: the more room is wanted about it. held : whether Utak has
-    hold of it and may go on so. turn : how many commands a turn counts for. hoped : the ends, if the floor goes on as
-    it is hoped to; by their names, worked out when asked.
+    Attributes
+    ----------
+    node : the object.
+    ends : where it shall lie, by name, in squares, frame of the view's arrays.
+    avoid : grasps that failed, as (x, y) of the robot from the middle of the object.
+    last_target : the name of the end that was chosen last time; "" for none.
+    contacts : how often the object stood against something unexpectedly. Each time more room is wanted about it.
+    held : whether the robot holds it and may go on with that grasp.
+    turn_cost : how many commands a turn counts for.
     """
 
     node: Node
     ends: Mapping[str, End]
     avoid: tuple[tuple[float, float], ...] = ()
-    last: str = ""
-    tight: int = 0
+    last_target: str = ""
+    contacts: int = 0
     held: bool = False
-    turn: float = 1.0
-    hoped: Ends = dict
+    turn_cost: float = 1.0
 
 
 class CarryingFloor(NamedTuple):
-    """Where a thing and Utak are, and which squares they may use: all in one frame.
+    """Where an object and the robot are, and which squares they may use, all in one frame.
 
-    shape : of the thing. utak : his place. free, walk : (rows, columns) squares for the thing and him with it, and for
-    him alone.
+    Attributes
+    ----------
+    shape : the outline of the object, shapely, in squares.
+    utak : the place (x, y) of the robot, in squares.
+    free : (rows, columns) bool, squares for the object and the robot holding it.
+    walk : (rows, columns) bool, squares for the robot alone.
     """
 
     shape: Any
@@ -107,73 +136,92 @@ class CarryingFloor(NamedTuple):
 
 
 class ManipulationOracle:
-    """Finds ways to carry things, and remembers what it was last told for the same question."""
+    """Finds manipulation plans, and remembers what geometry answered to the same question."""
 
     def __init__(self, pull: bool = True) -> None:
+        """Make an oracle that has been asked nothing. pull : whether a held object may be pulled."""
         self._pull = pull
-        self._known: dict[tuple[Any, ...], CarryingPlan] = {}
-        self._hopeless = False
+        self._answers: dict[tuple[Any, ...], CarryingPlan] = {}
+        self._found_nothing = False  # whether the last request had no plan
 
-    def find(self, request: Request, situation: Situation) -> ManipulationPlan | Infeasibility:
-        """The way that is chosen and verified, or why there is none."""
+    def find(
+        self, request: Request, situation: Situation, hoped: EndsFunction = dict
+    ) -> ManipulationPlan | Infeasibility:
+        """Return the plan that is chosen and verified, or why there is none.
+
+        Parameters
+        ----------
+        request : what is to be carried, and where to.
+        situation : what is believed.
+        hoped : returns the ends as they are if the floor goes on as it is hoped to. It is called only when a plan was
+            found that a bolder one may replace.
+
+        Returns
+        -------
+        ManipulationPlan or Infeasibility
+            The plan is in the frame of the view's arrays.
+        """
         shape, utak = in_view(request.node.polygon, situation), situation.model.place_on_view
-        floors = {(level, aside): _free(request.node, situation, level, aside) for level, aside in _kinds(situation)}
+        floors = {option: usable_squares(request.node, situation, *option) for option in _floor_options(situation)}
         options = [
-            f"option({name},{level},{aside},{round(10 * _way(end, shape))})"
+            f"option({name},{level},{others},{round(10 * _least_way(end, shape))})"
             for name, end in sorted(request.ends.items())
-            for level, aside in floors
+            for level, others in floors
         ]
-        options += [f"last({request.last})"] * (request.last in request.ends)
+        options += [f"last({request.last_target})"] * (request.last_target in request.ends)
         verdicts: list[str] = []
-        plans: list[tuple[int, CarryingPlan]] = []  # each with the level that it was asked for
-        for _ in range(MOST_ROUNDS):
-            choice = _choice([*options, *verdicts, *["hopeless"] * self._hopeless])
+        refuted: list[tuple[int, CarryingPlan]] = []  # each with the level that it was asked for
+        for _ in range(MAX_ORACLE_ROUNDS):
+            choice = _choose_option([*options, *verdicts, *["hopeless"] * self._found_nothing])
             if choice is None:
                 break
-            name, level, aside = choice
-            ground = CarryingFloor(shape, utak, floors[level, aside], situation.cost_maps.free(level))
-            plan = self._plan(request, request.ends[name], ground, situation.model)
-            if plan.status == "found" and self._hopeless:
-                self._hopeless = False  # what was hopeless is no more: now the best way is asked for
+            name, level, others = choice
+            floor = CarryingFloor(shape, utak, floors[level, others], situation.cost_maps.free(level))
+            plan = self._ask_geometry(request, request.ends[name], floor, situation.model)
+            if plan.status == "found" and self._found_nothing:
+                self._found_nothing = False  # the order for a hopeless request ends: now the best way is asked for
                 continue
             if plan.status == "found":
-                return self._bolder(request, _haul(plan, shape, name, level, situation, request.node), situation)
-            plans.append((level, plan))
+                found = _manipulation_plan(plan, shape, name, level, situation, request.node)
+                return self._bolder(request, found, situation, hoped)
+            refuted.append((level, plan))
             fact = "refuted" if plan.status == "impossible" else "undecided"
-            verdicts.append(f"{fact}({name},{level},{aside})")
-        self._hopeless = True
-        told = refusal(request.node, plans, situation.model)
-        own = situation.forbidden(request.node.name)
-        unsure = len(own) > 1 or (not own and situation.forbidden("utak"))  # which door; it may go where he may not
-        return replace(told, proved=False) if unsure else told
+            verdicts.append(f"{fact}({name},{level},{others})")
+        self._found_nothing = True
+        answer = certify(request.node, refuted, situation.model)
+        return replace(answer, proved=False) if _may_use_other_doors(request.node, situation) else answer
 
-    def _bolder(self, request: Request, haul: ManipulationPlan, situation: Situation) -> ManipulationPlan:
-        """What planner/asp/boldness.lp chooses of a way that was found and of those over what is hoped to be floor.
+    def _bolder(
+        self, request: Request, found: ManipulationPlan, situation: Situation, hoped: EndsFunction
+    ) -> ManipulationPlan:
+        """Return the plan that planner/asp/boldness.lp chooses: the one that was found, or a more optimistic one.
 
-        A way that is surely free is compared with bolder ones, if one may take fewer commands. One that is not is begun
-        without a look too, where the thing lies as straight after it as before.
+        A plan over squares that are surely free is compared with optimistic ones if one of these may take fewer
+        commands. A plan over hoped squares is begun without a look where it does not leave the object askew.
         """
-        if haul.level == BOLD:
-            return replace(haul, hopes=not haul.askew)
-        least = FEWEST if request.held else FEWEST + 1
-        further = isinstance(request.hoped().get(haul.target), InCorner | Between)
-        if haul.level or haul.aside or (haul.plan.commands <= least and not further):
-            return haul
-        hauls = [haul, *self._hoped(request, situation)]
+        if found.level == BOLD:
+            return replace(found, hopes=not found.askew)
+        fewest = MIN_PLAN_COMMANDS if request.held else MIN_PLAN_COMMANDS + 1
+        further = isinstance(hoped().get(found.target), InCorner | Between)
+        if found.level or found.aside or (found.plan.commands <= fewest and not further):
+            return found
+        plans = [found, *self._optimistic_plans(request, situation, hoped)]
         facts = []
-        for number, one in enumerate(hauls):
+        for number, one in enumerate(plans):
             facts.append(f"plan({number},{one.plan.commands})")
             short = further and not one.hopes
-            told = {"hopes": one.hopes, "askew": one.askew, "aside": bool(one.aside), "short": short}
-            facts += [f"{fact}({number})" for fact, so in told.items() if so]
+            holds = {"hopes": one.hopes, "askew": one.askew, "aside": bool(one.aside), "short": short}
+            facts += [f"{fact}({number})" for fact, so in holds.items() if so]
         answer = solve([ASP / "boldness.lp"], facts)
-        return hauls[answer[0].arguments[0].number] if answer else haul
+        return plans[answer[0].arguments[0].number] if answer else found
 
-    def _hoped(self, request: Request, situation: Situation) -> Iterator[ManipulationPlan]:
-        """Ways over squares that are hoped to be free, those beyond all that was seen among them: one for each end.
+    def _optimistic_plans(
+        self, request: Request, situation: Situation, hoped: EndsFunction
+    ) -> Iterator[ManipulationPlan]:
+        """Yield a plan for each end over squares that are hoped to be free, also beyond all that was seen.
 
-        There are none where nothing is hoped for. While it is open how the lattice lies they end in what was seen:
-        beyond it no look tells well where he was stopped.
+        Yields nothing where nothing is hoped for. While the frame is open, plans end within what was seen: beyond it no
+        impression tells well where a motion was stopped.
         """
         model, node = situation.model, request.node
         own, walk = framed(model.mask(node.patch)), framed(situation.cost_maps.free(0))
@@ -181,46 +229,60 @@ class ManipulationOracle:
         if (free == walk | own).all():
             return
         shape, (x, y) = in_view(node.polygon, situation), model.place_on_view
-        ground = CarryingFloor(Translate(BEYOND, BEYOND).carry(shape), (x + BEYOND, y + BEYOND), free, walk)
-        ends = {**request.ends, **({} if is_open(model) else request.hoped())}
+        floor = CarryingFloor(Translate(BEYOND, BEYOND).carry(shape), (x + BEYOND, y + BEYOND), free, walk)
+        ends = {**request.ends, **({} if is_open(model) else hoped())}
         for name, end in sorted(ends.items()):
-            plan = self._plan(request, moved(end, BEYOND, BEYOND), ground, model)
+            plan = self._ask_geometry(request, moved(end, BEYOND, BEYOND), floor, model)
             if plan.legs:
-                found = _haul(plan.shifted(-BEYOND, -BEYOND), shape, name, UNSEEN, situation, node)
-                yield replace(found, hopes=True)
+                shifted = plan.shifted(-BEYOND, -BEYOND)
+                yield replace(_manipulation_plan(shifted, shape, name, UNSEEN, situation, node), hopes=True)
 
-    def _plan(self, request: Request, end: End, ground: CarryingFloor, model: WorldModel) -> CarryingPlan:
-        """What geometry says of one end; from memory where it was asked before."""
-        shape, utak, free, walk = ground
-        held, turn, tight = request.held, request.turn, request.tight
-        avoid = request.avoid if held else (*request.avoid, *sorted(_untouchable(request.node, model)))
+    def _ask_geometry(self, request: Request, end: End, floor: CarryingFloor, model: WorldModel) -> CarryingPlan:
+        """Return what geometry says of one end; from memory where the same was asked before."""
+        shape, utak, free, walk = floor
+        held, turn, contacts = request.held, request.turn_cost, request.contacts
+        avoid = request.avoid if held else (*request.avoid, *sorted(_ambiguous_grasps(request.node, model)))
         where = end.polygon.wkb if isinstance(end, Inside) else end
-        key = (shape.wkb, free.tobytes(), free.shape, walk.tobytes(), where, utak, avoid, tight, held, turn)
-        if key not in self._known:
-            if len(self._known) > 64:
-                self._known.clear()
-            margin = min(MARGIN * (tight + (not is_whole(shape))), WIDEST)
+        key = (shape.wkb, free.tobytes(), free.shape, walk.tobytes(), where, utak, avoid, contacts, held, turn)
+        if key not in self._answers:
+            if len(self._answers) > MAX_REMEMBERED:
+                self._answers.clear()
+            margin = min(OUTLINE_MARGIN * (contacts + (not is_whole(shape))), MAX_MARGIN)
 
             def ask(free: Mask, walls: Any = None) -> CarryingPlan:
                 return plan_carrying(
                     shape, free, utak, end, margin, self._pull, avoid, walk, walls=walls, held=held, turn=turn
                 )
 
-            roomy = ask(*_with_room(free, shape)) if tight >= OFTEN else None
-            self._known[key] = roomy if roomy is not None and roomy.legs else ask(free)
-        return self._known[key]
+            roomy = ask(*_with_clearance(free, shape)) if contacts >= CONTACTS_FOR_CLEARANCE else None
+            self._answers[key] = roomy if roomy is not None and roomy.legs else ask(free)
+        return self._answers[key]
 
 
-def _with_room(free: Mask, shape: Any) -> tuple[Mask, Any]:
-    """The squares and the walls for a thing that shall keep its distance, but for where it does not now."""
+def _may_use_other_doors(node: Node, situation: Situation) -> bool:
+    """Return whether the doors forbidden here prove nothing.
+
+    Either it is open which of several doors is forbidden to the object, or a door is forbidden to the robot alone: then
+    the object may pass where the robot may not.
+    """
+    own = situation.forbidden(node.name)
+    return bool(len(own) > 1 or (not own and situation.forbidden("utak")))
+
+
+def _with_clearance(free: Mask, shape: Any) -> tuple[Mask, Any]:
+    """Return the free squares and the walls (shapely) for an object that keeps WALL_CLEARANCE, but where it touches."""
     rows, columns = free.shape
     walls = shapely.box(0, 0, columns, rows).difference(region_of(free))
-    thick = walls.union(walls.buffer(KEPT, join_style="mitre").difference(shape.buffer(2 * KEPT, join_style="mitre")))
+    near_shape = shape.buffer(2 * WALL_CLEARANCE, join_style="mitre")
+    thick = walls.union(walls.buffer(WALL_CLEARANCE, join_style="mitre").difference(near_shape))
     return free & ~grown(~np.pad(free, 1), 1)[1:-1, 1:-1], thick
 
 
-def _untouchable(node: Node, model: WorldModel) -> Iterator[tuple[float, float]]:
-    """Holds by which no direction of his frame surely names a square of an object: at a corner, as the lattice lies."""
+def _ambiguous_grasps(node: Node, model: WorldModel) -> Iterator[tuple[float, float]]:
+    """Yield the grasps, as (x, y) from the object's middle, from which no compass direction surely names its squares.
+
+    In a frame that is turned these are squares at its corners.
+    """
     covered, ways, middle = node.patch.squares(), model.frame.directions(), node.polygon.centroid
     about = {(x + dx, y + dy) for x, y in covered for dx, dy in AROUND} - covered
     for x, y in about:
@@ -228,18 +290,27 @@ def _untouchable(node: Node, model: WorldModel) -> Iterator[tuple[float, float]]
             yield x + 0.5 - middle.x, y + 0.5 - middle.y
 
 
-def _kinds(situation: Situation) -> list[tuple[int, str]]:
-    """The levels of certainty that differ, with other things where they are and without them."""
-    others = len(situation.model.objects) > 1
-    return [(level, aside) for level in LEVELS for aside in (("clear", "aside") if others else ("clear",))]
+def _floor_options(situation: Situation) -> list[tuple[int, OtherObjects]]:
+    """Return each certainty level that is tried, with other objects where they are and, if there are any, without."""
+    several = len(situation.model.objects) > 1
+    choices = (OtherObjects.CLEAR, OtherObjects.ASIDE) if several else (OtherObjects.CLEAR,)
+    return [(level, others) for level in TRIED_LEVELS for others in choices]
 
 
-def _free(node: Node, situation: Situation, level: int, aside: str) -> Mask:
-    """The squares that may be used for carrying an object: those of the level, its own, and those of movable things.
+def usable_squares(node: Node, situation: Situation, level: int, others: OtherObjects) -> Mask:
+    """Return the mask (rows, columns) of squares that may be used to carry an object.
 
-    What lies only about where it is believed to may cover what seems to be another thing right beside it, and what
-    cannot be moved may cover the squares at its rim in part: nothing is proved by those. Nor by what may be a thing and
-    no piece of wall, or go on in what seems to be wall, in which it is wedged if it did not move.
+    These are the free squares of a certainty level and the object's own; with OtherObjects.ASIDE those of movable
+    objects, too. At the level of unseen squares, which serves for proofs, also every square that may turn out free:
+    where an inexact object touches another, where an immovable object covers the squares at its rim only in part, and
+    what may be an object, or its hidden part, in what seems to be wall.
+
+    Parameters
+    ----------
+    node : the object to carry.
+    situation : what is believed.
+    level : the certainty level of squares, 0 the surest.
+    others : what is done about the other objects.
     """
     model = situation.model
     own = model.mask(node.patch)
@@ -251,7 +322,7 @@ def _free(node: Node, situation: Situation, level: int, aside: str) -> Mask:
                 free |= mask & grown(~mask, 1)
             if node.inexact and (grown(own, 1) & mask).any():
                 free |= mask
-    if aside == "aside":
+    if others == OtherObjects.ASIDE:
         for other in (other for other in model.objects if other.name != node.name):
             if other.movable > 0 and other.confidence >= SURELY:
                 free |= model.mask(other.patch)
@@ -262,8 +333,8 @@ def _free(node: Node, situation: Situation, level: int, aside: str) -> Mask:
     return free & ~barred(node, situation)
 
 
-def _way(end: End, shape: Any) -> float:
-    """The least way to a target as the crow flies, in squares."""
+def _least_way(end: End, shape: Any) -> float:
+    """Return the straight distance from a shape to an end, in squares: a lower bound of the way."""
     if isinstance(end, At):
         return math.hypot(end.pose.x, end.pose.y)
     if isinstance(end, InCorner | Between):
@@ -271,18 +342,22 @@ def _way(end: End, shape: Any) -> float:
     return float(shape.distance(end.polygon)) if isinstance(end, Inside) else 0.0
 
 
-def _choice(facts: Sequence[str]) -> tuple[str, int, str] | None:
+def _choose_option(facts: Sequence[str]) -> tuple[str, int, OtherObjects] | None:
+    """Return the end, the level and the treatment of other objects that are tried next; None when none is left."""
     answer = solve([ASP / "transport.lp"], facts)
     if not answer:
         return None
-    name, level, aside = answer[0].arguments
-    return str(name), level.number, str(aside)
+    name, level, others = answer[0].arguments
+    return str(name), level.number, OtherObjects(str(others))
 
 
-def _haul(plan: CarryingPlan, shape: Any, name: str, level: int, situation: Situation, node: Node) -> ManipulationPlan:
+def _manipulation_plan(
+    plan: CarryingPlan, shape: Any, name: str, level: int, situation: Situation, node: Node
+) -> ManipulationPlan:
+    """Return the manipulation plan of what geometry found for the end `name` over squares of a level."""
     model = situation.model
     swept = swept_squares(plan, shape, model.labels.shape)
-    # What seems to stand where the object itself is, is not in its way, nor is what may not be there at all.
+    # What seems to stand where the object itself lies is not in its way, nor is what may not be there at all.
     needed = swept & ~model.mask(node.patch) & ~situation.cost_maps.free(level)
     others = (other for other in model.objects if other.name != node.name)
     aside = tuple(other.name for other in others if (model.mask(other.patch) & needed).any())
@@ -290,14 +365,21 @@ def _haul(plan: CarryingPlan, shape: Any, name: str, level: int, situation: Situ
 
 
 def swept_squares(plan: CarryingPlan, shape: Any, size: tuple[int, ...]) -> Mask:
-    """(rows, columns): the squares that an object, and Utak with it in his hand, cross on a plan."""
+    """Return the mask of squares that an object, and the robot holding it, cross on a plan.
+
+    Parameters
+    ----------
+    plan : the plan, frame of the view's arrays.
+    shape : the outline of the object where it lies before the plan, shapely, same frame.
+    size : (rows, columns) of the mask.
+    """
     rows, columns = size
     mask: Mask = squares(shape, columns, rows)
     for leg in plan.legs:
         x, y = leg.place
         for motion in leg.motions:
-            far = math.hypot(motion.dx, motion.dy) if isinstance(motion, Translate) else 0.4 * abs(motion.degrees)
-            steps = max(1, math.ceil(far / STRIDE))
+            length = TURN_ARM * abs(motion.degrees) if isinstance(motion, Rotate) else math.hypot(motion.dx, motion.dy)
+            steps = max(1, math.ceil(length / SWEEP_STRIDE))
             shares = [step / steps for step in range(1, steps + 1)]
             mask |= squares_after(shape, [motion.part(share) for share in shares], columns, rows)
             shape = motion.carry(shape)

@@ -1,8 +1,8 @@
-"""Facts that are open and would overturn that a goal cannot be attained.
+"""Open facts that would overturn the verdict that a goal cannot be attained.
 
 `impossible` is claimed only of what holds under every completion of what is open. A wall that was only seen may be a
-thing that can be moved; floor may go on where nothing was seen; what was never moved may be more than one thing. While
-one of these is so, the verdict is `possible_if`, and its reason names the fact.
+thing that can be moved; the floor may go on where nothing was seen; a thing that was never moved may be more than one
+thing. While one of these is open, the verdict is `possible_if`, and its reason names the fact.
 """
 
 import math
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from geometry.raster.components import edged
 from kb.perception.protrusions import VERGE
 from kb.world.model import WorldModel
-from planner.decision import Decision
+from planner.decision import Decision, TaskVerdict
 from planner.goals.placement import LIKELY
 from planner.screen.moves import is_settled
 
@@ -22,43 +22,68 @@ Mask = NDArray[np.bool_]
 Place = tuple[float, float]
 
 
-def qualified(decision: Decision, model: WorldModel) -> Decision:
-    """Return a decision, with `possible_if` in place of `impossible` where an open fact would overturn that."""
-    if decision.verdict != "impossible" or decision.unless is None:
+def qualify(decision: Decision, model: WorldModel) -> Decision:
+    """Return a decision with `possible_if` in place of `impossible` where an open fact would overturn that.
+
+    Parameters
+    ----------
+    decision : what was decided; its `unless` may name the open fact already.
+    model : what is believed.
+
+    Returns
+    -------
+    Decision
+        The same decision when its verdict is another one, or when no fact is open.
+    """
+    if decision.verdict != TaskVerdict.IMPOSSIBLE or decision.unless is None:
         return decision
-    fact = decision.unless or open_fact(model, decision.near or model.place_on_view)
+    fact = decision.unless or nearest_open_fact(model, decision.near or model.place_on_view)
     if not fact:
         return decision
-    return replace(decision, why=f"{decision.why}; it may be possible if {fact}", verdict="possible_if")
+    why = f"{decision.why}; it may be possible if {fact}"
+    return replace(decision, why=why, verdict=TaskVerdict.POSSIBLE_IF)
 
 
-def verdict_if_missing(model: WorldModel, fixed: bool = False) -> str:
-    """Return the verdict when all was looked at and nothing is what the task speaks of; `limit` proves nothing.
+def verdict_if_not_found(model: WorldModel, immovable: bool = False) -> TaskVerdict:
+    """Return the verdict when everything was looked at and no object fits a parameter of the task.
 
-    Where looks contradicted each other it may have been seen and lost. fixed : something is just that, and did not
-    move; while it is open how the squares lie the robot may have pushed at another thing.
+    Where impressions contradicted each other, the object may have been seen and lost: then it is `limit`.
+
+    Parameters
+    ----------
+    model : what is believed.
+    immovable : an object fits, but did not move when it was pushed. While the frame is open, the robot may have pushed
+        at another object: then it is `limit`, too.
+
+    Returns
+    -------
+    TaskVerdict
+        IMPOSSIBLE when it is proved, else LIMIT.
     """
-    proved = model.view.sure and is_settled(model) if fixed else not model.shaken
-    return "impossible" if proved else "limit"
+    proved = model.view.sure and is_settled(model) if immovable else not model.shaken
+    return TaskVerdict.IMPOSSIBLE if proved else TaskVerdict.LIMIT
 
 
-def open_fact(model: WorldModel, near: Place) -> str:
-    """Return the open fact nearest to a place that may open another way, in words; "" when there is none.
+def nearest_open_fact(model: WorldModel, near: Place) -> str:
+    """Return the open fact nearest to a place that may allow another plan, in words; "" when there is none.
 
-    near : (x, y) in the frame of the view's arrays.
+    Parameters
+    ----------
+    model : what is believed.
+    near : (x, y) in squares, frame of the view's arrays.
     """
-    wall = _nearest(unfelt_walls(model), near)
+    wall = _nearest_square(unfelt_walls(model), near)
     if wall is not None:
         return f"the wall at {model.point_in_words(wall)}, which was never felt, is a thing that can be moved"
-    unseen = _nearest(edged(model.space) & ~model.view.seen, near)
+    unseen = _nearest_square(edged(model.space) & ~model.view.seen, near)
     if unseen is not None:
         return f"the floor goes on at {model.point_in_words(unseen)}, which was never seen"
-    whole = [node for node in model.objects if not node.moved and node.confidence >= LIKELY]
-    return f"{whole[0].name}, which was never moved, is more than one thing" if whole else ""
+    unmoved = [node for node in model.objects if not node.moved and node.confidence >= LIKELY]
+    return f"{unmoved[0].name}, which was never moved, is more than one thing" if unmoved else ""
 
 
 def unfelt_walls(model: WorldModel) -> Mask:
-    """Return the squares beside known floor on which a wall was seen and never felt: (rows, columns)."""
+    """Return the mask (rows, columns) of squares beside known floor on which a wall was seen and never felt."""
     felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE)
     things: Mask = np.zeros_like(felt)
     for node in model.objects:
@@ -67,11 +92,18 @@ def unfelt_walls(model: WorldModel) -> Mask:
     return mask
 
 
-def width_open(width: float, missing: float, sides: tuple[Place, Place], where: str) -> str:
-    """Return how wide a passage may be as far as its squares tell, in words; "" when it is too narrow all the same.
+def possible_width(width: float, missing: float, sides: tuple[Place, Place], where: str) -> str:
+    """Return the open fact that a passage is wide enough, in words; "" when it is too narrow in any case.
 
-    A wall lies anywhere in the squares in which it was seen, so each side may stand back by up to a square along each
-    axis. width, missing : squares. sides : (x, y) of the two walls. where : the passage's place, in words.
+    A wall lies anywhere in the squares in which it was seen. So each side may stand back by up to a square along each
+    axis.
+
+    Parameters
+    ----------
+    width : of the passage as it is believed, in squares.
+    missing : how much wider it must be, in squares.
+    sides : a point (x, y) on each of its two walls, in squares.
+    where : the place of the passage, in words.
     """
     across = np.abs(np.subtract(*sides)) / max(math.dist(*sides), 1e-9)
     most = width + 2 * float(across.sum())
@@ -80,8 +112,8 @@ def width_open(width: float, missing: float, sides: tuple[Place, Place], where: 
     return f"the passage at {where}, which is between {width:.2f} and {most:.2f} squares wide, is wide enough"
 
 
-def _nearest(mask: Mask, near: Place) -> Place | None:
-    """Return the middle of the square of a mask that is nearest to a place, the first of several; None for none."""
+def _nearest_square(mask: Mask, near: Place) -> Place | None:
+    """Return the middle of the marked square nearest to a place, the first of several; None for an empty mask."""
     rows, columns = np.nonzero(mask)
     if not len(rows):
         return None

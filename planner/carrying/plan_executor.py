@@ -1,12 +1,12 @@
-"""Carrying something somewhere: the plan that is being followed, checked after every look, and made anew when it fails.
+"""The plan executor: it follows a manipulation plan, checks it after every impression, and makes another when it fails.
 
-A plan is a sequence of legs: walk to a place, grasp, push and turn, let go. It is kept while the object and Utak are
-where it says and while the squares that it needs are still believed free.
+A plan is a sequence of legs: walk to a place, grasp, push and turn, release. It is kept while the object and the robot
+are where it says, and while the squares that it needs are still believed free.
 """
 
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 
 from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import Inside, Leg
@@ -17,364 +17,451 @@ from kb.objects.held_object import is_whole
 from kb.perception.frame import CENTRE
 from kb.world.model import SPACE, Node, WorldModel
 from planner.advice import Act, Go, See
+from planner.carrying import remaining_plan
 from planner.carrying.infeasibility import Infeasibility
-from planner.carrying.manipulation_oracle import ManipulationOracle, ManipulationPlan, Request
-from planner.carrying.remaining_plan import (
-    Place,
-    RemainingPlan,
-    clear_part,
-    course_of,
-    followed,
-    from_here,
-    grasp_direction,
-    square_of,
-    stands,
-)
-from planner.goals.placement import SURELY, Ends, drawn_out, region_of
+from planner.carrying.manipulation_oracle import EndsFunction, ManipulationOracle, ManipulationPlan, Request
+from planner.carrying.remaining_plan import Place, RemainingPlan, grasp_direction, is_at, square_index
+from planner.goals.placement import SURELY, drawn_out, region_of
 from planner.screen.moves import is_open
 from planner.screen.projection import Squares, grown
 from planner.sights.frontiers import Viewpoint, by_touch, sight_of
 from planner.sights.viewpoints import TAKE, inspection
 from planner.situation import Situation
 from planner.skills.failed_grasps import FailedGrasps
-from planner.skills.take_along import by_way, lead, near, out
-from planner.skills.unjam import drawn_back
+from planner.skills.take_along import detour_push, escape_push, region_near, shortest_push
+from planner.skills.unjam import retreat_push
 
-TIGHTEST, SLIPPERY = 2, 4  # times that a thing stood against something unawares before he takes it elsewhere; who slips
-MOST_PLANS = 40  # in one task
-LOOSE = 0.02  # squares by which he may stand elsewhere in his square before a turn needs more room
-OPEN_TURN, LOOSE_TURN = 2.5, 1.5  # commands that a turn counts for while it is open how the lattice, or he, lies
-NOWHERE = 0.1  # squares: who comes no further is where he was
-TEDIOUS = 8  # commands of a plan above which what is not clear about its way is looked at first
-SIGHT = "sight"  # the target of a plan that brings a thing near to where he wants to look
-ABOUT = 2  # squares beside the way of a plan within which more room would help
+# Unexpected contacts of an object after which it is grasped from elsewhere: where it is known exactly, and where it is
+# not, as after a slip. Tuned on random worlds (benchmarks.campaign).
+MAX_CONTACTS, MAX_CONTACTS_INEXACT = 2, 4
+MAX_PLANS = 40  # plans in one task; a bound on time
+PLACE_SLACK = 0.02  # squares by which the robot may stand elsewhere in its square before a turn needs more room; tuned
+TURN_COST_OPEN_FRAME = 2.5  # commands that a turn counts for while the orientation of the frame is open; tuned
+TURN_COST_OPEN_PLACE = 1.5  # commands that it counts for while the place within the square is open; tuned
+NO_PROGRESS = 0.1  # squares: less than the shortest useful motion, more than rounding; a convention
+LONG_PLAN = 8  # commands of a plan above which everything unclear about its way is looked at first; tuned
+DETOUR_ROOM = 2  # squares beside the way of a long plan within which more room would help; tuned
+VIEWPOINT_TARGET = "sight"  # the end of a plan that brings an object near to where the robot wants to look
+AWAY_TARGET = "away"  # the end of a plan that moves an object out of the way of another
 
 
 Advice = Act | Go | See | Infeasibility
 
 
-@dataclass
-class PlanExecutor:
-    """Carries things, one plan after the other.
+@dataclass(frozen=True)
+class PlanOperations:
+    """The functions of planner.carrying.remaining_plan that the executor uses; tests pass their own.
 
-    failed : holds by which a thing did not move. missed : plans that did not lead where they should, with the thing in
-    hand, since this was last set.
+    Attributes
+    ----------
+    begin_plan, revalidate, start_from_robot, safe_prefix : as of planner.carrying.remaining_plan.
     """
 
-    pull: bool = True
-    failed: FailedGrasps = field(default_factory=FailedGrasps)
-    missed: int = 0
+    begin_plan: Callable[[ManipulationPlan, Node, WorldModel], RemainingPlan] = remaining_plan.begin_plan
+    revalidate: Callable[[RemainingPlan, Mapping[str, End] | None, Situation], RemainingPlan | None] = (
+        remaining_plan.revalidate
+    )
+    start_from_robot: Callable[[RemainingPlan, Mapping[str, End], Situation], RemainingPlan | None] = (
+        remaining_plan.start_from_robot
+    )
+    safe_prefix: Callable[[ManipulationPlan, Node, Situation], ManipulationPlan | None] = remaining_plan.safe_prefix
 
-    def __post_init__(self) -> None:
-        self._oracle = ManipulationOracle(self.pull)
-        self._leader = ManipulationOracle(
-            self.pull
-        )  # asks for ways to look: that there is none tells nothing of the goal
-        self._course: RemainingPlan | None = None
-        self._led: RemainingPlan | None = None  # the plan to bring a thing near to where he wants to look
-        self._plans = 0
-        self._tight: dict[str, int] = {}  # how often a thing stood against something unawares
-        self._pushed: Translate | None = None  # the last motion with what he holds, if it was a push, and not back
-        self._went_on: Place | None = None  # where a plan was last made that goes on with the hold he has
 
-    @property
-    def begun(self) -> bool:
-        """Has he begun to carry anything?"""
-        return self._plans > 0
+class PlanExecutor:
+    """Carries objects, one plan after the other.
+
+    Attributes
+    ----------
+    pull : whether a held object may be pulled.
+    failed : the grasps by which an object did not move. Only this class changes it.
+    missed : plans that ended, with the object in hand, before they led to their end, since `forget_misses`.
+    """
+
+    def __init__(
+        self,
+        pull: bool = True,
+        oracle: ManipulationOracle | None = None,
+        plan: RemainingPlan | None = None,
+        operations: PlanOperations | None = None,
+    ) -> None:
+        """Make an executor.
+
+        Parameters
+        ----------
+        pull : whether a held object may be pulled.
+        oracle : what finds plans; a new one if None. It belongs to this executor from now on.
+        plan : a plan that is under way already; None for none.
+        operations : the functions on remaining plans; the real ones if None.
+        """
+        self.pull = pull
+        self.failed = FailedGrasps()
+        self.missed = 0
+        self._oracle = oracle or ManipulationOracle(pull)
+        # Asked for ways to a viewpoint: one that finds nothing there shall not change the order of questions elsewhere.
+        self._viewpoint_oracle = ManipulationOracle(pull)
+        self._plan = plan
+        self._viewpoint_plan: RemainingPlan | None = None  # to bring an object near to where the robot wants to look
+        self._operations = operations or PlanOperations()
+        self._plans = 0  # how many were made
+        self._contacts: dict[str, int] = {}  # how often an object stood against something unexpectedly
+        self._pushed: Translate | None = None  # the last motion with a held object, if a push, and not a retreat
+        self._went_on: Place | None = None  # where a plan was last made that goes on with the present grasp
 
     @property
     def turns(self) -> bool:
-        """Does the plan under way turn what it carries?"""
-        legs = () if self._course is None else self._course.legs
+        """Return whether the plan under way turns its object."""
+        legs = () if self._plan is None else self._plan.legs
         return any(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
 
-    def advise(self, node: Node, ends: Mapping[str, End], situation: Situation, hoped: Ends = dict) -> Advice:
-        """What to do to carry an object to one of several ends. hoped : where they are if the floor goes on unseen."""
-        before, self._course = self._course, None
-        course = None
+    def advise(self, node: Node, ends: Mapping[str, End], situation: Situation, hoped: EndsFunction = dict) -> Advice:
+        """Return what to do to carry an object to one of several ends.
+
+        The plan under way is followed while it holds; else the failure is answered, or another plan is made.
+
+        Parameters
+        ----------
+        node : the object.
+        ends : where it shall lie, by name, frame of the view's arrays.
+        situation : what is believed.
+        hoped : returns the ends as they are if the floor goes on as it is hoped to.
+
+        Returns
+        -------
+        Act, Go, See or Infeasibility
+        """
+        before, self._plan = self._plan, None
+        plan = None
         if before is not None:
-            course = followed(before, ends if before.name == node.name else None, situation)
-        if course is None:
+            plan = self._operations.revalidate(before, ends if before.name == node.name else None, situation)
+        if plan is None:
             self.missed += before is not None and before.grasped and not before.ended
-            failure = self._failure(before, situation.model)
-            if failure is not None:
-                return failure
+            answer = self._answer_failure(before, situation.model)
+            if answer is not None:
+                return answer
         last = before.target if before is not None else ""
         while True:
-            found = course or self._planned(self._request(node, ends, last, situation.model, hoped), situation)
+            found = plan or self._make_plan(self._request(node, ends, last, situation.model), situation, hoped)
             if isinstance(found, See | Infeasibility):
                 return found
-            advice = self._next(found, ends if found.name == node.name else {}, situation)
+            advice = self._next_step(found, ends if found.name == node.name else {}, situation)
             if advice is not None:
                 return advice
-            self.failed.blame(situation.model.object(found.name), situation.model)
-            course, self._course = None, None
+            self.failed.record(situation.model.object(found.name), situation.model)
+            plan, self._plan = None, None
 
-    def refused(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Infeasibility | None:
-        """Why an object cannot be carried to any of several ends, if it cannot."""
+    def infeasibility(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Infeasibility | None:
+        """Return why an object cannot be carried to any of several ends; None when a plan is found.
+
+        Parameters
+        ----------
+        node : the object.
+        ends : where it shall lie, by name, frame of the view's arrays.
+        situation : what is believed.
+        """
         found = self._oracle.find(self._request(node, ends, "", situation.model), situation)
         return found if isinstance(found, Infeasibility) else None
 
-    def given_up(self, model: WorldModel) -> Act:
-        """What to do when that which he holds went round in circles: let go of it, and do not take it so again."""
-        assert model.held is not None
-        self._course = None
-        self.failed.blame(model.object(model.held), model)
-        return Act(Release(), f"{model.held} goes round in circles")
+    def forget_misses(self) -> None:
+        """Count missed plans from zero again."""
+        self.missed = 0
 
-    def gone_on(self, node: Node, situation: Situation) -> Act | None:
-        """The next command of the plan under way for what he holds, if the world is still as it says."""
-        if self._course is None or self._course.name != node.name or situation.model.held != node.name:
+    def release_looping(self, model: WorldModel) -> Act:
+        """Return the release of a held object that was carried in a loop, and mark its grasp as failed."""
+        assert model.held is not None
+        self._plan = None
+        self.failed.record(model.object(model.held), model)
+        return Act(Release(), f"{model.held} is released, because it was carried round in circles")
+
+    def continue_plan(self, node: Node, situation: Situation) -> Act | None:
+        """Return the next command of the plan under way for the held object; None when there is no such plan.
+
+        Returns None, too, when the plan no longer holds.
+        """
+        if self._plan is None or self._plan.name != node.name or situation.model.held != node.name:
             return None
-        course = followed(self._course, None, situation)
-        if course is None:
+        plan = self._operations.revalidate(self._plan, None, situation)
+        if plan is None:
             return None
-        advice = self._next(course, {}, situation)
+        advice = self._next_step(plan, {}, situation)
         return advice if isinstance(advice, Act) else None
 
-    def taken_along(self, node: Node, squares: Squares, fetched: bool, situation: Situation) -> Act | Go | None:
-        """Take an object along to where he wants to look; None when he had better walk there.
+    def take_along(self, node: Node, squares: Squares, fetch: bool, situation: Situation) -> Act | Go | None:
+        """Return what takes an object along to where the robot wants to look; None when it had better walk there.
 
-        What he holds by one straight push, if that leads there. fetched : else, or when he has not got hold of it, near
-        there by one hold and a push or two.
+        A held object is taken along by one straight push, if that leads there.
+
+        Parameters
+        ----------
+        node : the object.
+        squares : flat indices of the squares from which the robot wants to look.
+        fetch : whether an object that is not held, or that no straight push takes there, is brought near by one grasp
+            and one or two pushes.
+        situation : what is believed.
         """
         model = situation.model
-        if node.stuck or self._plans >= MOST_PLANS or model.held not in (None, node.name):
+        if node.stuck or self._plans >= MAX_PLANS or model.held not in (None, node.name):
             return None
-        push = lead(node, squares, situation) if self.pull and model.held is not None else None
+        push = shortest_push(node, squares, situation) if self.pull and model.held is not None else None
         if push is not None:
-            return _departing(push, f"{node.name} is taken along", model)
-        return self._led_near(node, squares, situation) if fetched else None
+            return _unplanned(push, f"{node.name} is taken along", model)
+        return self._bring_near(node, squares, situation) if fetch else None
 
-    def by_way_of(self, node: Node, squares: Squares, situation: Situation) -> Act | None:
-        """The push with what he holds after which he sees something and then needs one more to where the plan leads.
+    def detour(self, node: Node, squares: Squares, situation: Situation) -> Act | None:
+        """Return the push with the held object to one of some squares, from which one more leads to the plan's end.
 
-        It takes the place of the command that was advised; None when there is none.
+        It may take the place of the command that was advised last. Returns None when there is no such push.
+
+        Parameters
+        ----------
+        node : the held object.
+        squares : flat indices of the squares from which the robot wants to look.
+        situation : what is believed.
         """
-        course = self._course
-        if not self.pull or self._plans >= MOST_PLANS or course is None or course.name != node.name:
+        plan = self._plan
+        if not self.pull or self._plans >= MAX_PLANS or plan is None or plan.name != node.name:
             return None
-        if len(course.legs) != 1 or not course.grasped:
+        if len(plan.legs) != 1 or not plan.grasped:
             return None
-        if self._pushed is None or not all(isinstance(motion, Translate) for motion in course.legs[0].motions):
+        if self._pushed is None or not all(isinstance(motion, Translate) for motion in plan.legs[0].motions):
             return None
-        end, middle = course.end.centroid, node.polygon.centroid
-        push = by_way(node, squares, (end.x - middle.x, end.y - middle.y), situation)
-        return None if push is None else _departing(push, f"{node.name} is taken along", situation.model)
+        end, middle = plan.end.centroid, node.polygon.centroid
+        push = detour_push(node, squares, (end.x - middle.x, end.y - middle.y), situation)
+        return None if push is None else _unplanned(push, f"{node.name} is taken along", situation.model)
 
-    def led_out(self, node: Node, situation: Situation) -> Act | None:
-        """Lead what he holds to where it does not shut him in, to take it otherwise; None where that cannot be."""
-        push = out(node, situation) if self.pull and not node.stuck and self._plans < MOST_PLANS else None
+    def lead_out(self, node: Node, situation: Situation) -> Act | None:
+        """Return the push after which the held object no longer shuts the robot in, and mark the grasp as failed.
+
+        Returns None where no push does that.
+        """
+        push = escape_push(node, situation) if self.pull and not node.stuck and self._plans < MAX_PLANS else None
         if push is None:
             return None
-        self.failed.blame(node, situation.model)
-        return _departing(push, f"{node.name} is led out, to be taken otherwise", situation.model)
+        self.failed.record(node, situation.model)
+        return _unplanned(push, f"{node.name} is led out of the nook, to be grasped from elsewhere", situation.model)
 
-    def keep_to(self, name: str) -> None:
-        """Give up the plan under way, but for one to carry that thing."""
-        if self._course is not None and self._course.name != name:
-            self._course = None
+    def drop_other_plan(self, name: str) -> None:
+        """Drop the plan under way unless it carries the object `name`."""
+        if self._plan is not None and self._plan.name != name:
+            self._plan = None
 
     def depart(self, act: Act) -> None:
-        """Know that a command is given: one that no plan asks for ends the plan under way."""
-        if act.departs is not None:
-            self._course, self._plans, self._pushed = None, self._plans + 1, act.departs
+        """Note that a command is given. A push that no plan asks for ends the plan under way."""
+        if act.unplanned_push is not None:
+            self._plan, self._plans, self._pushed = None, self._plans + 1, act.unplanned_push
 
-    def _led_near(self, node: Node, squares: Squares, situation: Situation) -> Act | Go | None:
-        """Bring an object near to where he wants to look, by one hold and a push or two, as was begun if it was."""
-        course, self._led = self._led, None
-        end = near(squares, situation)
+    def _bring_near(self, node: Node, squares: Squares, situation: Situation) -> Act | Go | None:
+        """Return the next command to bring an object near to some squares by one grasp and one or two pushes."""
+        plan, self._viewpoint_plan = self._viewpoint_plan, None
+        end = region_near(squares, situation)
         if end is None:
             return None
-        ends = {SIGHT: end}
-        if course is not None:
-            course = followed(course, ends, situation) if course.name == node.name else None
-        if course is None:
-            haul = self._leader.find(self._request(node, ends, "", situation.model), situation)
-            if isinstance(haul, Infeasibility) or haul.level or haul.aside or not haul.short:
+        ends = {VIEWPOINT_TARGET: end}
+        if plan is not None:
+            plan = self._operations.revalidate(plan, ends, situation) if plan.name == node.name else None
+        if plan is None:
+            found = self._viewpoint_oracle.find(self._request(node, ends, "", situation.model), situation)
+            if isinstance(found, Infeasibility) or found.level or found.aside or not found.is_simple:
                 return None
             self._plans += 1
-            course = course_of(haul, node, situation.model)
-        advice = self._next(course, ends, situation)
-        self._led = self._course
+            plan = self._operations.begin_plan(found, node, situation.model)
+        advice = self._next_step(plan, ends, situation)
+        self._viewpoint_plan = self._plan
         return advice
 
-    # -- when it fails ---------------------------------------------------------------------------
+    # -- when a plan fails -----------------------------------------------------------------------
 
-    def _failure(self, course: RemainingPlan | None, model: WorldModel) -> Advice | None:
-        """What to do when a motion with something in hand did not move it: try once more, then from elsewhere.
+    def _answer_failure(self, plan: RemainingPlan | None, model: WorldModel) -> Advice | None:
+        """Return what to do when a motion did not move the held object: draw it back once, then release it.
 
-        A thing can hardly be pushed along what it touches by who slips, or believes the lattice a degree beside, for it
-        is pushed against that as well: what has moved before is first drawn back.
+        An object that touches something can hardly be pushed along it after a slip, or where the frame is believed a
+        degree off, for it is pushed against it as well. So an object that has moved before is drawn back first. plan :
+        the one that no longer holds. Returns None when nothing failed.
         """
         held = model.object(model.held) if model.held else None
-        if held is None and course is not None and course.grasped:
-            self.failed.blame(model.object(course.name), model)
+        if held is None and plan is not None and plan.grasped:
+            self.failed.record(model.object(plan.name), model)
         if held is None or not held.stuck:
             return None
         if held.moved:
-            self._tight[held.name] = self._tight.get(held.name, 0) + 1
+            self._contacts[held.name] = self._contacts.get(held.name, 0) + 1
         pushed, self._pushed = self._pushed, None
-        if held.stuck > 1 or self._tight.get(held.name, 0) > (SLIPPERY if held.inexact else TIGHTEST):
-            self.failed.blame(held, model)
+        bound = MAX_CONTACTS_INEXACT if held.inexact else MAX_CONTACTS
+        if held.stuck > 1 or self._contacts.get(held.name, 0) > bound:
+            self.failed.record(held, model)
         elif held.moved and pushed is not None and self.pull:
-            doubted = self._tight[held.name] > 1 or not is_whole(held.polygon)
-            drawn = drawn_back(held, pushed, model, doubted)
-            return Act(_command(drawn, model), f"{held.name} is drawn back from what it stands against")
-        return Act(Release(), f"{held.name} did not move")
+            doubted = self._contacts[held.name] > 1 or not is_whole(held.polygon)
+            retreat = retreat_push(held, pushed, model, doubted)
+            return Act(_command(retreat, model), f"{held.name} is drawn back from what stopped it")
+        return Act(Release(), f"{held.name} is released, because it did not move")
 
-    # -- making one ------------------------------------------------------------------------------
+    # -- making a plan ---------------------------------------------------------------------------
 
-    def _planned(self, request: Request, situation: Situation) -> RemainingPlan | See | Infeasibility:
+    def _make_plan(
+        self, request: Request, situation: Situation, hoped: EndsFunction
+    ) -> RemainingPlan | See | Infeasibility:
+        """Return a new plan; or what must be seen before it is begun, or why there is none."""
         node, asked = request.node, request
-        haul = self._oracle.find(request, situation)
-        if isinstance(haul, Infeasibility) and situation.model.held == node.name and not request.held:
-            request = replace(request, held=True)  # to let go and take it otherwise does not help either
-            haul = self._oracle.find(request, situation)
-        if isinstance(haul, Infeasibility):
-            again = not haul.proved and self.failed.forgiven(node)
-            return self._planned(replace(asked, avoid=self.failed.of(node)), situation) if again else haul
-        if haul.aside:
-            things = (thing for thing in situation.model.objects if thing.name in haul.aside)
-            touch = _first(by_touch(situation.cost_maps, thing) for thing in things if thing.confidence < SURELY)
-            if touch is not None:
-                return touch
-            cleared = (self._clearing(other, haul, situation) for other in situation.model.objects)
-            first = next((found for found in cleared if found is not None), None)
-            if first is None:
-                unclear = (situation.model.object(name) for name in haul.aside)
-                looks = (
-                    inspection(situation.cost_maps, o, chance=1.0, to=TAKE) for o in unclear if o is not None and o.open
-                )
-                look = _first(looks)
-                if look is not None:
-                    return look
-                why = f"{haul.aside[0]} is in the way of {node.name}, and cannot be cleared"
-                return Infeasibility(False, lambda: why)
-            node, haul = first
-        seen = self._seen(haul, node, situation)
+        found = self._oracle.find(request, situation, hoped)
+        if isinstance(found, Infeasibility) and situation.model.held == node.name and not request.held:
+            request = replace(request, held=True)  # to release the object and grasp it otherwise does not help either
+            found = self._oracle.find(request, situation, hoped)
+        if isinstance(found, Infeasibility):
+            again = not found.proved and self.failed.forgive(node)
+            if again:
+                return self._make_plan(replace(asked, avoid=self.failed.grasps(node)), situation, hoped)
+            return found
+        if found.aside:
+            cleared = self._clear_way(found, node, situation)
+            if isinstance(cleared, See | Infeasibility):
+                return cleared
+            node, found = cleared
+        seen = self._needed_view(found, node, situation)
         if seen is not None:
-            clear = clear_part(haul, node, situation)
-            if clear is None:
+            prefix = self._operations.safe_prefix(found, node, situation)
+            if prefix is None:
                 return seen
-            haul = clear
-        if not haul.plan.legs:
-            return Infeasibility(False, lambda: f"{node.name} seems to lie there already")
+            found = prefix
+        if not found.plan.legs:
+            return Infeasibility(False, f"{node.name} seems to lie there already")
         self._went_on = situation.model.place if request.held else None
         self._plans += 1
-        if self._plans > MOST_PLANS:
-            return Infeasibility(False, lambda: f"gave up after {MOST_PLANS} plans")
-        return course_of(haul, node, situation.model)
+        if self._plans > MAX_PLANS:
+            return Infeasibility(False, f"the robot gave up after {MAX_PLANS} plans")
+        return self._operations.begin_plan(found, node, situation.model)
 
-    def _request(
-        self, node: Node, ends: Mapping[str, End], last: str, model: WorldModel, hoped: Ends = dict
-    ) -> Request:
-        """What to ask for. He goes on with the hold he has, but not where doing so has brought him nowhere."""
-        nowhere = self._went_on is not None and math.dist(self._went_on, model.place) < NOWHERE
-        held = model.held == node.name and not nowhere
-        tight = self._tight.get(node.name, 0) + (model.frame.origin != CENTRE and max(model.leeway) > LOOSE)
-        return Request(node, ends, self.failed.of(node), last, tight, held, _price_of_a_turn(model), hoped)
+    def _clear_way(
+        self, found: ManipulationPlan, node: Node, situation: Situation
+    ) -> tuple[Node, ManipulationPlan] | See | Infeasibility:
+        """Return the first object that a plan needs moved aside, with a plan for that; or a look at it, or why not."""
+        things = (thing for thing in situation.model.objects if thing.name in found.aside)
+        touch = _first_see(by_touch(situation.cost_maps, thing) for thing in things if thing.confidence < SURELY)
+        if touch is not None:
+            return touch
+        cleared = (self._plan_aside(other, found, situation) for other in situation.model.objects)
+        first = next((plan for plan in cleared if plan is not None), None)
+        if first is not None:
+            return first
+        named = (situation.model.object(name) for name in found.aside)
+        unclear = (other for other in named if other is not None and other.open)
+        look = _first_see(inspection(situation.cost_maps, other, chance=1.0, to=TAKE) for other in unclear)
+        if look is not None:
+            return look
+        why = f"{found.aside[0]} is in the way of {node.name}, and cannot be moved aside"
+        return Infeasibility(False, why)
 
-    def _clearing(
-        self, other: Node, haul: ManipulationPlan, situation: Situation
+    def _request(self, node: Node, ends: Mapping[str, End], last: str, model: WorldModel) -> Request:
+        """Return the question to the oracle. The present grasp may be kept, but not where it has led to no progress."""
+        stalled = self._went_on is not None and math.dist(self._went_on, model.place) < NO_PROGRESS
+        held = model.held == node.name and not stalled
+        contacts = self._contacts.get(node.name, 0)
+        contacts += model.frame.origin != CENTRE and max(model.leeway) > PLACE_SLACK
+        return Request(node, ends, self.failed.grasps(node), last, contacts, held, _turn_cost(model))
+
+    def _plan_aside(
+        self, other: Node, found: ManipulationPlan, situation: Situation
     ) -> tuple[Node, ManipulationPlan] | None:
-        """A way to carry a thing off the squares that a plan needs, if it stands there and there is one."""
-        if other.name not in haul.aside or other.polygon is None or other.movable == 0:
+        """Return an object and a plan that carries it off the squares that another plan needs; None for no such."""
+        if other.name not in found.aside or other.polygon is None or other.movable == 0:
             return None
         room = situation.cost_maps.free(0) | situation.model.mask(other.patch)
-        end = drawn_out(other, haul.swept, situation) or Inside(region_of(room & ~haul.swept))
-        found = self._oracle.find(self._request(other, {"away": end}, "", situation.model), situation)
-        return (other, found) if isinstance(found, ManipulationPlan) and found.plan.legs and not found.aside else None
+        end = drawn_out(other, found.swept, situation) or Inside(region_of(room & ~found.swept))
+        request = self._request(other, {AWAY_TARGET: end}, "", situation.model)
+        plan = self._oracle.find(request, situation)
+        return (other, plan) if isinstance(plan, ManipulationPlan) and plan.plan.legs and not plan.aside else None
 
-    def _seen(self, haul: ManipulationPlan, node: Node, situation: Situation) -> See | None:
-        """What of the way of a plan must be looked at before it is begun, if a look may tell more of it.
+    def _needed_view(self, found: ManipulationPlan, node: Node, situation: Situation) -> See | None:
+        """Return what of the way of a plan must be seen before it is begun; None when no look tells more of it.
 
-        All that is believed floor is trusted: to be stopped now and then costs less than to look each time. And to let
-        go, walk, come back and take it again costs more than to be stopped by what is not floor. So is what is hoped to
-        be free. But when a plan takes many commands, then what takes away the room for fewer, and may be none, is
-        looked at too.
+        All that is believed floor is trusted: to be stopped now and then costs less than to look each time. To release
+        the object, walk, come back and grasp it again costs more than to be stopped, so a plan that goes on with the
+        present grasp is trusted, and so is one over hoped squares. But before a long plan, a square that takes away the
+        room for a shorter one, and may be free, is looked at too.
         """
-        model, tedious = situation.model, haul.plan.commands > TEDIOUS
-        if haul.hopes or (haul.plan.goes_on and not tedious):
+        model, is_long = situation.model, found.plan.commands > LONG_PLAN
+        if found.hopes or (found.plan.goes_on and not is_long):
             return None
-        unsure = haul.swept & ~situation.cost_maps.free(0)
-        if tedious:
-            unsure |= grown(haul.swept, ABOUT) & (model.view.state == OPEN) & (model.view.probability > SPACE)
+        unsure = found.swept & ~situation.cost_maps.free(0)
+        if is_long:
+            unsure |= grown(found.swept, DETOUR_ROOM) & (model.view.state == OPEN) & (model.view.probability > SPACE)
         unsure &= ~model.mask(node.patch)
         if not unsure.any():
             return None
-        viewpoint = sight_of(situation.cost_maps, unsure, f"the way for {node.name} is not clear")
+        viewpoint = sight_of(situation.cost_maps, unsure, f"it is not clear whether the way for {node.name} is free")
         return See(viewpoint) if len(viewpoint.squares) else None
 
-    # -- following it ----------------------------------------------------------------------------
+    # -- following a plan ------------------------------------------------------------------------
 
-    def _next(self, course: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
-        """The next command of a plan, None when the thing is not felt there. ends : where it may lead, if known."""
-        self._course = course
-        leg, model = course.legs[0], situation.model
-        if not course.grasped:
-            return self._taking(course, leg, ends, situation)
+    def _next_step(self, plan: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
+        """Return the next step of a plan; None when the object is not felt where it should be grasped.
+
+        ends : where the plan may lead, if that is known.
+        """
+        self._plan = plan
+        leg, model = plan.legs[0], situation.model
+        if not plan.grasped:
+            return self._take(plan, leg, ends, situation)
         if not leg.motions:
-            self._course = replace(course, legs=course.legs[1:], grasped=False, place=None)
-            return Act(Release(), f"{course.name} is where it shall be let go")
+            self._plan = replace(plan, legs=plan.legs[1:], grasped=False, place=None)
+            return Act(Release(), f"{plan.name} is where it shall be released")
         motion = leg.motions[0]
-        polygon = motion.carry(course.polygon)
+        polygon = motion.carry(plan.polygon)
         x, y = model.place
         place = (x + motion.dx, y + motion.dy) if isinstance(motion, Translate) else (x, y)
         self._pushed = motion if isinstance(motion, Translate) else None
         rest = replace(leg, motions=leg.motions[1:])
-        self._course = replace(course, legs=(rest, *course.legs[1:]), polygon=polygon, place=place)
-        return Act(_command(motion, model), f"{course.name} is brought to {course.target}")
+        self._plan = replace(plan, legs=(rest, *plan.legs[1:]), polygon=polygon, place=place)
+        return Act(_command(motion, model), f"{plan.name} is carried to its place ({plan.target})")
 
-    def _taking(
-        self, course: RemainingPlan, leg: Leg, ends: Mapping[str, End], situation: Situation
-    ) -> Act | Go | None:
-        """Walk to where the object is taken, and take it: from where he stands, if that does as well.
+    def _take(self, plan: RemainingPlan, leg: Leg, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
+        """Return the step to where the object is grasped, or the grasp; from the present place if that does as well.
 
-        None where nothing is felt that could be it: it lies otherwise than he believes, and he would grasp at air.
+        Returns None where nothing is felt that could be the object: it lies otherwise than believed.
         """
         model = situation.model
         there = model.view.locate(*model.place) == model.view.locate(*leg.place)
-        begun = course if stands(model, leg.place) else None
-        if begun is None and there and self.pull:  # who may only push stands where that was made sure of
-            begun = from_here(course, ends, situation)
-        if begun is not None and model.held == course.name:
-            self._course = replace(begun, grasped=True, place=begun.legs[0].place)
-            return self._next(self._course, ends, situation)
+        begun = plan if is_at(model, leg.place) else None
+        if begun is None and there and self.pull:  # where pulling is not allowed, only the planned place was verified
+            begun = self._operations.start_from_robot(plan, ends, situation)
+        if begun is not None and model.held == plan.name:
+            self._plan = replace(begun, grasped=True, place=begun.legs[0].place)
+            return self._next_step(self._plan, ends, situation)
         if model.held is not None:
-            return Act(Release(), f"{model.held} is let go, to be taken elsewhere")
+            return Act(Release(), f"{model.held} is released, to be grasped from elsewhere")
         if not there:
-            return Go(square_of(leg.place, model), leg.place, f"{course.name} can be taken from there")
+            return Go(square_index(leg.place, model), leg.place, f"{plan.name} can be grasped from there")
         if begun is None:
             dx, dy = leg.place[0] - model.place[0], leg.place[1] - model.place[1]
-            return Act(Move(*model.frame.to_utak(dx, dy)), "to the middle of the square")
-        direction = grasp_direction(leg, course, model)
+            return Act(Move(*model.frame.to_utak(dx, dy)), "the robot moves to the middle of its square")
+        direction = grasp_direction(leg, plan, model)
         if direction is None:
             return None
-        self._course, self._pushed = replace(begun, grasped=True, place=begun.legs[0].place), None
-        return Act(Grasp(direction), f"{course.name} is taken to be carried to {course.target}")
+        self._plan, self._pushed = replace(begun, grasped=True, place=begun.legs[0].place), None
+        return Act(Grasp(direction), f"{plan.name} is grasped, to be carried to its place ({plan.target})")
 
 
-def _first(looks: Iterable[Viewpoint]) -> See | None:
-    """To see what the first of some looks shows for which there is a place."""
+def _first_see(looks: Iterable[Viewpoint]) -> See | None:
+    """Return the advice to use the first of some viewpoints that has squares; None for none."""
     return next((See(look) for look in looks if len(look.squares)), None)
 
 
-def _price_of_a_turn(model: WorldModel) -> float:
-    """How many commands a turn counts for: it leaves a thing askew when it is open how the lattice lies, and elsewhere
-    when it is open where in his square he stands.
+def _turn_cost(model: WorldModel) -> float:
+    """Return how many commands a turn counts for.
+
+    A turn leaves the object askew while the orientation of the frame is open, and elsewhere than believed while the
+    place of the robot within its square is open.
     """
     if is_open(model):
-        return OPEN_TURN
-    return LOOSE_TURN if max(model.leeway) > LOOSE else 1.0
+        return TURN_COST_OPEN_FRAME
+    return TURN_COST_OPEN_PLACE if max(model.leeway) > PLACE_SLACK else 1.0
 
 
-def _departing(push: Translate, why: str, model: WorldModel) -> Act:
-    """A push that no plan asks for."""
+def _unplanned(push: Translate, why: str, model: WorldModel) -> Act:
+    """Return a push, in squares, map frame, that no plan asks for, as an act."""
     return Act(_command(push, model), why, push)
 
 
 def _command(motion: Motion, model: WorldModel) -> Command:
+    """Return the command for a motion of the held object, which is in squares, map frame."""
     if isinstance(motion, Rotate):
         return Turn(motion.degrees)
     return Push(*model.frame.to_utak(motion.dx, motion.dy))

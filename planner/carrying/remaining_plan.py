@@ -1,4 +1,8 @@
-"""A course: what is left of a plan to carry something, in the frame of the lattice, and what may be done of it."""
+"""The remaining plan: what is left of a manipulation plan, in the map frame.
+
+It is checked against the world after every impression, may start where the robot stands, and may be cut to the part
+that leads over squares known to be free.
+"""
 
 import math
 from collections.abc import Mapping
@@ -24,19 +28,26 @@ from planner.situation import Situation
 
 Mask = NDArray[np.bool_]
 Place = tuple[float, float]
-NEAR = 1e-6  # squares: within which Utak is where a plan says
-STILL = 2  # level of certainty of squares over which a plan is not made, but kept
-ALIKE = 1e-3  # squares^2 by which an object may lie otherwise than a plan says
-FARTHER = 4.0  # squares that a plan must bring a thing on to be begun before all of its way is seen
+PLACE_TOLERANCE = 1e-6  # squares within which the robot is where a plan says: rounding only
+KEPT_LEVEL = 2  # certainty level of squares over which a plan is kept, though a surer one was asked for; a convention
+AREA_TOLERANCE = 1e-3  # squares^2 by which an object may lie otherwise than a plan says: rounding of outlines
+MIN_PREFIX = 4.0  # squares that a push must lead to be begun before all of its way is seen; tuned on random worlds
 
 
 @dataclass(frozen=True)
 class RemainingPlan:
-    """What is left of a plan, in the frame of the lattice.
+    """What is left of a manipulation plan, in squares, map frame.
 
-    name : of the object. polygon, place : where it and Utak must be now for the plan to hold; place None while he
-    walks. legs : the first is under way; grasped tells whether he should hold the object.
-    needed : squares that must stay free, level : of certainty at which they were.
+    Attributes
+    ----------
+    name : of the object that is carried.
+    target : the name of the end that it leads to.
+    polygon : the outline (shapely) that the object must have now for the plan to hold.
+    legs : what is left to do; the first one is under way.
+    needed : the squares that must stay free.
+    level : the certainty level at which they were free, 0 the surest.
+    place : where the robot must stand now for the plan to hold; None while it walks.
+    grasped : whether the robot should hold the object.
     """
 
     name: str
@@ -50,132 +61,149 @@ class RemainingPlan:
 
     @property
     def ended(self) -> bool:
-        """Is nothing left of it but to let go? That is done only when something else is wanted of his hand."""
+        """Return whether nothing is left but to release the object. That is done only when the hand is needed."""
         return not self.legs or (self.grasped and len(self.legs) == 1 and not self.legs[0].motions)
 
     @property
     def end(self) -> Any:
-        """Where it leads when all is as it says."""
+        """Return the outline (shapely) of the object after the plan, map frame."""
         polygon = self.polygon
         for motion in (motion for leg in self.legs for motion in leg.motions):
             polygon = motion.carry(polygon)
         return polygon
 
 
-def course_of(haul: ManipulationPlan, node: Node, model: WorldModel) -> RemainingPlan:
-    """The course of a plan that was just made."""
+def begin_plan(found: ManipulationPlan, node: Node, model: WorldModel) -> RemainingPlan:
+    """Return all of a manipulation plan that was just made, as a remaining plan in the map frame.
+
+    Parameters
+    ----------
+    found : the plan, frame of the view's arrays.
+    node : the object that it carries.
+    model : what is believed.
+    """
     west, south = model.view.west, model.view.south
-    legs = tuple(shifted(leg, west, south) for leg in haul.plan.legs)
-    needed = Patch(west, south, haul.swept)
-    return RemainingPlan(node.name, haul.target, node.polygon, legs, needed, haul.level)
+    legs = tuple(shifted(leg, west, south) for leg in found.plan.legs)
+    needed = Patch(west, south, found.swept)
+    return RemainingPlan(node.name, found.target, node.polygon, legs, needed, found.level)
 
 
-def followed(course: RemainingPlan, ends: Mapping[str, End] | None, situation: Situation) -> RemainingPlan | None:
-    """A course, if the world is still as it says; None if it is not.
+def revalidate(plan: RemainingPlan, ends: Mapping[str, End] | None, situation: Situation) -> RemainingPlan | None:
+    """Return a plan, with the object where it is now believed to lie, if the plan still holds; else None.
 
-    ends : where it must lead; None where it only clears the way for another thing.
+    It holds while robot and object are where it says, the squares that it needs are believed free, and it leads to one
+    of the ends. Where the object lies otherwise than it says, the motions are verified anew from there.
+
+    Parameters
+    ----------
+    plan : the remaining plan.
+    ends : where it must lead, by name, frame of the view's arrays; None when it only clears the way for another object.
+    situation : what is believed.
     """
     model = situation.model
-    node = model.object(course.name)
-    if node is None or node.polygon is None or course.ended:
+    node = model.object(plan.name)
+    if node is None or node.polygon is None or plan.ended:
         return None
-    if course.place is not None and not stands(model, course.place):
+    if plan.place is not None and not is_at(model, plan.place):
         return None
-    if course.grasped and model.held != course.name:
+    if plan.grasped and model.held != plan.name:
         return None
-    if not course.grasped and situation.cost_maps.nearest(square_of(course.legs[0].place, model)) is None:
+    if not plan.grasped and situation.cost_maps.nearest(square_index(plan.legs[0].place, model)) is None:
         return None
-    free = _room(course, node, situation)
-    if not free[model.mask_within(course.needed)].all():
+    free = _kept_squares(plan, node, situation)
+    if not free[model.mask_within(plan.needed)].all():
         return None
-    if shapely.symmetric_difference(node.polygon, course.polygon).area < ALIKE:
-        if ends is None or course.target in ends:
-            return course
-        end = in_view(course.end, situation)
+    if shapely.symmetric_difference(node.polygon, plan.polygon).area < AREA_TOLERANCE:
+        if ends is None or plan.target in ends:
+            return plan
+        end = in_view(plan.end, situation)
     else:
-        end = None if node.stuck else _led(course, node, free, situation)
+        end = None if node.stuck else _end_outline(plan, node, free, situation)
     if end is None or (ends is not None and not lands_in_one(ends, end)):
         return None
-    return replace(course, polygon=node.polygon)
+    return replace(plan, polygon=node.polygon)
 
 
-def from_here(course: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> RemainingPlan | None:
-    """A course, begun where he stands and not in the middle of that square; None when it does not lead there so."""
+def start_from_robot(plan: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> RemainingPlan | None:
+    """Return a plan whose first grasp is made where the robot stands, not in the middle of that square.
+
+    Returns None when it would not lead to one of the ends so.
+
+    Parameters
+    ----------
+    plan : the remaining plan, before its first grasp.
+    ends : where it must lead, by name, frame of the view's arrays.
+    situation : what is believed.
+    """
     model = situation.model
-    node = model.object(course.name)
+    node = model.object(plan.name)
     assert node is not None
-    first, *others = course.legs
+    first, *others = plan.legs
     here = shifted(first, model.place[0] - first.place[0], model.place[1] - first.place[1])
-    near = replace(course, legs=(here, *others))
-    end = _led(near, node, _room(course, node, situation), situation)
+    near = replace(plan, legs=(here, *others))
+    end = _end_outline(near, node, _kept_squares(plan, node, situation), situation)
     return near if end is not None and lands_in_one(ends, end) else None
 
 
-def clear_part(haul: ManipulationPlan, node: Node, situation: Situation) -> ManipulationPlan | None:
-    """As much of a plan as needs no look first, when that brings the thing on; else None.
+def safe_prefix(found: ManipulationPlan, node: Node, situation: Situation) -> ManipulationPlan | None:
+    """Return as much of a plan as leads over squares known to be free; None when that brings the object hardly on.
 
-    From there he sees what he could only have seen after a walk there and back.
+    From its end the robot sees what it could otherwise only see by a walk there and back. Plans with turns or several
+    grasps have no such part, for these depend on what is not seen.
+
+    Parameters
+    ----------
+    found : the plan.
+    node : the object that it carries.
+    situation : what is believed.
     """
-    first, *others = haul.plan.legs
+    first, *others = found.plan.legs
     pushes = [motion for motion in first.motions if isinstance(motion, Translate)]
-    if others or len(pushes) < len(first.motions):  # turns and new holds depend on what is not seen
+    if others or len(pushes) < len(first.motions):
         return None
-    yard = Workspace(situation.cost_maps.safe | situation.model.mask(node.patch))
+    workspace = Workspace(situation.cost_maps.safe | situation.model.mask(node.patch))
     start = in_view(node.polygon, situation)
     shape, place = start, first.place
-    clear: list[Motion] = []
+    safe: list[Motion] = []
     for push in pushes:
-        part = push if yard.lets(shape, place, push) else _longest_push(yard, shape, place, push)
+        part = push if workspace.lets(shape, place, push) else _longest_part(workspace, shape, place, push)
         if part is None:
             break
-        clear.append(part)
+        safe.append(part)
         shape = part.carry(shape)
         place = place[0] + part.dx, place[1] + part.dy
         if part is not push:
             break
-    if math.dist(first.place, place) < FARTHER:
+    if math.dist(first.place, place) < MIN_PREFIX:
         return None
-    plan = replace(haul.plan, legs=(replace(first, motions=tuple(clear)),))
-    return replace(haul, plan=plan, swept=swept_squares(plan, start, situation.model.labels.shape))
+    plan = replace(found.plan, legs=(replace(first, motions=tuple(safe)),))
+    return replace(found, plan=plan, swept=swept_squares(plan, start, situation.model.labels.shape))
 
 
-def square_of(place: Place, model: WorldModel) -> Squares:
-    """The square in which a point of the lattice lies, as the one flat index."""
+def square_index(place: Place, model: WorldModel) -> Squares:
+    """Return the flat index, as an array of one, of the view's square in which a point (x, y) of the map frame lies."""
     row, column = model.view.locate(*place)
     return np.array([row * model.labels.shape[1] + column])
 
 
-def stands(model: WorldModel, place: Place) -> bool:
-    """Does Utak stand just there, on the lattice?"""
-    return math.dist(model.place, place) < NEAR
+def is_at(model: WorldModel, place: Place) -> bool:
+    """Return whether the robot stands exactly at a point (x, y) of the map frame, but for rounding."""
+    return math.dist(model.place, place) < PLACE_TOLERANCE
 
 
-def _longest_push(yard: Workspace, shape: Any, place: Place, push: Translate) -> Translate | None:
-    """The longest part of a push by whole squares, or nearly the same way, that is free."""
-    steps = math.floor(math.hypot(push.dx, push.dy))
-    parts = ((round(push.dx * n / steps), round(push.dy * n / steps)) for n in range(steps - 1, 0, -1))
-    pushes = (Translate(float(dx), float(dy)) for dx, dy in parts)
-    return next((part for part in pushes if yard.lets(shape, place, part)), None)
+def grasp_direction(leg: Leg, plan: RemainingPlan, model: WorldModel) -> str | None:
+    """Return the compass direction in which the object of a plan is grasped; None where it is not felt.
 
+    It is the planned direction, or another one in which the object is felt. While touches are not known, the planned
+    direction counts.
 
-def _room(course: RemainingPlan, node: Node, situation: Situation) -> Mask:
-    """(rows, columns): the squares over which a course may lead that was made before."""
-    free = situation.cost_maps.free(max(course.level, STILL)) | situation.model.mask(node.patch)
-    return free & ~barred(node, situation)
-
-
-def _led(course: RemainingPlan, node: Node, free: Mask, situation: Situation) -> Any:
-    """Where a course leads from where the object really lies, in the frame of the view; None when something is in the
-    way."""
-    west, south = situation.model.view.west, situation.model.view.south
-    first, *others = course.legs
-    legs = [first if course.place is None else replace(first, place=course.place), *others]
-    return verified(Workspace(free), in_view(node.polygon, situation), [shifted(leg, -west, -south) for leg in legs])
-
-
-def grasp_direction(leg: Leg, course: RemainingPlan, model: WorldModel) -> str | None:
-    """The compass point by which the object is taken: that of the plan, or another by which it is felt; else None."""
-    node = model.object(course.name)
+    Parameters
+    ----------
+    leg : the leg that begins with the grasp.
+    plan : the plan that it belongs to.
+    model : what is believed and felt.
+    """
+    node = model.object(plan.name)
     assert node is not None
     x, y = math.floor(leg.place[0]), math.floor(leg.place[1])
     ways, covered = model.frame.directions(), node.patch.squares()
@@ -191,3 +219,25 @@ def grasp_direction(leg: Leg, course: RemainingPlan, model: WorldModel) -> str |
     ]
     there = [direction for direction in directions if direction in felt]
     return next(iter(there if node.colour is None else [*there, *felt]), None)
+
+
+def _longest_part(workspace: Workspace, shape: Any, place: Place, push: Translate) -> Translate | None:
+    """Return the longest part of a push, rounded to whole squares, that is free; None for none."""
+    steps = math.floor(math.hypot(push.dx, push.dy))
+    parts = ((round(push.dx * n / steps), round(push.dy * n / steps)) for n in range(steps - 1, 0, -1))
+    pushes = (Translate(float(dx), float(dy)) for dx, dy in parts)
+    return next((part for part in pushes if workspace.lets(shape, place, part)), None)
+
+
+def _kept_squares(plan: RemainingPlan, node: Node, situation: Situation) -> Mask:
+    """Return the mask (rows, columns) of squares over which a plan made before may still lead."""
+    free = situation.cost_maps.free(max(plan.level, KEPT_LEVEL)) | situation.model.mask(node.patch)
+    return free & ~barred(node, situation)
+
+
+def _end_outline(plan: RemainingPlan, node: Node, free: Mask, situation: Situation) -> Any:
+    """Return the outline after a plan from where the object really lies, frame of the view; None if it is blocked."""
+    west, south = situation.model.view.west, situation.model.view.south
+    first, *others = plan.legs
+    legs = [first if plan.place is None else replace(first, place=plan.place), *others]
+    return verified(Workspace(free), in_view(node.polygon, situation), [shifted(leg, -west, -south) for leg in legs])

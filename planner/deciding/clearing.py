@@ -1,6 +1,6 @@
-"""What stands in Utak's own way and can be moved: navigation among movable obstacles (Stilman and Kuffner 2005).
+"""Navigation among movable obstacles (NAMO, Stilman and Kuffner 2005): what blocks the robot is moved aside.
 
-Asked only when nothing else is left to do: who meant that it stays where it is will not find it there.
+It is asked only when nothing else is left to do, for an object that was moved no longer is where it was meant to be.
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,10 +16,8 @@ from kb.language.terms import Fact
 from kb.localisation.propose.larger_object import DEEPEST, SIDES
 from kb.world.model import Node, WorldModel
 from planner.advice import Act
-from planner.carrying.plan_executor import PlanExecutor
-from planner.deciding.pursuit import Pursuer
-from planner.deciding.verification import Verifier
-from planner.decision import Decision
+from planner.deciding.tools import Tools
+from planner.decision import Decision, TaskVerdict
 from planner.goals.placement import LIKELY, SURELY, hidden_behind, leads_away, out_of_wall, region_of
 from planner.navigation.routes import PlannedRoute, ways
 from planner.navigation.subgoals import Subgoal
@@ -27,39 +25,52 @@ from planner.screen.projection import UNSEEN, CostMaps, Mask
 from planner.sights.frontiers import by_touch
 from planner.situation import Situation
 from planner.stages import Stage
+from planner.subgoal_kind import SubgoalKind
 
-ASIDE = "aside"  # the target of what he moves out of his way
+ASIDE_TARGET = "aside"  # the end of a plan that moves an obstacle out of the robot's way
 
 
 class Obstacle(NamedTuple):
-    """A thing that shuts him off from somewhere. aside : where it shall lie to see, or so that his way is free."""
+    """An object that blocks the robot's way to some part of the floor.
+
+    Attributes
+    ----------
+    node : the object.
+    aside : where it shall lie so that the way is free, or so that all of it is seen; frame of the view's arrays.
+    """
 
     node: Node
     aside: End
 
 
 def obstacles(things: Sequence[Node], situation: Situation) -> Iterator[Obstacle]:
-    """Which of some things shut him off from floor, known or not seen yet, that he would come to without them.
+    """Yield those of some objects that block the way to floor, known or unseen, that is reached without them.
 
-    The one with the shortest way first. Each alone, or where that does not help the first of several that stand behind
-    each other; else what stands in a door, and goes on in what seems to be wall.
+    The one with the shortest way first. Each is asked about alone. If none blocks alone, the first of several that
+    stand behind each other is yielded; else objects that stand in a door and may go on in what seems to be wall.
+
+    Parameters
+    ----------
+    things : the objects in question.
+    situation : what is believed.
     """
     model = situation.model
     under = [model.mask(thing.patch) for thing in things]
-    found = [(thing, way) for thing, mask in zip(things, under, strict=True) for way in _ways(mask, situation)]
+    found = [(thing, way) for thing, mask in zip(things, under, strict=True) for way in _routes_opened(mask, situation)]
     if not found and things:
-        found = [(_first_on(way, things, model), way) for way in _ways(np.any(under, axis=0), situation)]
+        together = np.any(under, axis=0)
+        found = [(_first_on(way, things, model), way) for way in _routes_opened(together, situation)]
     for thing, way in sorted(found, key=lambda pair: pair[1].length):
         columns, rows = np.array(way.squares).T
         room = situation.cost_maps.free(0) | model.mask(thing.patch)
         room[rows, columns] = False
         yield Obstacle(thing, Inside(region_of(room)))
     for depth, thing in product(range(1, 1 + DEEPEST), things if not found else []):
-        yield from _in_doors(thing, depth, situation)
+        yield from _hidden_in_doors(thing, depth, situation)
 
 
-def _ways(under: Mask, situation: Situation) -> list[PlannedRoute]:
-    """The way to where he would come were some squares free, and cannot now; none where they shut off but a nook."""
+def _routes_opened(under: Mask, situation: Situation) -> list[PlannedRoute]:
+    """Return the route, if any, to floor that is reached only if some squares are free; none into a mere nook."""
     without, cost_maps = CostMaps(situation.model, under), situation.cost_maps
     beyond = (without.distances[UNSEEN] != UNREACHED) & (cost_maps.distances[UNSEEN] == UNREACHED) & ~under
     if not leads_away(beyond, under):
@@ -68,94 +79,113 @@ def _ways(under: Mask, situation: Situation) -> list[PlannedRoute]:
 
 
 def _first_on(way: PlannedRoute, things: Sequence[Node], model: WorldModel) -> Node:
-    """The first of some things that a way over their squares comes to."""
+    """Return the first of some objects that a route over their squares comes to."""
     masks = [(thing, model.mask(thing.patch)) for thing in things]
     return next(thing for column, row in way.squares for thing, mask in masks if mask[row, column])
 
 
-def _in_doors(thing: Node, depth: int, situation: Situation) -> Iterator[Obstacle]:
-    """A thing that was never moved, where it shuts him off if it goes on so deep in what seems to be wall.
+def _hidden_in_doors(thing: Node, depth: int, situation: Situation) -> Iterator[Obstacle]:
+    """Yield an object that blocks the robot if it goes on by `depth` squares in what seems to be wall.
 
-    It is drawn out by so much and one square more, or as far as that is free: so it is seen whole.
+    It is drawn out by one square more than that, or as far as there is room: so all of it is seen.
     """
     model, mask = situation.model, situation.model.mask(thing.patch)
     for side in SIDES:
         behind = hidden_behind(thing, side, depth, model)
-        pose = out_of_wall(thing, side, depth, situation) if behind.any() and _ways(mask | behind, situation) else None
+        blocks = behind.any() and _routes_opened(mask | behind, situation)
+        pose = out_of_wall(thing, side, depth, situation) if blocks else None
         if pose is not None:
             yield Obstacle(thing, At(pose))
 
 
 class ObstacleClearer:
-    """Moves things out of Utak's way, and remembers which one he is moving, and what is to stay meanwhile."""
+    """Moves obstacles out of the robot's way, and remembers which one it is moving and what must stay meanwhile."""
 
-    def __init__(self, carrier: PlanExecutor, pursuer: Pursuer, verifier: Verifier) -> None:
-        self._carrier, self._pursuer, self._verifier = carrier, pursuer, verifier
+    def __init__(self) -> None:
+        """Be moving nothing."""
         self._moving = ""
         self._stays: frozenset[str] = frozenset()
 
-    def going_on(self, stage: Stage, situation: Situation) -> Decision | None:
-        """The next command for what he is moving aside; None when that is nothing, or it shuts him off no more."""
+    def continue_clearing(self, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+        """Return the next command for the obstacle that is being moved; None when there is none that blocks still.
+
+        Parameters
+        ----------
+        stage : of the task.
+        situation : what is believed.
+        tools : what the command is worked out with.
+        """
         node, held = situation.model.object(self._moving), situation.model.held
         if node is not None and held is None:
-            instead = self._first_moved(self._movable(self._stays, situation), stage, situation, node.name)
+            instead = self._move_first(self._movable(self._stays, situation), stage, situation, tools, node.name)
             if instead is not None:
                 return instead
-        act = self._carrier.gone_on(node, situation) if node is not None and held == node.name else None
-        if act is None or self._pursuer.noticed(situation.model, act.command):
+        act = tools.executor.continue_plan(node, situation) if node is not None and held == node.name else None
+        if act is None or tools.pursuer.closes_loop(situation.model, act.command):
             self._moving = ""
             return None
         return Decision(act.command, f"{act.why}; {stage}")
 
-    def cleared(self, decision: Decision, goals: Sequence[Fact], stage: Stage, situation: Situation) -> Decision:
-        """What is decided towards some goals; rather than give up, to move aside what shuts him off.
+    def clear_before_verdict(
+        self, decision: Decision, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools
+    ) -> Decision:
+        """Return a decision; in place of a verdict, the next command to move aside what blocks the robot.
 
-        What the goals speak of stays. While something stands there, that he cannot come further proves nothing; nor
-        where it did not move, for it may be wedged in between walls.
+        What the goals speak of stays where it is. While an obstacle is left, because it must stay or did not move, the
+        verdict is `limit`, not `impossible`: nothing is proved of what lies behind it.
+
+        Parameters
+        ----------
+        decision : what was decided towards the goals.
+        goals : the goals that the decision is about.
+        stage : of the task.
+        situation : what is believed.
+        tools : what the command is worked out with.
         """
         if not decision.verdict:
             return decision
         self._stays = frozenset(situation.binding.get(str(term), "") for goal in goals for term in goal.args)
-        instead = self._first_moved(self._movable(self._stays, situation), stage, situation)
-        if instead is not None or decision.verdict != "impossible":
+        instead = self._move_first(self._movable(self._stays, situation), stage, situation, tools)
+        if instead is not None or decision.verdict != TaskVerdict.IMPOSSIBLE:
             return instead or decision
         things = [node for node in situation.model.objects if node.confidence >= LIKELY]
-        shut_off = next((node.name for node, _ in obstacles(things, situation)), "")
-        why = f"{decision.why}; {shut_off} shuts him off, and was not moved aside"
-        return Decision(None, why, "limit") if shut_off else decision
+        blocking = next((node.name for node, _ in obstacles(things, situation)), "")
+        why = f"{decision.why}; {blocking} blocks the robot's way, and was not moved aside"
+        return Decision(None, why, TaskVerdict.LIMIT) if blocking else decision
 
     def _movable(self, stays: frozenset[str], situation: Situation) -> list[Node]:
-        """What may be moved aside. stays : names of what is not."""
+        """Return the objects that may be moved aside. stays : the names of those that may not."""
         things = (node for node in situation.model.objects if node.movable > 0 and node.confidence >= LIKELY)
         return [node for node in things if node.name not in stays]
 
-    def _first_moved(
-        self, things: Sequence[Node], stage: Stage, situation: Situation, name: str = ""
+    def _move_first(
+        self, things: Sequence[Node], stage: Stage, situation: Situation, tools: Tools, name: str = ""
     ) -> Decision | None:
-        """The next command to move one of some things aside that shut him off. name : of that one alone."""
+        """Return the next command to move aside the first object that blocks; name : only the object of that name."""
         for node, aside in obstacles(things, situation):
-            instead = self._moved_aside(node, aside, stage, situation) if name in ("", node.name) else None
+            instead = _move_aside(node, aside, stage, situation, tools) if name in ("", node.name) else None
             if instead is not None:
                 self._moving = node.name
                 return instead
         return None
 
-    def _moved_aside(self, node: Node, aside: End, stage: Stage, situation: Situation) -> Decision | None:
-        """The next command to move a thing aside, if it is one; None when none is known."""
-        if node.confidence < SURELY:
-            touch = by_touch(situation.cost_maps, node)
-            look = self._pursuer.look(Subgoal("inspect", *touch), stage, situation)
-            return None if look is None or look.command is None else look
-        if node.polygon is None or node.vague:
-            look = self._pursuer.look(self._verifier.inspection(node, situation), stage, situation)
-            if look is not None and look.command is not None:
-                return look
-        if node.polygon is None:
-            return None
-        self._carrier.keep_to(node.name)
-        advice = self._carrier.advise(node, {ASIDE: aside}, situation)
-        if not isinstance(advice, Act):
-            return self._pursuer.prepared(advice, stage, situation)
-        if self._pursuer.noticed(situation.model, advice.command):
-            return None
-        return Decision(advice.command, f"{node.name} shuts him off: {advice.why}; {stage}")
+
+def _move_aside(node: Node, aside: End, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+    """Return the next command to move an object aside, or to find out what it is; None when there is none."""
+    if node.confidence < SURELY:
+        touch = Subgoal(SubgoalKind.INSPECT, *by_touch(situation.cost_maps, node))
+        look = tools.pursuer.pursue_look(touch, stage, situation)
+        return None if look is None or look.command is None else look
+    if node.polygon is None or node.vague:
+        look = tools.pursuer.pursue_look(tools.verifier.next_look(node, situation), stage, situation)
+        if look is not None and look.command is not None:
+            return look
+    if node.polygon is None:
+        return None
+    tools.executor.drop_other_plan(node.name)
+    advice = tools.executor.advise(node, {ASIDE_TARGET: aside}, situation)
+    if not isinstance(advice, Act):
+        return tools.pursuer.prepare(advice, stage, situation)
+    if tools.pursuer.closes_loop(situation.model, advice.command):
+        return None
+    return Decision(advice.command, f"{node.name} blocks the robot's way: {advice.why}; {stage}")

@@ -1,11 +1,10 @@
-"""From the world model to the next command: the stages of the task, one after the other, until all are attained.
+"""The decider: from the world model to the next command, one stage of the task after the other until all are attained.
 
-What must be carried planner.deciding.transport brings there; where Utak himself must be planner.deciding.pursuit
-leads him.
+planner.deciding.transport brings objects where they shall be; planner.deciding.pursuit leads the robot itself.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -18,13 +17,15 @@ from kb.task.task import Task
 from kb.world.corners import Corner, corners
 from kb.world.model import WorldModel
 from kb.world.rooms import NOTHING, Rooms, rooms_of
-from planner.carrying.open_facts import qualified, verdict_if_missing
+from planner.carrying.open_facts import qualify, verdict_if_not_found
+from planner.carrying.plan_executor import PlanExecutor
 from planner.deciding.clearing import ObstacleClearer
 from planner.deciding.pursuit import Pursuer
-from planner.deciding.search import aims_towards
+from planner.deciding.search import subgoals_towards
+from planner.deciding.tools import Tools
 from planner.deciding.transport import Transporter
-from planner.deciding.verification import Verifier, before_elsewhere, here, misgiving
-from planner.decision import Decision
+from planner.deciding.verification import Verifier, check_elsewhere, look_at_contradiction, robot_square
+from planner.decision import Decision, TaskVerdict
 from planner.goals.joint import opposite_corners
 from planner.goals.robot_goals import contains, destination, no_way
 from planner.navigation.encircle import pivot, ways_round, winding
@@ -33,151 +34,200 @@ from planner.screen.moves import next_move
 from planner.screen.projection import CostMaps, ways_to_objects
 from planner.sights.viewpoints import ARRIVE
 from planner.situation import Situation
-from planner.skills.into_corner import IntoCorner, halted
+from planner.skills.into_corner import IntoCorner, halt_beside_walls
 from planner.stages import BY_THE_WAY, FROM_THE_START, Stage, stages
+from planner.subgoal_kind import SubgoalKind
 
 Place = tuple[float, float]
 
 
-@dataclass
 class Decider:
-    """Decides, and remembers what it decided.
+    """Decides, and owns everything that remembers earlier decisions.
 
-    track : where he has been, as points of the lattice. bound : what the task's parameters mean. rooms : as last
-    believed.
+    The executor, the pursuer and the verifier belong to it alone: it lends them, as Tools, for the time of a call.
+
+    Attributes
+    ----------
+    task, paths, rules : as given.
+    stages : the stages of the task, in order.
+    attained : how many of them are attained.
+    bound : what the task's parameters mean: parameter -> name of a node.
+    rooms, corners : as last believed.
+    pursuer : walks after subgoals.
+    executor : follows manipulation plans.
     """
 
-    task: Task
-    paths: str = "skeleton"
-    rules: tuple[Path, ...] = ()
-    pull: bool = True
-    bound: Mapping[str, str] = field(default_factory=dict)
-    attained: int = 0
-    rooms: Rooms = NOTHING
-    corners: Mapping[str, Corner] = field(default_factory=dict)
+    def __init__(
+        self,
+        task: Task,
+        paths: str = "skeleton",
+        rules: tuple[Path, ...] = (),
+        pull: bool = True,
+        bound: Mapping[str, str] | None = None,
+        executor: PlanExecutor | None = None,
+        pursuer: Pursuer | None = None,
+    ) -> None:
+        """Make a decider that has decided nothing.
 
-    def __post_init__(self) -> None:
-        self.stages = stages(self.task)
+        Parameters
+        ----------
+        task : the goals and what is said of their parameters.
+        paths : the path-finder of planner.navigation.routes: skeleton, visibility or grid.
+        rules : the user's own encodings.
+        pull : whether a held object may be pulled.
+        bound : what parameters of the task are known to mean.
+        executor : follows manipulation plans; a new one if None. It belongs to this decider from now on.
+        pursuer : walks after subgoals; a new one if None. It belongs to this decider from now on.
+        """
+        self.task, self.paths, self.rules = task, paths, rules
+        self.bound: Mapping[str, str] = bound or {}
+        self.stages = stages(task)
+        self.attained = 0
+        self.rooms: Rooms = NOTHING
+        self.corners: Mapping[str, Corner] = {}
+        self.pursuer = pursuer or Pursuer(paths)
+        self.executor = executor or PlanExecutor(pull)
         self._verifier = Verifier()
-        self.pursuer = Pursuer(self.paths)
-        self.transporter = Transporter(self.pull, self.pursuer, self._verifier)
-        self._clearer = ObstacleClearer(self.transporter.carrier, self.pursuer, self._verifier)
+        self._tools = Tools(self.executor, self.pursuer, self._verifier)
+        self._transporter = Transporter()
+        self._clearer = ObstacleClearer()
         self._into_corner = IntoCorner()
         self._turn = 0  # the sign of the turn that was begun about an object
 
     def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
-        """What to do after an impression. track: the places where Utak has been, this one included."""
+        """Return what to do after an impression.
+
+        Parameters
+        ----------
+        model : what is believed.
+        track : the places where the robot has been, the present one last: (x, y) in squares, map frame.
+
+        Returns
+        -------
+        Decision
+            The next command, or the verdict.
+        """
         cost_maps = CostMaps(model)
         self.rooms = rooms_of(model, self.rules)
         reconciled = self._reconcile(cost_maps)
         self.corners = corners(model, self.rules)
         if model.lost and model.held is not None:
-            return Decision(Release(), f"{model.held} is let go, for nothing looks as it should")
+            why = f"{model.held} is released, because the robot does not know where it is: nothing looks as expected"
+            return Decision(Release(), why)
         places = tuple((float(x), float(y)) for x, y in track)
         situation = Situation(model, cost_maps, self.bound, self.rooms, self.corners, self.task, self.rules, places)
         while self.attained < len(self.stages):
             stage = self.stages[self.attained]
-            decision = self._clearer.going_on(stage, situation)
+            decision = self._clearer.continue_clearing(stage, situation, self._tools)
             decision = decision or self._towards(stage, situation, reconciled, track)
-            decision = decision or self.pursuer.look(self._doubt(stage, situation), stage, situation)
+            decision = decision or self.pursuer.pursue_look(self._doubt(stage, situation), stage, situation)
             if decision is not None:
-                unproved = model.anew and model.shaken and decision.verdict == "impossible"
-                return replace(decision, verdict="limit") if unproved else qualified(decision, model)
+                unproved = model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE
+                return replace(decision, verdict=TaskVerdict.LIMIT) if unproved else qualify(decision, model)
             self.attained += 1
         if situation.forbidden("utak") and not situation.avoided:
-            return Decision(None, "what the task asks for holds, but every door that is sure was gone through", "limit")
-        return Decision(None, " and ".join(map(str, self.stages)) + " holds", "done")
+            why = "what the task asks for holds, but the robot went through every door that is sure"
+            return Decision(None, why, TaskVerdict.LIMIT)
+        return Decision(None, " and ".join(map(str, self.stages)) + " holds", TaskVerdict.DONE)
 
     def _towards(
         self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[Place]
     ) -> Decision | None:
-        """The next command towards a stage, the verdict when it cannot be attained, or None when it is."""
-        at_odds = self.transporter.at_odds(stage, situation)
-        if at_odds is not None:
-            return at_odds
+        """Return the next command towards a stage, or the verdict when it cannot be attained; None when it is."""
+        conflict = self._transporter.conflict_verdict(stage, situation)
+        if conflict is not None:
+            return conflict
         for goal in stage.carried:
-            decision = self.transporter.towards(goal, stage, situation, reconciled)
+            decision = self._transporter.towards(goal, stage, situation, reconciled, self._tools)
             if decision is None:
                 continue
-            decision = self.transporter.freed(str(goal.args[0]), stage, situation) or decision
-            proved = decision.verdict == "impossible"  # whatever else is moved, and however deep in a wall it is
-            return decision if proved else self._clearer.cleared(decision, (goal,), stage, situation)
-        decision = self._going(stage, situation, reconciled, track) if stage.own else None
-        return None if decision is None else self._clearer.cleared(decision, stage.own, stage, situation)
+            decision = self._transporter.free_robot(str(goal.args[0]), stage, situation, self._tools) or decision
+            if decision.verdict == TaskVerdict.IMPOSSIBLE:  # proved, whatever else is moved or hidden in walls
+                return decision
+            return self._clearer.clear_before_verdict(decision, (goal,), stage, situation, self._tools)
+        decision = self._go(stage, situation, reconciled, track) if stage.own else None
+        if decision is None:
+            return None
+        return self._clearer.clear_before_verdict(decision, stage.own, stage, situation, self._tools)
 
-    def _going(
+    def _go(
         self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[Place]
     ) -> Decision | None:
-        """The next command towards where Utak himself shall be, or the verdict; None when he is there."""
+        """Return the next command towards where the robot itself shall be, or the verdict; None when it is there."""
         goals = stage.own
         if situation.model.held is not None:
-            return Decision(Release(), f"{situation.model.held} is let go, to walk; {stage}")
+            why = f"{situation.model.held} is released, because the robot must walk; {stage}"
+            return Decision(Release(), why)
         if goals[0].name in BY_THE_WAY:
             node = situation.model.object(self.bound.get(str(goals[0].args[1]), ""))
             if node is not None:
-                return self._round(stage, node.name, situation, track)
+                return self._go_round(stage, node.name, situation, track)
             where = [destination(goals[0], situation)]
         else:
             where = [destination(goal, situation) for goal in goals]
             there = all(not d.missing and contains(d.squares, situation.model) for d in where)
-            there = there or self._into_corner.pressing(stage, situation)
-            look = self._made_sure(goals, there, stage, situation)
+            there = there or self._into_corner.is_pressing(stage, situation)
+            look = self._make_sure(goals, there, stage, situation)
             if look is None and there and (nearer := self._into_corner.next(stage, situation)) is not None:
                 return Decision(nearer, f"the walls of the corner may lie further away; {stage}")
             if there or look is not None:
                 return look
-        if at_odds := opposite_corners(goals, situation):
-            return Decision(None, f"{stage} cannot be attained: {at_odds}", "impossible", unless=None)
+        if opposite := opposite_corners(goals, situation):
+            why = f"{stage} cannot be attained: {opposite}"
+            return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None)
         missing = "; ".join(d.missing for d in where if d.missing) or no_way(where)
-        subgoals = aims_towards(where, situation, reconciled, ARRIVE)
+        subgoals = subgoals_towards(where, situation, reconciled, ARRIVE)
         unseen = any(str(goal.args[1]) in reconciled.hypothesised for goal in goals)
-        verdict = verdict_if_missing(situation.model) if unseen else "impossible"
+        verdict = verdict_if_not_found(situation.model) if unseen else TaskVerdict.IMPOSSIBLE
         ask = partial(self.pursuer.pursue, subgoals, stage, situation, lambda: missing, verdict)
-        decision = self.pursuer.felt(ask, stage, situation)
-        return replace(decision, command=halted(decision.command, stage, situation))
+        decision = self.pursuer.feel_before_verdict(ask, stage, situation)
+        return replace(decision, command=halt_beside_walls(decision.command, stage, situation))
 
     def _doubt(self, stage: Stage, situation: Situation) -> Subgoal | None:
-        """What to look at before a stage is held for attained."""
-        model, doubt = situation.model, misgiving(situation)
+        """Return what to look at before a stage is believed to be attained; None for nothing."""
+        model, doubt = situation.model, look_at_contradiction(situation)
         for goal in (goal for goal in stage.goals if goal.name in FROM_THE_START):
             x = str(goal.args[0])
             node = model.object(self.bound.get(x, ""))
-            began = model.frame.origin if node is None else self.transporter.beginnings.at(x, node, situation)
-            lying = here(model) if node is None else model.mask(node.patch)
-            doubt = doubt or before_elsewhere(goal.name, began, lying, situation)
+            began = model.frame.origin if node is None else self._transporter.origin_of(x, node, situation)
+            covered = robot_square(model) if node is None else model.mask(node.patch)
+            doubt = doubt or check_elsewhere(goal.name, began, covered, situation)
         return doubt
 
-    def _made_sure(self, goals: Sequence[Fact], there: bool, stage: Stage, situation: Situation) -> Decision | None:
-        """A look at what goals are about, before they are held for attained; None when all of that is settled.
+    def _make_sure(self, goals: Sequence[Fact], there: bool, stage: Stage, situation: Situation) -> Decision | None:
+        """Return a look at the objects of some goals before these are believed to hold; None when all are settled.
 
-        there : they seem to hold.
+        there : whether the goals seem to hold.
         """
         nodes = [situation.model.object(self.bound.get(str(goal.args[1]), "")) for goal in goals]
-        doubted = [n for n in nodes if n is not None and (self._verifier.doubted(n) or (there and n.vague))]
-        looks = (self.pursuer.look(self._verifier.inspection(node, situation), stage, situation) for node in doubted)
+        doubted = [n for n in nodes if n is not None and (self._verifier.is_unsettled(n) or (there and n.vague))]
+        subgoals = (self._verifier.next_look(node, situation) for node in doubted)
+        looks = (self.pursuer.pursue_look(subgoal, stage, situation) for subgoal in subgoals)
         return next((look for look in looks if look is not None), None)
 
-    def _round(self, stage: Stage, name: str, situation: Situation, track: Sequence[Place]) -> Decision | None:
-        """The next command on the way round an object."""
+    def _go_round(self, stage: Stage, name: str, situation: Situation, track: Sequence[Place]) -> Decision | None:
+        """Return the next command on the way round an object; None when the robot has gone round it and is back."""
         model, cost_maps = situation.model, situation.cost_maps
         node = model.object(name)
         assert node is not None
-        home = (np.floor(track[0]) == np.floor(model.place)).all()
-        if home and abs(winding(track, node)) == 1:
+        is_home = (np.floor(track[0]) == np.floor(model.place)).all()
+        if is_home and abs(winding(track, node)) == 1:
             return None
         offered = ways_round(cost_maps, track, node)
         begun = [offered[self._turn]] if self._turn in offered else list(offered.values())
-        way = self.pursuer.choose(begun, situation)
-        if way is None:
-            return Decision(None, f"{stage} cannot be attained: no way leads round {name}", "impossible")
-        self._turn = next(turn for turn, other in offered.items() if other is way)
-        self.pursuer.keep(way, model)
+        route = self.pursuer.choose_route(begun, situation)
+        if route is None:
+            why = f"{stage} cannot be attained: no way leads round {name}"
+            return Decision(None, why, TaskVerdict.IMPOSSIBLE)
+        self._turn = next(turn for turn, other in offered.items() if other is route)
+        self.pursuer.keep_route(route, model)
         x, y = pivot(node)
         about = (x - model.view.west, y - model.view.south)
-        kind = "attain" if way.level == 0 else "explore"
-        return Decision(next_move(cost_maps, way.squares, kind, about), f"the way round {name}; {stage}")
+        kind = SubgoalKind.ATTAIN if route.level == 0 else SubgoalKind.EXPLORE
+        return Decision(next_move(cost_maps, route.squares, kind, about), f"the way round {name}; {stage}")
 
     def _reconcile(self, cost_maps: CostMaps) -> Reconciled:
+        """Return what the parameters of the task mean now, and remember it as bound."""
         carried = sorted({str(goal.args[0]) for stage in self.stages for goal in stage.carried})
         known = ways_to_objects(cost_maps)
         reconciled = reconcile(self.task, cost_maps.model, known, self.bound, self.rules, carried)

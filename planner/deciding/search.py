@@ -1,4 +1,4 @@
-"""What is worth doing: to go where a goal holds, or, while that is not known, to look where what is missing may be."""
+"""Subgoals: go where a goal holds; while that is not known, look where what is missing may be."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -18,28 +18,46 @@ from planner.screen.projection import CostMaps, Squares, grown
 from planner.sights import frontiers
 from planner.sights.viewpoints import TAKE, Approach, inspection, sightings
 from planner.situation import Situation
+from planner.subgoal_kind import SubgoalKind
 
-ODD = -10.0  # squares: how much rather what no straight wall explains is looked at
-ODDLY, HARDLY, PERHAPS = 4, 2, 20  # percent that odd squares, likely walls, floor beyond hold what is missing
-ANY_SHAPE = 0.4  # that a thing is the one looked for, when nothing is said of its shape
-FROM_AFAR = 0.7  # how much less a look promises that shows a thing, beside one that ends right before it
-LEAST = 3  # percent likewise, of whatever is not known to be another
+# All values below were tuned on random worlds (benchmarks.campaign).
+UNEXPLAINED_BONUS = -10.0  # squares: price of a look at a boundary that no straight wall explains
+UNEXPLAINED_CHANCE = 4  # percent that such a boundary hides what is missing
+LIKELY_WALL_CHANCE = 2  # percent that a boundary that is likely wall hides it
+PASSAGE_CHANCE = 20  # percent that floor seen beyond an unknown passage holds it
+ANY_SHAPE_CHANCE = 0.4  # probability that an object is the one looked for, when its shape is not told
+DISTANT_LOOK_SHARE = 0.7  # of the promise of a look that ends right before an object, that of one from afar
+MIN_OBJECT_CHANCE = 3  # percent, of every object that is not known to be another one
 Heat = NDArray[np.float64]
 
 
 class Candidate(NamedTuple):
-    """Something seen that may be what is looked for: the squares (flat indices) where it lies, and a look at it."""
+    """Something seen that may be what is looked for.
+
+    Attributes
+    ----------
+    squares : the flat indices of the squares where it lies.
+    subgoal : a look at it.
+    """
 
     squares: Squares
     subgoal: Subgoal
 
 
-def aims_towards(
+def subgoals_towards(
     where: Sequence[Destination], situation: Situation, reconciled: Reconciled, to: Approach = TAKE
 ) -> list[Subgoal]:
-    """What is worth doing: go there, when it is known where; else look, first where just the missing thing may be.
+    """Return the subgoals that may lead to where all of some goals hold.
 
-    to : what he goes up to the missing thing for.
+    When all destinations are known, the only subgoal is to go there. Else they are looks, first those where just the
+    missing thing may be.
+
+    Parameters
+    ----------
+    where : the destination of each goal.
+    situation : what is believed.
+    reconciled : what the parameters of the task mean.
+    to : what the robot goes up to a missing object for.
     """
     cost_maps = situation.cost_maps
     missing = [d for d in where if d.missing]
@@ -47,25 +65,35 @@ def aims_towards(
         squares: Squares = where[0].squares
         for other in where[1:]:
             squares = np.intersect1d(squares, other.squares)
-        return [Subgoal("attain", squares, "the way to the goal is known")]
-    likely = _likely(situation, reconciled)
-    things = _things(situation, reconciled, likely, to)
-    subgoals = [Subgoal("explore", *look) for d in missing for look in d.viewpoints]
-    if any(_surely_reached(subgoal, cost_maps) for subgoal in subgoals):
+        return [Subgoal(SubgoalKind.ATTAIN, squares, "the way to the goal is known")]
+    likely = _object_heat(situation, reconciled)
+    things = _doubtful_objects(situation, reconciled, likely, to)
+    subgoals = [Subgoal(SubgoalKind.EXPLORE, *look) for d in missing for look in d.viewpoints]
+    if any(_is_surely_reached(subgoal, cost_maps) for subgoal in subgoals):
         return [*subgoals, *(thing.subgoal for thing in things)]
-    places = [] if likely is None else _places(cost_maps, likely, to)
+    places = [] if likely is None else _likely_places(cost_maps, likely, to)
     subgoals += [candidate.subgoal for candidate in (*things, *places)]
-    return [*subgoals, *_beyond_all(cost_maps, none_of([*things, *places]), to)]
+    return [*subgoals, *_looks_at_the_unseen(cost_maps, chance_of_none([*things, *places]), to)]
 
 
-def against_walls(situation: Situation) -> list[Subgoal]:
-    """What may be things that stand against a wall: where each can be felt."""
+def contact_subgoals(situation: Situation) -> list[Subgoal]:
+    """Return where to feel what may be an object against a wall; if there is no such, what may be part of a wall.
+
+    Parameters
+    ----------
+    situation : what is believed.
+    """
+    return wall_contacts(situation) or perhaps_islands(situation)
+
+
+def wall_contacts(situation: Situation) -> list[Subgoal]:
+    """Return, for each part of a wall that may be an object standing against it, where it can be felt."""
     looks = [frontiers.against_the_wall(situation.cost_maps, mask) for mask in situation.model.protruding]
-    return [Subgoal("inspect", *look) for look in looks if len(look.squares)]
+    return [Subgoal(SubgoalKind.INSPECT, *look) for look in looks if len(look.squares)]
 
 
 def perhaps_islands(situation: Situation) -> list[Subgoal]:
-    """What stands free, and would make more doors were it a piece of wall: where each can be felt."""
+    """Return, for each free-standing object that would make more doors if it were wall, where it can be felt."""
     model = situation.model
     subgoals = []
     for node in model.objects:
@@ -73,42 +101,15 @@ def perhaps_islands(situation: Situation) -> list[Subgoal]:
             rooms = rooms_of(model, situation.rules, model.verge | model.mask(node.patch))
             if len(rooms.doors) > len(situation.rooms.doors):
                 look = frontiers.by_touch(situation.cost_maps, node)
-                subgoals += [Subgoal("inspect", *look)] if len(look.squares) else []
+                subgoals += [Subgoal(SubgoalKind.INSPECT, *look)] if len(look.squares) else []
     return subgoals
 
 
-def _things(situation: Situation, reconciled: Reconciled, likely: Heat | None, to: Approach) -> list[Candidate]:
-    """The objects of the world model that may be what is looked for. likely : as for approaching.sightings."""
-    cost_maps, model = situation.cost_maps, situation.model
-    found = []
-    for x, name in reconciled.doubtful:
-        node = model.object(name)
-        if node is None or x not in reconciled.hypothesised:
-            continue
-        chance = ANY_SHAPE if likely is None else _chance(node, likely, model)
-        look = inspection(cost_maps, node, chance, to) if node.open else frontiers.by_touch(cost_maps, node)
-        what = f"{look.what}: it may be {x}"
-        squares = np.flatnonzero(model.mask(node.patch))
-        found.append(Candidate(squares, Subgoal("inspect", look.squares, what, max(LEAST, round(100 * chance)))))
-    return [candidate for candidate in found if len(candidate.subgoal.squares)]
+def chance_of_none(candidates: Sequence[Candidate]) -> float:
+    """Return the probability that none of some candidates is what is looked for.
 
-
-def _chance(node: Node, likely: Heat, model: WorldModel) -> float:
-    """How likely an object is what is looked for: as pictures show it, or as one of which a part is seen."""
-    mask = model.mask(node.patch)
-    shown = float(likely[mask].max())
-    cut = (grown(mask, 1) & ~model.view.seen).any()
-    return max(shown, float(seen_in_part(mask.sum()))) if cut else shown
-
-
-def _places(cost_maps: CostMaps, likely: Heat, to: Approach) -> list[Candidate]:
-    """Where pictures of what is not settled show what is looked for."""
-    seen = sightings(cost_maps, likely, "something may be meant there", to)
-    return [Candidate(squares, Subgoal("inspect", *look)) for squares, look in seen]
-
-
-def none_of(candidates: Sequence[Candidate]) -> float:
-    """How likely it is none of all that was seen. Of those that share squares the first alone counts."""
+    Of candidates that share squares, only the first counts.
+    """
     none, counted = 1.0, np.zeros(0, np.int64)
     for squares, subgoal in candidates:
         if not np.isin(squares, counted).any():
@@ -117,28 +118,68 @@ def none_of(candidates: Sequence[Candidate]) -> float:
     return none
 
 
-def _beyond_all(cost_maps: CostMaps, unseen: float, to: Approach) -> list[Subgoal]:
-    """Looks at what was never seen, and at what bounds the floor.
+def _doubtful_objects(
+    situation: Situation, reconciled: Reconciled, likely: Heat | None, to: Approach
+) -> list[Candidate]:
+    """Return the objects of the world model that may be what is looked for. likely : as of `_object_heat`."""
+    cost_maps, model = situation.cost_maps, situation.model
+    found = []
+    for x, name in reconciled.doubtful:
+        node = model.object(name)
+        if node is None or x not in reconciled.hypothesised:
+            continue
+        chance = ANY_SHAPE_CHANCE if likely is None else _chance(node, likely, model)
+        look = inspection(cost_maps, node, chance, to) if node.open else frontiers.by_touch(cost_maps, node)
+        what = f"{look.what}: it may be {x}"
+        squares = np.flatnonzero(model.mask(node.patch))
+        percent = max(MIN_OBJECT_CHANCE, round(100 * chance))
+        found.append(Candidate(squares, Subgoal(SubgoalKind.INSPECT, look.squares, what, percent)))
+    return [candidate for candidate in found if len(candidate.subgoal.squares)]
 
-    unseen : that what is missing was not seen yet. to : as for `aims_towards`. Who is to carry what he finds counts
-    moves: he looks from where most comes into sight, and must set out once more to what he sees from there.
+
+def _chance(node: Node, likely: Heat, model: WorldModel) -> float:
+    """Return the probability that an object is what is looked for, by map completions or by the part that is seen."""
+    mask = model.mask(node.patch)
+    shown = float(likely[mask].max())
+    cut = (grown(mask, 1) & ~model.view.seen).any()
+    return max(shown, float(seen_in_part(mask.sum()))) if cut else shown
+
+
+def _likely_places(cost_maps: CostMaps, likely: Heat, to: Approach) -> list[Candidate]:
+    """Return the places where map completions show what is looked for."""
+    seen = sightings(cost_maps, likely, "what is looked for may be there", to)
+    return [Candidate(squares, Subgoal(SubgoalKind.INSPECT, *look)) for squares, look in seen]
+
+
+def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> list[Subgoal]:
+    """Return looks at what was never seen, and at what bounds the floor.
+
+    unseen : the probability that what is missing was not seen yet. A robot that is to carry it counts moves: it looks
+    from where most comes into sight, and must set out once more to what it sees from there.
     """
-    views = frontiers.best_views(cost_maps, one_move(cost_maps, "explore"), MOVE, WAY) if to.take else []
-    promise = unseen * (FROM_AFAR if to.take else 1.0)
+    views = frontiers.best_views(cost_maps, one_move(cost_maps, SubgoalKind.EXPLORE), MOVE, WAY) if to.take else []
+    promise = unseen * (DISTANT_LOOK_SHARE if to.take else 1.0)
     for apart in (frontiers.APART, 0):
         borders = [*views, *frontiers.promised(cost_maps, frontiers.frontiers(cost_maps, apart))]
-        explored = [Subgoal("explore", *look)._replace(chance=max(1, round(look.chance * promise))) for look in borders]
+        explored = [
+            Subgoal(SubgoalKind.EXPLORE, *look)._replace(chance=max(1, round(look.chance * promise)))
+            for look in borders
+        ]
         odd, plain = (frontiers.vague_places(cost_maps, apart, odd=odd) for odd in (True, False))
-        settled = [Subgoal("settle", *look, price=ODD)._replace(chance=ODDLY) for look in odd]
-        settled += [Subgoal("settle", *look)._replace(chance=HARDLY) for look in plain]
+        settled = [
+            Subgoal(SubgoalKind.SETTLE, *look, price=UNEXPLAINED_BONUS)._replace(chance=UNEXPLAINED_CHANCE)
+            for look in odd
+        ]
+        settled += [Subgoal(SubgoalKind.SETTLE, *look)._replace(chance=LIKELY_WALL_CHANCE) for look in plain]
         if explored or settled:
             break
-    passages = [Subgoal("pass", *look)._replace(chance=PERHAPS) for look in frontiers.rooms_beyond(cost_maps)]
+    beyond = frontiers.rooms_beyond(cost_maps)
+    passages = [Subgoal(SubgoalKind.PASS, *look)._replace(chance=PASSAGE_CHANCE) for look in beyond]
     return [*explored, *settled, *passages]
 
 
-def _likely(situation: Situation, reconciled: Reconciled) -> Heat | None:
-    """(rows, columns): how likely each square belongs to a thing that is looked for; None when nothing is."""
+def _object_heat(situation: Situation, reconciled: Reconciled) -> Heat | None:
+    """Return the probability (rows, columns) that a square belongs to the shape looked for; None when none is."""
     wanted = sorted(
         str(claim.fact.args[1])
         for claim in situation.task.claims
@@ -149,6 +190,7 @@ def _likely(situation: Situation, reconciled: Reconciled) -> Heat | None:
     return situation.model.imagined.likely(wanted[0])
 
 
-def _surely_reached(subgoal: Subgoal, cost_maps: CostMaps) -> bool:
+def _is_surely_reached(subgoal: Subgoal, cost_maps: CostMaps) -> bool:
+    """Return whether a subgoal can be reached over squares that are surely free."""
     reached = cost_maps.nearest(subgoal.squares)
     return reached is not None and reached.level == 0

@@ -1,13 +1,14 @@
-"""Towards a goal for something that must be carried: look at it, carry it, look where it must end, or give up.
+"""Transport: towards a goal for an object. Find it, look at it, carry it, look where it must end, or give up.
 
-What to do with the thing planner.carrying.plan_executor says; here it is settled what must be known first, and
-what a refusal proves.
+planner.carrying.plan_executor says what to do with the object. Here it is settled what must be known first, and what an
+infeasibility certificate proves.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
+from geometry.kernels.arrays import XY
 from geometry.manipulation.goals import End
 from kb.body import Grasp, Move, Push, Turn
 from kb.language.terms import Fact
@@ -15,12 +16,12 @@ from kb.task.binding import Reconciled
 from kb.world.model import Node
 from planner.advice import Act, Go, See
 from planner.carrying.infeasibility import Infeasibility
-from planner.carrying.open_facts import verdict_if_missing
-from planner.carrying.plan_executor import Advice, PlanExecutor
-from planner.deciding.pursuit import Pursuer
-from planner.deciding.search import aims_towards
-from planner.deciding.verification import Verifier, before_taking, more_of
-from planner.decision import Decision
+from planner.carrying.open_facts import verdict_if_not_found
+from planner.carrying.plan_executor import Advice
+from planner.deciding.search import subgoals_towards
+from planner.deciding.tools import Tools
+from planner.deciding.verification import look_before_grasp, look_for_more
+from planner.decision import Decision, TaskVerdict
 from planner.goals.corner_goal import approach, may_move
 from planner.goals.joint import conflict
 from planner.goals.object_goals import landing
@@ -33,142 +34,181 @@ from planner.situation import Situation
 from planner.skills.measure_size import SizeEstimator, least_outline
 from planner.skills.press import Presser
 from planner.stages import FROM_THE_START, Stage
+from planner.subgoal_kind import SubgoalKind
 
-SIZE = "size"  # the target of a push that only tells how large a thing is
-MISSED = 2  # plans that miss before where they should lead to is looked at
+SIZE_TARGET = "size"  # the end of a push whose only purpose is to measure an object
+MAX_MISSED_PLANS = 2  # plans that miss their end, after which that end is looked at first; tuned on random worlds
 
 
 class Transporter:
-    """Brings things where goals hold for them, and remembers where they began and what he looked at for that."""
+    """Brings objects where goals hold, and remembers where they began and what the robot looked at for that."""
 
-    def __init__(self, pull: bool, pursuer: Pursuer, verifier: Verifier) -> None:
-        self.pursuer, self.verifier = pursuer, verifier
-        self.carrier = PlanExecutor(pull)
-        self.beginnings = Origins()
-        self.sizer = SizeEstimator()
-        self._looked = 0  # squares he had looked from when he went to see where it must end, until it is one more
-        self.presser = Presser()
-        self._led_along = False  # has he taken along what shut him in, to look?
+    def __init__(
+        self,
+        place: Callable[[Fact, Node, XY, Situation], Placement] = landing,
+        search: Callable[..., Sequence[Subgoal]] = subgoals_towards,
+    ) -> None:
+        """Make a transporter that remembers nothing.
 
-    def towards(self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciled) -> Decision | None:
-        """The next command towards a goal for something that must be carried, or None when it holds."""
+        Parameters
+        ----------
+        place : returns where a goal holds for an object; as planner.goals.object_goals.landing.
+        search : returns what is worth doing while something is missing; as planner.deciding.search.subgoals_towards.
+        """
+        self._place, self._search = place, search
+        self._origins = Origins()
+        self._size_estimator = SizeEstimator()
+        self._presser = Presser()
+        # How many squares had been looked from when the robot went to see where an object must end, until one is added.
+        self._looked_before = 0
+        self._has_taken_along = False  # whether an object that shut the robot in was taken along to look
+
+    def origin_of(self, parameter: str, node: Node, situation: Situation) -> XY:
+        """Return where the object that a parameter means lay at first: the middle (x, y), in squares, map frame.
+
+        When it is asked for the first time, the present place is noted.
+
+        Parameters
+        ----------
+        parameter : of the task.
+        node : the object that it means.
+        situation : what is believed.
+        """
+        return self._origins.at(parameter, node, situation)
+
+    def towards(
+        self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciled, tools: Tools
+    ) -> Decision | None:
+        """Return the next command towards a goal for an object, or the verdict; None when the goal holds.
+
+        Parameters
+        ----------
+        goal : one goal of the stage; its first argument is the parameter that means the object.
+        stage : of the task.
+        situation : what is believed.
+        reconciled : what the parameters of the task mean.
+        tools : what the decision is worked out with.
+        """
         x = str(goal.args[0])
         node = situation.model.object(situation.binding.get(x, ""))
         if node is None:
-            return self._found(x, stage, situation, reconciled)
-        if node.polygon is not None and self.presser.is_pressed(goal, node, situation):
-            return self._pressed_on(node, stage, situation)
-        look = self._clear(node, stage, situation)
+            return self._find(x, stage, situation, reconciled, tools)
+        if node.polygon is not None and self._presser.is_pressed(goal, node, situation):
+            return self._press_on(node, stage, situation, tools)
+        look = _look_at(node, stage, situation, tools)
         if look is not None:
             return look
         if node.polygon is None:
-            return Decision(None, f"{stage} is not attempted: the outline of {node.name} is not known", "limit")
-        land = landing(goal, node, self.beginnings.at(x, node, situation), situation)
-        lost = self.beginnings.lost(x, node, situation)
+            why = f"{stage} is not attempted: the outline of {node.name} is not known"
+            return Decision(None, why, TaskVerdict.LIMIT)
+        land = self._place(goal, node, self.origin_of(x, node, situation), situation)
+        lost = self._origins.lost(x, node, situation)
         if land.holds:
-            why = f"{stage} cannot be told: {lost} since {node.name} was taken"
             if lost and goal.name in FROM_THE_START:
-                return Decision(None, why, "limit")
-            if self.beginnings.left(x, node, situation) and situation.forbidden(node.name):
-                return Decision(None, f"{stage} holds, but {node.name} went through a door that it may not", "limit")
-            self.presser.begin(goal, node, land, situation)
-            return self._pressed_on(node, stage, situation)
-        advice = self._advice(node, land, situation)
+                why = f"it cannot be told whether {stage} holds: {lost} since {node.name} was grasped"
+                return Decision(None, why, TaskVerdict.LIMIT)
+            if self._origins.left(x, node, situation) and situation.forbidden(node.name):
+                why = f"{stage} holds, but {node.name} went through a door that is forbidden to it"
+                return Decision(None, why, TaskVerdict.LIMIT)
+            self._presser.begin(goal, node, land, situation)
+            return self._press_on(node, stage, situation, tools)
+        advice = self._advice(node, land, situation, tools)
         if isinstance(advice, Infeasibility) and land.loose:
             if lands_in_one(land.loose, in_view(node.polygon, situation)):
-                return self._led_out(node, stage, situation) if stage.goes_on else None
-            advice = self.carrier.advise(node, land.loose, situation)
+                return self._lead_out(node, stage, situation, tools) if stage.goes_on else None
+            advice = tools.executor.advise(node, land.loose, situation)
         if isinstance(advice, Infeasibility) and land.some:
             advice = replace(advice, proved=False)
         if isinstance(advice, Act):
-            instead = self._by_the_way(node, land, stage, situation) if isinstance(advice.command, Push) else None
-            return instead or self._act(advice, node, stage, situation)
+            detour = isinstance(advice.command, Push)
+            instead = _look_by_the_way(node, land, stage, situation, tools) if detour else None
+            return instead or self._act(advice, node, stage, situation, tools)
         if isinstance(advice, Go):
-            walk = self.pursuer.go(advice, stage, situation)
+            walk = tools.pursuer.go(advice, stage, situation)
             if walk.command is not None:
                 return walk
-            advice = Infeasibility(False, lambda: f"{node.name} cannot be reached to be taken")
+            advice = Infeasibility(False, f"no place from which {node.name} can be grasped can be reached")
         situation = situation.along_with(node.patch) if land.shut_in else situation
         if isinstance(advice, See):
-            along = partial(self._taken_along, node, stage, situation)
-            return self.pursuer.pursue(
-                [Subgoal("inspect", *advice.viewpoint)], stage, situation, lambda: "", along=along
-            )
+            along = partial(_take_along, node, stage, situation, tools)
+            subgoal = Subgoal(SubgoalKind.INSPECT, *advice.viewpoint)
+            return tools.pursuer.pursue([subgoal], stage, situation, lambda: "", along=along)
         unknown = nowhere(land.missing or "no way is known to carry it there", land.viewpoints)
-        subgoals = aims_towards([unknown], situation, reconciled)
-        decision = self._missing(advice, node, land, subgoals, stage, situation)
-        return self._proved(advice, decision, node, land, stage, situation)
+        subgoals = self._search([unknown], situation, reconciled)
+        decision = self._look_for_way(advice, node, land, subgoals, stage, situation, tools)
+        return self._check_proof(advice, decision, node, land, stage, situation, tools)
 
-    def at_odds(self, stage: Stage, situation: Situation) -> Decision | None:
-        """Return the verdict when two goals of a stage cannot hold for one thing at once; None otherwise."""
+    def conflict_verdict(self, stage: Stage, situation: Situation) -> Decision | None:
+        """Return the verdict when two goals of a stage cannot hold for one object at once; None otherwise.
+
+        Parameters
+        ----------
+        stage : of the task.
+        situation : what is believed.
+        """
         for x in sorted({str(goal.args[0]) for goal in stage.carried}):
             goals = [goal for goal in stage.carried if str(goal.args[0]) == x]
             node = situation.model.object(situation.binding.get(x, ""))
             if len(goals) < 2 or node is None or node.polygon is None or any(may_move(g, situation) for g in goals):
                 continue
-            began = self.beginnings.at(x, node, situation)
-            lands = [landing(goal, node, began, situation) for goal in goals]
+            began = self.origin_of(x, node, situation)
+            lands = [self._place(goal, node, began, situation) for goal in goals]
             found = conflict(lands, in_view(node.polygon, situation))
             if found is not None:
                 one, other = (goals[number] for number in found)
                 why = f"{one} and {other} cannot hold at once: their places are too far apart"
-                return Decision(None, why, "impossible")
+                return Decision(None, why, TaskVerdict.IMPOSSIBLE)
         return None
 
-    def freed(self, x: str, stage: Stage, situation: Situation) -> Decision | None:
-        """The push by which what he holds no longer shuts him in, when he wants something else than that, x."""
+    def free_robot(self, x: str, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+        """Return the push after which the held object no longer shuts the robot in; None when there is none.
+
+        Returns None, too, when the held object is the one that parameter x means.
+
+        Parameters
+        ----------
+        x : the parameter of the task that is pursued next.
+        stage : of the task.
+        situation : what is believed.
+        tools : what the decision is worked out with.
+        """
         held = situation.model.held
         node = situation.model.object(held or "")
-        return None if node is None or held == situation.binding.get(x) else self._led_out(node, stage, situation)
+        return (
+            None if node is None or held == situation.binding.get(x) else self._lead_out(node, stage, situation, tools)
+        )
 
-    def _found(self, x: str, stage: Stage, situation: Situation, reconciled: Reconciled) -> Decision:
-        """The next command to find what a parameter means, or the verdict when nothing can be that."""
-        fixed = dict(reconciled.unmovable).get(x)
-        unseen = nowhere(f"{fixed} cannot be moved" if fixed else f"nothing seen so far is {x}")
+    def _find(self, x: str, stage: Stage, situation: Situation, reconciled: Reconciled, tools: Tools) -> Decision:
+        """Return the next command to find what a parameter means, or the verdict when nothing can be that."""
+        immovable = dict(reconciled.unmovable).get(x)
+        unseen = nowhere(f"{immovable} cannot be moved" if immovable else f"nothing seen so far is {x}")
         goals = [goal for goal in stage.goals if str(goal.args[0]) == x]
-        subgoals = aims_towards([unseen], situation, reconciled, approach(goals, situation))
-        verdict = verdict_if_missing(situation.model, bool(fixed))
-        ask = partial(self.pursuer.pursue, subgoals, stage, situation, lambda: unseen.missing, verdict)
-        decision = self.pursuer.felt(ask, stage, situation)
-        if fixed and decision.verdict:
-            unless = f"{fixed} is more than one thing, or moves another way than it was pushed"
+        subgoals = self._search([unseen], situation, reconciled, approach(goals, situation))
+        verdict = verdict_if_not_found(situation.model, bool(immovable))
+        ask = partial(tools.pursuer.pursue, subgoals, stage, situation, lambda: unseen.missing, verdict)
+        decision = tools.pursuer.feel_before_verdict(ask, stage, situation)
+        if immovable and decision.verdict:
+            unless = f"{immovable} is more than one thing, or moves another way than it was pushed"
             decision = replace(decision, unless=unless)
         like = [name for parameter, name in reconciled.measurable if parameter == x and decision.verdict]
         seen = (thing for thing in situation.model.objects if thing.name in like)
-        gauged = (self._gauged(thing, stage, situation) for thing in seen)
-        return next((push for push in gauged if push is not None), decision)
+        pushes = (self._measure(thing, stage, situation, tools) for thing in seen)
+        return next((push for push in pushes if push is not None), decision)
 
-    def _clear(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
-        """A look at what is to be carried, where it is not clear what that is; None when no look tells more."""
-        if node.polygon is None or node.vague or self.verifier.doubted(node):
-            look = self.pursuer.look(self.verifier.inspection(node, situation), stage, situation)
-            if look is not None:
-                return look
-        look = self.pursuer.look(more_of(node, situation), stage, situation)
-        return None if look is None or look.command is None else look
-
-    def _by_the_way(self, node: Node, land: Placement, stage: Stage, situation: Situation) -> Decision | None:
-        """Instead of a push of the plan, one by which he sees on the way what he would have to come back for."""
-        for look in land.by_the_way():
-            act = self.carrier.by_way_of(node, look.squares, situation)
-            led = self._led(act, look.what, stage, situation)
-            if led is not None:
-                return led
-        return None
-
-    def _act(self, advice: Act, node: Node, stage: Stage, situation: Situation) -> Decision:
-        """A command of the plan, unless it goes round in circles, or a look should come before it."""
-        if isinstance(advice.command, Push | Turn) and self.pursuer.noticed(situation.model, advice.command):
-            advice = self.carrier.given_up(situation.model)
+    def _act(self, advice: Act, node: Node, stage: Stage, situation: Situation, tools: Tools) -> Decision:
+        """Return the command of a plan, unless it closes a loop, or a look at the map should come before it."""
+        if isinstance(advice.command, Push | Turn) and tools.pursuer.closes_loop(situation.model, advice.command):
+            advice = tools.executor.release_looping(situation.model)
         if isinstance(advice.command, Move | Grasp):
-            look = self.pursuer.look(before_taking(node, self.carrier.turns, situation), stage, situation)
+            subgoal = look_before_grasp(node, tools.executor.turns, situation)
+            look = tools.pursuer.pursue_look(subgoal, stage, situation)
             if look is not None:
                 return look
         if isinstance(advice.command, Push | Turn):
-            self.presser.forget()
+            self._presser.forget()
         return Decision(advice.command, f"{advice.why}; {stage}")
 
-    def _missing(
+    def _look_for_way(
         self,
         refused: Infeasibility,
         node: Node,
@@ -176,29 +216,30 @@ class Transporter:
         subgoals: Sequence[Subgoal],
         stage: Stage,
         situation: Situation,
+        tools: Tools,
     ) -> Decision:
-        """The next command to see what must be known of where a thing shall end, or of another way there.
+        """Return the next command to see where an object shall end, or another way there; or the verdict.
 
-        Where a door may be is looked at from places where a thing would be in the way; where it cannot be brought to
-        where it shall end, another way there is looked for without it; and what is taken while it is open how the
-        squares lie keeps the outline that it seems to have then. What shuts him in he takes along.
+        Where a door may be is looked at from places where the object would be in the way, and another way is looked for
+        without it. An object that is grasped while the frame is open keeps the outline that it seems to have then. In
+        these cases it is not fetched. An object that shuts the robot in is taken along.
         """
-        fetched = land.shut_in or not (land.viewpoints or land.ends or is_open(situation.model))
-        again = land.shut_in and self._led_along  # he has taken it along, and brought it back
-        along = partial(self._taken_along, node, stage, situation, fetched=fetched)
+        fetch = land.shut_in or not (land.viewpoints or land.ends or is_open(situation.model))
+        again = land.shut_in and self._has_taken_along  # it was taken along before, and brought back
+        along = partial(_take_along, node, stage, situation, tools, fetch=fetch)
         brought = None if land.there or again else along
-        verdict = "impossible" if refused.proved else "limit"
-        ask = partial(self.pursuer.pursue, subgoals, stage, situation, refused.reason, verdict, brought)
-        decision = self.pursuer.felt(ask, stage, situation)
-        self._led_along |= land.shut_in and isinstance(decision.command, Push)
+        verdict = TaskVerdict.IMPOSSIBLE if refused.proved else TaskVerdict.LIMIT
+        ask = partial(tools.pursuer.pursue, subgoals, stage, situation, refused.reason, verdict, brought)
+        decision = tools.pursuer.feel_before_verdict(ask, stage, situation)
+        self._has_taken_along |= land.shut_in and isinstance(decision.command, Push)
         if land.shut_in and not isinstance(decision.command, Push | Turn):
-            why = f"{stage} cannot be told: {land.missing}, and {node.name} shuts him in"
-            decision = Decision(None, why, "limit")
-        if decision.verdict == "limit":
-            decision = self._led_out(node, stage, situation, land.shut_in) or decision
+            why = f"it cannot be told whether {stage} holds: {land.missing}, and {node.name} shuts the robot in"
+            decision = Decision(None, why, TaskVerdict.LIMIT)
+        if decision.verdict == TaskVerdict.LIMIT:
+            decision = self._lead_out(node, stage, situation, tools, land.shut_in) or decision
         return decision
 
-    def _proved(
+    def _check_proof(
         self,
         refused: Infeasibility,
         decision: Decision,
@@ -206,102 +247,136 @@ class Transporter:
         land: Placement,
         stage: Stage,
         situation: Situation,
+        tools: Tools,
     ) -> Decision:
-        """What was decided; a verdict is "impossible" where a refusal proves that, and nothing is left to check."""
+        """Return a decision whose verdict is `impossible` only where that is proved and nothing is left to check."""
         must_reach = land.must_reach() if decision.verdict else {}
         if must_reach:
-            shut_in = self.carrier.refused(node, must_reach, situation)
-            if shut_in is not None and shut_in.proved:
-                why = f"{stage} cannot be attained: {shut_in.reason()}"
-                refused, decision = shut_in, Decision(None, why, "impossible")
-        if decision.verdict != "impossible":
+            shut_off = tools.executor.infeasibility(node, must_reach, situation)
+            if shut_off is not None and shut_off.proved:
+                why = f"{stage} cannot be attained: {shut_off.reason()}"
+                refused, decision = shut_off, Decision(None, why, TaskVerdict.IMPOSSIBLE)
+        if decision.verdict != TaskVerdict.IMPOSSIBLE:
             return decision
-        narrow = self.verifier.narrow_again(refused, situation)
-        if narrow is not None:
-            return self.pursuer.pursue([narrow], stage, situation, refused.reason)
+        recheck = tools.verifier.recheck_passage(refused, situation)
+        if recheck is not None:
+            return tools.pursuer.pursue([recheck], stage, situation, refused.reason)
         ends = must_reach or land.ends
-        instead = self._sized(node, ends, stage, situation) if ends else None
+        instead = self._measure_refused(node, ends, stage, situation, tools) if ends else None
         return instead or replace(decision, unless=refused.unless(), near=refused.neck())
 
-    def _advice(self, node: Node, land: Placement, situation: Situation) -> Advice:
-        """What to do to carry something to where its goal holds; while that is not known, to near it."""
-        looked = len(situation.model.looked_from)
-        if land.viewpoints and (looked == self._looked or (land.ends and self.carrier.missed >= MISSED)):
-            self.carrier.missed, self._looked = 0, looked
-            return Infeasibility(not situation.model.shaken, lambda: land.missing)
+    def _advice(self, node: Node, land: Placement, situation: Situation, tools: Tools) -> Advice:
+        """Return what to do to carry an object to where its goal holds; while that is not known, to near it.
+
+        After plans that missed their end, and once the object is near, the end is looked at first: then it is an
+        Infeasibility that names what is missing.
+        """
+        executor, looked = tools.executor, len(situation.model.looked_from)
+        missed = land.ends and executor.missed >= MAX_MISSED_PLANS
+        if land.viewpoints and (looked == self._looked_before or missed):
+            executor.forget_misses()
+            self._looked_before = looked
+            return Infeasibility(not situation.model.shaken, land.missing)
         if land.ends:
-            return self.carrier.advise(node, land.ends, situation, land.hoped)
-        going_on = self.carrier.gone_on(node, situation)
-        if going_on is not None:
-            return going_on
+            return executor.advise(node, land.ends, situation, land.hoped)
+        onward = executor.continue_plan(node, situation)
+        if onward is not None:
+            return onward
         for name, end in land.approach.items():
-            advice = self.carrier.advise(node, {name: end}, situation, land.hoped)
+            advice = executor.advise(node, {name: end}, situation, land.hoped)
             if isinstance(advice, Act | Go):
                 return advice
-        self._looked = looked
-        return Infeasibility(not situation.model.shaken, lambda: land.missing)
+        self._looked_before = looked
+        return Infeasibility(not situation.model.shaken, land.missing)
 
-    def _taken_along(
-        self, node: Node, stage: Stage, situation: Situation, subgoal: Subgoal, fetched: bool = False
-    ) -> Decision | None:
-        """The next command to take an object along to where he wants to look; None when he had better walk there.
-
-        fetched : also one that he has not got hold of.
-        """
-        advice = self.carrier.taken_along(node, subgoal.squares, fetched, situation)
-        if isinstance(advice, Go):
-            walk = self.pursuer.go(replace(advice, why=f"{node.name} is taken along: {subgoal.what}"), stage, situation)
-            return None if walk.command is None else walk
-        return self._led(advice, subgoal.what, stage, situation)
-
-    def _pressed_on(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
-        """The next push by which what he holds comes to touch a wall that may be further away, or what is left to do
-        when it touches all; None when that is nothing.
-        """
-        act = self.presser.next(node, situation.model)
+    def _press_on(self, node: Node, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+        """Return the next press of a held object against a wall; when none is left, what leads it out; or None."""
+        act = self._presser.next(node, situation.model)
         if act is None:
-            return self._led_out(node, stage, situation) if stage.goes_on else None
-        self.carrier.depart(act)
+            return self._lead_out(node, stage, situation, tools) if stage.goes_on else None
+        tools.executor.depart(act)
         return Decision(act.command, f"{act.why}; {stage}")
 
-    def _led_out(self, node: Node, stage: Stage, situation: Situation, shut_in: bool = False) -> Decision | None:
-        """The push by which what he holds no longer shuts him in, to take it otherwise; None when it does not, or where
-        that cannot be. shut_in : it is known to.
+    def _lead_out(
+        self, node: Node, stage: Stage, situation: Situation, tools: Tools, shut_in: bool = False
+    ) -> Decision | None:
+        """Return the push after which the held object no longer shuts the robot in; None when it does not, or cannot.
+
+        shut_in : it is known that it does.
         """
-        out = self.carrier.led_out(node, situation) if shut_in or not can_leave(node, situation) else None
+        out = tools.executor.lead_out(node, situation) if shut_in or not can_leave(node, situation) else None
         if out is None:
             return None
-        self.presser.forget()
-        self.carrier.depart(out)
+        self._presser.forget()
+        tools.executor.depart(out)
         return Decision(out.command, f"{out.why}; {stage}")
 
-    def _led(self, act: Act | None, what: str, stage: Stage, situation: Situation) -> Decision | None:
-        """What is done to see something with an object in hand, unless that goes round in circles."""
-        if act is None or self.pursuer.noticed(situation.model, act.command):
-            return None
-        self.carrier.depart(act)
-        return Decision(act.command, f"{act.why}: {what}; {stage}")
+    def _measure_refused(
+        self, node: Node, ends: Mapping[str, End], stage: Stage, situation: Situation, tools: Tools
+    ) -> Decision | None:
+        """Return the next command to measure an object that seems too large for all ends; None when it surely is.
 
-    def _sized(self, node: Node, ends: Mapping[str, End], stage: Stage, situation: Situation) -> Decision | None:
-        """The next command to tell how large a thing is that seems too large; None when it is so for certain.
-
-        ends : those to which it cannot be brought as it is believed to be.
+        Returns the verdict `limit` when its size cannot be told.
         """
-        if (push := self._gauged(node, stage, situation)) is not None:
+        if (push := self._measure(node, stage, situation, tools)) is not None:
             return push
         least = least_outline(node)
-        refused = least and self.carrier.refused(replace(node, polygon=least), ends, situation)
+        refused = least and tools.executor.infeasibility(replace(node, polygon=least), ends, situation)
         if refused and refused.proved:
             return None
-        return Decision(None, f"{stage} cannot be told: how large {node.name} is is not known well", "limit")
+        why = f"it cannot be told whether {stage} can be attained: the size of {node.name} is not known well"
+        return Decision(None, why, TaskVerdict.LIMIT)
 
-    def _gauged(self, node: Node, stage: Stage, situation: Situation) -> Decision | None:
-        """The next command to push a thing by a part of a square, which tells how large it is; None when it is told."""
-        for pose in self.sizer.poses(node):
-            advice = self.carrier.advise(node, {SIZE: pose}, situation)
+    def _measure(self, node: Node, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+        """Return the next command to push an object by a part of a square, to measure it; None when that is done."""
+        for pose in self._size_estimator.poses(node):
+            advice = tools.executor.advise(node, {SIZE_TARGET: pose}, situation)
             if isinstance(advice, Act):
-                return Decision(advice.command, f"how large {node.name} is is not sure; {stage}")
-            walk = self.pursuer.prepared(advice, stage, situation)
+                return Decision(advice.command, f"the size of {node.name} is not sure, so it is measured; {stage}")
+            walk = tools.pursuer.prepare(advice, stage, situation)
             if walk is not None:
                 return walk
         return None
+
+
+def _look_at(node: Node, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+    """Return the next command to look at an object of which something is not clear; None when no look tells more."""
+    if node.polygon is None or node.vague or tools.verifier.is_unsettled(node):
+        look = tools.pursuer.pursue_look(tools.verifier.next_look(node, situation), stage, situation)
+        if look is not None:
+            return look
+    look = tools.pursuer.pursue_look(look_for_more(node, situation), stage, situation)
+    return None if look is None or look.command is None else look
+
+
+def _look_by_the_way(node: Node, land: Placement, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+    """Return a push, in place of one of the plan, that shows on the way what the robot would have to come back for."""
+    for look in land.by_the_way():
+        act = tools.executor.detour(node, look.squares, situation)
+        led = _push_to_see(act, look.what, stage, situation, tools)
+        if led is not None:
+            return led
+    return None
+
+
+def _take_along(
+    node: Node, stage: Stage, situation: Situation, tools: Tools, subgoal: Subgoal, fetch: bool = False
+) -> Decision | None:
+    """Return the next command to take an object along to a subgoal; None when the robot had better walk there alone.
+
+    fetch : whether an object that is not held is fetched for that.
+    """
+    advice = tools.executor.take_along(node, subgoal.squares, fetch, situation)
+    if isinstance(advice, Go):
+        go = replace(advice, why=f"{node.name} is taken along: {subgoal.what}")
+        walk = tools.pursuer.go(go, stage, situation)
+        return None if walk.command is None else walk
+    return _push_to_see(advice, subgoal.what, stage, situation, tools)
+
+
+def _push_to_see(act: Act | None, what: str, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+    """Return the decision to push a held object in order to see something; None when that would close a loop."""
+    if act is None or tools.pursuer.closes_loop(situation.model, act.command):
+        return None
+    tools.executor.depart(act)
+    return Decision(act.command, f"{act.why}: {what}; {stage}")

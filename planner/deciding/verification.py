@@ -1,7 +1,8 @@
-"""Looks by which he makes sure: of a thing before he carries it, of how the squares lie, of a passage that is said to
-be too narrow, and of what he believes when the last look contradicts it.
+"""Goal verification and active perception: looks that make sure before the robot commits itself or claims something.
 
-Each is an aim to go to first, or None where there is nothing to make sure of.
+They make sure of an object before it is carried, of the orientation of the frame, of a passage that is said to be too
+narrow, and of beliefs that the last impression contradicts. Each is a subgoal to go to first, or None where there is
+nothing to make sure of.
 """
 
 import math
@@ -22,42 +23,51 @@ from planner.screen.moves import is_open
 from planner.sights import frontiers
 from planner.sights.viewpoints import TAKE, inspection
 from planner.situation import Situation
+from planner.subgoal_kind import SubgoalKind
 
 Place = tuple[float, float]
 Mask = NDArray[np.bool_]
 Floats = NDArray[np.float64]
-THIN = 4  # squares that a wall between rooms is thick at most
-FEW = 4  # squares looked from by one who has hardly looked
+MAX_INNER_WALL = 4  # squares: the thickest wall between two rooms; a convention of random worlds
+FEW_LOOKS = 4  # squares looked from, up to which the orientation of the frame is made sure of; tuned on random worlds
 
 
 class Verifier:
-    """Remembers what he has begun to look at, and which passages he has looked at again."""
+    """Remembers which objects the robot has begun to look at, and which passages it has looked at again."""
 
     def __init__(self) -> None:
-        self._doubted: set[str] = set()  # objects that are being looked at until they are settled
-        self._narrow: list[Place] = []  # passages that were looked at again, points of the lattice
+        """Remember nothing yet."""
+        self._unsettled: set[str] = set()  # objects that are being looked at until they are settled
+        self._rechecked: list[Place] = []  # passages that were looked at again, map frame
 
-    def doubted(self, node: Node) -> bool:
-        """Has he begun to look at an object that was not settled?"""
-        return node.name in self._doubted
+    def is_unsettled(self, node: Node) -> bool:
+        """Return whether the robot has begun to look at an object that is not settled."""
+        return node.name in self._unsettled
 
-    def inspection(self, node: Node, situation: Situation) -> Subgoal | None:
-        """A look at an object that is not settled yet; None when no look is left that may tell more.
+    def next_look(self, node: Node, situation: Situation) -> Subgoal | None:
+        """Return a look at an object that is not settled; None when no look is left that may tell more.
 
-        Once begun it is gone on with.
+        A look that was begun is gone on with (see `is_unsettled`).
         """
-        self._doubted.discard(node.name)
+        self._unsettled.discard(node.name)
         if node.polygon is not None and not node.open:
             return None
         look = inspection(situation.cost_maps, node, chance=1.0, to=TAKE)
         if not len(look.squares):
             return None
-        self._doubted.add(node.name)
-        return Subgoal("inspect", *look)
+        self._unsettled.add(node.name)
+        return Subgoal(SubgoalKind.INSPECT, *look)
 
-    def narrow_again(self, refusal: Infeasibility, situation: Situation) -> Subgoal | None:
-        """A look at the passage that is said to be too narrow, from close by, before one says so who is not sure of his
-        map: where looks were received he may misjudge, but how the squares of one look lie beside each other he knows.
+    def recheck_passage(self, refusal: Infeasibility, situation: Situation) -> Subgoal | None:
+        """Return a look from close by at a passage that is said to be too narrow, while the map is not sure.
+
+        The robot may misjudge where impressions were received, but knows how the squares of one impression lie to each
+        other. Returns None when the map is sure, no passage is named, or it was looked at again already.
+
+        Parameters
+        ----------
+        refusal : the infeasibility that names the passage.
+        situation : what is believed.
         """
         model = situation.model
         neck = None if model.view.sure else refusal.neck()
@@ -66,132 +76,162 @@ class Verifier:
         where = (neck[0] + model.view.west, neck[1] + model.view.south)
         near = frontiers.close_to(situation.cost_maps, *where)
         if contains(near, model):
-            self._narrow.append(where)
-        if any(math.dist(where, looked) <= frontiers.CLOSE for looked in self._narrow):
+            self._rechecked.append(where)
+        if any(math.dist(where, looked) <= frontiers.CLOSE for looked in self._rechecked):
             return None
-        return Subgoal("inspect", near, "whether the passage is that narrow is not sure")
+        return Subgoal(SubgoalKind.INSPECT, near, "it is not sure that the passage is that narrow")
 
 
-def before_taking(node: Node, turns: bool, situation: Situation) -> Subgoal | None:
-    """A look at how the squares lie before an object is taken to be turned, by who has looked but a few times.
+def look_before_grasp(node: Node, turns: bool, situation: Situation) -> Subgoal | None:
+    """Return a look that tells the orientation of the frame, before an object is grasped; None when it is not needed.
 
-    A thing that was turned askew, and the map with it, are hard to set right again; a push leaves it as it lies.
-    But when it did not move by a push he may have misjudged where it is, or what stands about it.
+    It is needed after few looks, when the plan turns the object: an object that was turned askew, and the map with it,
+    are hard to set right again. A push leaves it as it lies. But when a push did not move it, the robot may have
+    misjudged where it is, or what stands about it.
+
+    Parameters
+    ----------
+    node : the object.
+    turns : whether the plan turns it.
+    situation : what is believed.
     """
     model = situation.model
-    if not (is_open(model) and (turns or node.stuck) and len(model.looked_from) <= FEW + node.stuck):
+    if not (is_open(model) and (turns or node.stuck) and len(model.looked_from) <= FEW_LOOKS + node.stuck):
         return None
-    aside = frontiers.sight_of(situation.cost_maps, model.mask(node.patch), "how the squares lie is not clear")
-    return Subgoal("inspect", *aside) if len(aside.squares) else None
+    what = "it is not clear how the squares of the map lie"
+    aside = frontiers.sight_of(situation.cost_maps, model.mask(node.patch), what)
+    return Subgoal(SubgoalKind.INSPECT, *aside) if len(aside.squares) else None
 
 
-def misgiving(situation: Situation) -> Subgoal | None:
-    """A look from elsewhere before a goal is held for attained, when the last look contradicts what is believed.
+def look_at_contradiction(situation: Situation) -> Subgoal | None:
+    """Return a look from elsewhere when the last impression contradicts what is believed; None when it does not.
 
-    What contradicts was withdrawn, so the new look agrees with the rest if that is right.
+    What contradicts was withdrawn, so the new impression agrees with the rest if that is right.
     """
     model = situation.model
     if not model.contradicted:
         return None
-    look = frontiers.sight_of(situation.cost_maps, here(model), "what is seen is not as it is believed to be")
-    return Subgoal("inspect", *look)
+    what = "what is seen differs from what is believed"
+    look = frontiers.sight_of(situation.cost_maps, robot_square(model), what)
+    return Subgoal(SubgoalKind.INSPECT, *look)
 
 
-def here(model: WorldModel) -> Mask:
-    """(rows, columns): the square in which Utak stands."""
+def robot_square(model: WorldModel) -> Mask:
+    """Return the mask (rows, columns) of the square in which the robot stands."""
     return model.squares([(math.floor(model.place[0]), math.floor(model.place[1]))])
 
 
-def more_of(node: Node, situation: Situation) -> Subgoal | None:
-    """Where to feel whether an object that stands against a wall goes on in what seems to be part of that."""
+def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
+    """Return where to feel whether an object that stands against a wall goes on in what seems to be wall.
+
+    Returns None when it was moved or is held, when it touches nothing, or when nothing about it is to be felt.
+
+    Parameters
+    ----------
+    node : the object.
+    situation : what is believed.
+    """
     model = situation.model
-    beside = edged(model.mask(node.patch))
+    rim = edged(model.mask(node.patch))
     standing = [model.verge, *(model.mask(other.patch) for other in model.objects if other.name != node.name)]
-    alone = node.moved or model.held == node.name or not any((beside & mask).any() for mask in standing)
+    alone = node.moved or model.held == node.name or not any((rim & mask).any() for mask in standing)
     for mask in () if alone else model.protruding:
         look = frontiers.against_the_wall(situation.cost_maps, mask)
-        if (mask & beside).any() and len(look.squares):
-            return Subgoal("inspect", *look)
+        if (mask & rim).any() and len(look.squares):
+            return Subgoal(SubgoalKind.INSPECT, *look)
     return None
 
 
-def before_elsewhere(goal: str, began: Place, lying: Mask, situation: Situation) -> Subgoal | None:
-    """What to look at or to feel, before one says that something is elsewhere than it began.
+def check_elsewhere(goal: str, began: Place, covered: Mask, situation: Situation) -> Subgoal | None:
+    """Return what to see or feel before something is said to be elsewhere than it began; None when that is sure.
 
-    goal : in, through or around. began : where it began, a point of the lattice. lying : (rows, columns) where it lies.
+    Parameters
+    ----------
+    goal : in, through or around.
+    began : where it began, (x, y) in squares, map frame.
+    covered : (rows, columns) bool, the squares that it covers now.
+    situation : what is believed.
     """
-    return unseen_beyond(goal, began, lying, situation) or unfelt_wall(goal, began, lying, situation)
+    return unseen_beyond_door(goal, began, covered, situation) or unfelt_wall(goal, began, covered, situation)
 
 
-def unfelt_wall(goal: str, began: Place, lying: Mask, situation: Situation) -> Subgoal | None:
-    """Where to feel whether something is part of a wall, before one says that something is elsewhere than it began.
+def unfelt_wall(goal: str, began: Place, covered: Mask, situation: Situation) -> Subgoal | None:
+    """Return where to feel whether something is part of a wall on which the goal depends; None for no such.
 
-    If it were a thing that stands against the wall, the goal would hold no more. All as of before_elsewhere.
+    If it were an object that stands against the wall, the goal would no longer hold.
+
+    Parameters
+    ----------
+    goal, began, covered, situation : as of `check_elsewhere`.
     """
-    holds_by = _holding(goal, began, lying, situation)
+    depends_on = _dependence(goal, began, covered, situation)
     for mask in situation.model.protruding:
-        if any(_jambs_in_line(mask, door, situation.model) for door in situation.rooms.sure):
+        if any(_are_jambs_in_line(mask, door, situation.model) for door in situation.rooms.sure):
             continue
         look = frontiers.against_the_wall(situation.cost_maps, mask)
-        if not len(look.squares):  # whatever lies askew must be seen better before one can stand right beside it
+        if not len(look.squares):  # one that lies askew must be seen better before the robot can stand right beside it
             look = frontiers.sight_of(situation.cost_maps, mask, look.what)
-        if len(look.squares) and holds_by(mask):
-            return Subgoal("inspect", *look)
+        if len(look.squares) and depends_on(mask):
+            return Subgoal(SubgoalKind.INSPECT, *look)
     return None
 
 
-def unseen_beyond(goal: str, began: Place, lying: Mask, situation: Situation) -> Subgoal | None:
-    """Where to see how wide the floor is beyond a door, before one says that something is there.
+def unseen_beyond_door(goal: str, began: Place, covered: Mask, situation: Situation) -> Subgoal | None:
+    """Return where to see how wide the floor is beyond a door, before something is said to be there; None if sure.
 
-    A door is a neck, and what was never seen counts as floor: behind an arm of the room there may be nothing but that.
-    All as of before_elsewhere.
+    A door is a neck of the floor, and what was never seen counts as floor. Behind what seems to be a door there may be
+    only a narrow arm of the same room.
+
+    Parameters
+    ----------
+    goal, began, covered, situation : as of `check_elsewhere`.
     """
     model, view = situation.model, situation.model.view
     if goal == "around":
         return None
-    shut = view._replace(probability=np.where(view.seen, view.probability, 1.0).astype(np.float32))
-    rooms = rooms_of(replace(model, view=shut), situation.rules, model.verge | ~view.seen)
-    if (situation.next_to(began, rooms, SURE) & lying).any():
+    closed = view._replace(probability=np.where(view.seen, view.probability, 1.0).astype(np.float32))
+    rooms = rooms_of(replace(model, view=closed), situation.rules, model.verge | ~view.seen)
+    if (situation.next_to(began, rooms, SURE) & covered).any():
         return None
-    rows, columns = np.nonzero(lying)
+    rows, columns = np.nonzero(covered)
 
-    def far(look: frontiers.Viewpoint) -> float:
-        there = np.unravel_index(look.squares, lying.shape)
+    def distance(look: frontiers.Viewpoint) -> float:
+        there = np.unravel_index(look.squares, covered.shape)
         return float(np.hypot(there[0] - rows.mean(), there[1] - columns.mean()).min())
 
-    nearest = min(frontiers.frontiers(situation.cost_maps, frontiers.APART), key=far, default=None)
-    return None if nearest is None else Subgoal("inspect", *nearest)
+    nearest = min(frontiers.frontiers(situation.cost_maps, frontiers.APART), key=distance, default=None)
+    return None if nearest is None else Subgoal(SubgoalKind.INSPECT, *nearest)
 
 
-def _jambs_in_line(mask: Mask, door: Door, model: WorldModel) -> bool:
-    """Is something one jamb of a door, and the other one a thin wall, too? Then they are hardly but one wall."""
+def _are_jambs_in_line(mask: Mask, door: Door, model: WorldModel) -> bool:
+    """Return whether squares are one jamb of a door whose other jamb is a thin wall: then both are likely one wall."""
     for end, other in ((door.a, door.b), (door.b, door.a)):
         if len(jamb(mask, end)[0]):
             x, y = np.subtract(other, end) / max(door.width, 1e-9)
             place = np.add(other, (0.5 * x, 0.5 * y))
-            return all(_floor_beside(place, way, model) for way in ((-y, x), (y, -x)))
+            return all(_has_floor_beside(place, way, model) for way in ((-y, x), (y, -x)))
     return False
 
 
-def _floor_beside(place: Floats, way: tuple[float, float], model: WorldModel) -> bool:
-    """Is there floor not far from a place in a direction?"""
-    steps = np.arange(1, THIN + 1)[:, None] * np.array(way) + place
+def _has_floor_beside(place: Floats, way: tuple[float, float], model: WorldModel) -> bool:
+    """Return whether there is floor within MAX_INNER_WALL squares of a place in a direction (unit vector)."""
+    steps = np.arange(1, MAX_INNER_WALL + 1)[:, None] * np.array(way) + place
     columns, rows = np.floor(steps).astype(int).T
     height, width = model.space.shape
     inside = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
     return bool(model.space[rows[inside], columns[inside]].any())
 
 
-def _holding(goal: str, began: Place, lying: Mask, situation: Situation) -> Callable[[Mask], bool]:
-    """Whether a goal holds only if some squares of what bounds the floor are wall. All as of before_elsewhere."""
+def _dependence(goal: str, began: Place, covered: Mask, situation: Situation) -> Callable[[Mask], bool]:
+    """Return a function that tells whether the goal holds only if some squares of the verge are wall."""
     model = situation.model
     if goal == "around":
-        hidden = lying & out_of_sight(model.verge, model, began)
+        hidden = covered & out_of_sight(model.verge, model, began)
         return lambda mask: bool((hidden & ~out_of_sight(model.verge & ~mask, model, began)).any())
     beyond = situation.next_to(began, situation.rooms, SURE)
 
-    def elsewhere(mask: Mask) -> bool:
+    def moves_the_room(mask: Mask) -> bool:
         other = situation.next_to(began, rooms_of(model, situation.rules, model.verge & ~mask), SURE)
         return bool(other.any() and not (other & beyond).any())
 
-    return elsewhere
+    return moves_the_room

@@ -1,4 +1,4 @@
-"""Holds by which something did not move: it is not taken by them again, until no other is left."""
+"""Failed grasps: grasps by which an object did not move. They are avoided until no other is left."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,46 +7,52 @@ from geometry.motion.se2 import Rotate
 from kb.perception.frame import CENTRE
 from kb.world.model import Node, WorldModel
 
-MOST = 3  # times that the holds of one thing are tried again
+MAX_RETRIES = 3  # times that the failed grasps of one object are tried again; a bound on time
 Place = tuple[float, float]
 
 
 class FailedGrasps:
-    """Remembers them in the thing's own frame: as it lay at first, from its middle."""
+    """Remembers failed grasps in the frame of each object: as it lay at first, from its middle, in squares."""
 
     def __init__(self) -> None:
+        """Remember nothing yet."""
         self._failed: dict[str, tuple[Place, ...]] = {}
-        self._forgiven: dict[str, int] = {}
+        self._retries: dict[str, int] = {}
 
     def __bool__(self) -> bool:
+        """Return whether any grasp is remembered."""
         return any(self._failed.values())
 
-    def blame(self, node: Node | None, model: WorldModel) -> None:
-        """Do not take a thing again from the square on which Utak stands now: plans have him in its middle."""
+    def record(self, node: Node | None, model: WorldModel) -> None:
+        """Record that a grasp of an object from the robot's present square failed; nothing for an unknown outline.
+
+        Both the present place and the middle of the square are recorded, for plans grasp from the middle.
+        """
         if node is None or node.polygon is None:
             return
         middle = node.polygon.centroid
         square = np.floor(model.place) + np.array(CENTRE)
-        holds = np.array([model.place, square]) - (middle.x, middle.y)
-        self._failed[node.name] = (*self._failed.get(node.name, ()), *_turned(holds, -node.turned))
+        grasps = np.array([model.place, square]) - (middle.x, middle.y)
+        self._failed[node.name] = (*self._failed.get(node.name, ()), *_rotated(grasps, -node.turned))
 
-    def of(self, node: Node) -> tuple[Place, ...]:
-        """The holds that failed, as the object lies now."""
-        return _turned(np.array(self._failed.get(node.name, ())).reshape(-1, 2), node.turned)
+    def grasps(self, node: Node) -> tuple[Place, ...]:
+        """Return the failed grasps of an object as it lies now: (x, y) of the robot from its middle, in squares."""
+        return _rotated(np.array(self._failed.get(node.name, ())).reshape(-1, 2), node.turned)
 
-    def forgiven(self, node: Node) -> bool:
-        """Are there any, and may they be tried again? They are forgotten then.
+    def forgive(self, node: Node) -> bool:
+        """Forget the failed grasps of an object, and return whether there were any and they may be tried again.
 
-        A hold may have failed for a slip, or for want of room that there is by now.
+        A grasp may have failed because of a slip, or for want of room that there is by now. After MAX_RETRIES times
+        nothing is forgotten.
         """
-        again = self._forgiven.get(node.name, 0)
-        if not self._failed.get(node.name) or again >= MOST:
+        again = self._retries.get(node.name, 0)
+        if not self._failed.get(node.name) or again >= MAX_RETRIES:
             return False
-        self._forgiven[node.name] = again + 1
+        self._retries[node.name] = again + 1
         del self._failed[node.name]
         return True
 
 
-def _turned(holds: NDArray[np.float64], degrees: float) -> tuple[Place, ...]:
-    """Holds of an object when it is turned by so many degrees about its middle."""
-    return tuple((float(x), float(y)) for x, y in Rotate(degrees, (0.0, 0.0)).points(holds))
+def _rotated(grasps: NDArray[np.float64], degrees: float) -> tuple[Place, ...]:
+    """Return grasps, (n, 2) from the object's middle, after the object is turned by degrees, counter-clockwise."""
+    return tuple((float(x), float(y)) for x, y in Rotate(degrees, (0.0, 0.0)).points(grasps))

@@ -1,8 +1,8 @@
-"""What is carried is pressed against walls that it may not touch, before it is held for being in their corner.
+"""Pressing: a held object is pressed against the walls of a corner before it is believed to lie in that corner.
 
-A wall lies anywhere in the squares in which it was seen, and a side of a thing that is not told anywhere in its own.
-What stops a push is met, wherever in these squares it is: so what was stopped towards both walls is in the corner,
-whatever is believed of its outline then.
+A wall lies anywhere in the squares in which it was seen, and a side of an object that is not known exactly lies
+anywhere in its own. Wherever they are, a push is stopped where they meet. So an object that was stopped towards both
+walls is in the corner, whatever is believed of its outline then.
 """
 
 import math
@@ -18,42 +18,46 @@ from planner.goals.placement import Placement
 from planner.goals.robot_goals import corner_side
 from planner.situation import Situation
 
-STOPPED = 0.1  # squares that a push at least falls short which was stopped
-SAME = 2.0  # squares by which a corner may come to lie elsewhere by what a thing that is pressed into it shows
+STOPPED_SHORT = 0.1  # squares by which a push that was stopped falls short at least; a convention, above rounding
+CORNER_SHIFT = 2.0  # squares by which a corner may seem to move when a press shows more of its walls; tuned
 Place = tuple[float, float]
 
 
 class Presser:
-    """Gives the presses of one thing towards one goal, and remembers whether they stopped it."""
+    """Gives the presses of one object towards one goal, and remembers whether they were stopped."""
 
     def __init__(self) -> None:
-        self._of: tuple[str, str] | None = None  # the goal and the thing
-        self._corner: Place = (0.0, 0.0)  # a point of the lattice
+        """Remember no press yet."""
+        self._of: tuple[str, str] | None = None  # the goal and the object
+        self._corner: Place = (0.0, 0.0)  # in squares, map frame
         self._left: list[Translate] = []
-        self._last: tuple[Translate, Place] | None = None  # the last press, and where the thing's middle was before
+        self._last: tuple[Translate, Place] | None = None  # the last press, and the object's middle before it
 
     def forget(self) -> None:
-        """Forget all presses: what was pressed is pushed otherwise, or a push went on unstopped."""
+        """Forget all presses: the object was pushed otherwise, or a press was not stopped."""
         self._of, self._left, self._last = None, [], None
 
     def is_pressed(self, goal: Fact, node: Node, situation: Situation) -> bool:
-        """Return whether a thing is being pressed for a goal, or was stopped by all its presses."""
+        """Return whether an object is being pressed for a goal, or was stopped by all its presses.
+
+        Forgets the presses when the last one was not stopped, the object was lost, or the corner lies elsewhere now.
+        """
         if self._of != (str(goal), node.name):
             return False
-        gone_on = self._last is not None and not _stopped(*self._last, node)
+        gone_on = self._last is not None and not _is_stopped(*self._last, node)
         lost = self._left and situation.model.held != node.name
-        if gone_on or lost or math.dist(self._corner, _corner_of(goal, situation)) > SAME:
+        if gone_on or lost or math.dist(self._corner, _corner_of(goal, situation)) > CORNER_SHIFT:
             self.forget()
         return self._of is not None
 
     def begin(self, goal: Fact, node: Node, land: Placement, situation: Situation) -> None:
-        """Note the presses of a thing that by all that is believed lies where a goal holds, if he holds it."""
+        """Note the presses of a held object that is believed to lie where a goal holds. land : of that goal."""
         if land.presses and situation.model.held == node.name:
             self._of, self._corner = (str(goal), node.name), _corner_of(goal, situation)
             self._left, self._last = list(land.presses.values()), None
 
     def next(self, node: Node, model: WorldModel) -> Act | None:
-        """Return the next press; None when none is left."""
+        """Return the next press and remember it; None when none is left."""
         if not self._left:
             return None
         push = self._left.pop(0)
@@ -63,13 +67,13 @@ class Presser:
 
 
 def _corner_of(goal: Fact, situation: Situation) -> Place:
-    """Return the corner that a goal is about, a point of the lattice."""
+    """Return the corner (x, y) that a goal is about, in squares, map frame."""
     (x, y), view = situation.corners[corner_side(goal)].point, situation.model.view
     return x + view.west, y + view.south
 
 
-def _stopped(push: Translate, before: Place, node: Node) -> bool:
-    """Return whether a push that was to move a thing fell short. before : where its middle was, on the lattice."""
+def _is_stopped(push: Translate, before: Place, node: Node) -> bool:
+    """Return whether a push of an object fell short. before : its middle before the push, map frame."""
     moved = np.subtract((node.polygon.centroid.x, node.polygon.centroid.y), before)
-    way = math.hypot(push.dx, push.dy)
-    return bool(moved @ (push.dx, push.dy) / way < way - STOPPED)
+    length = math.hypot(push.dx, push.dy)
+    return bool(moved @ (push.dx, push.dy) / length < length - STOPPED_SHORT)

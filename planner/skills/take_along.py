@@ -1,4 +1,4 @@
-"""Taking a thing along to where Utak wants to look: who walks there without it must come back for it."""
+"""Taking an object along to where the robot wants to look: a walk there without it would need a walk back."""
 
 import math
 from itertools import product
@@ -16,83 +16,125 @@ from planner.goals.placement import barred, in_view, leads_away, region_of
 from planner.screen.moves import HURRY
 from planner.screen.projection import Squares, grown, marked
 from planner.situation import Situation
+from planner.subgoal_kind import SubgoalKind
 
 Floats = NDArray[np.float64]
-NEARBY = 4  # squares from where he wants to look within which a thing is brought
-TRIED = 64  # squares of an aim that are tried
-OUT = 8  # squares by which what shuts him in is led out, at most
+VIEWPOINT_RADIUS = 4  # squares from a viewpoint within which an object is brought; a convention
+MAX_TRIED_SQUARES = 64  # squares of a viewpoint that are tried; a bound on time
+MIN_PUSH = 0.5  # squares: a shorter push stays in the robot's square
+MAX_ESCAPE = 8  # squares along each axis by which an object that shuts the robot in is led out; a bound on time
 
 
-def lead(node: Node, squares: Squares, situation: Situation) -> Translate | None:
-    """The shortest straight push with what he holds by which Utak comes to one of some squares (flat indices).
+def shortest_push(node: Node, squares: Squares, situation: Situation) -> Translate | None:
+    """Return the shortest straight push with the held object that brings the robot to one of some squares.
 
-    On the lattice; None when none is free.
+    Parameters
+    ----------
+    node : the held object.
+    squares : flat indices into the view's arrays.
+    situation : what is believed.
+
+    Returns
+    -------
+    Translate or None
+        In squares, map frame; None when no such push is free.
     """
     pushes = _pushes_to(squares, situation)
     body = ContactBody(in_view(node.polygon, situation), [situation.model.place_on_view])
-    free = pushes[_yard(node, situation).far(body, pushes)]
+    free = pushes[_workspace(node, situation).far(body, pushes)]
     return Translate(*free[0].tolist()) if len(free) else None
 
 
-def by_way(node: Node, squares: Squares, end: tuple[float, float], situation: Situation) -> Translate | None:
-    """The straight push by which Utak comes to one of some squares (flat indices) and from where one more leads to an
-    end, so that both are as short as can be. end : how far it lies from where the thing is. None when there is none.
+def detour_push(node: Node, squares: Squares, end: tuple[float, float], situation: Situation) -> Translate | None:
+    """Return the first of two straight pushes to an end, so that the robot comes to one of some squares between them.
+
+    Of all such pairs it is the shortest.
+
+    Parameters
+    ----------
+    node : the held object.
+    squares : flat indices into the view's arrays.
+    end : how far (x, y) the end lies from where the object is, in squares.
+    situation : what is believed.
+
+    Returns
+    -------
+    Translate or None
+        In squares, map frame; None when no such pair is free.
     """
     x, y = situation.model.place_on_view
     pushes = _pushes_to(squares, situation)
-    way = np.hypot(*pushes.T) + np.hypot(*(np.array(end) - pushes).T)
-    pushes = pushes[np.argsort(way, kind="stable")]
-    shape, yard = in_view(node.polygon, situation), _yard(node, situation)
-    for dx, dy in pushes[yard.far(ContactBody(shape, [(x, y)]), pushes)].tolist():
-        push, on = Translate(dx, dy), Translate(end[0] - dx, end[1] - dy)
-        if yard.lets(push.carry(shape), (x + dx, y + dy), on):
+    length = np.hypot(*pushes.T) + np.hypot(*(np.array(end) - pushes).T)
+    pushes = pushes[np.argsort(length, kind="stable")]
+    shape, workspace = in_view(node.polygon, situation), _workspace(node, situation)
+    for dx, dy in pushes[workspace.far(ContactBody(shape, [(x, y)]), pushes)].tolist():
+        push, onward = Translate(dx, dy), Translate(end[0] - dx, end[1] - dy)
+        if workspace.lets(push.carry(shape), (x + dx, y + dy), onward):
             return push
     return None
 
 
-def out(node: Node, situation: Situation) -> Translate | None:
-    """The shortest straight push with what shuts him in by which it no longer does, by whole squares; None for none."""
+def escape_push(node: Node, situation: Situation) -> Translate | None:
+    """Return the shortest straight push, by whole squares, after which the held object does not shut the robot in.
+
+    Parameters
+    ----------
+    node : the held object.
+    situation : what is believed.
+
+    Returns
+    -------
+    Translate or None
+        In squares, map frame; None when no such push is free.
+    """
     model = situation.model
     x, y = model.place_on_view
-    steps = np.array([step for step in product(range(-OUT, OUT + 1), repeat=2) if any(step)])
+    steps = np.array([step for step in product(range(-MAX_ESCAPE, MAX_ESCAPE + 1), repeat=2) if any(step)])
     steps = steps[np.argsort(np.hypot(*steps.T), kind="stable")]
-    lies, yard = model.mask(node.patch), _yard(node, situation)
-    within = yard.far(ContactBody(in_view(node.polygon, situation), [(x, y)]), steps.astype(float))
-    for dx, dy in steps[within].tolist():
+    covered, workspace = model.mask(node.patch), _workspace(node, situation)
+    free = workspace.far(ContactBody(in_view(node.polygon, situation), [(x, y)]), steps.astype(float))
+    for dx, dy in steps[free].tolist():
         here = math.floor(y) + dy, math.floor(x) + dx
-        beside = np.roll(lies, (dy, dx), (0, 1))
-        left = yard.free & ~beside
+        moved = np.roll(covered, (dy, dx), (0, 1))
+        left = workspace.free & ~moved
         left[here] = True
         rooms = components(left).labels
-        if leads_away(rooms == rooms[here], beside):
+        if leads_away(rooms == rooms[here], moved):
             return Translate(float(dx), float(dy))
     return None
 
 
-def _pushes_to(squares: Squares, situation: Situation) -> Floats:
-    """(n, 2): the pushes by which he comes to the middles of some squares (flat indices), a choice of TRIED of them.
+def region_near(squares: Squares, situation: Situation) -> Inside | None:
+    """Return the free region near some squares, as an end for an object, frame of the view; None when nothing is free.
 
-    The shortest first; none that is longer than he goes before he looks.
+    Parameters
+    ----------
+    squares : flat indices into the view's arrays.
+    situation : what is believed.
+    """
+    free = situation.cost_maps.free(0) & grown(marked(squares, situation.model.labels.shape), VIEWPOINT_RADIUS)
+    return Inside(region_of(free)) if free.any() else None
+
+
+def _pushes_to(squares: Squares, situation: Situation) -> Floats:
+    """Return the pushes (n, 2) that bring the robot to the middles of some squares, the shortest first.
+
+    At most MAX_TRIED_SQUARES of them, spread over all lengths; none longer than one move of an exploring robot.
     """
     model = situation.model
     rows, columns = np.divmod(squares, model.labels.shape[1])
     x, y = model.place_on_view
     pushes = np.column_stack([columns + 0.5 - x, rows + 0.5 - y])
-    far = np.hypot(*pushes.T)
-    able = np.flatnonzero((far > 0.5) & (np.abs(pushes).max(axis=1) <= HURRY.most("explore", model)))
-    able = able[np.argsort(far[able], kind="stable")]
-    spread = np.unique(np.linspace(0, len(able) - 1, TRIED).astype(int)) if len(able) else able
+    length = np.hypot(*pushes.T)
+    longest = HURRY.most(SubgoalKind.EXPLORE, model)
+    able = np.flatnonzero((length > MIN_PUSH) & (np.abs(pushes).max(axis=1) <= longest))
+    able = able[np.argsort(length[able], kind="stable")]
+    spread = np.unique(np.linspace(0, len(able) - 1, MAX_TRIED_SQUARES).astype(int)) if len(able) else able
     chosen: Floats = pushes[able[spread]]
     return chosen
 
 
-def _yard(node: Node, situation: Situation) -> Workspace:
-    """What is surely free for a thing and him who holds it."""
+def _workspace(node: Node, situation: Situation) -> Workspace:
+    """Return what is surely free for an object and the robot that holds it."""
     free = situation.cost_maps.free(0) & ~barred(node, situation)
     return Workspace(free | situation.model.mask(node.patch))
-
-
-def near(squares: Squares, situation: Situation) -> Inside | None:
-    """What is free near to some squares (flat indices), as an end for what is carried; None when nothing is."""
-    free = situation.cost_maps.free(0) & grown(marked(squares, situation.model.labels.shape), NEARBY)
-    return Inside(region_of(free)) if free.any() else None

@@ -1,4 +1,4 @@
-"""Freeing a thing that stands against something: it is drawn back, and aside so far that it can go on."""
+"""Unjamming: an object that stands against something is drawn back, and so far aside that it can go on."""
 
 import itertools
 import math
@@ -11,53 +11,61 @@ from geometry.motion.se2 import Translate
 from kb.mapping.occupancy import FULL
 from kb.world.model import Node, WorldModel
 
-BACK = 1.0  # squares by which it is drawn back
-ONWARD = 3.0  # squares further on for which there must be room
-STEP, MOST = 0.1, 10  # squares between the ways aside that are tried, and how many there are to either side
-ROOM = 0.3  # squares more than what just lets it pass, if there is so much room to either side
-ABOUT = 4  # squares about it in which something may stand in its way
+RETREAT = 1.0  # squares by which an object is drawn back; a convention: one square shows whether it moved
+ROOM_AHEAD = 3.0  # squares beyond the stop for which there must be room afterwards; a convention
+ASIDE_STEP = 0.1  # squares between the ways aside that are tried; a convention
+MAX_ASIDE_STEPS = 10  # ways aside that are tried to either side: up to one square
+ROOM_TO_SPARE = 0.3  # squares further aside than just passes, if there is so much room; tuned on random worlds
+SEARCH_RIM = 4  # squares about an object in which something may stand in its way
 
 
-def drawn_back(node: Node, pushed: Translate, model: WorldModel, doubted: bool = False) -> Translate:
-    """The push that frees a thing which was stopped in a push: aside as well when it lies only about where he believes.
+def retreat_push(node: Node, pushed: Translate, model: WorldModel, doubted: bool = False) -> Translate:
+    """Return the push that frees an object which was stopped in a push.
 
-    Where it is known exactly nothing that he knows can have stopped it.
+    It leads straight back, and aside as well where the object is known inexactly and so may pass beside what stopped
+    it. Where it is known exactly, nothing that is known can have stopped it.
 
-    doubted : it was stopped again where nothing known is in its way, so it lies, or is, otherwise than he believes. It
-    is drawn back to the middle of the room that there is to either side, then.
+    Parameters
+    ----------
+    node : the object where it was stopped.
+    pushed : the push that was stopped, in squares, map frame.
+    model : what is believed.
+    doubted : the object was stopped again where nothing known is in its way, so it lies, or is shaped, otherwise than
+        believed. It is drawn back to the middle of the room that there is to either side then.
     """
     if not any(pushed):
         return pushed
-    far = min(BACK, math.hypot(*pushed))
+    back = min(RETREAT, math.hypot(*pushed))
 
-    def way(aside: float) -> Translate:
-        return pushed.steered(-far, aside)
+    def retreat(aside: float) -> Translate:
+        return pushed.steered(-back, aside)
 
     if not (node.inexact or doubted):
-        return way(0.0)
-    walls, body, onward = _walls(node, model), ContactBody(node.polygon), pushed.steered(far + ONWARD, 0.0)
+        return retreat(0.0)
+    walls, body, onward = _walls_near(node, model), ContactBody(node.polygon), pushed.steered(back + ROOM_AHEAD, 0.0)
 
     def passes(aside: float) -> bool:
-        back = way(aside)
-        free = walls.first_contact(body, back).fraction == 1
-        return free and walls.first_contact(body.after(back), onward).fraction == 1
+        push = retreat(aside)
+        free = walls.first_contact(body, push).fraction == 1
+        return free and walls.first_contact(body.after(push), onward).fraction == 1
 
-    sides = sorted((STEP * n for n in range(-MOST, MOST + 1)), key=abs)
+    sides = sorted((ASIDE_STEP * n for n in range(-MAX_ASIDE_STEPS, MAX_ASIDE_STEPS + 1)), key=abs)
     least = next((aside for aside in sides if passes(aside)), None)
-    if least is None or (least == 0.0 and not doubted):  # there is no such way, or nothing known stands in its way
-        return way(0.0)
+    if least is None or (least == 0.0 and not doubted):  # no way aside helps, or nothing known stands in the way
+        return retreat(0.0)
     if least == 0.0:
-        left, right = (list(itertools.takewhile(passes, (s * STEP * n for n in range(MOST + 1)))) for s in (-1, 1))
-        return way((left[-1] + right[-1]) / 2)
+        steps = range(MAX_ASIDE_STEPS + 1)
+        left, right = (list(itertools.takewhile(passes, (s * ASIDE_STEP * n for n in steps))) for s in (-1, 1))
+        return retreat((left[-1] + right[-1]) / 2)
     side = math.copysign(1.0, least)
-    further = (least + side * STEP * n for n in range(1, 2 * round(ROOM / STEP) + 1))
+    further = (least + side * ASIDE_STEP * n for n in range(1, 2 * round(ROOM_TO_SPARE / ASIDE_STEP) + 1))
     free = [least, *itertools.takewhile(passes, further)]
-    return way(free[len(free) // 2])
+    return retreat(free[len(free) // 2])
 
 
-def _walls(node: Node, model: WorldModel) -> Obstacles:
-    """All that surely stands about a thing, square by square."""
-    view, reach = model.view, ABOUT + ONWARD
+def _walls_near(node: Node, model: WorldModel) -> Obstacles:
+    """Return all squares near an object that are surely occupied, but for its own, as obstacles in the map frame."""
+    view, reach = model.view, SEARCH_RIM + ROOM_AHEAD
     x0, y0, x1, y1 = node.polygon.bounds
     rows, columns = np.nonzero((view.state == FULL) & ~model.mask(node.patch))
     x, y = columns + view.west, rows + view.south

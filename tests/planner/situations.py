@@ -1,16 +1,26 @@
-"""Situations of world models: with their rooms and corners, and no task unless one is given; and a room for them."""
+"""Situations, rooms and robots for the tests of the planner."""
 
 from collections.abc import Mapping
 
+from kb.body import Body
 from kb.task.task import Task
 from kb.world.corners import corners
 from kb.world.model import WorldModel
 from kb.world.rooms import rooms_of
+from planner.carrying.plan_executor import PlanExecutor, PlanOperations
+from planner.cycle import Options, Robot
+from planner.deciding.decider import Decider
+from planner.deciding.pursuit import Pursuer
+from planner.deciding.tools import Tools
+from planner.deciding.verification import Verifier
 from planner.screen.projection import CostMaps
 from planner.situation import Situation
+from simulator.run.session import RobotMaker
+from simulator.run.warming import warm
+from simulator.scenario.settings import Settings
 
 NO_TASK = Task({}, (), ())
-BESIDE_A_THING = [  # a room, and Utak right beside the one thing in it
+BESIDE_A_THING = [  # a room, and Utak right beside the only object in it
     "b" * 20,
     *["b" + "." * 18 + "b"] * 6,
     "b....ggg" + "." * 11 + "b",
@@ -22,5 +32,22 @@ BESIDE_A_THING = [  # a room, and Utak right beside the one thing in it
 
 
 def situation_of(model: WorldModel, bound: Mapping[str, str] | None = None, task: Task = NO_TASK) -> Situation:
-    """What a planner is told of a world model. bound : what the task's parameters mean."""
+    """Return the situation of a world model, with its rooms and corners. bound : what the task's parameters mean."""
     return Situation(model, CostMaps(model), bound or {}, rooms_of(model), corners(model), task)
+
+
+def tools_with(executor: PlanExecutor | None = None, pursuer: Pursuer | None = None) -> Tools:
+    """Return the tools of one decision, new ones where none are given."""
+    return Tools(executor or PlanExecutor(), pursuer or Pursuer("skeleton"), Verifier())
+
+
+def watched_robot(operations: PlanOperations) -> RobotMaker:
+    """Return a maker of robots whose plan executor uses some functions on remaining plans."""
+
+    def make(body: Body, task: Task, settings: Settings) -> Robot:
+        warm(carrying=True, paths=settings.paths)
+        executor = PlanExecutor(settings.pull, operations=operations)
+        decider = Decider(task, settings.paths, (), settings.pull, executor=executor)
+        return Robot(body, task, Options(settings.paths, (), settings.max_steps, settings.pull), decider)
+
+    return make

@@ -1,4 +1,4 @@
-"""What is said of a thing for which no way is found."""
+"""Infeasibility certificates of the manipulation oracle, and the clearance that its plans keep."""
 
 import math
 from dataclasses import replace
@@ -17,8 +17,14 @@ from kb.mapping.patch import covered
 from kb.task.task import Task
 from kb.world.model import Node
 from kb.world.rooms import SURE
-from planner.carrying.infeasibility import Infeasibility, nearest_to_done, refusal
-from planner.carrying.manipulation_oracle import KEPT, OFTEN, ManipulationOracle, ManipulationPlan, Request
+from planner.carrying.infeasibility import Infeasibility, certify, closest_refuted
+from planner.carrying.manipulation_oracle import (
+    CONTACTS_FOR_CLEARANCE,
+    WALL_CLEARANCE,
+    ManipulationOracle,
+    ManipulationPlan,
+    Request,
+)
 from planner.goals.placement import LIKELY
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
@@ -49,7 +55,7 @@ STOPPED_UP = [  # a square in the door leaves it too narrow
 def asked(
     west: float, turned: float = 0.0, dubious: bool = False, stuck: int = 0, sure: bool = True
 ) -> ManipulationPlan | Infeasibility:
-    """The way through a door two squares wide for a thing four wide with its west side there; it was drawn at 4."""
+    """Return the answer for an object 4 squares wide and a door of 2; `west` : of the object, which is drawn at 4."""
     model = seen_whole(PARTED)
     (node,) = model.objects
     view = model.view._replace(sure=sure)
@@ -68,7 +74,7 @@ def test_a_passage_that_is_too_narrow_is_a_proof() -> None:
 
 
 @pytest.mark.parametrize("west", [-0.5, 0.5, 9.0])
-def test_what_seems_to_lie_in_a_wall_proves_nothing(west: float) -> None:
+def test_an_object_that_overlaps_a_wall_proves_nothing(west: float) -> None:
     answer = asked(west)
     assert isinstance(answer, Infeasibility)
     assert not answer.proved
@@ -76,7 +82,7 @@ def test_what_seems_to_lie_in_a_wall_proves_nothing(west: float) -> None:
 
 
 @pytest.mark.parametrize(("turned", "proved"), [(0.0, True), (-90.0, True), (181.0, True), (75.0, False)])
-def test_what_he_has_turned_askew_proves_nothing(turned: float, proved: bool) -> None:
+def test_an_object_that_was_turned_askew_proves_nothing(turned: float, proved: bool) -> None:
     answer = asked(4, turned)
     assert isinstance(answer, Infeasibility)
     assert answer.proved == proved
@@ -92,7 +98,7 @@ def test_what_he_has_turned_askew_proves_nothing(turned: float, proved: bool) ->
         (True, 4.3, True, True),
     ],
 )
-def test_what_was_stopped_amid_squares_and_no_wider_passage_would_let_on_proves_nothing(
+def test_an_object_stopped_off_the_grid_that_no_wider_passage_helps_proves_nothing(
     moved: bool, west: float, opens: bool, proved: bool
 ) -> None:
     shape = shapely.box(west, 5, west + 4, 9)
@@ -100,13 +106,13 @@ def test_what_was_stopped_amid_squares_and_no_wider_passage_would_let_on_proves_
     plan = CarryingPlan("impossible", reason="body")
     neck = Bottleneck((9.0, 7.0), ((9.0, 6.0), (9.0, 8.0)), 2.0)
     plan.__dict__.update(passage=neck, opens=opens, missing=0.5 if opens else math.inf)  # as if it had been worked out
-    answer = refusal(node, [(2, plan)], seen_whole(PARTED))
+    answer = certify(node, [(2, plan)], seen_whole(PARTED))
     assert answer.proved == proved
     assert ("stopped on its way" in answer.reason()) != proved
 
 
 @pytest.mark.parametrize(("anew", "askew", "proved"), [(False, 20.0, True), (True, 20.0, False), (True, 0.0, True)])
-def test_what_lies_askew_proves_nothing_once_all_was_forgotten(anew: bool, askew: float, proved: bool) -> None:
+def test_an_object_that_lies_askew_proves_nothing_after_a_restart(anew: bool, askew: float, proved: bool) -> None:
     model = replace(seen_whole(PARTED), anew=anew)
     (node,) = model.objects
     shape = shapely.affinity.rotate(shapely.box(4, 5, 8, 9), askew)
@@ -119,7 +125,7 @@ def test_what_lies_askew_proves_nothing_once_all_was_forgotten(anew: bool, askew
 
 
 @pytest.mark.parametrize("dubious", [False, True])
-def test_what_is_seen_to_agree_ill_with_where_it_lies_proves_nothing(dubious: bool) -> None:
+def test_an_object_that_impressions_disagree_with_proves_nothing(dubious: bool) -> None:
     answer = asked(4, dubious=dubious)
     assert isinstance(answer, Infeasibility)
     assert answer.proved != dubious
@@ -127,7 +133,7 @@ def test_what_is_seen_to_agree_ill_with_where_it_lies_proves_nothing(dubious: bo
 
 
 @pytest.mark.parametrize(("stuck", "sure"), [(0, True), (0, False), (1, True), (1, False)])
-def test_what_did_not_move_proves_nothing_for_who_is_not_sure_of_his_map(stuck: int, sure: bool) -> None:
+def test_an_object_that_did_not_move_proves_nothing_while_the_map_is_not_sure(stuck: int, sure: bool) -> None:
     answer = asked(4, stuck=stuck, sure=sure)
     assert isinstance(answer, Infeasibility)
     assert answer.proved == (sure or not stuck)
@@ -135,7 +141,7 @@ def test_what_did_not_move_proves_nothing_for_who_is_not_sure_of_his_map(stuck: 
 
 
 @pytest.mark.parametrize(("inexact", "apart", "proved"), [(False, 0, True), (True, 0, False), (True, 2, True)])
-def test_what_may_be_part_of_what_is_carried_proves_nothing(inexact: bool, apart: int, proved: bool) -> None:
+def test_an_obstacle_that_may_be_part_of_the_object_proves_nothing(inexact: bool, apart: int, proved: bool) -> None:
     model = seen_whole(STOPPED_UP)
     x, y = model.view.west + 11, model.view.south + 5
     small, square = shapely.box(x, y, x + 1, y + 1), shapely.box(x - 4 - apart, y - 1, x - apart, y + 3)
@@ -149,10 +155,10 @@ def test_what_may_be_part_of_what_is_carried_proves_nothing(inexact: bool, apart
 
 
 @pytest.mark.parametrize(("movable", "thick", "proved"), [(0, 1, False), (0, 3, True), (50, 1, False)])
-def test_what_cannot_be_moved_may_cover_the_squares_at_its_rim_in_part(movable: int, thick: int, proved: bool) -> None:
-    """It stands in a door of five squares, as high and as thick as that; what is carried is four squares wide.
+def test_an_immovable_obstacle_may_cover_the_squares_at_its_rim_in_part(movable: int, thick: int, proved: bool) -> None:
+    """The obstacle, `thick` squares on each side, stands in a door of five; the carried object is four squares wide.
 
-    What may be moved is moved out of the way.
+    A movable obstacle is moved out of the way.
     """
     rows, half = [line.replace("r", ".") for line in STOPPED_UP], thick // 2
     for n in range(6 - half, 7 + half):
@@ -170,12 +176,12 @@ def test_what_cannot_be_moved_may_cover_the_squares_at_its_rim_in_part(movable: 
 
 
 @pytest.mark.parametrize(
-    ("plans", "told"),
+    ("plans", "closest"),
     [([(4, 1.0), (4, math.inf)], 0), ([(0, 1.0), (4, math.inf)], 1), ([(4, 2.0), (4, 1.0)], 1), ([(4, math.nan)], 0)],
 )
-def test_the_passage_told_is_one_that_could_be_widened(plans: list[tuple[int, float]], told: int) -> None:
+def test_the_named_passage_is_one_that_could_be_widened(plans: list[tuple[int, float]], closest: int) -> None:
     asked_for = [(level, cast(CarryingPlan, SimpleNamespace(opens=math.isfinite(missing)))) for level, missing in plans]
-    assert nearest_to_done(asked_for) is asked_for[told][1]
+    assert closest_refuted(asked_for) is asked_for[closest][1]
 
 
 FLUSH = [  # an L of five squares, and a door as wide
@@ -191,15 +197,15 @@ FLUSH = [  # an L of five squares, and a door as wide
 ]
 
 
-@pytest.mark.parametrize(("tight", "kept"), [(0, 0.0), (OFTEN, KEPT)])
-def test_what_stood_against_something_often_keeps_its_distance(tight: int, kept: float) -> None:
+@pytest.mark.parametrize(("contacts", "clearance"), [(0, 0.0), (CONTACTS_FOR_CLEARANCE, WALL_CLEARANCE)])
+def test_an_object_with_many_contacts_keeps_its_distance(contacts: int, clearance: float) -> None:
     model = seen_whole(FLUSH)
     (node,) = model.objects
     west, south = model.view.west + 5, model.view.south + 6
     ell = [(0, 0), (5, 0), (5, 2), (2, 2), (2, 4), (0, 4)]
     node = replace(node, polygon=shapely.Polygon([(x + west, y + south) for x, y in ell]))
     room = Inside(shapely.box(16, 1, 29, 15))
-    found = ManipulationOracle().find(Request(node, {"r": room}, tight=tight), situation_of(model))
+    found = ManipulationOracle().find(Request(node, {"r": room}, contacts=contacts), situation_of(model))
     assert isinstance(found, ManipulationPlan)
     walls = shapely.union_all(
         [shapely.box(c, r, c + 1, r + 1) for r, c in zip(*(model.view.state == FULL).nonzero(), strict=True)]
@@ -211,14 +217,14 @@ def test_what_stood_against_something_often_keeps_its_distance(tight: int, kept:
             nearest = min(nearest, *(motion.part(n / 64).carry(shape).distance(walls) for n in range(1, 65)))
             shape = motion.carry(shape)
     assert room.polygon.covers(shape)
-    assert nearest >= kept - 1e-6
+    assert nearest >= clearance - 1e-6
 
 
 @pytest.mark.parametrize(
     ("who", "found", "proved"), [("", True, False), ("y", True, False), ("x", False, True), ("utak", False, False)]
 )
-def test_nothing_is_carried_through_a_door_that_the_task_forbids(who: str, found: bool, proved: bool) -> None:
-    """It may go through where only he may not: that no way is found with him proves nothing."""
+def test_no_object_is_carried_through_a_forbidden_door(who: str, found: bool, proved: bool) -> None:
+    """A door forbidden to the robot alone lets the object pass: then a plan that is not found proves nothing."""
     rows = [row.replace("gggg", "gg..") for row in PARTED]
     model = seen_whole(rows)
     (node,) = model.objects
@@ -234,5 +240,5 @@ def test_nothing_is_carried_through_a_door_that_the_task_forbids(who: str, found
     assert not isinstance(answer, Infeasibility) or answer.proved == proved
     (door,) = situation.rooms.doors
     likely = replace(situation, rooms=replace(situation.rooms, doors=(replace(door, confidence=SURE - 1),)))
-    assert bool(likely.forbidden(node.name)) == (who == "x")  # a thing is kept from what may be a door
-    assert bool(likely.forbidden("utak")) == (who == "utak")  # and Utak, too, while no door is sure
+    assert bool(likely.forbidden(node.name)) == (who == "x")  # an object is kept from whatever may be a door
+    assert bool(likely.forbidden("utak")) == (who == "utak")  # and so is the robot, while no door is sure

@@ -1,4 +1,4 @@
-"""What is open makes `possible_if` of `impossible`, and is named."""
+"""An open fact turns the verdict `impossible` into `possible_if`, and is named."""
 
 from dataclasses import replace
 
@@ -6,99 +6,99 @@ import numpy as np
 import pytest
 
 from kb.world.model import WorldModel
-from planner.carrying.open_facts import open_fact, qualified, unfelt_walls, verdict_if_missing, width_open
-from planner.decision import Decision
+from planner.carrying.open_facts import nearest_open_fact, possible_width, qualify, unfelt_walls, verdict_if_not_found
+from planner.decision import Decision, TaskVerdict
 from tests.kb.drawings import seen_whole
 
 ROOM = ["bbbbbbb", "b.....b", "b..U..b", "b.....b", "bbbbbbb"]
 WITH_A_THING = ["bbbbbbbbb", "b.......b", "b..U.gg.b", "b....gg.b", "b.......b", "bbbbbbbbb"]
-GIVEN_UP = Decision(None, "no way leads there", "impossible")
+GIVEN_UP = Decision(None, "no way leads there", TaskVerdict.IMPOSSIBLE)
 
 
 def felt(model: WorldModel, but: int = 0) -> WorldModel:
-    """The same model with every wall beside the floor felt, but for so many squares."""
+    """Return a model with every wall beside the floor felt, but for the first `but` squares."""
     rows, columns = np.nonzero(unfelt_walls(model))
     squares = sorted(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))
     return replace(model, felt=dict.fromkeys(squares[but:], "b"))
 
 
-def test_a_wall_that_was_never_felt_may_be_a_thing() -> None:
-    found = qualified(GIVEN_UP, seen_whole(ROOM))
+def test_a_wall_that_was_never_felt_may_be_an_object() -> None:
+    found = qualify(GIVEN_UP, seen_whole(ROOM))
     assert found.verdict == "possible_if" and found.why.startswith("no way leads there; it may be possible if the wall")
 
 
-def test_the_last_wall_that_was_not_felt_is_the_one_that_is_named() -> None:
+def test_the_only_unfelt_wall_is_named() -> None:
     model = felt(seen_whole(ROOM), but=1)
-    assert qualified(GIVEN_UP, model).why.endswith(
+    assert qualify(GIVEN_UP, model).why.endswith(
         "if the wall at POINT (-3.0 -1.0), which was never felt, is a thing that can be moved"
     )
 
 
-def test_where_all_is_felt_and_seen_nothing_is_open() -> None:
-    assert qualified(GIVEN_UP, felt(seen_whole(ROOM))) == GIVEN_UP
+def test_nothing_is_open_where_all_is_felt_and_seen() -> None:
+    assert qualify(GIVEN_UP, felt(seen_whole(ROOM))) == GIVEN_UP
 
 
-def test_a_wall_felt_to_be_a_thing_is_still_open() -> None:
+def test_a_wall_felt_to_be_an_object_is_still_open() -> None:
     model = felt(seen_whole(ROOM))
     thing = replace(model, felt=dict.fromkeys(model.felt, "g"))
-    assert qualified(GIVEN_UP, thing).verdict == "possible_if"
+    assert qualify(GIVEN_UP, thing).verdict == "possible_if"
 
 
-def test_floor_that_was_never_seen_may_go_on() -> None:
+def test_the_floor_may_go_on_where_nothing_was_seen() -> None:
     model = felt(seen_whole([*ROOM[:2], "b..U..?", *ROOM[3:]]))
-    assert open_fact(model, (0.0, 0.0)) == "the floor goes on at POINT (3.0 0.0), which was never seen"
+    assert nearest_open_fact(model, (0.0, 0.0)) == "the floor goes on at POINT (3.0 0.0), which was never seen"
 
 
-def test_what_was_never_moved_may_be_more_than_one_thing() -> None:
+def test_an_object_that_was_never_moved_may_be_several() -> None:
     model = felt(seen_whole(WITH_A_THING))
     (node,) = model.objects
-    assert open_fact(model, (0.0, 0.0)) == f"{node.name}, which was never moved, is more than one thing"
-    assert open_fact(replace(model, objects=(replace(node, moved=True),)), (0.0, 0.0)) == ""
+    assert nearest_open_fact(model, (0.0, 0.0)) == f"{node.name}, which was never moved, is more than one thing"
+    assert nearest_open_fact(replace(model, objects=(replace(node, moved=True),)), (0.0, 0.0)) == ""
 
 
-@pytest.mark.parametrize("verdict", ["", "done", "limit", "possible_if"])
-def test_other_verdicts_stay(verdict: str) -> None:
+@pytest.mark.parametrize("verdict", [None, TaskVerdict.DONE, TaskVerdict.LIMIT, TaskVerdict.POSSIBLE_IF])
+def test_other_verdicts_are_kept(verdict: TaskVerdict | None) -> None:
     decision = Decision(None, "so", verdict)
-    assert qualified(decision, seen_whole(ROOM)) == decision
+    assert qualify(decision, seen_whole(ROOM)) == decision
 
 
-def test_what_no_fact_can_overturn_stays_impossible() -> None:
+def test_a_verdict_that_no_fact_can_overturn_stays_impossible() -> None:
     decision = replace(GIVEN_UP, unless=None)
-    assert qualified(decision, seen_whole(ROOM)) == decision
+    assert qualify(decision, seen_whole(ROOM)) == decision
 
 
-def test_a_fact_that_is_known_to_be_open_is_named_before_others() -> None:
-    found = qualified(replace(GIVEN_UP, unless="o1 is more than one thing"), seen_whole(ROOM))
+def test_an_open_fact_that_the_decision_names_comes_first() -> None:
+    found = qualify(replace(GIVEN_UP, unless="o1 is more than one thing"), seen_whole(ROOM))
     assert found.why == "no way leads there; it may be possible if o1 is more than one thing"
 
 
-def test_the_wall_that_is_named_is_the_nearest_to_what_the_verdict_is_about() -> None:
+def test_the_unfelt_wall_nearest_to_the_place_of_the_verdict_is_named() -> None:
     model = seen_whole(ROOM)
     near = replace(GIVEN_UP, near=(5.5, 2.5))
-    assert "the wall at POINT (3.0 0.0)" in qualified(near, model).why
+    assert "the wall at POINT (3.0 0.0)" in qualify(near, model).why
 
 
 def test_a_passage_may_be_wider_by_the_squares_of_both_its_walls() -> None:
     upright, askew = ((3.0, 1.0), (3.0, 4.0)), ((0.0, 0.0), (2.0, 2.0))
-    said = width_open(3.0, 1.9, upright, "HERE")
+    said = possible_width(3.0, 1.9, upright, "HERE")
     assert said == "the passage at HERE, which is between 3.00 and 5.00 squares wide, is wide enough"
-    assert width_open(3.0, 2.0, upright, "HERE") == ""
-    assert "between 2.83 and 5.66 squares" in width_open(8**0.5, 2.7, askew, "HERE")
-    assert width_open(8**0.5, 2.9, askew, "HERE") == ""
+    assert possible_width(3.0, 2.0, upright, "HERE") == ""
+    assert "between 2.83 and 5.66 squares" in possible_width(8**0.5, 2.7, askew, "HERE")
+    assert possible_width(8**0.5, 2.9, askew, "HERE") == ""
 
 
 @pytest.mark.parametrize(
-    ("shaken", "sure", "fixed", "verdict"),
+    ("shaken", "sure", "immovable", "verdict"),
     [
         (False, True, False, "impossible"),
         (True, True, False, "limit"),  # it may have been seen and lost
         (False, True, True, "impossible"),
-        (False, False, True, "limit"),  # another thing may have been pushed
+        (False, False, True, "limit"),  # another object may have been pushed
     ],
 )
-def test_what_is_missing_proves_nothing_while_the_map_is_in_doubt(
-    shaken: bool, sure: bool, fixed: bool, verdict: str
+def test_a_missing_object_proves_nothing_while_the_map_is_in_doubt(
+    shaken: bool, sure: bool, immovable: bool, verdict: str
 ) -> None:
     model = seen_whole(ROOM)
     model = replace(model, shaken=shaken, view=model.view._replace(sure=sure))
-    assert verdict_if_missing(model, fixed) == verdict
+    assert verdict_if_not_found(model, immovable) == verdict
