@@ -22,14 +22,9 @@ from kb.localisation.hypotheses.frames import (
     prune_hypotheses,
 )
 from kb.localisation.hypotheses.map_prior import weigh_hypotheses
+from kb.localisation.hypotheses.reestimation import ReestimatedWalk, reestimate_two_walks, reestimate_walk
 from kb.localisation.hypotheses.remap import ReplayPrefixes, remap
-from kb.localisation.hypotheses.walk_outcomes import (
-    ReestimatedWalk,
-    observation_places,
-    reestimate_two_walks,
-    reestimate_walk,
-    slipped_ends,
-)
+from kb.localisation.hypotheses.walk_outcomes import observation_places, slipped_ends
 from kb.localisation.propose.blocked import has_whole_way, possible_ends
 from kb.localisation.propose.origin import blocked_walks_with_origin
 from kb.localisation.score import (

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from kb.localisation.hypotheses.carry_outcomes import CarryOutcome
 from kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
-from kb.localisation.hypotheses.walk_outcomes import ReestimatedWalk
+from kb.localisation.hypotheses.reestimation import ReestimatedWalk
 from kb.mapping.occupancy import OPEN, OccupancyMap
 from kb.objects.held_object import HeldObject, Square
 from kb.perception.frame import CENTRE, Frame, Samples
@@ -16,7 +16,7 @@ from kb.perception.retina import FIELDS
 from kb.reasoning.solver import KB, solve
 
 PRICE_PER_NAT = 2  # prices of kb/asp/accommodation.lp for a factor of e in probability: the scale of that encoding
-MIN_CHANCE = 1e-9  # probability below which an end of a motion is no less likely, so that its price is finite
+MIN_PRICED_CHANCE = 1e-9  # probability below which an end of a motion is no less likely, so that its price is finite
 
 
 class CellStatus(StrEnum):
@@ -138,7 +138,7 @@ def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Expla
     for number, e in enumerate(explanations):
         offered += [f"crooked({number},{round(PRICE_PER_NAT * e.prior_cost)})"] * (e.prior_cost > 0)
         if e.chance is not None:
-            price = round(-PRICE_PER_NAT * math.log(max(e.chance, MIN_CHANCE)))
+            price = round(-PRICE_PER_NAT * math.log(max(e.chance, MIN_PRICED_CHANCE)))
             offered.append(f"unlikely({number},{price})")
     answer = solve([KB / "accommodation.lp"], [*offered, *facts])
     if not answer:

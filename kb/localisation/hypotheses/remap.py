@@ -26,7 +26,7 @@ from kb.perception.frame import Frame
 
 MAX_FRAME_SKEW = 8.0  # degrees between two frames up to which an outline measured in one serves in the other; tuned
 MAX_OPEN_SHARE = 0.25  # open squares of an outline, as a share of its full ones, up to which it is fitted anew; tuned
-OUTLINE_MARGIN = 6  # squares by which an outline fitted anew may reach beyond the old one; tuned
+FITTED_OUTLINE_MARGIN = 6  # squares by which an outline fitted anew may reach beyond the old one; tuned
 REPLAY_INTERVAL = 16  # observations after which a replay is kept, to go on from there: time against memory; tuned
 CORNER_STEPS = sorted(((x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)), key=lambda step: (math.hypot(*step), step))
 
@@ -54,7 +54,7 @@ def object_pose(held: HeldObject, frame: Frame) -> ObjectPose:
     return ObjectPose(held.name, _centroid(held.polygon, frame), held.turned, held.slack, _centroid(held.first, frame))
 
 
-class Replay:
+class MapReplay:
     """Observations integrated one after the other into a new map, in a frame.
 
     Attributes
@@ -69,7 +69,7 @@ class Replay:
         self._occupancy, self._residual = OccupancyMap(), 0
         self._taken: dict[str, HeldObject] = {}  # as they lay when they were first held, in the new frame
 
-    def copy(self) -> "Replay":
+    def copy(self) -> "MapReplay":
         """Return an independent copy, to go on with."""
         other = copy(self)
         other._occupancy, other._taken = self._occupancy.copy(), dict(self._taken)
@@ -81,7 +81,7 @@ class Replay:
         held_objects: Mapping[str, HeldObject],
         stop: int,
         only_whether: bool = False,
-    ) -> "Replay":
+    ) -> "MapReplay":
         """Integrate the observations before number `stop` that are not integrated yet, and return the replay.
 
         observations : all; those integrated already must be the first of them. held_objects : old frame.
@@ -140,7 +140,7 @@ def remap(
     old: Frame,
     observations: Sequence[Observation],
     held_objects: Iterable[HeldObject],
-    begun: Replay | None = None,
+    begun: MapReplay | None = None,
     only_whether: bool = False,
 ) -> RemappedMap:
     """Return the map and the held objects in another frame.
@@ -154,7 +154,7 @@ def remap(
     begun : a replay of the first of the observations, with the same objects; it is copied.
     only_whether : ask only whether anything contradicts the frame; the result is incomplete if something does.
     """
-    replay = Replay(new, old) if begun is None else begun.copy()
+    replay = MapReplay(new, old) if begun is None else begun.copy()
     return replay.finish(observations, {held.name: held for held in held_objects}, only_whether)
 
 
@@ -213,9 +213,9 @@ class ReplayPrefixes:
     ) -> None:
         """Begin with no observation. held_objects : all held objects in that frame, by name."""
         self._observations, self._held_objects = observations, held_objects
-        self._known = {0: Replay(frame, frame)}
+        self._known = {0: MapReplay(frame, frame)}
 
-    def first(self, number: int) -> Replay:
+    def first(self, number: int) -> MapReplay:
         """Return the replay of the first `number` observations. Copy it before going on with it."""
         if number not in self._known:
             nearest = max(n for n in self._known if n < number)
@@ -266,8 +266,8 @@ def _straightened(polygon: Any, occupancy: OccupancyMap) -> Any:
 
 def _fitted_outline(patch: Patch, occupancy: OccupancyMap) -> Any:
     """Return the outline fitted to what was seen about a patch; None when too much of it is open."""
-    own = np.pad(patch.mask, OUTLINE_MARGIN)
-    state = occupancy.window(patch.west - OUTLINE_MARGIN, patch.south - OUTLINE_MARGIN, own.shape)
+    own = np.pad(patch.mask, FITTED_OUTLINE_MARGIN)
+    state = occupancy.window(patch.west - FITTED_OUTLINE_MARGIN, patch.south - FITTED_OUTLINE_MARGIN, own.shape)
     labels = components(state != FREE).labels
     met = np.bincount(labels[own & (labels > 0)], minlength=1)
     part = labels == met.argmax()
@@ -278,7 +278,7 @@ def _fitted_outline(patch: Patch, occupancy: OccupancyMap) -> Any:
     best = fit_shapes(full, possible)[0]
     if best.misfit:
         return None
-    corner = np.array([patch.west - OUTLINE_MARGIN, patch.south - OUTLINE_MARGIN])
+    corner = np.array([patch.west - FITTED_OUTLINE_MARGIN, patch.south - FITTED_OUTLINE_MARGIN])
     return shapely.transform(best.polygon, lambda points: points + corner)
 
 

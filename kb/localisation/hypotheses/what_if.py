@@ -1,4 +1,4 @@
-"""What-if evaluation: what contradicts another frame, once objects have been moved.
+"""Evaluation of what-if questions: which fields contradict another frame, once objects have been moved.
 
 Observations do not agree where objects came from and went to. So each frame in question is compared with all
 observations, with the objects remapped to it. kb.localisation.propose.frame and

@@ -22,18 +22,15 @@ from kb.localisation.hypotheses.frames import (
     frames_to_try,
     observation_squares,
 )
-from kb.localisation.hypotheses.remap import RemappedMap, object_at, remap
-from kb.localisation.hypotheses.walk_outcomes import (
-    LINE_DISTANCE,
-    MotionHypothesis,
+from kb.localisation.hypotheses.reestimation import (
     ReestimatedWalk,
     WalkCorrection,
     WalkEnd,
     WalkInFrame,
-    add,
-    observation_places,
     remap_if_consistent,
 )
+from kb.localisation.hypotheses.remap import RemappedMap, object_at, remap
+from kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, add, observation_places
 from kb.localisation.hypotheses.what_if import Surprise, WhatIf
 from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
 from kb.mapping.patch import covered

@@ -11,7 +11,7 @@ from shapely.affinity import rotate, translate
 from kb.body import Move, Push, Turn
 from kb.localisation.hypotheses.explanation import CellStatus, Explanation, cheapest
 from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, FrameHypothesis
-from kb.localisation.hypotheses.walk_outcomes import ReestimatedWalk, WalkCorrection
+from kb.localisation.hypotheses.reestimation import ReestimatedWalk, WalkCorrection
 from kb.localisation.tracker import Tracker
 from kb.mapping.occupancy import FREE, OPEN
 from kb.objects.held_object import HeldObject

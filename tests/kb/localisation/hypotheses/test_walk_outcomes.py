@@ -8,14 +8,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation, count_contradictions
-from kb.localisation.hypotheses.walk_outcomes import (
-    LINE_DISTANCE,
-    MotionHypothesis,
-    entered_square,
-    line_crossings,
-    reestimate_two_walks,
-    reestimate_walk,
-)
+from kb.localisation.hypotheses.reestimation import reestimate_two_walks, reestimate_walk
+from kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, entered_square, line_crossings
 from kb.mapping.occupancy import FULL, OccupancyMap
 from kb.perception.frame import Frame, turned
 from kb.perception.retina import count_ranges
