@@ -26,7 +26,7 @@ from kb.localisation.hypotheses.frames import (
     place_squares,
     stack_ranges,
 )
-from kb.localisation.hypotheses.remap import RemappedMap, ReplayPrefixes, remap
+from kb.localisation.hypotheses.remap import MapReplay, RemappedMap, ReplayPrefixes, remap
 from kb.localisation.hypotheses.walk_outcomes import (
     LINE_DISTANCE,
     MotionHypothesis,
