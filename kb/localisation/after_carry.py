@@ -44,7 +44,12 @@ MAX_CLEAR_CHANCE = 0.25  # probability of a contact up to which a motion counts 
 def explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:
     """Return the explanation chosen for the observation after a push or a turn.
 
-    held : the object in hand, before the motion. motion : as commanded, map frame.
+    Parameters
+    ----------
+    state : what was believed before the observation.
+    surprise : the observation.
+    held : the object in hand, before the motion.
+    motion : as commanded, map frame.
     """
     whole = _outcome(state, surprise, predicted_outcome(state.place, held.polygon, motion))
     blocked = _blocked_push(state, surprise, held, motion)
@@ -162,7 +167,14 @@ def moved_object(
 ) -> HeldObject:
     """Return the object in hand after the chosen outcome of a motion.
 
-    held : the object before the motion. motion : as commanded, map frame. suspected : of `contact_suspects`.
+    Parameters
+    ----------
+    state : what is believed, with the chosen frame.
+    held : the object before the motion.
+    chosen : the chosen explanation.
+    motion : as commanded, map frame.
+    ranges : (160, 2) count ranges of the observation.
+    suspected : the squares that `contact_suspects` returns.
     """
     others, place = state.others(held), chosen.place
     held = replace(held, inexact=held.inexact or state.slipped)

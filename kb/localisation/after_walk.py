@@ -67,7 +67,12 @@ class DeadReckoning:
 def explain_walk(state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, command: Command | None) -> Judgement:
     """Return the explanation chosen for an observation after a walk, or after another motion of an empty hand.
 
-    ranges : (160, 2) least and greatest counts of the fields. command : None on waking.
+    Parameters
+    ----------
+    state : what was believed before the observation.
+    ranges : (160, 2) least and greatest counts of its fields.
+    ends : the end of the walk by dead reckoning.
+    command : the command before the observation; None on waking.
     """
     return _WalkExplainer(state, ranges, ends, command).judge()
 

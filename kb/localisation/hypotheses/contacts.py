@@ -131,7 +131,13 @@ def suspected_squares(
     Empty when nothing was blocked, when the object was never seen to move (the hand may be empty), or when something
     known explains it.
 
-    motion : as commanded. held : the object in hand. others : all other objects that were ever held, where they lie.
+    Parameters
+    ----------
+    outcome : the chosen outcome of the motion; None when there was none.
+    motion : as commanded, map frame.
+    held : the object in hand.
+    others : all other objects that were ever held, where they lie.
+    occupancy : the map.
     """
     if outcome is not None and outcome.contact_squares:
         return outcome.contact_squares

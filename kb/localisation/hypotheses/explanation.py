@@ -96,7 +96,12 @@ def field_statuses(
 ) -> tuple[CellStatus, ...]:
     """Return how each of the 160 fields is accounted for by the map, before the observation is integrated.
 
-    samples : the squares under each field, in the believed frame. (x, y) : the square of the observation, map frame.
+    Parameters
+    ----------
+    occupancy : the map.
+    samples : the squares under each field, in the believed frame, held objects left out.
+    ranges : (160, 2) count ranges of the observation, held objects left out.
+    x, y : the square from which it was made, map frame.
     """
     noise = occupancy.misfits(samples, ranges, x, y)
     row, column = occupancy.index(x, y)
@@ -130,7 +135,13 @@ def reestimated_explanation(one: ReestimatedWalk, left: tuple[FrameHypothesis, .
 
 
 def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Explanation:
-    """Return the explanation that kb/asp/accommodation.lp chooses. facts : the other inputs of that encoding."""
+    """Return the explanation that kb/asp/accommodation.lp chooses.
+
+    Parameters
+    ----------
+    explanations : at least one; of those that cost the same the first is chosen.
+    facts : the other inputs of that encoding, as facts without a period.
+    """
     offered = [
         f"explanation({number},{e.how},{e.residual},{math.ceil(e.distance)})" for number, e in enumerate(explanations)
     ]

@@ -190,7 +190,12 @@ def reestimate_two_walks(
 
     A motion that goes on against what blocked the one before it does not move at all.
 
-    hypothesis : of the frame. observations : as for `reestimate_walk`.
+    Parameters
+    ----------
+    motion : the earlier motion, with an empty hand.
+    newest : the newest motion, with an empty hand.
+    hypothesis : of the frame.
+    observations : all, at their believed places; the newest where it was commanded.
     """
     frame, before, believed = hypothesis.frame, observations[:-1], observations[motion.number].place
     walk = WalkInFrame(motion, frame, observations)
@@ -222,8 +227,14 @@ def remap_if_consistent(
 ) -> RemappedMap | None:
     """Return the map of all observations in a frame; None when two of the last observations contradict each other.
 
-    held_objects : all held objects, in that frame. unsettled : where observations need not agree. recent : how many of
-    the last observations are compared. begun, only_whether : as for kb.localisation.hypotheses.remap.remap.
+    Parameters
+    ----------
+    frame : the frame to map in.
+    observations : all, at their places in Utak's own frame.
+    held_objects : all objects that were ever held, in that frame.
+    unsettled : parts of the table where observations need not agree.
+    recent : how many of the last observations are compared.
+    begun, only_whether : as for kb.localisation.hypotheses.remap.remap.
     """
     squares = observation_squares(frame, observations)
     if not _are_consistent(frame, squares, stack_ranges(observations), unsettled, recent):

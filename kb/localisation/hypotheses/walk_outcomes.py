@@ -106,9 +106,18 @@ def line_crossings(start: Position, shift: Position) -> tuple[Crossing, ...]:
 
 
 def on_line(place: Position) -> Position:
-    """Return `place` with each coordinate within 2e-6 squares of a grid line moved onto it, map frame.
+    """Return `place` with each coordinate within 2e-6 squares of a grid line moved onto it.
 
     A contact stopped the motion there, so the robot is on the line.
+
+    Parameters
+    ----------
+    place : (x, y) in squares, map frame.
+
+    Returns
+    -------
+    tuple of float
+        (x, y) in squares, map frame.
     """
     x, y = (float(round(v)) if abs(v - round(v)) <= 2 * LINE_DISTANCE else v for v in place)
     return x, y

@@ -55,7 +55,16 @@ def possible_ends(surprise: Surprise, held: HeldObject | None, motion: Motion) -
     None are returned for a turn, or when the motion hardly met anything and ends inside a square. At a grid line each
     end is returned once for each side, for the observation may be made from either.
 
-    held : the object in hand; None for a walk. motion : map frame.
+    Parameters
+    ----------
+    surprise : the observation after the motion.
+    held : the object in hand, before the motion; None for a walk.
+    motion : as commanded, map frame.
+
+    Returns
+    -------
+    list of BlockedMotion
+        Their chances sum to 1 at most.
     """
     if not isinstance(motion, Translate):
         return []
@@ -109,7 +118,15 @@ def _push_contacts(surprise: Surprise, held: HeldObject, motion: Translate) -> l
 def consistent_explanations(surprise: Surprise, explanations: Iterable[Explanation]) -> list[Explanation]:
     """Return those explanations with which the observation agrees, each with its cost by the map prior.
 
-    explanations : none of them contradicts what was settled before the observation.
+    Parameters
+    ----------
+    surprise : the observation.
+    explanations : possible ends of the motion; none of them contradicts what was settled before.
+
+    Returns
+    -------
+    list of Explanation
+        In the same order; prior costs are relative to the best one.
     """
     found: list[tuple[MapDescription, Explanation]] = []
     drawn: DrawnScenes = {}

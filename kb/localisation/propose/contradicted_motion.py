@@ -24,7 +24,16 @@ CROWDED_DISTANCE = 1.0  # squares around an object in which those are counted: i
 def overlooked_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> CarryOutcome | None:
     """Return where the motion of an object was blocked, if the observation contradicts the whole motion; else None.
 
-    held : the object in hand. motion : as commanded, map frame; nothing settled before contradicts the whole of it.
+    Parameters
+    ----------
+    surprise : the observation after the motion.
+    held : the object in hand, before the motion.
+    motion : as commanded, map frame. Nothing settled before contradicts the whole of it.
+
+    Returns
+    -------
+    CarryOutcome or None
+        The likeliest contact that nothing contradicts, or a shortened turn.
     """
     if is_contradicted(surprise, predicted_outcome(surprise.place, held.polygon, motion)):
         return likeliest_contact(surprise, held, motion)

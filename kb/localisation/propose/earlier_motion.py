@@ -113,7 +113,15 @@ class CarriedMotion:
 def reestimate_motions(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
     """Return all other ends of earlier motions with which no observation is contradicted, in the believed frame.
 
-    Contacts with something known come first, then the newest motions.
+    Parameters
+    ----------
+    surprise : the newest observation, which the believed ends contradict.
+    motions : earlier straight motions, oldest first.
+
+    Returns
+    -------
+    list of ReestimatedMotion
+        Contacts with something known first, then by motion, the newest first.
     """
     tried = [motion for motion in reversed(motions) if _has_known_pose(motion, surprise)]
     found = [one for motion in tried for one in _other_ends(surprise, motion)]
@@ -125,6 +133,16 @@ def reestimate_with_origin(surprise: Surprise, motions: Sequence[MotionHypothesi
 
     Neither is explained without the other: where an object was blocked depends on where it lay, which is known in
     squares; where the observations since were made depends on the origin.
+
+    Parameters
+    ----------
+    surprise : the newest observation, which the believed ends contradict.
+    motions : earlier straight motions, oldest first.
+
+    Returns
+    -------
+    list of ReestimatedMotion
+        Of one motion only; contacts with something known first.
     """
     tried = (motion for motion in reversed(motions) if motion.in_hand is not None and _has_known_pose(motion, surprise))
     found = ([*_ends_with_origin(surprise, motion)] for motion in itertools.islice(tried, MAX_MOTIONS_WITH_ORIGIN))

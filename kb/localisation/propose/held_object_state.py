@@ -24,8 +24,12 @@ TOUCHING_DISTANCE = 0.02  # squares from an obstacle within which an object touc
 def object_after(held: HeldObject, outcome: CarryOutcome | None, residual: int, suspected: bool = False) -> HeldObject:
     """Return an object in hand after a motion.
 
-    held : before the motion. outcome : the chosen one. residual : fields that it leaves unexplained. suspected :
-    whether an open square is suspected to have blocked the motion.
+    Parameters
+    ----------
+    held : the object before the motion.
+    outcome : the chosen outcome; None when nothing is known to have moved.
+    residual : fields that the outcome leaves unexplained.
+    suspected : whether an open square is suspected to have blocked the motion.
     """
     held = replace(held, unexplained=max(held.unexplained, residual))
     if outcome is None or outcome.how == "stuck" or outcome.polygon.equals(held.polygon):
@@ -48,8 +52,12 @@ def lean_on_obstacle(
 
     It stays where it is when it touches something there, or when every touching place contradicts more of what is seen.
 
-    held : after the motion. motion : as commanded, map frame. known : the obstacles. count_clashes : returns how many
-    fields contradict an object where it lies.
+    Parameters
+    ----------
+    held : the object after the motion.
+    motion : as commanded, map frame.
+    known : the known obstacles.
+    count_clashes : returns how many fields contradict an object where it lies.
     """
     if not isinstance(motion, Translate):
         return held

@@ -26,7 +26,16 @@ def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iter
 
     Only for an object that never moved before, with its sides on grid lines.
 
-    held : the object in hand, before the motion. motion : as commanded, map frame.
+    Parameters
+    ----------
+    surprise : the observation after the push.
+    held : the object in hand, before the push.
+    motion : as commanded, map frame.
+
+    Yields
+    ------
+    Explanation
+        Without residual; `larger` is the object before the push.
     """
     if held.proven or not isinstance(motion, Translate) or not is_whole(held.polygon):
         return

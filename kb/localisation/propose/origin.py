@@ -42,8 +42,11 @@ def blocked_walks_with_origin(
     Those by which all observations are made on the same squares are one explanation. Its prior cost is the map prior
     plus the log odds against the part of the square in which the origin lies then.
 
-    motions : the last walks, oldest first. believed : the believed frame. observations : all, at their believed places;
-    the newest where it was commanded.
+    Parameters
+    ----------
+    motions : the last walks, oldest first.
+    believed : the believed frame.
+    observations : all, at their believed places; the newest where it was commanded.
     """
     origins = tuple(exact_hypothesis(frame) for frame in frames_of_coarse_origins(believed))
     alike: dict[tuple[int, bytes], list[ReestimatedWalk]] = {}

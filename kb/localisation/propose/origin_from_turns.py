@@ -76,6 +76,9 @@ def origin_from_turn(surprise: Surprise, simple: bool) -> WhatIf | None:
     The orientation is the believed one. The turn went to its end, or as far as known obstacles let it go; else it may
     have ended anywhere. The hypotheses left are all origins that do.
 
+    Parameters
+    ----------
+    surprise : the observation, after any object was turned.
     simple : whether a motion that ended early explains the observation in the believed frame.
     """
     points = _origins_left(surprise)
