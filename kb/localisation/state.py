@@ -42,7 +42,7 @@ class TrackerState:
     confirmations : number of observations in a row that confirmed the believed frame.
     blocked_squares : squares that stopped Utak himself when a motion was about to enter them, map frame.
     suspected_squares : open squares one of which probably stopped a held object, map frame.
-    search_count : how often all frames were searched, successfully or not. It limits further searches.
+    search_count : number of slow proposals that found nothing or searched all frames. It limits further ones.
     slipped : whether any motion ended beside its predicted end.
     motions : the last straight motions, oldest first. Each may have ended otherwise than believed.
     held_objects : all objects that were ever held, by name.
