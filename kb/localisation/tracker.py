@@ -155,7 +155,7 @@ class Tracker:
         return self._integrate(explanation, ranges)
 
     def _count_confirmations(self, explanation: Explanation) -> None:
-        """Count a predicted observation as a confirmation of the frame; reset the count if no chance of its end is known."""
+        """Count a predicted observation as a confirmation; reset the count if the chance of its end is unknown."""
         number = self.state.confirmations
         number = number + 1 if explanation.how == "predicted" else number * (explanation.chance is not None)
         self.state = replace(self.state, confirmations=number)
