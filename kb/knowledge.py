@@ -65,7 +65,7 @@ class Knowledge:
         if isinstance(command, Grasp):
             self._grasp(command.direction)
         accommodated = self.tracker.accommodate(command, impression)
-        if self.memory.lost and self.memory.held is None:
+        if self.memory.lost and self.memory.in_hand is None:
             return self.begin_anew(impression, lost=True)
         return self._model(impression, accommodated)
 
@@ -83,8 +83,8 @@ class Knowledge:
         beside = self.memory.frame.beside(direction)
         square = None if beside is None else (x + beside[0], y + beside[1])
         there = [n for n in self.objects if square in n.patch.squares()] or self._felt_at(direction)
-        node = min(there, key=lambda n: n.name not in self.memory.loads, default=None)
-        if node is None or node.polygon is None or self.memory.held is not None:
+        node = min(there, key=lambda n: n.name not in self.memory.held_objects, default=None)
+        if node is None or node.polygon is None or self.memory.in_hand is not None:
             return
         load = HeldObject(
             name=node.name,
@@ -138,7 +138,7 @@ class Knowledge:
             spread=self.memory.spread,
             likely_spread=self.memory.likely_spread,
             leeway=self.memory.leeway,
-            held=self.memory.held,
+            held=self.memory.in_hand,
             imagined=imagined,
             touch=impression.touch,
             felt=dict(self.felt),
@@ -148,10 +148,10 @@ class Knowledge:
             contradicted=accommodated.explanation.residual > 0,
         )
         self.objects = self._objects(model)
-        if self.memory.loads:
+        if self.memory.held_objects:
             model = replace(model, beneath=model.space)
         self._measure_loads()
-        for load in self.memory.loads.values():
+        for load in self.memory.held_objects.values():
             model, patch = _laid(model, load)
             self.objects += (_node(load, patch, int(model.labels.max())),)
         self.objects = tuple(sorted(self.objects, key=lambda node: int(node.name[1:])))
@@ -180,7 +180,7 @@ class Knowledge:
     def _feel(self, impression: Impression) -> None:
         self._touch = impression.touch
         x, y = self.memory.square
-        loaded = {square for load in self.memory.loads.values() for square in load.possible.squares()}
+        loaded = {square for load in self.memory.held_objects.values() for square in load.possible.squares()}
         for direction, colour in zip(DIRECTIONS, impression.touch, strict=True):
             beside = self.memory.frame.beside(direction)
             if beside is None:
@@ -195,7 +195,7 @@ class Knowledge:
         regions = [r for r in model.percept.regions if _may_be_object(r.name, r.extent, model.kinds)]
         parts = _parts(model, [label_of(r.name) for r in regions])
         patches = [patch_of(part.mask, part.view) for part in parts]
-        names = self._names.assign(patches, self.memory.loads)
+        names = self._names.assign(patches, self.memory.held_objects)
         measured = {n: self._measurer.measure(p, model.view) for n, p in zip(names, patches, strict=True)}
         shape = shapes(_shape_facts(measured), self.rules)
         return tuple(
@@ -222,7 +222,7 @@ class Knowledge:
 
     def _measure_loads(self) -> None:
         """Tell the shape of loads that were found to be larger than they seemed."""
-        for name, load in self.memory.loads.items():
+        for name, load in self.memory.held_objects.items():
             if not load.shape:
                 measured = self._measurer.measure_whole(covered(load.first))
                 shape = shapes(_shape_facts({name: measured}), self.rules)

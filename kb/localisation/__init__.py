@@ -11,4 +11,8 @@ hypotheses  the values: frames, outcomes, contacts, explanations, and maps remap
 propose  the proposals, one kind a module
 
 Public names: `tracker.Tracker`, `state.TrackerState`, `hypotheses.explanation.Accommodated`.
+
+Two frames: the map frame has its axes along the grid and its origin at the corner of the square of waking; Utak's own
+frame has its origin where Utak woke, with north the way it faced. Constants marked "tuned" were tuned on random worlds
+(benchmarks.campaign).
 """

@@ -41,39 +41,44 @@ from kb.objects.held_object import ROUNDING, HeldObject, Square
 MAX_CLEAR_CHANCE = 0.25  # probability of a contact up to which a motion counts as clear of obstacles; tuned
 
 
-def explain_carry(state: TrackerState, surprise: Surprise, load: HeldObject, motion: Motion) -> Judgement:
+def explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> Judgement:
     """Return the explanation chosen for the observation after a push or a turn.
 
-    load : the object in hand, before the motion. motion : as commanded, map frame.
+    Parameters
+    ----------
+    state : what was believed before the observation.
+    surprise : the observation.
+    held : the object in hand, before the motion.
+    motion : as commanded, map frame.
     """
-    whole = _outcome(state, surprise, predicted_outcome(state.place, load.polygon, motion))
-    blocked = _blocked_push(state, surprise, load, motion)
+    whole = _outcome(state, surprise, predicted_outcome(state.place, held.polygon, motion))
+    blocked = _blocked_push(state, surprise, held, motion)
     budget = SearchBudget(state.search_count)
     if has_whole_way(blocked):
         return Judgement(choose(state, list(blocked)), budget.spent, blocked)
     if not whole.residual and not blocked:
-        contact = overlooked_contact(surprise, load, motion)
+        contact = overlooked_contact(surprise, held, motion)
         if contact is None:
             return Judgement(whole, budget.spent)
         doubtful = whole._replace(residual=CONTRADICTION_RESIDUAL)
         return Judgement(choose(state, [doubtful, _outcome(state, surprise, contact)]), budget.spent)
     if not whole.residual:
         whole = whole._replace(residual=CONTRADICTION_RESIDUAL)
-    contacts = surprise.obstructions.contacts(state.place, load.polygon, motion)
-    explanations = [whole, *_outcomes(state, surprise, load, motion, whole, blocked, contacts)]
+    contacts = surprise.obstructions.contacts(state.place, held.polygon, motion)
+    explanations = [whole, *_outcomes(state, surprise, held, motion, whole, blocked, contacts)]
     simple = any(not one.residual for one in explanations[1:] if one.how != "slipped" or state.slipped)
     explanations += propose_frame(state, surprise, whole.residual, budget, simple)
     explanations += propose_earlier_motions(state, surprise, explanations, budget)
     if not any(is_simple(state, one) for one in explanations):
         explanations += propose_blocked_push_and_origin(surprise, budget)
-    chosen = choose(state, explanations, _facts(state, surprise, load, contacts))
+    chosen = choose(state, explanations, _facts(state, surprise, held, contacts))
     return Judgement(chosen, budget.spent, blocked)
 
 
 def _outcomes(
     state: TrackerState,
     surprise: Surprise,
-    load: HeldObject,
+    held: HeldObject,
     motion: Motion,
     whole: Explanation,
     blocked: Iterable[Explanation],
@@ -83,39 +88,39 @@ def _outcomes(
 
     whole : the motion as commanded. blocked : where a push may have ended. contacts : all that the motion may have met.
     """
-    ends = contact_outcomes(contacts, state.place, load.polygon, motion)
+    ends = contact_outcomes(contacts, state.place, held.polygon, motion)
     outcomes = [*blocked] or [one for one in (_outcome(state, surprise, end) for end in ends) if not one.residual]
-    outcomes += [_outcome(state, surprise, other) for other in other_outcomes(state.place, load.polygon, motion)]
-    outcomes += [*_smaller(state, surprise.ranges, load, whole), *larger_objects(surprise, load, motion)]
+    outcomes += [_outcome(state, surprise, other) for other in other_outcomes(state.place, held.polygon, motion)]
+    outcomes += [*_smaller(state, surprise.ranges, held, whole), *larger_objects(surprise, held, motion)]
     return outcomes
 
 
 def _facts(
-    state: TrackerState, surprise: Surprise, load: HeldObject, contacts: Iterable[ContactHypothesis]
+    state: TrackerState, surprise: Surprise, held: HeldObject, contacts: Iterable[ContactHypothesis]
 ) -> list[str]:
     """Return the facts about the motion on which the choice depends. contacts : the contacts it may have met."""
     facts = {
         "unchanged": np.array_equal(surprise.ranges, state.observations[-1].ranges),
         "clear": sum(contact.chance for contact in contacts) <= MAX_CLEAR_CHANCE,
-        "uneven": load.insets is not None and any(load.insets.believed),
+        "uneven": held.insets is not None and any(held.insets.believed),
     }
     return [fact for fact, holds in facts.items() if holds]
 
 
-def _blocked_push(state: TrackerState, surprise: Surprise, load: HeldObject, motion: Motion) -> tuple[Explanation, ...]:
+def _blocked_push(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> tuple[Explanation, ...]:
     """Return where a push may have ended, its whole way included, as far as the observation agrees."""
     ended = []
-    for end in possible_ends(surprise, load, motion):
+    for end in possible_ends(surprise, held, motion):
         assert end.outcome is not None
         ended.append((end, _outcome(state, surprise, end.outcome)))
     return consistent_ends(surprise, ended)
 
 
-def _smaller(state: TrackerState, ranges: FieldRanges, load: HeldObject, whole: Explanation) -> list[Explanation]:
+def _smaller(state: TrackerState, ranges: FieldRanges, held: HeldObject, whole: Explanation) -> list[Explanation]:
     """Return the explanation that the object does not fill its squares, if there is one. whole : as commanded."""
     outcome = whole.outcome
     assert outcome is not None
-    lying = load.moved(outcome.polygon, load.slack, outcome.degrees, commanded=True)
+    lying = held.moved(outcome.polygon, held.slack, outcome.degrees, commanded=True)
     less = refined_extent(state, lying, ranges, outcome.place)
     if less is None:
         return []
@@ -129,32 +134,32 @@ def _outcome(state: TrackerState, surprise: Surprise, outcome: CarryOutcome) -> 
     return Explanation(outcome.how, outcome.place, state.frame, residual, outcome.distance, outcome)
 
 
-def refined_extent(state: TrackerState, load: HeldObject, ranges: FieldRanges, place: Position) -> HeldObject | None:
+def refined_extent(state: TrackerState, held: HeldObject, ranges: FieldRanges, place: Position) -> HeldObject | None:
     """Return an object with the sub-cell extent that an observation at `place` shows; None when none agrees with it.
 
     Squares that the object may leave free are taken for floor, not for something that happens to fill them.
     """
-    frame, others, nothing = state.frame, state.others(load), NO_SQUARES
-    floor = state.occupancy.supposing(covered(load.polygon).squares())
+    frame, others, nothing = state.frame, state.others(held), NO_SQUARES
+    floor = state.occupancy.supposing(covered(held.polygon).squares())
 
     def agrees(outline: Any) -> bool:
-        lying = replace(load, polygon=outline, slack=0.0, full=nothing, empty=nothing)
+        lying = replace(held, polygon=outline, slack=0.0, full=nothing, empty=nothing)
         return not count_clashes(frame, floor, [*others, lying], place, ranges)
 
-    return load.told(agrees)
+    return held.told(agrees)
 
 
-def contact_suspects(state: TrackerState, load: HeldObject, chosen: Explanation, motion: Motion) -> frozenset[Square]:
+def contact_suspects(state: TrackerState, held: HeldObject, chosen: Explanation, motion: Motion) -> frozenset[Square]:
     """Return the open squares one of which probably stopped an object, map frame; none when what stopped it is known.
 
-    load : the object before the motion. motion : as commanded, map frame.
+    held : the object before the motion. motion : as commanded, map frame.
     """
-    return suspected_squares(chosen.outcome, motion, load, state.others(load), state.occupancy)
+    return suspected_squares(chosen.outcome, motion, held, state.others(held), state.occupancy)
 
 
 def moved_object(
     state: TrackerState,
-    load: HeldObject,
+    held: HeldObject,
     chosen: Explanation,
     motion: Motion,
     ranges: FieldRanges,
@@ -162,11 +167,18 @@ def moved_object(
 ) -> HeldObject:
     """Return the object in hand after the chosen outcome of a motion.
 
-    load : the object before the motion. motion : as commanded, map frame. suspected : of `contact_suspects`.
+    Parameters
+    ----------
+    state : what is believed, with the chosen frame.
+    held : the object before the motion.
+    chosen : the chosen explanation.
+    motion : as commanded, map frame.
+    ranges : (160, 2) count ranges of the observation.
+    suspected : the squares that `contact_suspects` returns.
     """
-    others, place = state.others(load), chosen.place
-    load = replace(load, inexact=load.inexact or state.slipped)
-    carried = object_after(load, chosen.outcome, chosen.residual, bool(suspected))
+    others, place = state.others(held), chosen.place
+    held = replace(held, inexact=held.inexact or state.slipped)
+    carried = object_after(held, chosen.outcome, chosen.residual, bool(suspected))
     if carried.inexact and carried.proven and not suspected and chosen.outcome and chosen.outcome.stopped:
         known = Obstructions(state.occupancy, place, carried.polygon, motion).known
         carried = lean_on_obstacle(
@@ -185,7 +197,7 @@ def agreeing_origins(state: TrackerState, ranges: FieldRanges) -> tuple[FrameHyp
     if len(within) <= 1:
         return state.hypotheses
     return agreeing_hypotheses(
-        within, state.frame, state.place, state.occupancy, state.observations, state.loads, ranges
+        within, state.frame, state.place, state.occupancy, state.observations, state.held_objects, ranges
     )
 
 
@@ -196,12 +208,12 @@ def objects_astray(state: TrackerState) -> dict[str, HeldObject]:
     """
     origins = [hypothesis.frame.origin for hypothesis in _exact_origins(state)]
     away = np.array(origins).reshape(-1, 2) - np.array(state.frame.origin)
-    loads = {}
-    for name, load in state.loads.items():
-        far = np.hypot(*(away - Rotate(load.turned, (0.0, 0.0)).points(away)).T)
-        least = ROUNDING if state.beside_line and load.turned % 360 else 0.0
-        loads[name] = replace(load, astray=float(far.max(initial=least)))
-    return loads
+    held_objects = {}
+    for name, held in state.held_objects.items():
+        far = np.hypot(*(away - Rotate(held.turned, (0.0, 0.0)).points(away)).T)
+        least = ROUNDING if state.beside_line and held.turned % 360 else 0.0
+        held_objects[name] = replace(held, astray=float(far.max(initial=least)))
+    return held_objects
 
 
 def _exact_origins(state: TrackerState) -> tuple[FrameHypothesis, ...]:

@@ -22,14 +22,9 @@ from kb.localisation.hypotheses.frames import (
     prune_hypotheses,
 )
 from kb.localisation.hypotheses.map_prior import weigh_hypotheses
+from kb.localisation.hypotheses.reestimation import ReestimatedWalk, reestimate_two_walks, reestimate_walk
 from kb.localisation.hypotheses.remap import ReplayPrefixes, remap
-from kb.localisation.hypotheses.walk_outcomes import (
-    ReestimatedWalk,
-    observation_places,
-    reestimate_two_walks,
-    reestimate_walk,
-    slipped_ends,
-)
+from kb.localisation.hypotheses.walk_outcomes import observation_places, slipped_ends
 from kb.localisation.propose.blocked import has_whole_way, possible_ends
 from kb.localisation.propose.origin import blocked_walks_with_origin
 from kb.localisation.score import (
@@ -72,7 +67,12 @@ class DeadReckoning:
 def explain_walk(state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, command: Command | None) -> Judgement:
     """Return the explanation chosen for an observation after a walk, or after another motion of an empty hand.
 
-    ranges : (160, 2) least and greatest counts of the fields. command : None on waking.
+    Parameters
+    ----------
+    state : what was believed before the observation.
+    ranges : (160, 2) least and greatest counts of its fields.
+    ends : the end of the walk by dead reckoning.
+    command : the command before the observation; None on waking.
     """
     return _WalkExplainer(state, ranges, ends, command).judge()
 
@@ -99,7 +99,7 @@ class _WalkExplainer:
     def judge(self) -> Judgement:
         """Return the chosen explanation, with what was learnt while choosing."""
         state, first = self._state, self._whole
-        if not state.loads:
+        if not state.held_objects:
             stopped = [motion for motion in state.earlier if motion.blocked]
             if first.residual and any(not one.residual for motion in stopped for one in self._reestimations(motion)):
                 turned = self._blocked_elsewhere(map(self._reestimations, stopped))
@@ -143,7 +143,7 @@ class _WalkExplainer:
             self._explanation("slipped", place, self._predicted) for place in slipped_ends(self._predicted)
         ]
         explanations += turned
-        if state.loads and self._command is not None:
+        if state.held_objects and self._command is not None:
             surprise = state.surprise(self._command, self._ranges)
             explanations += propose_earlier_motions(state, surprise, explanations, self._budget)
         elif self._blocked_places:
@@ -199,8 +199,8 @@ class _WalkExplainer:
     def _both_blocked(self) -> list[Explanation]:
         """Return explanations by which both the newest walk and an earlier one were blocked, in the believed frame."""
         state, newest, found = self._state, self._state.motions[-1], []
-        held = [hypothesis for hypothesis in newest.hypotheses if hypothesis.frame == state.frame][:1]
-        pairs = [(motion, hypothesis) for hypothesis in held for motion in reversed(state.earlier)]
+        believed = [hypothesis for hypothesis in newest.hypotheses if hypothesis.frame == state.frame][:1]
+        pairs = [(motion, hypothesis) for hypothesis in believed for motion in reversed(state.earlier)]
         for walk in (one for motion, h in pairs for one in reestimate_two_walks(motion, newest, h, self._observations)):
             distance = math.hypot(*walk.correction.shift) + math.dist(walk.newest, self._observation.place)
             place = state.frame.place_from_utak(*walk.newest)
@@ -261,5 +261,5 @@ class _WalkExplainer:
 
     def _explanation(self, how: str, place: Position, predicted: Position) -> Explanation:
         """Return the explanation that the observation was made at `place`. predicted : by dead reckoning; map frame."""
-        residual = residual_at(self._state, self._ranges, place, self._state.loads.values())
+        residual = residual_at(self._state, self._ranges, place, self._state.held_objects.values())
         return Explanation(how, place, self._state.frame, residual, math.dist(place, predicted))

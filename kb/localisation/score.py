@@ -75,9 +75,9 @@ class Judgement(NamedTuple):
     hypotheses: tuple[FrameHypothesis, ...] | None = None
 
 
-def residual_at(state: TrackerState, ranges: FieldRanges, place: Position, loads: Iterable[HeldObject]) -> int:
-    """Return how many fields of an observation at `place` contradict the map, with the objects where `loads` lie."""
-    return count_clashes(state.frame, state.occupancy, loads, place, ranges)
+def residual_at(state: TrackerState, ranges: FieldRanges, place: Position, held_objects: Iterable[HeldObject]) -> int:
+    """Return how many fields of an observation at `place` contradict the map and the held objects where they lie."""
+    return count_clashes(state.frame, state.occupancy, held_objects, place, ranges)
 
 
 def consistent_ends(
@@ -215,5 +215,5 @@ def choose(state: TrackerState, explanations: list[Explanation], facts: Iterable
     known = [f"trust({0 if state.off_middle else state.confirmations})", *["slips"] * state.slipped]
     known += ["off_middle"] * state.off_middle
     known += [f"met({n})" for n, e in enumerate(explanations) if e.met_known and e.frame == state.frame]
-    known += ["proven"] * (state.held is not None and state.loads[state.held].proven)
+    known += ["proven"] * (state.in_hand is not None and state.held_objects[state.in_hand].proven)
     return cheapest(explanations, [*known, *facts])

@@ -42,11 +42,11 @@ class TrackerState:
     confirmations : number of observations in a row that confirmed the believed frame.
     blocked_squares : squares that stopped Utak himself when a motion was about to enter them, map frame.
     suspected_squares : open squares one of which probably stopped a held object, map frame.
-    search_count : how often all frames were searched, successfully or not. It limits further searches.
+    search_count : number of slow proposals that found nothing or searched all frames. It limits further ones.
     slipped : whether any motion ended beside its predicted end.
     motions : the last straight motions, oldest first. Each may have ended otherwise than believed.
-    loads : all objects that were ever held, by name.
-    held : the name of the object in the hand; None when the hand is empty.
+    held_objects : all objects that were ever held, by name.
+    in_hand : the name of the object in the hand; None when the hand is empty.
     residuals : residual of each of the last observations, oldest first.
     been : places of the observations before the tracker began anew, Utak's own frame.
     completions : the newest completions of the map in this frame; None when none were drawn.
@@ -63,8 +63,8 @@ class TrackerState:
     search_count: int = 0
     slipped: bool = False
     motions: tuple[MotionHypothesis, ...] = ()
-    loads: Mapping[str, HeldObject] = field(default_factory=dict)
-    held: str | None = None
+    held_objects: Mapping[str, HeldObject] = field(default_factory=dict)
+    in_hand: str | None = None
     residuals: tuple[int, ...] = ()
     been: tuple[Position, ...] = ()
     completions: Completions | None = None
@@ -81,8 +81,8 @@ class TrackerState:
             self.place,
             self.occupancy,
             self.observations,
-            self.loads,
-            self.held,
+            self.held_objects,
+            self.in_hand,
             self.hypotheses,
             self.completions,
         )
@@ -130,7 +130,7 @@ class TrackerState:
     @property
     def lost(self) -> bool:
         """Return whether localisation has failed: observation after observation contradicts what is believed."""
-        moved = any(load.proven for load in self.loads.values())
+        moved = any(held.proven for held in self.held_objects.values())
         limit = MAX_RESIDUAL_AFTER_MOVING if moved else MAX_RESIDUAL
         return sum(self.residuals) >= limit and sum(residual > 0 for residual in self.residuals) > 1
 
@@ -197,7 +197,7 @@ class TrackerState:
     @property
     def reestimable(self) -> tuple[MotionHypothesis, ...]:
         """Return the last straight motions that can be re-estimated: with an empty hand, or with a known object."""
-        return tuple(motion for motion in self.motions if motion.load is None or motion.load in self.loads)
+        return tuple(motion for motion in self.motions if motion.in_hand is None or motion.in_hand in self.held_objects)
 
     @property
     def earlier(self) -> tuple[MotionHypothesis, ...]:
@@ -209,6 +209,6 @@ class TrackerState:
         """Return those earlier motions that may well have ended elsewhere than believed."""
         return tuple(motion for motion in self.earlier if motion.likely_ends(LIKELY_END_CHANCE))
 
-    def others(self, load: HeldObject) -> list[HeldObject]:
+    def others(self, held: HeldObject) -> list[HeldObject]:
         """Return all objects that were ever held but one."""
-        return [other for other in self.loads.values() if other.name != load.name]
+        return [other for other in self.held_objects.values() if other.name != held.name]

@@ -92,39 +92,49 @@ class Tracker:
             The chosen explanation, and how each of the 160 fields is accounted for.
         """
         ranges, state = count_ranges(impression.retina), self.state
-        if state.held is not None and isinstance(command, Push | Turn):
-            return self._after_carry(ranges, state.held, command)
+        if state.in_hand is not None and isinstance(command, Push | Turn):
+            return self._after_carry(ranges, state.in_hand, command)
         if isinstance(command, Release):
-            self.state = state = replace(state, held=None)
+            self.state = state = replace(state, in_hand=None)
         shift = (0.0, 0.0)
-        if isinstance(command, Move) and state.held is None:
+        if isinstance(command, Move) and state.in_hand is None:
             shift = state.frame.to_lattice(command.east, command.north)
         x, y = state.place
         return self._after_walk(
             ranges, DeadReckoning((x + shift[0], y + shift[1]), blocked_ends((x, y), shift)), command
         )
 
-    def grasp(self, load: HeldObject) -> None:
+    def grasp(self, held: HeldObject) -> None:
         """Believe that an object is in the hand.
 
         The squares of an object that was never held before become floor in the occupancy map.
 
         Parameters
         ----------
-        load : the object, where it is believed to lie. What is known of an object held before is kept.
+        held : the object, where it is believed to lie. What is known of an object held before is kept.
         """
-        loads = self.state.loads
-        if load.name not in loads:
-            self._declare_floor(load)
-            loads = {**loads, load.name: replace(load, since=len(self.state.observations))}
-        self.state = replace(self.state, loads=loads, held=load.name)
+        held_objects = self.state.held_objects
+        if held.name not in held_objects:
+            self._declare_floor(held)
+            held_objects = {**held_objects, held.name: replace(held, since=len(self.state.observations))}
+        self.state = replace(self.state, held_objects=held_objects, in_hand=held.name)
 
-    def update_object(self, load: HeldObject) -> None:
-        """Replace what is known of an object that was held before by `load`, which bears the same name."""
-        self.state = replace(self.state, loads={**self.state.loads, load.name: load})
+    def update_object(self, held: HeldObject) -> None:
+        """Replace what is known of an object that was held before.
+
+        Parameters
+        ----------
+        held : what is known of it now; it bears the same name.
+        """
+        self.state = replace(self.state, held_objects={**self.state.held_objects, held.name: held})
 
     def keep_completions(self, completions: Completions | None) -> None:
-        """Keep the newest completions of the map; the chance of a contact is estimated by them."""
+        """Keep the newest completions of the map; the chance of a contact is estimated by them.
+
+        Parameters
+        ----------
+        completions : of the map in the believed frame; None when none were drawn.
+        """
         self.state = replace(self.state, completions=completions)
 
     # -- after a walk, on waking, after a release ------------------------------------------------
@@ -145,7 +155,7 @@ class Tracker:
         return self._integrate(explanation, ranges)
 
     def _count_confirmations(self, explanation: Explanation) -> None:
-        """Count an observation that was predicted in favour of the frame, and reset the count after a surprise."""
+        """Count a predicted observation as a confirmation; reset the count if the chance of its end is unknown."""
         number = self.state.confirmations
         number = number + 1 if explanation.how == "predicted" else number * (explanation.chance is not None)
         self.state = replace(self.state, confirmations=number)
@@ -166,11 +176,11 @@ class Tracker:
     def _after_carry(self, ranges: FieldRanges, name: str, command: Push | Turn) -> Accommodated:
         """Explain and integrate an observation after a push or a turn of the held object `name`."""
         state, motion = self.state, command_motion(command, self.state.frame, self.state.place)
-        load = state.loads[name]
+        held = state.held_objects[name]
         if isinstance(command, Turn) and state.beside_line:
-            load = replace(load, astray=max(load.astray, ROUNDING))
-            self.update_object(load)
-        judged = explain_carry(self.state, self.state.surprise(command, ranges), load, motion)
+            held = replace(held, astray=max(held.astray, ROUNDING))
+            self.update_object(held)
+        judged = explain_carry(self.state, self.state.surprise(command, ranges), held, motion)
         if isinstance(command, Push):
             self._remember(command, name)
         self._learn(judged)
@@ -184,16 +194,16 @@ class Tracker:
             self._declare_floor(chosen.larger)
             self.update_object(chosen.larger)
         self.state = replace(self.state, slipped=self.state.slipped or chosen.how == "slipped")
-        load, motion = self.state.loads[name], command_motion(command, self.state.frame, self.state.place)
-        suspected = contact_suspects(self.state, load, chosen, motion)
-        self.update_object(moved_object(self.state, load, chosen, motion, ranges, suspected))
+        held, motion = self.state.held_objects[name], command_motion(command, self.state.frame, self.state.place)
+        suspected = contact_suspects(self.state, held, chosen, motion)
+        self.update_object(moved_object(self.state, held, chosen, motion, ranges, suspected))
         self.state = replace(self.state, suspected_squares=self.state.suspected_squares | suspected, place=chosen.place)
         if chosen.outcome is not None and chosen.outcome.as_commanded:
-            refined = refined_extent(self.state, self.state.loads[name], ranges, self.state.place)
+            refined = refined_extent(self.state, self.state.held_objects[name], ranges, self.state.place)
             if refined is not None:
                 self.update_object(refined)
         self.state = replace(self.state, hypotheses=agreeing_origins(self.state, ranges))
-        self.state = replace(self.state, loads=objects_astray(self.state))
+        self.state = replace(self.state, held_objects=objects_astray(self.state))
 
     # -- the one place where an explanation is applied -------------------------------------------
 
@@ -202,24 +212,24 @@ class Tracker:
 
         If either is new, all observations and held objects are mapped anew.
         """
-        state, loads = self.state, self.state.loads
+        state, held_objects = self.state, self.state.held_objects
         if chosen.remaps:
             state = replace(state, hypotheses=chosen.hypotheses, confirmations=0)
-            loads = borne_out(loads, state.held)
+            held_objects = borne_out(held_objects, state.in_hand)
         if chosen.reestimated is not None:
             correction = chosen.reestimated.correction
             own = state.frame.place_to_utak(*state.place)
             observations = tuple(correction.observations(state.observations))
-            loads = correction.loads(loads, state.frame)
+            held_objects = correction.held_objects(held_objects, state.frame)
             place = state.frame.place_from_utak(*correction.place(own))
             state = replace(state, place=place, observations=observations)
         elif chosen.frame == state.frame:
             self.state = state
             return
-        if chosen.reestimated is not None or len(loads) < len(state.loads):
-            under = remap(chosen.frame, state.frame, state.observations, loads.values())
+        if chosen.reestimated is not None or len(held_objects) < len(state.held_objects):
+            under = remap(chosen.frame, state.frame, state.observations, held_objects.values())
         else:
-            under = RemapCache(state.frame, state.occupancy, state.observations, loads).remapped(chosen.frame)
+            under = RemapCache(state.frame, state.occupancy, state.observations, held_objects).remapped(chosen.frame)
         self.state = _remapped(replace(state, frame=chosen.frame), under)
 
     def _learn(self, judged: Judgement) -> None:
@@ -239,12 +249,14 @@ class Tracker:
     def _remember(self, command: Move | Push, name: str | None = None) -> None:
         """Remember a straight motion, for it may have ended otherwise than believed. name : of the object in hand."""
         state = self.state
-        motion = MotionHypothesis(len(state.observations), (command.east, command.north), state.hypotheses, load=name)
+        motion = MotionHypothesis(
+            len(state.observations), (command.east, command.north), state.hypotheses, in_hand=name
+        )
         self.state = replace(state, motions=(*state.motions[1 - MAX_MOTIONS :], motion))
 
-    def _declare_floor(self, load: HeldObject) -> None:
+    def _declare_floor(self, held: HeldObject) -> None:
         """Believe that there is floor where an object lies."""
-        occupancy, patch = self.state.occupancy, load.possible
+        occupancy, patch = self.state.occupancy, held.possible
         squares = occupancy.squares(patch.west, patch.south, patch.mask)
         occupancy.declare(squares, FREE, len(self.state.observations) - 1)
 
@@ -253,10 +265,10 @@ class Tracker:
         state, occupancy = self.state, self.state.occupancy
         samples, number = state.frame.samples(), len(state.observations)
         x, y = math.floor(explanation.place[0]), math.floor(explanation.place[1])
-        loads = {name: load.seen(samples, ranges, x, y) for name, load in state.loads.items()}
-        samples, counts = discounted(samples, ranges, x, y, loads.values())
+        held_objects = {name: held.seen(samples, ranges, x, y) for name, held in state.held_objects.items()}
+        samples, counts = discounted(samples, ranges, x, y, held_objects.values())
         cells = field_statuses(occupancy, samples, counts, x, y)
-        moved = tuple(object_pose(load, state.frame) for load in loads.values())
+        moved = tuple(object_pose(held, state.frame) for held in held_objects.values())
         observation = Observation(ranges, state.frame.place_to_utak(*explanation.place), moved)
         occupancy.observe(samples, counts, x, y, number)
         occupancy.overruled += explanation.residual  # contradictions among open squares count as well
@@ -264,7 +276,7 @@ class Tracker:
             occupancy.stand(x, y, 0)
         self.state = replace(
             state,
-            loads=loads,
+            held_objects=held_objects,
             observations=(*state.observations, observation),
             residuals=(*state.residuals[1 - RESIDUAL_WINDOW :], explanation.residual),
             place=_standing_place(state, explanation.place),
@@ -276,7 +288,7 @@ def _remapped(state: TrackerState, under: RemappedMap) -> TrackerState:
     """Return a state with another map and the objects on it; what belonged to the squares of the old map is dropped."""
     if under.occupancy is not state.occupancy:
         state = replace(state, blocked_squares=frozenset(), suspected_squares=frozenset(), completions=None)
-    return replace(state, occupancy=under.occupancy, loads=dict(under.loads))
+    return replace(state, occupancy=under.occupancy, held_objects=dict(under.held_objects))
 
 
 def _standing_place(state: TrackerState, place: Position) -> Position:

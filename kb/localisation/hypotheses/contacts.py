@@ -122,7 +122,7 @@ def contact_outcomes(
 def suspected_squares(
     outcome: CarryOutcome | None,
     motion: Motion,
-    load: HeldObject,
+    held: HeldObject,
     others: Iterable[HeldObject],
     occupancy: OccupancyMap,
 ) -> frozenset[Square]:
@@ -131,15 +131,21 @@ def suspected_squares(
     Empty when nothing was blocked, when the object was never seen to move (the hand may be empty), or when something
     known explains it.
 
-    motion : as commanded. load : the object in hand. others : all other objects that were ever held, where they lie.
+    Parameters
+    ----------
+    outcome : the chosen outcome of the motion; None when there was none.
+    motion : as commanded, map frame.
+    held : the object in hand.
+    others : all other objects that were ever held, where they lie.
+    occupancy : the map.
     """
     if outcome is not None and outcome.contact_squares:
         return outcome.contact_squares
-    if outcome is None or not outcome.stopped or not load.proven:
+    if outcome is None or not outcome.stopped or not held.proven:
         return NO_SQUARES
     place, polygon = advance(outcome.place, outcome.polygon, motion)
     there = covered(polygon).squares() | {(math.floor(place[0]), math.floor(place[1]))}
-    there -= replace(load, polygon=outcome.polygon, full=NO_SQUARES, empty=NO_SQUARES).possible.squares()
+    there -= replace(held, polygon=outcome.polygon, full=NO_SQUARES, empty=NO_SQUARES).possible.squares()
     there.discard((math.floor(outcome.place[0]), math.floor(outcome.place[1])))
     state = {square: occupancy.state[occupancy.index(*square)] for square in there}
     if FULL in state.values() or any(there & other.possible.squares() for other in others):

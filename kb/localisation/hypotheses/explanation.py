@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from kb.localisation.hypotheses.carry_outcomes import CarryOutcome
 from kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
-from kb.localisation.hypotheses.walk_outcomes import ReestimatedWalk
+from kb.localisation.hypotheses.reestimation import ReestimatedWalk
 from kb.mapping.occupancy import OPEN, OccupancyMap
 from kb.objects.held_object import HeldObject, Square
 from kb.perception.frame import CENTRE, Frame, Samples
@@ -16,7 +16,7 @@ from kb.perception.retina import FIELDS
 from kb.reasoning.solver import KB, solve
 
 PRICE_PER_NAT = 2  # prices of kb/asp/accommodation.lp for a factor of e in probability: the scale of that encoding
-MIN_CHANCE = 1e-9  # probability below which an end of a motion is no less likely, so that its price is finite
+MIN_PRICED_CHANCE = 1e-9  # probability below which an end of a motion is no less likely, so that its price is finite
 
 
 class CellStatus(StrEnum):
@@ -96,7 +96,12 @@ def field_statuses(
 ) -> tuple[CellStatus, ...]:
     """Return how each of the 160 fields is accounted for by the map, before the observation is integrated.
 
-    samples : the squares under each field, in the believed frame. (x, y) : the square of the observation, map frame.
+    Parameters
+    ----------
+    occupancy : the map.
+    samples : the squares under each field, in the believed frame, held objects left out.
+    ranges : (160, 2) count ranges of the observation, held objects left out.
+    x, y : the square from which it was made, map frame.
     """
     noise = occupancy.misfits(samples, ranges, x, y)
     row, column = occupancy.index(x, y)
@@ -130,7 +135,13 @@ def reestimated_explanation(one: ReestimatedWalk, left: tuple[FrameHypothesis, .
 
 
 def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Explanation:
-    """Return the explanation that kb/asp/accommodation.lp chooses. facts : the other inputs of that encoding."""
+    """Return the explanation that kb/asp/accommodation.lp chooses.
+
+    Parameters
+    ----------
+    explanations : at least one; of those that cost the same the first is chosen.
+    facts : the other inputs of that encoding, as facts without a period.
+    """
     offered = [
         f"explanation({number},{e.how},{e.residual},{math.ceil(e.distance)})" for number, e in enumerate(explanations)
     ]
@@ -138,7 +149,7 @@ def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Expla
     for number, e in enumerate(explanations):
         offered += [f"crooked({number},{round(PRICE_PER_NAT * e.prior_cost)})"] * (e.prior_cost > 0)
         if e.chance is not None:
-            price = round(-PRICE_PER_NAT * math.log(max(e.chance, MIN_CHANCE)))
+            price = round(-PRICE_PER_NAT * math.log(max(e.chance, MIN_PRICED_CHANCE)))
             offered.append(f"unlikely({number},{price})")
     answer = solve([KB / "accommodation.lp"], [*offered, *facts])
     if not answer:

@@ -186,7 +186,11 @@ def prune_hypotheses(
     A hypothesis is split where the last observation would fall on different squares. Hypotheses by which every
     observation falls on the same squares are kept or given up together.
 
-    observations : all so far, the last one not yet taken into account. unsettled : parts that are not compared.
+    Parameters
+    ----------
+    hypotheses : those that the earlier observations left.
+    observations : all so far; the last one is not yet taken into account.
+    unsettled : parts of the table that are not compared.
     """
     judged: dict[tuple[int, bytes], bool] = {}
     left = []
@@ -207,6 +211,10 @@ def consistent_hypotheses(
 ) -> tuple[FrameHypothesis, ...]:
     """Return what all observations together leave of some hypotheses, in their order.
 
+    Parameters
+    ----------
+    observations : in the order in which they were made.
+    hypotheses : those to begin with.
     unsettled : parts of the table where observations need not agree.
     """
     left = tuple(hypotheses)
@@ -302,6 +310,16 @@ def frames_to_try(hypotheses: Sequence[FrameHypothesis], believed: Frame) -> lis
 
     The order: the best map prior, the believed frame, Utak's own axes, then orientations from the median outwards.
     Of one orientation the frame with the most room for the origin comes first.
+
+    Parameters
+    ----------
+    hypotheses : those that are left.
+    believed : the believed frame.
+
+    Returns
+    -------
+    list of Frame
+        Without repetitions.
     """
     angles = sorted({h.angle for h in hypotheses})
     middle = (len(angles) - 1) / 2

@@ -129,7 +129,14 @@ def relative_costs(maps: Sequence[tuple[MapDescription, float]]) -> list[float]:
 
     Edges are not counted, for the maps may differ in size. More completions are drawn of the maps that may be best.
 
+    Parameters
+    ----------
     maps : each with the log odds against it by everything else.
+
+    Returns
+    -------
+    list of float
+        In the same order; 0 for the best one.
     """
     for description, _ in maps:
         description.draw()
@@ -164,7 +171,16 @@ def weigh_hypotheses(
 
     Of hypotheses weighed before, only the likely ones and the orientations beside the best one are weighed again.
 
+    Parameters
+    ----------
+    hypotheses : those that are left, with their prior costs so far.
     observations : those by which they are weighed, the new one last.
+
+    Returns
+    -------
+    tuple of FrameHypothesis
+        In the same order. The best one has a prior cost of 0. Where others are weighed anew, one that is not has
+        UNTRIED_COST at least.
     """
     keys = [_squares_key(hypothesis, observations) for hypothesis in hypotheses]
     same: dict[SquaresKey, list[FrameHypothesis]] = {}

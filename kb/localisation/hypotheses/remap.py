@@ -26,7 +26,7 @@ from kb.perception.frame import Frame
 
 MAX_FRAME_SKEW = 8.0  # degrees between two frames up to which an outline measured in one serves in the other; tuned
 MAX_OPEN_SHARE = 0.25  # open squares of an outline, as a share of its full ones, up to which it is fitted anew; tuned
-OUTLINE_MARGIN = 6  # squares by which an outline fitted anew may reach beyond the old one; tuned
+FITTED_OUTLINE_MARGIN = 6  # squares by which an outline fitted anew may reach beyond the old one; tuned
 REPLAY_INTERVAL = 16  # observations after which a replay is kept, to go on from there: time against memory; tuned
 CORNER_STEPS = sorted(((x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)), key=lambda step: (math.hypot(*step), step))
 
@@ -37,24 +37,24 @@ class RemappedMap(NamedTuple):
     Attributes
     ----------
     occupancy : the map.
-    loads : all held objects as they lie after the last observation, by name, map frame.
+    held_objects : all held objects as they lie after the last observation, by name, map frame.
     residual : fields that contradict the frame, over all observations.
-    incomplete : whether the replay stopped at the first contradiction. Then `loads` is empty and `residual` is a
+    incomplete : whether the replay stopped at the first contradiction. Then `held_objects` is empty and `residual` is a
         lower bound above 0.
     """
 
     occupancy: OccupancyMap
-    loads: Mapping[str, HeldObject]
+    held_objects: Mapping[str, HeldObject]
     residual: int
     incomplete: bool = False
 
 
-def object_pose(load: HeldObject, frame: Frame) -> ObjectPose:
-    """Return where an object lies, in Utak's own frame. frame : the map frame of `load`."""
-    return ObjectPose(load.name, _centroid(load.polygon, frame), load.turned, load.slack, _centroid(load.first, frame))
+def object_pose(held: HeldObject, frame: Frame) -> ObjectPose:
+    """Return where an object lies, in Utak's own frame. frame : the map frame of `held`."""
+    return ObjectPose(held.name, _centroid(held.polygon, frame), held.turned, held.slack, _centroid(held.first, frame))
 
 
-class Replay:
+class MapReplay:
     """Observations integrated one after the other into a new map, in a frame.
 
     Attributes
@@ -69,7 +69,7 @@ class Replay:
         self._occupancy, self._residual = OccupancyMap(), 0
         self._taken: dict[str, HeldObject] = {}  # as they lay when they were first held, in the new frame
 
-    def copy(self) -> "Replay":
+    def copy(self) -> "MapReplay":
         """Return an independent copy, to go on with."""
         other = copy(self)
         other._occupancy, other._taken = self._occupancy.copy(), dict(self._taken)
@@ -78,22 +78,22 @@ class Replay:
     def advance(
         self,
         observations: Sequence[Observation],
-        loads: Mapping[str, HeldObject],
+        held_objects: Mapping[str, HeldObject],
         stop: int,
         only_whether: bool = False,
-    ) -> "Replay":
+    ) -> "MapReplay":
         """Integrate the observations before number `stop` that are not integrated yet, and return the replay.
 
-        observations : all; those integrated already must be the first of them. loads : all held objects, old frame.
+        observations : all; those integrated already must be the first of them. held_objects : old frame.
         only_whether : stop after the first observation that contradicts the frame.
         """
         for number in range(self.number, stop):
             if only_whether and self._residual:
                 break
-            self._take([load for load in loads.values() if load.since == number], number)
+            self._take([held for held in held_objects.values() if held.since == number], number)
             observation = observations[number]
             moved = [(self._taken[pose.name], pose) for pose in observation.moved if pose.name in self._taken]
-            there = [_moved_to(taken, loads[pose.name], pose, self.new) for taken, pose in moved]
+            there = [_moved_to(taken, held_objects[pose.name], pose, self.new) for taken, pose in moved]
             x, y = (math.floor(v) for v in self.new.place_from_utak(*observation.place))
             freed = discounted(self.new.samples(), observation.ranges, x, y, there)
             self._residual += self._occupancy.clashes(*freed, x, y)
@@ -109,26 +109,26 @@ class Replay:
         return self._residual > 0
 
     def finish(
-        self, observations: Sequence[Observation], loads: Mapping[str, HeldObject], only_whether: bool = False
+        self, observations: Sequence[Observation], held_objects: Mapping[str, HeldObject], only_whether: bool = False
     ) -> RemappedMap:
         """Integrate the rest of the observations and return the map. The replay cannot go on afterwards.
 
         Parameters as for `advance`.
         """
-        self.advance(observations, loads, len(observations), only_whether)
+        self.advance(observations, held_objects, len(observations), only_whether)
         if only_whether and self._residual:
             return RemappedMap(self._occupancy, {}, self._residual, incomplete=True)
-        self._take([load for load in loads.values() if load.since >= len(observations)], len(observations))
+        self._take([held for held in held_objects.values() if held.since >= len(observations)], len(observations))
         now = {
-            name: _moved_to(self._taken[name], load, object_pose(load, self.old), self.new)
-            for name, load in loads.items()
+            name: _moved_to(self._taken[name], held, object_pose(held, self.old), self.new)
+            for name, held in held_objects.items()
         }
         return RemappedMap(self._occupancy, now, self._residual)
 
     def _take(self, taken: Iterable[HeldObject], number: int) -> None:
         """Declare floor where objects lay that were first held just before observation `number`."""
-        for load in taken:
-            lay = self._taken[load.name] = _first_held(load, self.new, self.old, self._occupancy)
+        for held in taken:
+            lay = self._taken[held.name] = _first_held(held, self.new, self.old, self._occupancy)
             patch = lay.possible
             self._occupancy.make_room(patch.west, patch.south)
             squares = self._occupancy.squares(patch.west, patch.south, patch.mask)
@@ -139,8 +139,8 @@ def remap(
     new: Frame,
     old: Frame,
     observations: Sequence[Observation],
-    loads: Iterable[HeldObject],
-    begun: Replay | None = None,
+    held_objects: Iterable[HeldObject],
+    begun: MapReplay | None = None,
     only_whether: bool = False,
 ) -> RemappedMap:
     """Return the map and the held objects in another frame.
@@ -150,12 +150,12 @@ def remap(
     new : the frame to map in.
     old : the frame in which the held objects are given.
     observations : all observations, with their places in Utak's own frame.
-    loads : all objects that were ever held, old frame.
+    held_objects : all objects that were ever held, old frame.
     begun : a replay of the first of the observations, with the same objects; it is copied.
     only_whether : ask only whether anything contradicts the frame; the result is incomplete if something does.
     """
-    replay = Replay(new, old) if begun is None else begun.copy()
-    return replay.finish(observations, {load.name: load for load in loads}, only_whether)
+    replay = MapReplay(new, old) if begun is None else begun.copy()
+    return replay.finish(observations, {held.name: held for held in held_objects}, only_whether)
 
 
 class RemapCache:
@@ -170,11 +170,11 @@ class RemapCache:
         frame: Frame,
         occupancy: OccupancyMap,
         observations: Sequence[Observation],
-        loads: Mapping[str, HeldObject],
+        held_objects: Mapping[str, HeldObject],
     ) -> None:
-        """Begin with the map of the believed frame. loads : all held objects in that frame, by name."""
-        self._frame, self._observations, self._loads = frame, observations, loads
-        believed = RemappedMap(occupancy, loads, 0)
+        """Begin with the map of the believed frame. held_objects : all held objects in that frame, by name."""
+        self._frame, self._observations, self._held_objects = frame, observations, held_objects
+        believed = RemappedMap(occupancy, held_objects, 0)
         self._known: dict[tuple[int, bytes], tuple[Frame | None, RemappedMap]] = {self._key(frame): (None, believed)}
         self._by_frame: dict[Frame, RemappedMap] = {}
 
@@ -188,13 +188,17 @@ class RemapCache:
         """Return the map of a frame, replayed or shifted from a frame with the same squares."""
         key = self._key(frame)
         if key not in self._known or (self._known[key][1].incomplete and not only_whether):
-            found = remap(frame, self._frame, self._observations, self._loads.values(), only_whether=only_whether)
+            found = remap(
+                frame, self._frame, self._observations, self._held_objects.values(), only_whether=only_whether
+            )
             self._known[key] = frame, found
         first, under = self._known[key]
         if frame == first or under.incomplete:
             return under
-        loads = {name: shift_object(load, frame, first or self._frame) for name, load in under.loads.items()}
-        return under._replace(loads=loads)
+        held_objects = {
+            name: shift_object(held, frame, first or self._frame) for name, held in under.held_objects.items()
+        }
+        return under._replace(held_objects=held_objects)
 
     def _key(self, frame: Frame) -> tuple[int, bytes]:
         """Return what frames of the same map share: the orientation, and the squares of all observations."""
@@ -204,49 +208,51 @@ class RemapCache:
 class ReplayPrefixes:
     """Replays of the first observations in one frame, for any number of them; each observation is integrated once."""
 
-    def __init__(self, frame: Frame, observations: Sequence[Observation], loads: Mapping[str, HeldObject]) -> None:
-        """Begin with no observation. loads : all held objects in that frame, by name."""
-        self._observations, self._loads = observations, loads
-        self._known = {0: Replay(frame, frame)}
+    def __init__(
+        self, frame: Frame, observations: Sequence[Observation], held_objects: Mapping[str, HeldObject]
+    ) -> None:
+        """Begin with no observation. held_objects : all held objects in that frame, by name."""
+        self._observations, self._held_objects = observations, held_objects
+        self._known = {0: MapReplay(frame, frame)}
 
-    def first(self, number: int) -> Replay:
+    def first(self, number: int) -> MapReplay:
         """Return the replay of the first `number` observations. Copy it before going on with it."""
         if number not in self._known:
             nearest = max(n for n in self._known if n < number)
             replay = self._known[nearest].copy()
             begin = nearest + 1 + REPLAY_INTERVAL - (nearest + 1) % REPLAY_INTERVAL
             for stop in (*range(begin, number, REPLAY_INTERVAL), number):
-                self._known[stop] = replay.advance(self._observations, self._loads, stop).copy()
+                self._known[stop] = replay.advance(self._observations, self._held_objects, stop).copy()
         return self._known[number]
 
 
-def shift_object(load: HeldObject, new: Frame, old: Frame) -> HeldObject:
+def shift_object(held: HeldObject, new: Frame, old: Frame) -> HeldObject:
     """Return a held object for another origin of the frame with which every observation falls on the same squares.
 
     The object was first held where it was believed to lie, but every turn since was about another point.
     """
-    return _moved_to(load, load, object_pose(load, old), new)
+    return _moved_to(held, held, object_pose(held, old), new)
 
 
-def object_at(load: HeldObject, pose: ObjectPose, frame: Frame) -> HeldObject:
+def object_at(held: HeldObject, pose: ObjectPose, frame: Frame) -> HeldObject:
     """Return a held object where it lay at another time, map frame. frame : the believed one."""
-    return _moved_to(load, load, pose, frame)
+    return _moved_to(held, held, pose, frame)
 
 
-def _first_held(load: HeldObject, new: Frame, old: Frame, occupancy: OccupancyMap) -> HeldObject:
+def _first_held(held: HeldObject, new: Frame, old: Frame, occupancy: OccupancyMap) -> HeldObject:
     """Return an object as it lay when it was first held, in the new frame. occupancy : the map at that time."""
     skew = new.angle - old.angle
     askew = 90 * round(skew / 90) - skew
-    middle = new.place_from_utak(*_centroid(load.first, old))
-    first, skewed = _placed(load.first, skew, middle), load.skewed or abs(askew) > MAX_FRAME_SKEW
-    straight = is_whole(load.first)
+    middle = new.place_from_utak(*_centroid(held.first, old))
+    first, skewed = _placed(held.first, skew, middle), held.skewed or abs(askew) > MAX_FRAME_SKEW
+    straight = is_whole(held.first)
     seen = None if straight and abs(askew) <= MAX_FRAME_SKEW else _fitted_outline(covered(first), occupancy)
     if seen is not None:
         first, skewed = seen, False
     elif straight:
         first = _straightened(Rotate(askew, middle).carry(first), occupancy)
-    lying = load.lying(first)
-    insets = load.insets if skew == 0.0 and seen is None else SubcellExtent() if is_whole(lying.polygon) else None
+    lying = held.lying(first)
+    insets = held.insets if skew == 0.0 and seen is None else SubcellExtent() if is_whole(lying.polygon) else None
     return replace(lying, first=lying.polygon, skewed=skewed, insets=insets)
 
 
@@ -260,8 +266,8 @@ def _straightened(polygon: Any, occupancy: OccupancyMap) -> Any:
 
 def _fitted_outline(patch: Patch, occupancy: OccupancyMap) -> Any:
     """Return the outline fitted to what was seen about a patch; None when too much of it is open."""
-    own = np.pad(patch.mask, OUTLINE_MARGIN)
-    state = occupancy.window(patch.west - OUTLINE_MARGIN, patch.south - OUTLINE_MARGIN, own.shape)
+    own = np.pad(patch.mask, FITTED_OUTLINE_MARGIN)
+    state = occupancy.window(patch.west - FITTED_OUTLINE_MARGIN, patch.south - FITTED_OUTLINE_MARGIN, own.shape)
     labels = components(state != FREE).labels
     met = np.bincount(labels[own & (labels > 0)], minlength=1)
     part = labels == met.argmax()
@@ -272,7 +278,7 @@ def _fitted_outline(patch: Patch, occupancy: OccupancyMap) -> Any:
     best = fit_shapes(full, possible)[0]
     if best.misfit:
         return None
-    corner = np.array([patch.west - OUTLINE_MARGIN, patch.south - OUTLINE_MARGIN])
+    corner = np.array([patch.west - FITTED_OUTLINE_MARGIN, patch.south - FITTED_OUTLINE_MARGIN])
     return shapely.transform(best.polygon, lambda points: points + corner)
 
 
@@ -285,12 +291,12 @@ def _count_disagreements(polygon: Any, occupancy: OccupancyMap) -> int:
     return int(((state == FREE) & own).sum() + ((state == FULL) & about & ~own).sum())
 
 
-def _moved_to(taken: HeldObject, load: HeldObject, pose: ObjectPose, new: Frame) -> HeldObject:
-    """Return an object at a pose. taken : as it lay when it was first held, new frame. load : what is known of it."""
+def _moved_to(taken: HeldObject, held: HeldObject, pose: ObjectPose, new: Frame) -> HeldObject:
+    """Return an object at a pose. taken : as it lay when it was first held, new frame. held : what is known of it."""
     began = np.array([_centroid(taken.first, new)]) - pose.taken
     aside = Rotate(pose.degrees, (0.0, 0.0)).points(began)[0]
     middle = new.place_from_utak(pose.middle[0] + float(aside[0]), pose.middle[1] + float(aside[1]))
-    lying = load.lying(_placed(taken.first, pose.degrees, middle), pose.slack)
+    lying = held.lying(_placed(taken.first, pose.degrees, middle), pose.slack)
     return replace(lying, first=taken.first, skewed=taken.skewed, insets=taken.insets)
 
 

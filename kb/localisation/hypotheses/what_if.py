@@ -1,4 +1,4 @@
-"""What-if evaluation: what contradicts another frame, once objects have been moved.
+"""Evaluation of what-if questions: which fields contradict another frame, once objects have been moved.
 
 Observations do not agree where objects came from and went to. So each frame in question is compared with all
 observations, with the objects remapped to it. kb.localisation.propose.frame and
@@ -76,8 +76,8 @@ class Surprise:
     place : of Utak before the command, map frame.
     occupancy : the believed map.
     observations : all earlier ones.
-    loads : all objects that were ever held, before the command, by name, map frame.
-    held : the name of the object in hand; None when there is none.
+    held_objects : all objects that were ever held, before the command, by name, map frame.
+    in_hand : the name of the object in hand; None when there is none.
     hypotheses : the frame hypotheses that are left.
     pictures : completions of the believed map; None when none were drawn.
     """
@@ -88,8 +88,8 @@ class Surprise:
     place: Position
     occupancy: OccupancyMap
     observations: Sequence[Observation]
-    loads: Mapping[str, HeldObject]
-    held: str | None
+    held_objects: Mapping[str, HeldObject]
+    in_hand: str | None
     hypotheses: tuple[FrameHypothesis, ...]
     pictures: Completions | None = None
 
@@ -98,25 +98,25 @@ class Surprise:
     @property
     def carried(self) -> tuple[str, Push | Turn] | None:
         """Return the name of the object that was to be moved, and the command; None when none was."""
-        if self.held is not None and isinstance(self.command, Push | Turn):
-            return self.held, self.command
+        if self.in_hand is not None and isinstance(self.command, Push | Turn):
+            return self.in_hand, self.command
         return None
 
     @property
     def degrees(self) -> float:
         """Return the commanded rotation of the held object, in degrees, counter-clockwise positive."""
-        return self.command.degrees if isinstance(self.command, Turn) and self.held is not None else 0.0
+        return self.command.degrees if isinstance(self.command, Turn) and self.in_hand is not None else 0.0
 
     @property
     def any_turned(self) -> bool:
         """Return whether any object was ever turned, so that it tells where the origin of the frame lies."""
-        return self.degrees != 0.0 or any(load.turned % 360 for load in self.loads.values())
+        return self.degrees != 0.0 or any(held.turned % 360 for held in self.held_objects.values())
 
     @property
     def commanded_place(self) -> Position:
         """Return where the command leads, Utak's own frame."""
         east, north = self.frame.place_to_utak(*self.place)
-        if isinstance(self.command, Move if self.held is None else Push):
+        if isinstance(self.command, Move if self.in_hand is None else Push):
             return east + self.command.east, north + self.command.north
         return east, north
 
@@ -137,15 +137,15 @@ class Surprise:
     def unsettled_discs(self) -> list[UnsettledDisc]:
         """Return the parts of the table where any object lay at any time, Utak's own frame, sorted."""
         discs = set()
-        for load in self.loads.values():
-            lying = [load.polygon, load.first]
-            if self.carried is not None and load.name == self.carried[0]:
-                lying.append(command_motion(self.carried[1], self.frame, self.place).carry(load.polygon))
+        for held in self.held_objects.values():
+            lying = [held.polygon, held.first]
+            if self.carried is not None and held.name == self.carried[0]:
+                lying.append(command_motion(self.carried[1], self.frame, self.place).carry(held.polygon))
             middles = [self.frame.place_to_utak(lain.centroid.x, lain.centroid.y) for lain in lying]
             middles += [
-                pose.middle for observation in self.observations for pose in observation.moved if pose.name == load.name
+                pose.middle for observation in self.observations for pose in observation.moved if pose.name == held.name
             ]
-            corners = shapely.get_coordinates(load.polygon) - shapely.get_coordinates(load.polygon.centroid)
+            corners = shapely.get_coordinates(held.polygon) - shapely.get_coordinates(held.polygon.centroid)
             reach = float(np.hypot(*corners.T).max()) + UNSETTLED_MARGIN
             discs |= {UnsettledDisc(middle, reach) for middle in middles}
         return sorted(discs)
@@ -153,7 +153,7 @@ class Surprise:
     @cached_property
     def prefixes(self) -> ReplayPrefixes:
         """Return the replays of the first observations in the believed frame."""
-        return ReplayPrefixes(self.frame, self.observations, self.loads)
+        return ReplayPrefixes(self.frame, self.observations, self.held_objects)
 
     # -- evaluation of a frame -------------------------------------------------------------------
 
@@ -176,8 +176,8 @@ class Surprise:
             return refuted._replace(searched=searched)
         if self.carried is None:  # it went as commanded
             place = frame.place_from_utak(*self.commanded_place)
-            loads = self.remapped(frame).loads.values()
-            residual = self._residual(frame, loads, place, origin_error, only_whether)
+            held_objects = self.remapped(frame).held_objects.values()
+            residual = self._residual(frame, held_objects, place, origin_error, only_whether)
             return WhatIf(frame, hypotheses, place, None, residual, searched)
         tried = []
         for outcome in self._outcomes(frame, cut_short):
@@ -211,34 +211,34 @@ class Surprise:
         contradicts them; then the residual may be too small, though not 0.
         """
         assert self.carried is not None
-        held, loads = self.carried[0], self.remapped(frame).loads
-        slack, commanded = max(loads[held].slack, slack), outcome.as_commanded
-        moved = loads[held].moved(outcome.polygon, slack, outcome.degrees, commanded)
-        after = {**loads, held: moved}.values()
+        name, held_objects = self.carried[0], self.remapped(frame).held_objects
+        slack, commanded = max(held_objects[name].slack, slack), outcome.as_commanded
+        moved = held_objects[name].moved(outcome.polygon, slack, outcome.degrees, commanded)
+        after = {**held_objects, name: moved}.values()
         residual = self._residual(frame, after, outcome.place, origin_error, only_whether)
         return WhatIf(frame, hypotheses, outcome.place, outcome, residual, searched)
 
     def _residual(
         self,
         frame: Frame,
-        loads: Iterable[HeldObject],
+        held_objects: Iterable[HeldObject],
         place: Position,
         origin_error: float,
         only_whether: bool = False,
     ) -> int:
-        """Return how many fields contradict a frame, over all observations; `loads` after the newest one."""
+        """Return how many fields contradict a frame, over all observations; `held_objects` after the newest one."""
         under = self.remapped(frame)
         if only_whether and under.residual:
             return under.residual
-        lying = [load.woken(origin_error) if origin_error else load for load in loads]
+        lying = [held.woken(origin_error) if origin_error else held for held in held_objects]
         return under.residual + count_clashes(frame, under.occupancy, lying, place, self.ranges, only_whether)
 
     def motion_in(self, frame: Frame) -> tuple[Position, Any, Motion]:
         """Return Utak's place and the outline of the object before the motion, and the motion, all in a frame."""
         assert self.carried is not None
-        held, command = self.carried
+        name, command = self.carried
         place = frame.place_from_utak(*self.frame.place_to_utak(*self.place))
-        return place, self.remapped(frame).loads[held].polygon, command_motion(command, frame, place)
+        return place, self.remapped(frame).held_objects[name].polygon, command_motion(command, frame, place)
 
     def remapped(self, frame: Frame, only_whether: bool = False) -> RemappedMap:
         """Return the map of all earlier observations in a frame; kept for each frame.
@@ -250,7 +250,7 @@ class Surprise:
     @cached_property
     def _maps(self) -> RemapCache:
         """Return the maps of all frames that were asked for."""
-        return RemapCache(self.frame, self.occupancy, self.observations, self.loads)
+        return RemapCache(self.frame, self.occupancy, self.observations, self.held_objects)
 
     def _outcomes(self, frame: Frame, cut_short: bool) -> Iterator[CarryOutcome]:
         """Yield the motion as far as known obstacles let it go, and as commanded; or, cut short, all early ends."""
@@ -276,14 +276,14 @@ class Surprise:
     def objects_after(self, outcome: CarryOutcome) -> list[HeldObject]:
         """Return all held objects after an outcome of the motion of the one in hand, believed frame."""
         return [
-            load.moved(outcome.polygon, load.slack, commanded=outcome.as_commanded) if name == self.held else load
-            for name, load in self.loads.items()
+            held.moved(outcome.polygon, held.slack, commanded=outcome.as_commanded) if name == self.in_hand else held
+            for name, held in self.held_objects.items()
         ]
 
-    def map_after(self, loads: Sequence[HeldObject], place: Position) -> OccupancyMap:
-        """Return a copy of the map with the observation integrated at `place`, the objects lying as in `loads`."""
+    def map_after(self, held_objects: Sequence[HeldObject], place: Position) -> OccupancyMap:
+        """Return a copy of the map with the observation integrated at `place`, and the objects as in `held_objects`."""
         x, y = (math.floor(v) for v in place)
-        samples, counts = discounted(self.frame.samples(), self.ranges, x, y, loads)
+        samples, counts = discounted(self.frame.samples(), self.ranges, x, y, held_objects)
         occupancy = self.occupancy.copy()
         occupancy.observe(samples, counts, x, y, len(self.observations))
         return occupancy
@@ -295,7 +295,7 @@ def agreeing_hypotheses(
     place: Position,
     occupancy: OccupancyMap,
     observations: Sequence[Observation],
-    loads: Mapping[str, HeldObject],
+    held_objects: Mapping[str, HeldObject],
     ranges: FieldRanges,
 ) -> tuple[FrameHypothesis, ...]:
     """Return those exact origins that agree with an observation of turned objects; all when none does.
@@ -303,15 +303,15 @@ def agreeing_hypotheses(
     Parameters
     ----------
     hypotheses : points of one origin grid.
-    frame, place, occupancy, observations, loads : as believed, with the motion before the observation applied.
+    frame, place, occupancy, observations, held_objects : as believed, with the motion before the observation applied.
     ranges : (160, 2) count ranges of the observation.
     """
     own, error = frame.place_to_utak(*place), math.hypot(*grid_cell_size(hypotheses)) / 2
-    agree, maps = [], RemapCache(frame, occupancy, observations, loads)
+    agree, maps = [], RemapCache(frame, occupancy, observations, held_objects)
     for hypothesis in hypotheses:
         other = hypothesis.frame
         under = maps.remapped(other)
-        lying = [load.woken(error) for load in under.loads.values()]
+        lying = [held.woken(error) for held in under.held_objects.values()]
         if not count_clashes(other, under.occupancy, lying, other.place_from_utak(*own), ranges):
             agree.append(hypothesis)
     return tuple(agree or hypotheses)
@@ -327,7 +327,7 @@ def command_motion(command: Push | Turn, frame: Frame, place: Position) -> Motio
 def count_clashes(
     frame: Frame,
     occupancy: OccupancyMap,
-    loads: Iterable[HeldObject],
+    held_objects: Iterable[HeldObject],
     place: Position,
     ranges: FieldRanges,
     only_whether: bool = False,
@@ -338,10 +338,10 @@ def count_clashes(
     ----------
     frame : of the map.
     occupancy : the map.
-    loads : all held objects where they lie, map frame.
+    held_objects : all held objects where they lie, map frame.
     place : where the observation was made, map frame.
     ranges : (160, 2) count ranges of the observation.
     only_whether : ask only whether there are any; then the number may be too small, though not 0.
     """
     x, y = math.floor(place[0]), math.floor(place[1])
-    return occupancy.clashes(*discounted(frame.samples(), ranges, x, y, loads), x, y, only_whether)
+    return occupancy.clashes(*discounted(frame.samples(), ranges, x, y, held_objects), x, y, only_whether)

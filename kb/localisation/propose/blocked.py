@@ -49,19 +49,28 @@ class BlockedMotion(NamedTuple):
     outcome: CarryOutcome | None = None
 
 
-def possible_ends(surprise: Surprise, load: HeldObject | None, motion: Motion) -> list[BlockedMotion]:
+def possible_ends(surprise: Surprise, held: HeldObject | None, motion: Motion) -> list[BlockedMotion]:
     """Return the possible ends of a straight motion: its whole way first, then contacts, the likeliest first.
 
     None are returned for a turn, or when the motion hardly met anything and ends inside a square. At a grid line each
     end is returned once for each side, for the observation may be made from either.
 
-    load : the object in hand; None for a walk. motion : map frame.
+    Parameters
+    ----------
+    surprise : the observation after the motion.
+    held : the object in hand, before the motion; None for a walk.
+    motion : as commanded, map frame.
+
+    Returns
+    -------
+    list of BlockedMotion
+        Their chances sum to 1 at most.
     """
     if not isinstance(motion, Translate):
         return []
-    contacts = _walk_contacts(surprise, motion) if load is None else _push_contacts(surprise, load, motion)
+    contacts = _walk_contacts(surprise, motion) if held is None else _push_contacts(surprise, held, motion)
     x, y = surprise.place
-    end = None if load is None else predicted_outcome(surprise.place, load.polygon, motion)
+    end = None if held is None else predicted_outcome(surprise.place, held.polygon, motion)
     chance = 1.0 - sum(contact.chance for contact in contacts)
     whole = _both_sides(BlockedMotion("predicted", (x + motion.dx, y + motion.dy), chance, outcome=end))
     if len(whole) == 1 and whole[0].chance >= 1.0 - NEGLIGIBLE_CONTACT_CHANCE:
@@ -96,9 +105,9 @@ def _walk_contacts(surprise: Surprise, motion: Translate) -> list[BlockedMotion]
     return found
 
 
-def _push_contacts(surprise: Surprise, load: HeldObject, motion: Translate) -> list[BlockedMotion]:
+def _push_contacts(surprise: Surprise, held: HeldObject, motion: Translate) -> list[BlockedMotion]:
     """Return the ends of a push at each contact of Utak or of the object."""
-    place, polygon = surprise.place, load.polygon
+    place, polygon = surprise.place, held.polygon
     found = []
     for contact in surprise.obstructions.contacts(place, polygon, motion):
         end = partial_outcome(place, polygon, motion, contact.fraction, contact.squares)
@@ -109,14 +118,26 @@ def _push_contacts(surprise: Surprise, load: HeldObject, motion: Translate) -> l
 def consistent_explanations(surprise: Surprise, explanations: Iterable[Explanation]) -> list[Explanation]:
     """Return those explanations with which the observation agrees, each with its cost by the map prior.
 
-    explanations : none of them contradicts what was settled before the observation.
+    Parameters
+    ----------
+    surprise : the observation.
+    explanations : possible ends of the motion; none of them contradicts what was settled before.
+
+    Returns
+    -------
+    list of Explanation
+        In the same order; prior costs are relative to the best one.
     """
     found: list[tuple[MapDescription, Explanation]] = []
     drawn: DrawnScenes = {}
     for one in explanations:
-        loads = list(surprise.loads.values()) if one.outcome is None else surprise.objects_after(one.outcome)
-        after = surprise.map_after(loads, one.place)
-        if _settle_contact(after, one) and not count_clashes(surprise.frame, after, loads, one.place, surprise.ranges):
+        held_objects = (
+            list(surprise.held_objects.values()) if one.outcome is None else surprise.objects_after(one.outcome)
+        )
+        after = surprise.map_after(held_objects, one.place)
+        if _settle_contact(after, one) and not count_clashes(
+            surprise.frame, after, held_objects, one.place, surprise.ranges
+        ):
             found.append((MapDescription(after, drawn), one))
     chances = (max(one.chance or 0.0, MIN_END_CHANCE) for _, one in found)
     costs = relative_costs([(description, -math.log(p)) for (description, _), p in zip(found, chances, strict=True)])

@@ -21,14 +21,23 @@ MIN_CROWDED_SQUARES = 4  # newly occupied squares right beside a turned object f
 CROWDED_DISTANCE = 1.0  # squares around an object in which those are counted: its neighbours
 
 
-def overlooked_contact(surprise: Surprise, load: HeldObject, motion: Motion) -> CarryOutcome | None:
+def overlooked_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> CarryOutcome | None:
     """Return where the motion of an object was blocked, if the observation contradicts the whole motion; else None.
 
-    load : the object in hand. motion : as commanded, map frame; nothing settled before contradicts the whole of it.
+    Parameters
+    ----------
+    surprise : the observation after the motion.
+    held : the object in hand, before the motion.
+    motion : as commanded, map frame. Nothing settled before contradicts the whole of it.
+
+    Returns
+    -------
+    CarryOutcome or None
+        The likeliest contact that nothing contradicts, or a shortened turn.
     """
-    if is_contradicted(surprise, predicted_outcome(surprise.place, load.polygon, motion)):
-        return likeliest_contact(surprise, load, motion)
-    return shortened_turn(surprise, load, motion) if isinstance(motion, Rotate) else None
+    if is_contradicted(surprise, predicted_outcome(surprise.place, held.polygon, motion)):
+        return likeliest_contact(surprise, held, motion)
+    return shortened_turn(surprise, held, motion) if isinstance(motion, Rotate) else None
 
 
 def is_contradicted(surprise: Surprise, outcome: CarryOutcome) -> bool:
@@ -36,14 +45,14 @@ def is_contradicted(surprise: Surprise, outcome: CarryOutcome) -> bool:
 
     outcome : of the motion of the object in hand; nothing settled before contradicts it.
     """
-    loads = surprise.objects_after(outcome)
-    occupancy = surprise.map_after(loads, outcome.place)
-    return count_clashes(surprise.frame, occupancy, loads, outcome.place, surprise.ranges) > 0
+    held_objects = surprise.objects_after(outcome)
+    occupancy = surprise.map_after(held_objects, outcome.place)
+    return count_clashes(surprise.frame, occupancy, held_objects, outcome.place, surprise.ranges) > 0
 
 
-def likeliest_contact(surprise: Surprise, load: HeldObject, motion: Motion) -> CarryOutcome | None:
+def likeliest_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> CarryOutcome | None:
     """Return the outcome of the likeliest contact that nothing contradicts; None when there is none."""
-    for end in surprise.obstructions.outcomes(surprise.place, load.polygon, motion):
+    for end in surprise.obstructions.outcomes(surprise.place, held.polygon, motion):
         there = surprise.objects_after(end)
         fits = not count_clashes(surprise.frame, surprise.occupancy, there, end.place, surprise.ranges)
         if fits and not is_contradicted(surprise, end):
@@ -51,15 +60,15 @@ def likeliest_contact(surprise: Surprise, load: HeldObject, motion: Motion) -> C
     return None
 
 
-def shortened_turn(surprise: Surprise, load: HeldObject, motion: Rotate) -> CarryOutcome | None:
+def shortened_turn(surprise: Surprise, held: HeldObject, motion: Rotate) -> CarryOutcome | None:
     """Return where a turn ended short, if that explains what seems to stand right beside the object now; else None.
 
     No observation contradicts the whole turn. But nothing can have come to stand where the object lay before. Of ends
     that explain as much the one in the middle is returned.
     """
-    place, polygon = surprise.place, load.polygon
-    others = [other for other in surprise.loads.values() if other.name != load.name]
-    whole = _turned(load, motion.carry(polygon), load.slack, motion.degrees)
+    place, polygon = surprise.place, held.polygon
+    others = [other for other in surprise.held_objects.values() if other.name != held.name]
+    whole = _turned(held, motion.carry(polygon), held.slack, motion.degrees)
     crowded = _count_crowded(surprise, whole, others, place)
     if crowded < MIN_CROWDED_SQUARES:
         return None
@@ -67,7 +76,7 @@ def shortened_turn(surprise: Surprise, load: HeldObject, motion: Rotate) -> Carr
     ends += [end for end in other_outcomes(place, polygon, motion) if end.how == "blocked"]
     possible: list[tuple[int, float, CarryOutcome]] = []
     for end in ends:
-        there = _turned(load, end.polygon, END_SPACING, end.degrees)
+        there = _turned(held, end.polygon, END_SPACING, end.degrees)
         if not count_clashes(surprise.frame, surprise.occupancy, [*others, there], place, surprise.ranges):
             possible.append((_count_crowded(surprise, there, others, place), end.degrees, end))
     fewest = min((many for many, *_ in possible), default=crowded)
@@ -75,20 +84,20 @@ def shortened_turn(surprise: Surprise, load: HeldObject, motion: Rotate) -> Carr
     return fitting[len(fitting) // 2][2] if 2 * fewest < crowded else None
 
 
-def _turned(load: HeldObject, polygon: Any, slack: float, degrees: float) -> HeldObject:
+def _turned(held: HeldObject, polygon: Any, slack: float, degrees: float) -> HeldObject:
     """Return an object after a turn. The less it is turned in all, the less it is astray by a wrong origin."""
-    moved = load.moved(polygon, slack, degrees)
-    before, after = (abs(math.sin(math.radians(one.turned / 2))) for one in (load, moved))
+    moved = held.moved(polygon, slack, degrees)
+    before, after = (abs(math.sin(math.radians(one.turned / 2))) for one in (held, moved))
     whole = before < WHOLE  # not turned at all, or all the way round: then how far it is astray is unknown
-    return moved if whole else replace(moved, astray=load.astray * after / before)
+    return moved if whole else replace(moved, astray=held.astray * after / before)
 
 
-def _count_crowded(surprise: Surprise, load: HeldObject, others: Sequence[HeldObject], place: Position) -> int:
+def _count_crowded(surprise: Surprise, held: HeldObject, others: Sequence[HeldObject], place: Position) -> int:
     """Return how many squares right beside an object are occupied by the newest observation alone.
 
-    load : the object where it lies now. others : all other held objects. place : of Utak now, map frame.
+    held : the object where it lies now. others : all other held objects. place : of Utak now, map frame.
     """
-    before, after = surprise.occupancy, surprise.map_after([*others, load], place)
-    about = covered(load.polygon.buffer(CROWDED_DISTANCE, join_style="mitre")).squares()
+    before, after = surprise.occupancy, surprise.map_after([*others, held], place)
+    about = covered(held.polygon.buffer(CROWDED_DISTANCE, join_style="mitre")).squares()
     new = [square for square in about if before.state[before.index(*square)] != FULL]
     return sum(after.state[after.index(*square)] == FULL for square in new)

@@ -22,18 +22,15 @@ from kb.localisation.hypotheses.frames import (
     frames_to_try,
     observation_squares,
 )
-from kb.localisation.hypotheses.remap import RemappedMap, object_at, remap
-from kb.localisation.hypotheses.walk_outcomes import (
-    LINE_DISTANCE,
-    MotionHypothesis,
+from kb.localisation.hypotheses.reestimation import (
     ReestimatedWalk,
     WalkCorrection,
     WalkEnd,
     WalkInFrame,
-    add,
-    observation_places,
     remap_if_consistent,
 )
+from kb.localisation.hypotheses.remap import RemappedMap, object_at, remap
+from kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, add, observation_places
 from kb.localisation.hypotheses.what_if import Surprise, WhatIf
 from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
 from kb.mapping.patch import covered
@@ -67,13 +64,19 @@ class CarriedMotion:
 
     def __init__(self, motion: MotionHypothesis, surprise: Surprise) -> None:
         """Find the ends of a motion with an object in hand."""
-        assert motion.load is not None
-        frame, observations, loads = surprise.frame, surprise.observations[: motion.number], surprise.loads
-        pose = next(pose for pose in observations[-1].moved if pose.name == motion.load)
+        assert motion.in_hand is not None
+        frame, observations, held_objects = (
+            surprise.frame,
+            surprise.observations[: motion.number],
+            surprise.held_objects,
+        )
+        pose = next(pose for pose in observations[-1].moved if pose.name == motion.in_hand)
         self._place = frame.place_from_utak(*observations[-1].place)
-        self._polygon = object_at(loads[motion.load], pose, frame).polygon
+        self._polygon = object_at(held_objects[motion.in_hand], pose, frame).polygon
         self._motion = Translate(*frame.to_lattice(*motion.shift))
-        before = remap(frame, frame, observations, loads.values(), surprise.prefixes.first(motion.number)).occupancy
+        before = remap(
+            frame, frame, observations, held_objects.values(), surprise.prefixes.first(motion.number)
+        ).occupancy
         contacts = self._obstructions(before).contacts(self._place, self._polygon, self._motion)
         likely = (contact.fraction for contact in sorted(contacts, key=lambda contact: -contact.chance))
         fractions = dict.fromkeys((*likely, 1.0))
@@ -110,7 +113,15 @@ class CarriedMotion:
 def reestimate_motions(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
     """Return all other ends of earlier motions with which no observation is contradicted, in the believed frame.
 
-    Contacts with something known come first, then the newest motions.
+    Parameters
+    ----------
+    surprise : the newest observation, which the believed ends contradict.
+    motions : earlier straight motions, oldest first.
+
+    Returns
+    -------
+    list of ReestimatedMotion
+        Contacts with something known first, then by motion, the newest first.
     """
     tried = [motion for motion in reversed(motions) if _has_known_pose(motion, surprise)]
     found = [one for motion in tried for one in _other_ends(surprise, motion)]
@@ -122,8 +133,18 @@ def reestimate_with_origin(surprise: Surprise, motions: Sequence[MotionHypothesi
 
     Neither is explained without the other: where an object was blocked depends on where it lay, which is known in
     squares; where the observations since were made depends on the origin.
+
+    Parameters
+    ----------
+    surprise : the newest observation, which the believed ends contradict.
+    motions : earlier straight motions, oldest first.
+
+    Returns
+    -------
+    list of ReestimatedMotion
+        Of one motion only; contacts with something known first.
     """
-    tried = (motion for motion in reversed(motions) if motion.load is not None and _has_known_pose(motion, surprise))
+    tried = (motion for motion in reversed(motions) if motion.in_hand is not None and _has_known_pose(motion, surprise))
     found = ([*_ends_with_origin(surprise, motion)] for motion in itertools.islice(tried, MAX_MOTIONS_WITH_ORIGIN))
     return sorted(next(filter(None, found), []), key=lambda one: not one.walk.contact_known)
 
@@ -131,7 +152,7 @@ def reestimate_with_origin(surprise: Surprise, motions: Sequence[MotionHypothesi
 def _has_known_pose(motion: MotionHypothesis, surprise: Surprise) -> bool:
     """Return whether the pose of the object in hand before a motion is known, if there was one."""
     before = surprise.observations[motion.number - 1].moved
-    return motion.load is None or any(pose.name == motion.load for pose in before)
+    return motion.in_hand is None or any(pose.name == motion.in_hand for pose in before)
 
 
 def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
@@ -140,7 +161,7 @@ def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[Reesti
     believed, first = observations[motion.number].place, surprise.prefixes.first(motion.number)
     if first.contradicted:  # whatever came of the motion
         return
-    way = WalkInFrame(motion, frame, observations) if motion.load is None else CarriedMotion(motion, surprise)
+    way = WalkInFrame(motion, frame, observations) if motion.in_hand is None else CarriedMotion(motion, surprise)
     judged: dict[Position, RemappedMap | None] = {}  # by the shift
     for end in way.ends:
         shift = end.place[0] - believed[0], end.place[1] - believed[1]
@@ -149,7 +170,7 @@ def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[Reesti
         corrected, correction = _corrected(surprise, motion, end)
         if shift not in judged:
             judged[shift] = remap_if_consistent(
-                frame, corrected.observations, corrected.loads.values(), corrected.unsettled_discs, begun=first
+                frame, corrected.observations, corrected.held_objects.values(), corrected.unsettled_discs, begun=first
             )
         under = judged[shift]
         if under is None or under.residual:
@@ -157,7 +178,7 @@ def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[Reesti
         ahead = way.state_ahead(end, under.occupancy, _moved_since(under, corrected.observations, motion, frame))
         if ahead == FREE:
             continue
-        supposed = replace(corrected, occupancy=under.occupancy, loads=under.loads)
+        supposed = replace(corrected, occupancy=under.occupancy, held_objects=under.held_objects)
         what_if = supposed.evaluate_frame(frame, surprise.hypotheses, only_whether=True)
         if not what_if.residual:
             walk = ReestimatedWalk(exact_hypothesis(frame), correction, ahead == FULL, 0)
@@ -173,14 +194,14 @@ def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[
         if not left:
             continue
         first = surprise.prefixes.first(motion.number)
-        under = remap(surprise.frame, surprise.frame, corrected.observations, corrected.loads.values(), first)
-        corrected = replace(corrected, occupancy=under.occupancy, loads=under.loads)
+        under = remap(surprise.frame, surprise.frame, corrected.observations, corrected.held_objects.values(), first)
+        corrected = replace(corrected, occupancy=under.occupancy, held_objects=under.held_objects)
         for frame in frames_to_try(left, surprise.frame)[:MAX_FRAMES_PER_END]:
             what_if = corrected.evaluate_frame(frame, left, only_whether=True)
             if what_if.residual:
                 continue
             under = corrected.remapped(frame)
-            there = replace(corrected, frame=frame, occupancy=under.occupancy, loads=under.loads)
+            there = replace(corrected, frame=frame, occupancy=under.occupancy, held_objects=under.held_objects)
             things = _moved_since(under, corrected.observations, motion, frame)
             ahead = CarriedMotion(motion, there).state_ahead(end, under.occupancy, things)
             if ahead != FREE:
@@ -192,23 +213,26 @@ def _corrected(surprise: Surprise, motion: MotionHypothesis, end: WalkEnd) -> tu
     """Return a surprise as it is if an earlier motion ended at `end`, and the correction."""
     frame, believed = surprise.frame, surprise.observations[motion.number].place
     shift = end.place[0] - believed[0], end.place[1] - believed[1]
-    since = [load for load in surprise.loads.values() if load.since > motion.number]
-    seen = tuple((load.name, _object_shift(load, shift, surprise)) for load in since)
-    correction = WalkCorrection(motion.number, shift, seen, motion.load)
-    there, loads = correction.observations(surprise.observations), correction.loads(surprise.loads, frame)
+    since = [held for held in surprise.held_objects.values() if held.since > motion.number]
+    seen = tuple((held.name, _object_shift(held, shift, surprise)) for held in since)
+    correction = WalkCorrection(motion.number, shift, seen, motion.in_hand)
+    there, held_objects = (
+        correction.observations(surprise.observations),
+        correction.held_objects(surprise.held_objects, frame),
+    )
     place = frame.place_from_utak(*correction.place(frame.place_to_utak(*surprise.place)))
-    return replace(surprise, place=place, observations=there, loads=loads), correction
+    return replace(surprise, place=place, observations=there, held_objects=held_objects), correction
 
 
-def _object_shift(load: HeldObject, shift: Position, surprise: Surprise) -> Position:
+def _object_shift(held: HeldObject, shift: Position, surprise: Surprise) -> Position:
     """Return the shift of an object when the observation that showed it was made `shift` away, Utak's own frame.
 
     An object with sides on grid lines is shifted by whole squares, for the retina tells squares, wherever in a square
     the observation is made.
     """
-    if not is_whole(load.first):
+    if not is_whole(held.first):
         return shift
-    frame, observation = surprise.frame, surprise.observations[load.since - 1]
+    frame, observation = surprise.frame, surprise.observations[held.since - 1]
     elsewhere = observation._replace(place=add(observation.place, shift))
     (west, south), (east, north) = observation_squares(frame, [observation, elsewhere])
     return frame.to_utak(float(east - west), float(north - south))
@@ -220,8 +244,8 @@ def _moved_since(
     """Return the squares that objects covered when a motion was made, the object in hand left out, map frame."""
     before = {pose.name: pose for pose in observations[motion.number - 1].moved}
     squares: frozenset[Square] = frozenset()
-    for load in under.loads.values():
-        if load.name != motion.load:
-            lying = object_at(load, before[load.name], frame).polygon if load.name in before else load.first
+    for held in under.held_objects.values():
+        if held.name != motion.in_hand:
+            lying = object_at(held, before[held.name], frame).polygon if held.name in before else held.first
             squares |= covered(lying).squares()
     return squares

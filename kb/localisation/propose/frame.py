@@ -38,8 +38,16 @@ MIN_ORIGIN_AREA = 0.02  # squares^2 of origins left below which a blocked motion
 def best_frame(surprise: Surprise, reconsider: bool, simple: bool) -> WhatIf | None:
     """Return the evaluation of the frame that explains an observation best; None when no frame is left.
 
-    reconsider : whether hypotheses that were given up may be taken up again. simple : whether a motion that ended early
-    explains the observation in the believed frame.
+    Parameters
+    ----------
+    surprise : the observation, after objects were moved.
+    reconsider : whether hypotheses that were given up may be taken up again.
+    simple : whether a motion that ended early explains the observation in the believed frame.
+
+    Returns
+    -------
+    WhatIf or None
+        Its residual is 0 where a frame explains everything.
     """
     if surprise.any_turned:
         found = _other_orientation(surprise) or origin_from_turn(surprise, simple)
@@ -148,7 +156,17 @@ class BlockedPushWithOrigin(NamedTuple):
 def blocked_pushes_with_origin(surprise: Surprise) -> list[BlockedPushWithOrigin]:
     """Return how a push may have been blocked, with another origin on a coarse grid, so that nothing contradicts it.
 
-    Where Utak itself meets something depends on the origin. Not asked once an object was turned: that tells the origin.
+    Where Utak itself meets something depends on the origin.
+
+    Parameters
+    ----------
+    surprise : the observation after the push.
+
+    Returns
+    -------
+    list of BlockedPushWithOrigin
+        One for each square of Utak and each contact. Empty without a push, and once an object was turned, for turned
+        objects tell the origin.
     """
     alike: dict[tuple[int, int, frozenset[Square]], list[tuple[WhatIf, float]]] = {}
     asked = surprise.carried is not None and not surprise.any_turned

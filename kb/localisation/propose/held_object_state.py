@@ -21,46 +21,54 @@ LEANING_STEP = 0.1  # squares between the tried places
 TOUCHING_DISTANCE = 0.02  # squares from an obstacle within which an object touches it; tuned
 
 
-def object_after(load: HeldObject, outcome: CarryOutcome | None, residual: int, suspected: bool = False) -> HeldObject:
+def object_after(held: HeldObject, outcome: CarryOutcome | None, residual: int, suspected: bool = False) -> HeldObject:
     """Return an object in hand after a motion.
 
-    load : before the motion. outcome : the chosen one. residual : fields that it leaves unexplained. suspected :
-    whether an open square is suspected to have blocked the motion.
+    Parameters
+    ----------
+    held : the object before the motion.
+    outcome : the chosen outcome; None when nothing is known to have moved.
+    residual : fields that the outcome leaves unexplained.
+    suspected : whether an open square is suspected to have blocked the motion.
     """
-    load = replace(load, unexplained=max(load.unexplained, residual))
-    if outcome is None or outcome.how == "stuck" or outcome.polygon.equals(load.polygon):
-        thwarted = load.thwarted + (load.proven and not suspected)
-        inexact = load.inexact or thwarted >= MIN_THWARTED_MOTIONS
-        return replace(load.resisted(), thwarted=thwarted, inexact=inexact)
+    held = replace(held, unexplained=max(held.unexplained, residual))
+    if outcome is None or outcome.how == "stuck" or outcome.polygon.equals(held.polygon):
+        thwarted = held.thwarted + (held.proven and not suspected)
+        inexact = held.inexact or thwarted >= MIN_THWARTED_MOTIONS
+        return replace(held.resisted(), thwarted=thwarted, inexact=inexact)
     if outcome.insets is not None:
-        load = load.inset(outcome.insets) or load
-    slack = load.slack if outcome.as_commanded else max(load.slack, slack_of(outcome.polygon))
-    moved = load.moved(outcome.polygon, slack, outcome.degrees, outcome.as_commanded)
+        held = held.inset(outcome.insets) or held
+    slack = held.slack if outcome.as_commanded else max(held.slack, slack_of(outcome.polygon))
+    moved = held.moved(outcome.polygon, slack, outcome.degrees, outcome.as_commanded)
     moved = replace(moved, empty=moved.empty | outcome.contact_squares)
-    unmoved = outcome.how == "blocked" and load.polygon.hausdorff_distance(outcome.polygon) < MIN_MOVED_DISTANCE
-    return replace(moved, stuck=load.stuck + 1) if unmoved else moved
+    unmoved = outcome.how == "blocked" and held.polygon.hausdorff_distance(outcome.polygon) < MIN_MOVED_DISTANCE
+    return replace(moved, stuck=held.stuck + 1) if unmoved else moved
 
 
 def lean_on_obstacle(
-    load: HeldObject, motion: Motion, known: Obstacles, count_clashes: Callable[[HeldObject], int]
+    held: HeldObject, motion: Motion, known: Obstacles, count_clashes: Callable[[HeldObject], int]
 ) -> HeldObject:
     """Return an object that a straight motion left blocked, at the nearest place where it touches a known obstacle.
 
     It stays where it is when it touches something there, or when every touching place contradicts more of what is seen.
 
-    load : after the motion. motion : as commanded, map frame. known : the obstacles. count_clashes : returns how many
-    fields contradict an object where it lies.
+    Parameters
+    ----------
+    held : the object after the motion.
+    motion : as commanded, map frame.
+    known : the known obstacles.
+    count_clashes : returns how many fields contradict an object where it lies.
     """
     if not isinstance(motion, Translate):
-        return load
-    most = count_clashes(load)
-    for far, there in sorted(_touching_places(load.polygon, motion, known), key=lambda place: place[0]):
+        return held
+    most = count_clashes(held)
+    for far, there in sorted(_touching_places(held.polygon, motion, known), key=lambda place: place[0]):
         if far <= TOUCHING_DISTANCE:
-            return load
-        lying = load.lying(there, load.slack)
+            return held
+        lying = held.lying(there, held.slack)
         if count_clashes(lying) <= most:
             return lying
-    return load
+    return held
 
 
 def _touching_places(polygon: Any, motion: Translate, known: Obstacles) -> Iterator[tuple[float, Any]]:

@@ -21,33 +21,42 @@ DEEPEST = 3  # squares by which an object may go on in what seems to be wall; tu
 SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, west, south
 
 
-def larger_objects(surprise: Surprise, load: HeldObject, motion: Motion) -> Iterator[Explanation]:
+def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iterator[Explanation]:
     """Yield explanations that a push went as commanded and the object is larger than it seemed, the least larger first.
 
     Only for an object that never moved before, with its sides on grid lines.
 
-    load : the object in hand, before the motion. motion : as commanded, map frame.
+    Parameters
+    ----------
+    surprise : the observation after the push.
+    held : the object in hand, before the push.
+    motion : as commanded, map frame.
+
+    Yields
+    ------
+    Explanation
+        Without residual; `larger` is the object before the push.
     """
-    if load.proven or not isinstance(motion, Translate) or not is_whole(load.polygon):
+    if held.proven or not isinstance(motion, Translate) or not is_whole(held.polygon):
         return
-    occupancy, seen = surprise.occupancy, covered(load.polygon).squares()
-    others = [other for other in surprise.loads.values() if other.name != load.name]
+    occupancy, seen = surprise.occupancy, covered(held.polygon).squares()
+    others = [other for other in surprise.held_objects.values() if other.name != held.name]
     for depth in range(1, DEEPEST + 1):
         for side in SIDES:
-            whole = _extended(load, side, depth)
+            whole = _extended(held, side, depth)
             hidden = covered(whole.polygon).squares() - seen
             if any(occupancy.state[occupancy.index(*square)] == FREE for square in hidden):
                 continue
             outcome = predicted_outcome(surprise.place, whole.polygon, motion)._replace(how="larger")
             patch, floor = patch_of_squares(hidden), occupancy.copy()
             floor.declare(floor.squares(patch.west, patch.south, patch.mask), FREE, len(surprise.observations) - 1)
-            loads = [*others, whole.moved(outcome.polygon, whole.slack, commanded=True)]
-            if not count_clashes(surprise.frame, floor, loads, outcome.place, surprise.ranges):
+            held_objects = [*others, whole.moved(outcome.polygon, whole.slack, commanded=True)]
+            if not count_clashes(surprise.frame, floor, held_objects, outcome.place, surprise.ranges):
                 yield Explanation("larger", outcome.place, surprise.frame, 0, float(depth), outcome, larger=whole)
 
 
-def _extended(load: HeldObject, side: tuple[int, int], depth: int) -> HeldObject:
+def _extended(held: HeldObject, side: tuple[int, int], depth: int) -> HeldObject:
     """Return an object that goes on to one side by `depth` squares; its shape class is unknown then."""
     steps = (Translate(step * side[0], step * side[1]) for step in range(depth + 1))
-    polygon = shapely.union_all([step.carry(load.polygon) for step in steps])
-    return replace(load, polygon=polygon, first=polygon, shape={})
+    polygon = shapely.union_all([step.carry(held.polygon) for step in steps])
+    return replace(held, polygon=polygon, first=polygon, shape={})

@@ -12,8 +12,9 @@ from functools import cache
 from kb.localisation.hypotheses.explanation import Explanation, reestimated_explanation
 from kb.localisation.hypotheses.frames import OFF_CENTRE_COST, Observation, exact_hypothesis, observation_squares
 from kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, relative_costs
+from kb.localisation.hypotheses.reestimation import ReestimatedWalk, reestimate_walk
 from kb.localisation.hypotheses.remap import ReplayPrefixes, remap
-from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis, ReestimatedWalk, reestimate_walk
+from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
 from kb.perception.frame import CENTRE, Frame
 
 MAX_WALKS_WITH_ORIGIN = 3  # last walks that are re-estimated together with the origin: bounds the time; tuned
@@ -41,8 +42,11 @@ def blocked_walks_with_origin(
     Those by which all observations are made on the same squares are one explanation. Its prior cost is the map prior
     plus the log odds against the part of the square in which the origin lies then.
 
-    motions : the last walks, oldest first. believed : the believed frame. observations : all, at their believed places;
-    the newest where it was commanded.
+    Parameters
+    ----------
+    motions : the last walks, oldest first.
+    believed : the believed frame.
+    observations : all, at their believed places; the newest where it was commanded.
     """
     origins = tuple(exact_hypothesis(frame) for frame in frames_of_coarse_origins(believed))
     alike: dict[tuple[int, bytes], list[ReestimatedWalk]] = {}

@@ -30,7 +30,7 @@ from kb.perception.frame import Frame
 COARSE_ARC = 0.5  # squares that the outermost point of an object goes in one coarse cell of a turn; tuned
 COARSE_CUTS = 4  # coarse cells along either side of the square; tuned
 SUBDIVISION = (2, 2, 2)  # parts into which a cell is cut: of the turn, west to east, south to north
-MAX_CELLS = 2048
+MAX_COMPARED_CELLS = 2048
 # Cells that are compared with an observation in one go. It bounds the work of a command by a count: each costs one
 # comparison of an observation with the map. Nothing is given up where there are more: the larger cells stay, which are
 # less exact.
@@ -76,6 +76,9 @@ def origin_from_turn(surprise: Surprise, simple: bool) -> WhatIf | None:
     The orientation is the believed one. The turn went to its end, or as far as known obstacles let it go; else it may
     have ended anywhere. The hypotheses left are all origins that do.
 
+    Parameters
+    ----------
+    surprise : the observation, after any object was turned.
     simple : whether a motion that ended early explains the observation in the believed frame.
     """
     points = _origins_left(surprise)
@@ -108,7 +111,7 @@ def _blocked_turns(surprise: Surprise, bounds: OriginBox) -> list[WhatIf]:
     coarse = TurnOriginCell((0.0, 1.0), (west, east), (south, north))
     cells = coarse.cut(math.ceil(length / COARSE_ARC), COARSE_CUTS, COARSE_CUTS)
     for number in range(MAX_SUBDIVISIONS + 1):
-        if number and len(cells) * math.prod(SUBDIVISION) > MAX_CELLS:
+        if number and len(cells) * math.prod(SUBDIVISION) > MAX_COMPARED_CELLS:
             break
         if number:
             cells = [part for cell in cells for part in cell.cut(*SUBDIVISION)]

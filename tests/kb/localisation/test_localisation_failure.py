@@ -124,9 +124,9 @@ def test_the_residual_of_one_observation_alone_is_no_failure() -> None:
 def test_moved_objects_raise_the_residual_of_a_failure() -> None:
     thing = shapely.box(4, 2, 8, 4)
     held, moved = HeldObject("o1", thing, thing), HeldObject("o1", thing, thing).moved(thing, 0.0)
-    assert TrackerState(residuals=(1, MAX_RESIDUAL), loads={"o1": held}).lost
-    assert not TrackerState(residuals=(1, MAX_RESIDUAL), loads={"o1": moved}).lost
-    assert TrackerState(residuals=(1, MAX_RESIDUAL_AFTER_MOVING), loads={"o1": moved}).lost
+    assert TrackerState(residuals=(1, MAX_RESIDUAL), held_objects={"o1": held}).lost
+    assert not TrackerState(residuals=(1, MAX_RESIDUAL), held_objects={"o1": moved}).lost
+    assert TrackerState(residuals=(1, MAX_RESIDUAL_AFTER_MOVING), held_objects={"o1": moved}).lost
 
 
 def test_a_held_object_is_released_before_the_map_is_given_up() -> None:
@@ -145,7 +145,7 @@ def test_a_held_object_is_released_before_the_map_is_given_up() -> None:
     assert accommodated.explanation.how == "lost"
     assert model.anew
     assert not model.lost
-    assert not knowledge.memory.loads
+    assert not knowledge.memory.held_objects
 
 
 def test_in_another_frame_an_object_that_never_moved_is_forgotten() -> None:
@@ -154,15 +154,15 @@ def test_in_another_frame_an_object_that_never_moved_is_forgotten() -> None:
         tracker = walked(ROOM, [(2, 0), (0, 3)]).knowledge.tracker
         before = tracker.state.occupancy.state.copy()
         tracker.grasp(HeldObject("o1", thing, thing, proven=moved))
-        tracker.state = replace(tracker.state, held="o1" if held else None)
+        tracker.state = replace(tracker.state, in_hand="o1" if held else None)
         tracker._apply(Explanation("predicted", tracker.state.place, tracker.state.frame, 0, 0.0))
-        assert list(tracker.state.loads) == ["o1"]
+        assert list(tracker.state.held_objects) == ["o1"]
         other = Frame(origin=(0.4, 0.6))  # with the same observations
         tracker._apply(
             Explanation("turned", tracker.state.place, other, 0, 0.0, None, (FrameHypothesis(0, other.origin * 2),))
         )
         assert tracker.state.frame == other
-        assert list(tracker.state.loads) == ["o1"] * (moved or held)
+        assert list(tracker.state.held_objects) == ["o1"] * (moved or held)
         assert (tracker.state.occupancy.state == before).all() == (not moved and not held)
 
 

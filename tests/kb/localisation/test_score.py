@@ -8,7 +8,8 @@ import pytest
 
 from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
-from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis, ReestimatedWalk, WalkCorrection
+from kb.localisation.hypotheses.reestimation import ReestimatedWalk, WalkCorrection
+from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
 from kb.localisation.hypotheses.what_if import Surprise, WhatIf
 from kb.localisation.propose.earlier_motion import ReestimatedMotion
 from kb.localisation.score import EARLIER_MOTION_PROPOSERS, SearchBudget, propose_earlier_motions

@@ -11,7 +11,7 @@ from shapely.affinity import rotate, translate
 from kb.body import Move, Push, Turn
 from kb.localisation.hypotheses.explanation import CellStatus, Explanation, cheapest
 from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, FrameHypothesis
-from kb.localisation.hypotheses.walk_outcomes import ReestimatedWalk, WalkCorrection
+from kb.localisation.hypotheses.reestimation import ReestimatedWalk, WalkCorrection
 from kb.localisation.tracker import Tracker
 from kb.mapping.occupancy import FREE, OPEN
 from kb.objects.held_object import HeldObject
@@ -220,14 +220,14 @@ def test_a_turned_object_tells_the_origin_of_the_frame(place: tuple[float, float
     assert math.dist(tracker.state.frame.origin, (place[0] - 20, place[1] - 20)) < math.dist(
         CENTRE, (place[0] - 20, place[1] - 20)
     )
-    load = tracker.state.loads["o1"]
+    held = tracker.state.held_objects["o1"]
     true = translate(after, -20, -20)
-    assert load.polygon.hausdorff_distance(true) <= load.play + 0.2
+    assert held.polygon.hausdorff_distance(true) <= held.play + 0.2
     assert not tracker.state.sure
     back = tracker.accommodate(Turn(-90.0), impression(around(thing, PLAIN), (20, 20)))
     assert back.explanation.residual == 0
-    assert tracker.state.loads["o1"].polygon.hausdorff_distance(translate(thing, -20, -20)) < 1e-6
-    assert tracker.state.loads["o1"].play == 0
+    assert tracker.state.held_objects["o1"].polygon.hausdorff_distance(translate(thing, -20, -20)) < 1e-6
+    assert tracker.state.held_objects["o1"].play == 0
 
 
 def test_an_unchanged_impression_after_a_push_means_that_nothing_moved() -> None:
@@ -238,8 +238,8 @@ def test_an_unchanged_impression_after_a_push_means_that_nothing_moved() -> None
     found = tracker.accommodate(Push(1.0, 0.0), impression(around(thing, PLAIN), (37, 20)))
     assert found.explanation.outcome is not None and found.explanation.outcome.stopped
     assert tracker.state.place == CENTRE
-    assert tracker.state.loads["o1"].polygon.equals(translate(thing, -37, -20))
-    assert tracker.state.loads["o1"].stuck == 1
+    assert tracker.state.held_objects["o1"].polygon.equals(translate(thing, -37, -20))
+    assert tracker.state.held_objects["o1"].stuck == 1
 
 
 def test_a_turn_about_the_middle_of_the_square_leaves_the_origin_there() -> None:
@@ -248,7 +248,7 @@ def test_a_turn_about_the_middle_of_the_square_leaves_the_origin_there() -> None
     found = tracker.accommodate(Turn(90.0), impression(around(rotate(thing, 90, origin=(20.5, 20.5)), PLAIN), (20, 20)))
     assert found.explanation.how == "predicted"
     assert tracker.state.frame.origin == CENTRE
-    assert tracker.state.loads["o1"].play == 0
+    assert tracker.state.held_objects["o1"].play == 0
 
 
 def test_an_observation_beside_the_middle_tells_the_origin() -> None:

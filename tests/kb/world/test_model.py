@@ -158,7 +158,7 @@ def test_a_load_that_reaches_into_his_own_square_leaves_it_open() -> None:
     assert taken.view.by_counts is not None
     assert (taken.view.by_counts[taken.mask(taken.objects[0].patch)] == 1).all()
     memory = walk.knowledge.memory
-    load = memory.loads[memory.held or ""]
+    load = memory.held_objects[memory.in_hand or ""]
     walk.knowledge.tracker.update_object(replace(load, polygon=load.polygon.union(shapely.box(-1.6, 0.9, -1.4, 1.0))))
     model, _ = walk.knowledge.perceive(Release(), seen)
     assert model.view.state[here] == OPEN
@@ -207,7 +207,7 @@ def test_what_he_feels_is_in_his_hand_when_he_grasps_there() -> None:
         for column in (i - 1, i, i + 1):
             memory.occupancy.state[memory.occupancy.index(column, j + 1)] = FULL if wall else OPEN
         knowledge._grasp("north")
-        return knowledge.memory.held
+        return knowledge.memory.in_hand
 
     name = walked(ROOM, [(0, 2), (-2, 2), (3, 0), (-3, -4)], colour="g").model.objects[0].name
     assert grasped(0, None) == name

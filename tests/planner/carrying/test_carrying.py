@@ -73,7 +73,7 @@ def on_table(session: Session, polygon: shapely.Polygon) -> shapely.Polygon:
 
 
 def lies_as_believed(session: Session, name: str = "t") -> None:
-    loads = session.robot.knowledge.memory.loads
+    loads = session.robot.knowledge.memory.held_objects
     believed = min(
         (on_table(session, load.polygon) for load in loads.values()),
         key=lambda p: p.symmetric_difference(session.table.polygons[name]).area,
@@ -90,7 +90,7 @@ def test_a_square_into_a_corner(tmp_path: Path, heading: int) -> None:
     done = run(folder)
     assert done.result.verdict == "done", done.result.reason
     lies_as_believed(done.session)
-    assert {load.colour for load in done.session.robot.knowledge.memory.loads.values()} == {"g"}  # as he felt it
+    assert {load.colour for load in done.session.robot.knowledge.memory.held_objects.values()} == {"g"}  # as he felt it
     west, south, east, north = done.session.table.polygons["t"].bounds
     corners = {0: (30 - east, 20 - north), 90: (west - 2, 20 - north), 217: (west - 2, south - 2)}
     assert max(corners[heading]) <= 1.0 + 1e-6

@@ -51,8 +51,8 @@ def test_the_place_of_a_turned_object_depends_on_the_origin(
         believed, true = translate(believed, dx, dy), translate(true, dx, dy)
         here, truly = (here[0] + dx, here[1] + dy), (truly[0] + dx, truly[1] + dy)
         turned += degrees
-    load = HeldObject("o1", believed, translate(ELL, 2, -1), turned=turned)
-    found = shift_object(load, Frame(0, (fx, fy)), Frame())
+    held = HeldObject("o1", believed, translate(ELL, 2, -1), turned=turned)
+    found = shift_object(held, Frame(0, (fx, fy)), Frame())
     assert found.polygon.hausdorff_distance(true) < MAX_ERROR
 
 
@@ -61,10 +61,10 @@ def test_the_place_of_a_turned_object_depends_on_the_origin(
 def test_a_carried_object_lies_right_in_the_true_frame(heading: int, fx: float, fy: float) -> None:
     """The frame is believed to lie along Utak's own axes, a degree or two wrong, while an object is carried."""
     start, thing = (9 + fx, 9 + fy), translate(ELL, 11, 8)
-    observations, load, new, truth = carried(thing, _felt(thing, start, heading), start, heading)
-    found = remap(new, Frame(), observations, [load])
+    observations, held, new, truth = carried(thing, _felt(thing, start, heading), start, heading)
+    found = remap(new, Frame(), observations, [held])
     assert found.residual == 0
-    told = [new.place_to_utak(x, y) for x, y in found.loads["o1"].polygon.exterior.coords]
+    told = [new.place_to_utak(x, y) for x, y in found.held_objects["o1"].polygon.exterior.coords]
     assert shapely.Polygon(told).hausdorff_distance(truth) < MAX_ERROR
 
 
@@ -74,13 +74,13 @@ def test_remapping_in_two_steps_equals_remapping_at_once(heading: int, other: Fr
     start, thing = (9.3, 9.8), translate(ELL, 11, 8)
     straight = rotate(_felt(thing, start, heading), heading)
     x0, y0 = straight.bounds[:2]
-    observations, load, new, truth = carried(
+    observations, held, new, truth = carried(
         thing, whole(translate(straight, round(x0) - x0, round(y0) - y0)), start, heading
     )
-    at_once = remap(new, Frame(), observations, [load])
-    later = remap(new, other, observations, remap(other, Frame(), observations, [load]).loads.values())
+    at_once = remap(new, Frame(), observations, [held])
+    later = remap(new, other, observations, remap(other, Frame(), observations, [held]).held_objects.values())
     for found in (at_once, later):
-        lies = [new.place_to_utak(x, y) for x, y in found.loads["o1"].polygon.exterior.coords]
+        lies = [new.place_to_utak(x, y) for x, y in found.held_objects["o1"].polygon.exterior.coords]
         assert shapely.Polygon(lies).hausdorff_distance(truth) < MAX_ERROR
         assert found.residual == 0
 
@@ -93,12 +93,12 @@ def test_an_outline_from_a_skewed_frame_is_fitted_anew_where_the_object_was_seen
     """A square of three is taken for one of less than two, and carried. Seen from afar only, it stays so."""
     start, thing = (9.5, 9.5), shapely.box(east, 6, east + 3, 9)
     believed = rotate(_felt(thing.buffer(-0.65, join_style="mitre"), start, heading), 10)
-    observations, load, new, truth = carried(thing, believed, start, heading)
-    load = remap(new, Frame(), observations, [load]).loads["o1"]
-    assert load.skewed == (not told)
-    assert load.dubious == load.skewed
+    observations, held, new, truth = carried(thing, believed, start, heading)
+    held = remap(new, Frame(), observations, [held]).held_objects["o1"]
+    assert held.skewed == (not told)
+    assert held.dubious == held.skewed
     if told:
-        lies = shapely.Polygon([new.place_to_utak(x, y) for x, y in load.polygon.exterior.coords])
+        lies = shapely.Polygon([new.place_to_utak(x, y) for x, y in held.polygon.exterior.coords])
         assert lies.hausdorff_distance(truth) < MAX_ERROR
 
 
@@ -130,12 +130,12 @@ def carried(
 
 def test_the_pose_of_an_object_is_in_utaks_own_frame() -> None:
     frame = Frame(30, (0.2, 0.7))
-    load = HeldObject("o1", translate(ELL, 3, 4), ELL, slack=0.3, turned=90.0)
-    told = object_pose(load, frame)
+    held = HeldObject("o1", translate(ELL, 3, 4), ELL, slack=0.3, turned=90.0)
+    told = object_pose(held, frame)
     assert told == ObjectPose("o1", told.middle, 90.0, 0.3, told.taken)
-    middle = load.polygon.centroid
+    middle = held.polygon.centroid
     assert frame.place_from_utak(*told.middle) == pytest.approx((middle.x, middle.y))
-    first = load.first.centroid
+    first = held.first.centroid
     assert frame.place_from_utak(*told.taken) == pytest.approx((first.x, first.y))
 
 
@@ -152,28 +152,28 @@ def _felt(thing: shapely.Polygon, origin: tuple[float, float], heading: float) -
 @pytest.mark.parametrize("number", [1, 3, 20])
 def test_a_replay_of_first_observations_can_be_continued(number: int) -> None:
     start, thing = (9.5, 9.5), translate(ELL, 11, 8)
-    observations, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
+    observations, held, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
     number = min(number, len(observations))
-    loads = {"o1": load}
-    at_once, first = remap(new, new, observations, [load]), ReplayPrefixes(new, observations, loads)
+    held_objects = {"o1": held}
+    at_once, first = remap(new, new, observations, [held]), ReplayPrefixes(new, observations, held_objects)
     for _ in range(2):  # the replay that is copied stays as it is
-        found = remap(new, new, observations, [load], first.first(number))
+        found = remap(new, new, observations, [held], first.first(number))
         assert (found.occupancy.state == at_once.occupancy.state).all()
         assert (found.occupancy.logit == at_once.occupancy.logit).all()
         assert found.residual == at_once.residual
-        assert found.loads["o1"].polygon.equals(at_once.loads["o1"].polygon)
+        assert found.held_objects["o1"].polygon.equals(at_once.held_objects["o1"].polygon)
 
 
 def test_a_replay_that_asks_only_whether_stops_at_the_first_contradiction() -> None:
     start, thing = (9.5, 9.5), translate(ELL, 11, 8)
-    observations, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
+    observations, held, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
     empty = observations[0].ranges * 0
     contradicted = [observations[0], observations[0]._replace(ranges=empty, moved=()), *observations[1:]]
-    in_full = remap(new, new, contradicted, [load])
-    cut = remap(new, new, contradicted, [load], only_whether=True)
+    in_full = remap(new, new, contradicted, [held])
+    cut = remap(new, new, contradicted, [held], only_whether=True)
     assert 0 < cut.residual <= in_full.residual
     assert (cut.incomplete, in_full.incomplete) == (True, False)
-    agreeing, at_once = remap(new, new, observations, [load], only_whether=True), remap(new, new, observations, [load])
+    agreeing, at_once = remap(new, new, observations, [held], only_whether=True), remap(new, new, observations, [held])
     assert not agreeing.residual and not agreeing.incomplete
     assert (agreeing.occupancy.state == at_once.occupancy.state).all()
 
@@ -181,30 +181,30 @@ def test_a_replay_that_asks_only_whether_stops_at_the_first_contradiction() -> N
 @pytest.mark.parametrize("aside", [0.3, -0.3])
 def test_frames_with_the_same_squares_share_one_map(aside: float) -> None:
     start, thing = (9.5, 9.5), translate(ELL, 11, 8)
-    observations, load, believed, _ = carried(thing, _felt(thing, start, 0), start, 0)
+    observations, held, believed, _ = carried(thing, _felt(thing, start, 0), start, 0)
     observations = [
         observation._replace(place=(observation.place[0] + 0.1, observation.place[1])) for observation in observations
     ]
-    occupancy = remap(believed, believed, observations, [load]).occupancy
-    maps = RemapCache(believed, occupancy, observations, {"o1": load})
+    occupancy = remap(believed, believed, observations, [held]).occupancy
+    maps = RemapCache(believed, occupancy, observations, {"o1": held})
     one, other = (Frame(3, (CENTRE[0] + part, CENTRE[1])) for part in (aside, aside * 1.01))
     assert maps.remapped(believed).occupancy is occupancy
     found = maps.remapped(one)
     assert found.occupancy is not occupancy
     assert maps.remapped(other).occupancy is found.occupancy
-    assert (found.occupancy.state == remap(one, believed, observations, [load]).occupancy.state).all()
+    assert (found.occupancy.state == remap(one, believed, observations, [held]).occupancy.state).all()
 
 
 def test_an_incomplete_map_is_completed_when_it_is_asked_for() -> None:
     start, thing = (9.5, 9.5), translate(ELL, 11, 8)
-    observations, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
+    observations, held, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
     contradicted = [
         observations[0],
         observations[0]._replace(ranges=observations[0].ranges * 0, moved=()),
         *observations[1:],
     ]
-    maps = RemapCache(new, remap(new, new, contradicted, [load]).occupancy, contradicted, {"o1": load})
+    maps = RemapCache(new, remap(new, new, contradicted, [held]).occupancy, contradicted, {"o1": held})
     askew = Frame(5)
     assert maps.remapped(askew, only_whether=True).incomplete
-    assert maps.remapped(askew).loads.keys() == {"o1"}
+    assert maps.remapped(askew).held_objects.keys() == {"o1"}
     assert not maps.remapped(askew, only_whether=True).incomplete

@@ -1,25 +1,12 @@
-"""Walk outcomes: crossings of grid lines, and re-estimation of blocked walks."""
+"""Walk outcomes: crossings of grid lines, and the squares on either side."""
 
 import math
 from itertools import pairwise
 
-import numpy as np
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation, count_contradictions
-from kb.localisation.hypotheses.walk_outcomes import (
-    LINE_DISTANCE,
-    MotionHypothesis,
-    entered_square,
-    line_crossings,
-    reestimate_two_walks,
-    reestimate_walk,
-)
-from kb.mapping.occupancy import FULL, OccupancyMap
-from kb.perception.frame import Frame, turned
-from kb.perception.retina import count_ranges
-from tests.kb.eyes import Occupied, impression, random_room, world_of
+from kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, entered_square, line_crossings
 
 AWAY = st.floats(-9, 9, allow_nan=False).map(lambda v: round(v, 3))
 POINT = st.floats(0.05, 0.95).map(lambda v: round(v, 3) + 0.0003)
@@ -70,52 +57,6 @@ def test_the_entered_square_lies_on_the_way() -> None:
     assert entered_square((0.5, 0.5), (-3.5, 0.5)) == (-1, 0)
 
 
-@settings(max_examples=15, deadline=None)
-@given(st.integers(0, 2**32 - 1))
-def test_the_true_end_of_a_blocked_walk_is_among_its_reestimations(seed: int) -> None:
-    """A wall blocked a motion that is believed to have gone as commanded; another motion follows."""
-    rng = np.random.default_rng(seed)
-    occupied, heading = world_of(random_room(rng, 26, 26, 8)), int(rng.integers(-44, 46))
-    squares = [(i, j) for i in range(3, 23) for j in range(3, 23)]
-    free = [(i, j) for i, j in squares if not occupied(i, j)]
-    x, y = free[int(rng.integers(len(free)))]
-    way = (float(rng.uniform(-14, 14)), float(rng.uniform(-14, 14)))
-    met = line_crossings((x + 0.5, y + 0.5), turned(*way, heading))
-    stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
-    assume(stop is not None and not passes_corner(0.5, 0.5, *turned(*way, heading)))
-    assert stop is not None
-    frame = Frame(heading)
-    own = frame.place_to_utak(stop.before[0] - x, stop.before[1] - y)  # of a frame with the true origin
-    back = (-own[0], -own[1])
-    truth = [(0.0, 0.0), own, (own[0] + 0.5 * back[0], own[1] + 0.5 * back[1])]
-    observations = []
-    for place, shift in zip(truth, [(0.0, 0.0), *[(way[0] - own[0], way[1] - own[1])] * 2], strict=True):
-        i, j = (math.floor(v) for v in frame.place_from_utak(*place))
-        seen = count_ranges(impression(occupied, (i + x, j + y), heading).retina)
-        observations.append(Observation(seen, (place[0] + shift[0], place[1] + shift[1])))
-    assume(math.dist(own, way) > 2 * LINE_DISTANCE)
-    found = list(reestimate_walk(MotionHypothesis(1, way, CENTRED_HYPOTHESES), Frame(), observations))
-    right = [
-        one
-        for one in found
-        if one.hypothesis.angle == heading and math.dist(one.correction.observations(observations)[1].place, own) < 1e-3
-    ]
-    assert right
-    assert all(one.correction.since == 1 and one.residual == 0 for one in right)
-    for one in found:
-        assert not count_contradictions(one.hypothesis.frame, one.correction.observations(observations))
-        assert one.correction.observations(observations)[0] == observations[0]
-        assert math.dist(one.correction.observations(observations)[2].place, observations[2].place) > LINE_DISTANCE
-
-
-def test_a_walk_that_met_nothing_is_not_reestimated() -> None:
-    occupied = world_of(["." * 80] * 80)
-    seen = [count_ranges(impression(occupied, (x, 40)).retina) for x in (30, 35)]
-    observations = [Observation(seen[0], (0.0, 0.0)), Observation(seen[1], (5.0, 0.0))]
-    told = list(reestimate_walk(MotionHypothesis(1, (5.0, 0.0), CENTRED_HYPOTHESES[:1]), Frame(), observations))
-    assert told == []
-
-
 @given(st.sampled_from([(1, 1), (1, -1), (-1, 1), (-1, -1)]), st.integers(1, 9))
 def test_at_a_corner_the_observation_may_be_made_from_four_squares(way: tuple[int, int], far: int) -> None:
     met = line_crossings((0.5, 0.5), (way[0] * far, way[1] * far))
@@ -133,48 +74,3 @@ def test_at_a_corner_the_observation_may_be_made_from_four_squares(way: tuple[in
         assert squares == {(x, y) for x in (beyond[0] - way[0], beyond[0]) for y in (beyond[1] - way[1], beyond[1])}
         assert there[2].entered == beyond
         assert there[0].before == there[1].before
-
-
-@settings(max_examples=20, deadline=None)
-@given(st.integers(0, 2**32 - 1))
-def test_two_contacts_in_a_row_are_reestimated_together(seed: int) -> None:
-    """A wall blocked a motion that is believed to have gone as commanded; the next goes against that wall, too."""
-    rng = np.random.default_rng(seed)
-    occupied = world_of(random_room(rng, 26, 26, 8))
-    free = [(i, j) for i in range(3, 23) for j in range(3, 23) if not occupied(i, j)]
-    x, y = free[int(rng.integers(len(free)))]
-    way = (float(rng.uniform(-14, 14)), float(rng.uniform(-14, 14)))
-    assume(not passes_corner(0.5, 0.5, *way))
-    met = line_crossings((x + 0.5, y + 0.5), way)
-    stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
-    assume(stop is not None)
-    assert stop is not None
-    away = stop.before[0] - x - 0.5, stop.before[1] - y - 0.5
-    assume(math.dist(away, way) > 0.3)
-    into = (stop.entered[0] + 0.5 - stop.before[0], stop.entered[1] + 0.5 - stop.before[1])
-    here = math.floor(stop.before[0]), math.floor(stop.before[1])
-    first = Observation(count_ranges(impression(occupied, (x, y)).retina), (0.0, 0.0))
-    beside = Observation(count_ranges(impression(occupied, here).retina), way)
-    observations = [first, beside, beside._replace(place=(way[0] + into[0], way[1] + into[1]))]
-    motions = MotionHypothesis(1, way, CENTRED_HYPOTHESES[:1]), MotionHypothesis(2, into, CENTRED_HYPOTHESES[:1])
-    found = list(reestimate_two_walks(*motions, CENTRED_HYPOTHESES[0], observations))
-    for one in found:
-        told = [*one.correction.observations(observations)[:2], observations[2]._replace(place=one.newest)]
-        assert one.contact_known
-        assert not count_contradictions(Frame(), told)
-    known = known_to_be_occupied(occupied, (x, y), here, stop.entered)
-    short = away[0] - way[0], away[1] - way[1]
-    assert not known or any(
-        math.dist(one.correction.shift, short) < 1e-6 and math.dist(one.newest, away) < 1e-6 for one in found
-    )
-
-
-def known_to_be_occupied(
-    occupied: Occupied, start: tuple[int, int], here: tuple[int, int], wall: tuple[int, int]
-) -> bool:
-    """Return whether a square is settled as occupied by the observations from two others."""
-    occupancy = OccupancyMap()
-    for number, (i, j) in enumerate((start, here)):
-        samples = Frame().samples()
-        occupancy.observe(samples, count_ranges(impression(occupied, (i, j)).retina), i, j, number)
-    return bool(occupancy.state[occupancy.index(*wall)] == FULL)

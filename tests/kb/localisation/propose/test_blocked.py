@@ -87,7 +87,9 @@ def test_utak_blocked_before_a_pulled_object_observes_from_either_side_of_the_li
         again = awake(room, square, thing)
         again.accommodate(Push(side * 21.0, 0.0), impression(around(moved, room), view))
         assert again.state.place[0] == pytest.approx(wall - square[0], abs=1e-5)
-        assert again.state.loads["o1"].polygon.hausdorff_distance(translate(moved, -square[0], -square[1])) < 1e-5
+        assert (
+            again.state.held_objects["o1"].polygon.hausdorff_distance(translate(moved, -square[0], -square[1])) < 1e-5
+        )
     assert tracker.state.place == (0.5, 0.5)
 
 

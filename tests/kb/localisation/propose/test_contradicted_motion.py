@@ -38,22 +38,22 @@ def turned_by(commanded: float, truly: float) -> tuple[Surprise, HeldObject, Rot
     lies = translate(thing, CENTRE[0] - HERE[0], CENTRE[1] - HERE[1])
     first = translate(rotate(lies, commanded, origin=CENTRE), -FAR)
     taken = HeldObject("o1", first, first, since=1)
-    load = replace(taken, polygon=lies, turned=-commanded, proven=True, astray=0.4)
+    held = replace(taken, polygon=lies, turned=-commanded, proven=True, astray=0.4)
     began = around(translate(rotate(thing, commanded, origin=HERE), -FAR), HALL)
     observation = Observation(
         count_ranges(retina(began, (math.floor(HERE[0] - FAR), math.floor(HERE[1])))), (-FAR, 0.0)
     )
     here = math.floor(HERE[0]), math.floor(HERE[1])
-    brought = Observation(count_ranges(retina(around(thing, HALL), here)), (0.0, 0.0), (object_pose(load, frame),))
+    brought = Observation(count_ranges(retina(around(thing, HALL), here)), (0.0, 0.0), (object_pose(held, frame),))
     observations = [observation, observation._replace(moved=(object_pose(taken, frame),)), brought]
-    occupancy, loads = remap(frame, frame, observations, [load]).occupancy, {"o1": load}
+    occupancy, held_objects = remap(frame, frame, observations, [held]).occupancy, {"o1": held}
     for square in covered(rotate(lies, commanded, origin=CENTRE).buffer(1.5)).squares():
         occupancy.state[occupancy.index(*square)] = OPEN  # no earlier observation shows them
     after = count_ranges(retina(around(rotate(thing, truly, origin=HERE), HALL), here))
     surprise = Surprise(
-        Turn(commanded), after, frame, CENTRE, occupancy, observations, loads, "o1", CENTRED_HYPOTHESES[:1]
+        Turn(commanded), after, frame, CENTRE, occupancy, observations, held_objects, "o1", CENTRED_HYPOTHESES[:1]
     )
-    return surprise, load, Rotate(commanded, CENTRE)
+    return surprise, held, Rotate(commanded, CENTRE)
 
 
 @pytest.mark.parametrize(("commanded", "truly"), [(-90.0, -82.0), (-90.0, -85.0), (90.0, 83.0), (180.0, 173.0)])
@@ -70,6 +70,6 @@ def test_a_whole_turn_is_not_taken_for_a_shortened_one(commanded: float) -> None
 
 @pytest.mark.parametrize("turned", [0.0, 360.0, -720.0])
 def test_an_object_turned_all_the_way_round_may_be_turned(turned: float) -> None:
-    surprise, load, motion = turned_by(90.0, 90.0)
-    load = replace(load, turned=turned)
-    assert shortened_turn(replace(surprise, loads={"o1": load}), load, motion) is None
+    surprise, held, motion = turned_by(90.0, 90.0)
+    held = replace(held, turned=turned)
+    assert shortened_turn(replace(surprise, held_objects={"o1": held}), held, motion) is None

@@ -57,32 +57,32 @@ def right(
     motion: MotionHypothesis,
     shift: Point,
     thing: shapely.Polygon,
-    told: Callable[[Surprise, list[MotionHypothesis]], list[ReestimatedMotion]] = reestimate_motions,
+    propose: Callable[[Surprise, list[MotionHypothesis]], list[ReestimatedMotion]] = reestimate_motions,
 ) -> list[ReestimatedMotion]:
     """Return the proposals that are right about both the shift of the motion and the place of the object."""
-    found = told(surprise, [motion])
+    found = propose(surprise, [motion])
     for one in found:
         assert one.what_if.residual == 0
         assert one.walk.correction.since == motion.number
     near = [one for one in found if math.dist(one.walk.correction.shift, shift) < 5e-3]
-    loads = [
+    proposed = [
         (one, one.what_if.outcome.polygon)
         if one.what_if.outcome is not None
-        else (one, one.walk.correction.loads(surprise.loads, surprise.frame)["o1"].polygon)
+        else (one, one.walk.correction.held_objects(surprise.held_objects, surprise.frame)["o1"].polygon)
         for one in near
     ]
-    return [one for one, polygon in loads if polygon.hausdorff_distance(thing) < 5e-3]
+    return [one for one, polygon in proposed if polygon.hausdorff_distance(thing) < 5e-3]
 
 
 def surprised(
-    command: Move | Push, after: Observation, observations: list[Observation], load: HeldObject, held: bool
+    command: Move | Push, after: Observation, observations: list[Observation], held: HeldObject, in_hand: bool
 ) -> Surprise:
     frame = Frame()
-    occupancy = remap(frame, frame, observations, [load]).occupancy
+    occupancy = remap(frame, frame, observations, [held]).occupancy
     place = frame.place_from_utak(*observations[-1].place)
-    name = load.name if held else None
+    name = held.name if in_hand else None
     return Surprise(
-        command, after.ranges, frame, place, occupancy, observations, {load.name: load}, name, CENTRED_HYPOTHESES[:1]
+        command, after.ranges, frame, place, occupancy, observations, {held.name: held}, name, CENTRED_HYPOTHESES[:1]
     )
 
 
@@ -95,10 +95,10 @@ def room_with_a_thing(rng: np.random.Generator) -> tuple[Occupied, shapely.Polyg
 
 def first_of(attempts: Iterator[Scene | None]) -> Scene:
     """Return the first scene that could be made; skip the test in the rare case that none could."""
-    told = next((one for one in attempts if one is not None), None)
-    assume(told is not None)
-    assert told is not None
-    return told
+    scene = next((one for one in attempts if one is not None), None)
+    assume(scene is not None)
+    assert scene is not None
+    return scene
 
 
 @settings(max_examples=15, deadline=None)
@@ -126,15 +126,15 @@ def walked_and_pushed(rng: np.random.Generator) -> Scene | None:
     frame, believed = Frame(), plus(way, onward)
     place = square_of(frame.place_from_utak(*believed))
     lies = translate(thing, place[0] - math.floor(truly[0]), place[1] - math.floor(truly[1]))
-    load = HeldObject("o1", lies, lies, since=3, proven=True)
+    held = HeldObject("o1", lies, lies, since=3, proven=True)
     observations = [
         observe(occupied, origin, (0.0, 0.0)),
         observe(occupied, stopped, way),
         observe(occupied, truly, believed),
     ]
-    observations.append(observations[-1]._replace(moved=(object_pose(load, frame),)))
+    observations.append(observations[-1]._replace(moved=(object_pose(held, frame),)))
     after = observe(around(translate(thing, *far), room), plus(truly, far), plus(believed, far))
-    surprise = surprised(Push(*far), after, observations, load, held=True)
+    surprise = surprised(Push(*far), after, observations, held, in_hand=True)
     true = translate(thing, far[0] + CENTRE[0] - origin[0], far[1] + CENTRE[1] - origin[1])
     return surprise, MotionHypothesis(1, way, CENTRED_HYPOTHESES[:1]), shift, true
 
@@ -151,8 +151,8 @@ def test_a_push_blocked_unnoticed_is_reestimated_with_the_object_in_hand(seed: i
 def test_such_a_push_is_reestimated_together_with_the_origin(seed: int) -> None:
     rng = np.random.default_rng(seed)
     beside = (round(float(rng.uniform(0.05, 0.95)), 2), round(float(rng.uniform(0.05, 0.95)), 2))
-    told = first_of(pushed_and_walked(rng, beside) for _ in range(300))
-    assert right(*told, told=reestimate_with_origin)
+    scene = first_of(pushed_and_walked(rng, beside) for _ in range(300))
+    assert right(*scene, propose=reestimate_with_origin)
 
 
 @settings(max_examples=5, deadline=None)
@@ -160,7 +160,7 @@ def test_such_a_push_is_reestimated_together_with_the_origin(seed: int) -> None:
 def test_a_walk_is_not_reestimated_together_with_the_origin(seed: int) -> None:
     rng = np.random.default_rng(seed)
     surprise, motion, *_ = first_of(pushed_and_walked(rng) for _ in range(300))
-    assert reestimate_with_origin(surprise, [motion._replace(load=None)]) == []
+    assert reestimate_with_origin(surprise, [motion._replace(in_hand=None)]) == []
 
 
 def pushed_and_walked(rng: np.random.Generator, beside: Point = CENTRE) -> Scene | None:
@@ -182,9 +182,9 @@ def pushed_and_walked(rng: np.random.Generator, beside: Point = CENTRE) -> Scene
         return None
     frame = Frame()
     lies = translate(thing, -math.floor(origin[0]), -math.floor(origin[1]))
-    load = HeldObject("o1", translate(lies, *way), lies, since=1, proven=True)
+    held = HeldObject("o1", translate(lies, *way), lies, since=1, proven=True)
     first = observe(around(thing, room), origin, (0.0, 0.0))
     taken = first._replace(moved=(object_pose(HeldObject("o1", lies, lies, since=1), frame),))
-    pushed = observe(there, plus(origin, went), way)._replace(moved=(object_pose(load, frame),))
-    surprise = surprised(Move(*walk), observe(there, end, plus(way, walk)), [first, taken, pushed], load, held=False)
-    return surprise, MotionHypothesis(2, way, CENTRED_HYPOTHESES[:1], load="o1"), shift, translate(lies, *went)
+    pushed = observe(there, plus(origin, went), way)._replace(moved=(object_pose(held, frame),))
+    surprise = surprised(Move(*walk), observe(there, end, plus(way, walk)), [first, taken, pushed], held, in_hand=False)
+    return surprise, MotionHypothesis(2, way, CENTRED_HYPOTHESES[:1], in_hand="o1"), shift, translate(lies, *went)

@@ -34,7 +34,7 @@ Point = tuple[float, float]
 
 
 def blocked_push_of_utak(rng: np.random.Generator, beside: Point) -> tuple[Surprise, Point, shapely.Polygon] | None:
-    """Return the surprise after a contact of Utak in a push, the true place and outline then; None if there is no contact.
+    """Return the surprise after a contact of Utak in a push, the true place and outline then; None without a contact.
 
     beside : the true origin.
     """
@@ -49,12 +49,12 @@ def blocked_push_of_utak(rng: np.random.Generator, beside: Point) -> tuple[Surpr
         return None
     went = way[0] * part, way[1] * part
     lies = translate(thing, -math.floor(origin[0]), -math.floor(origin[1]))
-    load = HeldObject("o1", lies, lies, since=1, proven=True)
+    held = HeldObject("o1", lies, lies, since=1, proven=True)
     first = observe(around(thing, room), origin, (0.0, 0.0))
-    observations = [first, first._replace(moved=(object_pose(load, Frame()),))]
+    observations = [first, first._replace(moved=(object_pose(held, Frame()),))]
     after = observe(around(translate(thing, *went), room), plus(origin, went), way)
     there = plus(beside, went)
-    return surprised(Push(*way), after, observations, load, held=True), there, translate(lies, *went)
+    return surprised(Push(*way), after, observations, held, in_hand=True), there, translate(lies, *went)
 
 
 @settings(max_examples=15, deadline=None)
@@ -81,6 +81,6 @@ def test_turned_objects_and_empty_hands_are_not_asked() -> None:
     surprise, *_ = next(one for one in (blocked_push_of_utak(rng, CENTRE) for _ in range(2000)) if one is not None)
     assert blocked_pushes_with_origin(surprise)
     for command in (Turn(30.0), Move(1.0, 0.0)):
-        held = surprise.held if isinstance(command, Turn) else None
-        other = replace(surprise, command=command, held=held)
+        held = surprise.in_hand if isinstance(command, Turn) else None
+        other = replace(surprise, command=command, in_hand=held)
         assert blocked_pushes_with_origin(other) == []

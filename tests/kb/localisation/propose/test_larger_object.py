@@ -46,11 +46,11 @@ def drawn(room: Occupied, deep: int, by: float) -> tuple[Tracker, str]:
 def test_an_object_drawn_out_of_a_door_shows_its_true_size(deep: int, by: float) -> None:
     tracker, how = drawn(hall(DOOR), deep, by)
     assert how == "larger"
-    load, occupancy = tracker.state.loads["o1"], tracker.state.occupancy
+    held, occupancy = tracker.state.held_objects["o1"], tracker.state.occupancy
     first = translate(shapely.box(18, 10, 20 + deep, 15), -HERE[0], -HERE[1])
-    assert load.first.equals(first)
-    assert load.polygon.equals(translate(first, -by))
-    assert load.proven
+    assert held.first.equals(first)
+    assert held.polygon.equals(translate(first, -by))
+    assert held.proven
     assert tracker.state.place == pytest.approx((0.5 - by, 0.5))
     assert {occupancy.state[occupancy.index(3, y)] for y in range(-2, 3)} == {FREE}
 
@@ -59,7 +59,9 @@ def test_an_object_drawn_out_of_a_door_shows_its_true_size(deep: int, by: float)
 def test_an_object_before_a_wall_is_no_larger_than_it_seemed(by: float) -> None:
     tracker, how = drawn(hall(NO_DOOR), 0, by)
     assert how == "predicted"
-    assert tracker.state.loads["o1"].polygon.equals(translate(shapely.box(18, 10, 20, 15), -HERE[0] - by, -HERE[1]))
+    assert tracker.state.held_objects["o1"].polygon.equals(
+        translate(shapely.box(18, 10, 20, 15), -HERE[0] - by, -HERE[1])
+    )
     assert tracker.state.occupancy.state[tracker.state.occupancy.index(3, 0)] == FULL
 
 

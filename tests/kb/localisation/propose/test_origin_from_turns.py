@@ -61,8 +61,8 @@ def test_a_blocked_turn_tells_the_origin_and_how_far_it_went(fx: float, fy: floa
     found = tracker.accommodate(Turn(90.0), impression(around(after, room), (20, 20))).explanation
     assert found.residual == 0
     assert found.how in ("turned", "blocked")
-    load, true = tracker.state.loads["o1"], translate(after, -20, -20)
-    assert load.polygon.hausdorff_distance(true) < load.play + 0.3
+    held, true = tracker.state.held_objects["o1"], translate(after, -20, -20)
+    assert held.polygon.hausdorff_distance(true) < held.play + 0.3
     assert found.outcome is not None
     assert found.outcome.degrees == pytest.approx(degrees, abs=6.0)
     if found.how == "turned":
@@ -86,7 +86,7 @@ def test_a_turn_beside_a_grid_line_needs_no_other_origin() -> None:
     assert found.how == "predicted"
     assert found.residual == 0
     assert tracker.state.frame.origin == CENTRE
-    assert tracker.state.loads["o1"].polygon.hausdorff_distance(translate(after, -20, -20)) < 1e-5
+    assert tracker.state.held_objects["o1"].polygon.hausdorff_distance(translate(after, -20, -20)) < 1e-5
 
 
 def test_the_parts_of_a_cell_fill_it() -> None:
