@@ -8,7 +8,7 @@ from shapely import Point, affinity, box
 
 from geometry.counts.gibbs import DRAWN
 from geometry.counts.moments import Blobs, blobs
-from kb.mapping.object_heat import ended, imagine, likeness
+from kb.mapping.object_heat import end_probability, likeness, summarise_completions
 from kb.mapping.occupancy import OPEN
 from tests.kb.drawings import LARGE_ROOM, drawing, looked
 
@@ -16,7 +16,7 @@ from tests.kb.drawings import LARGE_ROOM, drawing, looked
 @pytest.mark.parametrize(("wide", "high", "square"), [(5, 5, True), (4, 4, True), (8, 3, False), (10, 2, False)])
 def test_a_square_is_told_from_afar(wide: int, high: int, square: bool) -> None:
     view = looked(drawing(31, 30, wide, high), [(20, 20), (22, 21), (23, 23)]).view()
-    found = imagine(view).likely("square")
+    found = summarise_completions(view).likely("square")
     row, column = view.locate(31 + wide / 2 - 20, 30 + high / 2 - 20)
     assert (found[row, column] > 0.4) == square
     assert (view.state[row - 1 : row + 2, column - 2 : column + 3] == OPEN).any()
@@ -27,19 +27,19 @@ def test_what_the_edge_of_all_seen_cuts_off_may_be_a_square(shown: int) -> None:
     view = looked(drawing(36 - shown, 18, 5, 5), [(20, 20)]).view()
     row, column = view.locate(15, 0)
     assert not view.seen[row, column + 1 :].any()
-    assert 0.3 < imagine(view).likely("square")[row, column] < 0.9
+    assert 0.3 < summarise_completions(view).likely("square")[row, column] < 0.9
 
 
 def test_a_wall_that_the_edge_of_all_seen_cuts_off_is_no_square() -> None:
     view = looked(drawing(24, 18, 12, 3), [(20, 20)]).view()
     row, column = view.locate(15, -1)
     assert view.seen[row, column]
-    assert imagine(view).likely("square")[row, column] < 0.1
+    assert summarise_completions(view).likely("square")[row, column] < 0.1
 
 
 def test_an_empty_room_holds_no_square() -> None:
     view = looked(LARGE_ROOM, [(12, 12), (14, 13), (16, 15)]).view()
-    assert imagine(view).likely("square").max() < 0.3
+    assert summarise_completions(view).likely("square").max() < 0.3
 
 
 def filled(polygon) -> np.ndarray:
@@ -96,5 +96,5 @@ def test_what_is_seen_for_long_and_goes_on_unseen_does_not_end_there(length: int
     picture[3:6, :length] = 1
     found = blobs(picture, np.full(picture.shape, DRAWN, np.int8))
     assert found.outward.tolist() == [3]
-    assert (ended(found)[0] > 0.3) == likely
-    assert ended(found._replace(outward=np.zeros(1, np.int64)))[0] == 1.0
+    assert (end_probability(found)[0] > 0.3) == likely
+    assert end_probability(found._replace(outward=np.zeros(1, np.int64)))[0] == 1.0

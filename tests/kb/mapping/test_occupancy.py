@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
-from kb.perception.frame import MOST, Frame, Samples
-from kb.perception.retina import OWN, count_ranges
+from kb.perception.frame import MAX_SAMPLED_SQUARES, Frame, Samples
+from kb.perception.retina import OWN_FIELD, count_ranges
 from tests.kb.eyes import Occupied, random_room, retina, world_of
 
 seeds = st.integers(0, 2**32 - 1)
@@ -52,8 +52,8 @@ def test_what_is_settled_is_true(seed: int) -> None:
 
 def tiny(fields: list[list[int]], weights: list[list[int]], slack: list[int]) -> Samples:
     """Fields over a few squares in a row, padded as those of the eye."""
-    columns = np.zeros((len(fields), MOST), np.int32)
-    weight = np.zeros((len(fields), MOST), np.int16)
+    columns = np.zeros((len(fields), MAX_SAMPLED_SQUARES), np.int32)
+    weight = np.zeros((len(fields), MAX_SAMPLED_SQUARES), np.int16)
     for n, (squares, times) in enumerate(zip(fields, weights, strict=True)):
         columns[n, : len(squares)], weight[n, : len(squares)] = squares, times
     return Samples(columns, np.zeros_like(columns), weight, np.array(slack, np.int16))
@@ -188,7 +188,7 @@ def test_true_looks_clash_with_nothing_and_false_ones_do() -> None:
     assert occupancy.clashes(samples, ranges, 11, 6) > 0
     wrong = occupancy.misfits(samples, ranges, 10, 8)
     assert wrong.any()
-    assert not wrong[OWN]
+    assert not wrong[OWN_FIELD]
 
 
 def test_what_is_seen_now_counts() -> None:

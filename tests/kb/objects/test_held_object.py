@@ -16,7 +16,7 @@ from kb.mapping.occupancy import OccupancyMap
 from kb.mapping.patch import covered
 from kb.objects.held_object import HeldObject, discounted, slack_of, whole
 from kb.perception.frame import Frame
-from kb.perception.retina import FIELDS, OWN, count_ranges
+from kb.perception.retina import FIELDS, OWN_FIELD, count_ranges
 from tests.kb.eyes import impression, random_room, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
 
@@ -66,7 +66,7 @@ def test_a_look_without_the_load_says_what_it_would_say_if_the_load_were_not_the
     with_load = impression(lambda i, j: (i, j) in others or (i, j) in own, (0, 0), angle)
     samples, ranges = discounted(Frame(angle).samples(), count_ranges(with_load.retina), 0, 0, [load(polygon)])
     for number in range(len(FIELDS)):
-        if number == OWN:
+        if number == OWN_FIELD:
             continue
         seen = zip(samples.columns[number], samples.rows[number], samples.weight[number], strict=True)
         count = sum(int(weight) for column, row, weight in seen if (int(column), int(row)) in others)

@@ -1,4 +1,4 @@
-"""How far in the sides of a thing lie, told by the squares that it covers after pushes by parts of a square."""
+"""How far in the sides of a thing lie, narrowed by the squares that it covers after pushes by parts of a square."""
 
 import math
 from collections.abc import Callable
@@ -13,8 +13,18 @@ from shapely.affinity import rotate, translate
 
 from geometry.motion.se2 import Rotate, Translate
 from kb.mapping.patch import covered
-from kb.objects.held_object import HeldObject, seen_insets
-from kb.objects.subcell_extent import NONE, TELLING, WHOLE, Sides, SubcellExtent, further, moved_in, told, turned
+from kb.objects.held_object import HeldObject, initial_insets
+from kb.objects.subcell_extent import (
+    FULL_INSETS,
+    MIN_TESTED_INTERVAL,
+    NO_INSETS,
+    Sides,
+    SubcellExtent,
+    inset_change,
+    moved_in,
+    narrowed,
+    turn_sides,
+)
 from kb.world.model import Node
 from planner.skills.measure_size import FINE, least_outline, phases
 
@@ -48,8 +58,8 @@ def lies_within(insets: SubcellExtent, seen: Any, thing: Any) -> bool:
 def test_what_pushes_tell_is_true(name: str, x: float, y: float, pushes: list[tuple[float, float]]) -> None:
     thing = translate(SHAPES[name], x, y)
     seen = image(thing)
-    load = HeldObject("o1", seen, seen, insets=seen_insets(seen), proven=True)
-    assert load.insets == SubcellExtent(NONE, WHOLE)
+    load = HeldObject("o1", seen, seen, insets=initial_insets(seen), proven=True)
+    assert load.insets == SubcellExtent(NO_INSETS, FULL_INSETS)
     for dx, dy in pushes:
         push = Translate(dx, dy)
         thing, seen = push.carry(thing), push.carry(seen)
@@ -58,7 +68,10 @@ def test_what_pushes_tell_is_true(name: str, x: float, y: float, pushes: list[tu
         load = found or carried
         assert load.insets is not None
         if found is None:  # a side is known so well that which row it ends in is left open
-            assert min(most - least for least, most in zip(load.insets.least, load.insets.most, strict=True)) <= TELLING
+            assert (
+                min(most - least for least, most in zip(load.insets.least, load.insets.most, strict=True))
+                <= MIN_TESTED_INTERVAL
+            )
         else:
             assert covered(load.polygon).squares() == covered(thing).squares()
         assert lies_within(load.insets, seen, thing)
@@ -70,7 +83,7 @@ def test_what_pushes_tell_is_true(name: str, x: float, y: float, pushes: list[tu
 def test_pushes_by_parts_of_a_square_tell_how_large_a_thing_is(name: str, x: float, y: float, quarters: int) -> None:
     thing = translate(rotate(SHAPES[name], 90 * quarters, origin=(0, 0)), 20 + x, 20 + y)
     seen = image(thing)
-    load = HeldObject("o1", seen, seen, insets=seen_insets(seen), proven=True)
+    load = HeldObject("o1", seen, seen, insets=initial_insets(seen), proven=True)
     for _ in range(14):
         wanted = phases(node_of(load))
         if wanted is None:
@@ -88,7 +101,7 @@ def test_pushes_by_parts_of_a_square_tell_how_large_a_thing_is(name: str, x: flo
 
 @pytest.mark.parametrize("quarters", [0, 1, 2, 3])
 def test_a_thing_of_whole_squares_is_told_by_two_pushes(quarters: int) -> None:
-    load = HeldObject("o1", ELL, ELL, insets=seen_insets(ELL), proven=True)
+    load = HeldObject("o1", ELL, ELL, insets=initial_insets(ELL), proven=True)
     turn = Rotate(90.0 * quarters, (3.0, 3.0))
     load = load.moved(turn.carry(ELL), 0.0, 90.0 * quarters, commanded=True)
     thing = load.polygon
@@ -103,7 +116,7 @@ def test_a_thing_of_whole_squares_is_told_by_two_pushes(quarters: int) -> None:
 
 
 def test_what_agrees_with_nothing_is_told_so() -> None:
-    assert told(SubcellExtent(), translate(ELL, 0.25, 0.25), lambda outline: False) is None
+    assert narrowed(SubcellExtent(), translate(ELL, 0.25, 0.25), lambda outline: False) is None
 
 
 def test_what_was_stopped_may_lie_beside_a_line() -> None:
@@ -130,7 +143,7 @@ def test_sides_moved_in_and_out_again_lie_where_they_did(name: str, by: Sides, q
     west, east, south, north = (-side for side in by)
     back = moved_in(there, (west, east, south, north))
     assert back.symmetric_difference(outline).area < 1e-9
-    spun = moved_in(rotate(outline, 90, origin=(0, 0)), turned(by, 1))
+    spun = moved_in(rotate(outline, 90, origin=(0, 0)), turn_sides(by, 1))
     assert spun.symmetric_difference(rotate(there, 90, origin=(0, 0))).area < 1e-9
 
 
@@ -157,7 +170,7 @@ def test_what_is_believed_is_among_what_may_be(west: float, east: float, wide: f
     assert all(short >= -1e-9 for short in insets.short)
     if any(least) and max(east, 1 - most[0]) < min(most[1], 1 - west):
         assert math.isclose(here[0] + here[1], 1.0)  # a thing of whole squares, where one may be there
-    assert further(insets, insets) == NONE
+    assert inset_change(insets, insets) == NO_INSETS
 
 
 def node_of(load: HeldObject) -> Node:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from geometry.raster.components import components
-from kb.perception.protrusions import LONGEST, protrusions, told_apart, unfelt
+from kb.perception.protrusions import MAX_THING_LENGTH, protrusions, separate_things, untouched_parts
 
 Mask = NDArray[np.bool_]
 WIDE, HIGH = 24, 20
@@ -42,7 +42,7 @@ def among(masks: list[Mask], thing: Mask) -> bool:
     return any(np.array_equal(mask, thing) for mask in masks)
 
 
-@given(st.integers(1, LONGEST), st.integers(1, LONGEST), st.integers(3, 10), st.sampled_from("nesw"))
+@given(st.integers(1, MAX_THING_LENGTH), st.integers(1, MAX_THING_LENGTH), st.integers(3, 10), st.sampled_from("nesw"))
 @settings(max_examples=80, deadline=None)
 def test_a_thing_against_a_wall_is_found(high: int, wide: int, along: int, wall: str) -> None:
     row = {"n": HIGH - 2 - high, "s": 2}.get(wall, along)
@@ -52,7 +52,7 @@ def test_a_thing_against_a_wall_is_found(high: int, wide: int, along: int, wall:
     assert among(sticking_out(occupied), thing)
 
 
-@given(st.integers(1, LONGEST), st.integers(1, LONGEST), st.booleans(), st.booleans())
+@given(st.integers(1, MAX_THING_LENGTH), st.integers(1, MAX_THING_LENGTH), st.booleans(), st.booleans())
 @settings(max_examples=40, deadline=None)
 def test_a_thing_in_a_corner_is_found(high: int, wide: int, up: bool, on: bool) -> None:
     occupied, thing = with_thing(HIGH - 2 - high if up else 2, WIDE - 2 - wide if on else 2, full(high, wide))
@@ -89,19 +89,19 @@ def test_touch_tells_a_thing_from_a_piece_of_wall() -> None:
     occupied[2:5, 16:18] = True
     parts = sticking_out(occupied)
     assert len(parts) == 2
-    (told,) = told_apart(parts, {(4, 7): "g", (3, 9): "g", (1, 5): "b", (4, 16): "b"})
+    (told,) = separate_things(parts, {(4, 7): "g", (3, 9): "g", (1, 5): "b", (4, 16): "b"})
     assert np.array_equal(told, thing)
-    assert told_apart(parts, {(4, 7): "b", (4, 16): "b"}) == []
-    assert told_apart(parts, {}) == []
+    assert separate_things(parts, {(4, 7): "b", (4, 16): "b"}) == []
+    assert separate_things(parts, {}) == []
 
 
 def test_of_parts_with_a_square_of_a_thing_the_smallest_is_it() -> None:
     occupied, thing = with_thing(4, 2, full(3, 3))
     occupied[7:9, 2:5] = True  # a piece of wall right beside it
     parts = sticking_out(occupied)
-    assert among(told_apart([thing, *parts], {(5, 4): "g"}), thing)
+    assert among(separate_things([thing, *parts], {(5, 4): "g"}), thing)
     both = [part for part in parts if part[5, 4] and part[8, 4]]
-    assert both and not among(told_apart(both, {(5, 4): "g", (8, 4): "b"}), both[0])
+    assert both and not among(separate_things(both, {(5, 4): "g", (8, 4): "b"}), both[0])
 
 
 def test_a_larger_part_is_the_thing_where_the_rest_of_it_was_felt() -> None:
@@ -109,16 +109,16 @@ def test_a_larger_part_is_the_thing_where_the_rest_of_it_was_felt() -> None:
     shape[3:, :] = shape[:, :3] = True  # steps down from the wall to the north to that to the west
     occupied, thing = with_thing(HIGH - 8, 2, shape)
     parts, on_stem, on_foot = sticking_out(occupied), (HIGH - 8, 3), (HIGH - 4, 8)
-    (stem,) = told_apart(parts, {on_stem: "g"})
+    (stem,) = separate_things(parts, {on_stem: "g"})
     assert stem.sum() < thing.sum()
-    rest = unfelt(parts, {on_stem: "g"})
+    rest = untouched_parts(parts, {on_stem: "g"})
     assert among(rest, thing & ~stem)
-    (whole,) = told_apart(parts, {on_stem: "g", on_foot: "g"})
+    (whole,) = separate_things(parts, {on_stem: "g", on_foot: "g"})
     assert np.array_equal(whole, thing)
-    assert not among(unfelt(parts, {on_stem: "g", on_foot: "g"}), thing)
-    (alone,) = told_apart(parts, {on_stem: "g", on_foot: "b"})
+    assert not among(untouched_parts(parts, {on_stem: "g", on_foot: "g"}), thing)
+    (alone,) = separate_things(parts, {on_stem: "g", on_foot: "b"})
     assert np.array_equal(alone, stem)
-    assert len(told_apart(parts, {on_stem: "g", on_foot: "h"})) == 2
+    assert len(separate_things(parts, {on_stem: "g", on_foot: "h"})) == 2
 
 
 def test_what_lies_askew_sticks_out_amid_squares_that_are_not_clear() -> None:

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.perception.regions import Percept, impression_regions, label_of, map_regions
-from kb.perception.retina import FIELDS, OWN, neighbours, rim
+from kb.perception.retina import FIELDS, OWN_FIELD, edge_fields, neighbours
 from tests.kb.eyes import retina, world_of
 
 STEPS = ((1, 0), (-1, 0), (0, 1), (0, -1))
@@ -145,15 +145,15 @@ SQUARE = (
 def test_impression_regions_are_the_connected_cells(square: tuple[int, int]) -> None:
     levels = retina(world_of(SQUARE), square)
     percept, cells = impression_regions(levels)
-    want = {frozenset({OWN})}
+    want = {frozenset({OWN_FIELD})}
     for kind in (False, True):
-        members = {i for i in range(len(FIELDS)) if i != OWN and (levels[i] > 0) == kind}
+        members = {i for i in range(len(FIELDS)) if i != OWN_FIELD and (levels[i] > 0) == kind}
         want |= set(flooded(members, lambda i: neighbours()[i]))
     assert set(cells.values()) == want
     assert {region.name for region in percept.regions} == set(cells)
     for region in percept.regions:
         if region.name != "own":
-            assert region.rim == bool(cells[region.name] & rim())
+            assert region.rim == bool(cells[region.name] & edge_fields())
             assert 0 <= region.certain <= 100
 
 

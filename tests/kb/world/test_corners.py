@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from kb.mapping.occupancy import FULL, OPEN
 from kb.mapping.patch import patch_of
-from kb.world.corners import SIDES, corners, known_floor
+from kb.world.corners import CORNER_SIDES, corners, known_floor
 from kb.world.model import Node
 from planner.screen.projection import grown
 from tests.kb.drawings import seen_whole
@@ -30,7 +30,7 @@ def test_a_corner_is_the_furthest_point_of_the_known_floor(seed: int) -> None:
     model = seen_whole(rows)
     floor = known_floor(model)
     found = corners(model)
-    assert set(found) == set(SIDES)
+    assert set(found) == set(CORNER_SIDES)
     for side, (dx, dy) in SIGNS.items():
         r, c = np.nonzero(floor)
         best = max(float((dx * (c + a) + dy * (r + b)).max()) for a in (0, 1) for b in (0, 1))
@@ -70,7 +70,10 @@ def test_what_was_moved_lies_on_floor_but_the_wall_that_it_may_reach_into_is_non
     state = np.where(under, OPEN, model.view.state).astype(np.int8)  # it may cover these, and may not
     loose = replace(moved, view=model.view._replace(state=state))
     assert corners(loose)["northeast"].square == (5, 3)
-    assert corners(replace(loose, beneath=under))["northeast"].square == (6, 3)  # they were floor before it came there
+    assert corners(replace(loose, floor_under_moved=under))["northeast"].square == (
+        6,
+        3,
+    )  # they were floor before it came there
 
 
 def test_a_wall_seen_where_a_moved_thing_may_reach_is_not_floor_under_it() -> None:

@@ -10,15 +10,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kb.body import Grasp, Move, Release
-from kb.knowledge import _laid
 from kb.mapping.occupancy import FREE, FULL, OPEN, MapView
 from kb.mapping.patch import Patch, covered, patch_of
 from kb.objects.held_object import HeldObject
-from kb.objects.shape_fit import Measurer
+from kb.objects.shape_fit import ShapeMeasurer
 from kb.perception.frame import Frame
 from kb.world.corners import corners
 from kb.world.facts import Places, model_facts
-from kb.world.model import SPACE, Names, unsettled
+from kb.world.model import SPACE, count_open_squares
+from kb.world.object_names import ObjectNames
+from kb.world.objects import lay_upon
 from kb.world.rooms import rooms_of
 from tests.kb.drawings import seen_whole, walked
 from tests.kb.eyes import impression, utak_in, world_of
@@ -29,13 +30,13 @@ def box(x: int, y: int, wide: int, high: int) -> Patch:
 
 
 def test_a_thing_that_is_seen_better_keeps_its_name() -> None:
-    names = Names()
+    names = ObjectNames()
     first = names.assign([box(0, 0, 2, 2), box(10, 0, 3, 3)])
     assert names.assign([box(9, 0, 4, 4), box(0, 0, 3, 2)]) == first[::-1]
 
 
 def test_what_is_left_where_a_thing_lay_that_he_holds_is_another_thing() -> None:
-    names = Names()
+    names = ObjectNames()
     (held,) = names.assign([box(0, 0, 3, 3)])
     (left,) = names.assign([box(0, 2, 3, 1)], {held})
     assert left != held
@@ -43,7 +44,7 @@ def test_what_is_left_where_a_thing_lay_that_he_holds_is_another_thing() -> None
 
 
 def test_when_a_thing_falls_apart_the_larger_part_keeps_the_name() -> None:
-    names = Names()
+    names = ObjectNames()
     (old,) = names.assign([box(0, 0, 10, 1)])
     small, large = names.assign([box(0, 0, 2, 1), box(4, 0, 6, 1)])
     assert large == old
@@ -51,7 +52,7 @@ def test_when_a_thing_falls_apart_the_larger_part_keeps_the_name() -> None:
 
 
 def test_what_is_gone_is_forgotten_and_its_name_not_used_again() -> None:
-    names = Names()
+    names = ObjectNames()
     (old,) = names.assign([box(0, 0, 2, 2)])
     assert names.assign([]) == []
     assert names.assign([box(0, 0, 2, 2)]) != [old]
@@ -64,7 +65,7 @@ patches = st.lists(
 
 @given(st.lists(patches, max_size=4))
 def test_names_differ(steps: list[list[Patch]]) -> None:
-    names = Names()
+    names = ObjectNames()
     for step in steps:
         given_names = names.assign(step)
         assert len(set(given_names)) == len(step)
@@ -90,9 +91,9 @@ def test_open_squares_are_counted_about_a_thing_too() -> None:
     likely = np.where(state == OPEN, 0.1, thing).astype(np.float32)
     likely[1, 0] = 0.5
     view = MapView(0, 0, likely, state, thing, np.zeros(state.shape, np.int16))
-    assert unsettled(thing, view) == (3, 1)  # the corner to the southeast touches it at a corner only
+    assert count_open_squares(thing, view) == (3, 1)  # the corner to the southeast touches it at a corner only
     likely[0, 1], likely[2, 1] = 0.01, 0.99  # all pictures show the same
-    assert unsettled(thing, view) == (1, 1)
+    assert count_open_squares(thing, view) == (1, 1)
 
 
 SHAPES = {
@@ -110,7 +111,7 @@ def test_known_things_are_measured_right(shape: str) -> None:
     framed = np.pad(full, 2)
     state = np.where(framed, FULL, FREE).astype(np.int8)
     view = MapView(-7, 4, framed.astype(np.float32), state, np.ones_like(framed), np.zeros(state.shape, np.int16))
-    measured = Measurer().measure(patch_of(framed, view), view)
+    measured = ShapeMeasurer().measure(patch_of(framed, view), view)
     assert measured.fits[0] == (shape, 0)
     assert measured.open == 0
     assert measured.polygon.area == pytest.approx(full.sum())
@@ -122,7 +123,7 @@ def test_nothing_is_measured_of_what_is_hardly_settled() -> None:
     state[1, 1] = FULL
     thing = np.ones((4, 4), bool)
     view = MapView(0, 0, np.full((4, 4), 0.5, np.float32), state, thing, np.zeros((4, 4), np.int16))
-    measured = Measurer().measure(patch_of(thing, view), view)
+    measured = ShapeMeasurer().measure(patch_of(thing, view), view)
     assert (measured.fits, measured.polygon, measured.open) == ((), None, 15)
 
 
@@ -166,7 +167,7 @@ def test_a_load_that_reaches_into_his_own_square_leaves_it_open() -> None:
 
 def test_who_walks_goes_right_beside_a_load_that_may_lie_otherwise() -> None:
     empty = [row.replace("g", ".") for row in ROOM]
-    model, _ = _laid(seen_whole(empty), HeldObject("o1", shapely.box(-3, 1.3, 0, 4.3), None, slack=0.2, proven=True))
+    model, _ = lay_upon(seen_whole(empty), HeldObject("o1", shapely.box(-3, 1.3, 0, 4.3), None, slack=0.2, proven=True))
 
     def chances(squares: set[tuple[int, int]]) -> list[float]:
         return [float(model.view.probability[model.view.locate(x + 0.5, y + 0.5)]) for x, y in squares]
@@ -182,7 +183,7 @@ def test_a_load_that_may_lie_otherwise_leaves_walls_what_they_are() -> None:
     beside_wall = [row.replace("g", ".") for row in ROOM]
     before = seen_whole(beside_wall)
     x = before.view.west + 1  # the first square of floor in the west
-    model, patch = _laid(
+    model, patch = lay_upon(
         before, HeldObject("o1", shapely.box(x + 0.1, 1.3, x + 3.1, 4.3), None, slack=0.2, proven=True)
     )
     wall = model.view.locate(x - 0.5, 2.5)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kb.perception.interpretation import interpret
+from kb.perception.interpretation import interpret_regions
 from kb.perception.regions import map_regions
 from kb.world.model import SPACE, WorldModel
 from kb.world.rooms import rooms_of
@@ -51,7 +51,7 @@ def unclear_between(first: int, last: int, chance: float) -> WorldModel:
     model = unclear(seen_whole(two_rooms(4, 2)), slice(first, last + 1), slice(14, 16), chance)
     seen = model.view.seen
     percept, labels = map_regions(seen & (model.view.probability > SPACE), seen, seen)
-    return replace(model, labels=labels, percept=percept, kinds=interpret(percept))
+    return replace(model, labels=labels, percept=percept, kinds=interpret_regions(percept))
 
 
 @pytest.mark.parametrize(("chance", "width"), [(0.1, 4), (0.4, 4), (0.6, 3), (0.9, 3)])

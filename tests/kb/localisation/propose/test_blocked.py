@@ -11,7 +11,7 @@ from kb.body import Move, Push
 from kb.localisation.accommodation import Memory
 from kb.localisation.hypotheses.frames import CENTRED
 from kb.localisation.propose.blocked import RISK, halts
-from kb.mapping.completions import NO_PICTURES, ground_of, pictured
+from kb.mapping.completions import NO_COMPLETIONS, draw_completions, ground_of
 from kb.mapping.occupancy import FREE
 from kb.objects.held_object import HeldObject
 from kb.perception.retina import count_ranges
@@ -32,7 +32,7 @@ def looking(room: Occupied, square: tuple[int, int], thing: shapely.Polygon | No
         lies = translate(thing, -square[0], -square[1])
         memory.grasp(HeldObject("o1", lies, lies, proven=True))
     view = memory.occupancy.view()
-    memory.pictures = pictured(view, ground_of(view), NO_PICTURES)
+    memory.pictures = draw_completions(view, ground_of(view), NO_COMPLETIONS)
     return memory
 
 

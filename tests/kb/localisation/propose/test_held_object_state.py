@@ -13,7 +13,7 @@ from geometry.motion.first_contact import Obstacles
 from geometry.motion.se2 import Rotate, Translate
 from kb.localisation.hypotheses.carry_outcomes import predicted
 from kb.localisation.propose.held_object_state import FURTHEST, after, leaning
-from kb.objects.held_object import SLIGHT, HeldObject
+from kb.objects.held_object import OUTLINE_TOLERANCE, HeldObject
 
 JAMBS = [shapely.box(-6, 4, 0, 6), shapely.box(6, 4, 12, 6)]
 WALLS = Obstacles(JAMBS)
@@ -22,7 +22,7 @@ NORTH = Translate(0.0, 5.0)
 
 
 def load(polygon: shapely.Polygon) -> HeldObject:
-    return HeldObject("o1", polygon, polygon, SLIGHT, proven=True, inexact=True)
+    return HeldObject("o1", polygon, polygon, OUTLINE_TOLERANCE, proven=True, inexact=True)
 
 
 def anywhere(_: HeldObject) -> int:
@@ -42,7 +42,7 @@ def test_it_touches_what_stopped_it_and_lies_no_further_off_than_it_must(x: floa
         return
     assert found.polygon.intersection(BOTH).area < 1e-6
     assert translate(found.polygon, 0, 0.05).intersection(BOTH).area > 0
-    assert found.slack >= SLIGHT
+    assert found.slack >= OUTLINE_TOLERANCE
 
 
 def test_the_side_of_a_door_that_is_nearer_stopped_it() -> None:
@@ -67,7 +67,7 @@ def test_what_is_moved_by_one_who_slips_never_lies_exactly_on_squares() -> None:
     for thing in (exact, replace(exact, inexact=True)):
         moved = after(thing, predicted((0.5, -4.5), thing.polygon, Translate(0.0, 2.0)), 0)
         assert moved.polygon.bounds == (0, -2, 4, 2)
-        assert moved.slack == (SLIGHT if thing.inexact else 0.0)
+        assert moved.slack == (OUTLINE_TOLERANCE if thing.inexact else 0.0)
 
 
 def test_what_is_stopped_again_and_again_for_no_reason_lies_elsewhere() -> None:
