@@ -54,7 +54,7 @@ class HeldObject:
     slack : float
         How far the true outline may lie from the believed one, in squares.
     full, empty : frozenset of (x, y)
-        Squares that the tolerance leaves open, but that were seen to be covered, or not, since it last moved.
+        Squares that the tolerance leaves open, but that were seen to be occupied, or not, since it last moved.
     turned : float
         Degrees by which it was turned since it was first held, counter-clockwise positive.
     shape : mapping of str to int
@@ -116,7 +116,7 @@ class HeldObject:
 
     @property
     def play(self) -> float:
-        """How far the true outline may lie from the believed one for any reason, in squares; 0 for mere rounding."""
+        """The distance within which the true outline lies of the believed one, in squares; 0 for mere rounding."""
         play = max(self.slack, self.astray)
         return play if play >= WHOLE else 0.0
 
@@ -128,7 +128,7 @@ class HeldObject:
 
     @property
     def short(self) -> Sides:
-        """By how much further in its west, east, south and north side may lie than believed, in squares."""
+        """The distance by which each side (west, east, south, north) may lie further in than believed, in squares."""
         insets = self.lying_insets
         return (self.play, self.play, self.play, self.play) if insets is None else insets.short
 

@@ -15,7 +15,7 @@ MAX_OPEN_RATIO = 2.0  # open squares for each covered one, at most: beyond that 
 
 
 class ShapeMeasurement(NamedTuple):
-    """What was measured of a patch.
+    """A measurement of a patch.
 
     Attributes
     ----------

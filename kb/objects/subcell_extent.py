@@ -49,13 +49,13 @@ class SubcellExtent(NamedTuple):
 
     @property
     def short(self) -> Sides:
-        """By how much further in each side may lie than believed, in squares."""
+        """The distance by which each side may lie further in than believed, in squares."""
         west, east, south, north = (most - here for most, here in zip(self.most, self.believed, strict=True))
         return west, east, south, north
 
     @property
     def plays(self) -> tuple[Sides, Sides]:
-        """By how much each side may lie further out than believed, and further in, in squares.
+        """The distances by which each side may lie further out than believed, and further in, in squares.
 
         0 for a side that is believed to fill its squares.
         """

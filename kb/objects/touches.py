@@ -12,7 +12,7 @@ from kb.perception.frame import Frame
 
 
 class Touches:
-    """What was felt.
+    """The colours that were felt, now and before.
 
     Attributes
     ----------

@@ -49,7 +49,7 @@ class Samples(NamedTuple):
 
 @dataclass(frozen=True)
 class Frame:
-    """How the robot frame lies in the map frame.
+    """The orientation and the origin of the robot frame in the map frame.
 
     Attributes
     ----------

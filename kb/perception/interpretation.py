@@ -19,7 +19,7 @@ SURELY_VERGE = (  # percent: the confidence that something undecided as long as 
 
 
 class Kinds(NamedTuple):
-    """What each region is taken for.
+    """The kinds that regions are taken for.
 
     Attributes
     ----------

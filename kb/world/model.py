@@ -254,7 +254,7 @@ class WorldModel:
 
     @property
     def place_on_view(self) -> XY:
-        """Where the robot stands, in the frame of the view's arrays, (x, y) in squares."""
+        """The robot's place in the frame of the view's arrays, (x, y) in squares."""
         return self.place[0] - self.view.west, self.place[1] - self.view.south
 
     def place_to_utak(self, x: float, y: float) -> XY:

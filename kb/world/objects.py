@@ -27,7 +27,7 @@ from kb.perception.regions import Percept, Region, label_of
 from kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
 
 MIN_OBJECT_BELIEF = 5  # percent: a region less likely an object is no node: the least that interpretation.lp gives
-LAID_PROBABILITY = 0.4  # that a square is covered which the tolerance of a held object's outline leaves open; tuned
+LAID_PROBABILITY = 0.4  # that a square is occupied which the tolerance of a held object's outline leaves open; tuned
 PLAY_PROBABILITY = 0.05  # likewise outside the believed outline: a motion there is hardly stopped, so below SPACE
 MIN_STUCK_MOTIONS = 3  # pushes or turns in a row that did not move an object: from then on it cannot be moved; tuned
 

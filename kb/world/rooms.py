@@ -303,7 +303,7 @@ def _doorway(passage: Passage, shape: tuple[int, int]) -> Bools:
 
 
 def crosses(points: Floats, door: Door) -> int:
-    """Return the net number of times that a track crosses the neck of a door; there and back counts as none.
+    """Return the net number of passes of a track through the neck of a door; there and back counts as none.
 
     Parameters
     ----------
