@@ -1,4 +1,4 @@
-"""The field_plan of the retina against its definition, and gray levels against brute force."""
+"""The plan of the retina against its definition, and gray levels against brute force."""
 
 from fractions import Fraction
 from math import floor
@@ -18,11 +18,11 @@ from kb.perception.retina import (
     neighbours,
 )
 
-LEVELS = {1: [0, 7], 2: [0, 2, 4, 5, 7], 4: range(8)}  # that a field of this side can show
+LEVELS = {1: [0, 7], 2: [0, 2, 4, 5, 7], 4: range(8)}  # by side of a field: the levels that it can show
 
 
 def shown(side: int, occupied: int) -> int:
-    """The gray level of DESIGN 4, in exact arithmetic."""
+    """Return the gray level of a field with n occupied squares, in exact arithmetic."""
     return floor(Fraction(7 * occupied, side * side) + Fraction(1, 2))
 
 
@@ -80,7 +80,7 @@ def test_neighbours_share_an_edge() -> None:
         assert found[i] == {j for j, b in enumerate(FIELDS) if i != j and touch(a, b)}
 
 
-def test_the_rim_is_what_reaches_the_edge() -> None:
+def test_the_edge_fields_reach_the_edge_of_the_retina() -> None:
     edge = {
         i
         for i, f in enumerate(FIELDS)
@@ -90,7 +90,7 @@ def test_the_rim_is_what_reaches_the_edge() -> None:
     assert all(FIELDS[i].side == 4 for i in edge)
 
 
-def test_his_own_field_says_nothing() -> None:
+def test_the_own_field_says_nothing() -> None:
     assert FIELDS[OWN_FIELD] == (0, 0, 1)
     ranges = count_ranges((7,) * 160)
     assert tuple(ranges[OWN_FIELD]) == (0, 1)
