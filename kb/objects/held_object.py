@@ -20,7 +20,7 @@ from geometry.kernels.arrays import Square as Square
 from kb.mapping.patch import Patch, covered, patch_of_squares
 from kb.objects.subcell_extent import (
     NO_INSETS,
-    Sides,
+    SideValues,
     SubcellExtent,
     inset_change,
     moved_in,
@@ -127,7 +127,7 @@ class HeldObject:
         return None if self.insets is None or quarters is None else self.insets.after(quarters)
 
     @property
-    def short(self) -> Sides:
+    def short(self) -> SideValues:
         """The distance by which each side (west, east, south, north) may lie further in than believed, in squares."""
         insets = self.lying_insets
         return (self.play, self.play, self.play, self.play) if insets is None else insets.short
@@ -333,7 +333,7 @@ def initial_insets(polygon: Any) -> SubcellExtent | None:
     return SubcellExtent() if polygon is not None and is_whole(polygon) else None
 
 
-def initial_short(polygon: Any) -> Sides:
+def initial_short(polygon: Any) -> SideValues:
     """Return by how much further in the sides of an object that never moved may lie than its outline, in squares."""
     if polygon is None:
         return NO_INSETS

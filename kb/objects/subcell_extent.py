@@ -4,7 +4,7 @@ An object with its sides parallel to the grid looks as if it filled whole square
 less than one square. Most objects do fill whole squares, so that is believed. A push by a part of a square shows it: a
 side on a grid line enters the next row of squares at once, and one that lies further in does not.
 
-Sides are given in the order west, east, south, north. An inset is the distance, in squares, from the outer line of the
+Sides come in the order west, east, south, north. An inset is the distance, in squares, from the outer line of the
 squares in which the object was seen, inwards to the side.
 """
 
@@ -16,12 +16,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
-Sides = tuple[float, float, float, float]  # one value for each side: west, east, south, north
+SideValues = tuple[float, float, float, float]  # one value for each side: west, east, south, north
 GRID_ALIGNMENT_TOLERANCE = 1e-6  # squares: a side is parallel to the grid if it deviates by no more; rounding
 MIN_TESTED_INTERVAL = 0.04  # squares: an inset known within this is not narrowed further; tuned
 MIN_ROW_DEPTH = 1e-3  # squares: less of a row than this shows nothing; rounding
-NO_INSETS: Sides = (0.0, 0.0, 0.0, 0.0)
-FULL_INSETS: Sides = (1.0, 1.0, 1.0, 1.0)
+NO_INSETS: SideValues = (0.0, 0.0, 0.0, 0.0)
+FULL_INSETS: SideValues = (1.0, 1.0, 1.0, 1.0)
 
 
 class SubcellExtent(NamedTuple):
@@ -29,17 +29,17 @@ class SubcellExtent(NamedTuple):
 
     Attributes
     ----------
-    least : Sides
+    least : SideValues
         The least inset of each side, in squares.
-    most : Sides
+    most : SideValues
         Each inset is less than this, in squares.
     """
 
-    least: Sides = NO_INSETS
-    most: Sides = FULL_INSETS
+    least: SideValues = NO_INSETS
+    most: SideValues = FULL_INSETS
 
     @property
-    def believed(self) -> Sides:
+    def believed(self) -> SideValues:
         """The believed inset of each side, in squares.
 
         0 along an axis on which nothing is known. Else that of an object as long as a whole number of squares, if this
@@ -48,13 +48,13 @@ class SubcellExtent(NamedTuple):
         return (*_believed(self.least[:2], self.most[:2]), *_believed(self.least[2:], self.most[2:]))
 
     @property
-    def short(self) -> Sides:
+    def short(self) -> SideValues:
         """The distance by which each side may lie further in than believed, in squares."""
         west, east, south, north = (most - here for most, here in zip(self.most, self.believed, strict=True))
         return west, east, south, north
 
     @property
-    def plays(self) -> tuple[Sides, Sides]:
+    def plays(self) -> tuple[SideValues, SideValues]:
         """The distances by which each side may lie further out than believed, and further in, in squares.
 
         0 for a side that is believed to fill its squares.
@@ -84,7 +84,7 @@ def _believed(least: tuple[float, ...], most: tuple[float, ...]) -> tuple[float,
     return (least[0] + most[0]) / 2, (least[1] + most[1]) / 2
 
 
-def turn_sides(sides: Sides, quarters: int) -> Sides:
+def turn_sides(sides: SideValues, quarters: int) -> SideValues:
     """Return the values of the sides as they lie after a number of quarter turns, counter-clockwise positive."""
     for _ in range(quarters % 4):
         west, east, south, north = sides
@@ -92,20 +92,20 @@ def turn_sides(sides: Sides, quarters: int) -> Sides:
     return sides
 
 
-def inset_change(to: SubcellExtent, since: SubcellExtent) -> Sides:
+def inset_change(to: SubcellExtent, since: SubcellExtent) -> SideValues:
     """Return by how much further in the sides are believed to lie in `to` than in `since`, in squares."""
     west, east, south, north = (new - old for new, old in zip(to.believed, since.believed, strict=True))
     return west, east, south, north
 
 
-def moved_in(polygon: Any, sides: Sides) -> Any:
+def moved_in(polygon: Any, sides: SideValues) -> Any:
     """Return an outline with its sides moved inwards.
 
     Parameters
     ----------
     polygon : shapely Polygon
         The outline, map frame.
-    sides : Sides
+    sides : SideValues
         How far each side moves inwards, in squares; outwards where that is negative.
 
     Returns
@@ -131,17 +131,17 @@ def moved_in(polygon: Any, sides: Sides) -> Any:
     return outline if outline.is_valid else None
 
 
-def within_play(polygon: Any, inwards: Sides, margin: float) -> Any:
+def within_play(polygon: Any, inwards: SideValues, margin: float) -> Any:
     """Return an outline with its sides moved inwards, and by a margin more where they do not lie on grid lines.
 
     Parameters
     ----------
     polygon : shapely Polygon
         The outline, map frame.
-    inwards : Sides
+    inwards : SideValues
         How far each side moves inwards, in squares; outwards where that is negative.
     margin : float
-        How much further each side moves, in squares; negative for outwards. Sides on grid lines whose axis is not
+        How much further each side moves, in squares; negative for outwards. SideValues on grid lines whose axis is not
         moved stay exactly where they are.
 
     Returns
@@ -158,7 +158,7 @@ def within_play(polygon: Any, inwards: Sides, margin: float) -> Any:
     return shapely.Polygon(np.where(exact & on_line, points, new))
 
 
-def depths(image: tuple[float, float, float, float]) -> Sides:
+def depths(image: tuple[float, float, float, float]) -> SideValues:
     """Return how much of the last row of squares on each side an image covers, from above 0 to 1 square.
 
     Parameters
@@ -213,7 +213,7 @@ def _halves(least: float, most: float, deep: float) -> list[tuple[float, float]]
     return [(least, most)]
 
 
-def _as_sides(values: Iterable[float]) -> Sides:
+def _as_sides(values: Iterable[float]) -> SideValues:
     """Return four values as a tuple."""
     west, east, south, north = values
     return west, east, south, north

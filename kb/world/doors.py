@@ -199,25 +199,28 @@ def _certainty(
     spare = (
         2 * min(passage.sides) / DOOR_RATIO - passage.width
     ) / 2  # squares: wider by so much on both ends, still a door
-    told = verge & model.told
+    surely_wall = verge & model.told
     shares = [
-        _share_determined(jamb, np.subtract(end, middle), min(UNCLEAR_EDGE, spare), told)
+        _share_determined(jamb, np.subtract(end, middle), min(UNCLEAR_EDGE, spare), surely_wall)
         for end, jamb in zip(line, jambs, strict=True)
     ]
     return round(50 + 50 * min(float(model.told[across][inner].mean()), *shares))
 
 
-def _share_determined(jamb: Indices, outward: Floats, furthest: float, told: Bools) -> float:
+def _share_determined(jamb: Indices, outward: Floats, furthest: float, surely_wall: Bools) -> float:
     """Return the share of a jamb's squares that are surely wall: at the jamb, or up to `furthest` squares outward.
 
-    outward : vector from the middle of the neck to the jamb, in squares. told : (rows, columns), squares surely wall.
+    outward : vector from the middle of the neck to the jamb, in squares. surely_wall : (rows, columns) bool.
     """
     ahead = outward / max(float(np.hypot(*outward)), 1e-9)
     shares = []
     for deeper in range(max(math.floor(furthest), 0) + 1):
         dx, dy = np.rint(ahead * deeper).astype(int)
-        rows, columns = np.clip(jamb[0] + dy, 0, told.shape[0] - 1), np.clip(jamb[1] + dx, 0, told.shape[1] - 1)
-        shares.append(float(told[rows, columns].mean()))
+        rows, columns = (
+            np.clip(jamb[0] + dy, 0, surely_wall.shape[0] - 1),
+            np.clip(jamb[1] + dx, 0, surely_wall.shape[1] - 1),
+        )
+        shares.append(float(surely_wall[rows, columns].mean()))
     return max(shares)
 
 

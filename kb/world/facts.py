@@ -22,7 +22,7 @@ from kb.world.rooms import Rooms
 SEGMENT_SAMPLES = 8  # places along a segment at which the squares on both sides of it are looked up; convention
 SETTLED_CONFIDENCE = 99  # percent: belief in a square that the counts settle, but not beyond doubt; convention
 FELT_COLOUR_CONFIDENCE = 99  # percent: belief in a colour that was felt; convention
-MIN_OBJECT_CONFIDENCE = 50  # percent: what is less likely an object is stated not to be movable: it is rather verge
+MIN_OBJECT_CONFIDENCE = 50  # percent: below it a node is stated not to be movable: more likely it is verge
 
 
 class Places(NamedTuple):

@@ -21,7 +21,7 @@ from geometry.raster.components import edged
 from kb.mapping.object_heat import NO_COMPLETION_SUMMARY, CompletionSummary
 from kb.mapping.occupancy import OPEN, MapView
 from kb.mapping.patch import Patch
-from kb.objects.subcell_extent import NO_INSETS, Sides, SubcellExtent
+from kb.objects.subcell_extent import NO_INSETS, SideValues, SubcellExtent
 from kb.perception.frame import Frame
 from kb.perception.interpretation import SURELY_VERGE, Kinds
 from kb.perception.protrusions import protrusions, untouched_parts
@@ -82,7 +82,7 @@ class Node:
     astray : bool
         Whether its place is known only roughly until it is turned back: its turns were about a point that is not
         known exactly, since the robot may have woken elsewhere in its square than believed.
-    short : Sides
+    short : SideValues
         By how many squares its west, east, south and north sides may lie further in than those of the outline.
     insets : SubcellExtent or None
         How far its sides lie within the squares in which it was seen; None when they are not parallel to the grid.
@@ -106,7 +106,7 @@ class Node:
     dubious: bool = False
     inexact: bool = False
     astray: bool = False
-    short: Sides = NO_INSETS
+    short: SideValues = NO_INSETS
     insets: SubcellExtent | None = None
 
 

@@ -18,7 +18,7 @@ from kb.objects.subcell_extent import (
     FULL_INSETS,
     MIN_TESTED_INTERVAL,
     NO_INSETS,
-    Sides,
+    SideValues,
     SubcellExtent,
     inset_change,
     moved_in,
@@ -135,7 +135,7 @@ sides = st.tuples(*[st.floats(0, 0.9)] * 4)
 
 @given(st.sampled_from(sorted(SHAPES)), sides, st.integers(0, 3))
 @settings(max_examples=60, deadline=None)
-def test_sides_moved_in_and_out_again_lie_where_they_did(name: str, by: Sides, quarters: int) -> None:
+def test_sides_moved_in_and_out_again_lie_where_they_did(name: str, by: SideValues, quarters: int) -> None:
     outline = rotate(SHAPES[name], 90 * quarters, origin=(0, 0))
     there = moved_in(outline, by)
     assert there is not None and outline.buffer(1e-9).covers(there)
