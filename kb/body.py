@@ -1,18 +1,24 @@
-"""Utak's body: all that his mind can do to the world, and all that it learns from it.
+"""The robot's body: all that its mind can do to the world, and all that it learns from the world.
 
-One command goes in, one impression comes out. Everything is in Utak's frame: his north is the way he faces when he
-wakes. Lengths are in squares, angles in degrees, counter-clockwise positive.
+One command goes in, one impression comes out. Directions are in the robot frame: its origin is where the robot woke,
+and its north is the way the robot faced then. Lengths are squares; angles are degrees, counter-clockwise positive.
 """
 
 from dataclasses import dataclass
 from typing import Protocol
 
-DIRECTIONS = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")
+DIRECTIONS = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")  # clockwise
 
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """Walk straight; nothing happens while something is held."""
+    """The command to walk straight. Nothing happens while an object is held.
+
+    Attributes
+    ----------
+    east, north : float
+        The way, in squares, robot frame.
+    """
 
     east: float
     north: float
@@ -20,18 +26,30 @@ class Move:
 
 @dataclass(frozen=True, slots=True)
 class Grasp:
-    """Take what lies on the adjacent square in one of the eight DIRECTIONS, when it can be moved."""
+    """The command to take the movable object, if any, that covers the adjacent square in a direction.
+
+    Attributes
+    ----------
+    direction : str
+        One of the eight DIRECTIONS of the robot frame; anything else raises ValueError.
+    """
 
     direction: str
 
     def __post_init__(self) -> None:
         if self.direction not in DIRECTIONS:
-            raise ValueError(f"no such direction: {self.direction!r}")
+            raise ValueError(f"no such direction: {self.direction!r}; one of {', '.join(DIRECTIONS)} is meant")
 
 
 @dataclass(frozen=True, slots=True)
 class Push:
-    """Walk straight together with what is held."""
+    """The command to walk straight together with the held object. Nothing happens with empty hands.
+
+    Attributes
+    ----------
+    east, north : float
+        The way, in squares, robot frame.
+    """
 
     east: float
     north: float
@@ -39,14 +57,20 @@ class Push:
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """Turn what is held about Utak."""
+    """The command to rotate the held object about the robot.
+
+    Attributes
+    ----------
+    degrees : float
+        The angle, counter-clockwise positive.
+    """
 
     degrees: float
 
 
 @dataclass(frozen=True, slots=True)
 class Release:
-    """Let go."""
+    """The command to let go of the held object."""
 
 
 Command = Move | Grasp | Push | Turn | Release
@@ -54,12 +78,14 @@ Command = Move | Grasp | Push | Turn | Release
 
 @dataclass(frozen=True, slots=True)
 class Impression:
-    """What Utak senses where he has come to a halt.
+    """An impression: all that the robot senses when it comes to a halt.
 
     Attributes
     ----------
-    retina : 160 gray levels, 0 to 7: fovea, middle and outer zone, each from its north row south, west to east.
-    touch : the colours of the 8 adjacent squares, clockwise from north; None for floor.
+    retina : tuple of int
+        160 gray levels, 0 to 7: fovea, middle and outer zone, each from its north row to its south row, west to east.
+    touch : tuple of str or None
+        The colours of the 8 adjacent squares in the order of DIRECTIONS; None for floor.
     """
 
     retina: tuple[int, ...]
@@ -73,7 +99,15 @@ class Body(Protocol):
         """Return the first impression."""
 
     def act(self, command: Command) -> Impression:
-        """Carry out one command as far as the world allows, and return the impression there.
+        """Carry out one command as far as the world allows, and return the impression at its end.
 
-        Whether it succeeded is not told: it must be seen.
+        Parameters
+        ----------
+        command : Command
+            The command.
+
+        Returns
+        -------
+        Impression
+            It does not say whether the command succeeded: that must be seen.
         """

@@ -17,7 +17,7 @@ ENCODINGS = sorted([*(ROOT / "kb" / "asp").glob("*.lp"), *(ROOT / "planner" / "a
 
 
 class Case(NamedTuple):
-    """One case. every, some, never: atoms as clingo writes them. answers: is there any?"""
+    """One case: atoms, as clingo writes them, of every, some and no optimal answer; and whether there is an answer."""
 
     title: str
     facts: str
@@ -28,12 +28,12 @@ class Case(NamedTuple):
 
 
 def case_file(encoding: Path) -> Path:
-    """The file with the cases of an encoding."""
+    """Return the file with the cases of an encoding."""
     return ROOT / "tests" / encoding.parent.parent.name / "cases" / encoding.name
 
 
 def cases_of(encoding: Path) -> list[Case]:
-    """The cases of an encoding."""
+    """Return the cases of an encoding."""
     parts = case_file(encoding).read_text().split("%% ")[1:]
     return [_case(*part.split("\n", 1)) for part in parts]
 
@@ -49,27 +49,27 @@ def _case(title: str, body: str) -> Case:
 
 
 def _atoms(texts: Iterable[str]) -> frozenset[str]:
-    """Atoms separated by full stops, in clingo's own spelling."""
+    """Return atoms separated by full stops, as clingo writes them."""
     words = [word.strip() for text in texts for word in text.split(".")]
     return frozenset(str(clingo.parse_term(word)) for word in words if word)
 
 
 def statements(encoding: Path) -> list[clingo.ast.AST]:
-    """The rules and optimisation statements of an encoding."""
+    """Return the rules and optimisation statements of an encoding."""
     found: list[clingo.ast.AST] = []
     clingo.ast.parse_files([str(encoding)], found.append)
     return [s for s in found if s.ast_type in (clingo.ast.ASTType.Rule, clingo.ast.ASTType.Minimize)]
 
 
 def without(encoding: Path, dropped: clingo.ast.AST) -> str:
-    """An encoding's text with one statement left out; what only that statement derived stays declared."""
+    """Return the text of an encoding with one statement left out; what only it derived stays declared."""
     found: list[clingo.ast.AST] = []
     clingo.ast.parse_files([str(encoding)], found.append)
     return "\n".join(str(s) for s in found if s.location != dropped.location)
 
 
 def optimal_answers(program: str, facts: str, strict: bool = True) -> list[frozenset[str]]:
-    """The shown atoms of all optimal answers. strict: a message of clingo is an error."""
+    """Return the shown atoms of each optimal answer; with `strict` a message of clingo is an error."""
     messages: list[str] = []
     control = clingo.Control(["--opt-mode=optN", "0"], logger=lambda _code, text: messages.append(text))
     control.add("base", [], f"{program}\n{facts}")
@@ -86,7 +86,7 @@ def optimal_answers(program: str, facts: str, strict: bool = True) -> list[froze
 
 
 def disagreement(case: Case, answers: list[frozenset[str]]) -> str:
-    """What is wrong with the answers to a case, or ''."""
+    """Return what is wrong with the answers to a case; '' if nothing is."""
     if bool(answers) != case.answers:
         return f"{len(answers)} answers"
     if not answers:

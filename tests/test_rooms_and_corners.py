@@ -1,4 +1,4 @@
-"""Whole runs where it matters what is a door, where a room begins, and how near a wall is."""
+"""Whole runs that depend on what is a door, where a room begins, and how close a wall is."""
 
 import json
 from pathlib import Path
@@ -43,7 +43,7 @@ IN_THE_NEXT_ROOM = "in(utak, room(next)).\n"
 
 
 def episode(tmp_path: Path, world: str, start: str, goal: str) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The last step and the result of a run. world : a picture, or facts."""
+    """Return the last step and the result of a run; `world` is a picture or facts."""
     (tmp_path / ("world.lp" if "verge(" in world else "world.txt")).write_text(world)
     (tmp_path / "start.lp").write_text(start)
     (tmp_path / "goal.lp").write_text(goal)
@@ -62,14 +62,14 @@ def test_a_door_in_the_corner_of_a_room_leads_to_the_next(mirrored: bool, south_
     assert last["utak"][0] < 8 if mirrored else last["utak"][0] > 9
 
 
-def test_whoever_stands_before_a_slanted_door_is_not_in_the_next_room(tmp_path: Path) -> None:
+def test_a_robot_before_a_slanted_door_is_not_in_the_next_room(tmp_path: Path) -> None:
     last, result = episode(tmp_path, SLANTED_DOOR, "", IN_THE_NEXT_ROOM)
     assert result["verdict"] == "done"
     assert shapely.from_wkt(SLANTED_ROOM).covers(shapely.Point(last["utak"]))
 
 
 def slanted_rooms(seed: int) -> tuple[str, Any]:
-    """A world of two rooms with a door between, turned by any angle, and the polygon of the room that is the next."""
+    """Return a world of two rooms with a door, rotated by any angle, and the polygon of the next room."""
     rng = np.random.default_rng(seed)
     high, left, right = (float(v) for v in rng.uniform(11, 15, size=3))
     wall, door = float(rng.uniform(1.0, 3.0)), float(rng.uniform(3.6, 4.8))
@@ -94,7 +94,7 @@ def slanted_rooms(seed: int) -> tuple[str, Any]:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_done_beyond_a_slanted_door_is_never_said_before_it(seed: int, tmp_path: Path) -> None:
+def test_done_is_never_claimed_before_a_slanted_door(seed: int, tmp_path: Path) -> None:
     world, there = slanted_rooms(seed)
     last, result = episode(tmp_path, world, "", IN_THE_NEXT_ROOM)
     assert result["verdict"] == "done"
@@ -103,13 +103,13 @@ def test_done_beyond_a_slanted_door_is_never_said_before_it(seed: int, tmp_path:
 
 def test_an_opening_that_is_no_door_is_named(tmp_path: Path) -> None:
     _, result = episode(tmp_path, WIDE_OPENING, "", IN_THE_NEXT_ROOM)
-    assert result["verdict"] == "possible_if"  # its walls were never felt
+    assert result["verdict"] == "possible_if"  # its walls were never touched
     assert "the opening 5.0 squares wide at POINT (12.5 -3.0) is none" in result["reason"]
     assert "for the floor behind it is nowhere wider than 9.7, less than twice as wide" in result["reason"]
 
 
 @pytest.mark.parametrize("seed", [3, 7, 11, 28])
-def test_a_thing_in_a_corner_is_within_a_square_of_its_walls_wherever_in_their_squares_these_lie(
+def test_an_object_in_a_corner_is_within_a_square_of_its_walls_wherever_these_lie_in_their_squares(
     seed: int, tmp_path: Path
 ) -> None:
     rng = np.random.default_rng(1000 + seed)
@@ -130,7 +130,7 @@ def test_a_thing_in_a_corner_is_within_a_square_of_its_walls_wherever_in_their_s
     assert max(gaps) <= 1.0
 
 
-def test_a_thing_is_brought_between_slanted_walls_into_their_corner(tmp_path: Path) -> None:
+def test_an_object_is_brought_into_a_corner_of_slanted_walls(tmp_path: Path) -> None:
     goal = "at(x, corner(northeast)).\n"
     last, result = episode(tmp_path, SLANTED_CORNER, "object(x). shape(x, square).\n", goal)
     assert result["verdict"] == "done"

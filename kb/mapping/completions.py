@@ -1,8 +1,9 @@
-"""Completions of what no count settles: drawn for one scene at a time, and gone on with from look to look.
+"""Completions: sampled maps that agree with all counts, drawn scene by scene and kept from impression to impression.
 
-The squares that are not settled fall into scenes that tell nothing of each other: no field looks at two of them, and
-settled squares lie in between. What is drawn of a scene stays as it is until a look tells something new of it; then
-each picture is drawn on as it was, for most of it holds still.
+The squares that no count settles fall into independent scenes: no field covers squares of two scenes, and settled
+squares lie in between. The samples of a scene stay as they are until an impression says something new of it; then each
+sample is drawn on from what it was, since most of it is still right. Samples are drawn by geometry.counts.gibbs (a
+Gibbs sampler on an Ising prior, Geman and Geman 1984), and resampled by their costs.
 """
 
 from collections.abc import Iterator, Mapping
@@ -12,28 +13,39 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.counts.gibbs import DRAWN, FREE, FULL, UNSEEN, Counts, costs, pictures
+from geometry.kernels.arrays import Bools, Floats, Labels, Longs
 from geometry.raster.components import Components, boxes, components
 from kb.mapping.occupancy import OPEN, MapView
-from kb.mapping.occupancy_odds import STRAY
+from kb.mapping.occupancy_odds import STRAY_COUNT
 
-PICTURES = 12
-DRAWINGS = 2  # for each of them
-RATHER = 0.3  # how much rather a drawing is kept that costs less by 1: by this power of e
-SEED = 20031
-BEGINNING = (60, 0.5)  # sweeps over a scene that was not drawn yet, and the inverse temperature of the first one
-GOING_ON = (30, 1.0)  # likewise, over one that was
-DEEP = 2  # squares: within what is full or empty so far from its edge nothing is pictured
-SURELY = 0.93  # under a field that shows the last gray level and yet may miss a square
-HALF = 0.5
-Mask = NDArray[np.bool_]
+MAX_COMPLETIONS = 12  # completions of a map; tuned on random worlds (benchmarks.campaign)
+DRAWS_PER_COMPLETION = 2  # samples drawn for each completion that is kept; tuned
+COST_WEIGHT = 0.3  # a sample that costs less by 1 is kept more often, by this power of e; tuned
+SEED = 20031  # of the random numbers; convention
+FIRST_SCHEDULE = (60, 0.5)  # sweeps over a scene that was not drawn yet, and the first inverse temperature; tuned
+NEXT_SCHEDULE = (30, 1.0)  # likewise over a scene most of which was drawn before; tuned
+INTERIOR_DEPTH = 2  # squares: what is probably occupied, or free, so far from its edge is not drawn; tuned
+INTERIOR_PROBABILITY = (
+    0.93  # from which it is probably occupied: under a field of the last level that may miss a square
+)
+START_PROBABILITY = 0.5  # from which a square is occupied in the first sample: more likely than not
 Image = NDArray[np.int8]
-Told = tuple[int | bytes, ...]
+Told = tuple[int | bytes, ...]  # all that determines the samples of a scene
 
 
 class CompletionTask(NamedTuple):
-    """A part of the map to be pictured. ground, first: as for geometry.counts.gibbs.pictures, cut to the part.
+    """A scene to be drawn: a part of the map that is independent of all others.
 
-    rows, columns : where it lies on the map. counts : of the squares to be drawn alone, with flat indices of the part.
+    Attributes
+    ----------
+    rows, columns : slice
+        Where it lies on the arrays of the map view.
+    ground : (h, w) int8
+        What is given of each square: FREE, FULL, DRAWN (to be drawn) or UNSEEN (also: squares of other scenes).
+    first : (h, w) int8
+        Where a sample begins that was not drawn before: 1 where a square is more likely occupied than not.
+    counts : Counts
+        The counts of the squares to be drawn alone, with flat indices of the part.
     """
 
     rows: slice
@@ -43,7 +55,7 @@ class CompletionTask(NamedTuple):
     counts: Counts
 
     def told(self, view: MapView) -> Told:
-        """All that is told of it, its place included: two scenes are the same where this is."""
+        """Return a key of all that determines its samples, its place included: equal keys mean equal scenes."""
         arrays = (self.ground, *self.counts)
         return view.west + self.columns.start, view.south + self.rows.start, *(array.tobytes() for array in arrays)
 
@@ -51,8 +63,16 @@ class CompletionTask(NamedTuple):
 class Completions(NamedTuple):
     """Completions of a map.
 
-    west, south : the lattice square at [0, 0]. ground : (rows, columns) int8, what is given. images : (PICTURES, rows,
-    columns) int8, 1 where a square is occupied. scenes : the pictures of each, (PICTURES, n) int8.
+    Attributes
+    ----------
+    west, south : int
+        The square at [0, 0], map frame.
+    ground : (rows, columns) int8
+        What was given of each square: FREE, FULL, DRAWN or UNSEEN.
+    images : (MAX_COMPLETIONS, rows, columns) int8
+        The completions: 1 where a square is occupied.
+    scenes : mapping
+        Key of a scene -> its samples at the n squares drawn, (MAX_COMPLETIONS, n) int8.
     """
 
     west: int
@@ -61,17 +81,20 @@ class Completions(NamedTuple):
     images: Image
     scenes: Mapping[Told, Image]
 
-    def at(self, x: int, y: int) -> NDArray[np.bool_] | None:
-        """(PICTURES,): which pictures show a square of the lattice occupied; None where it was never seen."""
+    def at(self, x: int, y: int) -> Bools | None:
+        """Return which completions show a square (x, y) of the map frame occupied, (MAX_COMPLETIONS,) bool.
+
+        None where the square was never seen.
+        """
         row, column = y - self.south, x - self.west
         inside = 0 <= row < self.ground.shape[0] and 0 <= column < self.ground.shape[1]
         if not inside or self.ground[row, column] == UNSEEN:
             return None
-        shown: NDArray[np.bool_] = self.images[:, row, column] > 0
+        shown: Bools = self.images[:, row, column] > 0
         return shown
 
     def over(self, scene: CompletionTask, view: MapView) -> "Completions":
-        """The part that lies where a scene of another map is; unseen where there is none."""
+        """Return the part that lies where a scene of another map view lies; UNSEEN beyond these completions."""
         south, west = view.south + scene.rows.start - self.south, view.west + scene.columns.start - self.west
         ground: Image = np.full(scene.ground.shape, UNSEEN, np.int8)
         images = np.zeros((len(self.images), *ground.shape), np.int8)
@@ -84,58 +107,87 @@ class Completions(NamedTuple):
         return Completions(self.west + west, self.south + south, ground, images, {})
 
 
-NO_PICTURES = Completions(0, 0, np.zeros((0, 0), np.int8), np.zeros((PICTURES, 0, 0), np.int8), {})
+NO_COMPLETIONS = Completions(0, 0, np.zeros((0, 0), np.int8), np.zeros((MAX_COMPLETIONS, 0, 0), np.int8), {})
 
 
 def ground_of(view: MapView) -> Image:
-    """(rows, columns): what is given of the pictures, namely what is settled, and what lies amid its like."""
+    """Return what is given when completions are drawn: settled squares, and the interior of what is surely alike.
+
+    Parameters
+    ----------
+    view : MapView
+        The map.
+
+    Returns
+    -------
+    (rows, columns) int8
+        FREE, FULL, DRAWN (to be drawn) or UNSEEN.
+    """
     ground = np.where(view.seen, np.where(view.state == OPEN, DRAWN, view.state), UNSEEN).astype(np.int8)
     drawn = ground == DRAWN
-    ground[drawn & amid(view.probability > SURELY, DEEP)] = FULL
-    ground[drawn & amid(~view.seen | (view.probability <= STRAY), DEEP)] = FREE
+    ground[drawn & _interior(view.probability > INTERIOR_PROBABILITY, INTERIOR_DEPTH)] = FULL
+    ground[drawn & _interior(~view.seen | (view.probability <= STRAY_COUNT), INTERIOR_DEPTH)] = FREE
     return ground
 
 
-def pictured(view: MapView, ground: Image, before: Completions) -> Completions:
-    """Completions that agree with all counts. before : those of the last look, on the same lattice."""
-    images = np.repeat((ground == FULL).astype(np.int8)[None], PICTURES, axis=0)
+def draw_completions(view: MapView, ground: Image, before: Completions) -> Completions:
+    """Draw completions that agree with all counts.
+
+    Parameters
+    ----------
+    view : MapView
+        The map.
+    ground : (rows, columns) int8
+        What is given, as of `ground_of`.
+    before : Completions
+        Those of the impression before, in the same frame; scenes of which nothing new is known are taken from them.
+    """
+    images = np.repeat((ground == FULL).astype(np.int8)[None], MAX_COMPLETIONS, axis=0)
     drawn = {}
     for scene in scenes(view, ground):
-        told = scene.told(view)
-        now = before.scenes.get(told)
-        drawn[told] = _drawn(scene, before.over(scene, view)) if now is None else now
-        images[:, scene.rows, scene.columns][:, scene.ground == DRAWN] = drawn[told]
+        key = scene.told(view)
+        known = before.scenes.get(key)
+        drawn[key] = _draw_scene(scene, before.over(scene, view)) if known is None else known
+        images[:, scene.rows, scene.columns][:, scene.ground == DRAWN] = drawn[key]
     return Completions(view.west, view.south, ground, images, drawn)
 
 
-def _drawn(scene: CompletionTask, before: Completions) -> Image:
-    """(PICTURES, n): the pictures of a scene, at the squares that are to be drawn."""
+def _draw_scene(scene: CompletionTask, before: Completions) -> Image:
+    """Return samples of a scene at the n squares that are to be drawn, (MAX_COMPLETIONS, n) int8."""
     open_ = scene.ground == DRAWN
     known = open_ & (before.ground != UNSEEN)
-    sweeps, hot = GOING_ON if known.sum() > open_.sum() / 2 else BEGINNING
-    first = np.repeat(np.where(known, before.images, scene.first), DRAWINGS, axis=0)
+    sweeps, hot = NEXT_SCHEDULE if known.sum() > open_.sum() / 2 else FIRST_SCHEDULE
+    first = np.repeat(np.where(known, before.images, scene.first), DRAWS_PER_COMPLETION, axis=0)
     drawn = pictures(scene.ground, scene.counts, first, sweeps, hot, SEED)
-    return drawn[_kept(costs(drawn, scene.ground, scene.counts))][:, open_]
+    return drawn[_resample(costs(drawn, scene.ground, scene.counts))][:, open_]
 
 
-def _kept(costs: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Which of some drawings are kept as pictures: the plainer ones rather, and those more than once."""
-    weight = np.cumsum(np.exp(-RATHER * (costs - costs.min())))
-    marks = (np.arange(PICTURES) + 0.5) / PICTURES
-    kept: NDArray[np.int64] = np.searchsorted(weight, marks * weight[-1])
+def _resample(costs: Floats) -> Longs:
+    """Return which samples are kept, (MAX_COMPLETIONS,) indices: cheaper ones more often (systematic resampling)."""
+    weight = np.cumsum(np.exp(-COST_WEIGHT * (costs - costs.min())))
+    marks = (np.arange(MAX_COMPLETIONS) + 0.5) / MAX_COMPLETIONS
+    kept: Longs = np.searchsorted(weight, marks * weight[-1])
     return kept
 
 
 def scenes(view: MapView, ground: Image) -> Iterator[CompletionTask]:
-    """The parts of a map that tell nothing of each other."""
+    """Yield the independent scenes of a map.
+
+    Parameters
+    ----------
+    view : MapView
+        The map.
+    ground : (rows, columns) int8
+        What is given, as of `ground_of`.
+    """
     open_ = ground == DRAWN
-    counts = _left(view.counts, ground)
-    near = components(~amid(~open_, 1))
-    labels = _joined(near, counts)
+    counts = _counts_of_drawn(view.counts, ground)
+    near = components(~_interior(~open_, 1))
+    labels = _joined_labels(near, counts)
     labels[~open_] = 0
     owner = labels.ravel()[counts.where[np.arange(len(counts.where)), (counts.weight > 0).argmax(1)]]
     order = np.argsort(owner, kind="stable")
-    first = (view.probability > HALF).astype(np.int8)
+    first = (view.probability > START_PROBABILITY).astype(np.int8)
     for label, (south, west, north, east) in enumerate(boxes(labels, near.number).tolist()):
         if label == 0 or north < 0:
             continue
@@ -144,15 +196,15 @@ def scenes(view: MapView, ground: Image) -> Iterator[CompletionTask]:
         part = ground[rows, columns]
         part = np.where(own | (part != DRAWN), part, np.int8(UNSEEN))
         begin, end = np.searchsorted(owner[order], [label, label + 1])
-        told = counts.of(order[begin:end])
-        up, along = np.divmod(told.where, ground.shape[1])
+        under = counts.of(order[begin:end])
+        up, along = np.divmod(under.where, ground.shape[1])
         inside = (up - rows.start) * part.shape[1] + along - columns.start
-        told = told._replace(where=np.where(told.weight > 0, inside, 0).astype(np.int32))
-        yield CompletionTask(rows, columns, part, first[rows, columns], told)
+        under = under._replace(where=np.where(under.weight > 0, inside, 0).astype(np.int32))
+        yield CompletionTask(rows, columns, part, first[rows, columns], under)
 
 
-def _left(counts: Counts, ground: Image) -> Counts:
-    """What the fields that look at squares to be drawn say of these alone."""
+def _counts_of_drawn(counts: Counts, ground: Image) -> Counts:
+    """Return what the fields that cover squares to be drawn say of these squares alone."""
     under = ground.ravel()[counts.where]
     weight = np.where(under == DRAWN, counts.weight, np.int16(0))
     full = np.where(under == FULL, counts.weight, np.int16(0)).sum(1, dtype=np.int16)
@@ -160,8 +212,8 @@ def _left(counts: Counts, ground: Image) -> Counts:
     return left.of(np.flatnonzero(weight.any(1)))
 
 
-def _joined(near: Components, counts: Counts) -> NDArray[np.int32]:
-    """The labels of parts, those with one number that a field looks at together."""
+def _joined_labels(near: Components, counts: Counts) -> Labels:
+    """Return the labels of parts, (rows, columns) int32; parts that one field covers together have one label."""
     under = near.labels.ravel()[counts.where]
     used = counts.weight > 0
     one = np.where(used, under, near.number + 1).min(1, initial=near.number + 1)
@@ -173,16 +225,16 @@ def _joined(near: Components, counts: Counts) -> NDArray[np.int32]:
         while root[b] != b:
             b = root[b]
         root[max(a, b)] = min(a, b)
-    for label in range(near.number + 1):  # a root comes before all that hang on it
+    for label in range(near.number + 1):  # a root has a smaller number than all below it
         root[label] = root[root[label]]
-    joined: NDArray[np.int32] = root[near.labels]
+    joined: Labels = root[near.labels]
     return joined
 
 
-def amid(mask: Mask, deep: int) -> Mask:
-    """The squares of a mask all of whose neighbours within so many rows or columns are of it."""
+def _interior(mask: Bools, depth: int) -> Bools:
+    """Return the squares of a mask whose neighbours within `depth` rows and columns all belong to it."""
     for axis in (0, 1):
-        framed = np.pad(mask, [(deep, deep) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
-        parts = [np.take(framed, np.arange(k, k + mask.shape[axis]), axis) for k in range(2 * deep + 1)]
+        framed = np.pad(mask, [(depth, depth) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
+        parts = [np.take(framed, np.arange(k, k + mask.shape[axis]), axis) for k in range(2 * depth + 1)]
         mask = np.logical_and.reduce(parts)
     return mask

@@ -1,9 +1,9 @@
-"""What stands where squares are not settled: pictures that agree with all counts, and what they have in common.
+"""What completions of the map have in common: how likely squares are occupied, and where an object of a shape may be.
 
-Counts that settle no single square may yet tell where a wall runs, where a door is in it, and that something as wide as
-long stands apart from it: simple pictures that agree with all counts (kb.mapping.completions) show it. In how many
-of them a
-square is occupied is how likely it is so.
+Counts that settle no single square may yet say where a wall runs, where a door is in it, and that something as wide as
+long stands apart from it: simple maps that agree with all counts (kb.mapping.completions) show it. The share of
+completions in which a square is occupied is the probability that it is. Which connected parts of a completion look
+like a shape is judged by their second moments (geometry.counts.moments).
 """
 
 import math
@@ -14,109 +14,170 @@ from numpy.typing import NDArray
 
 from geometry.counts.gibbs import DRAWN
 from geometry.counts.moments import Blobs, blobs
-from kb.mapping.completions import NO_PICTURES, Completions, ground_of, pictured
+from geometry.kernels.arrays import Floats, Longs
+from kb.mapping.completions import NO_COMPLETIONS, Completions, draw_completions, ground_of
 from kb.mapping.occupancy import MapView
 
-SMALLEST = 4  # squares of a thing that is worth a look
-ENDED = 0.7  # that a thing ends at the side of a square beyond which nothing was seen
-SHY = 2  # pictures show a thing more rarely than it is there: none is, by this power of how often they show none
-WIDEST = 9  # sides of squares along which a thing goes on unseen; along more a wall does
-NO_DEEPER = 1.15  # times that: how far a thing as wide as long may reach from there
-NO_WALL = 0.7  # that what is within both is no wall
-PARTLY = ((18, 0.5), (12, 0.3), (6, 0.18), (0, 0.02))  # squares seen of what may be a thing; that it is the one meant
-LOOSE = (0.012, 0.03)  # how much wider than a rectangle a part may be spread: at least, and if it is one square wide
-TIGHT = (0.003, 0.15)  # how much less: corners seen rounded, but less than a disc's; likewise, by its squares
-EVEN = (0.12, 0.4)  # likewise how much longer than wide a square may seem, by the squares that it covers
-DISC = 1 / (2 * math.pi)
-OTHERS = 0.2  # by this share and more the spread of what is neither is wider than a rectangle's
-SLENDER = (4.0, 2.0)  # how much longer than wide a brick is at most, and how soon beyond that what is so is wall
-STOUT = (3.0, 1.0)  # likewise of what is neither, an L with long arms
-SELDOM = 0.1  # the least likeness of what is too slender, and of what has the spread of a rectangle to what is none
-GONE_ON = 10  # squares along which what goes on unseen is seen, from where on it is taken for wall
-Floats = NDArray[np.float64]
+# All figures below were tuned on random worlds (benchmarks.campaign), unless they are derived.
+MIN_OBJECT_AREA = 4  # squares: smaller parts are no object worth a look
+END_PROBABILITY = 0.7  # that an object ends at the side of a square beyond which nothing was seen
+ABSENCE_EXPONENT = 2  # the share of completions without an object there, to this power, is how likely there is none
+MAX_OPEN_SIDES = 9  # sides of squares along which an object goes on unseen, at most; along more sides it is a wall
+MAX_DEPTH_RATIO = 1.15  # area of an object by the square of those sides, at most: as wide as long, and a little more
+OBJECT_PROBABILITY = 0.7  # that what keeps within both bounds is an object rather than a wall
+SEEN_PART_PROBABILITY = (
+    (18, 0.5),
+    (12, 0.3),
+    (6, 0.18),
+    (0, 0.02),
+)  # (squares seen at least, that it is the one meant)
+# The spread of a part (sum of principal moments by squared area) is compared with that of a rectangle. Each tolerance
+# is a constant, and a term that falls with the area of the part.
+WIDER_TOLERANCE = (0.012, 0.03)  # spread above a rectangle's; the second term is for a part of one square
+NARROWER_TOLERANCE = (0.003, 0.15)  # spread below a rectangle's: corners seen rounded, but less than a disc's
+EVEN_TOLERANCE = (0.12, 0.4)  # difference of the principal moments, by their sum, of what is as wide as long
+DISC_SPREAD = 1 / (2 * math.pi)  # of a disc; derived
+OTHER_SPREAD_RATIO = 0.2  # other shapes have a spread greater than a rectangle's by this share, and more
+BRICK_RATIO = (4.0, 2.0)  # a brick is at most so many times as long as wide; how soon beyond that it is a wall
+OTHER_RATIO = (3.0, 1.0)  # likewise of other shapes, such as an L with long arms
+MIN_LIKENESS = 0.1  # the least likeness of what is too slender, or has the spread of a rectangle and should not
+WALL_ELONGATION = 10  # squares seen for each open side, from which on what goes on unseen is a wall
 
 
 class CompletionSummary(NamedTuple):
-    """Completions of the map as it may be."""
+    """Completions of the map, and what they have in common.
+
+    Attributes
+    ----------
+    pictures : Completions
+        The completions.
+    """
 
     pictures: Completions
 
     def probability(self, by_counts: NDArray[np.float32]) -> NDArray[np.float32]:
-        """(rows, columns): that a square is occupied, with what counts alone say for one more picture."""
+        """Return the probability that each square is occupied.
+
+        Parameters
+        ----------
+        by_counts : (rows, columns) float32
+            The probability by counts alone. It weighs as much as one more completion.
+
+        Returns
+        -------
+        (rows, columns) float32
+        """
         ground, images = self.pictures.ground, self.pictures.images
         shares = (images.sum(0, dtype=np.float32) + by_counts) / np.float32(len(images) + 1)
         answer: NDArray[np.float32] = np.where(ground == DRAWN, shares, by_counts)
         return answer
 
     def likely(self, shape: str) -> Floats:
-        """(rows, columns): how likely each square belongs to an isolated thing of a shape."""
+        """Return the probability that each square belongs to an isolated object of a shape class.
+
+        Parameters
+        ----------
+        shape : str
+            square, disc, brick, rectangle; any other word stands for all other shapes.
+
+        Returns
+        -------
+        (rows, columns) float64
+        """
         ground, images = self.pictures.ground, self.pictures.images
         heat = np.zeros(ground.shape)
         for image in images:
             found = blobs(image, ground)
-            like = likeness(found, shape) * ended(found) * (found.area >= SMALLEST)
-            heat += np.append(0.0, np.maximum(like, going_on(found)))[found.labels]
-        likely: Floats = 1 - (1 - heat / len(images)) ** SHY
+            like = likeness(found, shape) * end_probability(found) * (found.area >= MIN_OBJECT_AREA)
+            heat += np.append(0.0, np.maximum(like, part_seen_probability(found)))[found.labels]
+        likely: Floats = 1 - (1 - heat / len(images)) ** ABSENCE_EXPONENT
         return likely
 
 
-NOTHING_IMAGINED = CompletionSummary(NO_PICTURES)
+NO_COMPLETION_SUMMARY = CompletionSummary(NO_COMPLETIONS)
 
 
-def imagine(view: MapView, before: CompletionSummary = NOTHING_IMAGINED) -> CompletionSummary:
-    """Completions of a map. before : those of the last look, on the same lattice."""
-    return CompletionSummary(pictured(view, ground_of(view), before.pictures))
+def summarise_completions(view: MapView, before: CompletionSummary = NO_COMPLETION_SUMMARY) -> CompletionSummary:
+    """Draw completions of a map, and summarise them.
+
+    Parameters
+    ----------
+    view : MapView
+        The map.
+    before : CompletionSummary
+        Those of the impression before, in the same frame.
+    """
+    return CompletionSummary(draw_completions(view, ground_of(view), before.pictures))
 
 
 def likeness(found: Blobs, shape: str) -> Floats:
-    """(n,) 0 to 1: how well the moments of each part agree with a shape."""
+    """Return how well the moments of each of n parts agree with a shape class, (n,) from 0 to 1.
+
+    shape : as for `CompletionSummary.likely`.
+    """
     ratio = np.sqrt((1 + found.lengthy) / np.maximum(1 - found.lengthy, 1e-6))
     rectangular = (ratio + 1 / ratio) / 12
     longer = found.spread - rectangular
-    loose, tight = LOOSE[0] + LOOSE[1] / np.sqrt(found.area), TIGHT[0] + TIGHT[1] / found.area
-    straight = _near(longer, np.where(longer > 0, loose, tight))
-    even = _near(found.lengthy, EVEN[0] + EVEN[1] / np.sqrt(found.area))
+    wider = WIDER_TOLERANCE[0] + WIDER_TOLERANCE[1] / np.sqrt(found.area)
+    narrower = NARROWER_TOLERANCE[0] + NARROWER_TOLERANCE[1] / found.area
+    straight = _agreement(longer, np.where(longer > 0, wider, narrower))
+    even = _agreement(found.lengthy, EVEN_TOLERANCE[0] + EVEN_TOLERANCE[1] / np.sqrt(found.area))
     match shape:
         case "square":
             return straight * even
         case "disc":
-            return _near(found.spread - DISC, tight) * even
+            return _agreement(found.spread - DISC_SPREAD, narrower) * even
         case "brick":
             return straight * _not_slender(ratio) * (1 - even)
         case "rectangle":
             return straight * _not_slender(ratio)
-    wider = np.clip(longer / (OTHERS * rectangular), 0.0, 1.0)
-    return np.maximum(wider * _at_most(ratio, *STOUT), SELDOM)
+    excess = np.clip(longer / (OTHER_SPREAD_RATIO * rectangular), 0.0, 1.0)
+    return np.maximum(excess * _agreement_at_most(ratio, *OTHER_RATIO), MIN_LIKENESS)
 
 
-def ended(found: Blobs) -> Floats:
-    """(n,) 0 to 1: how likely each part ends where its squares border on what was never seen."""
-    wall = (found.outward > 0) & (found.area >= GONE_ON * found.outward)
-    return np.where(wall, 0.0, ENDED**found.outward)
+def end_probability(found: Blobs) -> Floats:
+    """Return how likely each of n parts ends where its squares border on unseen ones, (n,) from 0 to 1."""
+    wall = (found.outward > 0) & (found.area >= WALL_ELONGATION * found.outward)
+    return np.where(wall, 0.0, END_PROBABILITY**found.outward)
 
 
-def going_on(found: Blobs) -> Floats:
-    """(n,) 0 to 1: how likely each part is what is seen of a thing that goes on unseen and is the one looked for."""
-    no_deeper = found.area <= NO_DEEPER * found.outward**2
-    may_be = (found.outward > 1) & (found.outward <= WIDEST) & no_deeper
-    answer: Floats = np.where(may_be, NO_WALL * seen_in_part(found.area), 0.0)
+def part_seen_probability(found: Blobs) -> Floats:
+    """Return how likely each of n parts is the seen part of the object looked for, (n,) from 0 to 1."""
+    compact = found.area <= MAX_DEPTH_RATIO * found.outward**2
+    may_be = (found.outward > 1) & (found.outward <= MAX_OPEN_SIDES) & compact
+    answer: Floats = np.where(may_be, OBJECT_PROBABILITY * seen_in_part(found.area), 0.0)
     return answer
 
 
-def seen_in_part(squares: NDArray[np.int64]) -> Floats:
-    """0 to 1: how likely what goes on unseen, and may be a thing, is the one looked for, by how much of it is seen."""
-    answer: Floats = np.select([squares >= least for least, _ in PARTLY], [chance for _, chance in PARTLY])
+def seen_in_part(squares: Longs) -> Floats:
+    """Return how likely something that goes on unseen, and may be an object, is the one looked for.
+
+    Parameters
+    ----------
+    squares : (n,) int64
+        How many of its squares are seen.
+
+    Returns
+    -------
+    (n,) float64
+        From 0 to 1.
+    """
+    parts = SEEN_PART_PROBABILITY
+    answer: Floats = np.select([squares >= least for least, _ in parts], [chance for _, chance in parts])
     return answer
 
 
 def _not_slender(ratio: Floats) -> Floats:
-    return np.maximum(_at_most(ratio, *SLENDER), SELDOM)
+    """Return how well a ratio of length to width agrees with a brick, 0 to 1."""
+    return np.maximum(_agreement_at_most(ratio, *BRICK_RATIO), MIN_LIKENESS)
 
 
-def _at_most(value: Floats, most: float, loose: float) -> Floats:
-    return _near(np.maximum(value - most, 0.0), loose)
+def _agreement_at_most(value: Floats, limit: float, tolerance: float) -> Floats:
+    """Return 1 for values up to a limit, and less the further a value is above it by the tolerance."""
+    return _agreement(np.maximum(value - limit, 0.0), tolerance)
 
 
-def _near(off: Floats, loose: Floats | float) -> Floats:
-    answer: Floats = np.exp(-((off / loose) ** 2))
+def _agreement(error: Floats, tolerance: Floats | float) -> Floats:
+    """Return exp(-(error / tolerance)^2): 1 for no error."""
+    answer: Floats = np.exp(-((error / tolerance) ** 2))
     return answer

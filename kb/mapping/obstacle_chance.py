@@ -1,75 +1,99 @@
-"""What may stand on squares of which it is open: by counts alone, or as pictures of the map show it.
+"""The probability that something stands on squares that are open: by counts alone, or as completions of the map show.
 
-What pictures show goes together: where one shows a wall that runs along a way, it runs along all of it. So how likely a
-motion comes upon something is asked of each picture by itself.
+Squares of one completion go together: where it shows a wall along a way, the wall runs along all of it. So the
+probability that a motion meets an obstacle is computed for each completion by itself, and then averaged.
 """
 
 import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Floats, Square
 from kb.mapping.completions import Completions
 from kb.mapping.occupancy import FULL, OPEN, OccupancyMap
 
-Square = tuple[int, int]
-Floats = NDArray[np.float64]
-HARDLY, BESIDE = 0.001, 0.02  # how likely all pictures show a square wrongly; beside what one of them shows occupied
-UNSEEN = np.array([0.12])  # how likely something stands on a square never seen: floor mostly goes on
+ERROR_PROBABILITY = 0.001  # that all completions show a square wrongly; tuned on random worlds (benchmarks.campaign)
+ERROR_PROBABILITY_AT_EDGE = 0.02  # likewise of a square next to one that some completion shows occupied; tuned
+UNSEEN_PROBABILITY = np.array([0.12])  # that something stands on a square never seen: floor mostly goes on; tuned
 
 
 class ObstacleChance:
-    """What may stand on the squares of a map. pictures : of it; by counts alone without."""
+    """The probabilities that squares of a map are occupied, each computed once.
 
-    def __init__(self, occupancy: OccupancyMap, pictures: Completions | None = None) -> None:
+    Parameters
+    ----------
+    occupancy : OccupancyMap
+        The map; it grows where a square beyond it is asked for.
+    completions : Completions, optional
+        Completions of the map. Without them counts alone give the probability of an open square.
+    """
+
+    def __init__(self, occupancy: OccupancyMap, completions: Completions | None = None) -> None:
         self._occupancy = occupancy
-        self._pictures = pictures
+        self._completions = completions
         self._known: dict[Square, Floats] = {}
 
     def occupied(self, square: Square) -> Floats:
-        """(m,): how likely a square is occupied, by each of the pictures; by counts as one."""
+        """Return the probability that a square is occupied, by each completion.
+
+        Parameters
+        ----------
+        square : (x, y)
+            Map frame.
+
+        Returns
+        -------
+        (m,) float64
+            One value for each completion; (1,) where counts alone tell, or where nothing was seen.
+        """
         if square not in self._known:
-            self._known[square] = self._asked(square)
+            self._known[square] = self._probabilities(square)
         return self._known[square]
 
-    def _asked(self, square: Square) -> Floats:
+    def _probabilities(self, square: Square) -> Floats:
+        """Return the probability that a square is occupied, by each completion."""
         self._occupancy.make_room(*square)
         index = self._occupancy.index(*square)
         state = self._occupancy.state[index]
         if state != OPEN:
             return np.array([float(state == FULL)])
-        if self._pictures is None:
+        if self._completions is None:
             return np.array([1.0 / (1.0 + math.exp(-float(self._occupancy.logit[index])))])
-        shown = self._pictures.at(*square)
+        shown = self._completions.at(*square)
         if shown is None:
-            return UNSEEN
-        wrong = BESIDE if self._beside(square) else HARDLY
+            return UNSEEN_PROBABILITY
+        wrong = ERROR_PROBABILITY_AT_EDGE if self._next_to_occupied(square) else ERROR_PROBABILITY
         return np.where(shown, 1.0 - wrong, wrong)
 
-    def _beside(self, square: Square) -> bool:
-        """Does a square lie beside one that some picture shows occupied?"""
-        assert self._pictures is not None
+    def _next_to_occupied(self, square: Square) -> bool:
+        """Return whether some completion shows an edge neighbour of a square occupied."""
+        assert self._completions is not None
         x, y = square
-        shown = (self._pictures.at(x + dx, y + dy) for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)))
+        shown = (self._completions.at(x + dx, y + dy) for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)))
         return any(one is not None and one.any() for one in shown)
 
     def odds(self, square: Square) -> float:
-        """The log odds that a square is occupied of which that is open."""
+        """Return the log odds that an open square (x, y) of the map frame is occupied."""
         likely = float(self.occupied(square).mean())
         return math.log(likely / (1.0 - likely))
 
     def met(self, groups: Sequence[Iterable[Square]]) -> list[float]:
-        """How likely each of some groups of squares, come upon in this order, is the first with an obstacle.
+        """Return for each group of squares the probability that it holds the first obstacle of a motion.
 
-        Those of a group that were never seen lie side by side, and count as one: a wall is straight.
+        Squares of a group that were never seen count as one square: they are adjacent, and a wall is straight.
+
+        Parameters
+        ----------
+        groups : sequence of iterables of (x, y)
+            The squares that the motion enters, group after group; map frame.
         """
         free, found = np.ones(1), []
         for squares in groups:
             occupied = [self.occupied(square) for square in squares]
-            clear = 1.0 - UNSEEN if any(one is UNSEEN for one in occupied) else np.ones(1)
+            clear = 1.0 - UNSEEN_PROBABILITY if any(one is UNSEEN_PROBABILITY for one in occupied) else np.ones(1)
             for one in occupied:
-                clear = clear if one is UNSEEN else clear * (1.0 - one)
+                clear = clear if one is UNSEEN_PROBABILITY else clear * (1.0 - one)
             found.append(float((free * (1.0 - clear)).mean()))
             free = free * clear
         return found

@@ -1,13 +1,10 @@
-"""What all looks together say of every square: the counts of overlapping fields, solved as far as they settle anything.
+"""The occupancy map: the counts of overlapping fields of all impressions, solved as far as they settle squares.
 
 A field that shows a gray level says: of these squares at least `low` and at most `high` are occupied. Three rules
-settle squares, and
-each is sound: a field that can take no more occupied squares leaves its others free; one that needs them all fills
-them; and what two
-overlapping fields have not in common is bounded by the difference of their counts. Squares that stay open get the
-probability of
-the maximum-entropy distribution with the fields' mean counts (iterative proportional fitting): confidence comes from
-the sets of counts alone.
+settle squares, and each is sound. A field that can take no more occupied squares leaves its other squares free. A
+field that needs all its squares occupied fills them. The squares that two overlapping fields do not share are bounded
+by the difference of their counts. Squares that stay open get a probability from the counts alone: that of the
+maximum-entropy distribution with the mean counts of the fields (kb.mapping.occupancy_odds).
 """
 
 import math
@@ -20,51 +17,65 @@ from numpy.typing import NDArray
 
 from geometry.counts.gibbs import Counts
 from geometry.counts.settle import FREE, FULL, OPEN, misfits, residue, settle
+from geometry.kernels.arrays import XY, Bools, Ints, Square
 from kb.mapping.occupancy_odds import Fields, Forgotten, Grown, Logits, Odds
-from kb.perception.frame import MOST, Samples
+from kb.perception.frame import MAX_SAMPLED_SQUARES, Samples
 
 __all__ = ["FREE", "FULL", "OPEN"]
-SIGHT = 24  # squares that can be seen from a place, at any angle
-MARGIN = 40  # squares by which the map grows beyond what is needed
+SIGHT_RANGE = 24  # squares: what is seen from a place lies within so many columns and rows, at any orientation; derived
+GROWTH_MARGIN = 40  # squares by which the map grows beyond what is needed; convention
 
-Squares = NDArray[np.int32]
-Mask = NDArray[np.bool_]
-Told = tuple[int | bytes, ...]
+ObservationKey = tuple[int | bytes, ...]  # all that an impression says, and where it was received
 
 
 NO_COUNTS = Counts(
-    np.zeros((0, MOST), np.int32), np.zeros((0, MOST), np.int16), np.zeros(0, np.int16), np.zeros(0, np.int16)
+    np.zeros((0, MAX_SAMPLED_SQUARES), np.int32),
+    np.zeros((0, MAX_SAMPLED_SQUARES), np.int16),
+    np.zeros(0, np.int16),
+    np.zeros(0, np.int16),
 )
 
 
 class MapView(NamedTuple):
     """A snapshot of the part of the map that was seen, with a margin of unseen squares.
 
-    west, south : the lattice square at [0, 0].
-    probability : (rows, columns) float32, that a square is occupied; 0.5 where nothing is known.
-    state : (rows, columns) int8, OPEN, FREE or FULL.
-    seen : (rows, columns) bool.
-    settled_by : (rows, columns) int16, the impression that settled a square, or -1.
-    counts : the fields that still tell something, with flat indices of this view.
-    sure : is what is settled beyond doubt? Not while the lattice may lie in several ways, or looks contradicted.
+    Attributes
+    ----------
+    west, south : int
+        The square at [0, 0], map frame.
+    probability : (rows, columns) float32
+        That a square is occupied; 0.5 where nothing is known.
+    state : (rows, columns) int8
+        OPEN, FREE or FULL: what the counts settle.
+    seen : (rows, columns) bool
+        Squares that were ever under the retina.
+    settled_by : (rows, columns) int16
+        The number of the impression that settled a square, or -1.
+    counts : Counts
+        The fields that still say something, with flat indices of this view.
+    sure : bool
+        Whether what is settled is beyond doubt: not while several frames may be right, or impressions contradict
+        each other.
+    by_counts : (rows, columns) float32 or None
+        That a square is occupied, by counts alone, where `probability` draws on completions, too.
     """
 
     west: int
     south: int
     probability: NDArray[np.float32]
     state: NDArray[np.int8]
-    seen: Mask
+    seen: Bools
     settled_by: NDArray[np.int16]
     counts: Counts = NO_COUNTS
     sure: bool = True
     by_counts: NDArray[np.float32] | None = None
 
     def locate(self, x: float, y: float) -> tuple[int, int]:
-        """[row, column] of the square in which a point of the lattice lies."""
+        """Return the index [row, column] of the square in which a point (x, y) of the map frame lies."""
         return math.floor(y) - self.south, math.floor(x) - self.west
 
     def part(self, rows: slice, columns: slice) -> "MapView":
-        """What it says of some rows and columns, but for the counts."""
+        """Return the view of some rows and columns alone, without the counts."""
         return self._replace(
             west=self.west + columns.start,
             south=self.south + rows.start,
@@ -77,55 +88,67 @@ class MapView(NamedTuple):
 
 
 class OccupancyMap:
-    """The growing map. Arrays are [row, column]; square (x, y) of the lattice lies at [y - south, x - west].
+    """The map, which grows. Arrays are [row, column]; square (x, y) of the map frame lies at [y - south, x - west].
 
     Attributes
     ----------
+    west, south : int
+        The square at [0, 0], map frame.
     state : (rows, columns) int8
         OPEN (-1), FREE (0) or FULL (1): what the counts settle.
     seen : (rows, columns) bool
         Squares that were ever under the retina.
     settled_by : (rows, columns) int16
-        The impression that settled a square, or -1.
+        The number of the impression that settled a square, or -1.
+    overruled : int
+        How many fields of impressions contradicted what was settled before, in all.
     """
 
     def __init__(self) -> None:
-        self.west = self.south = -MARGIN
-        shape = (2 * MARGIN, 2 * MARGIN)
+        self.west = self.south = -GROWTH_MARGIN
+        shape = (2 * GROWTH_MARGIN, 2 * GROWTH_MARGIN)
         self.state = np.full(shape, OPEN, np.int8)
         self._odds = Odds(np.zeros(shape, np.float32))
         self.seen = np.zeros(shape, np.bool_)
         self.settled_by = np.full(shape, -1, np.int16)
-        self._where = np.zeros((0, MOST), np.int32)
-        self._weight = np.zeros((0, MOST), np.int16)
+        self._where = np.zeros((0, MAX_SAMPLED_SQUARES), np.int32)
+        self._weight = np.zeros((0, MAX_SAMPLED_SQUARES), np.int16)
         self._low = np.zeros(0, np.int16)
         self._high = np.zeros(0, np.int16)
         self._fresh = np.zeros(0, np.bool_)
         self.overruled = 0
-        self._observations: set[Told] = set()  # after which nothing was withdrawn
+        self._observations: set[ObservationKey] = set()  # those since something was last withdrawn
 
     @property
     def logit(self) -> Logits:
-        """(rows, columns): log odds that an open square is occupied; 0 where nothing was seen."""
+        """The log odds that an open square is occupied, (rows, columns) float32; 0 where nothing was seen."""
         return self._odds.logit
 
     def copy(self) -> "OccupancyMap":
-        """The same, to be told more."""
+        """Return an independent copy, to which more impressions can be added."""
         other = copy(self)
         other.state, other.seen = self.state.copy(), self.seen.copy()
         other.settled_by, other._fresh = self.settled_by.copy(), self._fresh.copy()
         other._observations = self._observations.copy()
         return other
 
-    def view(self, places: Iterable[tuple[float, float]] = (), margin: int = 2) -> MapView:
-        """The part of the map that was seen, and what lies in sight of some places, with `margin` squares around it."""
+    def view(self, places: Iterable[XY] = (), margin: int = 2) -> MapView:
+        """Return a snapshot of the part of the map that was seen, and of all that lies in sight of some places.
+
+        Parameters
+        ----------
+        places : iterable of (x, y)
+            The places, map frame.
+        margin : int
+            Squares around that part which are included, too.
+        """
         squares = [(math.floor(x), math.floor(y)) for x, y in places]
         for square in squares:
             self.make_room(*square)
         there = np.array([self.index(*square) for square in squares], np.int64).reshape(-1, 2)
         rows, columns = np.flatnonzero(self.seen.any(1)), np.flatnonzero(self.seen.any(0))
-        top, left = np.vstack([there - SIGHT, [rows[0], columns[0]]]).min(0).tolist()
-        bottom, right = np.vstack([there + SIGHT, [rows[-1], columns[-1]]]).max(0).tolist()
+        top, left = np.vstack([there - SIGHT_RANGE, [rows[0], columns[0]]]).min(0).tolist()
+        bottom, right = np.vstack([there + SIGHT_RANGE, [rows[-1], columns[-1]]]).max(0).tolist()
         top, left = max(0, top - margin), max(0, left - margin)
         part = (slice(top, bottom + margin + 1), slice(left, right + margin + 1))
         state = self.state[part].copy()
@@ -138,28 +161,40 @@ class OccupancyMap:
         return MapView(west, south, probability, state, seen, self.settled_by[part].copy(), counts)
 
     def _counts(self, top: int, left: int, columns: int) -> Counts:
-        """The fields, with the flat indices of a part of the map that begins at [top, left]."""
+        """Return the fields, with flat indices of a part of the map that begins at [top, left], `columns` wide."""
         rows, places = np.divmod(self._where, self.state.shape[1])
         where = np.where(self._weight > 0, (rows - top) * columns + places - left, 0).astype(np.int32)
         return Counts(where, self._weight, self._low, self._high)
 
     def index(self, x: int, y: int) -> tuple[int, int]:
-        """[row, column] of a square of the lattice."""
+        """Return the index [row, column] of a square (x, y) of the map frame."""
         return y - self.south, x - self.west
 
-    def squares(self, west: int, south: int, mask: Mask) -> Mask:
-        """The squares of a small mask, whose [0, 0] is the lattice square (west, south), on the arrays of the map."""
+    def squares(self, west: int, south: int, mask: Bools) -> Bools:
+        """Return a small mask, whose [0, 0] is the square (west, south) of the map frame, on the arrays of the map."""
         whole = np.zeros(self.state.shape, np.bool_)
         row, column = self.index(west, south)
         whole[row : row + mask.shape[0], column : column + mask.shape[1]] = mask
         return whole
 
-    # -- looking ---------------------------------------------------------------------------------
+    # -- impressions ---------------------------------------------------------------------------------
 
-    def misfits(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> Mask:
-        """(160,).
+    def misfits(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> Bools:
+        """Return which fields contradict the map if the robot stands on a square.
 
-        Fields that cannot show what they show if Utak stands on square (x, y) and all that is settled is right.
+        Parameters
+        ----------
+        samples : Samples
+            The squares that each field samples.
+        ranges : (160, 2) int16
+            The least and the greatest count of occupied squares under each field.
+        x, y : int
+            The robot's square, map frame.
+
+        Returns
+        -------
+        (160,) bool
+            True for fields that cannot show what they show if all that is settled is right.
         """
         self.make_room(x, y)
         low, wrong = ranges[:, 0] - samples.slack, np.zeros(len(ranges), np.bool_)
@@ -167,27 +202,42 @@ class OccupancyMap:
         return wrong
 
     def clashes(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, whether: bool = False) -> int:
-        """How many fields, of this look and of those before, cannot be right if it was received on square (x, y).
+        """Return how many fields, of an impression and of all before, cannot be right if it was received on a square.
 
-        whether : those before are not looked at if some of this look cannot.
+        Parameters
+        ----------
+        samples, ranges, x, y
+            As for `misfits`.
+        whether : bool
+            Whether to leave out the fields of impressions before if some field of this one cannot be right.
         """
         new = int(self.misfits(samples, ranges, x, y).sum())
         if new and whether:
             return new
         where = self._under(samples, x, y)
-        told = (samples.weight.sum(1) == 1) & (samples.slack == 0) & ((ranges[:, 0] > 0) | (ranges[:, 1] <= 0))
-        left = samples.weight[told].argmax(1)  # of a field of several squares all others may lie under loads
+        single = (samples.weight.sum(1) == 1) & (samples.slack == 0) & ((ranges[:, 0] > 0) | (ranges[:, 1] <= 0))
+        entry = samples.weight[single].argmax(1)  # all other squares of a larger field may lie under held objects
         state = self.state.ravel().copy()
-        state[where[told, left]] = np.where(ranges[told, 0] > 0, FULL, FREE)
+        state[where[single, entry]] = np.where(ranges[single, 0] > 0, FULL, FREE)
         return new + misfits(state, *self._fields, np.zeros(len(self._low), np.bool_))
 
     def observe(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, number: int) -> None:
-        """Take in one impression, received on square (x, y), as impression `number`.
+        """Add one impression to the map.
 
-        Where it contradicts what was settled, what is seen now counts: older settlements under the contradicting
-        fields, and the fields that led to them, are withdrawn. What was seen before, from there, tells nothing new.
+        Where it contradicts what was settled, the new impression counts: what was settled under the contradicting
+        fields, and the fields that led to it, are withdrawn. The same impression from the same square adds nothing.
+
+        Parameters
+        ----------
+        samples, ranges
+            As for `misfits`.
+        x, y : int
+            The square on which it was received, map frame.
+        number : int
+            The number of the impression.
         """
-        seen_here: Told = (x, y, *(told.tobytes() for told in (samples.columns, samples.rows, samples.weight, ranges)))
+        arrays = (samples.columns, samples.rows, samples.weight, ranges)
+        seen_here: ObservationKey = (x, y, *(array.tobytes() for array in arrays))
         if seen_here in self._observations:
             return
         wrong = self.misfits(samples, ranges, x, y)
@@ -206,8 +256,8 @@ class OccupancyMap:
         self._odds = self._odds.after(Fields(self.state.copy().ravel(), *self._fields))
         self._observations.add(seen_here)
 
-    def withdraw(self, squares: Squares) -> None:
-        """Forget what was settled of these squares (flat indices), and every field that covers one of them."""
+    def withdraw(self, squares: Ints) -> None:
+        """Forget what was settled of some squares (flat indices), and all fields that cover one of them."""
         self._observations.clear()
         doubtful = np.zeros(self.state.size, np.bool_)
         doubtful[squares] = True
@@ -218,18 +268,35 @@ class OccupancyMap:
         self._keep(np.logical_not(np.logical_or.reduce(touched, axis=1)))
 
     def stand(self, x: int, y: int, number: int) -> None:
-        """Utak wakes on this square, so it is floor, unless it was settled otherwise: his own image hides it.
+        """Settle the square on which the robot woke as free, unless it was settled before: its own image hides it.
 
-        Where a motion ends proves as much of no square: it may have been stopped right on the line before a wall.
+        The end of a motion proves no square free: the motion may have been stopped on the grid line before a wall.
+
+        Parameters
+        ----------
+        x, y : int
+            The square, map frame.
+        number : int
+            The number of the impression received there.
         """
         row, column = self.index(x, y)
         if self.state[row, column] == OPEN:
             self.state[row, column], self.settled_by[row, column] = FREE, number
-            self._fresh[:] = True  # for what the fields that cover it tell now
+            self._fresh[:] = True  # the fields that cover it may settle more now
         self.seen[row, column] = True
 
-    def declare(self, mask: Mask, value: int, number: int) -> None:
-        """Settle squares by other knowledge than counts (the place of an object that was pushed)."""
+    def declare(self, mask: Bools, value: int, number: int) -> None:
+        """Settle squares by other knowledge than counts, for example the place of an object that was pushed.
+
+        Parameters
+        ----------
+        mask : (rows, columns) bool
+            The squares, on the arrays of the map.
+        value : int
+            FREE, FULL or OPEN.
+        number : int
+            The number of the impression to which this is credited.
+        """
         self.withdraw(np.flatnonzero(mask).astype(np.int32))
         self.state[mask] = value
         self.settled_by[mask] = number
@@ -237,7 +304,10 @@ class OccupancyMap:
     # -- solving ---------------------------------------------------------------------------------
 
     def window(self, west: int, south: int, shape: tuple[int, ...]) -> NDArray[np.int8]:
-        """The states of a (rows, columns) part of the lattice from the square (west, south) on; OPEN beyond the map."""
+        """Return the states of a (rows, columns) part of the map frame from a square (west, south) on.
+
+        Squares beyond the map are OPEN.
+        """
         row, column = self.index(west, south)
         part = np.full(shape, OPEN, np.int8)
         rows = slice(max(-row, 0), max(len(self.state) - row, 0))
@@ -246,8 +316,16 @@ class OccupancyMap:
         there[:] = self.state[max(row, 0) :, max(column, 0) :][: there.shape[0], : there.shape[1]]
         return part
 
-    def supposing(self, squares: Iterable[tuple[int, int]]) -> "OccupancyMap":
-        """The same, were those of some squares free that rather are: to be asked, and to be told nothing."""
+    def supposing(self, squares: Iterable[Square]) -> "OccupancyMap":
+        """Return the map as if those of some squares that are more likely free than occupied were free.
+
+        The result is for reading only: it shares arrays with this map.
+
+        Parameters
+        ----------
+        squares : iterable of (x, y)
+            The squares, map frame.
+        """
         other = copy(self)
         other.state = self.state.copy()
         for x, y in squares:
@@ -258,36 +336,39 @@ class OccupancyMap:
         return other
 
     @property
-    def _fields(self) -> tuple[Squares, NDArray[np.int16], NDArray[np.int16], NDArray[np.int16]]:
-        """All fields that still tell something, as the kernels take them."""
+    def _fields(self) -> tuple[Ints, NDArray[np.int16], NDArray[np.int16], NDArray[np.int16]]:
+        """All fields that still say something, as the kernels take them: where, weight, low, high."""
         return self._where, self._weight, self._low, self._high
 
-    def _informative(self) -> Mask:
+    def _informative(self) -> Bools:
+        """Return which fields still say something of open squares."""
         _, weight, low, high = residue(self.state.ravel(), *self._fields)
         return (weight > 0) & ((low > 0) | (high < weight))
 
-    def _keep(self, rows: Mask) -> None:
+    def _keep(self, rows: Bools) -> None:
+        """Drop all fields but those of a mask."""
         self._where, self._weight = self._where[rows], self._weight[rows]
         self._low, self._high, self._fresh = self._low[rows], self._high[rows], self._fresh[rows]
 
-    # -- room to grow ----------------------------------------------------------------------------
+    # -- growth ----------------------------------------------------------------------------
 
-    def _under(self, samples: Samples, x: int, y: int) -> Squares:
-        """(160, 16) flat indices of the squares sampled from (x, y)."""
+    def _under(self, samples: Samples, x: int, y: int) -> Ints:
+        """Return the flat indices of the squares sampled from square (x, y), (160, 16)."""
         columns = self.state.shape[1]
-        answer: Squares = (samples.rows + (y - self.south)) * columns + samples.columns + (x - self.west)
+        answer: Ints = (samples.rows + (y - self.south)) * columns + samples.columns + (x - self.west)
         return answer
 
     def make_room(self, x: int, y: int) -> None:
-        """Grow the arrays until a look from (x, y), at any angle, fits in."""
+        """Grow the arrays until all that can be seen from square (x, y) of the map frame fits in."""
         row, column = self.index(x, y)
         rows, columns = self.state.shape
-        south, west = max(0, SIGHT - row), max(0, SIGHT - column)
-        north, east = max(0, row + SIGHT + 1 - rows), max(0, column + SIGHT + 1 - columns)
+        south, west = max(0, SIGHT_RANGE - row), max(0, SIGHT_RANGE - column)
+        north, east = max(0, row + SIGHT_RANGE + 1 - rows), max(0, column + SIGHT_RANGE + 1 - columns)
         if south or west or north or east:
-            self._grow(*(n + MARGIN if n else 0 for n in (south, north, west, east)))
+            self._grow(*(n + GROWTH_MARGIN if n else 0 for n in (south, north, west, east)))
 
     def _grow(self, south: int, north: int, west: int, east: int) -> None:
+        """Add so many rows and columns on each side."""
         rows, columns = np.divmod(self._where, self.state.shape[1])
         widths = ((south, north), (west, east))
         self.state = np.pad(self.state, widths, constant_values=OPEN)
@@ -298,11 +379,11 @@ class OccupancyMap:
         self._where = ((rows + south) * self.state.shape[1] + columns + west).astype(np.int32)
 
 
-def _fill_gaps(probability: NDArray[np.float32], seen: Mask) -> None:
-    """Count a single square that no field happened to sample, amid squares that were seen, as seen: as likely
-    occupied as those about it.
+def _fill_gaps(probability: NDArray[np.float32], seen: Bools) -> None:
+    """Mark squares that no field happened to sample, though three edge neighbours were seen, as seen; in place.
 
-    On a turned lattice the eye skips some squares, though never two side by side.
+    Their probability is the mean of those neighbours. In a turned frame the retina skips some squares, but never two
+    adjacent ones.
     """
     known = np.pad(seen, 1).astype(np.float32)
     likely = np.pad(np.where(seen, probability, 0), 1)

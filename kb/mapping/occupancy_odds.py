@@ -1,7 +1,8 @@
-"""How likely open squares are occupied: the maximum-entropy distribution with the fields' mean counts.
+"""The odds that open squares are occupied: the maximum-entropy distribution with the mean counts of the fields.
 
-It is found by iterative proportional fitting after every look, from where the look before left it. Most maps are made
-to be compared in what they settle, and nobody asks them for odds: so the fitting is put off until somebody does.
+They are found by iterative proportional fitting (Deming and Stephan 1940) after every impression, from the odds that
+the impression before left. Most maps are made only to compare what they settle, and nobody asks for their odds: so the
+fitting is put off until somebody does.
 """
 
 from functools import cached_property
@@ -11,52 +12,73 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.counts.settle import residue
+from geometry.kernels.arrays import Floats, Ints
 
-FITTING_ROUNDS = 6
-STRAY = 0.05  # occupied squares expected under a field that shows level 0 and yet may hide one
-LARGEST_LOGIT = 6.0
+FITTING_ROUNDS = 6  # rounds of iterative proportional fitting after an impression; tuned
+STRAY_COUNT = 0.05  # occupied squares expected under a field that shows level 0 and yet may hide one; tuned
+MAX_LOGIT = 6.0  # log odds are kept within plus and minus this; convention
+MIN_TARGET_SHARE, MAX_TARGET_SHARE = 0.002, 0.998  # shares of occupied squares are clipped to these; convention
 
 Logits = NDArray[np.float32]
-Squares = NDArray[np.int32]
 
 
 class Fields(NamedTuple):
-    """Fields and what was settled when they were fitted to: as for geometry.counts.settle."""
+    """Fields, and the states of squares when the odds were fitted to them; as geometry.counts.settle takes them.
+
+    Attributes
+    ----------
+    state : (size,) int8
+        What was settled, by flat index of the square.
+    where : (n, 16) int32
+        Flat indices of the squares under each field.
+    weight : (n, 16) int16
+        How often each of them counts; 0 is padding.
+    low, high : (n,) int16
+        The least and the greatest count of occupied squares.
+    """
 
     state: NDArray[np.int8]
-    where: Squares
+    where: Ints
     weight: NDArray[np.int16]
     low: NDArray[np.int16]
     high: NDArray[np.int16]
 
 
 class Forgotten(NamedTuple):
-    """That nothing is known any more of some squares (flat)."""
+    """A change of the map: nothing is known any more of some squares, given by flat indices (n,) int32."""
 
-    squares: Squares
+    squares: Ints
 
 
 class Grown(NamedTuple):
-    """That the map grew by so many rows and columns before and after those it had."""
+    """A change of the map: rows and columns were added, ((south, north), (west, east))."""
 
     widths: tuple[tuple[int, int], tuple[int, int]]
 
 
 class Odds:
-    """Log odds that squares are occupied, as some changes leave them that are worked out when they are asked for."""
+    """The log odds that squares are occupied, as some changes leave them; computed when they are asked for.
+
+    Parameters
+    ----------
+    logit : (rows, columns) float32
+        The log odds before the changes.
+    changes : tuple of Fields, Forgotten or Grown
+        The changes, oldest first.
+    """
 
     def __init__(self, logit: Logits, changes: tuple[Fields | Forgotten | Grown, ...] = ()) -> None:
         self._before, self._changes = logit, changes
 
     def after(self, change: Fields | Forgotten | Grown) -> "Odds":
-        """The odds after one more change."""
+        """Return the odds after one more change."""
         if "logit" in self.__dict__:
             return Odds(self.logit, (change,))
         return Odds(self._before, (*self._changes, change))
 
     @cached_property
     def logit(self) -> Logits:
-        """(rows, columns): 0 where nothing was seen."""
+        """The log odds, (rows, columns) float32; 0 where nothing was seen."""
         logit = self._before.copy()
         for change in self._changes:
             if isinstance(change, Grown):
@@ -69,7 +91,7 @@ class Odds:
 
 
 def _fit(logits: Logits, fields: Fields) -> None:
-    """Fit the open squares' odds to the fields' mean counts."""
+    """Fit the odds of open squares to the mean counts of the fields, in place."""
     where, weights = fields.where, fields.weight
     open_, weight, low, high = residue(*fields)
     if not open_.any():
@@ -79,18 +101,19 @@ def _fit(logits: Logits, fields: Fields) -> None:
     times = np.maximum(np.bincount(column, minlength=len(squares)), 1)
     logit = logits.ravel()[squares].astype(np.float64)
     middle = 0.5 * (low + high).astype(np.float64)
-    middle = np.where((fields.low == 0) & (fields.high == 1), np.minimum(middle, STRAY), middle)
+    middle = np.where((fields.low == 0) & (fields.high == 1), np.minimum(middle, STRAY_COUNT), middle)
     target = _logit(middle[entry] / np.maximum(weight, 1)[entry])
     share = weights[open_] / np.maximum(weight, 1)[entry]
     for _ in range(FITTING_ROUNDS):
         p = 1.0 / (1.0 + np.exp(-logit))
         mean = np.bincount(entry, p[column] * share, minlength=len(weight)).astype(np.float64)[entry]
         logit += np.bincount(column, target - _logit(mean), minlength=len(squares)) / times
-        np.clip(logit, -LARGEST_LOGIT, LARGEST_LOGIT, out=logit)
+        np.clip(logit, -MAX_LOGIT, MAX_LOGIT, out=logit)
     logits.ravel()[squares] = logit
 
 
-def _logit(p: NDArray[np.float64]) -> NDArray[np.float64]:
-    p = np.clip(p, 0.002, 0.998)
-    answer: NDArray[np.float64] = np.log(p / (1 - p))
+def _logit(p: Floats) -> Floats:
+    """Return the log odds of probabilities, clipped away from 0 and 1."""
+    p = np.clip(p, MIN_TARGET_SHARE, MAX_TARGET_SHARE)
+    answer: Floats = np.log(p / (1 - p))
     return answer

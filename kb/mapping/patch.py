@@ -1,4 +1,4 @@
-"""A patch: a set of squares of the map, with where it lies."""
+"""A patch: a set of squares of the map, and where it lies."""
 
 from collections.abc import Iterable
 from typing import Any, NamedTuple
@@ -6,15 +6,20 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
-from geometry.kernels.arrays import Bools, Square
+from geometry.kernels.arrays import XY, Bools, Square
 from geometry.raster.rasterize import squares
 from kb.mapping.occupancy import MapView
 
 
 class Patch(NamedTuple):
-    """A set of squares of the lattice. west, south.
+    """A set of squares of the map frame.
 
-    The square at [0, 0] of mask, a (rows, columns) array cut to its extent.
+    Attributes
+    ----------
+    west, south : int
+        The square at [0, 0] of the mask, map frame.
+    mask : (rows, columns) bool
+        Which squares belong to it.
     """
 
     west: int
@@ -22,26 +27,40 @@ class Patch(NamedTuple):
     mask: Bools
 
     @property
-    def centre(self) -> tuple[float, float]:
-        """The mean of its squares' centres."""
+    def centre(self) -> XY:
+        """The mean of the centres of its squares, (x, y) in the map frame; it has at least one square."""
         rows, columns = np.nonzero(self.mask)
         return self.west + float(columns.mean()) + 0.5, self.south + float(rows.mean()) + 0.5
 
-    def squares(self) -> set[tuple[int, int]]:
-        """Its squares (x, y)."""
+    def squares(self) -> set[Square]:
+        """Return its squares (x, y), map frame."""
         rows, columns = np.nonzero(self.mask)
         return {(self.west + c, self.south + r) for r, c in zip(rows.tolist(), columns.tolist(), strict=True)}
 
 
 def patch_of(mask: Bools, view: MapView) -> Patch:
-    """The squares of a mask on the view's arrays, cut to their extent."""
+    """Return the patch of a mask on the view's arrays, cut to its extent.
+
+    Parameters
+    ----------
+    mask : (rows, columns) bool
+        At least one square.
+    view : MapView
+        The view on whose arrays the mask is.
+    """
     rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))
     part = mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
     return Patch(view.west + int(columns[0]), view.south + int(rows[0]), part.copy())
 
 
 def covered(polygon: Any) -> Patch:
-    """The squares of the lattice that a polygon covers."""
+    """Return the patch of the squares whose open interior meets a polygon.
+
+    Parameters
+    ----------
+    polygon : shapely Polygon or MultiPolygon
+        In the map frame; not empty.
+    """
     x0, y0, x1, y1 = polygon.bounds
     west, south = int(np.floor(x0)), int(np.floor(y0))
     placed = shapely.transform(polygon, lambda points: points - np.array([west, south]))
@@ -49,7 +68,7 @@ def covered(polygon: Any) -> Patch:
 
 
 def patch_of_squares(squares_: Iterable[Square]) -> Patch:
-    """The patch of some squares, at least one."""
+    """Return the patch of some squares (x, y) of the map frame, at least one."""
     columns, rows = np.array(sorted(squares_)).T
     west, south = int(columns.min()), int(rows.min())
     mask = np.zeros((int(rows.max()) + 1 - south, int(columns.max()) + 1 - west), np.bool_)

@@ -1,1 +1,13 @@
-"""."""
+"""Objects: what is believed of their shape and extent, and of where an object lies that the robot has held.
+
+Modules in reading order:
+
+subcell_extent  how far the sides of an object lie within the squares in which it was seen
+shape_fit       the shape classes that fit the squares of a patch, measured by geometry
+proportions     whether a rectangle is a square or a brick, as far as its extent is known
+held_object     an object that the robot has held: its outline, its place, and how exactly both are known
+touches         the colours that were felt, square by square
+
+Public names: `SubcellExtent`, `SideValues` (subcell_extent); `ShapeMeasurer`, `ShapeMeasurement` (shape_fit); `may_be`
+(proportions); `HeldObject` (held_object); `Touches` (touches).
+"""

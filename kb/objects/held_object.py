@@ -1,9 +1,8 @@
-"""Loads: things that Utak has taken hold of, and what he believes of where they lie now.
+"""Held objects: what is believed of objects that the robot has held, and of where they lie now.
 
-What never moves is known from the counts of all looks together (kb.mapping.occupancy). A thing that he carries
-would contradict
-them, so it is taken out of the standing map when he grasps it: from then on it is a shape with a place of its own, and
-every look is freed of what the shape itself shows before it is counted as evidence of the rest.
+What never moves is known from the counts of all impressions together (kb.mapping.occupancy). An object that moves
+would contradict them, so it is taken out of the map when it is grasped. From then on it is a shape with a place of its
+own, and its share of every impression is subtracted before the counts of the rest are solved.
 """
 
 import math
@@ -17,38 +16,76 @@ import shapely
 from numpy.typing import NDArray
 
 from geometry.counts.uncover import uncover
+from geometry.kernels.arrays import Square as Square
 from kb.mapping.patch import Patch, covered, patch_of_squares
-from kb.objects.subcell_extent import NONE, Sides, SubcellExtent, further, moved_in, told, turned, within_play
+from kb.objects.subcell_extent import (
+    NO_INSETS,
+    SideValues,
+    SubcellExtent,
+    inset_change,
+    moved_in,
+    narrowed,
+    turn_sides,
+    within_play,
+)
 from kb.perception.frame import Samples
 
-Mask = NDArray[np.bool_]
-Square = tuple[int, int]  # (x, y) of the lattice
-WHOLE = 1e-6  # squares: corners this near to corners of the lattice are taken to be there
-ROUNDING = 1e-4  # squares by which an outline may lie otherwise that is known but for the rounding of commands
-DUBIOUS = 8  # fields that a motion of a thing leaves as noise when it rather lies elsewhere
-SLIGHT = 0.3  # squares by which the outline of a thing that is not whole may lie otherwise
-NOTHING = Patch(0, 0, np.zeros((1, 1), np.bool_))  # no square
+WHOLE = 1e-6  # squares: a corner so close to a corner of the grid is taken to be there; rounding of floats
+ROUNDING = 1e-4  # squares: tolerance of an outline that is known exactly, but for the rounding of commands; derived
+MIN_DUBIOUS_FIELDS = (
+    8  # fields that a motion leaves unexplained, from which the object more likely lies elsewhere; tuned
+)
+OUTLINE_TOLERANCE = 0.3  # squares: how far the true outline may lie from a fitted one off the grid; tuned
+EMPTY_PATCH = Patch(0, 0, np.zeros((1, 1), np.bool_))  # no square
 
 
 @dataclass(frozen=True)
 class HeldObject:
-    """Something that Utak has held.
+    """An object that the robot holds, or has held.
 
     Attributes
     ----------
-    name : of its node in the world model. polygon : where it is believed to lie (shapely, lattice frame).
-    first : where it lay when he first took hold of it. slack : squares by which its outline may lie otherwise.
-    full, empty : squares, of those that the slack leaves open, that were seen to be covered or not since it last moved.
-    shape, colour, support : as of the node, from before it was grasped; support grows with every look at it. The shape
-    of what was found to be larger since is {} until it is measured.
-    turned : degrees that it was turned since then. proven : it was seen to move. stuck : motions in a row that did not
-    move it. since : how many looks had been received when it was first held. astray : squares by which it may lie
-    otherwise besides, for it is not known where in his square Utak stands, and so about what it was turned.
-    unexplained : fields that the worst explained of its motions left as noise. skewed : its outline was measured on
-    another lattice, and could not be measured on this one. thwarted : motions in all that did not move it though it had
-    moved before, and nothing is suspected to have stopped it. inexact : it lies only about where it is believed to,
-    also where its corners seem to lie on the lattice. insets : how far its sides may lie within the squares in which it
-    was seen; None when it does not lie along them. stopped : one of its motions ended early, or beside.
+    name : str
+        The name of its node in the world model.
+    polygon : shapely Polygon
+        Its believed outline, where it is believed to lie now; map frame.
+    first : shapely Polygon
+        Where it lay when it was first held; map frame.
+    slack : float
+        How far the true outline may lie from the believed one, in squares.
+    full, empty : frozenset of (x, y)
+        Squares that the tolerance leaves open, but that were seen to be occupied, or not, since it last moved.
+    turned : float
+        Degrees by which it was turned since it was first held, counter-clockwise positive.
+    shape : mapping of str to int
+        Shape class -> confidence in percent, from before it was grasped; {} until it is measured anew, if it was found
+        to be larger than it seemed.
+    colour : str or None
+        The colour felt on it before it was grasped.
+    support : tuple of int
+        Numbers of the impressions that support it; every impression of it is added.
+    proven : bool
+        Whether it was seen to move.
+    stuck : int
+        How many of the last motions in a row did not move it.
+    since : int
+        How many impressions had been received when it was first held.
+    astray : float
+        Additional tolerance in squares: where the robot stands in its square, and so the centre of its turns, is not
+        known exactly.
+    unexplained : int
+        How many fields the worst explained of its motions left unexplained.
+    skewed : bool
+        Whether its outline was measured in another frame, and could not be measured in this one.
+    thwarted : int
+        How many motions in all did not move it, though it had moved before and nothing is suspected to have stopped it.
+    inexact : bool
+        Whether its place is known only roughly, even where its corners seem to lie on the grid.
+    insets : SubcellExtent or None
+        How far its sides may lie within the squares in which it was seen, as it lay when first held; None when they
+        are not parallel to the grid.
+    stopped : bool
+        Whether one of its motions ended early, or beside its predicted place.
     """
 
     name: str
@@ -74,50 +111,53 @@ class HeldObject:
 
     @property
     def dubious(self) -> bool:
-        """May it well lie elsewhere than it is believed to, or be of another outline?"""
-        return self.skewed or self.unexplained >= DUBIOUS
+        """Whether it may well lie elsewhere than believed, or have another outline."""
+        return self.skewed or self.unexplained >= MIN_DUBIOUS_FIELDS
 
     @property
     def play(self) -> float:
-        """By how many squares its outline may lie otherwise, for whatever reason; 0 for what only rounding leaves."""
+        """The distance within which the true outline lies of the believed one, in squares; 0 for mere rounding."""
         play = max(self.slack, self.astray)
         return play if play >= WHOLE else 0.0
 
     @property
     def lying_insets(self) -> SubcellExtent | None:
-        """How far in its sides lie, those to the west, east, south, north as it lies now; None when it lies askew."""
+        """The possible insets of its sides as it lies now; None when its sides are not parallel to the grid."""
         quarters = self._quarters
         return None if self.insets is None or quarters is None else self.insets.after(quarters)
 
     @property
-    def short(self) -> Sides:
-        """By how much they may lie further in than they are believed to."""
+    def short(self) -> SideValues:
+        """The distance by which each side (west, east, south, north) may lie further in than believed, in squares."""
         insets = self.lying_insets
         return (self.play, self.play, self.play, self.play) if insets is None else insets.short
 
     @property
     def _quarters(self) -> int | None:
-        """How many quarter turns it was turned; None when it lies askew."""
+        """The number of quarter turns that it was turned; None when it lies askew."""
         quarters = round(self.turned / 90.0)
         return quarters if abs(self.turned - 90.0 * quarters) < WHOLE else None
 
     @cached_property
     def sure(self) -> Patch:
-        """The squares that it surely covers."""
-        inner = self._within(1) if self.play else self.polygon
-        patch = NOTHING if inner.is_empty else covered(inner)
+        """The squares that it surely covers, map frame."""
+        inner = self._bound(1) if self.play else self.polygon
+        patch = EMPTY_PATCH if inner.is_empty else covered(inner)
         return patch if not self.full else patch_of_squares(patch.squares() | self.full)
 
     @cached_property
     def possible(self) -> Patch:
-        """The squares that it covers or may cover."""
+        """The squares that it covers or may cover, map frame."""
         if not self.play:
             return self.sure
-        patch = covered(self._within(-1))
+        patch = covered(self._bound(-1))
         return patch if not self.empty else patch_of_squares(patch.squares() - self.empty)
 
-    def _within(self, inwards: int) -> Any:
-        """The outline where it is least, or where it is most with -1: what is known of each side is made use of."""
+    def _bound(self, inwards: int) -> Any:
+        """Return the smallest possible outline (inwards 1), or the greatest (-1), map frame.
+
+        What is known of each side is used where no motion ended early.
+        """
         insets = self.lying_insets
         if insets is not None and not self.stopped and self.play <= max(insets.play, ROUNDING):
             west, east, south, north = insets.plays[inwards > 0]
@@ -128,28 +168,53 @@ class HeldObject:
         return self.polygon.buffer(-inwards * self.play, join_style="mitre")
 
     def moved(self, polygon: Any, slack: float, degrees: float = 0.0, commanded: bool = False) -> "HeldObject":
-        """The load after a motion that it was seen to make.
+        """Return the object after a motion that it was seen to make.
 
-        degrees : by which it was turned. commanded : whether it went all the way; where it was stopped it lies right
-        beside a line of the lattice as often as on it.
+        Parameters
+        ----------
+        polygon : shapely Polygon
+            Where it lies now, map frame.
+        slack : float
+            How far the true outline may lie from that, in squares.
+        degrees : float
+            By how much it was turned, counter-clockwise positive.
+        commanded : bool
+            Whether the motion went all the way. An object that was stopped lies close beside a grid line as often as
+            on it.
         """
         stopped, turned = self.stopped or not commanded, self.turned + degrees
         return replace(self.lying(polygon, slack), turned=turned, proven=True, stuck=0, stopped=stopped)
 
-    def lying(self, polygon: Any, otherwise: float = SLIGHT) -> "HeldObject":
-        """The load where a polygon says, of which no look has told yet.
+    def lying(self, polygon: Any, otherwise: float = OUTLINE_TOLERANCE) -> "HeldObject":
+        """Return the object at another place, of which no impression has shown anything yet.
 
-        otherwise : its slack; what is whole has none, unless its sides may lie further in or out.
+        Parameters
+        ----------
+        polygon : shapely Polygon
+            Where it lies, map frame.
+        otherwise : float
+            How far the true outline may lie from that, in squares. An outline with all corners on the grid is taken
+            for exact, unless its place is known only roughly or its sides may lie further in or out.
         """
         nothing: frozenset[Square] = frozenset()
         placed = whole(polygon)
-        slack = max(otherwise, SLIGHT) if self.inexact else slack_of(placed, otherwise)
+        slack = max(otherwise, OUTLINE_TOLERANCE) if self.inexact else slack_of(placed, otherwise)
         if self.insets is not None and self._quarters is not None and self.insets.play:
             slack = max(slack, self.insets.play)
         return replace(self, polygon=placed, slack=slack, full=nothing, empty=nothing)
 
     def seen(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> "HeldObject":
-        """The load after a look from square (x, y): fields of a single square tell which of the open ones it covers."""
+        """Return the object after an impression: fields of one square show which of its open squares it covers.
+
+        Parameters
+        ----------
+        samples : Samples
+            The squares that each field samples.
+        ranges : (160, 2) int16
+            The least and the greatest count of occupied squares under each field.
+        x, y : int
+            The square on which the impression was received, map frame.
+        """
         single = (samples.weight.sum(1) == 1) & (samples.slack == 0)
         open_ = self.possible.squares() - self.sure.squares()
         if not open_ or not single.any():
@@ -161,80 +226,144 @@ class HeldObject:
         return replace(self, full=full, empty=empty)
 
     def told(self, agrees: Callable[[Any], bool]) -> "HeldObject | None":
-        """The load as a look leaves it that tells how far in its sides lie; None when it agrees with no such outline.
+        """Return the object with the insets of its sides narrowed by an impression.
 
-        agrees : does the look agree with the load if that is its outline?
+        Parameters
+        ----------
+        agrees : function
+            Returns whether the impression agrees with an outline of the object, map frame.
+
+        Returns
+        -------
+        HeldObject or None
+            None when the impression agrees with no outline of possible insets, or when insets say nothing of it.
         """
         quarters = self._quarters
         if self.insets is None or quarters is None or self.inexact or self.skewed or self.astray > ROUNDING:
             return None
-        left = told(self.insets.after(quarters), self.polygon, agrees)
+        left = narrowed(self.insets.after(quarters), self.polygon, agrees)
         return None if left is None else self.inset(left.after(-quarters))
 
     def inset(self, insets: SubcellExtent) -> "HeldObject | None":
-        """The load with its sides where they are believed to lie then; None when it would be no outline."""
+        """Return the object with other possible insets, its sides moved to where they are then believed to lie.
+
+        Parameters
+        ----------
+        insets : SubcellExtent
+            The possible insets of its sides, as it lay when first held.
+
+        Returns
+        -------
+        HeldObject or None
+            None when the result would be no outline, or when its sides are not parallel to the grid.
+        """
         quarters = self._quarters
         if self.insets is None or quarters is None:
             return None
-        change = further(insets, self.insets)
+        change = inset_change(insets, self.insets)
         if not any(change):
             return replace(self, insets=insets, slack=max(insets.play, ROUNDING) if insets.play else self.slack)
-        polygon, first = moved_in(self.polygon, turned(change, quarters)), moved_in(self.first, change)
+        polygon, first = moved_in(self.polygon, turn_sides(change, quarters)), moved_in(self.first, change)
         if polygon is None or first is None:
             return None
         lying = self.lying(polygon, max(insets.play, ROUNDING))
         return replace(lying, first=first, insets=insets)
 
     def woken(self, far: float) -> "HeldObject":
-        """The load, if where Utak woke is known up to so many squares, which tells about what point it was turned."""
+        """Return the object if the point where the robot woke is known within a distance: it bounds the turns' centre.
+
+        Parameters
+        ----------
+        far : float
+            The distance, in squares.
+        """
         return replace(self, astray=2 * far * abs(math.sin(math.radians(self.turned / 2))))
 
     def resisted(self) -> "HeldObject":
-        """The load after a motion that it was expected to make and did not."""
+        """Return the object after a motion that it was expected to make and did not."""
         return replace(self, stuck=self.stuck + 1)
 
 
 def borne_out(loads: Mapping[str, HeldObject], held: str | None) -> dict[str, HeldObject]:
-    """The loads that are held or were seen to move: he may have grasped beside any other, and it stands elsewhere."""
+    """Return the objects that are held or were seen to move: a grasp of any other may have missed it.
+
+    Parameters
+    ----------
+    loads : mapping of str to HeldObject
+        All objects that were grasped, by name.
+    held : str or None
+        The name of the one in hand.
+    """
     return {name: load for name, load in loads.items() if load.proven or name == held}
 
 
 def whole(polygon: Any) -> Any:
-    """The polygon with its corners exactly on corners of the lattice, if all of them lie there but for rounding."""
+    """Return a polygon with its corners rounded to corners of the grid if all of them lie there but for rounding.
+
+    Parameters
+    ----------
+    polygon : shapely Polygon
+        In the map frame.
+    """
     return shapely.transform(polygon, np.rint) if is_whole(polygon) else polygon
 
 
 def is_whole(polygon: Any) -> bool:
-    """Do all corners lie on corners of the lattice?"""
+    """Return whether all corners of a shapely geometry of the map frame lie on corners of the grid."""
     points = shapely.get_coordinates(polygon)
     return bool(np.abs(points - np.rint(points)).max() < WHOLE)
 
 
-def slack_of(polygon: Any, otherwise: float = SLIGHT) -> float:
-    """By how much an outline may lie otherwise: not at all where it is whole, for then its image tells it exactly."""
+def slack_of(polygon: Any, otherwise: float = OUTLINE_TOLERANCE) -> float:
+    """Return how far the true outline may lie from a believed one, in squares.
+
+    Parameters
+    ----------
+    polygon : shapely Polygon
+        The believed outline, map frame.
+    otherwise : float
+        The tolerance of an outline off the grid, in squares. One with all corners on the grid is exact: its image
+        shows it exactly.
+    """
     return 0.0 if is_whole(polygon) else max(otherwise, ROUNDING)
 
 
-def seen_insets(polygon: Any) -> SubcellExtent | None:
-    """How far in the sides of a thing may lie that never moved; None when they are not along the lattice."""
+def initial_insets(polygon: Any) -> SubcellExtent | None:
+    """Return the possible insets of the sides of an object that never moved; None when it is not on the grid."""
     return SubcellExtent() if polygon is not None and is_whole(polygon) else None
 
 
-def seen_short(polygon: Any) -> Sides:
-    """By how much they may lie further in than those of its outline."""
+def initial_short(polygon: Any) -> SideValues:
+    """Return by how much further in the sides of an object that never moved may lie than its outline, in squares."""
     if polygon is None:
-        return NONE
-    insets = seen_insets(polygon)
-    return (SLIGHT, SLIGHT, SLIGHT, SLIGHT) if insets is None else insets.short
+        return NO_INSETS
+    insets = initial_insets(polygon)
+    return (OUTLINE_TOLERANCE,) * 4 if insets is None else insets.short
 
 
 def discounted(
     samples: Samples, ranges: NDArray[np.int16], x: int, y: int, loads: Iterable[HeldObject]
 ) -> tuple[Samples, NDArray[np.int16]]:
-    """What a look from square (x, y) says of all but the loads: their squares are not sampled, and not counted.
+    """Subtract objects that were held from an impression, so that it speaks of all else alone.
 
-    ranges : (160, 2) least and greatest counts. A greatest count below 0 means that a load cannot be where it is
-    believed to be.
+    Parameters
+    ----------
+    samples : Samples
+        The squares that each field samples.
+    ranges : (160, 2) int16
+        The least and the greatest count of occupied squares under each field.
+    x, y : int
+        The square on which the impression was received, map frame.
+    loads : iterable of HeldObject
+        The objects.
+
+    Returns
+    -------
+    samples : Samples
+        The samples without the squares of the objects.
+    ranges : (160, 2) int16
+        The counts of the remaining squares. A greatest count below 0 shows that an object is not where it is believed
+        to be.
     """
     left, weight = ranges.copy(), samples.weight.copy()
     for load in loads:

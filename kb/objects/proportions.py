@@ -1,7 +1,8 @@
-"""Whether a rectangle is a square or a brick, by what is known of how far in its sides lie (kb.objects.subcell_extent).
+"""Whether a rectangle is a square or a brick, as far as it is known how far its sides lie within their squares.
 
-What lies between the squares covers some in part and looks longer than it is: a square looks like a brick longer by
-one, and a brick may look like a square, unless pushes by parts of a square have told.
+An object that lies between the squares of the grid covers some of them in part and looks longer than it is: a square
+looks like a brick longer by one, and a brick may look like a square, unless pushes by parts of a square have shown
+more (kb.objects.subcell_extent).
 """
 
 from collections.abc import Mapping
@@ -10,55 +11,88 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
-from kb.objects.subcell_extent import ALONG, SubcellExtent
+from kb.objects.subcell_extent import GRID_ALIGNMENT_TOLERANCE, SubcellExtent
 
-SAME = 0.25  # squares by which the sides of a square may seem to differ
-TOLD = 0.5  # squares within which the length of a side must be known to go by it
+MAX_SQUARE_DIFFERENCE = 0.25  # squares: the sides of a square may seem to differ by so much; tuned
+MAX_SIDE_UNCERTAINTY = 0.5  # squares: the length of a side must be known within this for the class to change; tuned
 
 
 class SideInterval(NamedTuple):
-    """How long a side is believed to be, and at least and at most, in squares."""
+    """The length of a side, in squares: as believed, and its least and greatest possible value."""
 
     believed: float
     least: float
     most: float
 
 
-def spans(polygon: Any, insets: SubcellExtent | None) -> tuple[SideInterval, SideInterval] | None:
-    """The sides of a rectangle that lies along the lattice, to the east and to the north; None for all else."""
+def side_intervals(polygon: Any, insets: SubcellExtent | None) -> tuple[SideInterval, SideInterval] | None:
+    """Return the lengths of the sides of a rectangle parallel to the grid, along x and along y.
+
+    Parameters
+    ----------
+    polygon : shapely Polygon or None
+        The believed outline, map frame.
+    insets : SubcellExtent or None
+        How far its sides lie within their squares.
+
+    Returns
+    -------
+    (SideInterval, SideInterval) or None
+        None for all that is no such rectangle.
+    """
     if polygon is None or insets is None:
         return None
     points = shapely.get_coordinates(polygon)
     x0, y0, x1, y1 = polygon.bounds
-    if len(points) != 5 or np.abs((points - (x0, y0)) * (points - (x1, y1))).max() > ALONG:
+    if len(points) != 5 or np.abs((points - (x0, y0)) * (points - (x1, y1))).max() > GRID_ALIGNMENT_TOLERANCE:
         return None
-    return _span(x1 - x0, insets, 0), _span(y1 - y0, insets, 2)
+    return _side_interval(x1 - x0, insets, 0), _side_interval(y1 - y0, insets, 2)
 
 
-def _span(length: float, insets: SubcellExtent, axis: int) -> SideInterval:
+def _side_interval(length: float, insets: SubcellExtent, axis: int) -> SideInterval:
+    """Return the interval of a side believed to be so long; axis 0 is west-east, axis 2 south-north."""
     here, least, most = (sum(sides[axis : axis + 2]) for sides in (insets.believed, insets.least, insets.most))
     return SideInterval(length, length + here - most, length + here - least)
 
 
 def may_be(polygon: Any, insets: SubcellExtent | None) -> tuple[str, ...]:
-    """What a rectangle may be as far as its sides are told: square, brick, or both; () for all else."""
-    sides = spans(polygon, insets)
+    """Return what a rectangle may be, as far as the lengths of its sides are known.
+
+    Parameters
+    ----------
+    polygon, insets
+        As for `side_intervals`.
+
+    Returns
+    -------
+    tuple of str
+        square, brick, or both; () for all that is no rectangle parallel to the grid.
+    """
+    sides = side_intervals(polygon, insets)
     if sides is None:
         return ()
     (_, low, high), (_, left, right) = sides
     apart, further = max(low - right, left - high), max(high - left, right - low)
-    return ("square",) * (apart <= SAME) + ("brick",) * (further > SAME)
+    return ("square",) * (apart <= MAX_SQUARE_DIFFERENCE) + ("brick",) * (further > MAX_SQUARE_DIFFERENCE)
 
 
-def reshaped(shape: Mapping[str, int], polygon: Any, insets: SubcellExtent | None) -> Mapping[str, int]:
-    """The confidences in classes of shapes, where pushes told that a rectangle is smaller than the squares it fills."""
-    sides = spans(polygon, insets)
+def corrected_shape(shape: Mapping[str, int], polygon: Any, insets: SubcellExtent | None) -> Mapping[str, int]:
+    """Return the confidences in shape classes, corrected where a rectangle is known to be smaller than its squares.
+
+    Parameters
+    ----------
+    shape : mapping of str to int
+        Shape class -> confidence in percent, as the squares show it.
+    polygon, insets
+        As for `side_intervals`.
+    """
+    sides = side_intervals(polygon, insets)
     if sides is None or insets is None or not any(insets.believed):
         return shape
-    if any(side.most - side.least > TOLD for side in sides):
+    if any(side.most - side.least > MAX_SIDE_UNCERTAINTY for side in sides):
         return shape
     square, brick = "square", "brick"
-    if abs(sides[0].believed - sides[1].believed) > SAME:
+    if abs(sides[0].believed - sides[1].believed) > MAX_SQUARE_DIFFERENCE:
         square, brick = brick, square
     confidence = max(shape.get(name, 0) for name in ("square", "brick", "rectangle"))
     return {**shape, square: confidence, brick: min(shape.get(square, 0), shape.get(brick, 0))}

@@ -1,28 +1,32 @@
-"""Measuring objects: which shapes fit the squares of a patch, and how well. Geometry measures.
-
-Kb/asp/shapes.lp decides.
-"""
+"""Measuring shapes: which shape classes fit the squares of a patch, and how well. kb/asp/shapes.lp decides."""
 
 from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Bools
 from geometry.shapes.fit import fit_shapes
 from kb.mapping.occupancy import FULL, OPEN, MapView
 from kb.mapping.patch import Patch
 
-Mask = NDArray[np.bool_]
-LIKELY = 0.85  # that a square is covered: then it is measured as if it were
-MOST_OPEN = 2.0  # times as many open squares as settled ones: beyond that nothing is measured
+MIN_COVERED_PROBABILITY = 0.85  # an open square occupied at least so likely is measured as if it were covered; tuned
+MAX_OPEN_RATIO = 2.0  # open squares for each covered one, at most: beyond that nothing is measured; tuned
 
 
-class Measured(NamedTuple):
-    """What was measured of a patch.
+class ShapeMeasurement(NamedTuple):
+    """A measurement of a patch.
 
-    fits: (class, squares wrong) pairs, the likeliest first. polygon: the first one's outline in the lattice, or None.
-    open, full: squares that are not settled, and that are settled as covered.
+    Attributes
+    ----------
+    fits : tuple of (str, int)
+        Shape class and number of squares that it leaves wrong, the likeliest class first; () when nothing fits yet.
+    polygon : shapely Polygon or None
+        The outline of the first class, map frame.
+    open : int
+        How many squares of the patch are not settled.
+    full : int
+        How many are settled as covered.
     """
 
     fits: tuple[tuple[str, int], ...]
@@ -31,35 +35,44 @@ class Measured(NamedTuple):
     full: int
 
 
-class Measurer:
-    """Measures patches, and remembers what it measured."""
+class ShapeMeasurer:
+    """Measures patches, and remembers the fits of all squares that it has measured."""
 
     def __init__(self) -> None:
         self._known: dict[tuple[bytes, bytes], tuple[tuple[tuple[str, int], ...], Any]] = {}
 
-    def measure(self, patch: Patch, view: MapView) -> Measured:
-        """The fits of one patch of the map."""
+    def measure(self, patch: Patch, view: MapView) -> ShapeMeasurement:
+        """Measure a patch of the map.
+
+        Parameters
+        ----------
+        patch : Patch
+            The squares that the object covers, or may cover.
+        view : MapView
+            The map; the patch lies within its arrays.
+        """
         row, column = patch.south - view.south, patch.west - view.west
         part = (slice(row, row + patch.mask.shape[0]), slice(column, column + patch.mask.shape[1]))
         settled = patch.mask & (view.state[part] == FULL)
         open_ = patch.mask & (view.state[part] == OPEN)
-        full = settled | (open_ & (view.probability[part] >= LIKELY))
+        full = settled | (open_ & (view.probability[part] >= MIN_COVERED_PROBABILITY))
         possible = open_ & ~full
-        if not full.any() or possible.sum() > MOST_OPEN * full.sum():
-            return Measured((), None, int(open_.sum()), int(settled.sum()))
-        return self._fitted(patch, full, possible)._replace(open=int(open_.sum()), full=int(settled.sum()))
+        if not full.any() or possible.sum() > MAX_OPEN_RATIO * full.sum():
+            return ShapeMeasurement((), None, int(open_.sum()), int(settled.sum()))
+        return self._measured(patch, full, possible)._replace(open=int(open_.sum()), full=int(settled.sum()))
 
-    def measure_whole(self, patch: Patch) -> Measured:
-        """The fits of a patch of which all is known."""
-        return self._fitted(patch, patch.mask, np.zeros_like(patch.mask))
+    def measure_whole(self, patch: Patch) -> ShapeMeasurement:
+        """Measure a patch all of whose squares are known to be covered."""
+        return self._measured(patch, patch.mask, np.zeros_like(patch.mask))
 
-    def _fitted(self, patch: Patch, full: Mask, possible: Mask) -> Measured:
-        """The fits of the squares of a patch that are covered, or may be."""
+    def _measured(self, patch: Patch, full: Bools, possible: Bools) -> ShapeMeasurement:
+        """Return the fits of a patch; `full` and `possible` are its squares that are covered, and that may be."""
         fits, polygon = self._fit(full, possible)
         placed = shapely.transform(polygon, lambda points: points + np.array([patch.west, patch.south]))
-        return Measured(fits, placed, int(possible.sum()), int(full.sum()))
+        return ShapeMeasurement(fits, placed, int(possible.sum()), int(full.sum()))
 
-    def _fit(self, full: Mask, possible: Mask) -> tuple[tuple[tuple[str, int], ...], Any]:
+    def _fit(self, full: Bools, possible: Bools) -> tuple[tuple[tuple[str, int], ...], Any]:
+        """Return the fits of some squares, and the outline of the first, in the frame of the masks."""
         key = (full.tobytes() + bytes(full.shape), possible.tobytes())
         if key not in self._known:
             found = fit_shapes(full, possible)

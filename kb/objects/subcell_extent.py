@@ -1,8 +1,11 @@
-"""How far the sides of a thing lie within the squares in which it was seen.
+"""How far the sides of an object lie within the squares in which it was seen.
 
-Whatever lies with its sides along the lattice looks as if it filled whole squares: on each side it may be less, by up
-to one. Mostly things do lie on whole squares, so that is believed. It shows when one is pushed by a part of a square: a
-side that lies on the line comes upon the next row of squares at once, and one that lies further in does not.
+An object with its sides parallel to the grid looks as if it filled whole squares: on each side it may be smaller, by
+less than one square. Most objects do fill whole squares, so that is believed. A push by a part of a square shows it: a
+side on a grid line enters the next row of squares at once, and one that lies further in does not.
+
+Sides come in the order west, east, south, north. An inset is the distance, in squares, from the outer line of the
+squares in which the object was seen, inwards to the side.
 """
 
 import math
@@ -13,56 +16,65 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
-Sides = tuple[float, float, float, float]  # west, east, south, north
-ALONG = 1e-6  # squares: how straight a side along the lattice is
-TELLING = 0.04  # squares: what is known that well of a side is not told better
-HAIR = 1e-3  # squares: less of a row than this tells nothing
-NONE: Sides = (0.0, 0.0, 0.0, 0.0)
-WHOLE: Sides = (1.0, 1.0, 1.0, 1.0)
+SideValues = tuple[float, float, float, float]  # one value for each side: west, east, south, north
+GRID_ALIGNMENT_TOLERANCE = 1e-6  # squares: a side is parallel to the grid if it deviates by no more; rounding
+MIN_TESTED_INTERVAL = 0.04  # squares: an inset known within this is not narrowed further; tuned
+MIN_ROW_DEPTH = 1e-3  # squares: less of a row than this shows nothing; rounding
+NO_INSETS: SideValues = (0.0, 0.0, 0.0, 0.0)
+FULL_INSETS: SideValues = (1.0, 1.0, 1.0, 1.0)
 
 
 class SubcellExtent(NamedTuple):
-    """How far each side lies within the squares in which a thing was seen, in squares: at least, and less than.
+    """The possible insets of the sides of an object, as it lay when it was first held.
 
-    The sides are those of the thing as it lay when it was first held.
+    Attributes
+    ----------
+    least : SideValues
+        The least inset of each side, in squares.
+    most : SideValues
+        Each inset is less than this, in squares.
     """
 
-    least: Sides = NONE
-    most: Sides = WHOLE
+    least: SideValues = NO_INSETS
+    most: SideValues = FULL_INSETS
 
     @property
-    def believed(self) -> Sides:
-        """Nothing, along an axis of which nothing else is known; else what a thing of whole squares would have.
+    def believed(self) -> SideValues:
+        """The believed inset of each side, in squares.
 
-        Where that cannot be, amid what is left.
+        0 along an axis on which nothing is known. Else that of an object as long as a whole number of squares, if this
+        is possible; else the middle of what is possible.
         """
         return (*_believed(self.least[:2], self.most[:2]), *_believed(self.least[2:], self.most[2:]))
 
     @property
-    def short(self) -> Sides:
-        """How much further in each side may lie than it is believed to."""
+    def short(self) -> SideValues:
+        """The distance by which each side may lie further in than believed, in squares."""
         west, east, south, north = (most - here for most, here in zip(self.most, self.believed, strict=True))
         return west, east, south, north
 
     @property
-    def plays(self) -> tuple[Sides, Sides]:
-        """By how much each side may lie further out than believed, and further in; 0 where it fills whole squares."""
+    def plays(self) -> tuple[SideValues, SideValues]:
+        """The distances by which each side may lie further out than believed, and further in, in squares.
+
+        0 for a side that is believed to fill its squares.
+        """
         here = self.believed
-        out = _sides(at - least if at else 0.0 for at, least in zip(here, self.least, strict=True))
-        return out, _sides(most - at if at else 0.0 for at, most in zip(here, self.most, strict=True))
+        out = _as_sides(at - least if at else 0.0 for at, least in zip(here, self.least, strict=True))
+        return out, _as_sides(most - at if at else 0.0 for at, most in zip(here, self.most, strict=True))
 
     @property
     def play(self) -> float:
-        """The greatest of these."""
+        """The greatest value of `plays`, in squares."""
         return max(max(sides) for sides in self.plays)
 
     def after(self, quarters: int) -> "SubcellExtent":
-        """Of the sides as they lie after so many quarter turns."""
-        return SubcellExtent(turned(self.least, quarters), turned(self.most, quarters))
+        """Return the insets of the sides as they lie after a number of quarter turns, counter-clockwise positive."""
+        return SubcellExtent(turn_sides(self.least, quarters), turn_sides(self.most, quarters))
 
 
 def _believed(least: tuple[float, ...], most: tuple[float, ...]) -> tuple[float, float]:
-    """What is believed of two sides, one against the other."""
+    """Return the believed insets of two opposite sides."""
     if not any(least):
         return 0.0, 0.0
     low, high = max(least[1], 1.0 - most[0]), min(most[1], 1.0 - least[0])
@@ -72,29 +84,40 @@ def _believed(least: tuple[float, ...], most: tuple[float, ...]) -> tuple[float,
     return (least[0] + most[0]) / 2, (least[1] + most[1]) / 2
 
 
-def turned(sides: Sides, quarters: int) -> Sides:
-    """What belongs to the sides of a thing, as they lie after so many quarter turns."""
+def turn_sides(sides: SideValues, quarters: int) -> SideValues:
+    """Return the values of the sides as they lie after a number of quarter turns, counter-clockwise positive."""
     for _ in range(quarters % 4):
         west, east, south, north = sides
         sides = north, south, west, east
     return sides
 
 
-def further(to: SubcellExtent, since: SubcellExtent) -> Sides:
-    """How much further in the sides are believed to lie than they were."""
+def inset_change(to: SubcellExtent, since: SubcellExtent) -> SideValues:
+    """Return by how much further in the sides are believed to lie in `to` than in `since`, in squares."""
     west, east, south, north = (new - old for new, old in zip(to.believed, since.believed, strict=True))
     return west, east, south, north
 
 
-def moved_in(polygon: Any, sides: Sides) -> Any:
-    """An outline with its sides moved in by so much, or out where that is negative.
+def moved_in(polygon: Any, sides: SideValues) -> Any:
+    """Return an outline with its sides moved inwards.
 
-    None when not all its sides lie along the lattice, or when it would not be an outline with the same corners.
+    Parameters
+    ----------
+    polygon : shapely Polygon
+        The outline, map frame.
+    sides : SideValues
+        How far each side moves inwards, in squares; outwards where that is negative.
+
+    Returns
+    -------
+    shapely Polygon or None
+        None when not all sides are parallel to the grid, or when the result has not the same corners.
     """
     points = shapely.get_coordinates(polygon)[:-1]
     along = np.roll(points, -1, axis=0) - points  # each side from its corner
-    upright = np.abs(along[:, 0]) <= ALONG
-    if not (upright ^ (np.abs(along[:, 1]) <= ALONG)).all() or (upright == np.roll(upright, 1)).any():
+    upright = np.abs(along[:, 0]) <= GRID_ALIGNMENT_TOLERANCE
+    level = np.abs(along[:, 1]) <= GRID_ALIGNMENT_TOLERANCE
+    if not (upright ^ level).all() or (upright == np.roll(upright, 1)).any():
         return None
     ahead = along if polygon.exterior.is_ccw else -along
     west, east, south, north = sides
@@ -102,36 +125,67 @@ def moved_in(polygon: Any, sides: Sides) -> Any:
     by_own, by_last = shift, np.roll(shift, 1)  # of the two sides that meet in a corner
     new = points + np.column_stack([np.where(upright, by_own, by_last), np.where(upright, by_last, by_own)])
     left = np.roll(new, -1, axis=0) - new
-    if ((left * along) < -ALONG).any() or (np.abs(left).max(1) <= ALONG).any():
+    if ((left * along) < -GRID_ALIGNMENT_TOLERANCE).any() or (np.abs(left).max(1) <= GRID_ALIGNMENT_TOLERANCE).any():
         return None
     outline = shapely.Polygon(new)
     return outline if outline.is_valid else None
 
 
-def within_play(polygon: Any, inwards: Sides, hair: float) -> Any:
-    """An outline with its sides moved in by so much, and by a hair besides unless they lie on lines of the lattice.
+def within_play(polygon: Any, inwards: SideValues, margin: float) -> Any:
+    """Return an outline with its sides moved inwards, and by a margin more where they do not lie on grid lines.
 
-    Both are negative where they are moved out. None as of moved_in.
+    Parameters
+    ----------
+    polygon : shapely Polygon
+        The outline, map frame.
+    inwards : SideValues
+        How far each side moves inwards, in squares; outwards where that is negative.
+    margin : float
+        How much further each side moves, in squares; negative for outwards. SideValues on grid lines whose axis is not
+        moved stay exactly where they are.
+
+    Returns
+    -------
+    shapely Polygon or None
+        None as for `moved_in`.
     """
-    moved = moved_in(polygon, _sides(far + hair for far in inwards))
+    moved = moved_in(polygon, _as_sides(far + margin for far in inwards))
     if moved is None:
         return None
     points, new = (shapely.get_coordinates(outline)[:-1] for outline in (polygon, moved))
     exact = np.array([not any(inwards[:2]), not any(inwards[2:])])
-    return shapely.Polygon(np.where(exact & (np.abs(points - np.rint(points)) < ALONG), points, new))
+    on_line = np.abs(points - np.rint(points)) < GRID_ALIGNMENT_TOLERANCE
+    return shapely.Polygon(np.where(exact & on_line, points, new))
 
 
-def depths(image: tuple[float, float, float, float]) -> Sides:
-    """How much of the last row of squares on each side an image covers, from its bounds x0, y0, x1, y1; 0 to 1."""
+def depths(image: tuple[float, float, float, float]) -> SideValues:
+    """Return how much of the last row of squares on each side an image covers, from above 0 to 1 square.
+
+    Parameters
+    ----------
+    image : (x0, y0, x1, y1)
+        The bounds of the image, in squares, map frame.
+    """
     x0, y0, x1, y1 = image
     return math.floor(x0) + 1 - x0, x1 - math.ceil(x1) + 1, math.floor(y0) + 1 - y0, y1 - math.ceil(y1) + 1
 
 
-def told(insets: SubcellExtent, polygon: Any, agrees: Callable[[Any], bool]) -> SubcellExtent | None:
-    """What a look leaves of what may be; None when it agrees with nothing.
+def narrowed(insets: SubcellExtent, polygon: Any, agrees: Callable[[Any], bool]) -> SubcellExtent | None:
+    """Return the insets that an impression leaves possible.
 
-    insets, polygon : the sides as they lie at the look, by which the outline is believed where it is. agrees : does
-    the look agree with an outline?
+    Parameters
+    ----------
+    insets : SubcellExtent
+        What was possible before, for the sides as they lie at the impression.
+    polygon : shapely Polygon
+        The believed outline, where it is believed to lie; map frame.
+    agrees : function
+        Returns whether the impression agrees with an outline.
+
+    Returns
+    -------
+    SubcellExtent or None
+        None when the impression agrees with no possible outline.
     """
     west, east, south, north = insets.believed
     x0, y0, x1, y1 = polygon.bounds
@@ -141,24 +195,25 @@ def told(insets: SubcellExtent, polygon: Any, agrees: Callable[[Any], bool]) -> 
         return insets if agrees(polygon) else None
     left = []
     for parts in product(*halves):
-        part = SubcellExtent(_sides(p[0] for p in parts), _sides(p[1] for p in parts))
-        lying = moved_in(polygon, further(part, insets))
+        part = SubcellExtent(_as_sides(p[0] for p in parts), _as_sides(p[1] for p in parts))
+        lying = moved_in(polygon, inset_change(part, insets))
         if lying is not None and agrees(lying):
             left.append(part)
     if not left:
         return None
-    least = _sides(min(side) for side in zip(*(part.least for part in left), strict=True))
-    most = _sides(max(side) for side in zip(*(part.most for part in left), strict=True))
+    least = _as_sides(min(side) for side in zip(*(part.least for part in left), strict=True))
+    most = _as_sides(max(side) for side in zip(*(part.most for part in left), strict=True))
     return SubcellExtent(least, most)
 
 
 def _halves(least: float, most: float, deep: float) -> list[tuple[float, float]]:
-    """What may be of one side: parts in each of which it covers the same squares."""
-    if least + HAIR < deep < most - HAIR and most - least > TELLING:
+    """Return intervals of the inset of a side in each of which it covers the same squares; `deep` divides them."""
+    if least + MIN_ROW_DEPTH < deep < most - MIN_ROW_DEPTH and most - least > MIN_TESTED_INTERVAL:
         return [(least, deep), (deep, most)]
     return [(least, most)]
 
 
-def _sides(values: Iterable[float]) -> Sides:
+def _as_sides(values: Iterable[float]) -> SideValues:
+    """Return four values as a tuple."""
     west, east, south, north = values
     return west, east, south, north

@@ -1,14 +1,12 @@
-"""The lattice of the table's squares, as Utak's eye samples it.
+"""The frame: how the grid of table squares lies in the robot frame, and which squares each field of the retina samples.
 
-Utak's north need not lie along the rows of squares. The lattice is turned by `angle` degrees (-44..45) against his
-own frame; the
-quarter turn that is left makes no difference to anything he sees. The map in his head is kept on the lattice, where
-every look
-samples the same squares; his own frame (east, north, origin the point where he woke) is for commands and for what he
-says.
+Two frames occur. The *robot frame* has its origin where the robot woke; its north is the way the robot faced then.
+Commands, and all that the robot states, are in it. The *map frame* has its axes along the rows of table squares, and
+square (0, 0) is the one in which the robot woke. The map is kept in it, for there every impression samples the same
+squares. The map frame is turned by -44 to 45 degrees against the robot frame; whole quarter turns make no difference
+to anything that the robot sees.
 
-The square in which he woke is square (0, 0) of the lattice; the point where he woke is (0, 0) of his own frame. Where
-in that square it lies he cannot feel; the centre is assumed as long as nothing contradicts it.
+Where in square (0, 0) the robot woke cannot be felt. The centre is assumed as long as nothing contradicts it.
 """
 
 import math
@@ -19,92 +17,122 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kernels.arrays import XY, Floats, Ints, Square
 from kb.body import DIRECTIONS
-from kb.perception.retina import FIELDS, OWN
+from kb.perception.retina import FIELDS, OWN_FIELD
 
-Floats = NDArray[np.float64]
-Coordinate = TypeVar("Coordinate", float, NDArray[np.float64])
-CENTRE = (0.5, 0.5)
-TIE = 1e-9  # an offset that falls this near to the middle between two squares may be sampled from either
-MOST = 16  # squares under the largest field
-AROUND = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))  # clockwise from his north
+Coordinate = TypeVar("Coordinate", float, Floats)
+CENTRE = (0.5, 0.5)  # the centre of square (0, 0), map frame
+SAMPLING_TIE_TOLERANCE = 1e-9  # squares: an offset so near to the line between two squares may be sampled from either
+MAX_SAMPLED_SQUARES = 16  # squares under the largest field: derived, 4 x 4
+AROUND = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))  # (east, north) of each of DIRECTIONS
 
 
 class Samples(NamedTuple):
-    """What the 160 fields sample at one angle, relative to Utak's own square.
+    """The squares that the 160 fields sample at one orientation of the frame, relative to the robot's own square.
 
-    columns, rows: (160, 16) offsets on the lattice; weight: (160, 16) how often a field samples that square (0:
-    padding); slack: (160,) samples of a field that fall between two squares, and so count for nothing.
+    Attributes
+    ----------
+    columns, rows : (160, 16) int32
+        Offsets of the sampled squares, map frame.
+    weight : (160, 16) int16
+        How often a field samples that square; 0 is padding.
+    slack : (160,) int16
+        How many samples of a field fall between two squares, and count for neither.
     """
 
-    columns: NDArray[np.int32]
-    rows: NDArray[np.int32]
+    columns: Ints
+    rows: Ints
     weight: NDArray[np.int16]
     slack: NDArray[np.int16]
 
 
 @dataclass(frozen=True)
 class Frame:
-    """How Utak's frame lies in the lattice.
+    """The orientation and the origin of the robot frame in the map frame.
 
-    Angle, the degrees by which it is turned counter-clockwise, and woke, the lattice point of its origin.
+    Attributes
+    ----------
+    angle : int
+        Degrees by which the robot frame is turned against the map frame, counter-clockwise positive, -44 to 45.
+    origin : (x, y)
+        The origin of the robot frame, in squares, map frame: a point of square (0, 0).
     """
 
     angle: int = 0
-    origin: tuple[float, float] = CENTRE
+    origin: XY = CENTRE
 
-    def to_lattice(self, east: float, north: float) -> tuple[float, float]:
-        """A vector of Utak's frame as a vector of the lattice."""
+    def to_lattice(self, east: float, north: float) -> XY:
+        """Return a vector of the robot frame as a vector (x, y) of the map frame, in squares."""
         return turned(east, north, self.angle)
 
-    def to_utak(self, x: float, y: float) -> tuple[float, float]:
-        """A vector of the lattice as a vector of Utak's frame."""
+    def to_utak(self, x: float, y: float) -> XY:
+        """Return a vector of the map frame as a vector (east, north) of the robot frame, in squares."""
         return turned(x, y, -self.angle)
 
-    def place_to_utak(self, x: float, y: float) -> tuple[float, float]:
-        """A point of the lattice as a point of Utak's frame."""
+    def place_to_utak(self, x: float, y: float) -> XY:
+        """Return a point of the map frame as a point (east, north) of the robot frame, in squares."""
         return self.to_utak(x - self.origin[0], y - self.origin[1])
 
-    def place_from_utak(self, east: float, north: float) -> tuple[float, float]:
-        """A point of Utak's frame as a point of the lattice."""
+    def place_from_utak(self, east: float, north: float) -> XY:
+        """Return a point of the robot frame as a point (x, y) of the map frame, in squares."""
         x, y = self.to_lattice(east, north)
         return x + self.origin[0], y + self.origin[1]
 
     def places_from_utak(self, east: Floats, north: Floats) -> tuple[Floats, Floats]:
-        """Points of Utak's frame as points of the lattice."""
+        """Return points of the robot frame as points of the map frame: arrays x, y of the same shape, in squares."""
         x, y = turned(east, north, self.angle)
         return x + self.origin[0], y + self.origin[1]
 
-    def beside(self, direction: str) -> tuple[int, int] | None:
-        """The adjacent square, as (columns, rows), in one of the eight directions of Utak's frame.
+    def beside(self, direction: str) -> Square | None:
+        """Return the offset (columns, rows) of the adjacent square in a direction, map frame.
 
-        None where the direction points between two squares, and either may be the one.
+        Parameters
+        ----------
+        direction : str
+            One of the eight DIRECTIONS of the robot frame.
+
+        Returns
+        -------
+        (int, int) or None
+            None where the direction points between two squares, so that it may name either.
         """
-        named = self.may_name(direction)
+        named = self.adjacent_squares(direction)
         return named[0] if len(named) == 1 else None
 
-    def may_name(self, direction: str) -> list[tuple[int, int]]:
-        """The adjacent squares, as (columns, rows), that a direction may name: several where it points between them."""
-        column, row = self.to_lattice(*AROUND[DIRECTIONS.index(direction)])
-        return [(x, y) for x in _nearest(column) for y in _nearest(row)]
+    def adjacent_squares(self, direction: str) -> list[Square]:
+        """Return the offsets (columns, rows) of the adjacent squares that a direction of the robot frame may name.
 
-    def directions(self) -> dict[tuple[int, int], str]:
-        """For each adjacent square, as (columns, rows), that some direction of Utak's frame surely names: that one."""
+        They are several where the direction points between two squares.
+        """
+        column, row = self.to_lattice(*AROUND[DIRECTIONS.index(direction)])
+        return [(x, y) for x in _nearest_squares(column) for y in _nearest_squares(row)]
+
+    def directions(self) -> dict[Square, str]:
+        """Return for each adjacent square, as offset (columns, rows), a direction that surely names it, if any does."""
         named = ((self.beside(direction), direction) for direction in reversed(DIRECTIONS))
         return {square: direction for square, direction in named if square is not None}
 
     def samples(self) -> Samples:
-        """The squares that each field samples."""
+        """Return the squares that each field of the retina samples."""
         return _samples(self.angle)
 
 
-def _nearest(offset: float) -> list[int]:
-    """The square that an offset falls in; both where it falls between two."""
-    return sorted({math.ceil(offset - 0.5 - TIE), math.floor(offset + 0.5 + TIE)})
+def _nearest_squares(offset: float) -> list[int]:
+    """Return the square into which an offset falls along one axis; both where it falls between two."""
+    return sorted({math.ceil(offset - 0.5 - SAMPLING_TIE_TOLERANCE), math.floor(offset + 0.5 + SAMPLING_TIE_TOLERANCE)})
 
 
 def turned(x: Coordinate, y: Coordinate, degrees: float) -> tuple[Coordinate, Coordinate]:
-    """A vector, or vectors, turned counter-clockwise; exact for quarter turns."""
+    """Return a vector, or an array of vectors, rotated about the origin; exact for quarter turns.
+
+    Parameters
+    ----------
+    x, y : float or float64 array
+        The vectors.
+    degrees : float
+        The angle, counter-clockwise positive.
+    """
     if degrees % 90 == 0:
         for _ in range(int(degrees // 90) % 4):
             x, y = -y, x
@@ -115,30 +143,31 @@ def turned(x: Coordinate, y: Coordinate, degrees: float) -> tuple[Coordinate, Co
 
 @cache
 def _samples(angle: int) -> Samples:
-    owner, east, north = _offsets()
+    """Return the squares that each field samples when the robot frame is turned by `angle` degrees."""
+    owner, east, north = _field_offsets()
     c, s = turned(1.0, 0.0, angle)
     x, y = east * c - north * s, east * s + north * c
     tied = np.zeros(len(owner), np.bool_)
     for v in (x, y):
-        tied |= np.abs(np.abs(v - np.trunc(v)) - 0.5) < TIE
+        tied |= np.abs(np.abs(v - np.trunc(v)) - 0.5) < SAMPLING_TIE_TOLERANCE
     slack = np.bincount(owner[tied], minlength=len(FIELDS)).astype(np.int16)
     under = np.stack([owner, np.rint(x).astype(np.int32), np.rint(y).astype(np.int32)])[:, ~tied]
     (number, column, row), times = np.unique(under, axis=1, return_counts=True)
     place = np.arange(len(number)) - np.searchsorted(number, number)
-    columns, rows = np.zeros((2, len(FIELDS), MOST), np.int32)
+    columns, rows = np.zeros((2, len(FIELDS), MAX_SAMPLED_SQUARES), np.int32)
     weight = np.zeros(columns.shape, np.int16)
     columns[number, place], rows[number, place], weight[number, place] = column, row, times
     return Samples(columns, rows, weight, slack)
 
 
 @cache
-def _offsets() -> NDArray[np.int32]:
-    """(3, 1023): field, east and north of every offset under the retina but Utak's own."""
+def _field_offsets() -> Ints:
+    """Return (3, 1023) int32: field, east and north of every offset under the retina but the robot's own."""
     offsets = [
         (number, east, north)
         for number, field in enumerate(FIELDS)
         for east in range(field.east, field.east + field.side)
         for north in range(field.north, field.north + field.side)
-        if number != OWN
+        if number != OWN_FIELD
     ]
     return np.array(offsets, np.int32).T

@@ -1,30 +1,44 @@
-"""From regions, touches and fits to kinds and shapes: facts in, kb/asp's answers out."""
+"""Interpretation: what each region is, and which shape an object has. Facts go in, answers of kb/asp come out."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
 from kb.perception.regions import Percept
+from kb.reasoning.encoding_constants import encoding_constant
 from kb.reasoning.solver import KB, solve
+
+INTERPRETATION = KB / "interpretation.lp"
+SHORTEST_WALL = encoding_constant(INTERPRETATION, "shortest_wall")  # squares: what is so long is surely verge
+LONGEST_OBJECT = encoding_constant(INTERPRETATION, "longest_object")  # squares: what is longer is no object
+FELT_OBJECT_CONFIDENCE = encoding_constant(INTERPRETATION, "felt_object")  # percent: of a thing felt not to be verge
+SURELY_VERGE = (  # percent: the confidence that something undecided as long as the shortest wall is verge
+    encoding_constant(INTERPRETATION, "verge_least")
+    + encoding_constant(INTERPRETATION, "verge_per_square") * SHORTEST_WALL
+)
 
 
 class Kinds(NamedTuple):
-    """What each region is taken for.
+    """The kinds that regions are taken for.
 
-    kind : region -> {floor, verge, object or utak: confidence in percent}.
-    hidden_passages : pairs of zero regions that must be connected by floor not seen.
+    Attributes
+    ----------
+    kind : mapping of str to mapping of str to int
+        Region -> {floor, verge, object or utak: confidence in percent}.
+    hidden_passages : frozenset of (str, str)
+        Pairs of free regions that must be connected by floor that is not seen.
     """
 
     kind: Mapping[str, Mapping[str, int]]
     hidden_passages: frozenset[tuple[str, str]]
 
     def of(self, region: str, kind: str) -> int:
-        """The confidence that a region is of a kind; 0 when nothing speaks for it."""
+        """Return the confidence that a region is of a kind, in percent; 0 when nothing supports it."""
         return self.kind.get(region, {}).get(kind, 0)
 
 
 def percept_facts(percept: Percept, touched: Iterable[tuple[str, str]] = ()) -> list[str]:
-    """The facts that kb/asp/interpretation.lp wants. touched: pairs (region, colour felt there)."""
+    """Return the facts for kb/asp/interpretation.lp; `touched` holds pairs (region, colour felt there)."""
     facts = []
     for region in percept.regions:
         facts.append(f"region({region.name},{'nonzero' if region.occupied else 'zero'},{region.certain})")
@@ -35,11 +49,26 @@ def percept_facts(percept: Percept, touched: Iterable[tuple[str, str]] = ()) -> 
     return facts
 
 
-def interpret(percept: Percept, touched: Iterable[tuple[str, str]] = (), rules: tuple[Path, ...] = ()) -> Kinds:
-    """Decide what every region is. rules: the user's own encodings, beside ours."""
+def interpret_regions(percept: Percept, touched: Iterable[tuple[str, str]] = (), rules: tuple[Path, ...] = ()) -> Kinds:
+    """Decide what every region is.
+
+    Parameters
+    ----------
+    percept : Percept
+        The regions.
+    touched : iterable of (str, str)
+        Pairs (region, colour felt there).
+    rules : tuple of Path
+        The user's own encodings, solved together with kb/asp/interpretation.lp.
+
+    Raises
+    ------
+    BadInputError
+        The user's encodings are wrong.
+    """
     kind: dict[str, dict[str, int]] = {}
     passages = set()
-    for atom in solve([KB / "interpretation.lp", *rules], percept_facts(percept, touched)) or ():
+    for atom in solve([INTERPRETATION, *rules], percept_facts(percept, touched)) or ():
         args = [str(a) for a in atom.arguments]
         if atom.match("kind", 3):
             known = kind.setdefault(args[0], {})
@@ -49,8 +78,26 @@ def interpret(percept: Percept, touched: Iterable[tuple[str, str]] = (), rules: 
     return Kinds(kind, frozenset(passages))
 
 
-def shapes(facts: Iterable[str], rules: tuple[Path, ...] = ()) -> Mapping[str, Mapping[str, int]]:
-    """The shapes of nodes, node -> {shape: confidence}, from facts fit/3 and open_squares/2."""
+def classify_shapes(facts: Iterable[str], rules: tuple[Path, ...] = ()) -> Mapping[str, Mapping[str, int]]:
+    """Decide which shapes objects have.
+
+    Parameters
+    ----------
+    facts : iterable of str
+        The facts fit/4, open_squares/2 and full_squares/2 of kb/asp/shapes.lp.
+    rules : tuple of Path
+        The user's own encodings, solved together with kb/asp/shapes.lp.
+
+    Returns
+    -------
+    mapping of str to mapping of str to int
+        Node -> {shape class: confidence in percent}.
+
+    Raises
+    ------
+    BadInputError
+        The user's encodings are wrong.
+    """
     answer: dict[str, dict[str, int]] = {}
     for atom in solve([KB / "shapes.lp", *rules], facts) or ():
         if atom.match("shape", 3):

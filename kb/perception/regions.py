@@ -1,8 +1,7 @@
-"""Regions of space and of things, and which surrounds which: of one impression's cells, or of the squares of the
-whole map.
+"""Regions: maximal edge-connected sets of free or of occupied cells, and which region surrounds which.
 
-A region is a maximal edge-connected set of zero cells, or of non-zero ones. These are facts for the interpretation
-(kb/asp); nothing here says what a region is.
+They are formed of the cells of one impression, or of the squares of the map. They become facts for the interpretation
+(kb/asp/interpretation.lp); nothing here decides what a region is.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -11,17 +10,30 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Bools, Labels, Longs
 from geometry.raster.components import boxes, components
-from kb.perception.retina import FIELDS, OWN, count_ranges, neighbours, rim
-
-Mask = NDArray[np.bool_]
+from kb.perception.retina import FIELDS, OWN_FIELD, count_ranges, edge_fields, neighbours
 
 
 class Region(NamedTuple):
-    """One region. certain: percent of its squares that are as its cells say, whatever counts the gray levels stand for.
+    """One region.
 
-    rim: does it touch what is not seen? extent: the longer side of its containing rectangle, in squares.
-    mass: tenths of squares that are expected to be occupied.
+    Attributes
+    ----------
+    name : str
+        Of a region of the map `part<n>`; of one of an impression `cells<n>` or `own`.
+    occupied : bool
+        Whether it is a region of occupied cells rather than of free ones.
+    certain : int
+        Percent of its squares that are surely so, whatever counts the gray levels stand for.
+    rim : bool
+        Whether it touches what was not seen.
+    extent : int
+        The longer side of its containing rectangle, in squares.
+    mass : int
+        The expected number of its occupied squares, in tenths of squares.
+    own : bool
+        Whether it is the cell of the robot's own square.
     """
 
     name: str
@@ -34,7 +46,17 @@ class Region(NamedTuple):
 
 
 class Percept(NamedTuple):
-    """The regions of one impression or map, with the pairs that touch, and the pairs (outer, inner) that surround."""
+    """The regions of one impression or of the map.
+
+    Attributes
+    ----------
+    regions : tuple of Region
+        The regions.
+    adjacent : frozenset of (str, str)
+        Pairs of regions that share an edge, both ways round.
+    surrounds : frozenset of (str, str)
+        Pairs (outer, inner): no way leads from inner to what was not seen, except across outer.
+    """
 
     regions: tuple[Region, ...]
     adjacent: frozenset[tuple[str, str]]
@@ -42,16 +64,26 @@ class Percept(NamedTuple):
 
 
 def impression_regions(levels: tuple[int, ...]) -> tuple[Percept, dict[str, frozenset[int]]]:
-    """The regions of one retinal impression of 160 gray levels, and the cells of each.
+    """Return the regions of one impression. The robot's own cell is a region by itself.
 
-    Utak's own cell is a region by itself.
+    Parameters
+    ----------
+    levels : tuple of int
+        The 160 gray levels of the impression.
+
+    Returns
+    -------
+    percept : Percept
+        The regions.
+    cells : dict of str to frozenset of int
+        The numbers of the fields that form each region.
     """
-    cells: dict[str, frozenset[int]] = {"own": frozenset({OWN})}
-    unseen = set(range(len(FIELDS))) - {OWN}
-    while unseen:
-        grown = _grow(min(unseen), unseen, levels)
+    cells: dict[str, frozenset[int]] = {"own": frozenset({OWN_FIELD})}
+    left = set(range(len(FIELDS))) - {OWN_FIELD}
+    while left:
+        grown = _grow(min(left), left, levels)
         cells[f"cells{len(cells)}"] = frozenset(grown)
-        unseen -= grown
+        left -= grown
     owner = {cell: name for name, members in cells.items() for cell in members}
     touching = {(owner[a], owner[b]) for a in range(len(FIELDS)) for b in neighbours()[a] if owner[a] != owner[b]}
     ranges = count_ranges(levels)
@@ -60,12 +92,27 @@ def impression_regions(levels: tuple[int, ...]) -> tuple[Percept, dict[str, froz
 
 
 def map_regions(
-    occupied: Mask, seen: Mask, certain: Mask, probability: NDArray[np.float32] | None = None
-) -> tuple[Percept, NDArray[np.int32]]:
-    """The regions of the map, and a label array (rows, columns): 0 unseen, n for the region named `part<n>`.
+    occupied: Bools, seen: Bools, certain: Bools, probability: NDArray[np.float32] | None = None
+) -> tuple[Percept, Labels]:
+    """Return the regions of the map.
 
-    occupied: where something may be; certain: where the counts settle it; probability: that it is (1 where occupied,
-    when left out). Arrays are (rows, columns) of the same shape.
+    Parameters
+    ----------
+    occupied : (rows, columns) bool
+        Squares on which something may be.
+    seen : (rows, columns) bool
+        Squares that were seen. All others belong to no region.
+    certain : (rows, columns) bool
+        Squares that the counts settle.
+    probability : (rows, columns) float32, optional
+        That a square is occupied; without it 1 on `occupied` and 0 elsewhere.
+
+    Returns
+    -------
+    percept : Percept
+        The regions, named `part<n>`.
+    labels : (rows, columns) int32
+        The number n of each square's region; 0 where nothing was seen.
     """
     zero, full = components(seen & ~occupied), components(seen & occupied)
     labels = np.where(full.labels > 0, full.labels + zero.number, zero.labels).astype(np.int32)
@@ -86,11 +133,12 @@ def map_regions(
 
 
 def label_of(name: str) -> int:
-    """The label of a region of the map."""
+    """Return the label of a region of the map: n for the name `part<n>`."""
     return int(name.removeprefix("part"))
 
 
 def _grow(first: int, among: set[int], levels: tuple[int, ...]) -> set[int]:
+    """Return the region of the cell `first`: cells of `among` connected with it that are free, or occupied, alike."""
     region, edge = {first}, [first]
     while edge:
         for cell in neighbours()[edge.pop()]:
@@ -101,6 +149,7 @@ def _grow(first: int, among: set[int], levels: tuple[int, ...]) -> set[int]:
 
 
 def _cell_region(name: str, members: Iterable[int], levels: tuple[int, ...], ranges: NDArray[np.int16]) -> Region:
+    """Return the region formed by some cells of an impression; `ranges` are their counts, as of `count_ranges`."""
     cells = sorted(members)
     occupied = levels[cells[0]] > 0
     area = sum(FIELDS[c].side ** 2 for c in cells)
@@ -111,18 +160,18 @@ def _cell_region(name: str, members: Iterable[int], levels: tuple[int, ...], ran
     if name == "own":
         return Region(name, True, 100, False, 1, 10, True)
     mass = round(5 * float(ranges[cells].sum()))
-    return Region(name, occupied, 100 * right // area, bool(rim() & set(cells)), extent, mass)
+    return Region(name, occupied, 100 * right // area, bool(edge_fields() & set(cells)), extent, mass)
 
 
-def extents(labels: NDArray[np.int32], count: int) -> NDArray[np.int64]:
-    """The longer side of each label's containing rectangle, for labels 0 to count of a (rows, columns) array."""
+def extents(labels: Labels, count: int) -> Longs:
+    """Return the longer side of each label's containing rectangle, (count + 1,) in squares; 0 of labels not there."""
     south, west, north, east = boxes(labels, count).T
-    longer: NDArray[np.int64] = np.maximum(np.maximum(north - south, east - west) + 1, 0)
+    longer: Longs = np.maximum(np.maximum(north - south, east - west) + 1, 0)
     return longer
 
 
-def _touching(labels: NDArray[np.int32], count: int) -> tuple[set[tuple[str, str]], set[int]]:
-    """The pairs of regions that touch, both ways round, and the labels of those that touch what is not seen."""
+def _touching(labels: Labels, count: int) -> tuple[set[tuple[str, str]], set[int]]:
+    """Return the pairs of regions that touch, both ways round, and the labels of those that touch unseen squares."""
     framed = np.pad(labels, 1).astype(np.int64)
     pairs = [np.zeros(0, np.int64)]
     for a, b in ((framed[:, :-1], framed[:, 1:]), (framed[:-1], framed[1:])):
@@ -136,6 +185,7 @@ def _touching(labels: NDArray[np.int32], count: int) -> tuple[set[tuple[str, str
 
 
 def _percept(regions: tuple[Region, ...], touching: set[tuple[str, str]]) -> Percept:
+    """Return regions together with the pairs that touch and those that surround each other."""
     beside: dict[str, set[str]] = {region.name: set() for region in regions}
     for a, b in touching:
         beside[a].add(b)
@@ -144,13 +194,18 @@ def _percept(regions: tuple[Region, ...], touching: set[tuple[str, str]]) -> Per
 
 
 def _surrounding(beside: Mapping[str, set[str]], outside: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """The pairs (outer, inner) such that no way leads from inner to the outside, save across outer.
+    """Yield the pairs (outer, inner) such that no way leads from inner to the outside, except across outer.
 
-    # Strategy: one depth-first search from the outside. Where no edge leads from what hangs below a child back past its
-    parent, the parent surrounds all that.
-    Source: Hopcroft and Tarjan (1973), articulation points.
+    beside : region -> the regions that touch it. outside : the regions that touch what was not seen.
+
+    Strategy: one depth-first search from the outside. If no edge leads from the subtree of a child back past its
+    parent, the parent surrounds that subtree. Source: Hopcroft and Tarjan (1973), articulation points.
     """
-    open_, order, back = set(outside), dict[str, int](), dict[str, int]()  # back: the earliest that is met from below
+    open_, order, back = (
+        set(outside),
+        dict[str, int](),
+        dict[str, int](),
+    )  # back: the earliest region reached from the subtree
     for start in sorted(open_):
         path = [(start, iter(sorted(beside[start])))] if start not in order else []
         order.setdefault(start, len(order))

@@ -1,6 +1,7 @@
-"""The retina's plan: which squares each of the 160 fields covers, which touch which, and what a gray level says.
+"""The plan of the retina: which squares each of the 160 fields covers, which fields touch, what a gray level says.
 
-Offsets are whole squares east and north of Utak in his own frame; arrays of fields follow the order of an impression.
+Offsets are whole squares east and north of the robot's own square, in the robot frame. Arrays of fields follow the
+order of an impression: fovea, middle zone, outer zone; each from its north row to its south row, west to east.
 """
 
 from functools import cache
@@ -9,13 +10,25 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-REACH = 16  # squares from Utak to the retina's edge
-GRAY = 7  # the gray level of a field that is occupied throughout
-ZONES = ((4, 1), (8, 2), (16, 4))  # (reach, side of a field), from the fovea outwards
+RETINA_REACH = 16  # squares from the robot to the retina's edge; convention (senses)
+MAX_GRAY_LEVEL = 7  # the gray level of a field that is occupied throughout; convention (senses)
+RETINA_ZONES = (
+    (4, 1),
+    (8, 2),
+    (16, 4),
+)  # (reach, side of a field) in squares, from the fovea outwards; convention (senses)
 
 
 class Field(NamedTuple):
-    """One retinal field: its south-west square (east, north) and its side, in squares."""
+    """One field of the retina, a square of side x side table squares.
+
+    Attributes
+    ----------
+    east, north : int
+        The offset of its south-west square.
+    side : int
+        Its side, in squares.
+    """
 
     east: int
     north: int
@@ -23,8 +36,9 @@ class Field(NamedTuple):
 
 
 def _fields() -> tuple[Field, ...]:
+    """Return the fields in the order of an impression."""
     fields, inner = [], 0
-    for reach, side in ZONES:
+    for reach, side in RETINA_ZONES:
         for north in range(reach - side, -reach - 1, -side):
             for east in range(-reach, reach, side):
                 if not (-inner <= east < inner and -inner <= north < inner):
@@ -34,42 +48,69 @@ def _fields() -> tuple[Field, ...]:
 
 
 FIELDS = _fields()
-OWN = FIELDS.index(Field(0, 0, 1))  # the field of Utak's own square, which he always fills himself
+OWN_FIELD = FIELDS.index(Field(0, 0, 1))  # the field of the robot's own square, which the robot always fills itself
 
 
 @cache
-def counts(side: int, level: int) -> tuple[int, int]:
-    """The least and the greatest number of occupied squares that a field of this side shows as this gray level.
+def level_counts(side: int, level: int) -> tuple[int, int]:
+    """Return the least and the greatest number of occupied squares that a field shows as a gray level.
 
-    Raises ValueError when no number of squares shows it.
+    Parameters
+    ----------
+    side : int
+        The side of the field, in squares.
+    level : int
+        The gray level, 0 to 7.
+
+    Raises
+    ------
+    ValueError
+        No number of occupied squares shows this level.
     """
     area = side * side
-    fitting = [n for n in range(area + 1) if (2 * GRAY * n + area) // (2 * area) == level]
+    fitting = [n for n in range(area + 1) if (2 * MAX_GRAY_LEVEL * n + area) // (2 * area) == level]
     if not fitting:
-        raise ValueError(f"a field of side {side} never shows gray level {level}")
+        raise ValueError(f"a field of {side} x {side} squares never shows gray level {level}")
     return fitting[0], fitting[-1]
 
 
 def count_ranges(levels: tuple[int, ...]) -> NDArray[np.int16]:
-    """(160, 2): the least and greatest count of occupied squares under each field; Utak's own field says nothing."""
-    ranges = np.array([counts(field.side, level) for field, level in zip(FIELDS, levels, strict=True)], np.int16)
-    ranges[OWN] = (0, 1)
+    """Return the least and the greatest number of occupied squares under each field.
+
+    Parameters
+    ----------
+    levels : tuple of int
+        The 160 gray levels of an impression.
+
+    Returns
+    -------
+    (160, 2) int16
+        The field of the robot's own square says nothing: its counts are 0 to 1.
+
+    Raises
+    ------
+    ValueError
+        A field cannot show its level.
+    """
+    ranges = np.array([level_counts(field.side, level) for field, level in zip(FIELDS, levels, strict=True)], np.int16)
+    ranges[OWN_FIELD] = (0, 1)
     return ranges
 
 
 @cache
-def plan() -> NDArray[np.int16]:
-    """(32, 32) [north + 16, east + 16]: the number of the field that covers each offset."""
-    numbers = np.empty((2 * REACH, 2 * REACH), np.int16)
+def field_plan() -> NDArray[np.int16]:
+    """Return the number of the field that covers each offset: (32, 32), [north + 16, east + 16]."""
+    numbers = np.empty((2 * RETINA_REACH, 2 * RETINA_REACH), np.int16)
     for number, (east, north, side) in enumerate(FIELDS):
-        numbers[north + REACH : north + REACH + side, east + REACH : east + REACH + side] = number
+        row, column = north + RETINA_REACH, east + RETINA_REACH
+        numbers[row : row + side, column : column + side] = number
     return numbers
 
 
 @cache
 def neighbours() -> tuple[frozenset[int], ...]:
-    """For each field the fields that share an edge, or part of one, with it."""
-    numbers = plan()
+    """Return for each field the numbers of the fields that share an edge, or part of one, with it."""
+    numbers = field_plan()
     touching: list[set[int]] = [set() for _ in FIELDS]
     for a, b in ((numbers[:, :-1], numbers[:, 1:]), (numbers[:-1], numbers[1:])):
         for p, q in zip(a.ravel().tolist(), b.ravel().tolist(), strict=True):
@@ -80,7 +121,7 @@ def neighbours() -> tuple[frozenset[int], ...]:
 
 
 @cache
-def rim() -> frozenset[int]:
-    """The fields that lie at the retina's edge."""
-    numbers = plan()
+def edge_fields() -> frozenset[int]:
+    """Return the numbers of the fields at the edge of the retina."""
+    numbers = field_plan()
     return frozenset(np.concatenate([numbers[0], numbers[-1], numbers[:, 0], numbers[:, -1]]).tolist())

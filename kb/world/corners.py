@@ -1,6 +1,6 @@
-"""The corners of the known floor: geometry gives its convex corners, and kb/asp/corners.lp says which is which.
+"""The corners of the known floor: geometry finds its convex corners, and kb/asp/corners.lp decides which is which.
 
-The corner furthest towards any side is a corner of the floor's convex hull, so only those are given.
+The corner furthest towards any side is a corner of the convex hull of the floor, so only those are found.
 """
 
 from collections.abc import Mapping
@@ -9,90 +9,115 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import XY, Bools, Square
 from kb.mapping.occupancy import FULL
 from kb.mapping.patch import covered
 from kb.perception.regions import label_of
 from kb.reasoning.solver import KB, solve
-from kb.world.model import WorldModel
+from kb.world.model import FACT_UNITS_PER_SQUARE, WorldModel
 
-ALONG = 8.0  # squares of a wall that tell how it lies: where it leaves its row within that, it lies askew
-LEAST_ANGLE = 0.5  # the sine of that between the walls of a corner: they are no one wall
-SMALLEST = 6  # squares of floor that are worth a corner
-HUNDREDTHS = 100
-SIDES = ("northeast", "northwest", "southeast", "southwest")
+WALL_SAMPLE_LENGTH = 8.0  # squares: a wall is followed so far; if it leaves its row of squares within, it lies askew
+MIN_CORNER_SINE = 0.5  # the sine of the angle between the walls of a corner; below it they are taken for one wall
+MIN_FLOOR_SQUARES = 6  # squares: smaller parts of the floor have no corner; tuned
+CORNER_SIDES = ("northeast", "northwest", "southeast", "southwest")  # of the robot frame
 
 
 class Corner(NamedTuple):
-    """A convex corner: its point (x, y) in the frame of the view, and the square (column, row) of floor that has it.
+    """A convex corner of the known floor.
 
-    walls : the outward unit normals of the walls that form it, where these lie askew to the squares; else None.
+    Attributes
+    ----------
+    point : (x, y)
+        The corner, in squares, in the frame of the view's arrays.
+    square : (column, row)
+        The square of floor that has it, on the view's arrays.
+    walls : two (x, y) or None
+        The outward unit normals of the walls that form it, if at least one of these lies askew to the grid.
     """
 
-    point: tuple[float, float]
-    square: tuple[int, int]
-    walls: tuple[tuple[float, float], tuple[float, float]] | None = None
+    point: XY
+    square: Square
+    walls: tuple[XY, XY] | None = None
 
 
-def known_floor(model: WorldModel) -> NDArray[np.bool_]:
-    """(rows, columns): the floor on which Utak stands, all other floor that is seen and large enough to be some, and
-    the floor under what he has moved: squares that were floor before it came there, or that it surely covers by its
-    outline. Others that it may cover may be wall, also where they were seen to be occupied.
+def known_floor(model: WorldModel) -> Bools:
+    """Return all squares known to be floor, (rows, columns) bool.
+
+    These are the floor on which the robot stands, all other free regions that are large enough, and the floor under
+    objects that were moved: squares that were floor before the object came there, or that it surely covers by its
+    outline. Other squares that a moved object may cover may be wall, even where they were seen to be occupied.
     """
     sizes = np.bincount(model.labels.ravel())
-    large = (sizes >= SMALLEST)[model.labels]
-    mask: NDArray[np.bool_] = model.floor | (model.space & large)
+    large = (sizes >= MIN_FLOOR_SQUARES)[model.labels]
+    mask: Bools = model.floor | (model.space & large)
     for node in model.objects:
         if node.moved:
             under = model.view.state == FULL
             if node.polygon is not None:
                 under &= model.mask_within(covered(node.polygon))
-            if model.beneath is not None:
-                under |= model.beneath
+            if model.floor_under_moved is not None:
+                under |= model.floor_under_moved
             mask |= (model.labels == label_of(node.region)) & under
     return mask
 
 
 def corners(model: WorldModel, rules: tuple[Path, ...] = ()) -> Mapping[str, Corner]:
-    """The corner of the known floor towards each side of Utak's frame."""
-    found = _convex(known_floor(model))
+    """Find the corner of the known floor furthest towards each side of the robot frame.
+
+    Parameters
+    ----------
+    model : WorldModel
+        The world model.
+    rules : tuple of Path
+        The user's own encodings, solved together with kb/asp/corners.lp.
+
+    Returns
+    -------
+    mapping of str to Corner
+        By side: northeast, northwest, southeast, southwest.
+
+    Raises
+    ------
+    BadInputError
+        The user's encodings are wrong.
+    """
+    found = _convex_corners(known_floor(model))
     facts = []
     for number, corner in enumerate(found):
         east, north = model.place_to_utak(*corner.point)
-        facts.append(f"convex({number},{round(HUNDREDTHS * east)},{round(HUNDREDTHS * north)})")
+        facts.append(f"convex({number},{round(FACT_UNITS_PER_SQUARE * east)},{round(FACT_UNITS_PER_SQUARE * north)})")
     answer = solve([KB / "corners.lp", *rules], facts) or ()
     return {str(a.arguments[0]): found[a.arguments[1].number] for a in answer if a.match("furthest", 2)}
 
 
-def _convex(floor: NDArray[np.bool_]) -> list[Corner]:
-    """The corners of the convex hull of a mask, each with the square that has it; by place."""
+def _convex_corners(floor: Bools) -> list[Corner]:
+    """Return the corners of the convex hull of a mask, sorted by (x, y), each with the square that has it."""
     rows = np.flatnonzero(floor.any(axis=1))
     first = floor[rows].argmax(axis=1)
     last = floor.shape[1] - 1 - floor[rows, ::-1].argmax(axis=1)
-    owner: dict[tuple[int, int], tuple[int, int]] = {}
+    owner: dict[Square, Square] = {}
     for row, west, east in zip(rows.tolist(), first.tolist(), last.tolist(), strict=True):
         for height in (row, row + 1):
             owner[west, height] = (west, row)
             owner[east + 1, height] = (east, row)
     ring = shapely.convex_hull(shapely.multipoints(sorted(owner))).exterior
     points = sorted(set(ring.coords))
-    return [Corner((x, y), owner[round(x), round(y)], _walls(ring, (x, y))) for x, y in points]
+    return [Corner((x, y), owner[round(x), round(y)], _wall_normals(ring, (x, y))) for x, y in points]
 
 
-def _walls(
-    ring: shapely.LinearRing, point: tuple[float, float]
-) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """The outward normals of the walls that meet in a corner of a convex ring; None where both lie along the squares.
+def _wall_normals(ring: shapely.LinearRing, point: XY) -> tuple[XY, XY] | None:
+    """Return the outward unit normals of the two walls at a corner of a convex ring.
 
-    A wall is followed as far as ALONG. One that leaves a row of squares within that lies askew.
+    None where both walls lie along the grid, or where they are nearly one wall. A wall is followed as far as
+    WALL_SAMPLE_LENGTH; one that leaves its row of squares within that lies askew.
     """
     along, length = ring.project(shapely.Point(point)), ring.length
-    ends = [ring.interpolate((along + way * min(ALONG, length / 8)) % length) for way in (-1, 1)]
+    ends = [ring.interpolate((along + way * min(WALL_SAMPLE_LENGTH, length / 8)) % length) for way in (-1, 1)]
     steps = np.array([(end.x - point[0], end.y - point[1]) for end in ends])
     if (np.abs(steps).min(axis=1) < 1.0).all():
         return None
     turn = 1 if ring.is_ccw else -1
     (ax, ay), (bx, by) = steps / np.hypot(*steps.T)[:, None]
     normals = (-turn * ay, turn * ax), (turn * by, -turn * bx)
-    return normals if abs(normals[0][0] * normals[1][1] - normals[0][1] * normals[1][0]) > LEAST_ANGLE else None
+    return normals if abs(normals[0][0] * normals[1][1] - normals[0][1] * normals[1][0]) > MIN_CORNER_SINE else None

@@ -1,34 +1,49 @@
-"""What is believed of the necks of the floor: how surely they are open, and bounded by verge on both ends."""
+"""Necks of the floor, and how certain it is that each is a doorway: open, and bounded by verge on both ends.
+
+A neck is a locally narrowest passage of the floor (geometry.Screen.passages). It is sought on a raster in which all
+that was never seen counts as free, so that a doorway is found by its two jambs before the room behind it was seen.
+
+The view frame is the one of the map view's arrays: x to the east, y to the north, in squares, origin at the south-west
+corner of the view's square [0, 0].
+"""
 
 import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geometry import Passage, Screen
+from geometry.kernels.arrays import XY, Bools, Floats, Labels, Longs
+from geometry.passages.necks import Segment
 from geometry.raster.components import components
+from kb.perception.interpretation import SHORTEST_WALL
 from kb.perception.protrusions import VERGE
 from kb.perception.regions import extents
-from kb.world.model import SMALLEST_WALL, WorldModel
+from kb.reasoning.encoding_constants import encoding_constant
+from kb.reasoning.solver import KB
+from kb.world.model import WorldModel
 
-Mask = NDArray[np.bool_]
-Floats = NDArray[np.float64]
-Indices = tuple[NDArray[np.int64], NDArray[np.int64]]
-Segment = tuple[tuple[float, float], tuple[float, float]]
-LIKELY = 0.75  # that squares are occupied which are taken for parts of one thing
-ANYWHERE = 2 * math.sqrt(2)  # squares: by so much a neck may be wider whose walls end anywhere in two squares
-BEHIND = 10  # squares that the floor is supposed to go on where it is not seen
-OPENING = 1.25  # times as wide as a neck is the floor on both sides of it at least, where that is worth naming
-HAIR = 1e-6
-UNCLEAR = 2.0  # squares by which it may be unclear on either side how wide a door is
+Indices = tuple[Longs, Longs]  # the rows and the columns of some squares
+DOOR_RATIO = float(encoding_constant(KB / "rooms.lp", "door_ratio"))  # as many times as wide is the floor beside a door
+JAMB_PROBABILITY = 0.75  # squares occupied with at least this probability are taken for parts of one thing; tuned
+WIDTH_UNCERTAINTY = 2 * math.sqrt(2)  # squares: a neck is so much wider at most if its walls end anywhere in 2 squares
+UNSEEN_MARGIN = 10  # squares: free border laid about the map, since the floor may go on there; convention
+MIN_OPENING_RATIO = 1.25  # a neck is reported when the floor is so many times as wide on both sides; convention
+SIDEWAYS_STEP = 1e-6  # of a neck's width: how far beside its line the squares on both sides of the line are looked up
+UNCLEAR_EDGE = 2.0  # squares: on either side of a neck so much of its width may be unclear; tuned
 
 
 class DoorwayNeck(NamedTuple):
-    """A neck of the floor in the frame of the view's arrays.
+    """A neck of the floor.
 
-    line : where it was seen best, from wall to wall. certainty : percent of belief that it is open and that verge
-    bounds it on both ends.
+    Attributes
+    ----------
+    passage : Passage
+        The neck as geometry found it, view frame.
+    line : Segment
+        The line across it, from wall to wall, where it was seen best; view frame.
+    certainty : int
+        Percent of belief that it is open along that line and that verge bounds it on both ends.
     """
 
     passage: Passage
@@ -37,33 +52,56 @@ class DoorwayNeck(NamedTuple):
 
 
 class DoorwayNecks(NamedTuple):
-    """The necks of a floor, and that floor: in a frame of BEHIND squares, and what was never seen counts as floor."""
+    """The necks of a floor.
+
+    Attributes
+    ----------
+    necks : list of DoorwayNeck
+        Those first that have floor DOOR_RATIO times as wide on both sides.
+    screen : Screen
+        The floor on which they were found: the view with UNSEEN_MARGIN free squares about it.
+    """
 
     necks: list[DoorwayNeck]
     screen: Screen
 
-    def narrow(self, neck: DoorwayNeck) -> Mask:
-        """(rows, columns): the squares where the neck itself may be, if its walls lie anywhere in their squares."""
+    def narrow(self, neck: DoorwayNeck) -> Bools:
+        """Return the squares where the narrowest line of a neck may be, wherever in their squares its walls end.
+
+        The mask is (rows, columns) bool on the view's arrays.
+        """
         mask = np.zeros(self.screen.shape, np.bool_)
-        for column, row in self.screen.narrows(neck.passage.shifted(BEHIND, BEHIND), ANYWHERE):
+        for column, row in self.screen.narrows(neck.passage.shifted(UNSEEN_MARGIN, UNSEEN_MARGIN), WIDTH_UNCERTAINTY):
             mask[row, column] = True
-        return mask[BEHIND:-BEHIND, BEHIND:-BEHIND]
+        return mask[UNSEEN_MARGIN:-UNSEEN_MARGIN, UNSEEN_MARGIN:-UNSEEN_MARGIN]
 
 
-def find_necks(model: WorldModel, verge: Mask, doubtful: Mask) -> DoorwayNecks:
-    """All necks of the floor, those first that have floor twice as wide on both sides.
+def find_necks(model: WorldModel, verge: Bools, doubtful: Bools) -> DoorwayNecks:
+    """Find all necks of the floor, those first that have floor DOOR_RATIO times as wide on both sides.
 
-    verge : (rows, columns) what bounds the floor; doubtful : what may, but rather does not.
+    Parameters
+    ----------
+    model : WorldModel
+        The world model.
+    verge : (rows, columns) bool
+        Squares that bound the floor.
+    doubtful : (rows, columns) bool
+        Squares that may bound it, but more likely do not. They count as free.
+
+    Returns
+    -------
+    DoorwayNecks
+        The necks, each with its certainty; view frame.
     """
-    walls, seen_verge = _walls(model), verge & model.view.seen
-    screen = Screen(np.pad(~verge, BEHIND, constant_values=True))
+    walls, seen_verge = _wall_parts(model), verge & model.view.seen
+    screen = Screen(np.pad(~verge, UNSEEN_MARGIN, constant_values=True))
     found = []
     for passage in _passages(screen):
         lines = list(dict.fromkeys([(passage.a, passage.b), *passage.mouths]))
         known = [
-            (_known(passage, line, across, model, seen_verge, doubtful, walls), -number)
+            (_certainty(passage, line, across, model, seen_verge, doubtful, walls), -number)
             for number, line in enumerate(lines)
-            for across in _along(passage, line, verge.shape)
+            for across in _squares_along(passage, line, verge.shape)
         ]
         certainty, number = max(known)
         found.append(DoorwayNeck(passage, lines[-number], certainty))
@@ -71,109 +109,136 @@ def find_necks(model: WorldModel, verge: Mask, doubtful: Mask) -> DoorwayNecks:
 
 
 def _passages(screen: Screen) -> list[Passage]:
-    """The necks within the frame of a screen, in the frame of the view; those at its edge too: it may go on behind."""
-    doors = screen.passages()
+    """Return the necks whose ends lie within the view, in the view frame; `screen` has the margin about it."""
+    doors = screen.passages(DOOR_RATIO)
     mouths = {frozenset(mouth) for passage in doors for mouth in passage.mouths}
-    others = [p for p in screen.passages(OPENING) if not any(frozenset(mouth) in mouths for mouth in p.mouths)]
-    height, width = (size - 2 * BEHIND for size in screen.shape)
+    others = [p for p in screen.passages(MIN_OPENING_RATIO) if not any(frozenset(m) in mouths for m in p.mouths)]
+    height, width = (size - 2 * UNSEEN_MARGIN for size in screen.shape)
 
     def within(passage: Passage) -> bool:
         ends = [point for mouth in passage.mouths for point in mouth]
         return all(0 < x < width and 0 < y < height for x, y in ends)
 
-    return [p for p in (passage.shifted(-BEHIND, -BEHIND) for passage in (*doors, *others)) if within(p)]
+    return [p for p in (passage.shifted(-UNSEEN_MARGIN, -UNSEEN_MARGIN) for passage in (*doors, *others)) if within(p)]
 
 
-def _along(passage: Passage, line: Segment, shape: tuple[int, ...]) -> list[Indices]:
-    """The squares along a line through a passage, twice a square: on one side of it and on the other.
+def _squares_along(passage: Passage, line: Segment, shape: tuple[int, ...]) -> list[Indices]:
+    """Return the squares along a line across a passage, at two samples a square: on one side of it, and on the other.
 
-    Of a mouth those alone that lie in the doorway, where it has some depth.
+    Of a mouth of a doorway that has some depth, only the side within the doorway is returned.
     """
     (ax, ay), (bx, by) = line
     one, two = passage.mouths
     sides = (1,) if line == one != two else (-1,) if line == two != one else (-1, 1)
-    hairs = [side * HAIR * np.array([ay - by, bx - ax]) for side in sides]
-    parts = _parts(line)
-    return [_squares(ax + x + (bx - ax) * parts, ay + y + (by - ay) * parts, shape) for x, y in hairs]
+    steps = [side * SIDEWAYS_STEP * np.array([ay - by, bx - ax]) for side in sides]
+    parts = _sample_positions(line)
+    return [_indices(ax + x + (bx - ax) * parts, ay + y + (by - ay) * parts, shape) for x, y in steps]
 
 
-def _parts(line: Segment) -> Floats:
-    """Where on a line it is looked at, as parts of its length."""
+def _sample_positions(line: Segment) -> Floats:
+    """Return the positions on a line at which squares are looked up, as fractions of its length, two a square."""
     count = max(2, round(2 * math.dist(*line)))
     parts: Floats = (np.arange(count) + 0.5) / count
     return parts
 
 
-class _Walls(NamedTuple):
-    """What is very likely one thing: (rows, columns) labels, 0 for none, and by label how long it is, in squares.
+class _WallParts(NamedTuple):
+    """Connected parts of what is probably occupied.
 
-    What was felt to be verge counts for as long as a wall is at least.
+    Attributes
+    ----------
+    labels : (rows, columns) int32
+        The number of each square's part, 0 for none.
+    extents : (number + 1,) int64
+        The longer side of each part's containing rectangle, in squares. A part that was felt to be verge counts as at
+        least as long as the shortest wall.
     """
 
-    labels: NDArray[np.int32]
-    extents: NDArray[np.int64]
+    labels: Labels
+    extents: Longs
 
 
-def _walls(model: WorldModel) -> _Walls:
-    found = components(model.view.seen & (model.view.probability >= LIKELY))
-    long = extents(found.labels, found.number)
+def _wall_parts(model: WorldModel) -> _WallParts:
+    """Return the connected parts of what is probably occupied."""
+    found = components(model.view.seen & (model.view.probability >= JAMB_PROBABILITY))
+    longer = extents(found.labels, found.number)
     height, width = found.labels.shape
     for row, column in (model.view.locate(*square) for square, colour in model.felt.items() if colour == VERGE):
         label = found.labels[row, column] if 0 <= row < height and 0 <= column < width else 0
         if label:  # verge, however short it is
-            long[label] = max(long[label], SMALLEST_WALL)
-    return _Walls(found.labels, long)
+            longer[label] = max(longer[label], SHORTEST_WALL)
+    return _WallParts(found.labels, longer)
 
 
-def _known(
+def _certainty(
     passage: Passage,
     line: Segment,
     across: Indices,
     model: WorldModel,
-    verge: Mask,
-    doubtful: Mask,
-    walls: _Walls,
+    verge: Bools,
+    doubtful: Bools,
+    walls: _WallParts,
 ) -> int:
-    """Percent of belief that a neck is open along a line from wall to wall and that its walls are verge.
+    """Return the percent of belief that a neck is open along a line and that verge bounds it on both ends.
 
-    Just how wide it is need not be clear: the squares beside its walls tell that, but not whether it is a door.
+    The exact width need not be clear: squares beside the walls tell the width, but not whether it is a door.
 
-    across : the squares along the line. verge : (rows, columns) what bounds the floor; doubtful : what may, but rather
-    does not.
+    across : the squares along the line. verge, doubtful : as for `find_necks`. walls : as of `_wall_parts`.
     """
-    parts = _parts(line)
-    inner = np.minimum(parts, 1 - parts) * passage.width >= min(UNCLEAR, passage.width / 4) - 1e-9
+    parts = _sample_positions(line)
+    inner = np.minimum(parts, 1 - parts) * passage.width >= min(UNCLEAR_EDGE, passage.width / 4) - 1e-9
     if not (model.view.seen[across] & ~verge[across] & ~(doubtful[across] & inner)).all():
         return 0
     jambs = [jamb(verge, end) for end in line]
     if not all(len(rows) for rows, _ in jambs):
         return 0
     walled = min(int(walls.extents[walls.labels[jamb]].max()) for jamb in jambs)
-    if walled < SMALLEST_WALL:
-        return min(50, round(50 * walled / SMALLEST_WALL))
+    if walled < SHORTEST_WALL:
+        return min(50, round(50 * walled / SHORTEST_WALL))
     middle = np.add(*line) / 2
-    spare = (min(passage.sides) - passage.width) / 2  # squares: as much wider on both sides it still were a door
-    told = verge & model.told
+    spare = (
+        2 * min(passage.sides) / DOOR_RATIO - passage.width
+    ) / 2  # squares: wider by so much on both ends, still a door
+    surely_wall = verge & model.told
     shares = [
-        _share_told(jamb, np.subtract(end, middle), min(UNCLEAR, spare), told)
+        _share_determined(jamb, np.subtract(end, middle), min(UNCLEAR_EDGE, spare), surely_wall)
         for end, jamb in zip(line, jambs, strict=True)
     ]
     return round(50 + 50 * min(float(model.told[across][inner].mean()), *shares))
 
 
-def _share_told(jamb: Indices, outward: Floats, furthest: float, told: Mask) -> float:
-    """How much of a jamb is surely wall, or of what lies behind it, at most so many squares further outward."""
+def _share_determined(jamb: Indices, outward: Floats, furthest: float, surely_wall: Bools) -> float:
+    """Return the share of a jamb's squares that are surely wall: at the jamb, or up to `furthest` squares outward.
+
+    outward : vector from the middle of the neck to the jamb, in squares. surely_wall : (rows, columns) bool.
+    """
     ahead = outward / max(float(np.hypot(*outward)), 1e-9)
     shares = []
     for deeper in range(max(math.floor(furthest), 0) + 1):
         dx, dy = np.rint(ahead * deeper).astype(int)
-        rows, columns = np.clip(jamb[0] + dy, 0, told.shape[0] - 1), np.clip(jamb[1] + dx, 0, told.shape[1] - 1)
-        shares.append(float(told[rows, columns].mean()))
+        rows, columns = (
+            np.clip(jamb[0] + dy, 0, surely_wall.shape[0] - 1),
+            np.clip(jamb[1] + dx, 0, surely_wall.shape[1] - 1),
+        )
+        shares.append(float(surely_wall[rows, columns].mean()))
     return max(shares)
 
 
-def jamb(wall: Mask, end: tuple[float, float]) -> Indices:
-    """The squares of a wall that an end of a neck touches, as rows and columns."""
+def jamb(wall: Bools, end: XY) -> Indices:
+    """Return the squares of a wall that one end of a neck touches.
+
+    Parameters
+    ----------
+    wall : (rows, columns) bool
+        The squares of walls.
+    end : (x, y)
+        The end of the neck, in squares, in the frame of the mask.
+
+    Returns
+    -------
+    rows, columns : (n,) int64
+        At most four squares; none where the point touches no wall.
+    """
     columns, rows = (sorted({math.floor(v - 0.5), math.floor(v + 0.5)}) for v in end)
     touched = [
         (row, column)
@@ -185,6 +250,7 @@ def jamb(wall: Mask, end: tuple[float, float]) -> Indices:
     return pairs[:, 0], pairs[:, 1]
 
 
-def _squares(x: Floats, y: Floats, shape: tuple[int, ...]) -> Indices:
+def _indices(x: Floats, y: Floats, shape: tuple[int, ...]) -> Indices:
+    """Return the squares in which points lie, clipped to an array of this shape."""
     rows = np.clip(np.floor(y).astype(int), 0, shape[0] - 1)
     return rows, np.clip(np.floor(x).astype(int), 0, shape[1] - 1)

@@ -1,7 +1,6 @@
-"""The world model as facts, in the vocabulary that docs/vocabulary.md documents, and as an episode's `belief`.
+"""The world model as facts, and as the `belief` of an episode's line; docs/vocabulary.md lists the predicates.
 
-Coordinates are hundredths of squares in Utak's own frame, whose origin is the point where he woke; confidences are
-percent.
+Lengths are hundredths of squares in the robot frame, whose origin is where the robot woke. Confidences are percent.
 """
 
 import math
@@ -11,34 +10,56 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Bools, Floats, Longs
 from geometry.raster.contours import Ring, outline
 from kb.localisation.hypotheses.explanation import Accommodated
 from kb.mapping.occupancy import OPEN
 from kb.world.corners import Corner
-from kb.world.model import FLOOR, ORG, VERGE, Node, WorldModel
+from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE, Node, WorldModel
 from kb.world.rooms import Rooms
 
-HUNDREDTHS = 100
-SAMPLES = 8
-Mask = NDArray[np.bool_]
-Floats = NDArray[np.float64]
+SEGMENT_SAMPLES = 8  # places along a segment at which the squares on both sides of it are looked up; convention
+SETTLED_CONFIDENCE = 99  # percent: belief in a square that the counts settle, but not beyond doubt; convention
+FELT_COLOUR_CONFIDENCE = 99  # percent: belief in a colour that was felt; convention
+MIN_OBJECT_CONFIDENCE = 50  # percent: below it a node is stated not to be movable: more likely it is verge
 
 
 class Places(NamedTuple):
-    """What is believed of the floor besides the tree: its rooms and doors, and its corners by side."""
+    """Parts of the world besides the tree of nodes.
+
+    Attributes
+    ----------
+    rooms : Rooms
+        The rooms of the floor and the doors between them.
+    corners : mapping of str to Corner
+        The corner of the known floor towards each side: northeast, northwest, southeast, southwest.
+    """
 
     rooms: Rooms
     corners: Mapping[str, Corner]
 
 
 def belief(model: WorldModel, places: Places, accommodated: Accommodated, bound: Mapping[str, str]) -> dict[str, Any]:
-    """What an episode's line tells of Utak's belief.
+    """Return the `belief` of an episode's line, ready for JSON.
 
-    place, lattice: where he believes himself, and the angle of the lattice. pose: how the pose was explained. cells:
-    how many cells of the impression
-    were predicted, explained or noise. bound: what the parameters of the task mean. facts: the world model.
+    Parameters
+    ----------
+    model : WorldModel
+        The world model after an impression.
+    places : Places
+        The rooms and corners of that model.
+    accommodated : Accommodated
+        How the impression was explained, and the status of each of its fields.
+    bound : mapping of str to str
+        Parameter of the task -> node of the model.
+
+    Returns
+    -------
+    dict
+        place: where the robot believes it is, [east, north] in squares, robot frame. lattice: the orientation of the
+        grid of squares, degrees. pose: how the place was explained. cells: how many fields were predicted, explained
+        or noise. bound: the bindings. facts: the facts of the world model, sorted, with full stops.
     """
     cells = Counter(str(status) for status in accommodated.cells)
     east, north = model.frame.place_to_utak(*model.place)
@@ -53,47 +74,59 @@ def belief(model: WorldModel, places: Places, accommodated: Accommodated, bound:
 
 
 def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
-    """The tree of the world model, its rooms and doors, as facts without their full stops."""
-    yield from _root(model)
-    whole = ((name, _rings(mask, model)) for name, mask in ((FLOOR, model.floor), (VERGE, model.verge)) if mask.any())
-    yield from _outlined([*whole, *((node.name, _object_rings(node)) for node in model.objects)], model)
+    """Yield the world model, its rooms, doors and corners as facts without their full stops.
+
+    Parameters
+    ----------
+    model : WorldModel
+        The world model.
+    places : Places
+        Its rooms and corners.
+    """
+    yield from _root_facts(model)
+    parts = ((FLOOR_NODE, model.floor), (VERGE_NODE, model.verge))
+    whole = ((name, _mask_rings(mask, model)) for name, mask in parts if mask.any())
+    yield from _outline_facts([*whole, *((node.name, _object_rings(node)) for node in model.objects)], model)
     for node in model.objects:
-        yield from _object(node, model, places.rooms)
-    yield from _rooms(model, places.rooms)
+        yield from _object_facts(node, model, places.rooms)
+    yield from _room_facts(model, places.rooms)
     for side, corner in sorted(places.corners.items()):
         east, north = model.place_to_utak(*corner.point)
         yield f"corner({side},{_hundredths(east)},{_hundredths(north)})"
 
 
-def _root(model: WorldModel) -> Iterator[str]:
+def _root_facts(model: WorldModel) -> Iterator[str]:
+    """Yield the facts of the robot, the floor and the verge."""
     east, north = model.frame.place_to_utak(*model.place)
-    yield f"node({ORG})"
-    yield f"kind({ORG},utak,100)"
-    yield f"offset({ORG},{_hundredths(east)},{_hundredths(north)})"
-    for name, kind, parent in ((FLOOR, "floor", ORG), (VERGE, "verge", FLOOR)):
+    yield f"node({ROOT_NODE})"
+    yield f"kind({ROOT_NODE},utak,100)"
+    yield f"offset({ROOT_NODE},{_hundredths(east)},{_hundredths(north)})"
+    for name, kind, parent in ((FLOOR_NODE, "floor", ROOT_NODE), (VERGE_NODE, "verge", FLOOR_NODE)):
         yield f"node({name})"
         yield f"child({parent},{name})"
-        yield f"kind({name},{kind},{_sureness(model, kind)})"
-    yield f"offset({FLOOR},{_hundredths(-east)},{_hundredths(-north)})"
-    yield f"offset({VERGE},0,0)"
+        yield f"kind({name},{kind},{_share_settled(model, kind)})"
+    yield f"offset({FLOOR_NODE},{_hundredths(-east)},{_hundredths(-north)})"
+    yield f"offset({VERGE_NODE},0,0)"
     if model.held:
         yield f"held({model.held})"
 
 
-def _sureness(model: WorldModel, kind: str) -> int:
+def _share_settled(model: WorldModel, kind: str) -> int:
+    """Return the mean confidence in the squares of the floor or the verge, in percent."""
     mask = model.floor if kind == "floor" else model.verge
-    return int(_settled(model)[mask].sum()) // int(mask.sum()) if mask.any() else 0
+    return int(_square_confidence(model)[mask].sum()) // int(mask.sum()) if mask.any() else 0
 
 
-def _settled(model: WorldModel) -> NDArray[np.int64]:
-    """(rows, columns): the confidence in what the counts settle of each square, in percent; 0 where that is nothing."""
-    return np.where(model.certain, 100, 99 * (model.view.state != OPEN))
+def _square_confidence(model: WorldModel) -> Longs:
+    """Return the confidence in what the counts settle of each square, (rows, columns) percent; 0 if not settled."""
+    return np.where(model.certain, 100, SETTLED_CONFIDENCE * (model.view.state != OPEN))
 
 
-def _object(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
+def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
+    """Yield the facts of one object, its outline apart."""
     name = node.name
     yield f"node({name})"
-    yield f"child({FLOOR},{name})"
+    yield f"child({FLOOR_NODE},{name})"
     yield f"kind({name},object,{node.confidence})"
     if node.confidence < 100:
         yield f"kind({name},verge,{model.kinds.of(node.region, 'verge')})"
@@ -102,53 +135,56 @@ def _object(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
     for shape, confidence in sorted(node.shape.items()):
         yield f"shape({name},{shape},{confidence})"
     if node.colour is not None:
-        yield f"colour({name},{node.colour},99)"
-    yield f"movable({name},{node.movable if node.confidence >= 50 else 0})"
+        yield f"colour({name},{node.colour},{FELT_COLOUR_CONFIDENCE})"
+    yield f"movable({name},{node.movable if node.confidence >= MIN_OBJECT_CONFIDENCE else 0})"
     row, column = model.view.locate(*node.patch.centre)
     room = rooms.labels[row, column]
     if room:
         yield f"in({name},r{room})"
-    if _beside_utak(node, model):
-        yield f"adjacent({ORG},{name})"
+    if _adjacent_to_robot(node, model):
+        yield f"adjacent({ROOT_NODE},{name})"
 
 
-def _beside_utak(node: Node, model: WorldModel) -> bool:
+def _adjacent_to_robot(node: Node, model: WorldModel) -> bool:
+    """Return whether an object may cover the robot's square or one of the 8 squares about it."""
     row, column = math.floor(model.place[1]) - node.patch.south, math.floor(model.place[0]) - node.patch.west
     return bool(node.patch.mask[max(row - 1, 0) : max(row + 2, 0), max(column - 1, 0) : max(column + 2, 0)].any())
 
 
 def _object_rings(node: Node) -> list[Floats]:
+    """Return the boundary of an object as rings of (n, 2) points, map frame: its polygon, or that of its squares."""
     if node.polygon is not None:
         return [np.array(node.polygon.exterior.coords)[:-1]]
     corner = np.array([node.patch.west, node.patch.south])
-    return [corner + ring for ring in _outline(node.patch.mask.tobytes(), node.patch.mask.shape)]
+    return [corner + ring for ring in _patch_outline(node.patch.mask.tobytes(), node.patch.mask.shape)]
 
 
 @lru_cache(maxsize=4096)
-def _outline(squares: bytes, shape: tuple[int, int]) -> list[Ring]:
-    """The outline of a small mask; most things look the same from one impression to the next."""
+def _patch_outline(squares: bytes, shape: tuple[int, int]) -> list[Ring]:
+    """Return the outline of a small mask; most objects look the same from one impression to the next."""
     return outline(np.frombuffer(squares, np.bool_).reshape(shape))
 
 
-def _rings(mask: Mask, model: WorldModel) -> list[Floats]:
+def _mask_rings(mask: Bools, model: WorldModel) -> list[Floats]:
+    """Return the outline of a mask on the view's arrays as rings of (n, 2) points, map frame."""
     corner = np.array([model.view.west, model.view.south])
     return [corner + ring for ring in outline(mask)]
 
 
-def _outlined(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel) -> Iterator[str]:
-    """The containing rectangles and the circular boundaries, ring after ring, of nodes by name.
+def _outline_facts(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel) -> Iterator[str]:
+    """Yield the containing rectangles and the boundaries of nodes, ring after ring.
 
-    The rings' corners are (n, 2) points of the lattice.
+    shapes : pairs (name of the node, its rings); a ring is (n, 2) points, map frame.
     """
     names, rings = zip(*((name, ring) for name, parts in shapes for ring in parts), strict=True)
     starts = np.concatenate(rings)
     ends = np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
-    sure = _sureness_along(starts, ends, model)
-    corners = _in_hundredths(starts, model)
+    sure = _segment_confidence(starts, ends, model)
+    corners = _points_in_hundredths(starts, model)
     count = Counter[str]()
     for name, ring in zip(names, rings, strict=True):
         count[name] += len(ring)
-    lines = np.column_stack([corners, _in_hundredths(ends, model)]).tolist()
+    lines = np.column_stack([corners, _points_in_hundredths(ends, model)]).tolist()
     first = 0
     for name, length in count.items():
         part = slice(first, first + length)
@@ -159,35 +195,39 @@ def _outlined(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel) -> 
         first += length
 
 
-def _in_hundredths(points: Floats, model: WorldModel) -> NDArray[np.int64]:
-    """(n, 2): points of the lattice in hundredths of squares of Utak's frame."""
+def _points_in_hundredths(points: Floats, model: WorldModel) -> Longs:
+    """Return (n, 2) points of the map frame in hundredths of squares of the robot frame."""
     placed: Floats = np.column_stack(model.frame.place_to_utak(*points.T))
-    answer: NDArray[np.int64] = np.rint(HUNDREDTHS * placed).astype(np.int64)
+    answer: Longs = np.rint(FACT_UNITS_PER_SQUARE * placed).astype(np.int64)
     return answer
 
 
-def _sureness_along(starts: Floats, ends: Floats, model: WorldModel) -> list[int]:
-    """For each segment, percent of the squares on both sides of it that are settled, sampled at SAMPLES places."""
-    parts = (np.arange(SAMPLES) + 0.5) / SAMPLES
+def _segment_confidence(starts: Floats, ends: Floats, model: WorldModel) -> list[int]:
+    """Return for each segment the mean confidence in the squares on both sides of it, in percent.
+
+    starts, ends : (n, 2) points, map frame. Each segment is sampled at SEGMENT_SAMPLES places.
+    """
+    parts = (np.arange(SEGMENT_SAMPLES) + 0.5) / SEGMENT_SAMPLES
     step = ends - starts
     along = starts[:, None] + parts[:, None] * step[:, None]
     length = np.hypot(*step.T)[:, None, None]
     across = np.stack([-step[:, 1], step[:, 0]], axis=1)[:, None] / (2 * np.maximum(length, 1e-9))
     points = np.concatenate([along + across, along - across], axis=1) - (model.view.west, model.view.south)
     columns, rows = np.floor(points).astype(int).transpose(2, 0, 1)
-    framed = np.pad(_settled(model), 1)
+    framed = np.pad(_square_confidence(model), 1)
     settled = framed[np.clip(rows + 1, 0, framed.shape[0] - 1), np.clip(columns + 1, 0, framed.shape[1] - 1)]
     return [int(share) for share in settled.mean(axis=1)]
 
 
-def _rooms(model: WorldModel, rooms: Rooms) -> Iterator[str]:
+def _room_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
+    """Yield the facts of rooms and doors."""
     unseen = np.bincount(rooms.labels[model.view.state == OPEN], minlength=int(rooms.labels.max(initial=0)) + 1)
     for room in range(1, len(unseen)):
         yield f"room(r{room})"
         yield f"unseen(r{room},{unseen[room]})"
     row, column = model.view.locate(*model.place)
     if rooms.labels[row, column]:
-        yield f"in({ORG},r{rooms.labels[row, column]})"
+        yield f"in({ROOT_NODE},r{rooms.labels[row, column]})"
     for door in rooms.sure:
         yield f"door({door.name})"
         yield f"width({door.name},{_hundredths(door.width)})"
@@ -195,4 +235,5 @@ def _rooms(model: WorldModel, rooms: Rooms) -> Iterator[str]:
 
 
 def _hundredths(length: float) -> int:
-    return round(HUNDREDTHS * length)
+    """Return a length in squares as a whole number of hundredths."""
+    return round(FACT_UNITS_PER_SQUARE * length)

@@ -1,8 +1,10 @@
-"""Doors and rooms. Geometry measures the necks of the floor; kb/asp/rooms.lp says which are doors; the parts between
-doors are rooms.
+"""Rooms: the parts of the known floor between its doors.
 
-Isolated objects do not count: rooms are made by the verge. What was never seen counts as floor, so that a door is
-known by its two jambs, before all is seen of the room behind it.
+Geometry measures the necks of the floor, and kb/asp/rooms.lp decides which of them are doors. Rooms are bounded by the
+verge: isolated objects do not count. Squares that were never seen count as floor, so that a door is known by its two
+jambs before the room behind it was seen.
+
+Coordinates are (x, y) in squares in the view frame: origin at the south-west corner of the map view's square [0, 0].
 """
 
 import math
@@ -11,141 +13,195 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geometry import Passage, Screen
+from geometry.kernels.arrays import XY, Bools, Floats, Ints, Labels, Longs
+from geometry.passages.necks import Segment
 from geometry.raster.winding import crossings
 from kb.reasoning.solver import KB, solve
-from kb.world.doors import DoorwayNeck, Segment, find_necks
-from kb.world.model import WorldModel
+from kb.world.doors import DoorwayNeck, find_necks
+from kb.world.model import FACT_UNITS_PER_SQUARE, WorldModel
 
-Mask = NDArray[np.bool_]
-Floats = NDArray[np.float64]
-Labels = NDArray[np.int32]
-Longs = NDArray[np.int64]
-SURE = 60  # percent: a door is one from here on
-LIKELY_DOOR = 25  # percent: what may be a door is tried from here on
-BEYOND = 1.6  # squares: how far behind the wall a room surely begins
-AT_MOUTH = 1.5  # squares from a mouth within which the room behind it begins, where that is seen
-HALF = 0.5  # probability of being occupied from which a piece of verge bounds a door
-HUNDREDTHS = 100
-DOORWAY = 0  # the label of floor that is part of no room
+SURE = 60  # percent: confidence from which a neck counts as a door; tuned on random worlds (benchmarks.campaign)
+LIKELY_DOOR = 25  # percent: confidence from which a neck that may be a door is tried; tuned on random worlds
+DOORWAY_REACH = 1.6  # squares: how far beyond a mouth the doorway may reach, and a room is not sure to begin; tuned
+MAX_MOUTH_DISTANCE = 1.5  # squares from a mouth within which the room behind it begins, where that is seen; tuned
+MIN_BOUND_PROBABILITY = 0.5  # verge occupied with at least this probability bounds doors: more likely than not
+NO_ROOM = 0  # the label of floor that is part of no room
 
 
 @dataclass(frozen=True)
 class Door:
-    """A door, in the frame of the view's arrays.
+    """A door: a neck of the floor at most half as wide as the floor on both sides of it.
 
-    a, b : the ends of its neck, on the walls. sides : the rooms on its two sides. confidence : percent.
+    Attributes
+    ----------
+    name : str
+        d1, d2, ... It may name another door in another world model.
+    a, b : (x, y)
+        The ends of its neck, on the walls; view frame.
+    sides : (int, int)
+        The numbers of the rooms on its two sides.
+    confidence : int
+        Percent of belief that it is a door.
     """
 
     name: str
-    a: tuple[float, float]
-    b: tuple[float, float]
+    a: XY
+    b: XY
     sides: tuple[int, int]
     confidence: int
 
     @property
     def sure(self) -> bool:
-        """Is it a door beyond reasonable doubt?"""
+        """Whether it counts as a door."""
         return self.confidence >= SURE
 
     @property
     def likely(self) -> bool:
-        """Is it likely enough to be tried?"""
+        """Whether it is likely enough to be a door to be tried."""
         return self.confidence >= LIKELY_DOOR
 
     @property
     def width(self) -> float:
-        """From wall to wall, in squares."""
+        """The width from wall to wall, in squares."""
         return math.dist(self.a, self.b)
 
     @property
-    def place(self) -> tuple[float, float]:
-        """The middle of the neck."""
+    def place(self) -> XY:
+        """The middle of its neck, (x, y) in the view frame."""
         return (self.a[0] + self.b[0]) / 2, (self.a[1] + self.b[1]) / 2
 
 
 class Opening(NamedTuple):
-    """A neck that is no door, for the floor is not twice as wide on both sides; in the frame of the view's arrays.
+    """A neck that is no door, since the floor is not twice as wide on both sides.
 
-    a, b : its ends, on the walls. least : how wide the floor is on the narrower side, in squares. narrow, wide : the
-    centres of squares just beyond it on that side, and on the other.
+    Attributes
+    ----------
+    a, b : (x, y)
+        Its ends, on the walls; view frame.
+    least : float
+        The width of the floor on the narrower side, in squares.
+    narrow, wide : (x, y)
+        The centres of squares just beyond it, on the narrower side and on the wider one; view frame.
     """
 
-    a: tuple[float, float]
-    b: tuple[float, float]
+    a: XY
+    b: XY
     least: float
-    narrow: tuple[float, float]
-    wide: tuple[float, float]
+    narrow: XY
+    wide: XY
 
     @property
     def width(self) -> float:
-        """From wall to wall, in squares."""
+        """The width from wall to wall, in squares."""
         return math.dist(self.a, self.b)
 
     @property
-    def place(self) -> tuple[float, float]:
-        """The middle of it."""
+    def place(self) -> XY:
+        """The middle of its neck, (x, y) in the view frame."""
         return (self.a[0] + self.b[0]) / 2, (self.a[1] + self.b[1]) / 2
 
 
 @dataclass(frozen=True)
 class Rooms:
-    """The floor's rooms.
+    """The rooms of the floor.
 
-    doors : all that may be doors; rooms end at each of them. labels : (rows, columns) the room of each square of known
-    floor, 0 for none; the one in which Utak woke is 1. doorways : (rows, columns) squares between the walls of a door,
-    and those close to it: they belong to no room for certain. opening : the neck that comes nearest to be a door, of
-    those that are none.
+    Attributes
+    ----------
+    doors : tuple of Door
+        All necks that may be doors, likely or not; rooms end at each of them.
+    labels : (rows, columns) int32
+        The room of each square of known floor, 0 for none; the room in which the robot woke is 1.
+    doorways : (rows, columns) bool
+        Squares between the walls of a door, and those close to it: they belong to no room for certain.
+    opening : Opening or None
+        Of the necks that are no doors the one that comes nearest to being one.
     """
 
     doors: tuple[Door, ...]
-    labels: NDArray[np.int32]
-    doorways: Mask
+    labels: Labels
+    doorways: Bools
     opening: Opening | None = None
 
     @property
     def sure(self) -> tuple[Door, ...]:
-        """The doors beyond reasonable doubt."""
+        """The doors that count as such."""
         return tuple(door for door in self.doors if door.sure)
 
     def leading(self, room: int, least: int = SURE) -> list[Door]:
-        """The doors of a room. least : percent of belief in them."""
+        """Return the doors of a room.
+
+        Parameters
+        ----------
+        room : int
+            The number of the room.
+        least : int
+            Percent: the least confidence of the doors that are returned.
+        """
         return [door for door in self.doors if door.confidence >= least and room in door.sides]
 
-    def beyond(self, room: int, least: int = SURE) -> Mask:
-        """(rows, columns): squares of the rooms that share a door with a room, but for the doorways.
+    def beyond(self, room: int, least: int = SURE) -> Bools:
+        """Return the squares of all rooms that share a door with a room, doorways left out.
 
-        least : percent of belief in that door.
+        Parameters
+        ----------
+        room : int
+            The number of the room.
+        least : int
+            Percent: the least confidence of such a door.
+
+        Returns
+        -------
+        (rows, columns) bool
         """
         others = {side for door in self.leading(room, least) for side in door.sides} - {room}
-        mask: Mask = np.isin(self.labels, sorted(others)) & ~self.doorways
+        mask: Bools = np.isin(self.labels, sorted(others)) & ~self.doorways
         return mask
 
 
 NOTHING = Rooms((), np.zeros((0, 0), np.int32), np.zeros((0, 0), np.bool_))
 
 
-def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), verge: Mask | None = None) -> Rooms:
-    """The rooms of a world model. verge : (rows, columns) what bounds them; None for all that is taken for verge."""
+def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), verge: Bools | None = None) -> Rooms:
+    """Divide the known floor into rooms, and find the doors between them.
+
+    Parameters
+    ----------
+    model : WorldModel
+        The world model.
+    rules : tuple of Path
+        The user's own encodings, solved together with kb/asp/rooms.lp.
+    verge : (rows, columns) bool, optional
+        Squares that bound the rooms; without it all that the model takes for verge.
+
+    Returns
+    -------
+    Rooms
+        One room without doors where nothing bounds the floor.
+
+    Raises
+    ------
+    BadInputError
+        The user's encodings are wrong.
+    """
     verge = model.verge if verge is None else verge
     if not verge.any():
         return Rooms((), np.ones(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
-    doubtful = verge & (model.view.probability < HALF)  # part of no room, but no bound of a door either
+    doubtful = verge & (model.view.probability < MIN_BOUND_PROBABILITY)  # part of no room, but bounds no door
     verge = verge & ~doubtful
     found = find_necks(model, verge, doubtful)
-    possible, opening = _judged(found.necks, rules)
+    possible, opening = _judge_necks(found.necks, rules)
     floor = ~verge & model.view.seen
     if not floor.any():
         return Rooms((), np.zeros(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
     labels = np.where(floor, Screen(floor).parts([neck.passage for neck, _ in possible]), -1)
-    sides = [_sides(neck.passage, labels) for neck, _ in possible]
+    sides = [_divide_doorway(neck.passage, labels) for neck, _ in possible]
     labels = np.maximum(labels, 0)
     doorways = np.zeros(verge.shape, np.bool_)
     for neck, _ in possible:
         doorways |= _doorway(neck.passage, verge.shape) | found.narrow(neck)
-    order = _first(int(labels.max()), int(labels[model.view.locate(*model.frame.origin)]))
+    order = _numbers_from(int(labels.max()), int(labels[model.view.locate(*model.frame.origin)]))
     doors = tuple(
         Door(f"d{number}", *neck.line, (int(order[one]), int(order[other])), confidence)
         for number, ((neck, confidence), (one, other)) in enumerate(zip(possible, sides, strict=True), 1)
@@ -153,13 +209,15 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), verge: Mask | None
     return Rooms(doors, np.where(doubtful, 0, order[labels]).astype(np.int32), doorways & floor, opening)
 
 
-def _judged(found: list[DoorwayNeck], rules: tuple[Path, ...]) -> tuple[list[tuple[DoorwayNeck, int]], Opening | None]:
-    """Those necks that kb/asp takes for doors, with its confidence, and the one that comes nearest to be a door."""
-    known = [neck for neck in found if neck.certainty > 0]
+def _judge_necks(
+    necks: list[DoorwayNeck], rules: tuple[Path, ...]
+) -> tuple[list[tuple[DoorwayNeck, int]], Opening | None]:
+    """Return the necks that kb/asp/rooms.lp takes for doors, with its confidence, and the neck nearest to be a door."""
+    known = [neck for neck in necks if neck.certainty > 0]
     facts = []
     for number, (passage, _, certainty) in enumerate(known):
         sizes = (passage.width, 2 * passage.sides[0], 2 * passage.sides[1])
-        width, one, other = (math.floor(HUNDREDTHS * size + 1e-6) for size in sizes)
+        width, one, other = (math.floor(FACT_UNITS_PER_SQUARE * size + 1e-6) for size in sizes)
         facts.append(f"neck({number},{width},{one},{other},{certainty})")
     answer = (solve([KB / "rooms.lp", *rules], facts) if facts else None) or ()
     chosen = {a.arguments[0].number: a.arguments[1].number for a in answer if a.match("door", 2)}
@@ -169,49 +227,49 @@ def _judged(found: list[DoorwayNeck], rules: tuple[Path, ...]) -> tuple[list[tup
 
 
 def _opening(neck: DoorwayNeck) -> Opening:
-    """A neck that is no door, as it is told."""
+    """Return a neck that is no door as an Opening."""
     (least, narrow), (_, wide) = sorted(zip(neck.passage.sides, neck.passage.gates, strict=True))
     return Opening(*neck.line, 2 * least, narrow, wide)
 
 
-def _first(number: int, start: int) -> NDArray[np.int32]:
-    """New numbers for so many parts and for 0, so that one of the parts is number 1."""
+def _numbers_from(number: int, start: int) -> Ints:
+    """Return new numbers for the parts 0 to `number`: `start` becomes 1, and 1 becomes `start`; 0 stays."""
     order = np.arange(number + 1, dtype=np.int32)
     if start > 0:
         order[[1, start]] = order[[start, 1]]
     return order
 
 
-def _sides(passage: Passage, labels: Labels) -> tuple[int, int]:
-    """The rooms on both sides of a passage; the doorway is divided between them, in place.
+def _divide_doorway(passage: Passage, labels: Labels) -> tuple[int, int]:
+    """Return the rooms on both sides of a passage, and divide the doorway between them in `labels`, in place.
 
-    Where nothing is seen behind it but the doorway, that is a room of its own.
+    Where nothing is seen beyond the doorway, its half of the doorway is a room of its own.
     """
     columns, rows = np.array(passage.between, np.int64).reshape(-1, 2).T
-    away = [_from_line(mouth, columns, rows) for mouth in passage.mouths]
+    away = [_distances_to_line(mouth, columns, rows) for mouth in passage.mouths]
     sides = [_label_beyond(passage, number, labels) for number in (0, 1)]
     for number in (0, 1):
         own = (away[number] < away[1 - number]) | ((away[number] == away[1 - number]) & (number == 0))
         inside = own & _within(labels, columns, rows)
-        inside[inside] = labels[rows[inside], columns[inside]] == DOORWAY
+        inside[inside] = labels[rows[inside], columns[inside]] == NO_ROOM
         sides[number] = sides[number] or (int(labels.max()) + 1 if inside.any() else 0)
         labels[rows[inside], columns[inside]] = sides[number]
     return sides[0] or sides[1], sides[1] or sides[0]
 
 
-def _within(labels: Labels, columns: Longs, rows: Longs) -> Mask:
-    """Which squares lie in an array."""
-    inside: Mask = (rows >= 0) & (columns >= 0) & (rows < labels.shape[0]) & (columns < labels.shape[1])
+def _within(labels: Labels, columns: Longs, rows: Longs) -> Bools:
+    """Return which of some squares lie within an array, (n,) bool."""
+    inside: Bools = (rows >= 0) & (columns >= 0) & (rows < labels.shape[0]) & (columns < labels.shape[1])
     return inside
 
 
 def _label_beyond(passage: Passage, number: int, labels: Labels) -> int:
-    """The room that begins behind one of the mouths of a passage; 0 where none is seen."""
+    """Return the label of the room that begins beyond mouth `number` (0 or 1) of a passage; 0 where none is seen."""
     (x, y), mouth = passage.gates[number], passage.mouths[number]
     rows, columns = np.nonzero(labels > 0)
     (ax, ay), (bx, by) = mouth if number == 0 else mouth[::-1]
     beyond = (bx - ax) * (rows + 0.5 - ay) - (by - ay) * (columns + 0.5 - ax) < 0
-    near = beyond & (_from_line(mouth, columns, rows) <= AT_MOUTH)
+    near = beyond & (_distances_to_line(mouth, columns, rows) <= MAX_MOUTH_DISTANCE)
     if not near.any():
         return 0
     rows, columns = rows[near], columns[near]
@@ -219,8 +277,8 @@ def _label_beyond(passage: Passage, number: int, labels: Labels) -> int:
     return int(labels[rows[first], columns[first]])
 
 
-def _from_line(line: Segment, columns: Longs, rows: Longs) -> Floats:
-    """How far the centres of squares lie from a line, in squares."""
+def _distances_to_line(line: Segment, columns: Longs, rows: Longs) -> Floats:
+    """Return the distances of the centres of squares from a line segment, (n,) in squares."""
     a, along = np.array(line[0]), np.subtract(line[1], line[0])
     points = np.stack([columns + 0.5, rows + 0.5], axis=-1) - a
     part = np.clip(points @ along / (along @ along), 0.0, 1.0)
@@ -228,26 +286,36 @@ def _from_line(line: Segment, columns: Longs, rows: Longs) -> Floats:
     return away
 
 
-def _doorway(passage: Passage, shape: tuple[int, int]) -> Mask:
-    """(rows, columns): the squares just before the mouths of a passage, as far as BEYOND."""
+def _doorway(passage: Passage, shape: tuple[int, int]) -> Bools:
+    """Return the squares in front of both mouths of a passage, up to DOORWAY_REACH: (rows, columns) bool."""
     mask = np.zeros(shape, np.bool_)
     for mouth, outward in zip(passage.mouths, (-1, 1), strict=True):
         middle, along = np.add(*mouth) / 2, np.subtract(mouth[1], mouth[0])
         wide = float(np.hypot(*along))
-        reach = math.ceil(wide / 2 + BEYOND) + 1
+        reach = math.ceil(wide / 2 + DOORWAY_REACH) + 1
         row, column = math.floor(middle[1]), math.floor(middle[0])
         window = slice(max(row - reach, 0), row + reach + 1), slice(max(column - reach, 0), column + reach + 1)
         rows, columns = np.ogrid[: shape[0], : shape[1]]
         x, y = columns[:, window[1]] + 0.5 - middle[0], rows[window[0]] + 0.5 - middle[1]
         sideways, forward = (x * along[0] + y * along[1]) / wide, outward * (y * along[0] - x * along[1]) / wide
-        mask[window] |= (np.abs(sideways) <= wide / 2 + 1) & (forward > 0) & (forward < BEYOND)
+        mask[window] |= (np.abs(sideways) <= wide / 2 + 1) & (forward > 0) & (forward < DOORWAY_REACH)
     return mask
 
 
 def crosses(points: Floats, door: Door) -> int:
-    """Return how often a line crosses the neck of a door, there and back counted as none.
+    """Return the net number of passes of a track through the neck of a door; there and back counts as none.
 
-    points : (n, 2) in the frame of the view's arrays, as for `went_through`.
+    Parameters
+    ----------
+    points : (n, 2) float64
+        The track, (x, y) in squares, view frame.
+    door : Door
+        The door.
+
+    Returns
+    -------
+    int
+        Not negative.
     """
     a, along = np.array(door.a), np.subtract(door.b, door.a)
     turned = np.column_stack([(points - a) @ along, (points - a) @ np.array([-along[1], along[0]])])
@@ -256,5 +324,13 @@ def crosses(points: Floats, door: Door) -> int:
 
 
 def went_through(track: Floats, door: Door) -> bool:
-    """Return whether a track was ever on the other side of a door than it began."""
+    """Return whether a track was ever on the other side of a door than it began.
+
+    Parameters
+    ----------
+    track : (n, 2) float64
+        The points of the track, (x, y) in squares, view frame.
+    door : Door
+        The door.
+    """
     return any(crosses(track[: end + 1], door) for end in range(1, len(track)))

@@ -10,7 +10,7 @@ from kb.knowledge import Knowledge
 from kb.mapping.occupancy import FREE, FULL, OPEN, MapView, OccupancyMap
 from kb.mapping.patch import patch_of
 from kb.perception.frame import Frame
-from kb.perception.interpretation import interpret
+from kb.perception.interpretation import interpret_regions
 from kb.perception.regions import label_of, map_regions
 from kb.perception.retina import count_ranges
 from kb.world.model import Node, WorldModel
@@ -52,7 +52,7 @@ def seen_whole(rows: list[str], objects: bool = True) -> WorldModel:
     x, y = utak_in(rows)
     view = MapView(-x, -y, probability, state, seen, np.where(seen, 0, -1).astype(np.int16))
     percept, labels = map_regions(occupied & seen, seen, seen)
-    model = WorldModel(Frame(), (0.5, 0.5), view, labels, percept, interpret(percept), ())
+    model = WorldModel(Frame(), (0.5, 0.5), view, labels, percept, interpret_regions(percept), ())
     nodes = [
         Node(f"o{n}", "object", 95, region.name, patch_of(labels == label_of(region.name), view), 0)
         for n, region in enumerate((r for r in percept.regions if model.kinds.of(r.name, "object") == 95), 1)

@@ -18,7 +18,7 @@ from kb.mapping.patch import Patch
 from kb.objects.held_object import HeldObject
 from kb.perception.frame import Frame, turned
 from kb.task.task import Task
-from kb.world.model import Names
+from kb.world.object_names import ObjectNames
 from planner.deciding.decider import Decider
 from tests.kb.drawings import walked
 from tests.kb.eyes import impression, random_room, utak_in, world_of
@@ -193,7 +193,7 @@ def test_one_observation_tells_the_orientation_whatever_was_believed() -> None:
 
 
 def test_names_of_objects_are_not_given_again() -> None:
-    names, patch = Names(), Patch(0, 0, np.ones((2, 2), np.bool_))
+    names, patch = ObjectNames(), Patch(0, 0, np.ones((2, 2), np.bool_))
     assert names.assign([patch]) == names.assign([patch]) == ["o1"]
     names.forget()
     assert names.assign([patch]) == ["o2"]

@@ -1,10 +1,19 @@
-"""Scenes, and the pictures that are drawn of them."""
+"""Scenes, and the completions that are drawn of them."""
 
 import numpy as np
 import pytest
 
 from geometry.counts.gibbs import DRAWN, FULL
-from kb.mapping.completions import DRAWINGS, NO_PICTURES, PICTURES, Completions, _kept, ground_of, pictured, scenes
+from kb.mapping.completions import (
+    DRAWS_PER_COMPLETION,
+    MAX_COMPLETIONS,
+    NO_COMPLETIONS,
+    Completions,
+    _resample,
+    draw_completions,
+    ground_of,
+    scenes,
+)
 from kb.mapping.occupancy import MapView
 from tests.kb.drawings import LARGE_ROOM, drawing, looked
 
@@ -18,7 +27,7 @@ def views() -> list[MapView]:
 
 
 @pytest.mark.parametrize("view", views())
-def test_a_square_is_drawn_in_one_scene_and_a_field_looks_at_one(view: MapView) -> None:
+def test_a_square_and_a_field_belong_to_one_scene(view: MapView) -> None:
     ground = ground_of(view)
     owner = np.zeros(ground.shape, int)
     for number, scene in enumerate(scenes(view, ground), 1):
@@ -33,10 +42,10 @@ def test_a_square_is_drawn_in_one_scene_and_a_field_looks_at_one(view: MapView) 
 
 
 @pytest.mark.parametrize("view", views())
-def test_pictures_agree_with_what_is_settled_and_with_nearly_all_counts(view: MapView) -> None:
+def test_completions_agree_with_settled_squares_and_with_nearly_all_counts(view: MapView) -> None:
     ground = ground_of(view)
-    images = pictured(view, ground, NO_PICTURES).images
-    assert images.shape == (PICTURES, *ground.shape)
+    images = draw_completions(view, ground, NO_COMPLETIONS).images
+    assert images.shape == (MAX_COMPLETIONS, *ground.shape)
     settled = ground != DRAWN
     assert all((image[settled] == (ground[settled] == FULL)).all() for image in images)
     where, weight, low, high = view.counts
@@ -45,7 +54,7 @@ def test_pictures_agree_with_what_is_settled_and_with_nearly_all_counts(view: Ma
         assert ((low <= count) & (count <= high)).mean() > 0.9
 
 
-def test_a_scene_stays_the_same_when_only_others_change() -> None:
+def test_a_scene_keeps_its_key_when_only_others_change() -> None:
     plain = ["b" * 100, *["b" + "." * 98 + "b"] * 98, "b" * 100]
     rows = [row[:54] + "ggg" + row[57:] if n in (40, 41) else row for n, row in enumerate(plain)]
     found = []
@@ -62,29 +71,29 @@ def test_a_scene_stays_the_same_when_only_others_change() -> None:
 
 
 def by_square(pictures: Completions) -> dict[tuple[int, int], bytes]:
-    """What the pictures show of each square that is drawn, by its place on the lattice."""
+    """Return what the completions show of each drawn square, by its place in the map frame."""
     rows, columns = np.nonzero(pictures.ground == DRAWN)
     shown = pictures.images[:, rows, columns].T
     places = zip((columns + pictures.west).tolist(), (rows + pictures.south).tolist(), strict=True)
     return {place: part.tobytes() for place, part in zip(places, shown, strict=True)}
 
 
-def test_what_is_drawn_stays_while_nothing_new_is_told_of_it() -> None:
+def test_samples_stay_while_no_impression_says_anything_new_of_them() -> None:
     rows = ["b" * 100, *["b" + "." * 98 + "b"] * 98, "b" * 100]
     rows = [row[:54] + "ggg" + row[57:] if n in (40, 41) else row for n, row in enumerate(rows)]
     observations = [(50, 50), (50, 16), (52, 20)]
     first, second, third = (looked(rows, observations[:count]).view() for count in (1, 2, 3))
     assert second.south < first.south
-    before = pictured(first, ground_of(first), NO_PICTURES)
-    now = pictured(second, ground_of(second), before)
+    before = draw_completions(first, ground_of(first), NO_COMPLETIONS)
+    now = draw_completions(second, ground_of(second), before)
     assert by_square(before).items() <= by_square(now).items()
-    then, alone = (pictured(third, ground_of(third), earlier) for earlier in (now, NO_PICTURES))
+    then, alone = (draw_completions(third, ground_of(third), earlier) for earlier in (now, NO_COMPLETIONS))
     assert by_square(then) != by_square(alone)
 
 
 @pytest.mark.parametrize("view", views())
-def test_the_part_of_pictures_over_a_scene_is_what_they_show_there(view: MapView) -> None:
-    whole = pictured(view, ground_of(view), NO_PICTURES)
+def test_the_part_of_completions_over_a_scene_is_what_they_show_there(view: MapView) -> None:
+    whole = draw_completions(view, ground_of(view), NO_COMPLETIONS)
     for scene in scenes(view, whole.ground):
         moved = view._replace(west=view.west - 3, south=view.south + 2)
         part = whole.over(scene, moved)
@@ -103,13 +112,13 @@ def test_the_part_of_pictures_over_a_scene_is_what_they_show_there(view: MapView
         assert inside == set(shown)
 
 
-def test_drawings_that_cost_less_are_kept_rather() -> None:
-    alike = _kept(np.full(DRAWINGS * PICTURES, 7.0))
-    assert len(set(alike.tolist())) == PICTURES
-    one = np.full(DRAWINGS * PICTURES, 40.0)
+def test_samples_that_cost_less_are_kept_more_often() -> None:
+    alike = _resample(np.full(DRAWS_PER_COMPLETION * MAX_COMPLETIONS, 7.0))
+    assert len(set(alike.tolist())) == MAX_COMPLETIONS
+    one = np.full(DRAWS_PER_COMPLETION * MAX_COMPLETIONS, 40.0)
     one[5] = 7.0
-    assert _kept(one).tolist() == [5] * PICTURES
-    costs = np.arange(DRAWINGS * PICTURES, dtype=float)
-    kept = _kept(costs)
+    assert _resample(one).tolist() == [5] * MAX_COMPLETIONS
+    costs = np.arange(DRAWS_PER_COMPLETION * MAX_COMPLETIONS, dtype=float)
+    kept = _resample(costs)
     assert (np.diff(costs[kept]) >= 0).all()
     assert costs[kept].mean() < costs.mean()

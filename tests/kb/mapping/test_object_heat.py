@@ -1,4 +1,4 @@
-"""What is likely to stand where nothing is settled."""
+"""The probability that an object of a shape is where nothing is settled."""
 
 import numpy as np
 import pytest
@@ -8,38 +8,38 @@ from shapely import Point, affinity, box
 
 from geometry.counts.gibbs import DRAWN
 from geometry.counts.moments import Blobs, blobs
-from kb.mapping.object_heat import ended, imagine, likeness
+from kb.mapping.object_heat import end_probability, likeness, summarise_completions
 from kb.mapping.occupancy import OPEN
 from tests.kb.drawings import LARGE_ROOM, drawing, looked
 
 
 @pytest.mark.parametrize(("wide", "high", "square"), [(5, 5, True), (4, 4, True), (8, 3, False), (10, 2, False)])
-def test_a_square_is_told_from_afar(wide: int, high: int, square: bool) -> None:
+def test_a_square_is_recognised_from_afar(wide: int, high: int, square: bool) -> None:
     view = looked(drawing(31, 30, wide, high), [(20, 20), (22, 21), (23, 23)]).view()
-    found = imagine(view).likely("square")
+    found = summarise_completions(view).likely("square")
     row, column = view.locate(31 + wide / 2 - 20, 30 + high / 2 - 20)
     assert (found[row, column] > 0.4) == square
     assert (view.state[row - 1 : row + 2, column - 2 : column + 3] == OPEN).any()
 
 
 @pytest.mark.parametrize("shown", [3, 4, 5])
-def test_what_the_edge_of_all_seen_cuts_off_may_be_a_square(shown: int) -> None:
+def test_a_part_at_the_edge_of_the_seen_map_may_be_a_square(shown: int) -> None:
     view = looked(drawing(36 - shown, 18, 5, 5), [(20, 20)]).view()
     row, column = view.locate(15, 0)
     assert not view.seen[row, column + 1 :].any()
-    assert 0.3 < imagine(view).likely("square")[row, column] < 0.9
+    assert 0.3 < summarise_completions(view).likely("square")[row, column] < 0.9
 
 
-def test_a_wall_that_the_edge_of_all_seen_cuts_off_is_no_square() -> None:
+def test_a_wall_at_the_edge_of_the_seen_map_is_no_square() -> None:
     view = looked(drawing(24, 18, 12, 3), [(20, 20)]).view()
     row, column = view.locate(15, -1)
     assert view.seen[row, column]
-    assert imagine(view).likely("square")[row, column] < 0.1
+    assert summarise_completions(view).likely("square")[row, column] < 0.1
 
 
 def test_an_empty_room_holds_no_square() -> None:
     view = looked(LARGE_ROOM, [(12, 12), (14, 13), (16, 15)]).view()
-    assert imagine(view).likely("square").max() < 0.3
+    assert summarise_completions(view).likely("square").max() < 0.3
 
 
 def filled(polygon) -> np.ndarray:
@@ -57,7 +57,7 @@ SHAPES = {
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_a_shape_is_liker_itself_than_any_other(shape: str) -> None:
+def test_a_shape_is_most_like_itself(shape: str) -> None:
     found = blobs(filled(SHAPES[shape]), np.full((24, 24), DRAWN, np.int8))
     like = {name: float(likeness(found, name)[0]) for name in SHAPES}
     assert max(like, key=lambda name: like[name]) == shape
@@ -69,7 +69,7 @@ ANGLES, PARTS = st.floats(0.0, 90.0), st.floats(0.0, 1.0)
 
 
 def turned(polygon, degrees: float, east: float, north: float) -> Blobs:
-    """The greatest part of a picture of a shape that lies anyhow."""
+    """Return the greatest part of the raster of a shape at any orientation."""
     away = 12 + east - polygon.centroid.x, 12 + north - polygon.centroid.y
     image = filled(affinity.translate(affinity.rotate(polygon, degrees), *away))
     found = blobs(image, np.full((24, 24), DRAWN, np.int8))
@@ -85,16 +85,16 @@ def test_a_piece_of_wall_is_neither_a_brick_nor_an_l(degrees: float, east: float
 
 
 @given(ANGLES, PARTS, PARTS, st.integers(6, 9), st.integers(6, 9))
-def test_an_l_is_one_however_it_lies(degrees: float, east: float, north: float, wide: int, high: int) -> None:
+def test_an_l_is_recognised_at_any_orientation(degrees: float, east: float, north: float, wide: int, high: int) -> None:
     found = turned(box(0, 0, wide, 2).union(box(0, 0, 2, high)), degrees, east, north)
     assert likeness(found, "l_shape")[0] > 0.5
 
 
 @pytest.mark.parametrize(("length", "likely"), [(6, True), (9, True), (10, False), (20, False)])
-def test_what_is_seen_for_long_and_goes_on_unseen_does_not_end_there(length: int, likely: bool) -> None:
+def test_a_long_part_that_goes_on_unseen_does_not_end_there(length: int, likely: bool) -> None:
     picture = np.zeros((9, 30), np.int8)
     picture[3:6, :length] = 1
     found = blobs(picture, np.full(picture.shape, DRAWN, np.int8))
     assert found.outward.tolist() == [3]
-    assert (ended(found)[0] > 0.3) == likely
-    assert ended(found._replace(outward=np.zeros(1, np.int64)))[0] == 1.0
+    assert (end_probability(found)[0] > 0.3) == likely
+    assert end_probability(found._replace(outward=np.zeros(1, np.int64)))[0] == 1.0

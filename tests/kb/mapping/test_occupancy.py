@@ -1,4 +1,4 @@
-"""What the counts settle is true, follows from the counts, and does not depend on the order of looks."""
+"""Settled squares are true, follow from the counts, and do not depend on the order of impressions."""
 
 from itertools import product
 
@@ -8,20 +8,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
-from kb.perception.frame import MOST, Frame, Samples
-from kb.perception.retina import OWN, count_ranges
+from kb.perception.frame import MAX_SAMPLED_SQUARES, Frame, Samples
+from kb.perception.retina import OWN_FIELD, count_ranges
 from tests.kb.eyes import Occupied, random_room, retina, world_of
 
 seeds = st.integers(0, 2**32 - 1)
 
 
 def observe(occupancy: OccupancyMap, occupied: Occupied, square: tuple[int, int], number: int) -> None:
-    """One look along the axes; the lattice is the table's own."""
+    """Add one impression without rotation; the map frame is the table frame."""
     occupancy.observe(Frame(0).samples(), count_ranges(retina(occupied, square)), *square, number)
 
 
 def settled(occupancy: OccupancyMap) -> dict[tuple[int, int], int]:
-    """Settled squares (x, y) and their states."""
+    """Return the settled squares (x, y) and their states."""
     rows, columns = np.nonzero(occupancy.state != OPEN)
     return {
         (c + occupancy.west, r + occupancy.south): int(occupancy.state[r, c])
@@ -30,14 +30,14 @@ def settled(occupancy: OccupancyMap) -> dict[tuple[int, int], int]:
 
 
 def free_squares(rows: list[str], rng: np.random.Generator, count: int) -> list[tuple[int, int]]:
-    """Random free squares of a drawing."""
+    """Return random free squares of a drawing."""
     squares = [(i, len(rows) - 1 - n) for n, row in enumerate(rows) for i, mark in enumerate(row) if mark == "."]
     return [squares[k] for k in rng.integers(len(squares), size=count)]
 
 
 @settings(max_examples=12, deadline=None)
 @given(seeds)
-def test_what_is_settled_is_true(seed: int) -> None:
+def test_settled_squares_are_true(seed: int) -> None:
     rng = np.random.default_rng(seed)
     rows = random_room(rng, *rng.integers(8, 40, 2), things=rng.integers(0, 9))
     occupied, occupancy = world_of(rows), OccupancyMap()
@@ -51,9 +51,9 @@ def test_what_is_settled_is_true(seed: int) -> None:
 
 
 def tiny(fields: list[list[int]], weights: list[list[int]], slack: list[int]) -> Samples:
-    """Fields over a few squares in a row, padded as those of the eye."""
-    columns = np.zeros((len(fields), MOST), np.int32)
-    weight = np.zeros((len(fields), MOST), np.int16)
+    """Return fields over a few squares in a row, padded like those of the retina."""
+    columns = np.zeros((len(fields), MAX_SAMPLED_SQUARES), np.int32)
+    weight = np.zeros((len(fields), MAX_SAMPLED_SQUARES), np.int16)
     for n, (squares, times) in enumerate(zip(fields, weights, strict=True)):
         columns[n, : len(squares)], weight[n, : len(squares)] = squares, times
     return Samples(columns, np.zeros_like(columns), weight, np.array(slack, np.int16))
@@ -61,7 +61,7 @@ def tiny(fields: list[list[int]], weights: list[list[int]], slack: list[int]) ->
 
 @st.composite
 def tiny_cases(draw):
-    """Fields over at most seven squares, ranges that the truth fulfils, and the truth."""
+    """Draw fields over at most seven squares, count ranges that the truth fulfils, and the truth."""
     many = draw(st.integers(2, 7))
     truth = np.array(draw(st.lists(st.booleans(), min_size=many, max_size=many)))
     fields = draw(st.lists(st.sets(st.integers(0, many - 1), min_size=1).map(sorted), min_size=1, max_size=6))
@@ -76,7 +76,7 @@ def tiny_cases(draw):
 
 
 def consistent(case) -> list[tuple[int, ...]]:
-    """All occupancies that every field allows: what falls between two squares may be occupied or not."""
+    """Return all occupancies that every field allows: samples between two squares may be occupied or not."""
     many, fields, weights, slack, ranges = case
     answer = []
     for world in product((0, 1), repeat=many):
@@ -91,7 +91,7 @@ def consistent(case) -> list[tuple[int, ...]]:
 
 @settings(max_examples=300, deadline=None)
 @given(tiny_cases())
-def test_what_is_settled_follows_from_the_counts(case) -> None:
+def test_settled_squares_follow_from_the_counts(case) -> None:
     _, fields, weights, slack, ranges = case
     occupancy = OccupancyMap()
     occupancy.observe(tiny(fields, weights, slack), np.array(ranges, np.int16), 0, 0, 0)
@@ -117,7 +117,7 @@ def test_the_difference_of_two_fields_settles() -> None:
     assert settled(occupancy) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FULL}
 
 
-def test_what_falls_between_two_squares_settles_nothing() -> None:
+def test_samples_between_two_squares_settle_nothing() -> None:
     occupancy = OccupancyMap()
     occupancy.observe(tiny([[0, 1]], [[1, 1]], [1]), np.array([(2, 2)]), 0, 0, 0)
     assert settled(occupancy) == {}
@@ -125,7 +125,7 @@ def test_what_falls_between_two_squares_settles_nothing() -> None:
 
 @settings(max_examples=10, deadline=None)
 @given(seeds, st.permutations(range(4)))
-def test_the_order_of_looks_hardly_matters(seed: int, order: list[int]) -> None:
+def test_the_order_of_impressions_hardly_matters(seed: int, order: list[int]) -> None:
     rng = np.random.default_rng(seed)
     rows = random_room(rng, *rng.integers(10, 30, 2), things=6)
     occupied, squares = world_of(rows), free_squares(rows, rng, 4)
@@ -135,7 +135,7 @@ def test_the_order_of_looks_hardly_matters(seed: int, order: list[int]) -> None:
         observe(other, occupied, squares[order[n]], n)
     mine, others = settled(one), settled(other)
     assert all(mine[s] == others[s] for s in mine.keys() & others.keys())
-    assert len(mine.keys() ^ others.keys()) <= 0.02 * len(mine)  # old fields are not compared anew among themselves
+    assert len(mine.keys() ^ others.keys()) <= 0.02 * len(mine)  # old fields are not compared with each other again
 
 
 @settings(max_examples=15, deadline=None)
@@ -156,7 +156,7 @@ def test_growing_keeps_everything(x: int, y: int) -> None:
         assert occupancy.settled_by[occupancy.index(sx, sy)] == 0
 
 
-def test_the_view_says_where_it_lies() -> None:
+def test_the_view_locates_squares_of_the_map_frame() -> None:
     occupied, occupancy = world_of(random_room(np.random.default_rng(3), 12, 9, things=2)), OccupancyMap()
     observe(occupancy, occupied, (4, 4), 0)
     view = occupancy.view()
@@ -177,7 +177,7 @@ def test_open_squares_are_as_likely_as_their_field_says() -> None:
     assert likely == pytest.approx([0.25] * 4, abs=0.02)
 
 
-def test_true_looks_clash_with_nothing_and_false_ones_do() -> None:
+def test_only_false_impressions_contradict_the_map() -> None:
     rows = ["b" * 24, *["b" + "." * 22 + "b"] * 10, "b.......ggg............b", *["b" + "." * 22 + "b"] * 8, "b" * 24]
     occupied, occupancy = world_of(rows), OccupancyMap()
     samples = Frame(0).samples()
@@ -188,10 +188,10 @@ def test_true_looks_clash_with_nothing_and_false_ones_do() -> None:
     assert occupancy.clashes(samples, ranges, 11, 6) > 0
     wrong = occupancy.misfits(samples, ranges, 10, 8)
     assert wrong.any()
-    assert not wrong[OWN]
+    assert not wrong[OWN_FIELD]
 
 
-def test_what_is_seen_now_counts() -> None:
+def test_a_new_impression_overrules_settled_squares() -> None:
     rows = ["b" * 24, *["b" + "." * 22 + "b"] * 18, "b" * 24]
     changed = [row[:12] + "gg" + row[14:] if n in (9, 10) else row for n, row in enumerate(rows)]
     occupancy = OccupancyMap()
@@ -202,7 +202,7 @@ def test_what_is_seen_now_counts() -> None:
         assert world_of(changed)(x, y) == (state == FULL)
 
 
-def test_a_second_look_from_the_same_place_tells_nothing_new() -> None:
+def test_the_same_impression_from_the_same_place_adds_nothing() -> None:
     rows = ["b" * 24, *["b" + "." * 22 + "b"] * 10, "b.......ggg............b", *["b" + "." * 22 + "b"] * 8, "b" * 24]
     occupied, occupancy = world_of(rows), OccupancyMap()
     for number, place in enumerate([(12, 8), (5, 5)]):
@@ -215,7 +215,7 @@ def test_a_second_look_from_the_same_place_tells_nothing_new() -> None:
     assert np.array_equal(before.settled_by, after.settled_by)
 
 
-def test_after_a_withdrawal_the_same_look_counts_again() -> None:
+def test_after_a_withdrawal_the_same_impression_counts_again() -> None:
     occupancy = OccupancyMap()
     counts = tiny([[0], [1, 2]], [[1], [1, 1]], [0] * 2), np.array([(1, 1), (0, 0)])
     occupancy.observe(*counts, 0, 0, 0)

@@ -1,4 +1,4 @@
-"""Odds that are asked for late are those that were asked for at once."""
+"""Odds that are computed late are the same as odds computed at once."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from tests.kb.eyes import random_room, retina, world_of
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_when_odds_are_asked_for_does_not_matter(seed: int) -> None:
+def test_it_does_not_matter_when_odds_are_computed(seed: int) -> None:
     rng = np.random.default_rng(seed)
     rows = random_room(rng, 60, 12, things=6)
     occupied, late, soon = world_of(rows), OccupancyMap(), OccupancyMap()

@@ -1,4 +1,4 @@
-"""A load's image is taken out of a look exactly, whatever it hides; and what a motion may have led to."""
+"""A held object is subtracted from an impression exactly, whatever it hides; and the outcomes of its motions."""
 
 import math
 from dataclasses import replace
@@ -16,7 +16,7 @@ from kb.mapping.occupancy import OccupancyMap
 from kb.mapping.patch import covered
 from kb.objects.held_object import HeldObject, discounted, slack_of, whole
 from kb.perception.frame import Frame
-from kb.perception.retina import FIELDS, OWN, count_ranges
+from kb.perception.retina import FIELDS, OWN_FIELD, count_ranges
 from tests.kb.eyes import impression, random_room, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
 
@@ -29,7 +29,7 @@ def load(polygon: shapely.Polygon, slack: float = 0.0) -> HeldObject:
 
 
 def squares_of(polygon: shapely.Polygon) -> set[tuple[int, int]]:
-    """The squares that a polygon covers, by shapely alone."""
+    """Return the squares that a polygon covers, computed by shapely alone."""
     x0, y0, x1, y1 = (int(np.floor(v)) for v in polygon.bounds)
     return {
         (x, y)
@@ -41,21 +41,21 @@ def squares_of(polygon: shapely.Polygon) -> set[tuple[int, int]]:
 
 @given(st.floats(-20, 20), st.floats(-20, 20), st.floats(0, 360))
 @settings(max_examples=60, deadline=None)
-def test_a_load_covers_its_squares(x: float, y: float, degrees: float) -> None:
+def test_a_held_object_covers_its_squares(x: float, y: float, degrees: float) -> None:
     polygon = translate(rotate(ELL, degrees), round(x, 3), round(y, 3))
     assert covered(polygon).squares() == squares_of(polygon)
 
 
 @given(st.floats(0, 1) | st.sampled_from([5e-324, 1e-17, 1e-12, 1e-6]))
 @settings(max_examples=60, deadline=None)
-def test_what_a_load_may_cover_is_no_less_than_what_it_surely_does(far: float) -> None:
+def test_a_held_object_may_cover_at_least_the_squares_that_it_surely_covers(far: float) -> None:
     some = replace(load(ELL), astray=far)
     assert some.sure.squares() <= squares_of(ELL) <= some.possible.squares()
 
 
 @given(st.integers(-9, 9), st.integers(-9, 9), st.integers(0, 3), st.integers(-44, 45), st.integers(0, 10**6))
 @settings(max_examples=60, deadline=None)
-def test_a_look_without_the_load_says_what_it_would_say_if_the_load_were_not_there(
+def test_an_impression_without_the_held_object_is_that_of_a_table_without_it(
     x: int, y: int, quarter: int, angle: int, seed: int
 ) -> None:
     polygon = whole(translate(rotate(ELL, 90 * quarter, origin=(0, 0)), x, y))
@@ -66,7 +66,7 @@ def test_a_look_without_the_load_says_what_it_would_say_if_the_load_were_not_the
     with_load = impression(lambda i, j: (i, j) in others or (i, j) in own, (0, 0), angle)
     samples, ranges = discounted(Frame(angle).samples(), count_ranges(with_load.retina), 0, 0, [load(polygon)])
     for number in range(len(FIELDS)):
-        if number == OWN:
+        if number == OWN_FIELD:
             continue
         seen = zip(samples.columns[number], samples.rows[number], samples.weight[number], strict=True)
         count = sum(int(weight) for column, row, weight in seen if (int(column), int(row)) in others)
@@ -74,13 +74,13 @@ def test_a_look_without_the_load_says_what_it_would_say_if_the_load_were_not_the
         assert ranges[number, 0] - slack <= count <= ranges[number, 1]
 
 
-def test_where_a_load_is_not_a_look_says_less_than_nothing() -> None:
+def test_subtracting_an_object_that_is_not_there_gives_negative_counts() -> None:
     empty = impression(lambda i, j: False, (0, 0))
     _, ranges = discounted(Frame().samples(), count_ranges(empty.retina), 0, 0, [load(translate(BRICK, 1, 1))])
     assert (ranges[:, 1] < 0).any()
 
 
-def test_a_load_that_lies_askew_leaves_its_rim_open_until_it_is_seen() -> None:
+def test_the_edge_squares_of_a_slanted_held_object_are_open_until_seen() -> None:
     askew = translate(rotate(BRICK, 20), 0.3, 1.2)
     assert slack_of(askew) > 0 == slack_of(BRICK)
     before = load(askew, slack_of(askew))
@@ -92,7 +92,7 @@ def test_a_load_that_lies_askew_leaves_its_rim_open_until_it_is_seen() -> None:
     assert after.sure.squares() & near == after.possible.squares() & near == true & near
 
 
-def test_a_motion_may_go_as_told_or_not_at_all_or_end_early() -> None:
+def test_a_motion_may_go_as_commanded_or_not_at_all_or_end_early() -> None:
     place, motion = (5.5, 0.5), Translate(3.0, 0.0)
     assert predicted_outcome(place, BRICK, motion).polygon.equals(translate(BRICK, 3, 0))
     outcomes = list(other_outcomes(place, BRICK, motion))
@@ -106,7 +106,7 @@ def test_a_motion_may_go_as_told_or_not_at_all_or_end_early() -> None:
         assert outcome.place[0] - outcome.polygon.bounds[0] == pytest.approx(5.5)
 
 
-def test_a_turn_leaves_utak_and_may_have_been_about_another_point_of_his_square() -> None:
+def test_a_turn_keeps_the_robot_in_place_and_its_centre_is_uncertain() -> None:
     place, motion = (5.5, 0.5), Rotate(90.0, (5.5, 0.5))
     true = rotate(BRICK, 90, origin=(5.25, 0.75))
     outcomes = [predicted_outcome(place, BRICK, motion), *other_outcomes(place, BRICK, motion)]
@@ -118,7 +118,9 @@ def test_a_turn_leaves_utak_and_may_have_been_about_another_point_of_his_square(
 @example(322096, 45, 109.93298110907814, True)
 @given(st.integers(0, 10_000), st.sampled_from([0, 10, 30, 45, 326]), st.floats(0, 360), st.booleans())
 @settings(max_examples=80, deadline=None)
-def test_a_look_at_what_is_so_never_clashes(seed: int, heading: int, degrees: float, whole_: bool) -> None:
+def test_an_impression_of_the_true_table_never_contradicts_the_map(
+    seed: int, heading: int, degrees: float, whole_: bool
+) -> None:
     rng = np.random.default_rng(seed)
     rows = random_room(rng, 24, 24, 4)
     frame = Frame((heading + 45) % 90 - 45)
@@ -142,7 +144,7 @@ def test_a_look_at_what_is_so_never_clashes(seed: int, heading: int, degrees: fl
 
 
 def on_lattice(square: tuple[int, int], quarters: int) -> tuple[int, int]:
-    """A square of the table on the lattice of one whose frame is turned against the table by quarter turns."""
+    """Return a square of the table in the map frame, if the robot frame is turned by quarter turns."""
     x, y = square[0] + 0.5, square[1] + 0.5
     for _ in range(quarters % 4):
         x, y = y, -x

@@ -1,4 +1,4 @@
-"""Whether a rectangle is a square or a brick, as far as pushes have told how large it is."""
+"""Whether a rectangle is a square or a brick, as far as pushes have shown its size."""
 
 import shapely
 from hypothesis import given, settings
@@ -7,12 +7,12 @@ from shapely.affinity import translate
 
 from geometry.motion.se2 import Translate
 from kb.mapping.patch import covered
-from kb.objects.held_object import HeldObject, seen_insets
-from kb.objects.proportions import may_be, reshaped, spans
-from kb.objects.subcell_extent import WHOLE, SubcellExtent
+from kb.objects.held_object import HeldObject, initial_insets
+from kb.objects.proportions import corrected_shape, may_be, side_intervals
+from kb.objects.subcell_extent import FULL_INSETS, SubcellExtent
 
 SEEN = {"brick": 86, "square": 2, "rectangle": 86, "polygon": 99}
-parts = st.integers(0, 19).map(lambda n: n / 20 + 0.017)  # never right on a line
+parts = st.integers(0, 19).map(lambda n: n / 20 + 0.017)  # never exactly on a grid line
 longs = st.integers(2, 6)
 
 
@@ -24,16 +24,16 @@ def image(thing: shapely.Polygon) -> shapely.Polygon:
 
 @given(longs, longs, parts, parts, st.lists(st.tuples(parts, parts), max_size=8))
 @settings(max_examples=80, deadline=None)
-def test_a_rectangle_may_always_be_what_it_is(
+def test_the_true_class_of_a_rectangle_is_always_possible(
     wide: int, high: int, x: float, y: float, pushes: list[tuple[float, float]]
 ) -> None:
     thing = shapely.box(x, y, x + wide, y + high)
-    load = HeldObject("o1", image(thing), image(thing), insets=seen_insets(image(thing)), proven=True)
+    load = HeldObject("o1", image(thing), image(thing), insets=initial_insets(image(thing)), proven=True)
     for dx, dy in [(0.0, 0.0), *pushes]:
         thing = translate(thing, dx, dy)
         moved = load.moved(Translate(dx, dy).carry(load.polygon), load.slack, commanded=True)
         load = moved.told(lambda outline, at=thing: covered(outline).squares() == covered(at).squares()) or moved
-        sides = spans(load.polygon, load.lying_insets)
+        sides = side_intervals(load.polygon, load.lying_insets)
         assert sides is not None
         for side, long in zip(sides, (wide, high), strict=True):
             assert side.least - 1e-9 <= long <= side.most + 1e-9
@@ -41,30 +41,30 @@ def test_a_rectangle_may_always_be_what_it_is(
         assert ("square" if wide == high else "brick") in may_be(load.polygon, load.lying_insets)
 
 
-def test_a_square_between_the_squares_looks_like_a_brick_until_it_is_told() -> None:
+def test_a_square_off_the_grid_looks_like_a_brick_until_its_size_is_known() -> None:
     observations, told = shapely.box(0, 0, 4, 3), SubcellExtent((0.45, 0.45, 0.0, 0.0), (0.55, 0.55, 0.1, 0.1))
     assert set(may_be(observations, SubcellExtent())) == {"square", "brick"}
-    assert reshaped(SEEN, observations, SubcellExtent()) == SEEN
+    assert corrected_shape(SEEN, observations, SubcellExtent()) == SEEN
     half = SubcellExtent((0.45, 0.45, 0.0, 0.0), (0.55, 0.55, 1.0, 1.0))
-    assert reshaped(SEEN, shapely.box(0.5, 0, 3.5, 3), half) == SEEN  # to the north it may be shorter yet
-    square = reshaped(SEEN, shapely.box(0.5, 0, 3.5, 3), told)
+    assert corrected_shape(SEEN, shapely.box(0.5, 0, 3.5, 3), half) == SEEN  # along north it may still be shorter
+    square = corrected_shape(SEEN, shapely.box(0.5, 0, 3.5, 3), told)
     assert square["square"] == 86 and square["brick"] == 2 and square["rectangle"] == 86
 
 
-def test_what_is_told_to_fill_its_squares_stays_what_it_is() -> None:
+def test_an_object_known_to_fill_its_squares_keeps_its_class() -> None:
     told = SubcellExtent((0.0, 0.0, 0.0, 0.0), (0.1, 0.1, 0.1, 0.1))
     assert may_be(shapely.box(0, 0, 4, 3), told) == ("brick",)
     assert may_be(shapely.box(0, 0, 6, 3), SubcellExtent()) == ("brick",)
-    assert reshaped(SEEN, shapely.box(0, 0, 4, 3), told) == SEEN
+    assert corrected_shape(SEEN, shapely.box(0, 0, 4, 3), told) == SEEN
 
 
-def test_nothing_is_said_of_what_is_no_rectangle() -> None:
+def test_only_rectangles_have_side_intervals() -> None:
     ell = shapely.Polygon([(0, 0), (4, 0), (4, 2), (2, 2), (2, 4), (0, 4)])
     assert (
         may_be(ell, SubcellExtent()) == ()
         and may_be(None, SubcellExtent()) == ()
         and may_be(shapely.box(0, 0, 2, 2), None) == ()
     )
-    assert reshaped(SEEN, ell, SubcellExtent((0.5, 0.5, 0.5, 0.5), WHOLE)) == SEEN
+    assert corrected_shape(SEEN, ell, SubcellExtent((0.5, 0.5, 0.5, 0.5), FULL_INSETS)) == SEEN
     slanted = shapely.Polygon([(0, 1), (1, 0), (2, 1), (1, 2)])
     assert may_be(slanted, SubcellExtent()) == ()

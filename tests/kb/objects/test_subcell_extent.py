@@ -1,4 +1,4 @@
-"""How far in the sides of a thing lie, told by the squares that it covers after pushes by parts of a square."""
+"""The insets of an object's sides, narrowed by the squares that it covers after pushes by parts of a square."""
 
 import math
 from collections.abc import Callable
@@ -13,18 +13,28 @@ from shapely.affinity import rotate, translate
 
 from geometry.motion.se2 import Rotate, Translate
 from kb.mapping.patch import covered
-from kb.objects.held_object import HeldObject, seen_insets
-from kb.objects.subcell_extent import NONE, TELLING, WHOLE, Sides, SubcellExtent, further, moved_in, told, turned
+from kb.objects.held_object import HeldObject, initial_insets
+from kb.objects.subcell_extent import (
+    FULL_INSETS,
+    MIN_TESTED_INTERVAL,
+    NO_INSETS,
+    SideValues,
+    SubcellExtent,
+    inset_change,
+    moved_in,
+    narrowed,
+    turn_sides,
+)
 from kb.world.model import Node
 from planner.skills.measure_size import FINE, least_outline, phases
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 3), (3, 3), (3, 6), (0, 6)])
 SHAPES = {"square": shapely.box(0, 0, 4, 4), "brick": shapely.box(0, 0, 3, 6), "ell": ELL}
-parts = st.integers(0, 19).map(lambda n: n / 20 + 0.017)  # never right on a line, with those that are pushed by
+parts = st.integers(0, 19).map(lambda n: n / 20 + 0.017)  # never exactly on a grid line, also after a push
 
 
 def image(thing: Any) -> Any:
-    """The outline of the squares that a thing covers, with its corners alone."""
+    """Return the outline of the squares that an object covers, by its corners."""
     whole = shapely.union_all([shapely.box(x, y, x + 1, y + 1) for x, y in covered(thing).squares()])
     points = whole.exterior.coords[:-1]
     around = zip([points[-1], *points], points, [*points[1:], points[0]], strict=False)
@@ -32,12 +42,12 @@ def image(thing: Any) -> Any:
 
 
 def looks_like(thing: Any) -> Callable[[Any], bool]:
-    """Does an outline cover the squares that the thing does?"""
+    """Return whether an outline covers the same squares as the object."""
     return lambda outline: covered(outline).squares() == covered(thing).squares()
 
 
 def lies_within(insets: SubcellExtent, seen: Any, thing: Any) -> bool:
-    """Is each side of a thing as far within its image as insets allow?"""
+    """Return whether the inset of each side of an object is within the possible insets."""
     (x0, y0, x1, y1), (a0, b0, a1, b1) = seen.bounds, thing.bounds
     far = a0 - x0, x1 - a1, b0 - y0, y1 - b1
     return all(low - 1e-9 <= at <= high + 1e-9 for low, at, high in zip(insets.least, far, insets.most, strict=True))
@@ -45,11 +55,13 @@ def lies_within(insets: SubcellExtent, seen: Any, thing: Any) -> bool:
 
 @given(st.sampled_from(sorted(SHAPES)), parts, parts, st.lists(st.tuples(parts, parts), max_size=6))
 @settings(max_examples=80, deadline=None)
-def test_what_pushes_tell_is_true(name: str, x: float, y: float, pushes: list[tuple[float, float]]) -> None:
+def test_the_true_insets_stay_possible_after_any_pushes(
+    name: str, x: float, y: float, pushes: list[tuple[float, float]]
+) -> None:
     thing = translate(SHAPES[name], x, y)
     seen = image(thing)
-    load = HeldObject("o1", seen, seen, insets=seen_insets(seen), proven=True)
-    assert load.insets == SubcellExtent(NONE, WHOLE)
+    load = HeldObject("o1", seen, seen, insets=initial_insets(seen), proven=True)
+    assert load.insets == SubcellExtent(NO_INSETS, FULL_INSETS)
     for dx, dy in pushes:
         push = Translate(dx, dy)
         thing, seen = push.carry(thing), push.carry(seen)
@@ -57,8 +69,11 @@ def test_what_pushes_tell_is_true(name: str, x: float, y: float, pushes: list[tu
         found = carried.told(looks_like(thing))
         load = found or carried
         assert load.insets is not None
-        if found is None:  # a side is known so well that which row it ends in is left open
-            assert min(most - least for least, most in zip(load.insets.least, load.insets.most, strict=True)) <= TELLING
+        if found is None:  # a side is known so well that its last row stays open
+            assert (
+                min(most - least for least, most in zip(load.insets.least, load.insets.most, strict=True))
+                <= MIN_TESTED_INTERVAL
+            )
         else:
             assert covered(load.polygon).squares() == covered(thing).squares()
         assert lies_within(load.insets, seen, thing)
@@ -67,10 +82,10 @@ def test_what_pushes_tell_is_true(name: str, x: float, y: float, pushes: list[tu
 
 @given(st.sampled_from(sorted(SHAPES)), parts, parts, st.integers(0, 3))
 @settings(max_examples=60, deadline=None)
-def test_pushes_by_parts_of_a_square_tell_how_large_a_thing_is(name: str, x: float, y: float, quarters: int) -> None:
+def test_pushes_by_parts_of_a_square_show_the_size_of_an_object(name: str, x: float, y: float, quarters: int) -> None:
     thing = translate(rotate(SHAPES[name], 90 * quarters, origin=(0, 0)), 20 + x, 20 + y)
     seen = image(thing)
-    load = HeldObject("o1", seen, seen, insets=seen_insets(seen), proven=True)
+    load = HeldObject("o1", seen, seen, insets=initial_insets(seen), proven=True)
     for _ in range(14):
         wanted = phases(node_of(load))
         if wanted is None:
@@ -87,8 +102,8 @@ def test_pushes_by_parts_of_a_square_tell_how_large_a_thing_is(name: str, x: flo
 
 
 @pytest.mark.parametrize("quarters", [0, 1, 2, 3])
-def test_a_thing_of_whole_squares_is_told_by_two_pushes(quarters: int) -> None:
-    load = HeldObject("o1", ELL, ELL, insets=seen_insets(ELL), proven=True)
+def test_two_pushes_show_that_an_object_fills_whole_squares(quarters: int) -> None:
+    load = HeldObject("o1", ELL, ELL, insets=initial_insets(ELL), proven=True)
     turn = Rotate(90.0 * quarters, (3.0, 3.0))
     load = load.moved(turn.carry(ELL), 0.0, 90.0 * quarters, commanded=True)
     thing = load.polygon
@@ -102,11 +117,11 @@ def test_a_thing_of_whole_squares_is_told_by_two_pushes(quarters: int) -> None:
     assert load.polygon.symmetric_difference(thing).area < 1e-9
 
 
-def test_what_agrees_with_nothing_is_told_so() -> None:
-    assert told(SubcellExtent(), translate(ELL, 0.25, 0.25), lambda outline: False) is None
+def test_an_impression_that_agrees_with_no_outline_gives_none() -> None:
+    assert narrowed(SubcellExtent(), translate(ELL, 0.25, 0.25), lambda outline: False) is None
 
 
-def test_what_was_stopped_may_lie_beside_a_line() -> None:
+def test_a_stopped_object_may_lie_beside_a_grid_line() -> None:
     seen = shapely.box(0, 0, 4, 4)
     load = HeldObject("o1", seen, seen, insets=SubcellExtent(), proven=True)
     there = shapely.box(0.25, 0, 4.25, 4)
@@ -120,7 +135,7 @@ sides = st.tuples(*[st.floats(0, 0.9)] * 4)
 
 @given(st.sampled_from(sorted(SHAPES)), sides, st.integers(0, 3))
 @settings(max_examples=60, deadline=None)
-def test_sides_moved_in_and_out_again_lie_where_they_did(name: str, by: Sides, quarters: int) -> None:
+def test_sides_moved_in_and_out_again_lie_where_they_did(name: str, by: SideValues, quarters: int) -> None:
     outline = rotate(SHAPES[name], 90 * quarters, origin=(0, 0))
     there = moved_in(outline, by)
     assert there is not None and outline.buffer(1e-9).covers(there)
@@ -130,25 +145,25 @@ def test_sides_moved_in_and_out_again_lie_where_they_did(name: str, by: Sides, q
     west, east, south, north = (-side for side in by)
     back = moved_in(there, (west, east, south, north))
     assert back.symmetric_difference(outline).area < 1e-9
-    spun = moved_in(rotate(outline, 90, origin=(0, 0)), turned(by, 1))
+    spun = moved_in(rotate(outline, 90, origin=(0, 0)), turn_sides(by, 1))
     assert spun.symmetric_difference(rotate(there, 90, origin=(0, 0))).area < 1e-9
 
 
 @pytest.mark.parametrize(
     "outline", [rotate(ELL, 20), shapely.Point(0, 0).buffer(3), shapely.Polygon([(0, 0), (4, 0), (0, 4)])]
 )
-def test_what_is_not_along_the_lattice_has_no_such_sides(outline: Any) -> None:
+def test_an_outline_not_parallel_to_the_grid_cannot_be_inset(outline: Any) -> None:
     assert moved_in(outline, (0.1, 0.1, 0.1, 0.1)) is None
 
 
-def test_an_arm_that_would_be_gone_is_no_outline() -> None:
+def test_an_inset_that_removes_an_arm_gives_none() -> None:
     assert moved_in(ELL, (1.0, 1.0, 0.0, 0.0)) is not None
     assert moved_in(moved_in(ELL, (1.0, 1.0, 0.0, 0.0)), (0.5, 0.5, 0.0, 0.0)) is None
 
 
 @given(st.floats(0, 0.9), st.floats(0, 0.9), st.floats(0.01, 1), st.floats(0.01, 1))
 @settings(max_examples=60, deadline=None)
-def test_what_is_believed_is_among_what_may_be(west: float, east: float, wide: float, narrow: float) -> None:
+def test_the_believed_insets_are_possible(west: float, east: float, wide: float, narrow: float) -> None:
     least, most = (west, east, 0.0, 0.0), (min(west + wide, 1.0), min(east + narrow, 1.0), 1.0, 1.0)
     assume(all(high - low > 0.01 for low, high in zip(least, most, strict=True)))
     insets = SubcellExtent(least, most)
@@ -156,17 +171,17 @@ def test_what_is_believed_is_among_what_may_be(west: float, east: float, wide: f
     assert all(low - 1e-9 <= at <= high + 1e-9 for low, at, high in zip(least, here, most, strict=True))
     assert all(short >= -1e-9 for short in insets.short)
     if any(least) and max(east, 1 - most[0]) < min(most[1], 1 - west):
-        assert math.isclose(here[0] + here[1], 1.0)  # a thing of whole squares, where one may be there
-    assert further(insets, insets) == NONE
+        assert math.isclose(here[0] + here[1], 1.0)  # as long as whole squares, where that is possible
+    assert inset_change(insets, insets) == NO_INSETS
 
 
 def node_of(load: HeldObject) -> Node:
-    """A node with what is known of a load."""
+    """Return a node with what is known of a held object."""
     node = Node(load.name, "object", 100, "part1", covered(load.polygon), 0, polygon=load.polygon)
     return replace(node, short=load.short, insets=load.lying_insets, moved=True)
 
 
-def test_what_is_known_of_its_sides_but_for_a_hair_may_lie_on_whole_squares_and_is_not_whole() -> None:
+def test_an_object_with_nearly_known_sides_may_fill_whole_squares_but_is_not_exact() -> None:
     insets = SubcellExtent((0.395, 0.595, 0.0, 0.0), (0.405, 0.605, 1.0, 1.0))
     thing = HeldObject("o1", shapely.box(3.1, 2, 6.1, 5), shapely.box(3.1, 2, 6.1, 5), 0.01, insets=insets, proven=True)
     aligned = thing.moved(shapely.box(3, 2, 6, 5), 0.01, commanded=True)

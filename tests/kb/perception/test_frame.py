@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kb.body import DIRECTIONS
-from kb.perception.frame import MOST, TIE, Frame, turned
-from kb.perception.retina import FIELDS, OWN
+from kb.perception.frame import MAX_SAMPLED_SQUARES, SAMPLING_TIE_TOLERANCE, Frame, turned
+from kb.perception.retina import FIELDS, OWN_FIELD
 from simulator.world.senses import Senses
 from tests.kb.eyes import sampled
 
@@ -39,7 +39,7 @@ def test_quarter_turns_are_exact(x: int, y: int, quarters: int) -> None:
 
 
 @given(vector, frames)
-def test_there_and_back(v: tuple[float, float], frame: Frame) -> None:
+def test_a_vector_and_its_way_back_are_the_same(v: tuple[float, float], frame: Frame) -> None:
     assert frame.to_utak(*frame.to_lattice(*v)) == pytest.approx(v, abs=1e-9)
     assert frame.place_to_utak(*frame.place_from_utak(*v)) == pytest.approx(v, abs=1e-9)
 
@@ -53,9 +53,9 @@ def test_places_differ_by_vectors(p: tuple[float, float], v: tuple[float, float]
 
 
 def is_tie(east: int, north: int, angle: int) -> bool:
-    """Does the offset fall so near to the middle between two squares that either may be sampled?"""
+    """Return whether an offset falls so close to the line between two squares that either may be sampled."""
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-    return any(abs(abs(v) % 1 - 0.5) < TIE for v in (east * c - north * s, east * s + north * c))
+    return any(abs(abs(v) % 1 - 0.5) < SAMPLING_TIE_TOLERANCE for v in (east * c - north * s, east * s + north * c))
 
 
 @pytest.mark.parametrize("angle", range(-44, 46))
@@ -67,27 +67,27 @@ def test_samples_are_those_of_the_senses(angle: int) -> None:
         want = Counter(sampled(*offset, angle) for offset in offsets if offset not in ties)
         row = zip(samples.columns[number], samples.rows[number], samples.weight[number], strict=True)
         found = {(int(c), int(r)): int(w) for c, r, w in row if w}
-        assert found == ({} if number == OWN else want)
-        assert samples.slack[number] == (0 if number == OWN else len(ties))
+        assert found == ({} if number == OWN_FIELD else want)
+        assert samples.slack[number] == (0 if number == OWN_FIELD else len(ties))
 
 
 @pytest.mark.parametrize("angle", [0, 45, -30])
 def test_every_field_is_accounted_for(angle: int) -> None:
     samples = Frame(angle).samples()
-    assert samples.columns.shape == samples.rows.shape == samples.weight.shape == (160, MOST)
+    assert samples.columns.shape == samples.rows.shape == samples.weight.shape == (160, MAX_SAMPLED_SQUARES)
     area = np.array([field.side**2 for field in FIELDS])
-    area[OWN] = 0
+    area[OWN_FIELD] = 0
     assert (samples.weight.sum(1) + samples.slack == area).all()
 
 
-def test_along_the_axes_every_square_is_sampled_once() -> None:
+def test_without_rotation_every_square_is_sampled_once() -> None:
     samples = Frame(0).samples()
     assert samples.weight.max() == 1
     assert samples.weight.sum() == 32 * 32 - 1
 
 
 @pytest.mark.parametrize("angle", range(-44, 46))
-def test_a_direction_names_the_square_that_the_senses_mean_however_the_table_lies(angle: int) -> None:
+def test_a_direction_names_the_square_that_the_senses_mean_at_any_orientation(angle: int) -> None:
     frame = Frame(angle)
     for direction in DIRECTIONS:
         meant = set()

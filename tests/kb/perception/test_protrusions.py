@@ -1,4 +1,4 @@
-"""What sticks out into the floor is found wherever it stands against a wall, and touch tells things from wall."""
+"""Parts that stick out into the floor are found wherever they touch a wall, and touch separates things from walls."""
 
 import numpy as np
 import pytest
@@ -7,21 +7,21 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from geometry.raster.components import components
-from kb.perception.protrusions import LONGEST, protrusions, told_apart, unfelt
+from kb.perception.protrusions import MAX_THING_LENGTH, protrusions, separate_things, untouched_parts
 
 Mask = NDArray[np.bool_]
 WIDE, HIGH = 24, 20
 
 
 def room() -> Mask:
-    """The squares of the walls of a room, two squares thick."""
+    """Return the squares of the walls of a room, two squares thick."""
     walls = np.ones((HIGH, WIDE), np.bool_)
     walls[2:-2, 2:-2] = False
     return walls
 
 
 def with_thing(row: int, column: int, shape: Mask) -> tuple[Mask, Mask]:
-    """The squares that are occupied, and the thing's alone."""
+    """Return the squares that are occupied, and those of the thing alone."""
     thing = np.zeros((HIGH, WIDE), np.bool_)
     thing[row : row + shape.shape[0], column : column + shape.shape[1]] = shape
     return room() | thing, thing
@@ -42,7 +42,7 @@ def among(masks: list[Mask], thing: Mask) -> bool:
     return any(np.array_equal(mask, thing) for mask in masks)
 
 
-@given(st.integers(1, LONGEST), st.integers(1, LONGEST), st.integers(3, 10), st.sampled_from("nesw"))
+@given(st.integers(1, MAX_THING_LENGTH), st.integers(1, MAX_THING_LENGTH), st.integers(3, 10), st.sampled_from("nesw"))
 @settings(max_examples=80, deadline=None)
 def test_a_thing_against_a_wall_is_found(high: int, wide: int, along: int, wall: str) -> None:
     row = {"n": HIGH - 2 - high, "s": 2}.get(wall, along)
@@ -52,7 +52,7 @@ def test_a_thing_against_a_wall_is_found(high: int, wide: int, along: int, wall:
     assert among(sticking_out(occupied), thing)
 
 
-@given(st.integers(1, LONGEST), st.integers(1, LONGEST), st.booleans(), st.booleans())
+@given(st.integers(1, MAX_THING_LENGTH), st.integers(1, MAX_THING_LENGTH), st.booleans(), st.booleans())
 @settings(max_examples=40, deadline=None)
 def test_a_thing_in_a_corner_is_found(high: int, wide: int, up: bool, on: bool) -> None:
     occupied, thing = with_thing(HIGH - 2 - high if up else 2, WIDE - 2 - wide if on else 2, full(high, wide))
@@ -74,54 +74,54 @@ def test_an_ell_in_a_corner_is_found(quarter: int, up: bool, on: bool, arm: int,
     shape = np.rot90(shape, quarter)
     high, wide = shape.shape
     occupied, thing = with_thing(HIGH - 2 - high if up else 2, WIDE - 2 - wide if on else 2, shape)
-    assume(components(~occupied).number == 1)  # else it shuts in a part of the floor, that no eye sees
+    assume(components(~occupied).number == 1)  # else a part of the floor is enclosed, which is never seen
     assert among(sticking_out(occupied), thing)
 
 
-def test_what_stands_free_and_what_is_long_does_not_stick_out() -> None:
+def test_free_standing_and_long_parts_do_not_stick_out() -> None:
     occupied, _ = with_thing(8, 8, full(3, 3))
     occupied[2:15, 18:20] = True  # a wall into the room
     assert sticking_out(occupied) == []
 
 
-def test_touch_tells_a_thing_from_a_piece_of_wall() -> None:
+def test_touch_separates_a_thing_from_a_piece_of_wall() -> None:
     occupied, thing = with_thing(2, 6, full(3, 4))
     occupied[2:5, 16:18] = True
     parts = sticking_out(occupied)
     assert len(parts) == 2
-    (told,) = told_apart(parts, {(4, 7): "g", (3, 9): "g", (1, 5): "b", (4, 16): "b"})
+    (told,) = separate_things(parts, {(4, 7): "g", (3, 9): "g", (1, 5): "b", (4, 16): "b"})
     assert np.array_equal(told, thing)
-    assert told_apart(parts, {(4, 7): "b", (4, 16): "b"}) == []
-    assert told_apart(parts, {}) == []
+    assert separate_things(parts, {(4, 7): "b", (4, 16): "b"}) == []
+    assert separate_things(parts, {}) == []
 
 
-def test_of_parts_with_a_square_of_a_thing_the_smallest_is_it() -> None:
+def test_the_smallest_part_with_a_felt_square_is_the_thing() -> None:
     occupied, thing = with_thing(4, 2, full(3, 3))
-    occupied[7:9, 2:5] = True  # a piece of wall right beside it
+    occupied[7:9, 2:5] = True  # a piece of wall next to it
     parts = sticking_out(occupied)
-    assert among(told_apart([thing, *parts], {(5, 4): "g"}), thing)
+    assert among(separate_things([thing, *parts], {(5, 4): "g"}), thing)
     both = [part for part in parts if part[5, 4] and part[8, 4]]
-    assert both and not among(told_apart(both, {(5, 4): "g", (8, 4): "b"}), both[0])
+    assert both and not among(separate_things(both, {(5, 4): "g", (8, 4): "b"}), both[0])
 
 
-def test_a_larger_part_is_the_thing_where_the_rest_of_it_was_felt() -> None:
+def test_a_larger_part_is_the_thing_if_more_of_it_was_felt() -> None:
     shape = np.zeros((6, 7), np.bool_)
     shape[3:, :] = shape[:, :3] = True  # steps down from the wall to the north to that to the west
     occupied, thing = with_thing(HIGH - 8, 2, shape)
     parts, on_stem, on_foot = sticking_out(occupied), (HIGH - 8, 3), (HIGH - 4, 8)
-    (stem,) = told_apart(parts, {on_stem: "g"})
+    (stem,) = separate_things(parts, {on_stem: "g"})
     assert stem.sum() < thing.sum()
-    rest = unfelt(parts, {on_stem: "g"})
+    rest = untouched_parts(parts, {on_stem: "g"})
     assert among(rest, thing & ~stem)
-    (whole,) = told_apart(parts, {on_stem: "g", on_foot: "g"})
+    (whole,) = separate_things(parts, {on_stem: "g", on_foot: "g"})
     assert np.array_equal(whole, thing)
-    assert not among(unfelt(parts, {on_stem: "g", on_foot: "g"}), thing)
-    (alone,) = told_apart(parts, {on_stem: "g", on_foot: "b"})
+    assert not among(untouched_parts(parts, {on_stem: "g", on_foot: "g"}), thing)
+    (alone,) = separate_things(parts, {on_stem: "g", on_foot: "b"})
     assert np.array_equal(alone, stem)
-    assert len(told_apart(parts, {on_stem: "g", on_foot: "h"})) == 2
+    assert len(separate_things(parts, {on_stem: "g", on_foot: "h"})) == 2
 
 
-def test_what_lies_askew_sticks_out_amid_squares_that_are_not_clear() -> None:
+def test_a_slanted_thing_sticks_out_between_open_squares() -> None:
     occupied, thing = with_thing(2, 8, np.array([[1, 1, 1, 1], [0, 1, 1, 1], [0, 1, 1, 0]], np.bool_))
     vague = np.zeros_like(occupied)
     vague[3, 8] = vague[4, 11] = vague[2, 12] = True
@@ -129,7 +129,7 @@ def test_what_lies_askew_sticks_out_amid_squares_that_are_not_clear() -> None:
     assert among(parts, thing)
 
 
-def test_a_thing_in_a_corner_is_told_from_the_thin_wall_on_which_it_stands() -> None:
+def test_a_thing_in_a_corner_is_separated_from_the_thin_wall_that_it_touches() -> None:
     shape = np.zeros((6, 5), np.bool_)
     shape[:3, :] = shape[:, 2:] = True
     occupied, thing = with_thing(2, 2, shape)

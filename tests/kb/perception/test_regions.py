@@ -1,4 +1,4 @@
-"""Regions and what surrounds what, on drawings and random pictures, against brute-force flooding."""
+"""Regions, and which surrounds which, on drawings and random rasters, against brute-force flooding."""
 
 import numpy as np
 import pytest
@@ -6,14 +6,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.perception.regions import Percept, impression_regions, label_of, map_regions
-from kb.perception.retina import FIELDS, OWN, neighbours, rim
+from kb.perception.retina import FIELDS, OWN_FIELD, edge_fields, neighbours
 from tests.kb.eyes import retina, world_of
 
 STEPS = ((1, 0), (-1, 0), (0, 1), (0, -1))
 
 
 def flooded(cells: set, near) -> list[frozenset]:  # type: ignore[no-untyped-def]
-    """Connected parts of a set under a relation of nearness."""
+    """Return the connected parts of a set under a neighbourhood relation."""
     left, parts = set(cells), []
     while left:
         part, edge = set(), [min(left)]
@@ -28,7 +28,7 @@ def flooded(cells: set, near) -> list[frozenset]:  # type: ignore[no-untyped-def
 
 
 def drawn(rows: list[str]) -> tuple[np.ndarray, np.ndarray]:
-    """Occupied and seen squares of a drawing, its north row first: `.` floor, `?` unseen."""
+    """Return the occupied and the seen squares of a drawing, its north row first: `.` floor, `?` unseen."""
     marks = np.array([list(row) for row in reversed(rows)])
     return ~np.isin(marks, [".", "?"]), marks != "?"
 
@@ -72,7 +72,7 @@ def test_map_regions_are_the_edge_connected_parts(shape: tuple[int, int, int]) -
 
 @settings(max_examples=150, deadline=None)
 @given(masks)
-def test_surrounded_is_what_cannot_leave(shape: tuple[int, int, int]) -> None:
+def test_a_region_is_surrounded_if_no_way_leads_out_of_it(shape: tuple[int, int, int]) -> None:
     occupied, seen = random_map(*shape)
     percept, labels = map_regions(occupied, seen, seen)
     framed = np.pad(labels, 1)
@@ -99,7 +99,7 @@ def test_adjacent_is_symmetric_and_true(shape: tuple[int, int, int]) -> None:
     assert percept.adjacent == want
 
 
-def test_certain_is_the_share_that_is_settled() -> None:
+def test_certain_is_the_share_of_settled_squares() -> None:
     occupied, seen = drawn(["....", "...."])
     certain = np.zeros_like(seen)
     certain[0, :3] = True
@@ -126,7 +126,7 @@ def test_a_room_with_a_thing_and_a_thing_at_the_rim() -> None:
     assert not {pair for pair in percept.surrounds if other in pair}
 
 
-def test_diagonal_squares_do_not_hang_together() -> None:
+def test_diagonal_squares_are_not_connected() -> None:
     occupied, seen = drawn(["g.", ".g"])
     percept, _ = map_regions(occupied, seen, seen)
     assert len(percept.regions) == 4
@@ -145,19 +145,19 @@ SQUARE = (
 def test_impression_regions_are_the_connected_cells(square: tuple[int, int]) -> None:
     levels = retina(world_of(SQUARE), square)
     percept, cells = impression_regions(levels)
-    want = {frozenset({OWN})}
+    want = {frozenset({OWN_FIELD})}
     for kind in (False, True):
-        members = {i for i in range(len(FIELDS)) if i != OWN and (levels[i] > 0) == kind}
+        members = {i for i in range(len(FIELDS)) if i != OWN_FIELD and (levels[i] > 0) == kind}
         want |= set(flooded(members, lambda i: neighbours()[i]))
     assert set(cells.values()) == want
     assert {region.name for region in percept.regions} == set(cells)
     for region in percept.regions:
         if region.name != "own":
-            assert region.rim == bool(cells[region.name] & rim())
+            assert region.rim == bool(cells[region.name] & edge_fields())
             assert 0 <= region.certain <= 100
 
 
-def test_floor_surrounds_a_square_in_one_look() -> None:
+def test_floor_surrounds_a_square_in_one_impression() -> None:
     percept, cells = impression_regions(retina(world_of(SQUARE), (13, 17)))
     thing = next(r for r in percept.regions if r.occupied and not r.own and not r.rim)
     floor = next(r for r in percept.regions if not r.occupied and r.rim)

@@ -6,13 +6,23 @@ from math import floor
 import numpy as np
 import pytest
 
-from kb.perception.retina import FIELDS, OWN, REACH, Field, count_ranges, counts, neighbours, plan, rim
+from kb.perception.retina import (
+    FIELDS,
+    OWN_FIELD,
+    RETINA_REACH,
+    Field,
+    count_ranges,
+    edge_fields,
+    field_plan,
+    level_counts,
+    neighbours,
+)
 
-LEVELS = {1: [0, 7], 2: [0, 2, 4, 5, 7], 4: range(8)}  # that a field of this side can show
+LEVELS = {1: [0, 7], 2: [0, 2, 4, 5, 7], 4: range(8)}  # by side of a field: the levels that it can show
 
 
 def shown(side: int, occupied: int) -> int:
-    """The gray level of DESIGN 4, in exact arithmetic."""
+    """Return the gray level of a field with n occupied squares, in exact arithmetic."""
     return floor(Fraction(7 * occupied, side * side) + Fraction(1, 2))
 
 
@@ -20,7 +30,7 @@ def shown(side: int, occupied: int) -> int:
 def test_counts_are_those_that_show_the_level(side: int) -> None:
     for level in LEVELS[side]:
         fitting = [n for n in range(side * side + 1) if shown(side, n) == level]
-        assert counts(side, level) == (fitting[0], fitting[-1])
+        assert level_counts(side, level) == (fitting[0], fitting[-1])
         assert fitting == list(range(fitting[0], fitting[-1] + 1))
 
 
@@ -30,7 +40,7 @@ def test_a_level_that_no_count_shows_is_refused(side: int) -> None:
     assert possible == set(LEVELS[side])
     for level in set(range(-1, 10)) - possible:
         with pytest.raises(ValueError, match="never shows"):
-            counts(side, level)
+            level_counts(side, level)
 
 
 def test_the_fields_cover_every_offset_once() -> None:
@@ -40,7 +50,9 @@ def test_the_fields_cover_every_offset_once() -> None:
         for east in range(field.east, field.east + field.side)
         for north in range(field.north, field.north + field.side)
     ]
-    assert sorted(covered) == [(e, n) for e in range(-REACH, REACH) for n in range(-REACH, REACH)]
+    assert sorted(covered) == [
+        (e, n) for e in range(-RETINA_REACH, RETINA_REACH) for n in range(-RETINA_REACH, RETINA_REACH)
+    ]
     assert [sum(f.side == side for f in FIELDS) for side in (1, 2, 4)] == [64, 48, 48]
 
 
@@ -50,11 +62,11 @@ def test_the_order_is_by_zones_from_north_west_on() -> None:
 
 
 def test_the_plan_names_the_field_of_each_offset() -> None:
-    numbers = plan()
+    numbers = field_plan()
     for number, (east, north, side) in enumerate(FIELDS):
         rows, columns = np.nonzero(numbers == number)
         assert len(rows) == side * side
-        assert (rows.min() - REACH, columns.min() - REACH) == (north, east)
+        assert (rows.min() - RETINA_REACH, columns.min() - RETINA_REACH) == (north, east)
 
 
 def test_neighbours_share_an_edge() -> None:
@@ -68,17 +80,19 @@ def test_neighbours_share_an_edge() -> None:
         assert found[i] == {j for j, b in enumerate(FIELDS) if i != j and touch(a, b)}
 
 
-def test_the_rim_is_what_reaches_the_edge() -> None:
+def test_the_edge_fields_reach_the_edge_of_the_retina() -> None:
     edge = {
-        i for i, f in enumerate(FIELDS) if -REACH in (f.east, f.north) or REACH in (f.east + f.side, f.north + f.side)
+        i
+        for i, f in enumerate(FIELDS)
+        if -RETINA_REACH in (f.east, f.north) or RETINA_REACH in (f.east + f.side, f.north + f.side)
     }
-    assert rim() == edge
+    assert edge_fields() == edge
     assert all(FIELDS[i].side == 4 for i in edge)
 
 
-def test_his_own_field_says_nothing() -> None:
-    assert FIELDS[OWN] == (0, 0, 1)
+def test_the_own_field_says_nothing() -> None:
+    assert FIELDS[OWN_FIELD] == (0, 0, 1)
     ranges = count_ranges((7,) * 160)
-    assert tuple(ranges[OWN]) == (0, 1)
-    others = np.delete(ranges, OWN, axis=0)
-    assert (others[:, 1] == np.delete([f.side**2 for f in FIELDS], OWN)).all()
+    assert tuple(ranges[OWN_FIELD]) == (0, 1)
+    others = np.delete(ranges, OWN_FIELD, axis=0)
+    assert (others[:, 1] == np.delete([f.side**2 for f in FIELDS], OWN_FIELD)).all()

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from kb.mapping.occupancy import FULL, OPEN
 from kb.mapping.patch import patch_of
-from kb.world.corners import SIDES, corners, known_floor
+from kb.world.corners import CORNER_SIDES, corners, known_floor
 from kb.world.model import Node
 from planner.screen.projection import grown
 from tests.kb.drawings import seen_whole
@@ -30,7 +30,7 @@ def test_a_corner_is_the_furthest_point_of_the_known_floor(seed: int) -> None:
     model = seen_whole(rows)
     floor = known_floor(model)
     found = corners(model)
-    assert set(found) == set(SIDES)
+    assert set(found) == set(CORNER_SIDES)
     for side, (dx, dy) in SIGNS.items():
         r, c = np.nonzero(floor)
         best = max(float((dx * (c + a) + dy * (r + b)).max()) for a in (0, 1) for b in (0, 1))
@@ -41,7 +41,7 @@ def test_a_corner_is_the_furthest_point_of_the_known_floor(seed: int) -> None:
         assert y - row in (0, 1)
 
 
-def test_a_plain_room() -> None:
+def test_an_empty_rectangular_room_has_four_corners() -> None:
     rows = ["bbbbbbbb", "b......b", "b......b", "b..U...b", "bbbbbbbb"]
     found = corners(seen_whole(rows))
     assert {side: corner.square for side, corner in found.items()} == {
@@ -53,24 +53,27 @@ def test_a_plain_room() -> None:
 
 
 @pytest.mark.parametrize(("pocket", "counts"), [(2, False), (8, True)])
-def test_a_glimpse_of_floor_is_no_corner_yet(pocket: int, counts: bool) -> None:
+def test_a_few_squares_of_floor_are_no_corner_yet(pocket: int, counts: bool) -> None:
     rows = ["b" * 24] * 2 + ["b" * 12 + "." * pocket + "b" * (12 - pocket)] + ["b" * 24] * 3
     rows += ["b......bbbbbbbbbbbbbbbbb"] * 3 + ["b..U...bbbbbbbbbbbbbbbbb", "b" * 24]
     found = corners(seen_whole(rows))
     assert (found["northeast"].square[1] > 6) == counts
 
 
-def test_what_was_moved_lies_on_floor_but_the_wall_that_it_may_reach_into_is_none() -> None:
+def test_floor_is_known_under_a_moved_object_but_not_under_the_wall_that_it_may_enter() -> None:
     rows = ["bbbbbbbb", "b.....gb", "b.....gb", "b..U...b", "bbbbbbbb"]
     model = seen_whole(rows)
     under, label = np.array([list(row) for row in reversed(rows)]) == "g", int(model.labels.max()) + 1
     thing = Node("o1", "object", 100, f"part{label}", patch_of(under, model.view), 0, moved=True)
     moved = replace(model, labels=np.where(under, label, model.labels).astype(np.int32), objects=(thing,))
     assert corners(moved)["northeast"].square == (6, 3)
-    state = np.where(under, OPEN, model.view.state).astype(np.int8)  # it may cover these, and may not
+    state = np.where(under, OPEN, model.view.state).astype(np.int8)  # it may cover these squares or not
     loose = replace(moved, view=model.view._replace(state=state))
     assert corners(loose)["northeast"].square == (5, 3)
-    assert corners(replace(loose, beneath=under))["northeast"].square == (6, 3)  # they were floor before it came there
+    assert corners(replace(loose, floor_under_moved=under))["northeast"].square == (
+        6,
+        3,
+    )  # they were floor before it came there
 
 
 def test_a_wall_seen_where_a_moved_thing_may_reach_is_not_floor_under_it() -> None:
@@ -78,7 +81,7 @@ def test_a_wall_seen_where_a_moved_thing_may_reach_is_not_floor_under_it() -> No
     model = seen_whole(rows)
     drawn = np.array([list(row) for row in reversed(rows)])
     under, label = drawn == "g", int(model.labels.max()) + 1
-    reach = under | ((drawn == "b") & grown(under, 1))  # by its play it may cover the wall about it, too
+    reach = under | ((drawn == "b") & grown(under, 1))  # within its tolerance it may cover the wall around it, too
     outline = shapely.box(6, 2, 7, 4)
     west, south = model.view.west, model.view.south
     outline = shapely.affinity.translate(outline, west, south)
@@ -89,4 +92,4 @@ def test_a_wall_seen_where_a_moved_thing_may_reach_is_not_floor_under_it() -> No
     assert corners(moved)["northeast"].square == (6, 3)
     assert not (known_floor(moved) & (drawn == "b")).any()
     askew = replace(moved, objects=(replace(thing, polygon=None),))
-    assert (known_floor(askew) & (drawn == "b")).any()  # what has no outline lies on all that it covers
+    assert (known_floor(askew) & (drawn == "b")).any()  # without an outline it lies on all squares that it may cover

@@ -1,4 +1,4 @@
-"""Names that last, patches, and what is measured and believed of known things."""
+"""Names that last, patches, and what is measured and believed of known objects."""
 
 import math
 from dataclasses import replace
@@ -10,15 +10,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kb.body import Grasp, Move, Release
-from kb.knowledge import _laid
 from kb.mapping.occupancy import FREE, FULL, OPEN, MapView
 from kb.mapping.patch import Patch, covered, patch_of
 from kb.objects.held_object import HeldObject
-from kb.objects.shape_fit import Measurer
+from kb.objects.shape_fit import ShapeMeasurer
 from kb.perception.frame import Frame
 from kb.world.corners import corners
 from kb.world.facts import Places, model_facts
-from kb.world.model import SPACE, Names, unsettled
+from kb.world.model import SPACE, count_open_squares
+from kb.world.object_names import ObjectNames
+from kb.world.objects import lay_upon
 from kb.world.rooms import rooms_of
 from tests.kb.drawings import seen_whole, walked
 from tests.kb.eyes import impression, utak_in, world_of
@@ -28,30 +29,30 @@ def box(x: int, y: int, wide: int, high: int) -> Patch:
     return Patch(x, y, np.ones((high, wide), bool))
 
 
-def test_a_thing_that_is_seen_better_keeps_its_name() -> None:
-    names = Names()
+def test_an_object_that_is_seen_better_keeps_its_name() -> None:
+    names = ObjectNames()
     first = names.assign([box(0, 0, 2, 2), box(10, 0, 3, 3)])
     assert names.assign([box(9, 0, 4, 4), box(0, 0, 3, 2)]) == first[::-1]
 
 
-def test_what_is_left_where_a_thing_lay_that_he_holds_is_another_thing() -> None:
-    names = Names()
+def test_a_patch_left_where_a_held_object_lay_is_another_object() -> None:
+    names = ObjectNames()
     (held,) = names.assign([box(0, 0, 3, 3)])
     (left,) = names.assign([box(0, 2, 3, 1)], {held})
     assert left != held
     assert names.assign([box(0, 2, 3, 1)], {held}) == [left]
 
 
-def test_when_a_thing_falls_apart_the_larger_part_keeps_the_name() -> None:
-    names = Names()
+def test_when_a_patch_splits_the_larger_part_keeps_the_name() -> None:
+    names = ObjectNames()
     (old,) = names.assign([box(0, 0, 10, 1)])
     small, large = names.assign([box(0, 0, 2, 1), box(4, 0, 6, 1)])
     assert large == old
     assert small != old
 
 
-def test_what_is_gone_is_forgotten_and_its_name_not_used_again() -> None:
-    names = Names()
+def test_a_patch_that_is_gone_is_forgotten_and_its_name_is_not_used_again() -> None:
+    names = ObjectNames()
     (old,) = names.assign([box(0, 0, 2, 2)])
     assert names.assign([]) == []
     assert names.assign([box(0, 0, 2, 2)]) != [old]
@@ -64,7 +65,7 @@ patches = st.lists(
 
 @given(st.lists(patches, max_size=4))
 def test_names_differ(steps: list[list[Patch]]) -> None:
-    names = Names()
+    names = ObjectNames()
     for step in steps:
         given_names = names.assign(step)
         assert len(set(given_names)) == len(step)
@@ -84,15 +85,15 @@ def test_a_patch_is_the_squares_of_its_mask(rows: int, columns: int, seed: int, 
     assert patch.mask.any(0).all() or not patch.mask.any(0)[1:-1].all()
 
 
-def test_open_squares_are_counted_about_a_thing_too() -> None:
+def test_open_squares_are_counted_around_an_object_too() -> None:
     state = np.array([[0, -1, 0, 0], [-1, 1, 1, 0], [0, -1, 0, -1]], np.int8)
     thing = state == FULL
     likely = np.where(state == OPEN, 0.1, thing).astype(np.float32)
     likely[1, 0] = 0.5
     view = MapView(0, 0, likely, state, thing, np.zeros(state.shape, np.int16))
-    assert unsettled(thing, view) == (3, 1)  # the corner to the southeast touches it at a corner only
-    likely[0, 1], likely[2, 1] = 0.01, 0.99  # all pictures show the same
-    assert unsettled(thing, view) == (1, 1)
+    assert count_open_squares(thing, view) == (3, 1)  # the corner to the southeast touches it at a corner only
+    likely[0, 1], likely[2, 1] = 0.01, 0.99  # all completions show the same
+    assert count_open_squares(thing, view) == (1, 1)
 
 
 SHAPES = {
@@ -105,24 +106,24 @@ SHAPES = {
 
 
 @pytest.mark.parametrize("shape", sorted(SHAPES))
-def test_known_things_are_measured_right(shape: str) -> None:
+def test_known_objects_are_measured_right(shape: str) -> None:
     full = np.array([list(row) for row in reversed(SHAPES[shape])]) == "g"
     framed = np.pad(full, 2)
     state = np.where(framed, FULL, FREE).astype(np.int8)
     view = MapView(-7, 4, framed.astype(np.float32), state, np.ones_like(framed), np.zeros(state.shape, np.int16))
-    measured = Measurer().measure(patch_of(framed, view), view)
+    measured = ShapeMeasurer().measure(patch_of(framed, view), view)
     assert measured.fits[0] == (shape, 0)
     assert measured.open == 0
     assert measured.polygon.area == pytest.approx(full.sum())
     assert measured.polygon.bounds == pytest.approx((-5, 6, -5 + full.shape[1], 6 + full.shape[0]))
 
 
-def test_nothing_is_measured_of_what_is_hardly_settled() -> None:
+def test_a_patch_that_is_hardly_settled_is_not_measured() -> None:
     state = np.full((4, 4), OPEN, np.int8)
     state[1, 1] = FULL
     thing = np.ones((4, 4), bool)
     view = MapView(0, 0, np.full((4, 4), 0.5, np.float32), state, thing, np.zeros((4, 4), np.int16))
-    measured = Measurer().measure(patch_of(thing, view), view)
+    measured = ShapeMeasurer().measure(patch_of(thing, view), view)
     assert (measured.fits, measured.polygon, measured.open) == ((), None, 15)
 
 
@@ -136,7 +137,7 @@ ROOM = [
 ]
 
 
-def test_a_square_seen_from_beside_is_believed() -> None:
+def test_a_square_seen_from_one_side_is_believed() -> None:
     model = walked(ROOM, [(0, 2), (-2, 2), (3, 0)], colour="g").model
     thing = model.objects[0]
     assert thing.confidence == 95
@@ -148,7 +149,7 @@ def test_a_square_seen_from_beside_is_believed() -> None:
     assert not (model.floor & model.verge).any()
 
 
-def test_a_load_that_reaches_into_his_own_square_leaves_it_open() -> None:
+def test_an_object_that_reaches_into_the_robots_square_leaves_it_open() -> None:
     walk = walked(ROOM, [(0, 2), (-2, 2), (3, 0), (-3, -4)], colour="g")
     x, y = utak_in(ROOM)
     seen = impression(world_of(ROOM), (x - 2, y), colour="g")
@@ -165,9 +166,9 @@ def test_a_load_that_reaches_into_his_own_square_leaves_it_open() -> None:
     assert model.floor[here]
 
 
-def test_who_walks_goes_right_beside_a_load_that_may_lie_otherwise() -> None:
+def test_squares_within_the_tolerance_of_a_held_object_count_as_floor() -> None:
     empty = [row.replace("g", ".") for row in ROOM]
-    model, _ = _laid(seen_whole(empty), HeldObject("o1", shapely.box(-3, 1.3, 0, 4.3), None, slack=0.2, proven=True))
+    model, _ = lay_upon(seen_whole(empty), HeldObject("o1", shapely.box(-3, 1.3, 0, 4.3), None, slack=0.2, proven=True))
 
     def chances(squares: set[tuple[int, int]]) -> list[float]:
         return [float(model.view.probability[model.view.locate(x + 0.5, y + 0.5)]) for x, y in squares]
@@ -179,11 +180,11 @@ def test_who_walks_goes_right_beside_a_load_that_may_lie_otherwise() -> None:
     assert not any(model.view.state[model.view.locate(x + 0.5, y + 0.5)] == FREE for x, y in may_be)
 
 
-def test_a_load_that_may_lie_otherwise_leaves_walls_what_they_are() -> None:
+def test_walls_stay_walls_within_the_tolerance_of_a_held_object() -> None:
     beside_wall = [row.replace("g", ".") for row in ROOM]
     before = seen_whole(beside_wall)
-    x = before.view.west + 1  # the first square of floor in the west
-    model, patch = _laid(
+    x = before.view.west + 1  # the westernmost column of floor
+    model, patch = lay_upon(
         before, HeldObject("o1", shapely.box(x + 0.1, 1.3, x + 3.1, 4.3), None, slack=0.2, proven=True)
     )
     wall = model.view.locate(x - 0.5, 2.5)
@@ -192,9 +193,9 @@ def test_a_load_that_may_lie_otherwise_leaves_walls_what_they_are() -> None:
     assert patch.squares() == {(column, row) for column in range(x, x + 4) for row in range(1, 5)}
 
 
-def test_what_he_feels_is_in_his_hand_when_he_grasps_there() -> None:
+def test_a_felt_object_is_in_hand_after_a_grasp_in_its_direction() -> None:
     def grasped(aside: int, felt: str | None, angle: int = 0, wall: bool = False) -> str | None:
-        """What he holds who grasps to the north, where he feels something, while a thing lies some squares beside."""
+        """Return what is held after a grasp to the north, if an object lies `aside` squares to the east of it."""
         walk = walked(ROOM, [(0, 2), (-2, 2), (3, 0), (-3, -4)], colour="g")
         (x, y), knowledge = utak_in(ROOM), walk.knowledge
         seen = replace(impression(world_of(ROOM), (x - 2, y), colour="g"), touch=(felt, *[None] * 7))
@@ -238,7 +239,7 @@ WIDE = ["b" * 26, *["b" + "." * 24 + "b"] * 9, "b....U" + "." * 19 + "b", *["b" 
 
 
 @pytest.mark.parametrize("degrees", [0.0, 1.0, 4.0, 30.0])
-def test_far_squares_are_not_certain_while_the_lattice_may_lie_a_little_otherwise(degrees: float) -> None:
+def test_far_squares_are_not_certain_while_the_orientation_is_slightly_uncertain(degrees: float) -> None:
     known = seen_whole(WIDE)
     model = replace(known, spread=math.radians(degrees))
     settled = known.view.state != OPEN
@@ -246,8 +247,8 @@ def test_far_squares_are_not_certain_while_the_lattice_may_lie_a_little_otherwis
     rows, columns = np.indices(settled.shape)
     origin = known.frame.origin[0] - known.view.west, known.frame.origin[1] - known.view.south
     far = np.hypot(columns + 0.5 - origin[0], rows + 0.5 - origin[1])
-    moved = 2 * far * math.sin(math.radians(degrees) / 2)  # by a turn about where he woke
-    if degrees > 5:  # that would have shown
+    moved = 2 * far * math.sin(math.radians(degrees) / 2)  # by a rotation about the point where the robot woke
+    if degrees > 5:  # an error so large would have shown
         assert (model.certain == settled).all()
     else:
         assert (model.certain == (settled & (moved <= 0.3))).mean() > 0.99
@@ -259,7 +260,7 @@ def test_far_squares_are_not_certain_while_the_lattice_may_lie_a_little_otherwis
 
 
 @pytest.mark.parametrize("place", [(0.5, 0.5), (-1.5, 0.5), (-2.5, -1.5)])
-def test_who_believes_himself_in_a_wall_stands_on_the_floor_beside_it(place: tuple[float, float]) -> None:
+def test_a_place_believed_in_a_wall_stands_for_the_floor_next_to_it(place: tuple[float, float]) -> None:
     model = seen_whole(
         ["b" * 12, *["bbb" + "." * 8 + "b"] * 4, "bbbU" + "." * 7 + "b", *["bbb" + "." * 8 + "b"] * 2, "b" * 12]
     )

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kb.perception.interpretation import interpret
+from kb.perception.interpretation import interpret_regions
 from kb.perception.regions import map_regions
 from kb.world.model import SPACE, WorldModel
 from kb.world.rooms import rooms_of
@@ -15,7 +15,7 @@ from tests.planner.situations import situation_of
 
 
 def two_rooms(door: int, wall: int, high: int = 14, wide: int = 12) -> list[str]:
-    """Two rooms side by side with a door in the middle of the wall between."""
+    """Return two rooms side by side with a door in the middle of the wall between them."""
     full = "b" * (2 * wide + wall + 4)
     south = (high - door) // 2
     rows = []
@@ -51,23 +51,23 @@ def unclear_between(first: int, last: int, chance: float) -> WorldModel:
     model = unclear(seen_whole(two_rooms(4, 2)), slice(first, last + 1), slice(14, 16), chance)
     seen = model.view.seen
     percept, labels = map_regions(seen & (model.view.probability > SPACE), seen, seen)
-    return replace(model, labels=labels, percept=percept, kinds=interpret(percept))
+    return replace(model, labels=labels, percept=percept, kinds=interpret_regions(percept))
 
 
 @pytest.mark.parametrize(("chance", "width"), [(0.1, 4), (0.4, 4), (0.6, 3), (0.9, 3)])
-def test_a_door_is_sure_when_only_its_width_is_not_clear(chance: float, width: int) -> None:
+def test_a_door_is_sure_when_only_its_width_is_unclear(chance: float, width: int) -> None:
     rooms = rooms_of(unclear_between(7, 7, chance))
     assert [(door.confidence, door.width) for door in rooms.doors] == [(100, pytest.approx(width))]
-    assert not rooms.labels[7, 14:16].any()  # what may be wall is part of no room
+    assert not rooms.labels[7, 14:16].any()  # squares that may be wall are part of no room
 
 
-@pytest.mark.parametrize(("deep", "confidence"), [(1, 100), (2, 50)])  # 8 wide it were none between such rooms
-def test_a_jamb_that_is_not_clear_is_one_when_there_is_wall_not_far_behind(deep: int, confidence: int) -> None:
+@pytest.mark.parametrize(("deep", "confidence"), [(1, 100), (2, 50)])  # 8 squares wide it is no door between such rooms
+def test_an_unclear_jamb_counts_if_there_is_wall_close_behind(deep: int, confidence: int) -> None:
     rooms = rooms_of(unclear_between(7 - deep, 6, 0.9))
     assert [door.confidence for door in rooms.doors] == [confidence]
 
 
-def test_no_door_is_sure_half_of_which_may_be_wall() -> None:
+def test_a_door_half_of_which_may_be_wall_is_not_sure() -> None:
     assert not any(door.sure for door in rooms_of(unclear_between(7, 9, 0.3)).doors)
 
 
@@ -93,13 +93,13 @@ def test_the_next_room_begins_behind_the_wall(wall: int) -> None:
     behind = np.zeros_like(beyond)
     behind[:, 14 + wall :] = True
     assert not (beyond & ~behind).any()
-    missing = np.argwhere(behind & model.floor & ~beyond)  # only just behind the door itself
+    missing = np.argwhere(behind & model.floor & ~beyond)  # only right behind the door
     assert (missing[:, 1] <= 14 + wall + 1).all()
     assert len(missing) <= 2 * 6
 
 
 def turned_drawing(rows: list[str]) -> list[str]:
-    """A drawing turned by a quarter."""
+    """Return a drawing rotated by a quarter turn."""
     return ["".join(column) for column in zip(*rows[::-1], strict=True)]
 
 
@@ -124,7 +124,7 @@ def test_an_l_shaped_room_has_no_door(arm: int) -> None:
 
 
 @pytest.mark.parametrize("size", [(8, 20), (20, 8), (15, 15), (30, 30)])
-def test_a_plain_room_has_no_door(size: tuple[int, int]) -> None:
+def test_an_empty_rectangular_room_has_no_door(size: tuple[int, int]) -> None:
     rows = ["." * size[0]] * size[1]
     rows[1] = "." * (size[0] - 1) + "U"
     rooms = rooms_of(seen_whole(bordered(rows)))
@@ -158,11 +158,11 @@ def test_three_rooms_in_a_row() -> None:
     assert len(np.unique(rooms.labels[model.floor])) == 3
     own = rooms.beyond(1) & model.floor
     columns = np.flatnonzero(own.any(0))
-    assert (columns.min(), columns.max()) == (16, 27)  # the middle room alone is next
+    assert (columns.min(), columns.max()) == (16, 27)  # only the middle room is next
     assert own.sum() >= 12 * 14 - 4 * 7
 
 
-def test_a_door_is_known_by_its_jambs_before_the_room_behind_is_seen() -> None:
+def test_a_door_is_known_by_its_jambs_before_the_room_behind_it_is_seen() -> None:
     rows = [row[:16] + "?" * (len(row) - 16) for row in two_rooms(4, 2)]
     rooms = rooms_of(seen_whole(rows))
     assert [door.width for door in rooms.doors] == pytest.approx([4])
@@ -175,14 +175,14 @@ def test_a_wall_with_a_jamb_unseen_has_no_door() -> None:
     assert not rooms_of(seen_whole(rows)).doors
 
 
-def test_nothing_but_floor_is_one_room() -> None:
+def test_floor_without_bounds_is_one_room() -> None:
     rows = ["." * 9] * 4 + ["....U...."] + ["." * 9] * 4
     rooms = rooms_of(seen_whole(rows))
     assert (rooms.labels == 1).all()
     assert not rooms.doors
 
 
-def test_what_may_be_an_object_makes_no_door_of_supposed_rooms() -> None:
+def test_a_possible_object_makes_no_door() -> None:
     rows = [row.replace("U", ".") for row in two_rooms(6, 2)]
     rows[14] = rows[14][:4] + "U" + rows[14][5:]
     stub = [row[:20] + "gg" + row[22:] if 2 <= n < 9 else row for n, row in enumerate(rows)]
@@ -194,13 +194,13 @@ def test_what_may_be_an_object_makes_no_door_of_supposed_rooms() -> None:
 
 
 @pytest.mark.parametrize(("length", "sure"), [(8, False), (12, False), (13, True), (17, True)])
-def test_what_goes_on_unseen_for_thirteen_squares_is_a_wall_beside_a_door(length: int, sure: bool) -> None:
+def test_something_thirteen_squares_long_is_a_wall_beside_a_door(length: int, sure: bool) -> None:
     wall = "b" * length + "." * 5 + "b" * 20
     floor = "." * (length + 5 + 18) + "bb"
     edge = "b" * len(wall)
     begin = floor[:-9] + "U" + floor[-8:]
     rows = [edge, *[floor] * 12, wall, wall, *[floor] * 11, begin, edge]
-    # north and south of the room all is seen but its western end
+    # north and south of the room all but its western end is seen
     unseen = ["?" * 4 + row for row in rows]
     unseen[0] = unseen[-1] = "?" * 20 + edge[16:]
     model = seen_whole(unseen)
@@ -210,7 +210,7 @@ def test_what_goes_on_unseen_for_thirteen_squares_is_a_wall_beside_a_door(length
     assert bool(rooms_of(model, verge=model.walls).doors) == sure
 
 
-def test_what_is_seen_of_a_doorway_alone_stays_a_part_of_its_own() -> None:
+def test_a_doorway_with_nothing_seen_behind_it_is_a_part_of_its_own() -> None:
     rows = [
         "............bbbb???",
         "............bbbb???",

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.body import Command, Impression
-from kb.perception.retina import FIELDS, OWN
+from kb.perception.retina import FIELDS, OWN_FIELD
 from kb.task.task import Task
 from planner.cycle import Options, Robot
 from tests.kb.eyes import impression, random_room, utak_in, world_of
@@ -29,7 +29,7 @@ class Nonsense:
             level if self.rng.random() >= self.broken else int(self.rng.choice(LEVELS[field.side]))
             for level, field in zip(true.retina, FIELDS, strict=True)
         ]
-        levels[OWN] = 7
+        levels[OWN_FIELD] = 7
         touch = tuple(self.rng.choice(["b", "g", None]) if self.rng.random() < self.broken else t for t in true.touch)
         return Impression(tuple(levels), touch)
 

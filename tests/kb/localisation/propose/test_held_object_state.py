@@ -13,7 +13,7 @@ from geometry.motion.first_contact import Obstacles
 from geometry.motion.se2 import Rotate, Translate
 from kb.localisation.hypotheses.carry_outcomes import predicted_outcome
 from kb.localisation.propose.held_object_state import MAX_LEANING_DISTANCE, lean_on_obstacle, object_after
-from kb.objects.held_object import SLIGHT, HeldObject
+from kb.objects.held_object import OUTLINE_TOLERANCE, HeldObject
 
 JAMBS = [shapely.box(-6, 4, 0, 6), shapely.box(6, 4, 12, 6)]
 WALLS = Obstacles(JAMBS)
@@ -22,7 +22,7 @@ NORTH = Translate(0.0, 5.0)
 
 
 def load(polygon: shapely.Polygon) -> HeldObject:
-    return HeldObject("o1", polygon, polygon, SLIGHT, proven=True, inexact=True)
+    return HeldObject("o1", polygon, polygon, OUTLINE_TOLERANCE, proven=True, inexact=True)
 
 
 def no_clash(_: HeldObject) -> int:
@@ -42,7 +42,7 @@ def test_a_blocked_object_touches_the_obstacle_at_the_nearest_place(x: float, y:
         return
     assert found.polygon.intersection(BOTH).area < 1e-6
     assert translate(found.polygon, 0, 0.05).intersection(BOTH).area > 0
-    assert found.slack >= SLIGHT
+    assert found.slack >= OUTLINE_TOLERANCE
 
 
 def test_the_nearer_side_of_a_door_blocked_it() -> None:
@@ -67,7 +67,7 @@ def test_after_slips_an_object_never_lies_exactly_on_squares() -> None:
     for thing in (exact, replace(exact, inexact=True)):
         moved = object_after(thing, predicted_outcome((0.5, -4.5), thing.polygon, Translate(0.0, 2.0)), 0)
         assert moved.polygon.bounds == (0, -2, 4, 2)
-        assert moved.slack == (SLIGHT if thing.inexact else 0.0)
+        assert moved.slack == (OUTLINE_TOLERANCE if thing.inexact else 0.0)
 
 
 def test_an_object_thwarted_again_for_no_reason_is_inexact() -> None:

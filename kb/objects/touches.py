@@ -1,0 +1,67 @@
+"""Touches: the colours that the robot feels now, and the colour of each square that it ever felt.
+
+State that lasts from one impression to the next.
+"""
+
+from collections.abc import Container
+
+from geometry.kernels.arrays import Square
+from kb.body import DIRECTIONS
+from kb.mapping.patch import Patch
+from kb.perception.frame import Frame
+
+
+class Touches:
+    """The colours that were felt, now and before.
+
+    Attributes
+    ----------
+    current : tuple of str or None
+        The colours of the 8 adjacent squares, clockwise from north in the robot frame, None for floor; () before the
+        first impression.
+    colours : dict of (x, y) to str
+        The colour of each square that was felt not to be floor, map frame.
+    """
+
+    def __init__(self) -> None:
+        self.current: tuple[str | None, ...] = ()
+        self.colours: dict[Square, str] = {}
+
+    def forget_squares(self) -> None:
+        """Forget the colours of all squares: they are squares of a frame that is no longer believed."""
+        self.colours.clear()
+
+    def feel(self, touch: tuple[str | None, ...], frame: Frame, square: Square, held: Container[Square]) -> None:
+        """Take in the touches of an impression.
+
+        Parameters
+        ----------
+        touch : tuple of str or None
+            The colours of the 8 adjacent squares in DIRECTIONS, None for floor.
+        frame : Frame
+            The believed frame. Directions that point between two of its squares tell nothing.
+        square : (x, y)
+            The robot's square, map frame.
+        held : container of (x, y)
+            Squares that objects which were held may cover: what is felt there belongs to them, not to the map.
+        """
+        self.current = touch
+        x, y = square
+        for direction, colour in zip(DIRECTIONS, touch, strict=True):
+            adjacent = frame.beside(direction)
+            if adjacent is None:
+                continue
+            there = x + adjacent[0], y + adjacent[1]
+            if colour is None or there in held:
+                self.colours.pop(there, None)
+            else:
+                self.colours[there] = colour
+
+    def felt_in(self, direction: str) -> str | None:
+        """Return the colour felt now in one of the eight DIRECTIONS; None for floor."""
+        return self.current[DIRECTIONS.index(direction)] if self.current else None
+
+    def colour_of(self, patch: Patch) -> str | None:
+        """Return the colour of the first square of a patch (by x, then y) that was felt; None when none was."""
+        colours = [self.colours[square] for square in sorted(patch.squares()) if square in self.colours]
+        return colours[0] if colours else None

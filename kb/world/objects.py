@@ -1,0 +1,344 @@
+"""Objects of the world model: nodes made from regions of the map, and from objects that were held.
+
+An object that never moved is a region of the map. One that was held has a place and an outline of its own
+(kb.objects.held_object); it is laid upon the map as one more region.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.kernels.arrays import Bools, Labels, Square
+from geometry.raster.components import boxes
+from kb.mapping.occupancy import FREE, FULL, OPEN, MapView, OccupancyMap
+from kb.mapping.patch import Patch, covered, patch_of
+from kb.objects.held_object import ROUNDING, HeldObject, initial_insets, initial_short, slack_of
+from kb.objects.proportions import corrected_shape
+from kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
+from kb.objects.touches import Touches
+from kb.perception.frame import AROUND, Frame
+from kb.perception.interpretation import FELT_OBJECT_CONFIDENCE, LONGEST_OBJECT, Kinds, classify_shapes
+from kb.perception.protrusions import VERGE, protrusions, separate_things
+from kb.perception.regions import Percept, Region, label_of
+from kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
+
+MIN_OBJECT_BELIEF = 5  # percent: a region less likely an object is no node: the least that interpretation.lp gives
+LAID_PROBABILITY = 0.4  # that a square is occupied which the tolerance of a held object's outline leaves open; tuned
+PLAY_PROBABILITY = 0.05  # likewise outside the believed outline: a motion there is hardly stopped, so below SPACE
+MIN_STUCK_MOTIONS = 3  # pushes or turns in a row that did not move an object: from then on it cannot be moved; tuned
+
+
+class MapRegions(NamedTuple):
+    """The regions of the map and their interpretation.
+
+    Attributes
+    ----------
+    percept : Percept
+        The regions, and which of them touch or surround each other.
+    labels : (rows, columns) int32
+        The number n of each square's region `part<n>`; 0 where nothing was seen.
+    kinds : Kinds
+        What each region is taken for.
+    """
+
+    percept: Percept
+    labels: Labels
+    kinds: Kinds
+
+
+def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Square, str]) -> MapRegions:
+    """Return the regions, with things that were felt and stand against the verge as regions of their own.
+
+    Parameters
+    ----------
+    regions : MapRegions
+        The regions as they were seen: a thing that touches a wall is one region with it.
+    view : MapView
+        The occupancy of the squares.
+    felt : mapping of (x, y) to str
+        The colours of squares that were felt, map frame.
+    """
+    percept, labels, kinds = regions
+    bounds = np.array([kinds.of(f"part{n}", "object") == 0 for n in range(int(labels.max()) + 1)])[labels]
+    occupied = occupied_squares(view) & bounds
+    colours = {view.locate(x, y): colour for (x, y), colour in felt.items()}
+    colours = {place: colour for place, colour in colours.items() if occupied[place]}
+    if all(colour == VERGE for colour in colours.values()):
+        return regions
+    labels, separated, kind = labels.copy(), [*percept.regions], dict(kinds.kind)
+    for thing in separate_things(protrusions(free_squares(view), occupied, view.seen), colours):
+        label = int(labels.max()) + 1
+        labels[thing] = label
+        separated.append(_separated_region(thing, label, view))
+        kind[f"part{label}"] = {"object": FELT_OBJECT_CONFIDENCE}
+    left = set(np.unique(labels).tolist())
+    there = tuple(region for region in separated if label_of(region.name) in left)
+    return MapRegions(percept._replace(regions=there), labels, kinds._replace(kind=kind))
+
+
+def _separated_region(thing: Bools, label: int, view: MapView) -> Region:
+    """Return the region of a thing that stands against the verge; `thing` is its (rows, columns) mask."""
+    rows, columns = np.nonzero(thing)
+    settled = int(100 * (view.state[thing] == FULL).sum() // len(rows))
+    extent = int(max(np.ptp(rows), np.ptp(columns))) + 1
+    return Region(f"part{label}", True, settled, False, extent, round(10 * float(view.probability[thing].sum())))
+
+
+def seen_objects(
+    model: WorldModel,
+    assign_names: Callable[[list[Patch]], list[str]],
+    measurer: ShapeMeasurer,
+    touches: Touches,
+    rules: tuple[Path, ...] = (),
+) -> tuple[Node, ...]:
+    """Return a node for each region of the map that is, or may be, an isolated object.
+
+    Parameters
+    ----------
+    model : WorldModel
+        The world model without objects.
+    assign_names : function
+        Returns a name for each patch (ObjectNames.assign).
+    measurer : ShapeMeasurer
+        Fits shapes to patches.
+    touches : Touches
+        What was felt.
+    rules : tuple of Path
+        The user's own encodings, solved together with kb/asp/shapes.lp.
+
+    Returns
+    -------
+    tuple of Node
+        By number of the name.
+    """
+    regions = [r for r in model.percept.regions if _may_be_object(r, model.kinds)]
+    windows = _windows(model, [label_of(r.name) for r in regions])
+    patches = [patch_of(window.mask, window.view) for window in windows]
+    names = assign_names(patches)
+    measured = {n: measurer.measure(p, model.view) for n, p in zip(names, patches, strict=True)}
+    shapes = classify_shapes(shape_facts(measured), rules)
+    return tuple(
+        _seen_node(name, region, window, patch, measured[name], shapes.get(name, {}), model.kinds, touches)
+        for name, region, window, patch in sorted(
+            zip(names, regions, windows, patches, strict=True), key=lambda entry: int(entry[0][1:])
+        )
+    )
+
+
+def _may_be_object(region: Region, kinds: Kinds) -> bool:
+    """Return whether a region is short enough for an object, and not surely something else."""
+    return region.extent <= LONGEST_OBJECT and kinds.of(region.name, "object") >= MIN_OBJECT_BELIEF
+
+
+class _Window(NamedTuple):
+    """The part of a map about one region, one square wider on each side, and the mask of the region on it."""
+
+    view: MapView
+    mask: Bools
+
+
+def _windows(model: WorldModel, labels: list[int]) -> list[_Window]:
+    """Return the parts of the map about the regions with these labels."""
+    framing = boxes(model.labels, int(model.labels.max()))
+    found = []
+    for label in labels:
+        south, west, north, east = framing[label].tolist()
+        rows, columns = slice(max(south - 1, 0), north + 2), slice(max(west - 1, 0), east + 2)
+        found.append(_Window(model.view.part(rows, columns), model.labels[rows, columns] == label))
+    return found
+
+
+def _seen_node(
+    name: str,
+    region: Region,
+    window: _Window,
+    patch: Patch,
+    measured: ShapeMeasurement,
+    shape: Mapping[str, int],
+    kinds: Kinds,
+    touches: Touches,
+) -> Node:
+    """Return the node of a region of the map."""
+    open_, doubtful = count_open_squares(window.mask, window.view)
+    return Node(
+        name=name,
+        kind="object",
+        confidence=kinds.of(region.name, "object"),
+        region=region.name,
+        patch=patch,
+        open=open_,
+        vague=doubtful,
+        shape=shape,
+        polygon=measured.polygon,
+        colour=touches.colour_of(patch),
+        support=_support(window.mask, window.view),
+        short=initial_short(measured.polygon),
+        insets=initial_insets(measured.polygon),
+    )
+
+
+def _support(mask: Bools, view: MapView) -> tuple[int, ...]:
+    """Return the numbers of the impressions that settled the squares of a mask, ascending."""
+    numbers = np.unique(view.settled_by[mask & ((view.state == FULL) | (view.state == FREE))])
+    return tuple(int(n) for n in numbers if n >= 0)
+
+
+def shape_facts(measured: Mapping[str, ShapeMeasurement]) -> list[str]:
+    """Return the facts for kb/asp/shapes.lp from the measurements of objects by name."""
+    facts = []
+    for name, result in measured.items():
+        facts += [f"open_squares({name},{result.open})", f"full_squares({name},{result.full})"]
+        facts += [f"fit({name},{shape},{misfit},{i})" for i, (shape, misfit) in enumerate(result.fits, 1)]
+    return facts
+
+
+def classified(load: HeldObject, measurer: ShapeMeasurer, rules: tuple[Path, ...] = ()) -> HeldObject:
+    """Return an object that was held, classified anew if its shape is open, since it was found to be larger."""
+    if load.shape:
+        return load
+    measured = measurer.measure_whole(covered(load.first))
+    return replace(load, shape=classify_shapes(shape_facts({load.name: measured}), rules).get(load.name, {}))
+
+
+def grasped(node: Node) -> HeldObject:
+    """Return an object as it is when it is held for the first time; its outline must be known."""
+    return HeldObject(
+        name=node.name,
+        polygon=node.polygon,
+        first=node.polygon,
+        slack=slack_of(node.polygon),
+        insets=initial_insets(node.polygon),
+        shape=node.shape,
+        colour=node.colour,
+        support=node.support,
+    )
+
+
+def within_reach(
+    objects: Iterable[Node], touches: Touches, frame: Frame, occupancy: OccupancyMap, square: Square, direction: str
+) -> list[Node]:
+    """Return the objects of which one may be on the adjacent square in a direction.
+
+    These are the objects that may cover that square. Without any: the objects near it, if the colour felt there may be
+    theirs, and if the squares that the direction may name are not all settled as occupied, as a wall is.
+
+    Parameters
+    ----------
+    objects : iterable of Node
+        The objects believed in.
+    touches : Touches
+        What is felt now.
+    frame : Frame
+        The believed frame.
+    occupancy : OccupancyMap
+        The map.
+    square : (x, y)
+        The robot's square, map frame.
+    direction : str
+        One of the eight DIRECTIONS of the robot frame.
+    """
+    x, y = square
+    adjacent = frame.beside(direction)
+    named = None if adjacent is None else (x + adjacent[0], y + adjacent[1])
+    there = [n for n in objects if named in n.patch.squares()]
+    return there or _felt_objects(objects, touches, frame, occupancy, square, direction)
+
+
+def _felt_objects(
+    objects: Iterable[Node], touches: Touches, frame: Frame, occupancy: OccupancyMap, square: Square, direction: str
+) -> list[Node]:
+    """Return the objects near the adjacent square in a direction that may have the colour felt there."""
+    colour = touches.felt_in(direction)
+    x, y = square
+    named = [(x + i, y + j) for i, j in frame.adjacent_squares(direction)]
+    known = [occupancy.state[occupancy.index(*square)] for square in named]
+    if colour is None or all(state == FULL for state in known):
+        return []
+    about = {(i + dx, j + dy) for i, j in named for dx, dy in (*AROUND, (0, 0))}
+    return [node for node in objects if node.colour in (None, colour) and about & node.patch.squares()]
+
+
+def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
+    """Lay an object that was held upon the map of a model, as a region of its own.
+
+    The robot's own square stays its own, since the robot is a point; but if the object may cover a part of that square,
+    the square is no longer settled. Walls that the object would enter only by the tolerance of its outline stay walls.
+
+    Parameters
+    ----------
+    model : WorldModel
+        The world model without the object.
+    load : HeldObject
+        The object.
+
+    Returns
+    -------
+    model : WorldModel
+        The model with one more region, the last one: its number is the greatest in `labels`.
+    patch : Patch
+        The squares that the object covers, or may cover; map frame.
+    """
+    view, labels = model.view, model.labels.copy()
+    lies, sure, possible = (model.squares(p.squares()) for p in (covered(load.polygon), load.sure, load.possible))
+    patch = patch_of(possible & ((view.state != FULL) | lies), view)
+    here = view.locate(*model.place)
+    shared = view.state[here] == FREE and possible[here]
+    sure[here] = possible[here] = False
+    label = int(labels.max()) + 1
+    open_ = possible & (view.state != FULL)
+    labels[open_] = label
+    state = np.where(sure, np.int8(FULL), np.where(possible & (view.state == FREE), np.int8(OPEN), view.state))
+    outside = open_ & ~lies
+
+    def with_object(chance: NDArray[np.float32]) -> NDArray[np.float32]:
+        may = np.where(outside, np.maximum(chance, np.float32(PLAY_PROBABILITY)), np.float32(LAID_PROBABILITY))
+        return np.where(sure, np.float32(1), np.where(open_, may, chance))
+
+    probability = with_object(view.probability)
+    by_counts = None if view.by_counts is None else with_object(view.by_counts)
+    if shared:
+        state[here] = OPEN
+    seen = view.seen | possible
+    kinds = Kinds({**model.kinds.kind, f"part{label}": {"object": 100}}, model.kinds.hidden_passages)
+    laid = view._replace(state=state.astype(np.int8), probability=probability, by_counts=by_counts, seen=seen)
+    return replace(model, view=laid, labels=labels, kinds=kinds), patch
+
+
+def held_node(load: HeldObject, patch: Patch, label: int) -> Node:
+    """Return the node of an object that was held.
+
+    Parameters
+    ----------
+    load : HeldObject
+        The object.
+    patch : Patch
+        The squares that it covers, or may cover; map frame.
+    label : int
+        The number of its region.
+    """
+    movable = 99 if load.proven else 0 if load.stuck >= MIN_STUCK_MOTIONS else 50
+    return Node(
+        name=load.name,
+        kind="object",
+        confidence=100,
+        region=f"part{label}",
+        patch=patch,
+        open=0,
+        shape=corrected_shape(load.shape, load.polygon, load.lying_insets),
+        polygon=load.polygon,
+        colour=load.colour,
+        support=load.support,
+        movable=movable,
+        moved=load.proven,
+        turned=load.turned,
+        stuck=load.stuck,
+        dubious=load.dubious,
+        inexact=load.inexact,
+        astray=load.astray > ROUNDING,
+        short=load.short,
+        insets=load.lying_insets,
+    )
