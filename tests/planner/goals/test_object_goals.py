@@ -64,7 +64,7 @@ def test_what_stands_before_a_door_is_too_wide_for_it_or_may_pass_whatever_lies_
     situation = situation_of(replace(model, objects=(node,)), {"x": node.name})
     found = landing(NORTHEAST, node, (0.0, 0.0), situation)
     assert not found.ends
-    refusal = PlanExecutor().refused(node, found.must_reach(), situation)
+    refusal = PlanExecutor().infeasibility(node, found.must_reach(), situation)
     if wide > 3:
         assert refusal is None
         return
@@ -235,10 +235,10 @@ def test_that_a_thing_can_be_brought_to_none_of_some_ends_proves_nothing(goal: s
     situation = situation_of(replace(model, objects=(node,)), {"x": node.name})
     found = landing(facts_of(goal)[0], node, (0.0, 0.0), situation)
     assert found.some
-    refused = PlanExecutor().refused(node, found.ends, situation)
+    refused = PlanExecutor().infeasibility(node, found.ends, situation)
     assert refused is not None
     assert refused.proved
-    assert PlanExecutor().refused(node, found.must_reach(), situation) is None
+    assert PlanExecutor().infeasibility(node, found.must_reach(), situation) is None
 
 
 def test_what_lies_loosely_near_to_something_is_near_to_it() -> None:
