@@ -1,52 +1,61 @@
-"""Starts the `utak` command, and the processes that it starts beside itself.
+"""The starting point of the `utak` command and of the processes that it starts.
 
-Our packages have plain names, such as `planner`. Here they are found beside this file alone, whatever folders of users
-stand on Python's path. As a program, `python -I utak_command.py PLACES MODULE ARGUMENT...` runs one of our modules:
-`-I` keeps the working directory, PYTHONPATH and the user's start-up files out.
+Our packages have ordinary names, such as `planner`. They are imported from this file's folder only, whatever folders
+users have on Python's path. As a program, `python -I utak_command.py PLACES MODULE ARGUMENT...` runs one of our
+modules. The option `-I` ignores the working directory, PYTHONPATH and the user's start-up files.
 """
 
 import os
 import sys
 
-TYPE_CHECKING = False  # typing's own is not imported: until main begins, Ctrl-C shows where Python was
+TYPE_CHECKING = False  # not imported from typing: until main begins, Ctrl-C would print a traceback
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from importlib.machinery import ModuleSpec
     from types import ModuleType
 
-HOME = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120 (pathlib takes a third of the time to start)
-OURS = frozenset({"geometry", "kb", "planner", "simulator", "benchmarks"})
+# The folder of this file. Importing pathlib would take a third of the time to start.
+PROJECT_FOLDER = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120
+# The packages that are imported from that folder only.
+OUR_PACKAGES = frozenset({"geometry", "kb", "planner", "simulator", "benchmarks"})
+# The packages of others on which ours depend.
 OTHERS = ("clingo", "numpy", "shapely", "networkx", "numba")
 
 
-class Beside:
-    """Finds our packages beside this file; of all other modules it knows nothing."""
+class OurPackageFinder:
+    """An import finder for our packages in this file's folder; it knows no other modules."""
 
     @staticmethod
     def find_spec(
         name: str, path: "Sequence[str] | None" = None, target: "ModuleType | None" = None
     ) -> "ModuleSpec | None":
-        """Return where one of our packages is; None for everything else, which Python then finds as it always does."""
-        from importlib.machinery import PathFinder  # loaded by find_ours_here: nothing is looked for to get it
+        """Return the place of one of our packages; None for every other module, which Python then finds as usual."""
+        from importlib.machinery import PathFinder  # loaded by install_package_finder, so nothing is searched here
 
-        return PathFinder.find_spec(name, [HOME], target) if name in OURS else None
+        return PathFinder.find_spec(name, [PROJECT_FOLDER], target) if name in OUR_PACKAGES else None
 
 
-def find_ours_here() -> None:
-    """Make every later import of one of our packages take the one beside this file."""
-    import importlib.machinery  # noqa: F401 (which is looked for in the usual way)
+def install_package_finder() -> None:
+    """Make every later import of one of our packages take the one in this file's folder."""
+    import importlib.machinery  # noqa: F401 (found in the usual way, before the finder is installed)
 
-    if not any(getattr(finder, "__qualname__", "") == Beside.__qualname__ for finder in sys.meta_path):
-        sys.meta_path.insert(0, Beside)
+    if not any(getattr(finder, "__qualname__", "") == OurPackageFinder.__qualname__ for finder in sys.meta_path):
+        sys.meta_path.insert(0, OurPackageFinder)
 
 
 def beside(module: str, *arguments: str) -> list[str]:
-    """Return the command line that runs one of our modules in an isolated process of this Python."""
-    return [sys.executable, "-I", os.path.join(HOME, "utak_command.py"), _places(), module, *arguments]  # noqa: PTH118
+    """Return the command line that runs one of our modules in an isolated process with this Python.
+
+    module : the name of the module. arguments : its command line.
+    """
+    return [sys.executable, "-I", os.path.join(PROJECT_FOLDER, "utak_command.py"), _places(), module, *arguments]  # noqa: PTH118
 
 
 def _places() -> str:
-    """The folders in which this process finds the packages of others, for a process that would not find them alone."""
+    """Return the folders of the installed dependencies, joined by os.pathsep.
+
+    An isolated process may not find them by itself.
+    """
     from importlib.util import find_spec
 
     origins = [spec.origin for spec in map(find_spec, OTHERS) if spec is not None and spec.origin]
@@ -54,7 +63,10 @@ def _places() -> str:
 
 
 def exit_at_ctrl_c() -> None:
-    """End at once when Ctrl-C is pressed: nothing has begun yet. A background job, for which it is ignored, goes on."""
+    """Let Ctrl-C end this process at once with exit code 130, since nothing has begun yet.
+
+    In a background job, where Ctrl-C is ignored, it stays ignored.
+    """
     import signal
 
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
@@ -64,18 +76,21 @@ def exit_at_ctrl_c() -> None:
 def main() -> int:
     """Run `utak` with the arguments of this process and return its exit code."""
     exit_at_ctrl_c()
-    find_ours_here()
+    install_package_finder()
     from simulator.cli.main import main as run
 
     return run()
 
 
 def run_module(places: str, module: str, *arguments: str) -> None:
-    """Run one of our modules as a program. places : where to look for what is not found otherwise."""
+    """Run one of our modules as a program.
+
+    places : folders to search for dependencies that are not found otherwise, joined by os.pathsep.
+    """
     from importlib.machinery import PathFinder
     from runpy import run_module as run
 
-    find_ours_here()
+    install_package_finder()
     if any(PathFinder.find_spec(name) is None for name in OTHERS):  # as with `pip install --user`
         sys.path += [place for place in places.split(os.pathsep) if place and place not in sys.path]
     sys.argv = [module, *arguments]

@@ -5,7 +5,7 @@
     python -m benchmarks.campaign --again results.jsonl          (the worlds that went wrong)
     python -m benchmarks.campaign --unable --task 5,6,7,8,9 --count 4    (only such as cannot be done)
 
-The table goes to stdout, progress to stderr. docs/benchmarks-worlds.md explains the columns.
+The table goes to stdout, progress to stderr. docs/results/worlds.md explains the columns.
 """
 
 import argparse

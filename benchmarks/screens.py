@@ -2,8 +2,8 @@
 
     python -m benchmarks.screens [FOLDER OF .map FILES] [--queries N] [--only build,query,...]
 
-All times are the least of several, in milliseconds of the processor, warm, in this one process and thread. Nobody waits
-for anything here: on a quiet machine the clock on the wall says the same, on a busy one it says how busy that is.
+All times are the least of several, in milliseconds of the processor, warm, in this one process and thread. Nothing here
+waits: on a quiet machine wall-clock time is the same, and on a busy one it measures how busy the machine is.
 """
 
 import argparse
@@ -20,11 +20,14 @@ from geometry import Screen
 from geometry.io.movingai import Trip, read_map, read_trips
 
 MAPS = Path(__file__).resolve().parents[2] / "shared" / "data" / "movingai"
+LARGE = 512 * 512  # squares: maps of so many and more count for the median ratios (a convention)
+GOALS = (("built", 15, 7), ("as arrays", 30, 15), ("as networkx", 15, 1))
+"""Ratios wanted of a screen built, its arrays and its networkx graph: median over large maps, least of all maps."""
 SECTIONS = ("build", "growth", "change", "query", "quality", "exact", "classes")
 
 
 def least(call: Callable[[], object], times: int = 5, seconds: float = 2.0) -> float:
-    """The least time of a call, in milliseconds."""
+    """Return the least processor time of a call, in milliseconds; stop after so many calls or seconds."""
     best, begun = np.inf, time.process_time()
     for n in range(times):
         start = time.process_time()
@@ -37,7 +40,7 @@ def least(call: Callable[[], object], times: int = 5, seconds: float = 2.0) -> f
 
 
 def trips_of(path: Path, free: np.ndarray, count: int) -> list[Trip]:
-    """Some problems of a map, drawn without favour."""
+    """Return problems of a map, drawn at random from its scenario file, or between random squares if it has none."""
     scenario = path.with_suffix(".map.scen")
     rng = np.random.default_rng(1)
     if scenario.exists():
@@ -49,7 +52,7 @@ def trips_of(path: Path, free: np.ndarray, count: int) -> list[Trip]:
 
 
 def topology(screen: Screen, radius: float) -> tuple[int, int]:
-    """Components and holes of a pathgraph."""
+    """Return the numbers of components and of independent cycles of the pathgraph for a radius (squares)."""
     import networkx as nx
 
     graph = screen.pathgraph_for(radius)
@@ -58,9 +61,9 @@ def topology(screen: Screen, radius: float) -> tuple[int, int]:
 
 
 def warm_and_fresh(free: np.ndarray, times: int = 15) -> tuple[float, float]:
-    """The least time of a build in the memory of a dead screen, and in memory that no screen has had.
+    """Return the least milliseconds of a build in the memory of a dead screen, and in memory that no screen has had.
 
-    By turns, for the processor's speed changes from second to second.
+    By turns, because the speed of the processor changes from second to second.
     """
     warm, fresh, kept = np.inf, np.inf, []
     for _ in range(times):
@@ -72,37 +75,82 @@ def warm_and_fresh(free: np.ndarray, times: int = 15) -> tuple[float, float]:
 
 
 def build(maps: dict[Path, np.ndarray], _: int) -> None:
-    print(f"{'build':32} {'size':>10} {'ours':>8} {'peer':>9} {'ratio':>6} {'fresh':>6} {'bytes':>6}  topology")
-    large, others, most = [], [], 0.0
+    """Print times and memory of building, what they are beside the peer's, and whether the topology is right.
+
+    The peer gives a networkx graph and clearances, so what it compares with is ``Screen(free).pathgraph`` (as
+    networkx); beside it stand ``Screen(free).pathgraph_arrays`` (as arrays), which carries the same, and the build
+    alone, without the points of edges (built).
+    """
+    print(
+        f"{'build, milliseconds':32} {'size':>10} {'built':>8} {'arrays':>8} {'networkx':>9} {'peer':>9} | "
+        f"times as fast: {'built':>6} {'as arrays':>9} {'as networkx':>11} | {'fresh':>6} {'bytes':>6}  topology"
+    )
+    ratios, most = [], 0.0
     for path, free in maps.items():
-        screen = Screen(free)
-        ours, fresh = warm_and_fresh(free)
-        peer = least(lambda free=free: peers.skeleton_graph(free), 5) if peers.survives(free) else np.nan
-        taken = Screen(free)  # the memory that a dead screen has left
-        tracemalloc.start()
-        again = Screen(free)
-        peak = tracemalloc.get_traced_memory()[1] / free.size
-        tracemalloc.stop()
-        del taken
-        right = [topology(again, r) == peers.components_and_holes(free & (screen.clearance >= r)) for r in range(6)]
-        if peer > 0.0:
-            (large if free.size >= 512 * 512 else others).append(peer / ours)
+        screen, times = Screen(free), paired_times(free)
+        peak, right = peak_bytes(free), [right_topology(screen, radius) for radius in range(6)]
         most = max(most, peak)
-        size = f"{free.shape[0]}x{free.shape[1]}"
-        verdict = "right" if all(right) else f"wrong {right}"
+        ratio = times[-1] / times[:-1]
+        if np.isfinite(times[-1]):
+            ratios.append((free.size >= LARGE, ratio))
+        size, verdict = f"{free.shape[0]}x{free.shape[1]}", "right" if all(right) else f"wrong {right}"
         print(
-            f"{path.stem:32} {size:>10} {ours:8.2f} {peer:9.1f} {peer / ours:6.1f} "
-            f"{fresh / ours:6.2f} {peak:6.1f}  {verdict}"
+            f"{path.stem:32} {size:>10} {times[0]:8.2f} {times[1]:8.2f} {times[2]:9.2f} {times[3]:9.1f} | {'':14} "
+            f"{ratio[0]:6.1f} {ratio[1]:9.1f} {ratio[2]:11.1f} | {fresh_ratio(free):6.2f} {peak:6.1f}  {verdict}",
+            flush=True,
         )
-    if large:
-        print(
-            f"maps of 512^2 and more: median ratio {np.median(large):.1f} (15 wanted), "
-            f"least of all {min(large + others):.1f} (7 wanted); topology for radii 0 to 5; "
-            f"most bytes a cell {most:.1f} (11 wanted)"
-        )
+    if any(large for large, _ in ratios):
+        medians = np.median([ratio for large, ratio in ratios if large], axis=0)
+        lowest = np.min([ratio for _, ratio in ratios], axis=0)
+        for k, (name, median, least_of_all) in enumerate(GOALS):
+            print(
+                f"{name}: median over maps of 512^2 and more {medians[k]:.1f} times as fast as the peer "
+                f"({median} wanted), least of all maps {lowest[k]:.1f} ({least_of_all} wanted)"
+            )
+    print(f"topology for radii 0 to 5; most bytes a cell {most:.1f} (11 wanted); where sknw kills its process: nan")
+
+
+def paired_times(free: np.ndarray) -> np.ndarray:
+    """Return the least milliseconds of a build, the arrays and the networkx graph (builds included), and the peer.
+
+    By turns, because the speed of the processor changes from second to second. The peer's is nan where sknw kills its
+    process.
+    """
+    calls: list[Callable[[], object]] = [
+        lambda: Screen(free),
+        lambda: Screen(free).pathgraph_arrays,
+        lambda: Screen(free).pathgraph,
+    ]
+    if peers.survives(free):
+        calls.append(lambda: peers.skeleton_graph(free))
+    times = np.min([[least(call, 3 if k < 3 else 1) for k, call in enumerate(calls)] for _ in range(6)], axis=0)
+    return np.append(times, np.nan)[:4]
+
+
+def fresh_ratio(free: np.ndarray) -> float:
+    """Return the time of a build in memory that no screen has had, by that in the memory of a dead one."""
+    warm, fresh = warm_and_fresh(free)
+    return fresh / warm
+
+
+def peak_bytes(free: np.ndarray) -> float:
+    """Return the most memory allocated at any time of a build, in bytes a square."""
+    taken = Screen(free)  # the memory that a dead screen has left
+    tracemalloc.start()
+    Screen(free)
+    peak = tracemalloc.get_traced_memory()[1] / free.size
+    tracemalloc.stop()
+    del taken
+    return peak
+
+
+def right_topology(screen: Screen, radius: float) -> bool:
+    """Return whether the pathgraph for a radius (squares) has the components and holes of the body's free space."""
+    return topology(screen, radius) == peers.components_and_holes(screen.free & (screen.clearance >= radius))
 
 
 def growth(maps: dict[Path, np.ndarray], _: int) -> None:
+    """Print how the time of a build grows with the number of squares of one map, tiled."""
     name = min(maps, key=lambda path: (maps[path].size < 256 * 256, maps[path].size))  # one texture at every size
     free = maps[name]
     print(f"{'growth of ' + name.stem + ', tiled':40} ms and ns a cell")
@@ -119,7 +167,7 @@ def growth(maps: dict[Path, np.ndarray], _: int) -> None:
 
 
 def change(maps: dict[Path, np.ndarray], _: int) -> None:
-    """Blocks of 8 x 8 squares with floor in them are blocked, and set free again: no change without effect."""
+    """Print times of changes: blocks of 8 x 8 squares with floor in them are blocked, and set free again."""
     print(f"{'change of 8 x 8 squares, 1024^2':32} {'build':>8} {'least':>8} {'median':>8} {'median/build':>13}")
     for path, free in maps.items():
         if free.size < 512 * 512:
@@ -139,6 +187,7 @@ def change(maps: dict[Path, np.ndarray], _: int) -> None:
 
 
 def query(maps: dict[Path, np.ndarray], count: int) -> None:
+    """Print median times of queries for routes beside those of w9-pathfinding and scipy."""
     heads = ("k=1", "k=4", "shortest", "w9 A*", "scipy", "w9/k1", "scipy/k1")
     print(f"{'query, microseconds (median)':32} " + " ".join(f"{head:>9}" for head in heads))
     ratios = []
@@ -163,6 +212,7 @@ def query(maps: dict[Path, np.ndarray], count: int) -> None:
 
 
 def quality(maps: dict[Path, np.ndarray], count: int) -> None:
+    """Print mean ratios of the lengths of first routes, and of octile grid paths, to the shortest at any angle."""
     print(f"{'length / any-angle optimum':32} {'k=1':>8} {'k=4':>8} {'k=8':>8} {'octile grid':>12}")
     table = []
     for path, free in maps.items():
@@ -183,6 +233,7 @@ def quality(maps: dict[Path, np.ndarray], count: int) -> None:
 
 
 def exact(maps: dict[Path, np.ndarray], count: int) -> None:
+    """Print ratios of the lengths of shortest routes to those of an exact visibility graph."""
     print(f"{'shortest / visibility graph':32} {'queries':>8} {'least':>12} {'most':>12}")
     whole: list[float] = []
     for path, free in maps.items():
@@ -200,6 +251,7 @@ def exact(maps: dict[Path, np.ndarray], count: int) -> None:
 
 
 def classes(maps: dict[Path, np.ndarray], _: int) -> None:
+    """Print times of eight distinct routes beside those of networkx's shortest simple paths."""
     print(f"{'k=8 routes, milliseconds':32} {'ours':>8} {'networkx':>9} {'ratio':>7}  distinct")
     ratios = []
     for path, free in maps.items():
@@ -223,6 +275,7 @@ def classes(maps: dict[Path, np.ndarray], _: int) -> None:
 
 
 def main() -> None:
+    """Measure the chosen sections on all maps of a folder."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", nargs="?", type=Path, default=MAPS)
     parser.add_argument("--queries", type=int, default=30)

@@ -4,7 +4,7 @@
     python docs/build_picture.py run.jsonl
 
 Grey: the table as it is. Fields: what the retina shows, the darker the fuller. Lines: what Utak believes, the stronger
-the surer; blue for floor and verge, red for objects. The dotted line is his way.
+the surer; blue for floor and verge, red for objects. The dotted line is the robot's way.
 """
 
 import argparse
@@ -28,7 +28,7 @@ Point = tuple[float, float]
 
 
 class Frame:
-    """From Utak's frame, hundredths of squares about the point where he woke, to the table's."""
+    """Convert points from the robot's frame, in hundredths of squares, to the table's frame, in squares."""
 
     def __init__(self, heading: float, origin: Point) -> None:
         self.cosine, self.sine = math.cos(math.radians(heading)), math.sin(math.radians(heading))

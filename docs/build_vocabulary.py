@@ -1,4 +1,4 @@
-"""docs/vocabulary.md, made from the documentation blocks of the encodings and the declared fact files.
+"""docs/reference/vocabulary.md, made from the documentation blocks of the encodings and the declared fact files.
 
 python docs/build_vocabulary.py            write it
 python docs/build_vocabulary.py --check    exit 1 when it is stale, or when an interface is not documented
@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs" / "vocabulary.md"
+PAGE = ROOT / "docs" / "reference" / "vocabulary.md"
 FIRST = "belief"  # the world model comes before the encodings that build it
 BLOCK = re.compile(r"%\*!\s*(.*?)\*%", re.DOTALL)
 SIGNATURE = re.compile(r"([a-z_]\w*)(?:\(([^)]*)\))?")
@@ -167,7 +167,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for predicate, arity in signatures:
             print(f"{name}: {predicate}/{arity} is not documented", file=sys.stderr)
     if check and (not PAGE.exists() or PAGE.read_text() != page()):
-        print("docs/vocabulary.md is stale: run python docs/build_vocabulary.py", file=sys.stderr)
+        print("docs/reference/vocabulary.md is stale: run python docs/build_vocabulary.py", file=sys.stderr)
         return 1
     if not check:
         PAGE.write_text(page())

@@ -1,11 +1,29 @@
-"""Spatial reasoning: shapes, screens, skeletons, pathgraphs, ropes and rigid motion. Imports nothing else of Utak.
+"""Spatial reasoning: rasters, skeletons, pathgraphs, routes, rigid motion and manipulation. Imports nothing else of Utak.
 
-In reading order: ``distance`` (clearance), ``skeleton``, ``chains`` (the pathgraph in arrays), ``pathgraph`` (for
-networkx), ``runs`` and ``rope`` (classes of paths and their tight ropes), ``ways``, ``search``, ``alternatives``
-and ``itinerary`` (routes), ``passages`` and ``parts`` (necks and rooms), ``loops``, ``goals``, and ``screen``,
-which brings all this together. Then ``digital`` (images of shapes) and ``template`` (shapes of images), ``rigid`` and
-``contact`` (motions and what stops them), ``floor``, ``problem`` and ``motion`` (how a body can be moved), and
-``carrying`` (how Utak brings it there).
+Points are (x, y) in squares, table frame; the centre of square (i, j) is (i + 0.5, j + 0.5). Rasters are indexed
+[row, column], row 0 in the south. Angles are in degrees, counter-clockwise positive.
+
+Rooms in reading order:
+
+    screen           the entry for routes: a raster of free squares, and all that is computed of it
+    kernels          compiled loops (numba), heaps, queues, types of arrays
+    raster           what shapes cover, distance transforms, components, contours, lines of sight
+    skeleton         the thin, connected middle of free space, and the pathgraph on it
+    homotopy         classes of paths: strips, landmarks, and the shortest path of a class (funnel)
+    routes           topologically distinct routes, shortest first
+    pathfinders      other path-finders for comparison: any-angle search, visibility graph, grid A*
+    passages         necks between walls, and the partition of free space into rooms
+    incremental      updates of all this after a change of a few squares
+    motion           poses, rigid motions, exact first contact
+    cspace           motion planning of a polygon among polygons: ``plan_motion``
+    state_lattice    carrying by whole squares and quarter turns
+    manipulation     plans of carrying: walks, grasps, pushes and turns
+    counts           what counts in windows say of single squares
+    shapes           shapes that fit the squares seen
+    io               maps of Moving AI, pictures as SVG
+
+Public names: ``Screen`` and ``Route`` (routes), ``Passage``; ``plan_motion``, ``MotionPlan``, ``Inside``; ``Pose``,
+``Translate``, ``Rotate``.
 """
 
 from geometry.cspace.plan_motion import Inside, MotionPlan, plan_motion

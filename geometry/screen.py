@@ -25,6 +25,7 @@ from geometry.routes.tighten import word_of_crossings
 from geometry.skeleton.buffers import Tenant, take_buffers
 from geometry.skeleton.chains import Chains, find_chains
 from geometry.skeleton.graph import SkeletonGraph, contract
+from geometry.skeleton.pathgraph_arrays import PathgraphArrays, pathgraph_arrays
 from geometry.skeleton.skeleton import States, Words
 from geometry.skeleton.sweep import survey
 
@@ -84,7 +85,7 @@ class Screen:
         bones = change_squares(self._square, state, old, *where)
         self._skeletons = {1: self._survey_changed(*where) if bones is None else (state, words, bones)}
         self._chains, self._layers, self._questions = {}, {}, {}
-        for name in ("clearance", "skeleton", "pathgraph", "_walls"):
+        for name in ("clearance", "skeleton", "pathgraph", "pathgraph_arrays", "_walls"):
             self.__dict__.pop(name, None)
         return self
 
@@ -114,7 +115,24 @@ class Screen:
         """The pathgraph of a body: that of the squares whose clearance is at least its radius."""
         from geometry.skeleton.networkx_export import networkx_graph
 
-        return networkx_graph(self._square, self._chains_at(level_of(radius)))
+        return networkx_graph(self._new_arrays(radius))
+
+    @cached_property
+    def pathgraph_arrays(self) -> PathgraphArrays:
+        """The same pathgraph in arrays."""
+        return self.pathgraph_arrays_for(0.0)
+
+    def pathgraph_arrays_for(self, radius: float) -> PathgraphArrays:
+        """The pathgraph of a body in arrays."""
+        arrays = self._new_arrays(radius)
+        for array in arrays:
+            array.flags.writeable = False
+        return arrays
+
+    def _new_arrays(self, radius: float) -> PathgraphArrays:
+        """Return the pathgraph of a body in new arrays."""
+        state, _, bones = self._skeleton_at(level_of(radius))
+        return pathgraph_arrays(self._square, state, bones)
 
     def routes(
         self,

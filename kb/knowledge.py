@@ -1,7 +1,7 @@
 """What Utak knows, kept up to date: from each impression to a new world model.
 
 The way of one impression: regions (kb.perception.regions), their interpretation (kb/asp), accommodation
-(kb.localisation.accommodation),
+(kb.localisation.tracker),
 objects and their shapes, and the tree (kb.world.model).
 """
 
@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from geometry.raster.components import boxes
 from kb.body import DIRECTIONS, Command, Grasp, Impression
-from kb.localisation.accommodation import Memory
 from kb.localisation.hypotheses.explanation import Accommodated
+from kb.localisation.state import TrackerState
+from kb.localisation.tracker import Tracker
 from kb.mapping.object_heat import NOTHING_IMAGINED, imagine
 from kb.mapping.occupancy import FREE, FULL, OPEN, MapView
 from kb.mapping.patch import Patch, covered, patch_of
@@ -41,7 +42,7 @@ class Knowledge:
     """The knowledge base of one robot: its memory, and the world model that follows from it."""
 
     def __init__(self, rules: tuple[Path, ...] = ()) -> None:
-        self.memory = Memory()
+        self.tracker = Tracker()
         self.rules = rules
         self.felt: dict[tuple[int, int], str] = {}
         self.objects: tuple[Node, ...] = ()
@@ -50,24 +51,29 @@ class Knowledge:
         self._imagined = NOTHING_IMAGINED
         self._measurer = Measurer()
 
+    @property
+    def memory(self) -> TrackerState:
+        """Return what the localisation tracker believes now."""
+        return self.tracker.state
+
     def wake(self, impression: Impression) -> tuple[WorldModel, Accommodated]:
         """The first world model: the default one, an empty floor about Utak, accommodated to the first impression."""
-        return self._model(impression, self.memory.wake(impression))
+        return self._model(impression, self.tracker.wake(impression))
 
     def perceive(self, command: Command, impression: Impression) -> tuple[WorldModel, Accommodated]:
         """The world model after a command and its impression."""
         if isinstance(command, Grasp):
             self._grasp(command.direction)
-        accommodated = self.memory.accommodate(command, impression)
+        accommodated = self.tracker.accommodate(command, impression)
         if self.memory.lost and self.memory.held is None:
             return self.begin_anew(impression, lost=True)
         return self._model(impression, accommodated)
 
     def begin_anew(self, impression: Impression, lost: bool = False) -> tuple[WorldModel, Accommodated]:
         """Forget all but where he has been, and see as if for the first time. impression : the newest one."""
-        self.memory = self.memory.anew()
+        self.tracker = self.tracker.anew()
         self._names.forget()
-        woken = self.memory.wake(impression)
+        woken = self.tracker.wake(impression)
         woken = woken._replace(explanation=woken.explanation._replace(how="lost" if lost else "anew"))
         return self._model(impression, woken)
 
@@ -90,7 +96,7 @@ class Knowledge:
             colour=node.colour,
             support=node.support,
         )
-        self.memory.grasp(load)
+        self.tracker.grasp(load)
 
     def _felt_at(self, direction: str) -> list[Node]:
         """The objects one of which he may feel in a direction: those that lie about there, if that may be no wall."""
@@ -104,7 +110,7 @@ class Knowledge:
         return [node for node in self.objects if node.colour in (None, colour) and about & node.patch.squares()]
 
     def _model(self, impression: Impression, accommodated: Accommodated) -> tuple[WorldModel, Accommodated]:
-        if accommodated.explanation.anew:
+        if accommodated.explanation.remaps:
             self.felt.clear()  # its squares were those of another lattice
             self._imagined = NOTHING_IMAGINED
         self._feel(impression)
@@ -113,7 +119,7 @@ class Knowledge:
         view = counted._replace(
             probability=imagined.probability(counted.probability), by_counts=counted.probability, sure=self.memory.sure
         )
-        self.memory.pictures = imagined.pictures
+        self.tracker.keep_completions(imagined.pictures)
         occupied = view.seen & (view.probability > SPACE)
         percept, labels = map_regions(occupied, view.seen, view.state != OPEN, view.probability)
         touched = [(f"part{labels[view.locate(x, y)]}", colour) for (x, y), colour in sorted(self.felt.items())]
@@ -139,7 +145,7 @@ class Knowledge:
             lost=self.memory.lost,
             anew=bool(self.memory.been),
             shaken=self.memory.shaken,
-            contradicted=accommodated.explanation.misfits > 0,
+            contradicted=accommodated.explanation.residual > 0,
         )
         self.objects = self._objects(model)
         if self.memory.loads:
@@ -220,7 +226,7 @@ class Knowledge:
             if not load.shape:
                 measured = self._measurer.measure_whole(covered(load.first))
                 shape = shapes(_shape_facts({name: measured}), self.rules)
-                self.memory.loads[name] = replace(load, shape=shape.get(name, {}))
+                self.tracker.update_object(replace(load, shape=shape.get(name, {})))
 
     def _colour(self, patch: Patch) -> str | None:
         colours = [self.felt[square] for square in sorted(patch.squares()) if square in self.felt]

@@ -1,4 +1,4 @@
-"""The situation: what the meaning of a goal depends on, and what follows for doors and rooms."""
+"""The situation: all that the meaning of a goal depends on, and what follows from it for doors and rooms."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.kernels.arrays import Bools
+from geometry.kernels.arrays import XY, Bools
 from kb.mapping.patch import Patch
 from kb.task.task import Task
 from kb.world.corners import Corner
@@ -20,10 +20,18 @@ from planner.stages import constraints
 
 @dataclass(frozen=True)
 class Situation:
-    """What the meaning of a goal depends on.
+    """All that the meaning of a goal depends on.
 
-    binding : parameter -> node. corners : side -> corner of the known floor. track : where Utak has been, points of
-    the lattice.
+    Attributes
+    ----------
+    model : the world model.
+    cost_maps : the world model projected on the screen.
+    binding : the name of the node that each parameter of the task means.
+    rooms : the rooms and doors of the floor; whatever is taken for verge bounds them.
+    corners : the corner of the known floor towards each side ("northeast", ...).
+    task : the task, with its constraints.
+    rules : the user's rule files, read by every encoding.
+    track : where the robot has been, points of the map frame, in squares.
     """
 
     model: WorldModel
@@ -33,44 +41,71 @@ class Situation:
     corners: Mapping[str, Corner]
     task: Task
     rules: tuple[Path, ...] = ()
-    track: tuple[tuple[float, float], ...] = ()
+    track: tuple[XY, ...] = ()
 
     @cached_property
-    def supposed(self) -> Rooms:
-        """The rooms as they are if what may be an object is one."""
+    def rooms_by_sure_walls(self) -> Rooms:
+        """The rooms that follow when everything that may be an object is one, and does not bound a room."""
         if (self.model.walls == self.model.verge).all():
             return self.rooms
         return rooms_of(self.model, self.rules, self.model.walls)
 
     def along_with(self, patch: Patch) -> "Situation":
-        """The same for who takes something along wherever he goes, from its squares on."""
+        """Return the situation with cost maps for a robot that carries an object along, so that it blocks no way.
+
+        patch : the squares that the object covers now.
+        """
         return replace(self, cost_maps=CostMaps(self.model, self.model.mask(patch)))
 
-    def beyond(self, place: tuple[float, float]) -> tuple[Bools, tuple[Viewpoint, ...]]:
-        """(rows, columns) what shares a door with the room of a point, and what to look at before that is believed.
+    def next_rooms(self, place: XY) -> tuple[Bools, tuple[Viewpoint, ...]]:
+        """Compute the squares of the rooms next to the room of a point, and what to look at before relying on them.
 
-        The rooms are others if what goes on unseen, and is taken for verge, is an object.
+        The answer is reliable when it holds both for the rooms as believed and for the rooms by sure walls alone. A
+        wall seen in part may be an object, and then the rooms are others.
+
+        Parameters
+        ----------
+        place : XY
+            A point of the map frame, in squares.
+
+        Returns
+        -------
+        tuple[Bools, tuple[Viewpoint, ...]]
+            (rows, columns); and viewpoints, none when the answer is reliable or no room is next.
         """
         mask = self.next_to(place, self.rooms, SURE)
-        both = mask & self.next_to(place, self.supposed, LIKELY_DOOR)
+        both = mask & self.next_to(place, self.rooms_by_sure_walls, LIKELY_DOOR)
         if both.any() or not mask.any():
             return both, ()
-        return mask, loose_ends(self)
+        return mask, doubtful_wall_ends(self)
 
-    def likely_beyond(self, place: tuple[float, float]) -> tuple[Rooms, Bools]:
-        """The rooms, and (rows, columns) what shares a likely door with the room of a point of the lattice."""
-        for rooms in (self.rooms, self.supposed):
+    def likely_next_rooms(self, place: XY) -> tuple[Rooms, Bools]:
+        """Compute the squares of the rooms that likely share a door with the room of a point of the map frame.
+
+        Returns the partition into rooms that was used, and (rows, columns).
+        """
+        for rooms in (self.rooms, self.rooms_by_sure_walls):
             mask = self.next_to(place, rooms, LIKELY_DOOR)
             if mask.any():
                 break
         return rooms, mask
 
     def forbidden(self, who: str) -> tuple[Door, ...]:
-        """The doors that "utak" or a node may not go through by the constraints of the task.
+        """Return the doors that the constraints of the task forbid to the robot or to an object.
 
-        A thing that may not go through a door is kept from all that may be doors: which one is meant nothing tells.
-        Utak is kept from one door that he has not gone through; while none is sure, from all that may be one, however
-        unlikely: once he has gone through it nothing makes up for that.
+        Nothing tells which door a constraint means. So an object is kept from every likely door. The robot is kept
+        from one sure door that it has not gone through. While no such door is known, it is kept from all possible
+        doors, however unlikely: going through a forbidden one could not be undone.
+
+        Parameters
+        ----------
+        who : str
+            "utak", or the name of a node.
+
+        Returns
+        -------
+        tuple[Door, ...]
+            Empty when no constraint is about `who`.
         """
         meant = {self.binding.get(str(goal.args[0]), str(goal.args[0])) for goal in constraints(self.task)}
         if who not in meant:
@@ -81,21 +116,30 @@ class Situation:
 
     @cached_property
     def avoided(self) -> tuple[Door, ...]:
-        """The sure doors that Utak has not gone through."""
+        """The sure doors that the robot has not gone through."""
         west, south = self.model.view.west, self.model.view.south
         track = np.array(self.track).reshape(-1, 2) - (west, south)
         return tuple(door for door in self.rooms.sure if not went_through(track, door))
 
-    def next_to(self, place: tuple[float, float], rooms: Rooms, least: int) -> Bools:
-        """(rows, columns) what shares a door with the room of a point, if that is one with so many percent."""
+    def next_to(self, place: XY, rooms: Rooms, least: int) -> Bools:
+        """Compute the squares of the rooms that share a door with the room of a point, (rows, columns).
+
+        place : a point of the map frame. least : the least confidence of a door that counts, in percent.
+        """
         row, column = self.model.view.locate(*place)
         return rooms.beyond(int(rooms.labels[row, column]), least)
 
 
-def loose_ends(situation: Situation) -> tuple[Viewpoint, ...]:
-    """Where to look at what goes on unseen and is hardly long enough to be a wall: rooms may end elsewhere."""
+def doubtful_wall_ends(situation: Situation) -> tuple[Viewpoint, ...]:
+    """List where to look at pieces of verge that go on unseen and are hardly long enough to be walls.
+
+    If one of them is an object, rooms end elsewhere.
+    """
     model = situation.model
     pieces = model.verge & ~model.walls & grown(~model.view.seen, 1)
     labels = np.where(pieces, model.labels, 0)
-    looks = (sight_of(situation.cost_maps, labels == n, "it may be no wall") for n in np.unique(labels[pieces]))
-    return tuple(look for look in looks if len(look.squares))
+    views = (
+        sight_of(situation.cost_maps, labels == n, "what seems to be a wall may be an object")
+        for n in np.unique(labels[pieces])
+    )
+    return tuple(view for view in views if len(view.squares))

@@ -1,7 +1,8 @@
-"""The task in stages: what must be attained, one after the other, and which of it only the way there can fulfil.
+"""The stages of a task: which goals must hold together, in which order.
 
-Goals without first(...) or then(...) hold together at the end. What a track fulfils (circled, through) comes first,
-then what a place fulfils (at, in, beside), all at once.
+Goals without first(...) or then(...) hold together at the end. Within one step of the task, goals that only a track can
+fulfil (`circled`) come first, each as a stage of its own. The goals that a place fulfils (at, in, beside, ...) follow
+as one stage.
 """
 
 from dataclasses import dataclass, replace
@@ -9,16 +10,19 @@ from dataclasses import dataclass, replace
 from kb.language.terms import Fact, Symbol
 from kb.task.task import Task
 
-BY_THE_WAY = ("circled",)
-CONSTRAINTS = ("not_through",)
-FROM_THE_START = ("in", "through", "around")  # what is about where a thing lay at first
+BY_THE_WAY = ("circled",)  # goals that a track fulfils, not a place
+CONSTRAINT_GOALS = ("not_through",)  # what must hold all the time
+FROM_THE_START = ("in", "through", "around")  # goals whose meaning depends on where their subject was at first
 
 
 @dataclass(frozen=True)
 class Stage:
-    """Goals that shall hold at one time; those of the way (`circled`) stand alone in their stage.
+    """Goals that shall hold at one time; a goal that a track fulfils stands alone in its stage.
 
-    followed : another stage comes after it.
+    Attributes
+    ----------
+    goals : the goals, at least one.
+    followed : whether another stage comes after it.
     """
 
     goals: tuple[Fact, ...]
@@ -26,17 +30,17 @@ class Stage:
 
     @property
     def own(self) -> tuple[Fact, ...]:
-        """What shall hold for Utak himself."""
+        """The goals for the robot itself."""
         return tuple(goal for goal in self.goals if str(goal.args[0]) == "utak")
 
     @property
     def carried(self) -> tuple[Fact, ...]:
-        """What shall hold for things, which he must carry."""
+        """The goals for objects, which the robot must carry."""
         return tuple(goal for goal in self.goals if str(goal.args[0]) != "utak")
 
     @property
     def goes_on(self) -> bool:
-        """Is there more to do for Utak when things are where they shall be?"""
+        """Whether the robot has more to do when all objects are where they shall be."""
         return self.followed or len(self.own) > 0
 
     def __str__(self) -> str:
@@ -44,29 +48,41 @@ class Stage:
 
 
 def stages(task: Task) -> tuple[Stage, ...]:
-    """The stages of a task, in order; constraints are not among them."""
+    """Split the goals of a task into its stages, in the order in which they shall hold.
+
+    Parameters
+    ----------
+    task : Task
+
+    Returns
+    -------
+    tuple[Stage, ...]
+        Without the constraints, such as not_through(utak, d).
+    """
     steps: list[list[Fact]] = [[]]
     for fact in task.goals:
         if fact.name == "then":
             steps.append([])
-        if fact.name not in CONSTRAINTS:
+        if fact.name not in CONSTRAINT_GOALS:
             steps[-1].append(_inner(fact))
     found = [stage for goals in steps for stage in _ordered(goals)]
     return tuple(replace(stage, followed=stage is not found[-1]) for stage in found)
 
 
 def constraints(task: Task) -> tuple[Fact, ...]:
-    """The constraints of a task, such as not_through(utak, d)."""
-    return tuple(fact for fact in task.goals if fact.name in CONSTRAINTS)
+    """Return the constraints of a task, such as not_through(utak, d)."""
+    return tuple(fact for fact in task.goals if fact.name in CONSTRAINT_GOALS)
 
 
 def _inner(fact: Fact) -> Fact:
+    """Return the goal within first(...) or then(...), or the fact itself."""
     inner = fact.args[0] if fact.name in ("first", "then") else fact
     assert isinstance(inner, Symbol)
     return inner
 
 
 def _ordered(goals: list[Fact]) -> list[Stage]:
-    by_the_way = [Stage((goal,)) for goal in goals if goal.name in BY_THE_WAY]
-    at_the_end = tuple(goal for goal in goals if goal.name not in BY_THE_WAY)
-    return by_the_way + ([Stage(at_the_end)] if at_the_end else [])
+    """Order the goals of one step: each goal of the track alone, then the others together."""
+    of_track = [Stage((goal,)) for goal in goals if goal.name in BY_THE_WAY]
+    of_place = tuple(goal for goal in goals if goal.name not in BY_THE_WAY)
+    return of_track + ([Stage(of_place)] if of_place else [])

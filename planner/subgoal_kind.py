@@ -1,18 +1,18 @@
-"""The kinds of subgoals, as planner/asp/aims.lp and planner.screen.moves know them."""
+"""The kind of a subgoal: what the robot wants at the squares that it walks to."""
 
 from enum import StrEnum
 
 
 class SubgoalKind(StrEnum):
-    """What a subgoal is for.
+    """The purpose of a subgoal. The values are the constants of `aim/3` in planner/asp/aims.lp.
 
     Attributes
     ----------
-    ATTAIN : reach a place where the goal holds.
-    INSPECT : look closely at, or feel, something that was seen.
-    EXPLORE : look where the floor borders on squares that were never seen.
-    PASS : try a passage that is only assumed.
-    SETTLE : look closely at a boundary of the floor that was seen coarsely.
+    ATTAIN : the goal of the present stage holds at the squares.
+    INSPECT : from the squares the robot sees or feels an object that may be the wanted one.
+    EXPLORE : the squares are a frontier: they border on squares that were never seen.
+    PASS : the way to the squares leads over squares that are only assumed to be free.
+    SETTLE : from the squares the robot sees a boundary of the floor that was seen coarsely.
     """
 
     ATTAIN = "attain"

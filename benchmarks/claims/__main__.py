@@ -6,7 +6,7 @@
     python -m benchmarks.claims --only plugged:3 --keep FOLDER    (one world)
 
 With -o worlds that the file already has are not run again. The table goes to stdout, progress to stderr; the exit code
-is 0 when no claim was false, nothing broke and the judge found nothing. docs/benchmarks-worlds.md explains the columns.
+is 0 when no claim was false, nothing broke and the judge found nothing. docs/results/worlds.md explains the columns.
 """
 
 import argparse

@@ -1,4 +1,7 @@
-"""The libraries that screens are compared with: same map, same ends, same process, prepared beforehand."""
+"""The libraries that screens are compared with: same map, same ends, same process, prepared beforehand.
+
+scikit-image (Zhang and Suen 1984), sknw, scipy, networkx and w9-pathfinding; they come with the extra `bench`.
+"""
 
 import os
 from collections.abc import Callable
@@ -11,37 +14,53 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 from skimage.morphology import skeletonize
 from sknw import build_sknw
-from w9_pathfinding.envs import DiagonalMovement, Grid
-from w9_pathfinding.pf import AStar
 
-XY = tuple[float, float]
+from geometry.kernels.arrays import XY
+
 Finder = Callable[[XY, XY], object]
+TRIAL_RUNS = 6  # of sknw in another process: where it corrupts memory, fewer runs may still end well (observed)
 
 
-def skeleton_graph(free: np.ndarray) -> object:
-    """skimage.skeletonize, sknw and a distance transform: a pathgraph with clearance."""
+def skeleton_graph(free: np.ndarray) -> tuple[nx.MultiGraph, np.ndarray]:
+    """Return a pathgraph by skimage.skeletonize and sknw, and clearances by scipy's distance transform.
+
+    Parameters
+    ----------
+    free : (rows, columns) bool
+        Free squares.
+
+    Returns
+    -------
+    graph : networkx.MultiGraph
+        As sknw has it: nodes with ``pts`` and ``o``, edges with ``pts`` and ``weight``.
+    distances : (rows + 2, columns + 2) float64
+        From each square's centre to that of the nearest blocked square, in squares.
+    """
     padded = np.pad(free, 1)
     return build_sknw(skeletonize(padded).astype(np.uint16), multi=True), distance_transform_edt(padded)
 
 
 def survives(free: np.ndarray) -> bool:
-    """Whether sknw gets through a map without killing its process, which on some it does; tried in another process."""
+    """Return whether sknw leaves its process alive on a map, which on some it does not; tried in a child process."""
     child = os.fork()
     if child == 0:
-        for _ in range(6):
+        for _ in range(TRIAL_RUNS):
             skeleton_graph(free)
         os._exit(0)
     return os.waitpid(child, 0)[1] == 0
 
 
 def components_and_holes(free: np.ndarray) -> tuple[int, int]:
-    """Components by edges, and holes: what every pathgraph of free space must have."""
+    """Return the number of edge-connected components and of holes, which every pathgraph of free space must have."""
     padded = np.pad(free, 1)
     return label(padded)[1], label(~padded, np.ones((3, 3)))[1] - 1
 
 
 def w9_astar(free: np.ndarray) -> Finder:
-    """w9-pathfinding's A*, diagonal steps only between two free squares."""
+    """Return w9-pathfinding's A* for a map; diagonal steps lead only between two free squares."""
+    from w9_pathfinding.envs import DiagonalMovement, Grid
+    from w9_pathfinding.pf import AStar
+
     grid = Grid(
         np.where(free, 1.0, -1.0).tolist(),
         diagonal_movement=DiagonalMovement.only_when_no_obstacle,
@@ -52,7 +71,7 @@ def w9_astar(free: np.ndarray) -> Finder:
 
 
 def grid_edges(free: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Legal steps to four of the eight neighbours, and their lengths."""
+    """Return the legal steps to four of the eight neighbours: flat indices of both squares, and lengths in squares."""
     rows, columns = free.shape
     padded = np.pad(free, 1)
     own = np.arange(rows * columns).reshape(rows, columns)
@@ -69,7 +88,7 @@ def grid_edges(free: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def scipy_dijkstra(free: np.ndarray) -> Finder:
-    """scipy's Dijkstra on the eight-connected grid, with the way back."""
+    """Return scipy's Dijkstra on the eight-connected grid, which also traces the path back."""
     tails, heads, lengths = grid_edges(free)
     size, columns = free.size, free.shape[1]
     graph = coo_matrix((lengths, (tails, heads)), (size, size)).tocsr()
@@ -86,24 +105,8 @@ def scipy_dijkstra(free: np.ndarray) -> Finder:
     return find
 
 
-def networkx_astar(free: np.ndarray) -> Finder:
-    """networkx's A* on the eight-connected grid."""
-    tails, heads, lengths = grid_edges(free)
-    columns = free.shape[1]
-    graph = nx.Graph()
-    graph.add_weighted_edges_from(zip(tails.tolist(), heads.tolist(), lengths.tolist(), strict=True))
-
-    def ahead(a: int, b: int) -> float:
-        dy, dx = abs(a // columns - b // columns), abs(a % columns - b % columns)
-        return max(dx, dy) + (2**0.5 - 1) * min(dx, dy)
-
-    return lambda p, q: nx.astar_path(
-        graph, int(p[1]) * columns + int(p[0]), int(q[1]) * columns + int(q[0]), ahead, "weight"
-    )
-
-
 def simple_graph(pathgraph: nx.MultiGraph) -> nx.Graph:
-    """The pathgraph for networkx's k shortest paths, which knows no parallel edges: chains get a middle."""
+    """Return the pathgraph for networkx's k shortest paths, which knows no parallel edges: edges get a middle node."""
     graph = nx.Graph()
     graph.add_nodes_from(pathgraph)
     for a, b, key, edge in pathgraph.edges(keys=True, data=True):
@@ -113,5 +116,5 @@ def simple_graph(pathgraph: nx.MultiGraph) -> nx.Graph:
 
 
 def networkx_ways(graph: nx.Graph, a: int, b: int, k: int) -> list[list[object]]:
-    """networkx's k shortest simple paths."""
+    """Return networkx's k shortest simple paths between two nodes."""
     return list(islice(nx.shortest_simple_paths(graph, a, b, "weight"), k))

@@ -5,6 +5,7 @@ campaign compares with it how many commands finding out costs (`--knowing`).
 """
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -46,8 +47,8 @@ class Informed(Knowledge):
         x, y = math.floor(world.utak.x), math.floor(world.utak.y)
         within = turned(world.utak.x - x - 0.5, world.utak.y - y - 0.5, -90 * quarters)
         origin = (within[0] + 0.5, within[1] + 0.5)
-        memory.frame, memory.place = Frame(angle, origin), origin
-        memory.hypotheses = (FrameHypothesis(angle, origin + origin),)
+        hypotheses = (FrameHypothesis(angle, origin + origin),)
+        self.tracker.state = replace(memory, frame=Frame(angle, origin), place=origin, hypotheses=hypotheses)
         width, height = world.plan.width, world.plan.height
         occupied = np.logical_or.reduce(
             [digital(shape, width, height) for shape in (world.plan.verge, *(thing.polygon for thing in world.things))]

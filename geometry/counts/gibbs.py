@@ -1,12 +1,14 @@
-"""Pictures that agree with counts: of a raster of which only the counts under fields are known, the simple ones.
+"""Gibbs sampling of rasters that agree with counts: samples of a map of which only counts under fields are known.
 
-A picture costs EDGE for each edge between an occupied and a free square, CORNER for each corner of their outline, and
-more for each square by which a field's count is wrong. Pictures are drawn with a probability that falls with their
-cost: each is changed a little, many times over, and a change is kept with the probability that its cost allows.
+A raster costs EDGE for each edge between an occupied and a free square, CORNER for each corner of their
+outline, and COUNT_ERROR_COST for each square by which a field's count is wrong. Rasters are sampled with a probability
+that falls with their cost: each is changed a little, many times over, and a change is kept with the probability that
+its cost allows.
 
-Source: Geman and Geman (1984), simulated annealing and the Gibbs sampler on an Ising prior. Beside single squares two
-squares of one field are exchanged, which leaves its count as it is; and a stretch of a straight outline is moved by one
-square, alone or with what lies opposite, so that a wall moves without being taken down.
+Source: Geman and Geman (1984), simulated annealing and the Gibbs sampler on an Ising prior. Besides the flip of a
+single square there are two more moves. Two squares of one field are exchanged, which leaves its count as it is. A
+stretch of a straight outline is moved by one square, alone or with the outline opposite, so that a wall moves without
+being taken down.
 """
 
 from functools import cache
@@ -15,29 +17,44 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.counts.settle import FREE, FULL
 from geometry.kernels.jit import bare
 
-FREE, FULL, DRAWN, UNSEEN = 0, 1, 2, 3
-EDGE, CORNER = 0.3, 1.5
-WRONG = 4.0  # edges that a square too many or too few under a field is worth
-COLD = 2.5  # the inverse temperature at which a picture is taken
-THICKEST = 4  # squares of what is moved as a whole
-LONGEST = 60  # squares of an edge that is moved at once
-SELDOM = 4  # of so many squares at an outline one is asked whether it moves
-AROUND = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))  # (rows, columns); opposites add to 7
-SIDES = (1, 6, 3, 4)  # of them, those beyond an edge: the square across
-ALONG = (4, 4, 6, 6)  # and the next one on the same edge
-GENERATOR, MODULUS = 48271, 2147483647  # of random numbers; Park and Miller (1988)
-LUCKS = 1024
-SETTLED, HIDDEN = -1, -2
+# Values of the ground, besides FREE and FULL, which settle.py fixes for the squares that counts settle.
+DRAWN = 2  # a square whose state is drawn
+UNSEEN = 3  # a square that is no part of the raster; drawn as 0
+
+# Costs are negative log probabilities at the inverse temperature 1; tuned on random worlds (benchmarks.campaign).
+EDGE = 0.3  # of an edge between an occupied and a free square
+CORNER = 1.5  # of a corner of their outline
+COUNT_ERROR_COST = 4.0  # of each square by which a field's count is wrong
+FINAL_INVERSE_TEMPERATURE = 2.5  # at which a sample is taken; tuned in the same way
+
+# The moves of edges; tuned for time in the same way.
+MAX_MOVED_THICKNESS = 4  # squares, of a strip that is moved as a whole
+MAX_MOVED_LENGTH = 60  # squares, of an edge that is moved at once
+EDGE_MOVE_INTERVAL = 4  # a move of the edge is tried at one in so many squares at an outline
+
+# Neighbours as steps (rows, columns); the numbers of opposite ones add to 7.
+NEIGHBOURS = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
+ACROSS = (1, 6, 3, 4)  # by side of a square: the neighbour beyond the edge there
+ALONG_EDGE = (4, 4, 6, 6)  # by side of a square: the next neighbour on the same edge
+
+LEHMER_MULTIPLIER, LEHMER_MODULUS = 48271, 2147483647  # of the random numbers; Park and Miller (1988)
+THRESHOLD_COUNT = 1024  # random thresholds, a power of two; convention
+RANK_FIXED, RANK_UNSEEN = -1, -2  # in `_Raster.rank`: squares that are not drawn
 Bits = NDArray[np.integer[Any]]
+__all__ = ["FREE", "FULL"]
 
 
 class Counts(NamedTuple):
-    """What is known of the squares under fields.
+    """The counts of occupied squares under n fields.
 
-    where : (n, m) int32, flat indices of the squares of each field. weight : (n, m) int16, how often each counts; 0 is
-    padding. low, high : (n,) int16, the least and the greatest count.
+    Attributes
+    ----------
+    where : (n, m) int32, flat indices of the squares of each field.
+    weight : (n, m) int16, how often each square counts; 0 is padding.
+    low, high : (n,) int16, the least and the greatest count.
     """
 
     where: NDArray[np.int32]
@@ -46,23 +63,28 @@ class Counts(NamedTuple):
     high: NDArray[np.int16]
 
     def of(self, fields: NDArray[np.int64]) -> "Counts":
-        """What is known under some of the fields, by number."""
+        """Return the counts of some of the fields, by number."""
         return Counts(self.where[fields], self.weight[fields], self.low[fields], self.high[fields])
 
 
-class _Board(NamedTuple):
-    """What pictures are drawn on: a raster with a frame of one unseen square, and n squares of it to be drawn.
+class _Raster(NamedTuple):
+    """A raster with a frame of one unseen square, and the n squares of it that are drawn.
 
-    squares : (n,) int64, flat indices. rank : (size,) int32, which of them a square is; SETTLED or HIDDEN if none.
-    shown : (n,) int32, the four points about a square that lie amid squares seen, as bits. around : (8,) int64, flat
-    steps to the neighbours. ends, field, share : the fields of square k are field[ends[k]:ends[k + 1]], and how often
-    each counts it. where : (fields, m) int32, flat indices. used : (fields, m) bool, those to be drawn. limits :
-    (fields, 2) int32, the least and the greatest count.
+    Attributes
+    ----------
+    squares : (n,) int64, their flat indices.
+    rank : (size,) int32, which of them a square is; RANK_FIXED or RANK_UNSEEN if none.
+    shown_corners : (n,) int32, as bits, the corners of each square about which all four squares were seen.
+    around : (8,) int64, flat steps to the neighbours.
+    ends, field, share : the fields of square k are field[ends[k]:ends[k + 1]], and how often each counts it.
+    where : (fields, m) int32, flat indices of the squares of each field.
+    used : (fields, m) bool, those of them that are drawn.
+    limits : (fields, 2) int32, the least and the greatest count.
     """
 
     squares: NDArray[np.int64]
     rank: NDArray[np.int32]
-    shown: NDArray[np.int32]
+    shown_corners: NDArray[np.int32]
     around: NDArray[np.int64]
     ends: NDArray[np.int32]
     field: NDArray[np.int32]
@@ -75,45 +97,57 @@ class _Board(NamedTuple):
 def pictures(
     ground: NDArray[np.int8], counts: Counts, first: NDArray[np.int8], sweeps: int, hot: float, seed: int = 20031
 ) -> NDArray[np.int8]:
-    """(m, rows, columns) int8, 1 where a square is occupied: as many pictures, each begun with another.
+    """Return sampled rasters that agree with counts, (m, rows, columns) int8, 1 where a square is occupied.
 
     Parameters
     ----------
-    ground : (rows, columns) int8. FREE, FULL, DRAWN (to be found) or UNSEEN (not part of the picture, drawn as 0).
-    counts : of squares of the ground. first : (m, rows, columns) int8, the pictures to begin with. sweeps : over all
-    squares, from the inverse temperature `hot` to COLD. seed : from 1 to 2^31 - 2. The same arguments give the same
-    pictures.
+    ground : (rows, columns) int8: FREE, FULL, DRAWN (to be sampled) or UNSEEN (no part of the raster, drawn
+        as 0).
+    counts : counts under fields, of squares of the ground.
+    first : (m, rows, columns) int8, the rasters with which the m samples begin.
+    sweeps : the number of sweeps over all squares, from the inverse temperature `hot` to FINAL_INVERSE_TEMPERATURE.
+    hot : the inverse temperature of the first sweep.
+    seed : from 1 to 2^31 - 2. The same arguments give the same samples.
     """
     framed = np.pad(ground, 1, constant_values=UNSEEN)
-    board = _board(framed, counts)
-    begun = np.where(framed == DRAWN, np.pad(first, ((0, 0), (1, 1), (1, 1))), framed == FULL).astype(np.int8)
-    images = begun.reshape(len(first), -1)
-    count = np.ascontiguousarray((images[:, board.where] * counts.weight).sum(2, dtype=np.int32))
-    near = np.zeros((len(first), len(board.squares)), np.int32)
-    moved = np.zeros(2 * LONGEST + 2, np.int32)
-    slopes = np.linspace(hot, COLD, sweeps, dtype=np.float32)
-    draw_all(board, _prices(), _lucks(), images, near, count, moved, slopes, seed)
-    return begun[:, 1:-1, 1:-1]
+    raster = _raster(framed, counts)
+    images_framed = np.where(framed == DRAWN, np.pad(first, ((0, 0), (1, 1), (1, 1))), framed == FULL).astype(np.int8)
+    images = images_framed.reshape(len(first), -1)
+    count = np.ascontiguousarray((images[:, raster.where] * counts.weight).sum(2, dtype=np.int32))
+    neighbours = np.zeros((len(first), len(raster.squares)), np.int32)
+    flipped = np.zeros(2 * MAX_MOVED_LENGTH + 2, np.int32)
+    inverse_temperatures = np.linspace(hot, FINAL_INVERSE_TEMPERATURE, sweeps, dtype=np.float32)
+    sample_all(raster, _flip_costs(), _thresholds(), images, neighbours, count, flipped, inverse_temperatures, seed)
+    return images_framed[:, 1:-1, 1:-1]
 
 
 def costs(
-    images: NDArray[np.int8], ground: NDArray[np.int8], counts: Counts, edge: float = EDGE
+    images: NDArray[np.int8], ground: NDArray[np.int8], counts: Counts, edge_cost: float = EDGE
 ) -> NDArray[np.float64]:
-    """(m,): what each picture costs: its edges, its corners, and the squares by which counts are wrong.
+    """Return the cost of each raster, (m,): its edges, its corners, and the squares by which counts are wrong.
 
-    images : (m, rows, columns), as drawn. ground, counts : as they were drawn with. edge : what an edge costs; 0 where
-    pictures of grounds of different sizes are compared, for a wall that goes on straight is what is to be expected.
+    Parameters
+    ----------
+    images : (m, rows, columns) int8, as sampled.
+    ground, counts : those with which they were sampled.
+    edge_cost : the cost of an edge. It is 0 where rasters of grounds of different sizes are compared, because a
+        wall that
+        goes on straight is what is to be expected.
     """
     seen = ground != UNSEEN
-    amid = seen[:-1, :-1] & seen[1:, :-1] & seen[:-1, 1:] & seen[1:, 1:]
-    points = _price(images[:, :-1, :-1], images[:, :-1, 1:], images[:, 1:, :-1], images[:, 1:, 1:], edge) * amid
+    all_seen = seen[:-1, :-1] & seen[1:, :-1] & seen[:-1, 1:] & seen[1:, 1:]
+    points = (
+        _corner_cost(images[:, :-1, :-1], images[:, :-1, 1:], images[:, 1:, :-1], images[:, 1:, 1:], edge_cost)
+        * all_seen
+    )
     count = (images.reshape(len(images), -1)[:, counts.where] * counts.weight).sum(2)
-    wrong = np.maximum(counts.low - count, 0) + np.maximum(count - counts.high, 0)
-    answer: NDArray[np.float64] = points.sum((1, 2)) + WRONG * wrong.sum(1)
-    return answer
+    count_error = np.maximum(counts.low - count, 0) + np.maximum(count - counts.high, 0)
+    result: NDArray[np.float64] = points.sum((1, 2)) + COUNT_ERROR_COST * count_error.sum(1)
+    return result
 
 
-def _board(framed: NDArray[np.int8], counts: Counts) -> _Board:
+def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
+    """Return the raster of a framed ground."""
     columns = framed.shape[1]
     row, column = np.divmod(counts.where, columns - 2)
     where = (row + 1) * columns + column + 1
@@ -124,19 +158,19 @@ def _board(framed: NDArray[np.int8], counts: Counts) -> _Board:
     field, entry = field[order], entry[order]
     squares = np.flatnonzero(flat == DRAWN)
     ends = np.searchsorted(where[field, entry], np.append(squares, len(flat)))
-    rank = np.where(flat == UNSEEN, np.int32(HIDDEN), np.int32(SETTLED))
+    rank = np.where(flat == UNSEEN, np.int32(RANK_UNSEEN), np.int32(RANK_FIXED))
     rank[squares] = np.arange(len(squares))
     seen = flat != UNSEEN
-    shown = np.zeros(len(squares), np.int32)
+    shown_corners = np.zeros(len(squares), np.int32)
     for point in range(4):
         corner = squares - point % 2 - point // 2 * columns  # the lower left of the four squares about it
-        amid = seen[corner] & seen[corner + 1] & seen[corner + columns] & seen[corner + columns + 1]
-        shown |= amid.astype(np.int32) << point
-    return _Board(
+        all_seen = seen[corner] & seen[corner + 1] & seen[corner + columns] & seen[corner + columns + 1]
+        shown_corners |= all_seen.astype(np.int32) << point
+    return _Raster(
         squares,
         rank,
-        shown,
-        np.array([rows * columns + across for rows, across in AROUND]),
+        shown_corners,
+        np.array([rows * columns + across for rows, across in NEIGHBOURS]),
         ends.astype(np.int32),
         field.astype(np.int32),
         counts.weight[field, entry].astype(np.int32),
@@ -147,167 +181,202 @@ def _board(framed: NDArray[np.int8], counts: Counts) -> _Board:
 
 
 @cache
-def _prices() -> NDArray[np.float32]:
-    """(16, 256, 2), flat: by how much a picture becomes dearer when a square changes.
+def _flip_costs() -> NDArray[np.float32]:
+    """Return the change of the cost, counts left out, when a square flips: (16, 256, 2), flat.
 
-    By the points about it that are shown, by its neighbours, and by what it was.
+    The indices are the square's shown corners, its neighbours, and its state before.
     """
-    shown, around, was = np.ogrid[:16, :256, :2]
+    shown_corners, around, was = np.ogrid[:16, :256, :2]
     change = np.zeros((16, 256, 2))
     for point in range(4):
         across, rows = 1 - 2 * (point % 2), 1 - 2 * (point // 2)
-        beside, over, beyond = (around >> AROUND.index(at) & 1 for at in ((0, across), (rows, 0), (rows, across)))
-        change += (shown >> point & 1) * (_price(1 - was, beside, over, beyond) - _price(was, beside, over, beyond))
+        horizontal, vertical, diagonal = (
+            around >> NEIGHBOURS.index(at) & 1 for at in ((0, across), (rows, 0), (rows, across))
+        )
+        change += (shown_corners >> point & 1) * (
+            _corner_cost(1 - was, horizontal, vertical, diagonal) - _corner_cost(was, horizontal, vertical, diagonal)
+        )
     return change.astype(np.float32).ravel()
 
 
-def _price(square: Bits, beside: Bits, over: Bits, beyond: Bits, edge: float = EDGE) -> NDArray[np.float64]:
-    """What four squares about a point cost: half of each edge between two of them, and each corner."""
-    edges = (square ^ beside) + (over ^ beyond) + (square ^ over) + (beside ^ beyond)
-    corners = np.where(edges == 4, 2, (square + beside + over + beyond) % 2)
-    answer: NDArray[np.float64] = edge * edges / 2 + CORNER * corners
-    return answer
+def _corner_cost(
+    square: Bits, horizontal: Bits, vertical: Bits, diagonal: Bits, edge_cost: float = EDGE
+) -> NDArray[np.float64]:
+    """Return the cost of four squares about a point: half of each edge between two of them, and each corner."""
+    edges = (square ^ horizontal) + (vertical ^ diagonal) + (square ^ vertical) + (horizontal ^ diagonal)
+    corners = np.where(edges == 4, 2, (square + horizontal + vertical + diagonal) % 2)
+    result: NDArray[np.float64] = edge_cost * edges / 2 + CORNER * corners
+    return result
 
 
 @cache
-def _lucks() -> NDArray[np.float32]:
-    """(LUCKS,), equally likely: how much dearer a picture may become at the inverse temperature 1."""
-    return (-np.log((np.arange(LUCKS) + 0.5) / LUCKS)).astype(np.float32)
+def _thresholds() -> NDArray[np.float32]:
+    """Return equally likely thresholds (THRESHOLD_COUNT,): rises of the cost allowed at inverse temperature 1."""
+    return (-np.log((np.arange(THRESHOLD_COUNT) + 0.5) / THRESHOLD_COUNT)).astype(np.float32)
 
 
 @bare
-def draw_all(board, prices, lucks, images, near, counts, moved, slopes, seed):  # type: ignore[no-untyped-def]
-    """Change pictures, (m, size) int8, until they are simple and agree with the counts.
+def sample_all(raster, flip_costs, thresholds, images, neighbours, counts, flipped, inverse_temperatures, seed):  # type: ignore[no-untyped-def]
+    """Change rasters, (m, size) int8, until they are simple and agree with the counts.
 
-    near : (m, n) int32, gets the neighbours of each square to be drawn, as bits. counts : (m, fields) int32, those of
-    the pictures. moved : (2 LONGEST + 2,) int32, for use.
+    `neighbours` (m, n) int32 is filled with the neighbours of each drawn square, as bits. `counts` (m, fields) int32
+    are those of the rasters. `flipped` (2 MAX_MOVED_LENGTH + 2,) int32 is scratch.
     """
     for number in range(images.shape[0]):
-        chance = seed * (number + 1) % MODULUS
-        draw(board, prices, lucks, images[number], near[number], counts[number], moved, slopes, chance)
+        random = seed * (number + 1) % LEHMER_MODULUS
+        sample(
+            raster,
+            flip_costs,
+            thresholds,
+            images[number],
+            neighbours[number],
+            counts[number],
+            flipped,
+            inverse_temperatures,
+            random,
+        )
 
 
 @bare
-def draw(board, prices, lucks, image, near, counts, moved, slopes, chance):  # type: ignore[no-untyped-def]
-    """Change one picture, square by square, so many times over as there are slopes."""
-    squares, rank, shown, around, ends, field, share, where, used, limits = board
-    wrong = 0
+def sample(raster, flip_costs, thresholds, image, neighbours, counts, flipped, inverse_temperatures, random):  # type: ignore[no-untyped-def]
+    """Change one raster, square by square, in one sweep for each inverse temperature."""
+    squares, rank, shown_corners, around, ends, field, share, where, used, limits = raster
+    count_error = 0
     for f in range(limits.shape[0]):
-        wrong += max(limits[f, 0] - counts[f], counts[f] - limits[f, 1], 0)
+        count_error += max(limits[f, 0] - counts[f], counts[f] - limits[f, 1], 0)
     for k in range(squares.shape[0]):
         for n in range(8):
-            near[k] |= image[squares[k] + around[n]] << n
-    for sweep in range(slopes.shape[0]):
-        warmth = 1 / slopes[sweep]
+            neighbours[k] |= image[squares[k] + around[n]] << n
+    for sweep in range(inverse_temperatures.shape[0]):
+        temperature = 1 / inverse_temperatures[sweep]
         for k in range(squares.shape[0]):
-            # the square alone
-            chance = chance * GENERATOR % MODULUS
-            square, luck = squares[k], lucks[chance & LUCKS - 1] * warmth
-            if prices[(shown[k] << 9) + (near[k] << 1) + image[square]] <= luck + WRONG * wrong:
+            # flip the square alone
+            random = random * LEHMER_MULTIPLIER % LEHMER_MODULUS
+            square, threshold = squares[k], thresholds[random & THRESHOLD_COUNT - 1] * temperature
+            if (
+                flip_costs[(shown_corners[k] << 9) + (neighbours[k] << 1) + image[square]]
+                <= threshold + COUNT_ERROR_COST * count_error
+            ):
                 more = 1 - 2 * image[square]
-                worse = worsening(k, more, ends, field, share, limits, counts)
-                if prices[(shown[k] << 9) + (near[k] << 1) + image[square]] + WRONG * worse <= luck:
-                    recount(k, more, ends, field, share, counts)
-                    tip(square, rank, around, image, near)
-                    wrong += worse
-            # and another one of the same field
+                worse = count_error_change(k, more, ends, field, share, limits, counts)
+                if (
+                    flip_costs[(shown_corners[k] << 9) + (neighbours[k] << 1) + image[square]]
+                    + COUNT_ERROR_COST * worse
+                    <= threshold
+                ):
+                    update_counts(k, more, ends, field, share, counts)
+                    flip(square, rank, around, image, neighbours)
+                    count_error += worse
+            # exchange it with another square of the same field
             if ends[k] < ends[k + 1]:
-                f = field[ends[k] + ((chance >> 15) * (ends[k + 1] - ends[k]) >> 16)]
-                chance = chance * GENERATOR % MODULUS
-                entry = (chance & 65535) * where.shape[1] >> 16
+                f = field[ends[k] + ((random >> 15) * (ends[k + 1] - ends[k]) >> 16)]
+                random = random * LEHMER_MULTIPLIER % LEHMER_MODULUS
+                entry = (random & 65535) * where.shape[1] >> 16
                 if used[f, entry] and image[where[f, entry]] != image[square]:
                     other = rank[where[f, entry]]
-                    luck = lucks[chance >> 17 & LUCKS - 1] * warmth
-                    if price_of_both(squares, shown, around, prices, image, near, k, other) <= luck + WRONG * wrong:
-                        moved[0], moved[1] = k, other
-                        wrong += change(board, prices, image, near, counts, wrong, luck, moved, 2)
-            # and the edge at which it lies
-            if near[k] != 0 and near[k] != 255 and (chance >> 27) % SELDOM == 0:
-                chance = chance * GENERATOR % MODULUS
-                number = edge(squares, rank, around, image, k, chance, moved)
-                luck = lucks[chance >> 12 & LUCKS - 1] * warmth
-                wrong += change(board, prices, image, near, counts, wrong, luck, moved, number)
+                    threshold = thresholds[random >> 17 & THRESHOLD_COUNT - 1] * temperature
+                    if (
+                        cost_of_two_flips(squares, shown_corners, around, flip_costs, image, neighbours, k, other)
+                        <= threshold + COUNT_ERROR_COST * count_error
+                    ):
+                        flipped[0], flipped[1] = k, other
+                        count_error += try_flips(
+                            raster, flip_costs, image, neighbours, counts, count_error, threshold, flipped, 2
+                        )
+            # move the edge on which it lies
+            if neighbours[k] != 0 and neighbours[k] != 255 and (random >> 27) % EDGE_MOVE_INTERVAL == 0:
+                random = random * LEHMER_MULTIPLIER % LEHMER_MODULUS
+                number = collect_edge_move(squares, rank, around, image, k, random, flipped)
+                threshold = thresholds[random >> 12 & THRESHOLD_COUNT - 1] * temperature
+                count_error += try_flips(
+                    raster, flip_costs, image, neighbours, counts, count_error, threshold, flipped, number
+                )
 
 
 @bare
-def price_of_both(squares, shown, around, prices, image, near, k, other):  # type: ignore[no-untyped-def]
-    """By how much the picture, but for its counts, becomes dearer when two squares change."""
-    beside = near[other]  # once k is changed
+def cost_of_two_flips(squares, shown_corners, around, flip_costs, image, neighbours, k, other):  # type: ignore[no-untyped-def]
+    """Return the change of the cost, counts left out, when two squares flip."""
+    other_neighbours = neighbours[other]  # once k is changed
     for n in range(8):
-        beside ^= (squares[k] + around[n] == squares[other]) << (7 - n)
-    price = prices[(shown[k] << 9) + (near[k] << 1) + image[squares[k]]]
-    return price + prices[(shown[other] << 9) + (beside << 1) + image[squares[other]]]
+        other_neighbours ^= (squares[k] + around[n] == squares[other]) << (7 - n)
+    cost = flip_costs[(shown_corners[k] << 9) + (neighbours[k] << 1) + image[squares[k]]]
+    return cost + flip_costs[(shown_corners[other] << 9) + (other_neighbours << 1) + image[squares[other]]]
 
 
 @bare
-def change(board, prices, image, near, counts, wrong, luck, moved, number):  # type: ignore[no-untyped-def]
-    """Change the first so many squares of ``moved`` together, if that is not dearer than luck allows.
+def try_flips(raster, flip_costs, image, neighbours, counts, count_error, threshold, flipped, number):  # type: ignore[no-untyped-def]
+    """Flip the first `number` squares of `flipped` together, if the cost does not rise above the threshold.
 
-    wrong : by how many squares the counts are wrong. Returns by how many more they are then.
+    Returns by how many squares more the counts are wrong then; `count_error` is by how many they were wrong before.
     """
-    squares, rank, shown, around, ends, field, share, _, _, limits = board
-    price, worse = 0.0, 0
+    squares, rank, shown_corners, around, ends, field, share, _, _, limits = raster
+    cost, worse = 0.0, 0
     for m in range(number):
-        k = moved[m]
-        price += prices[(shown[k] << 9) + (near[k] << 1) + image[squares[k]]]
-        tip(squares[k], rank, around, image, near)
-    if price <= luck + WRONG * wrong:
+        k = flipped[m]
+        cost += flip_costs[(shown_corners[k] << 9) + (neighbours[k] << 1) + image[squares[k]]]
+        flip(squares[k], rank, around, image, neighbours)
+    if cost <= threshold + COUNT_ERROR_COST * count_error:
         for m in range(number):
-            k, more = moved[m], 2 * image[squares[moved[m]]] - 1
-            worse += worsening(k, more, ends, field, share, limits, counts)
-            recount(k, more, ends, field, share, counts)
-        if price + WRONG * worse <= luck:
+            k, more = flipped[m], 2 * image[squares[flipped[m]]] - 1
+            worse += count_error_change(k, more, ends, field, share, limits, counts)
+            update_counts(k, more, ends, field, share, counts)
+        if cost + COUNT_ERROR_COST * worse <= threshold:
             return worse
         for m in range(number):
-            recount(moved[m], 1 - 2 * image[squares[moved[m]]], ends, field, share, counts)
+            update_counts(flipped[m], 1 - 2 * image[squares[flipped[m]]], ends, field, share, counts)
     for m in range(number):
-        tip(squares[moved[m]], rank, around, image, near)
+        flip(squares[flipped[m]], rank, around, image, neighbours)
     return 0
 
 
 @bare
-def edge(squares, rank, around, image, k, chance, moved):  # type: ignore[no-untyped-def]
-    """List the squares that change when the edge on one side of square k is moved beyond it; returns how many.
+def collect_edge_move(squares, rank, around, image, k, random, flipped):  # type: ignore[no-untyped-def]
+    """List the squares that flip when the edge on one side of square k is moved beyond it; return how many they are.
 
-    All of the edge or a piece, and with what lies opposite or without: as chance has it. Squares lie at one edge while
-    they are to be drawn, look as k does, and those across look otherwise.
+    The random number decides whether the whole edge moves or a piece, with the outline opposite or without. Squares lie
+    on one edge as long as they are drawn, have the state of square k, and the squares across have the other state.
     """
-    side, here = chance & 3, squares[k]
-    across, along, look = around[SIDES[side]], around[ALONG[side]], image[here]
+    side, here = random & 3, squares[k]
+    across, along, look = around[ACROSS[side]], around[ALONG_EDGE[side]], image[here]
     if image[here + across] == look:
         return 0
-    moved[0], number = k, 1
+    flipped[0], number = k, 1
     for way in range(2):
-        step, bits = along * (1 - 2 * way), chance >> (2 + 4 * way)
-        most = LONGEST if bits & 1 else bits >> 1 & 7
+        step, bits = along * (1 - 2 * way), random >> (2 + 4 * way)
+        most = MAX_MOVED_LENGTH if bits & 1 else bits >> 1 & 7
         square = here + step
-        while most > 0 and number <= LONGEST and rank[square] >= 0 and image[square] == look != image[square + across]:
-            moved[number] = rank[square]
+        while (
+            most > 0
+            and number <= MAX_MOVED_LENGTH
+            and rank[square] >= 0
+            and image[square] == look != image[square + across]
+        ):
+            flipped[number] = rank[square]
             number, most, square = number + 1, most - 1, square + step
-    if chance >> 10 & 1:
+    if random >> 10 & 1:
         for m in range(number):
-            square, thick = squares[moved[m]] - across, 1
-            while thick < THICKEST and image[square] == look and rank[square] != HIDDEN:
+            square, thick = squares[flipped[m]] - across, 1
+            while thick < MAX_MOVED_THICKNESS and image[square] == look and rank[square] != RANK_UNSEEN:
                 square, thick = square - across, thick + 1
             if image[square] != look and rank[square] >= 0:
-                moved[number] = rank[square]
+                flipped[number] = rank[square]
                 number += 1
     return number
 
 
 @bare
-def tip(square, rank, around, image, near):  # type: ignore[no-untyped-def]
-    """Change a square, but for the counts."""
+def flip(square, rank, around, image, neighbours):  # type: ignore[no-untyped-def]
+    """Flip a square in the raster and in its neighbours' bits, but not in the counts."""
     image[square] = 1 - image[square]
     for n in range(8):
         other = rank[square + around[n]]
         if other >= 0:
-            near[other] ^= 1 << (7 - n)
+            neighbours[other] ^= 1 << (7 - n)
 
 
 @bare
-def worsening(k, more, ends, field, share, limits, counts):  # type: ignore[no-untyped-def]
-    """By how many squares more the counts are wrong when square k is counted once more, or less."""
+def count_error_change(k, more, ends, field, share, limits, counts):  # type: ignore[no-untyped-def]
+    """Return by how many squares more the counts are wrong when square k is counted once more, or once less."""
     worse = 0
     for i in range(ends[k], ends[k + 1]):
         f = field[i]
@@ -319,7 +388,7 @@ def worsening(k, more, ends, field, share, limits, counts):  # type: ignore[no-u
 
 
 @bare
-def recount(k, more, ends, field, share, counts):  # type: ignore[no-untyped-def]
-    """Count square k once more or less."""
+def update_counts(k, more, ends, field, share, counts):  # type: ignore[no-untyped-def]
+    """Count square k once more, or once less."""
     for i in range(ends[k], ends[k + 1]):
         counts[field[i]] += share[i] * more

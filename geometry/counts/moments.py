@@ -1,6 +1,6 @@
-"""The parts of a picture, and their moments.
+"""The connected parts of a raster, and their moments.
 
-A picture is a raster of which some squares are occupied; a part is what of them is joined by edges.
+A raster has occupied squares; a part is a set of them that edges join.
 """
 
 from typing import NamedTuple
@@ -13,12 +13,15 @@ from geometry.kernels.jit import compiled
 
 
 class Blobs(NamedTuple):
-    """The edge-connected occupied parts of a picture.
+    """The edge-connected occupied parts of a raster.
 
-    labels : (rows, columns) int32, 0 for none, n for the part at [n - 1] of the others. area : squares. outward : sides
-    of its squares beyond which nothing was seen. spread : sum of its principal moments, by the square of the area (a
-    square has 1/6, a disc 1/2 pi). lengthy : the difference of the principal moments, by their sum (0: as wide
-    as long).
+    Attributes
+    ----------
+    labels : (rows, columns) int32, 0 for none, k for the part at [k - 1] of the other arrays.
+    area : (n,) in squares.
+    outward : (n,) number of sides of its squares beyond which nothing was seen.
+    spread : (n,) sum of its principal moments, divided by the square of the area (a square has 1/6, a disc 1/2 pi).
+    lengthy : (n,) the difference of the principal moments, divided by their sum (0: as wide as long).
     """
 
     labels: NDArray[np.int32]
@@ -29,8 +32,15 @@ class Blobs(NamedTuple):
 
 
 def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
-    """The parts of one picture.
+    """Return the edge-connected occupied parts of one raster.
 
+    Parameters
+    ----------
+    image : (rows, columns) int8, 1 where a square is occupied.
+    ground : (rows, columns) int8, as for `geometry.counts.gibbs.pictures`; only UNSEEN matters.
+
+    Examples
+    --------
     >>> from geometry.counts.gibbs import DRAWN
     >>> found = blobs(np.pad(np.ones((3, 3), np.int8), 2), np.full((7, 7), DRAWN, np.int8))
     >>> found.area.tolist(), found.outward.tolist(), (6 * found.spread).round(6).tolist(), found.lengthy.tolist()
@@ -38,7 +48,7 @@ def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
     """
     labels = np.zeros(image.shape, np.int32)
     sums = np.zeros((image.size // 2 + 2, 7))
-    number = _parts(np.ascontiguousarray(image), np.ascontiguousarray(ground), labels, sums)
+    number = _label_parts(np.ascontiguousarray(image), np.ascontiguousarray(ground), labels, sums)
     n, x, y, xx, yy, xy, outward = sums[1 : number + 1].T
     east, north, cross = xx / n - (x / n) ** 2 + 1 / 12, yy / n - (y / n) ** 2 + 1 / 12, xy / n - x * y / n**2
     return Blobs(
@@ -51,9 +61,9 @@ def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
 
 
 @compiled
-def _parts(image, ground, labels, sums):  # type: ignore[no-untyped-def]
+def _label_parts(image, ground, labels, sums):  # type: ignore[no-untyped-def]
     rows, columns = image.shape
-    waiting = np.empty((rows * columns, 2), np.int64)
+    stack = np.empty((rows * columns, 2), np.int64)
     number = 0
     for row in range(rows):
         for column in range(columns):
@@ -61,11 +71,11 @@ def _parts(image, ground, labels, sums):  # type: ignore[no-untyped-def]
                 continue
             number += 1
             labels[row, column] = number
-            waiting[0, 0], waiting[0, 1] = row, column
-            left = 1
-            while left > 0:
-                left -= 1
-                r, c = waiting[left, 0], waiting[left, 1]
+            stack[0, 0], stack[0, 1] = row, column
+            size = 1
+            while size > 0:
+                size -= 1
+                r, c = stack[size, 0], stack[size, 1]
                 sums[number, 0] += 1
                 sums[number, 1] += c
                 sums[number, 2] += r
@@ -77,6 +87,6 @@ def _parts(image, ground, labels, sums):  # type: ignore[no-untyped-def]
                         sums[number, 6] += 1
                     elif image[p, q] == 1 and labels[p, q] == 0:
                         labels[p, q] = number
-                        waiting[left, 0], waiting[left, 1] = p, q
-                        left += 1
+                        stack[size, 0], stack[size, 1] = p, q
+                        size += 1
     return number

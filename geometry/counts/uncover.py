@@ -1,4 +1,4 @@
-"""What fields of a look show beside something that lies on some of their squares."""
+"""Fields of an observation without the squares that an object covers."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,30 +14,36 @@ def uncover(
     weight: NDArray[np.int16],
     ranges: NDArray[np.int16],
     possible: Bools,
-    sure: Bools,
+    certain: Bools,
     possible_x: int,
     possible_y: int,
-    sure_x: int,
-    sure_y: int,
+    certain_x: int,
+    certain_y: int,
 ) -> None:
-    """Take the squares that something covers, or may cover, out of the fields of a look, in the arrays themselves.
+    """Remove the squares that an object covers, or may cover, from the fields of an observation, in place.
 
-    columns, rows, weight : (fields, most), what the fields sample, relative to the square of the look; what the thing
-    may cover is not sampled any more. ranges : (fields, 2) least and greatest counts. possible, sure : (rows, columns)
-    masks of the squares that it may cover, and surely does; possible_x and so on : the look's square in those masks.
+    Squares that it may cover are not sampled any more; the counts are reduced by what it may, or must, contribute.
+
+    Parameters
+    ----------
+    columns, rows, weight : (fields, entries), the squares that the fields sample, relative to the square of the
+        observation, and how often each counts. `weight` is changed.
+    ranges : (fields, 2), least and greatest counts; changed.
+    possible, certain : (rows, columns) bool, the squares that the object may cover, and those that it must cover.
+    possible_x, possible_y, certain_x, certain_y : column and row of the observation's square in those arrays.
     """
     for i in range(weight.shape[0]):
         for k in range(weight.shape[1]):
             if weight[i, k] == 0:
                 continue
-            if _holds(sure, rows[i, k] + sure_y, columns[i, k] + sure_x):
+            if _is_set(certain, rows[i, k] + certain_y, columns[i, k] + certain_x):
                 ranges[i, 1] -= weight[i, k]
-            if _holds(possible, rows[i, k] + possible_y, columns[i, k] + possible_x):
+            if _is_set(possible, rows[i, k] + possible_y, columns[i, k] + possible_x):
                 ranges[i, 0] -= weight[i, k]
                 weight[i, k] = 0
 
 
 @compiled
-def _holds(mask: Bools, row: int, column: int) -> bool:
-    """Whether a square belongs to a mask; none beyond its edge does."""
+def _is_set(mask: Bools, row: int, column: int) -> bool:
+    """Return whether a square belongs to a mask; no square beyond its edge does."""
     return 0 <= row < mask.shape[0] and 0 <= column < mask.shape[1] and bool(mask[row, column])

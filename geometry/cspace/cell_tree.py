@@ -1,9 +1,9 @@
-"""A tree of cells of poses: boxes of places and angles that are split where it is not yet known whether a body fits.
+"""A tree of cells of poses: boxes of places and angles, split where it is not yet known whether the body is free.
 
 Plain loops for numba. A cell is a square of places times an interval of angles; all cells of one depth have the same
 size. Splitting halves what contributes most to how far a point of the body may move in the cell: the place (four
 children) or the angle (two). Corners of cells are whole numbers, so neighbours are found without rounding; angles wrap.
-Leaves that share a face are linked; a split hands its links on to the children, and links to what was split are dropped
+Leaves that share a face are linked. A split hands its links on to the children, and links to what was split are dropped
 when next met.
 
 Source: soft subdivision search: Zhu and Latombe 1989; Wang, Chiang and Yap 2013; Zhou, Chiang and Yap 2018.
@@ -17,22 +17,32 @@ import numpy.typing as npt
 
 from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
-from geometry.motion.cell_clearance import FULL, SHUT, MovingBody, NearbyEdges, classify
+from geometry.motion.cell_clearance import CELL_BLOCKED, CELL_UNDECIDED, MovingBody, NearbyEdges, classify_cell
 
-FINEST = 24  # halvings of place or angle at most
-WHOLE = 1 << FINEST
-DEEPEST = 2 * FINEST
-LINKS = 64  # there is room for so many a cell
+MAX_HALVINGS = 24  # halvings of place, and of angle, at most; a convention: units of cells fit 32 bits
+ROOT_UNITS = 1 << MAX_HALVINGS  # sides of the root cell in whole-number units of place and of angle
+MAX_CELL_DEPTH = 2 * MAX_HALVINGS  # derived: a split halves either the place or the angle
+LINKS_PER_CELL = (
+    64  # links for which memory is reserved, on average a cell; tuned on random worlds (benchmarks.campaign)
+)
 
 
 class CellTree(NamedTuple):
-    """Cells, numbered from 0, the root.
+    """The cells of a subdivision, numbered from 0, the root. Depth d counts splits from the root.
 
-    box: (capacity, 4) the least corner as whole numbers x, y, angle, and the depth. child: first child or -1 for a
-    leaf. kind: as separation.classify tells. used: (1,) how many cells there are. sizes: (depths, 2) the whole-number
-    sizes of place and angle by depth. frame: x, y of the corner, unit of place, unit of angle, resolution. link:
-    (.., 2) the cell a link leads to and the next link of the same cell, or -1; head: a cell's first link; links: (1,)
-    how many. middle: (capacity, 3) the pose in the middle of a cell: x, y, radians.
+    Attributes
+    ----------
+    box : (capacity, 4) lower corner of each cell in whole-number units: x, y, angle; and its depth.
+    child : (capacity,) number of the first child; -1 for a leaf.
+    kind : (capacity,) as cell_clearance.classify_cell says, or CELL_GIVEN_UP.
+    used : (1,) number of cells.
+    sizes : (depths, 2) sides of a cell by depth, in units: place, angle.
+    frame : (5,) x, y of the root's lower corner (squares, table frame); unit of place (squares); unit of angle
+        (radians); resolution (squares).
+    link : (links, 2) the cell that a link leads to, and the next link of the same cell or -1.
+    head : (capacity,) first link of each cell; -1 for none.
+    links : (1,) number of links.
+    middle : (capacity, 3) the pose in the middle of each cell: x, y, radians.
     """
 
     box: Ints
@@ -47,13 +57,21 @@ class CellTree(NamedTuple):
     middle: Floats
 
 
-def new_tree(x: float, y: float, side: float, radius: float, resolution: float, capacity: int) -> CellTree:
-    """A tree of one cell: the square of places at (x, y) and all angles. resolution: cells are not split below it."""
-    sizes = [(WHOLE, WHOLE)]
-    for _ in range(DEEPEST):
+def new_cell_tree(x: float, y: float, side: float, radius: float, resolution: float, capacity: int) -> CellTree:
+    """Return a tree of one cell: a square of places and all angles.
+
+    Parameters
+    ----------
+    x, y, side : lower left corner and side of the square of places, in squares.
+    radius : radius of the body about its centre; it weighs angles against places.
+    resolution : cells in which no point of the body moves further than this, in squares, are not split.
+    capacity : number of cells for which there is memory.
+    """
+    sizes = [(ROOT_UNITS, ROOT_UNITS)]
+    for _ in range(MAX_CELL_DEPTH):
         place, angle = sizes[-1]
-        spread = side * (place / WHOLE) / math.sqrt(2)
-        swing = 2 * radius * math.sin(math.pi * min(angle / WHOLE, 1.0) / 2)
+        spread = side * (place / ROOT_UNITS) / math.sqrt(2)
+        swing = 2 * radius * math.sin(math.pi * min(angle / ROOT_UNITS, 1.0) / 2)
         sizes.append((place // 2, angle) if spread >= swing else (place, angle // 2))
     tree = CellTree(
         np.empty((capacity, 4), np.int32),
@@ -61,31 +79,31 @@ def new_tree(x: float, y: float, side: float, radius: float, resolution: float, 
         np.empty(capacity, np.int8),
         np.ones(1, np.int64),
         np.array(sizes, np.int32),
-        np.array([x, y, side / WHOLE, 2 * math.pi / WHOLE, resolution]),
-        np.empty((LINKS * capacity, 2), np.int32),
+        np.array([x, y, side / ROOT_UNITS, 2 * math.pi / ROOT_UNITS, resolution]),
+        np.empty((LINKS_PER_CELL * capacity, 2), np.int32),
         np.empty(capacity, np.int32),
         np.zeros(1, np.int64),
         np.empty((capacity, 3)),
     )
     tree.middle[0] = x + side / 2, y + side / 2, math.pi
-    tree.box[0], tree.child[0], tree.kind[0], tree.head[0] = 0, -1, SHUT, -1
+    tree.box[0], tree.child[0], tree.kind[0], tree.head[0] = 0, -1, CELL_UNDECIDED, -1
     return tree
 
 
 @bare
-def splittable(tree: CellTree, cell: int, mover: MovingBody) -> bool:
-    """Whether a cell is larger than the resolution and there is room for its children."""
+def is_splittable(tree: CellTree, cell: int, body: MovingBody) -> bool:
+    """Return whether a cell is larger than the resolution and there is memory for its children."""
     depth = tree.box[cell, 3]
     if depth + 1 >= len(tree.sizes) or tree.used[0] + 4 > len(tree.child) or tree.links[0] > len(tree.link) // 2:
         return False
     spread = tree.sizes[depth, 0] * tree.frame[2] / math.sqrt(2.0)
-    swing = 2.0 * mover.radius * math.sin(min(tree.sizes[depth, 1] * tree.frame[3] / 2, math.pi) / 2)
+    swing = 2.0 * body.radius * math.sin(min(tree.sizes[depth, 1] * tree.frame[3] / 2, math.pi) / 2)
     return bool(spread + swing > tree.frame[4])
 
 
 @bare
-def split(tree: CellTree, cell: int, mover: MovingBody, ground: NearbyEdges) -> None:
-    """Give a leaf its children and classify them."""
+def split_cell(tree: CellTree, cell: int, body: MovingBody, nearby: NearbyEdges) -> None:
+    """Give a leaf its children, classify them and link them to their neighbours."""
     depth = tree.box[cell, 3] + 1
     place, angle = tree.sizes[depth, 0], tree.sizes[depth, 1]
     first = tree.used[0]
@@ -109,7 +127,7 @@ def split(tree: CellTree, cell: int, mover: MovingBody, ground: NearbyEdges) -> 
         y = tree.frame[1] + (tree.box[new, 1] + 0.5 * place) * tree.frame[2]
         turn = (tree.box[new, 2] + 0.5 * angle) * tree.frame[3]
         tree.middle[new, 0], tree.middle[new, 1], tree.middle[new, 2] = x, y, turn
-        tree.kind[new] = classify(mover, ground, x, y, turn, spread, half)
+        tree.kind[new] = classify_cell(body, nearby, x, y, turn, spread, half)
         for other in range(first, new):
             _link_if_face(tree, new, other)
     at = tree.head[cell]
@@ -123,11 +141,11 @@ def split(tree: CellTree, cell: int, mover: MovingBody, ground: NearbyEdges) -> 
 
 @bare
 def leaf_at(tree: CellTree, x: float, y: float, angle: float) -> int:
-    """The leaf that holds a pose; -1 outside the tree."""
+    """Return the leaf that holds the pose (x, y, angle in radians); -1 outside the tree."""
     ix = math.floor((x - tree.frame[0]) / tree.frame[2])
     iy = math.floor((y - tree.frame[1]) / tree.frame[2])
-    it = math.floor(angle / tree.frame[3]) % WHOLE
-    if ix < 0 or iy < 0 or ix >= WHOLE or iy >= WHOLE:
+    it = math.floor(angle / tree.frame[3]) % ROOT_UNITS
+    if ix < 0 or iy < 0 or ix >= ROOT_UNITS or iy >= ROOT_UNITS:
         return -1
     cell = 0
     while tree.child[cell] >= 0:
@@ -144,15 +162,15 @@ def leaf_at(tree: CellTree, x: float, y: float, angle: float) -> int:
 
 @bare
 def _link_if_face(tree: CellTree, a: int, b: int) -> None:
-    """Link two leaves to each other when they share a face and neither is FULL."""
-    if tree.kind[a] == FULL or tree.kind[b] == FULL:
+    """Link two leaves to each other if they share a face and neither is CELL_BLOCKED."""
+    if tree.kind[a] == CELL_BLOCKED or tree.kind[b] == CELL_BLOCKED:
         return
     sizes_a, sizes_b = tree.sizes[tree.box[a, 3]], tree.sizes[tree.box[b, 3]]
     x = _overlap(tree.box[a, 0], sizes_a[0], tree.box[b, 0], sizes_b[0])
     y = _overlap(tree.box[a, 1], sizes_a[0], tree.box[b, 1], sizes_b[0])
     if x < 0 or y < 0 or (x == 0 and y == 0):
         return
-    t = _turned_overlap(tree.box[a, 2], sizes_a[1], tree.box[b, 2], sizes_b[1])
+    t = _angle_overlap(tree.box[a, 2], sizes_a[1], tree.box[b, 2], sizes_b[1])
     if t < 0 or (t == 0 and (x == 0 or y == 0)) or tree.links[0] + 2 > len(tree.link):
         return
     at = tree.links[0]
@@ -162,10 +180,11 @@ def _link_if_face(tree: CellTree, a: int, b: int) -> None:
 
 
 @bare
-def next_neighbour(child: Ints, head: Ints, link: Ints, cell: int, at: int) -> int:
-    """The link after link `at` of a cell (-1: its first) that leads to a leaf; -1 at the end. Old links are dropped.
+def next_link_to_leaf(child: Ints, head: Ints, link: Ints, cell: int, at: int) -> int:
+    """Return the next link of a cell that leads to a leaf, after link `at`, or its first if `at` is -1; -1 at the end.
 
-    child, head, link: the tree's. (Whole trees are many arrays: too many to hand to what is called a million times.)
+    Links to cells that were split are dropped on the way. `child`, `head` and `link` are the tree's: a whole tree is
+    too many arrays to hand to a function that is called a million times.
     """
     while True:
         found = head[cell] if at < 0 else link[at, 1]
@@ -179,13 +198,13 @@ def next_neighbour(child: Ints, head: Ints, link: Ints, cell: int, at: int) -> i
 
 @bare
 def _overlap(a: int, size_a: int, b: int, size_b: int) -> int:
-    """By how much two intervals overlap: 0 when they touch, negative when they are apart."""
+    """Return the length of the overlap of two intervals: 0 if they touch, negative if they are apart."""
     return min(a + size_a, b + size_b) - max(a, b)
 
 
 @bare
-def _turned_overlap(a: int, size_a: int, b: int, size_b: int) -> int:
-    """The same on the circle of angles."""
+def _angle_overlap(a: int, size_a: int, b: int, size_b: int) -> int:
+    """Return the overlap of two intervals on the circle of angles, as _overlap does."""
     best = _overlap(a, size_a, b, size_b)
-    best = max(best, _overlap(a + WHOLE, size_a, b, size_b))
-    return max(best, _overlap(a, size_a, b + WHOLE, size_b))
+    best = max(best, _overlap(a + ROOT_UNITS, size_a, b, size_b))
+    return max(best, _overlap(a, size_a, b + ROOT_UNITS, size_b))

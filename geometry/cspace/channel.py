@@ -1,13 +1,13 @@
-"""Chains of cells from a pose to a goal: the optimist's plan. Plain loops for numba.
+"""Channels: chains of neighbouring cells from a start to a goal that may hold a motion. Plain loops for numba.
 
-A chain runs over neighbouring cells that are not known to be full; doubtful ones are dearer, and the dearer the
-smaller they are: what is still in doubt so finely is a tight fit or none at all, and another way round is looked at
-before it is taken apart further. Best-first search, with the way that a disc would have to go as its guess of what is
-left, makes the chain that looks cheapest.
+A channel runs over cells that are not known to be blocked. Cells that are not known to be free cost more, and the more
+the smaller they are: what is still undecided at that size is a tight fit or none at all, and another way round is
+looked at before it is split further. Best-first search (weighted A*) finds the channel that looks cheapest. Its
+estimate of the cost to go is the path that a disc would have to take.
 
-# Strategy: between two searches only the cells of one chain change. The search tree is kept: what hung on a changed
-# cell is cut off, and offered again by its neighbours that still stand. A search then costs what changed, not what was
-# ever seen.
+# Strategy: between two searches only cells of one channel change. So the search tree is kept: what hung on a changed
+cell is cut off, and attached again to those of its neighbours that still stand. A search then costs what changed, not
+what was ever seen (as in incremental A*).
 """
 
 import math
@@ -16,213 +16,266 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.cspace.cell_tree import DEEPEST, CellTree, next_neighbour, splittable
+from geometry.cspace.cell_tree import MAX_CELL_DEPTH, CellTree, is_splittable, next_link_to_leaf
 from geometry.kernels.arrays import Floats, Ints
-from geometry.kernels.full_heap import pop, push
+from geometry.kernels.bounded_heap import pop, push
 from geometry.kernels.jit import bare
-from geometry.motion.cell_clearance import DEAD, FREE, FULL, OPEN, SHUT, MovingBody, NearbyEdges, classify
+from geometry.motion.cell_clearance import (
+    CELL_BLOCKED,
+    CELL_CENTRE_FREE,
+    CELL_FREE,
+    CELL_GIVEN_UP,
+    CELL_UNDECIDED,
+    MovingBody,
+    NearbyEdges,
+    classify_cell,
+)
 
-EAGER = 2.0  # how much dearer the way still to go is than the way gone
-DEAR = np.array([1.0, 2.0, 5.0, 1e9, 50.0])  # the cost of a square's way by kind of cell, while it is large
-WEARY, PATIENT, WORN = 1.15, 8, 5.0  # a doubtful cell is so much dearer with each depth below so many; at most
-TIRING = np.minimum(WEARY ** np.maximum(np.arange(DEEPEST + 2) - PATIENT, 0), WORN)
-PRICE = np.outer(DEAR, TIRING)  # of a square's way by kind and depth of cell
-PRICE[FREE] = DEAR[FREE]
-REGION = -2  # in place of a goal cell: the goal is a region
-UNSEEN, OFFERED, SETTLED, DOUBTED = 0, 1, 2, 3
+# All weights and prices below are tuned on random worlds (benchmarks.campaign).
+COST_TO_GO_WEIGHT = 2.0  # weight of the estimated cost to go against the cost so far (weighted A*)
+PRICE_BY_KIND = np.array([1.0, 2.0, 5.0, 1e9, 50.0])  # cost of one square of path by kind of cell, for large cells
+PRICE_GROWTH = 1.15  # the price of a cell that is not free grows by this factor with each depth ...
+CONSTANT_PRICE_DEPTH = 8  # ... below this depth ...
+MAX_DEPTH_FACTOR = 5.0  # ... to this many times at most
+DEPTH_FACTOR = np.minimum(
+    PRICE_GROWTH ** np.maximum(np.arange(MAX_CELL_DEPTH + 2) - CONSTANT_PRICE_DEPTH, 0), MAX_DEPTH_FACTOR
+)
+CELL_PRICE = np.outer(PRICE_BY_KIND, DEPTH_FACTOR)  # cost of one square of path by kind and depth of cell
+CELL_PRICE[CELL_FREE] = PRICE_BY_KIND[CELL_FREE]
+REGION_GOAL = -2  # stands in place of a goal cell when the goal is a region
+NODE_NEW, NODE_QUEUED, NODE_SETTLED, NODE_POSTPONED = 0, 1, 2, 3  # states of cells in the search; order is compared
 
 
 class ChannelSearch(NamedTuple):
-    """A search among the cells of a tree, kept from one chain to the next.
+    """A search among the cells of a tree, kept from one channel to the next.
 
-    guess: of the way left from a cell; cost: of the way to it; before: the cell before it; state: UNSEEN, OFFERED (on
-    the heap), SETTLED, or DOUBTED (a settled cell that may hold a goal, put off); verdict, loose: scratch of the
-    repair. seen: (2,) cells that have a state, and 1 when the last chain ends at a doubted cell. key, item, size: the
-    heap. chain: the cells of the last chain, the start's first. ways: (rows, columns) what is left to go at a pixel.
-    eye: the point of the body it is told for.
+    Attributes
+    ----------
+    cost_to_go : (capacity,) estimated cost from a cell to the goal, weighted.
+    cost : (capacity,) cost of the cheapest path found to a cell.
+    parent : (capacity,) the cell before it on that path; -1 at the start.
+    state : (capacity,) NODE_NEW, NODE_QUEUED (on the heap), NODE_SETTLED, or NODE_POSTPONED (a settled cell that may
+        hold a goal and is on the heap again).
+    cut_verdict : (capacity,) scratch of the repair: twice the number of the search, plus 1 for a cell that is cut off.
+    seen : (2,) number of cells that have a state; 1 if the last channel ends at a postponed cell, else 0.
+    key, item, size : the heap, see bounded_heap.
+    channel : the cells of the last channel, the start's first.
+    unattached : scratch of the repair.
+    distances : (rows, columns) estimated length to the goal from a pixel, squares.
+    disc_centre : (2,) the point of the body, body frame, that these lengths are for.
     """
 
-    guess: Floats
+    cost_to_go: Floats
     cost: Floats
-    before: Ints
+    parent: Ints
     state: npt.NDArray[np.int8]
-    verdict: Ints
+    cut_verdict: Ints
     seen: npt.NDArray[np.int64]
     key: Floats
     item: Ints
     size: npt.NDArray[np.int64]
-    chain: Ints
-    loose: Ints
-    ways: Floats
-    eye: Floats
+    channel: Ints
+    unattached: Ints
+    distances: Floats
+    disc_centre: Floats
 
 
-def new_hunt(capacity: int, ways: Floats, eye: Floats) -> ChannelSearch:
-    """Room to search a tree of up to so many cells."""
-    before, chain, loose = (np.empty(capacity, np.int32) for _ in range(3))
-    verdict, item = np.zeros(capacity, np.int32), np.empty(8 * capacity, np.int32)
+def new_channel_search(capacity: int, distances: Floats, disc_centre: Floats) -> ChannelSearch:
+    """Return a search with memory for a tree of `capacity` cells, nothing seen yet.
+
+    `distances` and `disc_centre` : as in ChannelSearch.
+    """
+    parent, channel, unattached = (np.empty(capacity, np.int32) for _ in range(3))
+    cut_verdict, item = np.zeros(capacity, np.int32), np.empty(8 * capacity, np.int32)
     numbers = np.zeros(2, np.int64), np.empty(8 * capacity), item, np.zeros(2, np.int64)
     state = np.empty(capacity, np.int8)
     return ChannelSearch(
-        np.empty(capacity), np.empty(capacity), before, state, verdict, *numbers, chain, loose, ways, eye
+        np.empty(capacity),
+        np.empty(capacity),
+        parent,
+        state,
+        cut_verdict,
+        *numbers,
+        channel,
+        unattached,
+        distances,
+        disc_centre,
     )
 
 
 @bare
-def find_chain(
+def find_channel(
     tree: CellTree,
-    mover: MovingBody,
-    ground: NearbyEdges,
+    body: MovingBody,
+    nearby: NearbyEdges,
     region: NearbyEdges,
-    hunt: ChannelSearch,
+    search: ChannelSearch,
     start: int,
     goal: int,
-    nth: int,
-    dead: bool,
+    search_number: int,
+    through_given_up: bool,
 ) -> int:
-    """Search on for a chain from a cell to the goal; its length, 0 when there is none.
+    """Go on searching for a channel from cell `start` to the goal; return its number of cells, 0 if there is none.
 
-    nth: the number of this search, from 1. dead: whether the chain may run through cells given up (then hunt.seen must
-    have been set to 0, which forgets all searches before).
+    The cells are written to search.channel.
+
+    Parameters
+    ----------
+    tree, body, nearby : the cells, and the body among obstacles.
+    region : the complement of the goal region, as obstacles; not used unless `goal` is REGION_GOAL.
+    start, goal : cells; `goal` may be REGION_GOAL.
+    search_number : number of this search, counted from 1.
+    through_given_up : whether the channel may run through cells given up. Then search.seen must have been set to 0
+        before, which forgets all earlier searches.
     """
-    _repair(tree, mover, ground, hunt, nth)
-    if tree.kind[start] == DEAD and not dead:
+    _repair_search(tree, body, nearby, search, search_number)
+    if tree.kind[start] == CELL_GIVEN_UP and not through_given_up:
         return 0
-    if hunt.state[start] == UNSEEN:
-        hunt.cost[start], hunt.before[start], hunt.state[start] = 0.0, -1, OFFERED
-        push(hunt.key, hunt.item, hunt.size, 0.0, start)
-    while hunt.size[0] > 0:
-        key, cell = pop(hunt.key, hunt.item, hunt.size)
-        if tree.child[cell] >= 0 or hunt.state[cell] == SETTLED or hunt.state[cell] == UNSEEN:
+    if search.state[start] == NODE_NEW:
+        search.cost[start], search.parent[start], search.state[start] = 0.0, -1, NODE_QUEUED
+        push(search.key, search.item, search.size, 0.0, start)
+    while search.size[0] > 0:
+        key, cell = pop(search.key, search.item, search.size)
+        if tree.child[cell] >= 0 or search.state[cell] == NODE_SETTLED or search.state[cell] == NODE_NEW:
             continue
-        doubted = hunt.state[cell] == DOUBTED
-        sight = SHUT if doubted else (OPEN if cell == goal else FULL)
-        if goal == REGION and not doubted:
-            sight = _goal_sight(tree, mover, region, cell)
-        if sight <= OPEN or doubted:
-            hunt.state[cell] = SETTLED
-            hunt.seen[1] = int(doubted)
-            _spread_out(tree, hunt, mover.radius, cell, dead)
-            return _trace(hunt.before, hunt.chain, cell)
-        hunt.state[cell] = SETTLED
-        _spread_out(tree, hunt, mover.radius, cell, dead)
-        if sight == SHUT and (dead or splittable(tree, cell, mover)):
-            hunt.state[cell] = DOUBTED
-            push(hunt.key, hunt.item, hunt.size, key + 2.0 * mover.radius, cell)
+        postponed = search.state[cell] == NODE_POSTPONED
+        goal_kind = CELL_UNDECIDED if postponed else (CELL_CENTRE_FREE if cell == goal else CELL_BLOCKED)
+        if goal == REGION_GOAL and not postponed:
+            goal_kind = _kind_in_goal(tree, body, region, cell)
+        if goal_kind <= CELL_CENTRE_FREE or postponed:
+            search.state[cell] = NODE_SETTLED
+            search.seen[1] = int(postponed)
+            _relax_neighbours(tree, search, body.radius, cell, through_given_up)
+            return _write_channel(search.parent, search.channel, cell)
+        search.state[cell] = NODE_SETTLED
+        _relax_neighbours(tree, search, body.radius, cell, through_given_up)
+        if goal_kind == CELL_UNDECIDED and (through_given_up or is_splittable(tree, cell, body)):
+            search.state[cell] = NODE_POSTPONED
+            push(search.key, search.item, search.size, key + 2.0 * body.radius, cell)
     return 0
 
 
 @bare
-def _goal_sight(tree: CellTree, mover: MovingBody, region: NearbyEdges, cell: int) -> int:
-    """FREE or OPEN when a cell's middle is in the goal region, SHUT when another pose in it may be, else FULL."""
+def _kind_in_goal(tree: CellTree, body: MovingBody, region: NearbyEdges, cell: int) -> int:
+    """Return the kind of a cell with respect to the goal region.
+
+    CELL_FREE or CELL_CENTRE_FREE : the pose in its middle is in the region. CELL_UNDECIDED : another pose of it may be.
+    CELL_BLOCKED : none is.
+    """
     depth = tree.box[cell, 3]
     spread = tree.sizes[depth, 0] * tree.frame[2] / math.sqrt(2.0)
     half = tree.sizes[depth, 1] * tree.frame[3] / 2
-    return classify(mover, region, tree.middle[cell, 0], tree.middle[cell, 1], tree.middle[cell, 2], spread, half)
+    return classify_cell(body, region, tree.middle[cell, 0], tree.middle[cell, 1], tree.middle[cell, 2], spread, half)
 
 
 @bare
-def _repair(tree: CellTree, mover: MovingBody, ground: NearbyEdges, hunt: ChannelSearch, nth: int) -> None:
-    """Cut off what hung on cells that were split or given up, and offer it and the new cells again."""
-    loose = 0
-    for cell in range(hunt.seen[0]):
-        if hunt.state[cell] != UNSEEN and _cut_off(tree.child, tree.kind, hunt.before, hunt.verdict, cell, nth):
-            hunt.state[cell] = UNSEEN
-            hunt.loose[loose] = cell
-            loose += 1
-    for cell in range(hunt.seen[0], tree.used[0]):
-        hunt.state[cell] = UNSEEN
-        hunt.guess[cell] = _guess(tree.middle, hunt.ways, hunt.eye, ground.frame, cell)
-        hunt.loose[loose] = cell
-        loose += 1
-    hunt.seen[0] = tree.used[0]
-    for k in range(loose):
-        cell = hunt.loose[k]
-        if tree.child[cell] < 0 and tree.kind[cell] <= SHUT:
-            _be_offered(tree, hunt, mover.radius, cell)
+def _repair_search(
+    tree: CellTree, body: MovingBody, nearby: NearbyEdges, search: ChannelSearch, search_number: int
+) -> None:
+    """Cut off what hung on cells that were split or given up; attach it and the new cells again."""
+    unattached = 0
+    for cell in range(search.seen[0]):
+        if search.state[cell] != NODE_NEW and _is_cut_off(
+            tree.child, tree.kind, search.parent, search.cut_verdict, cell, search_number
+        ):
+            search.state[cell] = NODE_NEW
+            search.unattached[unattached] = cell
+            unattached += 1
+    for cell in range(search.seen[0], tree.used[0]):
+        search.state[cell] = NODE_NEW
+        search.cost_to_go[cell] = _cost_to_go(tree.middle, search.distances, search.disc_centre, nearby.frame, cell)
+        search.unattached[unattached] = cell
+        unattached += 1
+    search.seen[0] = tree.used[0]
+    for k in range(unattached):
+        cell = search.unattached[k]
+        if tree.child[cell] < 0 and tree.kind[cell] <= CELL_UNDECIDED:
+            _attach(tree, search, body.radius, cell)
 
 
 @bare
-def _cut_off(child: Ints, kind: npt.NDArray[np.int8], before: Ints, verdict: Ints, cell: int, nth: int) -> bool:
-    """Whether the way to a cell runs through one that was split or given up. verdict: what was found out on the way."""
+def _is_cut_off(
+    child: Ints, kind: npt.NDArray[np.int8], parent: Ints, cut_verdict: Ints, cell: int, search_number: int
+) -> bool:
+    """Return whether the path to a cell runs through one that was split or given up; note it in `cut_verdict`."""
     at = cell
-    while at >= 0 and verdict[at] // 2 != nth and child[at] < 0 and kind[at] <= SHUT:
-        at = before[at]
-    bad = 0
+    while at >= 0 and cut_verdict[at] // 2 != search_number and child[at] < 0 and kind[at] <= CELL_UNDECIDED:
+        at = parent[at]
+    cut = 0
     if at >= 0:
-        bad = verdict[at] % 2 if verdict[at] // 2 == nth else 1
+        cut = cut_verdict[at] % 2 if cut_verdict[at] // 2 == search_number else 1
     stop, at = at, cell
     while at != stop:
-        verdict[at] = 2 * nth + bad
-        at = before[at]
-    return bad == 1
+        cut_verdict[at] = 2 * search_number + cut
+        at = parent[at]
+    return cut == 1
 
 
 @bare
-def _be_offered(tree: CellTree, hunt: ChannelSearch, radius: float, cell: int) -> None:
-    """Let the settled neighbours of a cell offer it the cheapest way to it."""
+def _attach(tree: CellTree, search: ChannelSearch, radius: float, cell: int) -> None:
+    """Put a cell on the heap with the cheapest path to it through its settled neighbours, if there is one."""
     child, head, links, middle, kind = tree.child, tree.head, tree.link, tree.middle, tree.kind
     best, by = 1e18, -1
-    link = next_neighbour(child, head, links, cell, -1)
+    link = next_link_to_leaf(child, head, links, cell, -1)
     while link >= 0:
         other = links[link, 0]
-        if hunt.state[other] >= SETTLED:
-            cost = hunt.cost[other] + _step(middle, kind, tree.box, radius, other, cell)
+        if search.state[other] >= NODE_SETTLED:
+            cost = search.cost[other] + _step_cost(middle, kind, tree.box, radius, other, cell)
             if cost < best:
                 best, by = cost, other
-        link = next_neighbour(child, head, links, cell, link)
+        link = next_link_to_leaf(child, head, links, cell, link)
     if by >= 0:
-        hunt.cost[cell], hunt.before[cell], hunt.state[cell] = best, by, OFFERED
-        push(hunt.key, hunt.item, hunt.size, best + hunt.guess[cell], cell)
+        search.cost[cell], search.parent[cell], search.state[cell] = best, by, NODE_QUEUED
+        push(search.key, search.item, search.size, best + search.cost_to_go[cell], cell)
 
 
 @bare
-def _spread_out(tree: CellTree, hunt: ChannelSearch, radius: float, cell: int, dead: bool) -> None:
-    """Offer the neighbours of a settled cell the way through it."""
+def _relax_neighbours(tree: CellTree, search: ChannelSearch, radius: float, cell: int, through_given_up: bool) -> None:
+    """Put the neighbours of a settled cell on the heap where the path through it is cheaper."""
     child, head, links, middle, kind = tree.child, tree.head, tree.link, tree.middle, tree.kind
-    link = next_neighbour(child, head, links, cell, -1)
+    link = next_link_to_leaf(child, head, links, cell, -1)
     while link >= 0:
         other = links[link, 0]
-        if hunt.state[other] < SETTLED and (kind[other] != DEAD or dead):
-            cost = hunt.cost[cell] + _step(middle, kind, tree.box, radius, cell, other)
-            if hunt.state[other] == UNSEEN or cost < hunt.cost[other]:
-                hunt.cost[other], hunt.before[other], hunt.state[other] = cost, cell, OFFERED
-                push(hunt.key, hunt.item, hunt.size, cost + hunt.guess[other], other)
-        link = next_neighbour(child, head, links, cell, link)
+        if search.state[other] < NODE_SETTLED and (kind[other] != CELL_GIVEN_UP or through_given_up):
+            cost = search.cost[cell] + _step_cost(middle, kind, tree.box, radius, cell, other)
+            if search.state[other] == NODE_NEW or cost < search.cost[other]:
+                search.cost[other], search.parent[other], search.state[other] = cost, cell, NODE_QUEUED
+                push(search.key, search.item, search.size, cost + search.cost_to_go[other], other)
+        link = next_link_to_leaf(child, head, links, cell, link)
 
 
 @bare
-def _step(middle: Floats, kind: npt.NDArray[np.int8], box: Ints, radius: float, a: int, b: int) -> float:
-    """The cost of going from the middle of one cell to that of another."""
+def _step_cost(middle: Floats, kind: npt.NDArray[np.int8], box: Ints, radius: float, a: int, b: int) -> float:
+    """Return the cost of going from the middle of cell a to the middle of cell b."""
     dx, dy = middle[b, 0] - middle[a, 0], middle[b, 1] - middle[a, 1]
     turn = abs(middle[b, 2] - middle[a, 2])
     turn = min(turn, 2 * math.pi - turn)
-    price = PRICE[kind[a], box[a, 3]] + PRICE[kind[b], box[b, 3]]
+    price = CELL_PRICE[kind[a], box[a, 3]] + CELL_PRICE[kind[b], box[b, 3]]
     return float((math.sqrt(dx * dx + dy * dy) + 0.5 * radius * turn) * 0.5 * price)
 
 
 @bare
-def _guess(middle: Floats, ways: Floats, eye: Floats, frame: Floats, cell: int) -> float:
-    """What may be left to go from the middle of a cell."""
+def _cost_to_go(middle: Floats, distances: Floats, disc_centre: Floats, frame: Floats, cell: int) -> float:
+    """Return the estimated cost from the middle of a cell to the goal, weighted."""
     c, s = math.cos(middle[cell, 2]), math.sin(middle[cell, 2])
-    x = middle[cell, 0] + c * eye[0] - s * eye[1]
-    y = middle[cell, 1] + s * eye[0] + c * eye[1]
-    column = min(max(int((x - frame[0]) / frame[2]), 0), ways.shape[1] - 1)
-    row = min(max(int((y - frame[1]) / frame[2]), 0), ways.shape[0] - 1)
-    return float(EAGER * ways[row, column])
+    x = middle[cell, 0] + c * disc_centre[0] - s * disc_centre[1]
+    y = middle[cell, 1] + s * disc_centre[0] + c * disc_centre[1]
+    column = min(max(int((x - frame[0]) / frame[2]), 0), distances.shape[1] - 1)
+    row = min(max(int((y - frame[1]) / frame[2]), 0), distances.shape[0] - 1)
+    return float(COST_TO_GO_WEIGHT * distances[row, column])
 
 
 @bare
-def _trace(before: Ints, chain: Ints, cell: int) -> int:
-    """Write the chain that ends at a cell, from its start; its length."""
+def _write_channel(parent: Ints, channel: Ints, cell: int) -> int:
+    """Write the channel that ends at a cell, from its start; return its number of cells."""
     length = 0
     at = cell
     while at >= 0:
         length += 1
-        at = before[at]
+        at = parent[at]
     n = length
     while cell >= 0:
         n -= 1
-        chain[n] = cell
-        cell = before[cell]
+        channel[n] = cell
+        cell = parent[cell]
     return length

@@ -1,9 +1,9 @@
-"""A body between two discs: what decides its motion where it is too small beside the floor for cells.
+"""Bounds by discs: they decide the motion of a body that is too small, compared to its surroundings, for cells.
 
-# Strategy: where its greatest inscribed disc cannot get from start to goal the body cannot either, whatever its shape;
-where the disc that encloses it can, so can the body, without turning on its way. Both are questions about a point among
-obstacles grown by a radius. Grown corners are round; polygons stand for them, inside for the first, about for the
-second.
+# Strategy: where the body's largest inscribed disc cannot get from start to goal the body cannot either, whatever its
+shape. Where its enclosing disc can, so can the body, without turning on its way. Both are questions about a point among
+obstacles grown by a radius. Grown corners are round; polygons approximate them, from inside for the first question,
+from outside for the second.
 """
 
 import heapq
@@ -13,65 +13,75 @@ from typing import Any
 import numpy as np
 import shapely
 
-from geometry.kernels.arrays import Floats
-from geometry.motion.validation import FURTHEST
+from geometry.kernels.arrays import XY, Floats
+from geometry.motion.validation import MAX_COORDINATE
 
-Place = tuple[float, float]
-FLESH = 1e-7  # squares by which the inscribed disc is taken to be smaller, for bodies may touch
-QUARTER = 4  # sides of the polygon that stands for a quarter of a circle
-CORNERS = 400  # of the grown obstacles at most, for a way to be looked for: every two are held against each other
-
-
-def grown(obstacles: Any, radius: float, about: bool) -> Any:
-    """Return obstacles grown by a radius; about : never less than that, else never more."""
-    times = 1.0 / math.cos(math.pi / (4 * QUARTER)) if about else 1.0
-    return shapely.buffer(obstacles, max(radius, 0.0) * times, quad_segs=QUARTER)
+DISC_SHRINKAGE = 1e-7  # squares: the inscribed disc is taken to be smaller by this, for bodies may touch; a convention
+SIDES_PER_QUARTER = 4  # sides of the polygon that approximates a quarter of a circle; a convention
+MAX_PATH_CORNERS = 400  # corners of the free space up to which paths are sought; bounds a search over all pairs of them
 
 
-def cannot_pass(obstacles: Any, radius: float, bounds: Floats, start: Place, goal: Any) -> bool:
-    """Return whether a disc surely cannot get from a place into a goal, a geometry.
+def grow_obstacles(obstacles: Any, radius: float, outer: bool) -> Any:
+    """Return obstacles grown by a radius, in squares: never less than that if `outer`, else never more."""
+    times = 1.0 / math.cos(math.pi / (4 * SIDES_PER_QUARTER)) if outer else 1.0
+    return shapely.buffer(obstacles, max(radius, 0.0) * times, quad_segs=SIDES_PER_QUARTER)
 
-    bounds : (4,) x0, y0, x1, y1, that its centre cannot leave.
+
+def disc_cannot_pass(obstacles: Any, radius: float, bounds: Floats, start: XY, goal: Any) -> bool:
+    """Return whether a disc surely cannot get from a place to a goal.
+
+    Parameters
+    ----------
+    obstacles : shapely geometry, squares, table frame.
+    radius : radius of the disc, squares.
+    bounds : (4,) x0, y0, x1, y1 that its centre cannot leave.
+    start : (x, y) of its centre. goal : shapely geometry that its centre must reach.
     """
-    room = shapely.box(*bounds).difference(grown(obstacles, radius - FLESH, about=False))
-    own = [part for part in shapely.get_parts(room) if part.distance(shapely.Point(start)) <= FLESH]
-    return bool(own) and all(part.distance(goal) > FLESH for part in own)
+    room = shapely.box(*bounds).difference(grow_obstacles(obstacles, radius - DISC_SHRINKAGE, outer=False))
+    own = [part for part in shapely.get_parts(room) if part.distance(shapely.Point(start)) <= DISC_SHRINKAGE]
+    return bool(own) and all(part.distance(goal) > DISC_SHRINKAGE for part in own)
 
 
-def way_of_disc(obstacles: Any, radius: float, bounds: Floats, start: Place, goal: Place) -> list[Place] | None:
-    """Return the corners of a way of a disc's centre; None when none is found, which proves nothing."""
-    room = shapely.box(*bounds).difference(grown(obstacles, radius, about=True))
+def find_disc_path(obstacles: Any, radius: float, bounds: Floats, start: XY, goal: XY) -> list[XY] | None:
+    """Return the corners of a path for the centre of a disc from `start` to `goal`, or None.
+
+    None proves nothing: grown obstacles are approximated from outside, and long searches are not made.
+    """
+    room = shapely.box(*bounds).difference(grow_obstacles(obstacles, radius, outer=True))
     for part in shapely.get_parts(room):
         if part.covers(shapely.Point(start)) and part.covers(shapely.Point(goal)):
-            return shortest_within(part, start, goal)
+            return shortest_path_within(part, start, goal)
     return None
 
 
-def shortest_within(part: Any, start: Place, goal: Place) -> list[Place] | None:
-    """Return the shortest way within a polygon over its corners; None when it has too many."""
+def shortest_path_within(part: Any, start: XY, goal: XY) -> list[XY] | None:
+    """Return the corners of the shortest path within a polygon; None if it has more than MAX_PATH_CORNERS corners.
+
+    Method: Dijkstra's algorithm on the visibility graph of the corners.
+    """
     corners = sorted({(x, y) for x, y in shapely.get_coordinates(part).tolist()} - {start, goal})
-    if len(corners) > CORNERS:
+    if len(corners) > MAX_PATH_CORNERS:
         return None
     places = [start, *corners, goal]
-    spots, cover = np.array(places), part.buffer(FLESH / 10)
+    points, cover = np.array(places), part.buffer(DISC_SHRINKAGE / 10)
     shapely.prepare(cover)
-    best, came, done = {0: 0.0}, {0: 0}, set()
+    best, parent, done = {0: 0.0}, {0: 0}, set()
     heap = [(0.0, 0)]
     while heap:
         length, at = heapq.heappop(heap)
         if at == len(places) - 1:
-            way = [at]
-            while way[-1]:
-                way.append(came[way[-1]])
-            return [places[n] for n in reversed(way)]
+            path = [at]
+            while path[-1]:
+                path.append(parent[path[-1]])
+            return [places[n] for n in reversed(path)]
         if at in done:
             continue
         done.add(at)
-        steps = np.hypot(*(spots - spots[at]).T)
-        others = [n for n in range(1, len(places)) if length + steps[n] < best.get(n, FURTHEST)]
+        steps = np.hypot(*(points - points[at]).T)
+        others = [n for n in range(1, len(places)) if length + steps[n] < best.get(n, MAX_COORDINATE)]
         lines = shapely.linestrings([[places[at], places[n]] for n in others]) if others else []
-        for n, open_ in zip(others, shapely.covers(cover, lines), strict=True):
-            if open_:
-                best[n], came[n] = float(length + steps[n]), at
+        for n, is_open in zip(others, shapely.covers(cover, lines), strict=True):
+            if is_open:
+                best[n], parent[n] = float(length + steps[n]), at
                 heapq.heappush(heap, (best[n], n))
     return None

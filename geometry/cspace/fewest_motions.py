@@ -1,8 +1,8 @@
-"""Fewer motions for a way that is known: other places near it are tried, and the way with least motions kept.
+"""Fewer motions for a known path: other poses near it are tried, and the path with the fewest motions is kept.
 
-# Strategy: candidates are poses along the way, moved without turning to where the body has most room, and some more
-# that lie straight to the axes. Dijkstra's algorithm over all pairs of them: what leads from one to another is a push,
-# a turn, or one of each in either order, all checked by exact first contact.
+# Strategy: candidates are poses along the path, poses moved without turning to where the body has more clearance, and
+# some whose longest edge is parallel to an axis. Dijkstra's algorithm runs over all pairs of them. What leads from one
+# to another is a push, a turn, or one of each in either order, all checked by exact first contact.
 """
 
 import math
@@ -12,34 +12,35 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from geometry.cspace.local_planner import BLOCKED, EVEN, HopContext, hop, shorter_turn
+from geometry.cspace.local_planner import BLOCKED, MIN_MOTION, HopContext, hop, shorter_turn
 from geometry.cspace.smoothing import motions_along
 from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import bare, compiled
 from geometry.motion.cell_clearance import MovingBody, NearbyEdges, distance_at
 from geometry.motion.se2 import Motion
 
-STEPS, SWING = 40.0, 20.0  # squares pushed, radians turned that count as much as one motion
-BESIDE = 30  # candidates along the way
-ROOMY = 0.2  # of the body's radius: more room is not looked for
+PUSH_PER_MOTION = 40.0  # squares pushed that cost as much as one motion more; tuned on random worlds
+TURN_PER_MOTION = 20.0  # radians turned that cost as much as one motion more; tuned (benchmarks.campaign)
+CANDIDATE_POSES = 30  # candidates along the path; tuned likewise
+ENOUGH_CLEARANCE = 0.2  # part of the body's radius: more clearance is not sought; tuned likewise
 
 
-def fewest_motions(scene: HopContext, track: Floats, edge: float) -> tuple[Motion, ...]:
-    """The motions of a way made few; () when a hop of it is not free.
+def fewest_motions(context: HopContext, path: Floats, edge: float) -> tuple[Motion, ...]:
+    """Return the motions of a path, replaced by as few as the candidates allow; () if a hop of it is not free.
 
     Parameters
     ----------
-    scene : the body, with its pivot as centre, among its obstacles.
-    track : (n, 3) a way of that centre, x, y, radians; hops from one to the next are free.
-    edge : radians, the direction of the body's edge that may well lie along an axis.
+    context : the body, with its pivot as centre, among its obstacles.
+    path : (n, 3) poses of that centre: x, y in squares, table frame, radians; hops from one to the next are free.
+    edge : direction of the body's edge that is worth laying along an axis, radians, body frame.
     """
-    candidates = _candidates(scene.mover, scene.ground, track, edge)
-    order = _fewest(scene, candidates)
-    return motions_along(scene, candidates[order]) if len(order) else ()
+    candidates = _candidates(context.body, context.nearby, path, edge)
+    order = _cheapest_order(context, candidates)
+    return motions_along(context, candidates[order]) if len(order) else ()
 
 
 def slant(shape: Any) -> float:
-    """The direction of a shape's longest edge, in radians."""
+    """Return the direction of the longest edge of a polygon's outer ring, in radians from -pi to pi."""
     corners = shapely.get_coordinates(shape.exterior)
     along = np.diff(corners, axis=0)
     x, y = along[int(np.argmax(np.round(np.hypot(along[:, 0], along[:, 1]), 6)))]
@@ -47,42 +48,48 @@ def slant(shape: Any) -> float:
 
 
 def askew(shape: Any) -> float:
-    """How far a shape's longest edge is turned from an axis, counter-clockwise, in degrees from 0 to 90."""
+    """Return how far a polygon's longest edge is turned counter-clockwise from an axis: degrees, from 0 to below 90."""
     return math.degrees(slant(shape)) % 90.0
 
 
-def _candidates(mover: MovingBody, ground: NearbyEdges, track: Floats, edge: float) -> Floats:
-    """Poses on and near a way: (n, 3), the first its start, the last its end."""
-    along = evenly(track, mover.radius, BESIDE)
+def _candidates(body: MovingBody, nearby: NearbyEdges, path: Floats, edge: float) -> Floats:
+    """Return poses on and near a path: (n, 3), the first its start, the last its end."""
+    along = evenly(path, body.radius, CANDIDATE_POSES)
     straight = along[::2].copy()
     straight[:, 2] = np.round((straight[:, 2] + edge) / (math.pi / 2)) * (math.pi / 2) - edge
-    roomy = np.vstack([along[1:-1], straight])
-    for pose in roomy:
-        centred(mover, ground, pose)
-    return np.vstack([track[:-1], along[1:-1], roomy, straight, track[-1:]])
+    with_clearance = np.vstack([along[1:-1], straight])
+    for pose in with_clearance:
+        move_to_clearance(body, nearby, pose)
+    return np.vstack([path[:-1], along[1:-1], with_clearance, straight, path[-1:]])
 
 
-def evenly(track: Floats, radius: float, count: int) -> Floats:
-    """Poses at even distances along a way, turns counted by how far they move the rim: (count, 3)."""
-    angles = np.unwrap(track[:, 2])
-    step = np.hypot(*np.diff(track[:, :2], axis=0).T) + radius * np.abs(np.diff(angles))
-    far = np.concatenate([[0.0], np.cumsum(step)])
-    at = np.linspace(0.0, far[-1], count)
-    return np.column_stack([np.interp(at, far, column) for column in (track[:, 0], track[:, 1], angles)])
+def evenly(path: Floats, radius: float, count: int) -> Floats:
+    """Return `count` poses at even distances along a path: (count, 3) x, y, radians (unwrapped).
+
+    Parameters
+    ----------
+    path : (n, 3) poses x, y in squares, radians.
+    radius : radius of the body, squares: turning by an angle counts as a distance of radius times angle.
+    """
+    angles = np.unwrap(path[:, 2])
+    step = np.hypot(*np.diff(path[:, :2], axis=0).T) + radius * np.abs(np.diff(angles))
+    distance = np.concatenate([[0.0], np.cumsum(step)])
+    at = np.linspace(0.0, distance[-1], count)
+    return np.column_stack([np.interp(at, distance, column) for column in (path[:, 0], path[:, 1], angles)])
 
 
 @bare
-def centred(mover: MovingBody, ground: NearbyEdges, pose: Floats) -> None:
-    """Move a pose, in place and without turning it, to where the body has more room: steps in eight directions."""
+def move_to_clearance(body: MovingBody, nearby: NearbyEdges, pose: Floats) -> None:
+    """Move a pose, in place and without turning it, to where the body has more clearance: steps in eight directions."""
     c, s = math.cos(pose[2]), math.sin(pose[2])
-    enough = ROOMY * mover.radius
-    best = distance_at(mover, ground, pose[0], pose[1], c, s)
-    step = 0.1 * mover.radius
-    while step > 1e-4 * mover.radius and best < enough:
+    enough = ENOUGH_CLEARANCE * body.radius
+    best = distance_at(body, nearby, pose[0], pose[1], c, s)
+    step = 0.1 * body.radius
+    while step > 1e-4 * body.radius and best < enough:
         better = False
         for k in range(8):
             x, y = pose[0] + step * math.cos(k * math.pi / 4), pose[1] + step * math.sin(k * math.pi / 4)
-            room = distance_at(mover, ground, x, y, c, s)
+            room = distance_at(body, nearby, x, y, c, s)
             if room > best + 1e-9:
                 best, better = room, True
                 pose[0], pose[1] = x, y
@@ -91,10 +98,13 @@ def centred(mover: MovingBody, ground: NearbyEdges, pose: Floats) -> None:
 
 
 @compiled
-def _fewest(scene: HopContext, poses: Floats) -> npt.NDArray[np.int64]:
-    """The order of the poses on the way with the fewest motions from the first to the last; empty without any."""
+def _cheapest_order(context: HopContext, poses: Floats) -> npt.NDArray[np.int64]:
+    """Return the order of the poses on the cheapest path from the first to the last; empty if there is none.
+
+    A hop costs the number of its motions, plus a little by their size.
+    """
     count = len(poses)
-    cost, before = np.full(count, np.inf), np.full(count, -1, np.int64)
+    cost, parent = np.full(count, np.inf), np.full(count, -1, np.int64)
     done = np.zeros(count, np.bool_)
     cost[0] = 0.0
     for _ in range(count):
@@ -108,19 +118,24 @@ def _fewest(scene: HopContext, poses: Floats) -> npt.NDArray[np.int64]:
         for n in range(count):
             if done[n]:
                 continue
-            far = math.hypot(poses[n, 0] - poses[here, 0], poses[n, 1] - poses[here, 1])
+            distance = math.hypot(poses[n, 0] - poses[here, 0], poses[n, 1] - poses[here, 1])
             turn = abs(shorter_turn(poses[n, 2] - poses[here, 2]))
-            price = (1.0 if far > EVEN else 0.0) + (1.0 if turn > EVEN else 0.0) + far / STEPS + turn / SWING
-            if cost[here] + price < cost[n] and hop(scene, poses[here], poses[n]) != BLOCKED:
-                cost[n], before[n] = cost[here] + price, here
+            price = (
+                (1.0 if distance > MIN_MOTION else 0.0)
+                + (1.0 if turn > MIN_MOTION else 0.0)
+                + distance / PUSH_PER_MOTION
+                + turn / TURN_PER_MOTION
+            )
+            if cost[here] + price < cost[n] and hop(context, poses[here], poses[n]) != BLOCKED:
+                cost[n], parent[n] = cost[here] + price, here
     length, n = 0, count - 1
     if cost[n] == np.inf:
         return np.empty(0, np.int64)
     while n >= 0:
-        length, n = length + 1, before[n]
+        length, n = length + 1, parent[n]
     order = np.empty(length, np.int64)
     n = count - 1
     for k in range(length - 1, -1, -1):
         order[k] = n
-        n = before[n]
+        n = parent[n]
     return order

@@ -1,4 +1,4 @@
-"""Following a chain of cells hop by hop, and splitting what is to blame where a hop fails. Plain loops for numba."""
+"""Refinement: follow a channel hop by hop, and split the cells to blame where a hop fails. Plain loops for numba."""
 
 import math
 from typing import NamedTuple
@@ -6,20 +6,24 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.cspace.cell_tree import CellTree, split, splittable
-from geometry.cspace.local_planner import BLOCKED, HopContext, hop, put
+from geometry.cspace.cell_tree import CellTree, is_splittable, split_cell
+from geometry.cspace.local_planner import BLOCKED, HopContext, copy_pose, hop
 from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
-from geometry.motion.cell_clearance import DEAD, FREE, OPEN
+from geometry.motion.cell_clearance import CELL_CENTRE_FREE, CELL_FREE, CELL_GIVEN_UP
 
 
 class HopSequence(NamedTuple):
-    """The poses of a way found so far.
+    """The poses of a path found so far; the hops between them are free.
 
-    poses: (n, 3) x, y, angle, the first being the start; used: (1,) how many of them are in use; goal: the pose to end
-    at, empty when the centre of the chain's last cell will do. free_from: for each cell one from whose middle the hop
-    to its own was found free, -1 for none: most of a chain is that of the round before. stops: (2, 3) scratch: where a
-    hop begins and ends.
+    Attributes
+    ----------
+    poses : (n, 3) x, y, radians of the body's centre; the first is the start.
+    used : (1,) number of poses in use.
+    goal : (3,) the pose to end at; (0,) if the middle of the channel's last cell will do.
+    free_from : (cells,) for each cell another from whose middle the hop to its own middle was found free; -1 for none.
+        Most of a channel is that of the round before.
+    stops : (2, 3) scratch: the poses where a hop begins and ends.
     """
 
     poses: Floats
@@ -29,107 +33,114 @@ class HopSequence(NamedTuple):
     stops: Floats
 
 
-def new_way(start: Floats, goal: Floats, cells: int) -> HopSequence:
-    """A way that begins at a pose, with room for chains of so many cells."""
-    way = HopSequence(
+def new_hop_sequence(start: Floats, goal: Floats, cells: int) -> HopSequence:
+    """Return a path that begins at the pose `start`, with memory for channels of `cells` cells."""
+    hops = HopSequence(
         np.empty((2 * cells + 2, 3)), np.ones(1, np.int64), goal, np.full(cells, -1, np.int32), np.empty((2, 3))
     )
-    way.poses[0] = start
-    return way
+    hops.poses[0] = start
+    return hops
 
 
 @bare
-def follow(tree: CellTree, scene: HopContext, chain: Ints, length: int, doubt: bool, way: HopSequence) -> int:
-    """Check the hops of a chain and split what is to blame; how many cells were changed. 0: the way is free.
+def follow_channel(
+    tree: CellTree, context: HopContext, channel: Ints, length: int, split_last: bool, hops: HopSequence
+) -> int:
+    """Check the hops along a channel and split the cells to blame; return how many were blamed, 0 if the path is free.
 
-    One doubtful cell may be jumped over. After a hop that fails the rest is followed as if it had not, so that one look
-    at a chain finds most of its faults. A cell that is to blame and too small to split is given up. doubt: the last
-    cell must be split in any case.
+    One cell that is not free may be jumped over. After a hop that fails the rest is followed as if it had not failed,
+    so that one look at a channel finds most of its faults. A cell that is to blame and too small to split is given up.
+
+    Parameters
+    ----------
+    channel, length : the cells, and how many of them.
+    split_last : whether the last cell must be split in any case.
+    hops : the path; its poses are overwritten.
     """
-    way.used[0] = 1
-    total = length + (1 if len(way.goal) > 0 else 0)
+    hops.used[0] = 1
+    total = length + (1 if len(hops.goal) > 0 else 0)
     blamed, last, n = 0, -1, 0
-    here, there = way.stops[0], way.stops[1]
-    put(here, way.poses[0])
+    here, there = hops.stops[0], hops.stops[1]
+    copy_pose(here, hops.poses[0])
     while n < total:
         step = 0
         for ahead in range(2):
-            if step > 0 or n + ahead >= total or (ahead == 1 and n < length and tree.kind[chain[n]] == FREE):
+            if step > 0 or n + ahead >= total or (ahead == 1 and n < length and tree.kind[channel[n]] == CELL_FREE):
                 continue
-            if _stop_at(tree.middle, tree.kind, chain, length, way.goal, n + ahead, there) and _go(
-                tree, scene, chain, length, way, last, n + ahead, here, there
+            if _write_stop(tree.middle, tree.kind, channel, length, hops.goal, n + ahead, there) and _hop_to_stop(
+                tree, context, channel, length, hops, last, n + ahead, here, there
             ):
                 step = ahead + 1
         if step > 0:
             last = n + step - 1
-            put(here, there)
+            copy_pose(here, there)
         else:
-            blamed += _blame(tree, scene, chain, last, n, length, 1 + total - length)
+            blamed += _split_blamed(tree, context, channel, last, n, length, 1 + total - length)
             step, last = 1, -1
             if n < length:
-                put(here, tree.middle[chain[n]])
-                last = n if tree.child[chain[n]] < 0 else -1
+                copy_pose(here, tree.middle[channel[n]])
+                last = n if tree.child[channel[n]] < 0 else -1
         n += step
-    if doubt:
-        blamed += _divide(tree, scene, chain[length - 1])
+    if split_last:
+        blamed += _split_or_give_up(tree, context, channel[length - 1])
     return blamed
 
 
 @bare
-def _stop_at(
-    middle: Floats, kind: npt.NDArray[np.int8], chain: Ints, length: int, goal: Floats, n: int, there: Floats
+def _write_stop(
+    middle: Floats, kind: npt.NDArray[np.int8], channel: Ints, length: int, goal: Floats, n: int, there: Floats
 ) -> bool:
-    """Write the n-th stop of a chain: a cell's middle or, after the last, the goal. False: the body overlaps there."""
+    """Write stop n of a channel, a cell's middle or the goal after the last; return whether the body is free there."""
     if n == length:
-        put(there, goal)
+        copy_pose(there, goal)
         return True
-    put(there, middle[chain[n]])
-    return bool(kind[chain[n]] <= OPEN)
+    copy_pose(there, middle[channel[n]])
+    return bool(kind[channel[n]] <= CELL_CENTRE_FREE)
 
 
 @bare
-def _go(
+def _hop_to_stop(
     tree: CellTree,
-    scene: HopContext,
-    chain: Ints,
+    context: HopContext,
+    channel: Ints,
     length: int,
-    way: HopSequence,
+    hops: HopSequence,
     last: int,
     n: int,
     here: Floats,
     there: Floats,
 ) -> bool:
-    """Hop to the n-th stop, straight or by way of the face between the two cells, and write it down."""
-    if not _straight(scene, chain, length, way, last, n, here, there):
+    """Hop to stop n, directly or by way of the face between two cells, and append it; return whether that is free."""
+    if not _direct_hop_is_free(context, channel, length, hops, last, n, here, there):
         if last < 0 or n >= length or n != last + 1:
             return False
-        middle = way.poses[way.used[0]]
-        _meet(tree, chain[last], chain[n], middle)
-        if hop(scene, here, middle) == BLOCKED or hop(scene, middle, there) == BLOCKED:
+        middle = hops.poses[hops.used[0]]
+        _write_face_pose(tree, channel[last], channel[n], middle)
+        if hop(context, here, middle) == BLOCKED or hop(context, middle, there) == BLOCKED:
             return False
-        way.used[0] += 1
-    put(way.poses[way.used[0]], there)
-    way.used[0] += 1
+        hops.used[0] += 1
+    copy_pose(hops.poses[hops.used[0]], there)
+    hops.used[0] += 1
     return True
 
 
 @bare
-def _straight(
-    scene: HopContext, chain: Ints, length: int, way: HopSequence, last: int, n: int, here: Floats, there: Floats
+def _direct_hop_is_free(
+    context: HopContext, channel: Ints, length: int, hops: HopSequence, last: int, n: int, here: Floats, there: Floats
 ) -> bool:
-    """Whether the hop to the n-th stop is free; from middle to middle of two cells that is found out only once."""
+    """Return whether the hop to stop n is free. From middle to middle of two cells that is computed only once."""
     between = last >= 0 and n < length
-    if between and way.free_from[chain[n]] == chain[last]:
+    if between and hops.free_from[channel[n]] == channel[last]:
         return True
-    if hop(scene, here, there) == BLOCKED:
+    if hop(context, here, there) == BLOCKED:
         return False
     if between:
-        way.free_from[chain[n]] = chain[last]
+        hops.free_from[channel[n]] = channel[last]
     return True
 
 
 @bare
-def _meet(tree: CellTree, a: int, b: int, middle: Floats) -> None:
+def _write_face_pose(tree: CellTree, a: int, b: int, middle: Floats) -> None:
     """Write the pose in the middle of the face that two neighbouring cells share."""
     for k in range(3):
         unit = tree.frame[2] if k < 2 else tree.frame[3]
@@ -146,41 +157,44 @@ def _meet(tree: CellTree, a: int, b: int, middle: Floats) -> None:
 
 
 @bare
-def _blame(tree: CellTree, scene: HopContext, chain: Ints, last: int, n: int, length: int, ends: int) -> int:
-    """Split the cell that a failed hop leads into, and the one that it leaves when that is as doubtful and as large."""
+def _split_blamed(tree: CellTree, context: HopContext, channel: Ints, last: int, n: int, length: int, ends: int) -> int:
+    """Split the cell that a failed hop leads into, and the one that it leaves if that is as doubtful and as large.
+
+    Returns the number of cells blamed.
+    """
     blamed = 0
-    if n < length and tree.kind[chain[n]] != FREE:
-        blamed += _divide_near(tree, scene, chain, n, length, ends)
-    if last >= 0 and tree.kind[chain[last]] == OPEN:
-        large = n < length and tree.box[chain[last], 3] <= tree.box[chain[n], 3]
+    if n < length and tree.kind[channel[n]] != CELL_FREE:
+        blamed += _split_near(tree, context, channel, n, length, ends)
+    if last >= 0 and tree.kind[channel[last]] == CELL_CENTRE_FREE:
+        large = n < length and tree.box[channel[last], 3] <= tree.box[channel[n], 3]
         if blamed == 0 or large:
-            blamed += _divide_near(tree, scene, chain, last, length, ends)
+            blamed += _split_near(tree, context, channel, last, length, ends)
     if blamed == 0:
-        blamed += _divide_near(tree, scene, chain, min(n, length - 1), length, ends)
+        blamed += _split_near(tree, context, channel, min(n, length - 1), length, ends)
     return blamed
 
 
 @bare
-def _divide_near(tree: CellTree, scene: HopContext, chain: Ints, n: int, length: int, ends: int) -> int:
-    """Divide the n-th cell of a chain; when it holds an end that is to be reached and is too small, the one beside it.
+def _split_near(tree: CellTree, context: HopContext, channel: Ints, n: int, length: int, ends: int) -> int:
+    """Split cell n of a channel, or the one next to it if cell n holds an end to be reached and is too small.
 
     The body is free at its ends: their cells are never given up. Others come as near to them as they can.
     """
-    if length > 1 and not splittable(tree, chain[n], scene.mover):
+    if length > 1 and not is_splittable(tree, channel[n], context.body):
         if n == 0:
             n = 1
         elif n == length - 1 and ends > 1:
             n -= 1
-    return _divide(tree, scene, chain[n])
+    return _split_or_give_up(tree, context, channel[n])
 
 
 @bare
-def _divide(tree: CellTree, scene: HopContext, cell: int) -> int:
-    """Split a leaf, or give it up when it is too small. Always 1: it was changed, now or before."""
-    if tree.child[cell] >= 0 or tree.kind[cell] == DEAD:
+def _split_or_give_up(tree: CellTree, context: HopContext, cell: int) -> int:
+    """Split a leaf, or give it up if it is too small. Return 1: it was changed, now or before."""
+    if tree.child[cell] >= 0 or tree.kind[cell] == CELL_GIVEN_UP:
         return 1
-    if splittable(tree, cell, scene.mover):
-        split(tree, cell, scene.mover, scene.ground)
+    if is_splittable(tree, cell, context.body):
+        split_cell(tree, cell, context.body, context.nearby)
     else:
-        tree.kind[cell] = DEAD
+        tree.kind[cell] = CELL_GIVEN_UP
     return 1

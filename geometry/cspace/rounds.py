@@ -1,42 +1,60 @@
-"""Rounds of a search: a chain is found and followed, what is to blame split, until one is free or none is left."""
+"""Rounds of a search: find a channel, follow it, split what is to blame, until one is free or none is left."""
 
 from geometry.cspace.cell_tree import CellTree, leaf_at
-from geometry.cspace.channel import REGION, ChannelSearch, find_chain
+from geometry.cspace.channel import REGION_GOAL, ChannelSearch, find_channel
 from geometry.cspace.local_planner import HopContext
-from geometry.cspace.refine import HopSequence, follow
+from geometry.cspace.refine import HopSequence, follow_channel
 from geometry.kernels.jit import bare
 from geometry.motion.cell_clearance import NearbyEdges
 
-NONE, FOUND, MORE = 0, 1, 2
+SEARCH_EXHAUSTED, SEARCH_FOUND, SEARCH_UNFINISHED = 0, 1, 2  # outcomes of run_rounds
 
 
 @bare
-def pursue(
-    tree: CellTree, scene: HopContext, region: NearbyEdges, hunt: ChannelSearch, way: HopSequence, nth: int, last: int
+def run_rounds(
+    tree: CellTree,
+    context: HopContext,
+    region: NearbyEdges,
+    search: ChannelSearch,
+    hops: HopSequence,
+    round_number: int,
+    last_round: int,
 ) -> tuple[int, int]:
-    """Go on from the round `nth`, counted from 1, up to the round `last`: the outcome and the round it came to.
+    """Run the rounds from `round_number`, counted from 1, to `last_round`; return the outcome and the round it came in.
 
-    FOUND: the way is free; NONE: no chain is left; MORE: neither, so far.
+    Returns
+    -------
+    SEARCH_FOUND : the path in `hops` is free. SEARCH_EXHAUSTED : no channel is left. SEARCH_UNFINISHED : neither, so
+        far.
     """
     while True:
-        length = next_chain(tree, scene, region, hunt, way, nth, False)
+        length = next_channel(tree, context, region, search, hops, round_number, False)
         if length == 0:
-            return NONE, nth
-        if follow(tree, scene, hunt.chain, length, hunt.seen[1] != 0, way) == 0:
-            return FOUND, nth
-        if nth >= last:
-            return MORE, nth
-        nth += 1
+            return SEARCH_EXHAUSTED, round_number
+        if follow_channel(tree, context, search.channel, length, search.seen[1] != 0, hops) == 0:
+            return SEARCH_FOUND, round_number
+        if round_number >= last_round:
+            return SEARCH_UNFINISHED, round_number
+        round_number += 1
 
 
 @bare
-def next_chain(
-    tree: CellTree, scene: HopContext, region: NearbyEdges, hunt: ChannelSearch, way: HopSequence, nth: int, dead: bool
+def next_channel(
+    tree: CellTree,
+    context: HopContext,
+    region: NearbyEdges,
+    search: ChannelSearch,
+    hops: HopSequence,
+    round_number: int,
+    through_given_up: bool,
 ) -> int:
-    """The length of the chain of a round; 0 when there is none, dead: not even through cells given up."""
-    start, goal = way.poses[0], way.goal
+    """Find the channel of a round; return its number of cells, 0 if there is none.
+
+    `through_given_up` : whether it may run through cells given up.
+    """
+    start, goal = hops.poses[0], hops.goal
     first = leaf_at(tree, start[0], start[1], start[2])
-    last = leaf_at(tree, goal[0], goal[1], goal[2]) if len(goal) > 0 else REGION
+    last = leaf_at(tree, goal[0], goal[1], goal[2]) if len(goal) > 0 else REGION_GOAL
     if first < 0 or last == -1:
         return 0
-    return find_chain(tree, scene.mover, scene.ground, region, hunt, first, last, nth, dead)
+    return find_channel(tree, context.body, context.nearby, region, search, first, last, round_number, through_given_up)

@@ -1,9 +1,9 @@
-"""Funnel tightening: the shortest way through a word of portals.
+"""Funnel algorithm (string pulling): the shortest path through a word of portals.
 
-# Strategy: the funnel of Lee and Preparata (1984). The way to the two ends of the last portal is a funnel with two
-chains of corners that bend outwards from a common apex; each new end pops what the rope no longer touches. The
-corners are multiples of half a square, on which cross products of floats are exact, so only free ends of the rope
-round at all.
+# Strategy: the funnel of Lee and Preparata (1984). The shortest paths to the two ends of the last portal form a funnel:
+two chains of corners that bend outwards from a common apex. Each new end removes the corners that its shortest path
+no longer touches. The corners are multiples of half a square, on which cross products of floats are exact, so only the
+free ends of the path round at all.
 """
 
 from typing import NamedTuple
@@ -17,20 +17,24 @@ Ends = tuple[float, float, float, float]  # x and y of the start, x and y of the
 
 
 class Funnel(NamedTuple):
-    """Room for one tightening through at most (size - 4) / 4 portals."""
+    """Scratch for one tightening through at most (size - 8) / 4 portals.
+
+    Attributes
+    ----------
+    x : (size,) x of the corners, in squares.
+    y : (size,) y of the corners, in squares.
+    via : (size,) the corner before each, on the shortest path to it.
+    queue : (2 size,) the funnel, from its left end over the apex to its right end.
+    """
 
     x: Floats
-    """(size,) corners, in squares."""
     y: Floats
-    """(size,)"""
     via: Ints
-    """(size,) the corner before, on the shortest way."""
     queue: Ints
-    """(2 size,) the funnel, from its left end over the apex to its right end."""
 
 
-def new_rope(portals: int) -> Funnel:
-    """Room for that many portals."""
+def new_funnel(portals: int) -> Funnel:
+    """Return scratch for words of at most that many portals."""
     size = 4 * portals + 8
     return Funnel(
         np.empty(size),
@@ -42,15 +46,28 @@ def new_rope(portals: int) -> Funnel:
 
 @bare
 def tighten_word(
-    lefts: Ints, rights: Ints, lines: Ints, body: bool, word: Ints, size: int, ends: Ends, rope: Funnel, out: Floats
+    lefts: Ints, rights: Ints, lines: Ints, body: bool, word: Ints, size: int, ends: Ends, buffers: Funnel, out: Floats
 ) -> int:
-    """Write the corners of the tight rope to ``out`` (corners, 2), both ends included; returns their number.
+    """Write the corners of the shortest path through a word's portals to `out`, and return their number.
 
-    A point may use whole squares; a body moves on the lines between the centres of its squares and in the meshes of
-    four, so each portal counts twice: where the rope leaves the lower line of centres and where it meets the upper.
-    ``lefts``, ``rights`` and ``lines`` are those of the portals (see strips.py).
+    A point may use whole squares. A body moves on the lines between the centres of its squares and in the meshes of
+    four, so each portal counts twice: where the path leaves the lower line of centres and where it meets the upper one.
+
+    Parameters
+    ----------
+    lefts, rights, lines : `left`, `right` and `line` of the portals (see strips.py).
+    body : True for a body, False for a point.
+    word : signed portals; the first `size` are read.
+    ends : x and y of the start, x and y of the goal, in squares.
+    buffers : scratch, of at least `size` portals.
+    out : (corners, 2) float64, filled with points in squares, both ends included.
+
+    Returns
+    -------
+    int
+        The number of corners written.
     """
-    xs, ys, via = rope.x, rope.y, rope.via
+    xs, ys, via = buffers.x, buffers.y, buffers.via
     xs[0], ys[0] = ends[0], ends[1]
     inset, times = (0.5, 2) if body else (0.0, 1)
     used, kept, low, high = 1, 0, 0, 0
@@ -71,35 +88,37 @@ def tighten_word(
             xs[used], xs[used + 1] = left, right
             used += 2
     xs[used], ys[used] = ends[2], ends[3]
-    funnel(xs, ys, via, rope.queue, used)
-    return unwind(xs, ys, via, used, out)
+    pull_tight(xs, ys, via, buffers.queue, used)
+    return write_corners(xs, ys, via, used, out)
 
 
 @bare
-def funnel(xs: Floats, ys: Floats, via: Ints, queue: Ints, last: int) -> None:
-    """For every corner (left and right ends of portals in turn, then the goal), the one before on the way to it.
+def pull_tight(xs: Floats, ys: Floats, via: Ints, queue: Ints, last: int) -> None:
+    """Fill `via` with the corner before each one on the shortest path to it.
 
-    ``queue`` holds the funnel: from ``left`` to ``apex`` the left chain, from there to ``right`` the right one.
+    Corner 0 is the start, then come the left and right ends of the portals in turn, and `last` is the goal. `queue`
+    holds
+    the funnel: its entries from `left` to `apex` are the left chain, those from `apex` to `right` the right one.
     """
     left = apex = right = queue.shape[0] // 2
     queue[apex] = 0
     for corner in range(1, last + 1):
         x, y = xs[corner], ys[corner]
         if corner & 1:
-            while left < apex and turn(xs, ys, queue[left + 1], queue[left], x, y) <= 0.0:
+            while left < apex and side_of_ray(xs, ys, queue[left + 1], queue[left], x, y) <= 0.0:
                 left += 1
             if left == apex:
-                while apex < right and turn(xs, ys, queue[apex], queue[apex + 1], x, y) < 0.0:
+                while apex < right and side_of_ray(xs, ys, queue[apex], queue[apex + 1], x, y) < 0.0:
                     apex += 1
                 left = apex
             via[corner] = queue[left]
             left -= 1
             queue[left] = corner
         else:
-            while right > apex and turn(xs, ys, queue[right - 1], queue[right], x, y) >= 0.0:
+            while right > apex and side_of_ray(xs, ys, queue[right - 1], queue[right], x, y) >= 0.0:
                 right -= 1
             if right == apex:
-                while apex > left and turn(xs, ys, queue[apex], queue[apex - 1], x, y) > 0.0:
+                while apex > left and side_of_ray(xs, ys, queue[apex], queue[apex - 1], x, y) > 0.0:
                     apex -= 1
                 right = apex
             via[corner] = queue[right]
@@ -108,14 +127,14 @@ def funnel(xs: Floats, ys: Floats, via: Ints, queue: Ints, last: int) -> None:
 
 
 @bare
-def turn(xs: Floats, ys: Floats, a: int, b: int, x: float, y: float) -> float:
-    """Positive when (x, y) lies left of the ray from corner a through corner b."""
+def side_of_ray(xs: Floats, ys: Floats, a: int, b: int, x: float, y: float) -> float:
+    """Return a positive number when (x, y) lies left of the ray from corner a through corner b, negative when right."""
     return float((xs[b] - xs[a]) * (y - ys[a]) - (ys[b] - ys[a]) * (x - xs[a]))
 
 
 @bare
-def unwind(xs: Floats, ys: Floats, via: Ints, last: int, out: Floats) -> int:
-    """Write the way to a corner, without corners met twice in a row; returns their number."""
+def write_corners(xs: Floats, ys: Floats, via: Ints, last: int, out: Floats) -> int:
+    """Write the path to corner `last`, without equal corners in a row, and return the number of corners."""
     size, corner = 1, last
     while corner != 0:
         corner = 0 + via[corner]
@@ -134,14 +153,14 @@ def unwind(xs: Floats, ys: Floats, via: Ints, last: int, out: Floats) -> int:
 
 @bare
 def measure_line(line: Floats, size: int) -> float:
-    """The length of a polyline's first ``size`` corners."""
+    """Return the length of a polyline's first `size` corners, in the unit of its coordinates."""
     total = 0.0
     for k in range(1, size):
-        total += reach(line[k, 0] - line[k - 1, 0], line[k, 1] - line[k - 1, 1])
+        total += step_length(line[k, 0] - line[k - 1, 0], line[k, 1] - line[k - 1, 1])
     return total
 
 
 @bare
-def reach(run: float, rise: float) -> float:
-    """The length of a step; many times as fast as hypot, and nothing here is near overflow."""
+def step_length(run: float, rise: float) -> float:
+    """Return the Euclidean length of a step; much faster than hypot, and nothing here is near overflow."""
     return float(np.sqrt(run * run + rise * rise))

@@ -1,13 +1,11 @@
-"""What routing needs besides chains and runs: the portals along each chain, and how long a chain is when pulled
-tight.
-"""
+"""Data that routing precomputes on a pathgraph: words and tight lengths of chains, and distances from landmarks."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from geometry.homotopy.funnel import Funnel, measure_line, new_rope, tighten_word
-from geometry.homotopy.strips import Strips, extend, symbol_between
+from geometry.homotopy.funnel import Funnel, measure_line, new_funnel, tighten_word
+from geometry.homotopy.strips import Strips, append_symbol, symbol_between
 from geometry.kernels.arrays import Floats, Ints, SquaredDistances
 from geometry.kernels.heap import pop, push
 from geometry.kernels.jit import bare
@@ -15,73 +13,94 @@ from geometry.skeleton.chains import Chains
 from geometry.skeleton.graph import find, first_way, is_node, onward
 from geometry.skeleton.skeleton import Flags, Heights, steepest, stride
 
-LANDMARKS = 6
+LANDMARK_COUNT = 6  # landmarks of a pathgraph, at most; tuned on the benchmark maps
 
 
 class Landmarks(NamedTuple):
-    """For n nodes and m chains."""
+    """What routing knows of a pathgraph with n nodes and m chains, besides the chains and the strips.
+
+    An arc is a chain with a direction: its code is twice the chain's number, plus 1 when walked backwards (see
+    astar.py).
+
+    Attributes
+    ----------
+    symbol : (cells,) for each chain cell, the signed portal between it and the next cell of its chain; 0 within a row.
+    word : (size,) the reduced words of all whole chains, one after the other.
+    spelt : (m + 1,) the index in `word` at which each chain's word starts.
+    length : (m,) the length of each chain when pulled tight between its ends, in squares.
+    place : (n, 2) the nodes' centres (x, y), in squares.
+    head : (n, 4) the node to which the chain leads that leaves a node to the east, north, west, south; -1 for none.
+    arc : (n, 4) the code of that arc.
+    step : (n, 4) the length of that arc, in squares.
+    sight : (n, landmarks) distances over the pathgraph from the landmarks, in squares; infinite where there is no path.
+    """
 
     symbol: Ints
-    """Per chain cell, the signed portal (from 1) between it and the next cell of its chain; 0 within a row."""
     word: Ints
-    """The reduced words of all whole chains."""
     spelt: Ints
-    """(m + 1,) where each chain's word starts in ``word``."""
     length: Floats
-    """(m,) the length of the tight rope between the chain's ends, in squares."""
     place: Floats
-    """(n, 2) the nodes' centres, in squares."""
     head: Ints
-    """(n, 4) the node to which the chain leads that leaves a node to the east, north, west, south; -1 for none."""
     arc: Ints
-    """(n, 4) the code of that arc (see astar.py)."""
     step: Floats
-    """(n, 4) its length."""
     sight: Floats
-    """(n, landmarks) distances over the pathgraph from the landmarks; infinite where there is no way."""
 
 
 class Anchor(NamedTuple):
-    """Where a square's steepest way up meets the skeleton."""
+    """The point of the pathgraph at which the steepest ascent from a square meets the skeleton.
+
+    Attributes
+    ----------
+    chain : the chain, or -1 at a node without chains.
+    position : the index of the cell on its chain, from 0.
+    node : the node met, or -1 inside a chain.
+    cell : the index of the padded cell.
+    """
 
     chain: int
-    """The chain, or -1 at a node without chains."""
     position: int
-    """Which of the chain's cells."""
     node: int
-    """The node met, or -1 inside a chain."""
     cell: int
-    """The padded cell."""
 
 
-def find_ways(square: SquaredDistances, chains: Chains, runs: Strips, body: bool) -> Landmarks:
-    """Prepare routing on a pathgraph."""
+def compute_landmarks(square: SquaredDistances, chains: Chains, strips: Strips, body: bool) -> Landmarks:
+    """Return what routing precomputes on a pathgraph.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int, squared clearances in half squares; only the shape is read.
+    chains : the chains of the pathgraph.
+    strips : the strips of the same free space.
+    body : True for a body, whose centre keeps to the lines between centres of squares; False for a point.
+    """
     width = square.shape[1]
     symbol = np.zeros(chains.cells.shape[0], np.int32)
     length = np.empty(chains.ends.shape[0])
     longest = int(np.diff(chains.start).max(initial=1))
     words, spelt = np.empty(len(symbol) + 1, np.int32), np.zeros(len(length) + 1, np.int32)
-    line, rope = np.empty((4 * longest + 8, 2)), new_rope(2 * longest)
-    find_symbols(chains.start, chains.cells, runs.row, runs.up, runs.left, width, symbol)
-    portals = runs.left, runs.right, runs.line
-    measure_ways(chains.start, chains.cells, symbol, *portals, body, width, length, words, spelt, line, rope)
+    line, funnel = np.empty((4 * longest + 8, 2)), new_funnel(2 * longest)
+    find_chain_symbols(chains.start, chains.cells, strips.row, strips.up, strips.left, width, symbol)
+    portals = strips.left, strips.right, strips.line
+    measure_chains(chains.start, chains.cells, symbol, *portals, body, width, length, words, spelt, line, funnel)
     place = np.stack([chains.node % width - 0.5, chains.node // width - 0.5], axis=1)
     shape = len(chains.node), 4
     head, arc, step = np.full(shape, -1, np.int32), np.zeros(shape, np.int32), np.zeros(shape)
     find_arcs(chains.leave, chains.ends, length, head, arc, step)
-    return Landmarks(symbol, words[: spelt[-1]].copy(), spelt, length, place, head, arc, step, sights(head, step))
+    return Landmarks(
+        symbol, words[: spelt[-1]].copy(), spelt, length, place, head, arc, step, landmark_distances(head, step)
+    )
 
 
 @bare
-def find_symbols(start: Ints, cells: Ints, row: Ints, up: Ints, left: Ints, width: int, symbol: Ints) -> None:
-    """Fill the symbols of all chains."""
+def find_chain_symbols(start: Ints, cells: Ints, row: Ints, up: Ints, left: Ints, width: int, symbol: Ints) -> None:
+    """Fill `symbol` with the signed portal after each chain cell."""
     for chain in range(start.shape[0] - 1):
         for k in range(start[chain], start[chain + 1] - 1):
             symbol[k] = symbol_between(row, up, left, 0 + cells[k], 0 + cells[k + 1], width)
 
 
 @bare
-def measure_ways(
+def measure_chains(
     start: Ints,
     cells: Ints,
     symbol: Ints,
@@ -94,24 +113,27 @@ def measure_ways(
     words: Ints,
     spelt: Ints,
     out: Floats,
-    rope: Funnel,
+    funnel: Funnel,
 ) -> None:
-    """Fill the words and the tight lengths of all chains."""
+    """Fill the reduced words (`words`, `spelt`) and the tight lengths of all chains, in squares.
+
+    `left`, `right` and `line` are those of the strips' portals; `out` and `funnel` are scratch.
+    """
     for chain in range(length.shape[0]):
         word, size = words[spelt[chain] :], 0
         first, last = start[chain], start[chain + 1] - 1
         for k in range(first, last):
-            size = extend(word, size, 0 + symbol[k])
+            size = append_symbol(word, size, 0 + symbol[k])
         a, b = cells[first], cells[last]
         ends = (a % width - 0.5, a // width - 0.5, b % width - 0.5, b // width - 0.5)
-        corners = tighten_word(left, right, line, body, word, size, ends, rope, out)
+        corners = tighten_word(left, right, line, body, word, size, ends, funnel, out)
         length[chain] = measure_line(out, corners)
         spelt[chain + 1] = spelt[chain] + size
 
 
 @bare
 def find_arcs(leave: Ints, ends: Ints, length: Floats, head: Ints, arc: Ints, step: Floats) -> None:
-    """Fill the arcs out of every node; chains back to the same node lead nowhere."""
+    """Fill the arcs out of every node. A chain from a node back to itself gives no arc."""
     for node in range(leave.shape[0]):
         for slot in range(4):
             chain = leave[node, slot]
@@ -121,26 +143,32 @@ def find_arcs(leave: Ints, ends: Ints, length: Floats, head: Ints, arc: Ints, st
                 step[node, slot] = length[chain]
 
 
-def sights(head: Ints, step: Floats) -> Floats:
-    """Distances from landmarks: each next one is the node furthest from those before (Goldberg and Harrelson 2005)."""
+def landmark_distances(head: Ints, step: Floats) -> Floats:
+    """Return the distances of all nodes from the landmarks, (n, landmarks), in squares.
+
+    Each landmark is the node that is furthest from those before it (Goldberg and Harrelson 2005).
+    """
     n = len(head)
-    sight = np.full((min(LANDMARKS, n), n), np.inf)
+    sight = np.full((min(LANDMARK_COUNT, n), n), np.inf)
     key, node = np.empty(4 * n + 8), np.empty(4 * n + 8, np.int32)
     nearest, spot = np.full(n, np.inf), 0
     for k in range(len(sight)):
-        distances_from(head, step, spot, sight[k], key, node)
+        fill_distances_from(head, step, spot, sight[k], key, node)
         if k == 0:  # the first is only a place to start from
             spot = int(np.argmax(np.where(np.isfinite(sight[0]), sight[0], -1.0)))
             sight[0] = np.inf
-            distances_from(head, step, spot, sight[0], key, node)
+            fill_distances_from(head, step, spot, sight[0], key, node)
         nearest = np.minimum(nearest, sight[k])
         spot = int(np.argmax(nearest))
     return np.ascontiguousarray(sight.T)
 
 
 @bare
-def distances_from(head: Ints, step: Floats, spot: int, out: Floats, key: Floats, node: Ints) -> None:
-    """Dijkstra over the whole pathgraph."""
+def fill_distances_from(head: Ints, step: Floats, spot: int, out: Floats, key: Floats, node: Ints) -> None:
+    """Fill `out` with the distances of all nodes from node `spot` by Dijkstra's algorithm, in squares.
+
+    `key` and `node` are scratch for its heap.
+    """
     out[spot] = 0.0
     size = push(key, node, 0, 0.0, spot)
     while size > 0:
@@ -159,18 +187,31 @@ def distances_from(head: Ints, step: Floats, spot: int, out: Floats, key: Floats
 def ascend(
     cell: int, heights: Heights, states: Flags, width: int, row: Ints, up: Ints, left: Ints, word: Ints
 ) -> tuple[int, int]:
-    """Go up the steepest way from a cell to the skeleton, writing its portals; returns cell and word size."""
+    """Climb from a cell to the skeleton along the steepest ascent, writing the portals crossed to `word`.
+
+    Returns
+    -------
+    (int, int)
+        The skeleton cell, and the size of the word.
+    """
     size = 0
     while states[cell] == 0:
         higher = steepest(cell, heights, width)
-        size = extend(word, size, symbol_between(row, up, left, cell, higher, width))
+        size = append_symbol(word, size, symbol_between(row, up, left, cell, higher, width))
         cell = higher
     return cell, size
 
 
 @bare
 def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
-    """The place of a skeleton cell on the pathgraph."""
+    """Return the anchor of a skeleton cell: its chain and position on the pathgraph.
+
+    Parameters
+    ----------
+    cell : index of a padded cell of the skeleton.
+    states : the skeleton's states, flat. width : columns of the padded grid.
+    node, leave, start, cells : those of the chains.
+    """
     if is_node(0 + states[cell]):
         return locate_node(cell, node, leave, start, cells)
     direction, steps, here = first_way(int(states[cell])), 0, cell
@@ -188,7 +229,7 @@ def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start:
 
 @bare
 def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
-    """The place of a node, as an end of one of its chains if it has any."""
+    """Return the anchor of a node's cell: an end of one of its chains if it has any."""
     number, found, position = find(node, cell), -1, 0
     for direction in range(4):
         chain = 0 + leave[number, direction]
@@ -200,20 +241,27 @@ def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) ->
 
 @bare
 def add_chain(start: Ints, symbol: Ints, chain: int, begin: int, end: int, word: Ints, size: int) -> int:
-    """Add the portals along a chain from one position to another, in either direction; returns the word's size."""
+    """Append the portals along a chain, from position `begin` to `end` in either direction; return the word's size."""
     first = start[chain]
     if begin <= end:
         for k in range(first + begin, first + end):
-            size = extend(word, size, 0 + symbol[k])
+            size = append_symbol(word, size, 0 + symbol[k])
     else:
         for k in range(first + begin - 1, first + end - 1, -1):
-            size = extend(word, size, 0 - symbol[k])
+            size = append_symbol(word, size, 0 - symbol[k])
     return size
 
 
 @bare
 def add_word(other: Ints, first: int, last: int, backwards: bool, word: Ints, size: int) -> int:
-    """Add a part of a reduced word, or its inverse, to another; returns the word's size."""
+    """Append part of a reduced word, or its inverse, to a reduced word; return the new size.
+
+    Parameters
+    ----------
+    other : the word to append; its entries from `first` up to `last`, excluded, are used.
+    backwards : whether to append the inverse.
+    word, size : the word that is extended. When it has no room, the returned size equals the length of its array.
+    """
     if backwards:
         while last > first and size > 0 and word[size - 1] == other[last - 1]:
             last, size = last - 1, size - 1

@@ -1,9 +1,9 @@
 """Strips and portals: free space cut into horizontal strips, whose nerve has the homotopy type of free space.
 
-A run is a maximal horizontal row of free squares; a portal is the overlap of a run with one in the row above. The
-class of a path is the word of portals it crosses (up positive, down negative, counted from 1) without neighbouring
-inverses. All portals but those of a spanning forest of the runs get a crossing number: with the ends fixed, the
-crossing numbers of a reduced word name its class.
+A strip is a maximal horizontal row of free squares. A portal is the overlap of a strip with a strip in the row above.
+The class of a path is the word of portals that it crosses, without neighbouring inverses: portals are counted from 1,
+positive when crossed upwards, negative when crossed downwards. All portals but those of a spanning forest of the
+strips get a crossing number. With the ends fixed, the crossing numbers of a reduced word name its class.
 """
 
 from typing import NamedTuple
@@ -15,58 +15,85 @@ from geometry.kernels.jit import bare
 
 
 class Strips(NamedTuple):
-    """n runs ordered by (row, column) and p portals ordered by (lower row, column); rows and columns are unpadded."""
+    """The n strips of a screen, ordered by (row, column), and its p portals, ordered by (lower row, column).
+
+    Rows and columns are those of the screen, without padding. A signed portal is its index plus 1, negative when it is
+    crossed downwards.
+
+    Attributes
+    ----------
+    row : (rows + 1,) the first strip of each row.
+    low : (n,) the first column of each strip.
+    high : (n,) the last column of each strip, included.
+    up : (n + 1,) the first portal from each strip to the row above; the portals of strip s are up[s] to up[s + 1] - 1.
+    down : (n + 1,) the first portal from each strip to the row below, in the same way.
+    left : (p,) the first column of each portal.
+    right : (p,) the last column of each portal, included.
+    lower : (p,) the strip below each portal.
+    upper : (p,) the strip above each portal.
+    line : (p,) the row of the strip below each portal.
+    crossing : (p,) the crossing number of each portal, counted from 1; 0 for portals of the spanning forest.
+    exit : (n,) the signed portal by which every path out of a dead-end strip leaves it; 0 for all other strips.
+    """
 
     row: Ints
-    """(rows + 1,) the first run of each row."""
     low: Ints
-    """(n,) first column of a run."""
     high: Ints
-    """(n,) last column of a run, included."""
     up: Ints
-    """(n + 1,) where the portals to the row above start."""
     down: Ints
-    """(n + 1,) where the portals to the row below start."""
     left: Ints
-    """(p,) first column of a portal."""
     right: Ints
-    """(p,) last column of a portal, included."""
     lower: Ints
-    """(p,) the run below."""
     upper: Ints
-    """(p,) the run above."""
     line: Ints
-    """(p,) the row of the run below."""
     crossing: Ints
-    """(p,) the crossing number, 0 in the spanning forest."""
     exit: Ints
-    """(n,) the signed portal out of a run from which there is no other way on, however one goes; else 0."""
 
 
-def find_runs(square: SquaredDistances, level: int) -> Strips:
-    """The runs and portals of the cells whose ``square`` is at least ``level``."""
+def find_strips(square: SquaredDistances, level: int) -> Strips:
+    """Return the strips and portals of the cells whose squared clearance is at least a level.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int, squared clearances in half squares, padded by one cell on each side.
+    level : the least squared clearance of a cell that counts as free, in half squares.
+
+    Returns
+    -------
+    Strips
+        In unpadded rows and columns.
+    """
     row = np.zeros(square.shape[0] - 1, np.int32)
-    n = count_runs(square, level, row)
-    low, high = np.empty(n, np.int32), np.empty(n, np.int32)
-    fill_runs(square, level, low, high)
-    up, down = np.zeros(n + 1, np.int32), np.zeros(n + 1, np.int32)
-    left, right, lower, upper, line = (np.empty(2 * n, np.int32) for _ in range(5))
-    p = fill_portals(row, low, high, up, down, left, right, lower, upper, line)
-    crossing = np.zeros(p, np.int32)
-    number_crossings(lower, upper, np.arange(n, dtype=np.int32), crossing)
-    exits = np.zeros(n, np.int32)
-    find_exits(up, down, lower, upper, exits, (np.diff(up) + np.diff(down)).astype(np.int32), np.empty(n, np.int32))
-    return Strips(row, low, high, up, down, *trimmed(p, left, right, lower), *trimmed(p, upper, line, crossing), exits)
+    count = count_strips(square, level, row)
+    low, high = np.empty(count, np.int32), np.empty(count, np.int32)
+    fill_strips(square, level, low, high)
+    up, down = np.zeros(count + 1, np.int32), np.zeros(count + 1, np.int32)
+    left, right, lower, upper, line = (np.empty(2 * count, np.int32) for _ in range(5))
+    portals = fill_portals(row, low, high, up, down, left, right, lower, upper, line)
+    crossing = np.zeros(portals, np.int32)
+    number_crossings(lower, upper, np.arange(count, dtype=np.int32), crossing)
+    exits = np.zeros(count, np.int32)
+    find_exits(up, down, lower, upper, exits, (np.diff(up) + np.diff(down)).astype(np.int32), np.empty(count, np.int32))
+    return Strips(
+        row,
+        low,
+        high,
+        up,
+        down,
+        *copy_first(portals, left, right, lower),
+        *copy_first(portals, upper, line, crossing),
+        exits,
+    )
 
 
-def trimmed(size: int, a: Ints, b: Ints, c: Ints) -> tuple[Ints, Ints, Ints]:
-    """Copies of the arrays' first ``size`` entries, without the spare room behind."""
+def copy_first(size: int, a: Ints, b: Ints, c: Ints) -> tuple[Ints, Ints, Ints]:
+    """Return copies of the first `size` entries of three arrays."""
     return a[:size].copy(), b[:size].copy(), c[:size].copy()
 
 
 @bare
-def count_runs(square: SquaredDistances, level: int, row: Ints) -> int:
-    """Fill ``row`` and return the number of runs."""
+def count_strips(square: SquaredDistances, level: int, row: Ints) -> int:
+    """Return the number of strips; fill `row` with the number of strips up to the end of each row."""
     total = 0
     for i in range(1, square.shape[0] - 1):
         here = square[i]
@@ -77,18 +104,18 @@ def count_runs(square: SquaredDistances, level: int, row: Ints) -> int:
 
 
 @bare
-def fill_runs(square: SquaredDistances, level: int, low: Ints, high: Ints) -> None:
-    """Write the ends of all runs."""
-    run = 0
+def fill_strips(square: SquaredDistances, level: int, low: Ints, high: Ints) -> None:
+    """Fill the first and last columns of all strips."""
+    strip = 0
     for i in range(1, square.shape[0] - 1):
         here = square[i]
         for j in range(1, here.shape[0]):
             if (here[j] >= level) != (here[j - 1] >= level):
                 if here[j] >= level:
-                    low[run] = j - 1
+                    low[strip] = j - 1
                 else:
-                    high[run] = j - 2
-                    run += 1
+                    high[strip] = j - 2
+                    strip += 1
 
 
 @bare
@@ -104,7 +131,10 @@ def fill_portals(
     upper: Ints,
     line: Ints,
 ) -> int:
-    """Merge each row with the next; returns the number of portals."""
+    """Fill the portals between each row and the next, and return their number.
+
+    The arrays are those of `Strips`: `row`, `low` and `high` are read, all others are written.
+    """
     found = 0
     for i in range(row.shape[0] - 2):
         a, b = row[i], row[i + 1]
@@ -127,10 +157,13 @@ def fill_portals(
 
 @bare
 def number_crossings(lower: Ints, upper: Ints, parent: Ints, crossing: Ints) -> None:
-    """Number the portals that close a ring of runs, in their order."""
+    """Give numbers, from 1 in their order, to the portals that close a ring of strips.
+
+    `parent` is a union-find forest over the strips; it must begin as the identity.
+    """
     number = 0
     for portal in range(crossing.shape[0]):
-        a, b = root(parent, lower[portal]), root(parent, upper[portal])
+        a, b = find_root(parent, lower[portal]), find_root(parent, upper[portal])
         if a == b:
             number += 1
             crossing[portal] = number
@@ -140,43 +173,46 @@ def number_crossings(lower: Ints, upper: Ints, parent: Ints, crossing: Ints) -> 
 
 @bare
 def find_exits(up: Ints, down: Ints, lower: Ints, upper: Ints, exits: Ints, degree: Ints, queue: Ints) -> None:
-    """Peel off runs with one portal left, until there are none: the dead ends of free space."""
+    """Fill `exits` for the dead ends of free space: remove strips with one portal left until there are none.
+
+    `degree` (n,) holds the number of portals of each strip and is used up; `queue` (n,) is scratch.
+    """
     size = 0
-    for run in range(exits.shape[0]):
-        if degree[run] == 1:
-            queue[size] = run
+    for strip in range(exits.shape[0]):
+        if degree[strip] == 1:
+            queue[size] = strip
             size += 1
     done = 0
     while done < size:
-        run = queue[done]
+        strip = queue[done]
         done += 1
-        if degree[run] != 1:
+        if degree[strip] != 1:
             continue
-        for k in range(up[run], up[run + 1] + down[run + 1] - down[run]):
-            above = k < up[run + 1]
-            portal = k if above else k - up[run + 1] + down[run]
+        for k in range(up[strip], up[strip + 1] + down[strip + 1] - down[strip]):
+            above = k < up[strip + 1]
+            portal = k if above else k - up[strip + 1] + down[strip]
             other = upper[portal] if above else lower[portal]
             if exits[other] == 0:  # the one not yet peeled
-                exits[run] = portal + 1 if above else -portal - 1
+                exits[strip] = portal + 1 if above else -portal - 1
                 degree[other] -= 1
                 if degree[other] == 1:
                     queue[size] = other
                     size += 1
-        degree[run] = 0
+        degree[strip] = 0
 
 
 @bare
-def root(parent: Ints, run: int) -> int:
-    """The representative of a run's component, halving the way."""
-    while parent[run] != run:
-        parent[run] = parent[parent[run]]
-        run = parent[run]
-    return int(run)
+def find_root(parent: Ints, strip: int) -> int:
+    """Return the representative of a strip's component; halve the path to it in the union-find forest."""
+    while parent[strip] != strip:
+        parent[strip] = parent[parent[strip]]
+        strip = parent[strip]
+    return int(strip)
 
 
 @bare
-def run_at(rows: Ints, lows: Ints, row: int, column: int) -> int:
-    """The run of a square that lies in one; ``rows`` and ``lows`` are ``row`` and ``low`` of the runs."""
+def strip_at(rows: Ints, lows: Ints, row: int, column: int) -> int:
+    """Return the strip in which a square lies, given `row` and `low` of the strips; the square must be free."""
     low, high = 0 + rows[row], rows[row + 1] - 1
     while low < high:
         middle = (low + high + 1) >> 1
@@ -189,9 +225,13 @@ def run_at(rows: Ints, lows: Ints, row: int, column: int) -> int:
 
 @bare
 def symbol_between(rows: Ints, up: Ints, left: Ints, cell: int, other: int, width: int) -> int:
-    """The signed portal crossed between two edge neighbours (padded cells); 0 within a row.
+    """Return the signed portal crossed between two cells that share an edge; 0 when both are in one row.
 
-    ``rows``, ``up`` and ``left`` are ``row``, ``up`` and ``left`` of the runs.
+    Parameters
+    ----------
+    rows, up, left : `row`, `up` and `left` of the strips.
+    cell, other : indices of padded cells.
+    width : columns of the padded grid.
     """
     step = other - cell
     if step == 1 or step == -1:
@@ -209,8 +249,11 @@ def symbol_between(rows: Ints, up: Ints, left: Ints, cell: int, other: int, widt
 
 
 @bare
-def extend(word: Ints, size: int, symbol: int) -> int:
-    """Append a symbol to a reduced word; returns its new size. A word that fills its room needs a larger one."""
+def append_symbol(word: Ints, size: int, symbol: int) -> int:
+    """Append a signed portal to a reduced word and return the word's new size; an inverse cancels the last symbol.
+
+    A symbol of 0 changes nothing. A word that fills its array is not extended: the caller needs a larger one.
+    """
     if symbol == 0 or size >= word.shape[0]:
         return size
     if size > 0 and word[size - 1] == -symbol:

@@ -1,1 +1,12 @@
-"""."""
+"""Kernels: compiled loops, and the small data structures that they share.
+
+Modules in reading order:
+
+    arrays          the array types of the engine, each named once
+    jit             functions that compile themselves when first called (numba)
+    heap            a binary heap in two arrays
+    bounded_heap    the same with a fixed capacity: a full heap drops items and counts them
+    bucket_queue    a priority queue for costs that are small whole numbers
+
+Public names: ``compiled``, ``bare`` (jit), and the types of arrays.
+"""

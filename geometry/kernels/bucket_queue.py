@@ -1,4 +1,4 @@
-"""A queue for costs that are small whole numbers: a ring of buckets. Plain loops for numba.
+"""A priority queue for costs that are small whole numbers: a ring of buckets. Plain loops for numba.
 
 Source: Dial 1969, "Algorithm 360: shortest-path forest with topological ordering".
 """
@@ -11,13 +11,18 @@ import numpy.typing as npt
 from geometry.kernels.arrays import Ints
 from geometry.kernels.jit import bare, compiled
 
-RING = 2048  # buckets: more than the dearest step
+BUCKETS = 2048  # number of buckets; bounds the cost of a step, which must be less
 
 
 class Queue(NamedTuple):
-    """Nodes by cost: first[cost % RING] is the last entry put there, before[entry] the one before it, -1 none.
+    """Nodes by cost; all costs that wait lie within BUCKETS of each other.
 
-    used : (2,) entries used, entries that wait.
+    Attributes
+    ----------
+    first : (BUCKETS,) first[cost % BUCKETS] is the last entry put into that bucket; -1 for none.
+    node : (size,) node of each entry.
+    before : (size,) the entry of the same bucket put before it; -1 for none.
+    used : (2,) number of entries used, number of entries that wait.
     """
 
     first: Ints
@@ -28,29 +33,29 @@ class Queue(NamedTuple):
 
 @compiled
 def new_queue(size: int) -> Queue:
-    """An empty queue with room for so many entries in all."""
-    first = np.full(RING, -1, np.int32)
+    """Return an empty queue with memory for `size` entries in all, taken ones included."""
+    first = np.full(BUCKETS, -1, np.int32)
     return Queue(first, np.empty(size, np.int32), np.empty(size, np.int32), np.zeros(2, np.int64))
 
 
 @bare
 def put(queue: Queue, cost: int, node: int) -> None:
-    """Put a node into the queue; it is lost when there is no room left."""
+    """Put a node into the queue; it is lost if no memory is left."""
     entry = queue.used[0]
     if entry == len(queue.node):
         return
-    queue.node[entry], queue.before[entry] = node, queue.first[cost % RING]
-    queue.first[cost % RING] = entry
+    queue.node[entry], queue.before[entry] = node, queue.first[cost % BUCKETS]
+    queue.first[cost % BUCKETS] = entry
     queue.used[0] += 1
     queue.used[1] += 1
 
 
 @bare
 def take(queue: Queue, now: int) -> int:
-    """A node of cost `now`, taken out of the queue; -1 when there is none."""
-    entry = queue.first[now % RING]
+    """Take a node of cost `now` out of the queue and return it; -1 if there is none."""
+    entry = queue.first[now % BUCKETS]
     if entry < 0:
         return -1
-    queue.first[now % RING] = queue.before[entry]
+    queue.first[now % BUCKETS] = queue.before[entry]
     queue.used[1] -= 1
     return int(queue.node[entry])

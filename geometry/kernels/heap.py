@@ -1,4 +1,4 @@
-"""A binary heap in two arrays, keys and what they belong to; the caller keeps its size."""
+"""A binary heap in two arrays: keys, and the items that they belong to. The caller keeps its size."""
 
 from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
@@ -6,7 +6,10 @@ from geometry.kernels.jit import bare
 
 @bare
 def push(keys: Floats, items: Ints, size: int, key: float, item: int) -> int:
-    """Put an item on the heap; returns the heap's size."""
+    """Put an item on the heap; return the heap's new size.
+
+    `keys`, `items` : the heap, with memory for one more. `size` : number of items on it.
+    """
     k = size
     while k > 0:
         parent = (k - 1) >> 1
@@ -20,7 +23,7 @@ def push(keys: Floats, items: Ints, size: int, key: float, item: int) -> int:
 
 @bare
 def pop(keys: Floats, items: Ints, size: int) -> tuple[int, int]:
-    """Take the item with the least key, which is ``keys[0]``; returns it and the heap's size."""
+    """Take the item with the least key, ``keys[0]``, off a heap that is not empty; return the item and the new size."""
     top = 0 + items[0]
     size -= 1
     key, item = keys[size], items[size]

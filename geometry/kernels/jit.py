@@ -13,68 +13,71 @@ from threading import Timer
 from types import FunctionType
 from typing import Any, Generic, ParamSpec, TypeVar, cast
 
-P = ParamSpec("P")
-R = TypeVar("R")
-PATIENCE = 1.0  # seconds of compiling before the user is told
-OFTEN = 5.0  # seconds between two lines that tell how far it is
+Arguments = ParamSpec("Arguments")
+Returned = TypeVar("Returned")
+NOTICE_DELAY = 1.0  # seconds of compiling after which the user is informed; a convention
+PROGRESS_INTERVAL = 5.0  # seconds between two lines of progress; a convention
 
 
-class Kernel(Generic[P, R]):
+class Kernel(Generic[Arguments, Returned]):
     """A function that compiles itself when it is first called.
 
-    ``swift`` is the same for callers whose arguments always have the very types of the first call it gets: it looks at
-    no types again, which for short, frequent calls takes most of the time.
+    Attributes
+    ----------
+    function : the Python function.
+    call_unchecked : the compiled function for callers whose arguments always have the very types of its first call. It
+        does not look at types again, which takes most of the time of short, frequent calls.
     """
 
-    def __init__(self, function: Callable[P, R], counting: bool) -> None:
+    def __init__(self, function: Callable[Arguments, Returned], counts_references: bool) -> None:
         self.function = function
-        self._counting = counting
+        self._counts_references = counts_references
         self.__doc__ = function.__doc__
         self.__name__ = function.__name__
         self.__module__ = function.__module__
-        self.swift: Callable[P, R] = self._first
-        self._ready: Callable[P, R] | None = None
-        self._machine: Callable[P, R] | None = None
+        self.call_unchecked: Callable[Arguments, Returned] = self._first_unchecked
+        self._compiled: Callable[Arguments, Returned] | None = None
+        self._numba: Callable[Arguments, Returned] | None = None
 
-    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
-        if self._ready is None:
-            machine = self.machine()
-            _compile(machine, args)
-            self._ready = machine
-        return self._ready(*args, **kwargs)
+    def __call__(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Returned:
+        if self._compiled is None:
+            dispatcher = self.dispatcher()
+            _compile(dispatcher, args)
+            self._compiled = dispatcher
+        return self._compiled(*args, **kwargs)
 
-    def machine(self) -> Callable[P, R]:
-        """The numba dispatcher (or the bare function when numba is told not to compile)."""
-        if self._machine is None:
-            self._machine = _dispatcher(self.function, self._counting)
-            if not hasattr(self._machine, "overloads"):
+    def dispatcher(self) -> Callable[Arguments, Returned]:
+        """Return numba's dispatcher, or the Python function itself if numba is told not to compile."""
+        if self._numba is None:
+            self._numba = _dispatcher(self.function, self._counts_references)
+            if not hasattr(self._numba, "overloads"):
                 _link(cast(FunctionType, self.function).__globals__)
-        return self._machine
+        return self._numba
 
-    def _first(self, *args: P.args, **kwargs: P.kwargs) -> R:
-        """``swift`` before it is ready."""
-        self.swift = self.entry(*args, **kwargs)
-        return self.swift(*args, **kwargs)
+    def _first_unchecked(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Returned:
+        """Compile for the types of these arguments, replace `call_unchecked` by the result, and call it."""
+        self.call_unchecked = self.entry(*args, **kwargs)
+        return self.call_unchecked(*args, **kwargs)
 
-    def entry(self, *args: P.args, **kwargs: P.kwargs) -> Callable[P, R]:
-        """The machine code for arguments of these types, which skips looking at types again: for short, frequent calls.
+    def entry(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Callable[Arguments, Returned]:
+        """Compile for the types of these arguments, without running, and return the machine code for them.
 
-        Later arguments must have the very same types.
+        It does not look at types again: later arguments must have the very same types.
         """
-        machine: Any = self.machine()
-        _compile(machine, args)
-        if not hasattr(machine, "overloads"):
+        dispatcher: Any = self.dispatcher()
+        _compile(dispatcher, args)
+        if not hasattr(dispatcher, "overloads"):
             return self.function
-        types = tuple(machine.typeof_pyval(value) for value in args)
-        return cast(Callable[P, R], machine.overloads[types].entry_point)
+        types = tuple(dispatcher.typeof_pyval(value) for value in args)
+        return cast(Callable[Arguments, Returned], dispatcher.overloads[types].entry_point)
 
 
-def compiled(function: Callable[P, R]) -> Kernel[P, R]:
+def compiled(function: Callable[Arguments, Returned]) -> Kernel[Arguments, Returned]:
     """Decorate a kernel. Its arguments are arrays and numbers; it may call other kernels, also of other modules."""
     return Kernel(function, True)
 
 
-def bare(function: Callable[P, R]) -> Kernel[P, R]:
+def bare(function: Callable[Arguments, Returned]) -> Kernel[Arguments, Returned]:
     """Decorate a kernel that makes no arrays but views, returns none, and calls only such kernels.
 
     Numba then counts no references to arrays, which in kernels of many small calls takes most of the time.
@@ -82,44 +85,46 @@ def bare(function: Callable[P, R]) -> Kernel[P, R]:
     return Kernel(function, False)
 
 
-def _dispatcher(function: Callable[P, R], counting: bool) -> Callable[P, R]:
+def _dispatcher(function: Callable[Arguments, Returned], counts_references: bool) -> Callable[Arguments, Returned]:
+    """Return numba's dispatcher of a function, set up for caching, linking and notices."""
     import numba
 
-    _look_for_no_blas()
-    options: Any = {"error_model": "numpy", "_nrt": counting, "no_cfunc_wrapper": True}
+    _skip_blas_lookup()
+    options: Any = {"error_model": "numpy", "_nrt": counts_references, "no_cfunc_wrapper": True}
     try:
-        machine = numba.njit(cache=True, **options)(function)
+        dispatcher = numba.njit(cache=True, **options)(function)
     except RuntimeError:  # no directory to keep the cache in: compile anew in each process
-        _progress.kept = False
-        machine = numba.njit(**options)(function)
-    if hasattr(machine, "overloads"):
-        _progress.machines.append(machine)
-        _load_lightly(machine)
-        _compile_wide(machine)
-        _compile_linked(machine, cast(FunctionType, function).__globals__)
-    return cast(Callable[P, R], machine)
+        _progress.has_cache = False
+        dispatcher = numba.njit(**options)(function)
+    if hasattr(dispatcher, "overloads"):
+        _progress.dispatchers.append(dispatcher)
+        _load_without_compiler(dispatcher)
+        _widen_integers(dispatcher)
+        _link_when_compiling(dispatcher, cast(FunctionType, function).__globals__)
+    return cast(Callable[Arguments, Returned], dispatcher)
 
 
-def _look_for_no_blas() -> None:
-    """Kernels multiply no matrices; numba, to know whether it might, would import scipy where that is installed.
+def _skip_blas_lookup() -> None:
+    """Import numba's array functions without its search for BLAS, which would import scipy where that is installed.
 
-    That takes as long as all else of a cold start. Who multiplies matrices with numba finds scipy when he does.
+    Kernels multiply no matrices, and that import takes as long as all else of a cold start. Code that multiplies
+    matrices with numba still finds scipy at that time.
     """
     if "numba.np.arraymath" in sys.modules:
         return
     from numba.np import linalg
 
-    look = linalg.ensure_blas
+    ensure = linalg.ensure_blas
     linalg.ensure_blas = lambda: None
     try:
         importlib.import_module("numba.np.arraymath")
     finally:
-        linalg.ensure_blas = look
+        linalg.ensure_blas = ensure
 
 
-def _load_lightly(machine: Any) -> None:
-    """Load from numba's cache without first getting ready to compile: machine code needs the run time only."""
-    store = machine._cache
+def _load_without_compiler(dispatcher: Any) -> None:
+    """Make a dispatcher load from numba's cache without setting up the compiler: machine code does not need it."""
+    store = dispatcher._cache
     if not (hasattr(store, "_load_overload") and hasattr(store, "_guard_against_spurious_io_errors")):
         return
     from numba.core.runtime.nrt import rtsys
@@ -132,87 +137,95 @@ def _load_lightly(machine: Any) -> None:
     store.load_overload = load
 
 
-def _compile_wide(machine: Any) -> None:
-    """One copy for all whole numbers: else every constant and every width of integer would get a copy of its own."""
+def _widen_integers(dispatcher: Any) -> None:
+    """Make a dispatcher compile one copy for all whole numbers, else each constant and each width would get its own."""
     from numba.core import types
 
-    compile_exactly = machine.compile
+    compile_exactly = dispatcher.compile
 
     def compile_wide(signature: tuple[Any, ...]) -> Any:
         return compile_exactly(tuple(types.int64 if isinstance(t, types.Integer) else t for t in signature))
 
-    machine.compile = compile_wide
+    dispatcher.compile = compile_wide
 
 
-def _compile_linked(machine: Any, names: dict[str, Any]) -> None:
-    """Link to other kernels and say so when compiling takes long: only what numba does not find in its cache."""
-    compiler = machine._compiler
-    compile_it = compiler.compile
+def _link_when_compiling(dispatcher: Any, module_globals: dict[str, Any]) -> None:
+    """Make a dispatcher link to other kernels, and print a notice when compiling takes long, if it is not cached."""
+    compiler = dispatcher._compiler
+    compile_now = compiler.compile
 
-    def compile_telling(*args: Any) -> Any:
-        _link(names)
-        notice = Timer(PATIENCE, tell)
+    def compile_with_notice(*args: Any) -> Any:
+        _link(module_globals)
+        notice = Timer(NOTICE_DELAY, tell)
         notice.daemon = True
         notice.start()
         try:
-            return compile_it(*args)
+            return compile_now(*args)
         finally:
             notice.cancel()
             _progress.step()
 
-    compiler.compile = compile_telling
+    compiler.compile = compile_with_notice
 
 
-def _link(names: dict[str, Any]) -> None:
-    """Let kernels call each other directly: numba resolves only dispatchers among a module's globals."""
-    for name, value in list(names.items()):
+def _link(module_globals: dict[str, Any]) -> None:
+    """Replace kernels among a module's globals by their dispatchers, the only ones that numba resolves there."""
+    for name, value in list(module_globals.items()):
         if isinstance(value, Kernel):
-            names[name] = value.machine()
+            module_globals[name] = value.dispatcher()
 
 
-def _compile(machine: Any, args: tuple[Any, ...]) -> None:
-    """Compile for these arguments without running."""
-    if hasattr(machine, "typeof_pyval"):
-        machine.compile(tuple(machine.typeof_pyval(value) for value in args))
+def _compile(dispatcher: Any, args: tuple[Any, ...]) -> None:
+    """Compile for the types of these arguments, without running."""
+    if hasattr(dispatcher, "typeof_pyval"):
+        dispatcher.compile(tuple(dispatcher.typeof_pyval(value) for value in args))
 
 
 class _Progress:
-    """What this process has compiled, told on a terminal every few seconds."""
+    """The kernels that this process has compiled, reported on a terminal every few seconds."""
 
     def __init__(self) -> None:
-        self.machines: list[Any] = []
-        self.kept = True  # is there a directory to keep kernels in?
-        self.made = 0
-        self.began: float | None = None
-        self._told = 0.0
+        self.dispatchers: list[Any] = []
+        self.has_cache = True  # whether there is a directory to keep kernels in
+        self.compiled_count = 0
+        self.started_at: float | None = None
+        self._reported_at = 0.0
 
     def step(self) -> None:
-        """One more is compiled."""
-        self.made += 1
+        """Count one more compiled kernel, and report progress if it is time to."""
+        self.compiled_count += 1
         now = time.monotonic()
-        if self.began is None or now - self._told < OFTEN or not (sys.stderr and sys.stderr.isatty()):
+        if (
+            self.started_at is None
+            or now - self._reported_at < PROGRESS_INTERVAL
+            or not (sys.stderr and sys.stderr.isatty())
+        ):
             return
-        self._told = now
-        print(f"utak: kernels compiled so far: {self.made}, in {now - self.began:.0f} s", file=sys.stderr, flush=True)
+        self._reported_at = now
+        print(
+            f"utak: kernels compiled so far: {self.compiled_count}, in {now - self.started_at:.0f} s",
+            file=sys.stderr,
+            flush=True,
+        )
 
     def begin(self) -> None:
-        """It is told of from now on."""
-        self.began = self._told = time.monotonic()
+        """Start reporting from now on."""
+        self.started_at = self._reported_at = time.monotonic()
 
 
 _progress = _Progress()
 
 
 def ready() -> tuple[int, bool]:
-    """Return how many kernels this process can call, compiled or loaded, and whether they are kept for the next one."""
-    return sum(bool(machine.overloads) for machine in _progress.machines), _progress.kept
+    """Return how many kernels this process can call, and whether they are cached on disk for the next process."""
+    return sum(bool(dispatcher.overloads) for dispatcher in _progress.dispatchers), _progress.has_cache
 
 
 @cache
 def tell() -> None:
-    """Say it once in a process."""
+    """Print, once in a process, that kernels are being compiled; start the reports of progress."""
     once = "once per installation"
-    if not _progress.kept:
+    if not _progress.has_cache:
         once = "they cannot be kept for the next run: set NUMBA_CACHE_DIR to a folder that can be written"
     print(f"utak: compiling geometry kernels ({once}) ...", file=sys.stderr, flush=True)
     _progress.begin()

@@ -1,4 +1,4 @@
-"""A body made ready to be moved: drawn about the centre that it is turned about, with discs inscribed in it."""
+"""A body made ready to be moved: its edges about the centre that it is turned about, with discs inscribed in it."""
 
 import math
 from collections.abc import Iterable
@@ -14,56 +14,62 @@ from geometry.motion.first_contact import boundary_edges, with_normals
 from geometry.motion.se2 import Pose
 from geometry.motion.validation import check, sound
 
-DISCS = 16  # inscribed in a body at most
-GRID = 16  # places along the body's longer side where discs are tried
-SPECK = 1e-3  # squares: half the diagonal of what stands for a point that moves with the body
+MAX_DISCS = 16  # inscribed discs of a body at most; tuned on random worlds (benchmarks.campaign)
+CANDIDATES_PER_SIDE = 16  # candidate disc centres along the longer side of a body's bounding box; tuned likewise
+POINT_HALF_DIAGONAL = 1e-3  # squares: half the diagonal of the square that stands for a point; a convention
 
 
 def new_mover(
     shape: Any, points: Iterable[tuple[float, float]] = (), pivot: tuple[float, float] | None = None
 ) -> MovingBody:
-    """A body from its shape, its own origin being the reference point, and points that move with it.
+    """Return a body for planning, made from its shape and from points that move with it.
 
-    pivot : what it is turned about; None for the centre of the enclosing circle, about which it moves least.
+    Parameters
+    ----------
+    shape : shapely Polygon or MultiPolygon in squares, drawn about the body's reference point (the origin).
+    points : (x, y) in the body's own frame, squares, that move rigidly with the shape.
+    pivot : (x, y) in the body's own frame that the body is turned about. None stands for the centre of the smallest
+        enclosing circle, where a turn moves the body least.
 
     Raises
     ------
-    ValueError : when the shape has no area, or a number is not finite.
+    ValueError : the shape has no area, or a number is not finite.
     """
     at = None if pivot is None else (float(pivot[0]), float(pivot[1]))
     specks = tuple((float(x), float(y)) for x, y in points)
     check([*specks, *([] if at is None else [at])], "points and pivot")
-    told = shapely.normalize(shapely.simplify(sound(shape, "the body"), 0))  # however its rings are told
-    return _mover(shapely.to_wkb(told), specks, at)
+    # Normalised, so that the cache knows a shape again when its rings start elsewhere or come in another order.
+    normalised = shapely.normalize(shapely.simplify(sound(shape, "the body"), 0))
+    return _moving_body(shapely.to_wkb(normalised), specks, at)
 
 
 @lru_cache(maxsize=32)
-def _mover(wkb: bytes, points: tuple[XY, ...], pivot: XY | None) -> MovingBody:
-    """The same: one body is planned for many times. Nobody writes into a MovingBody's arrays."""
+def _moving_body(wkb: bytes, points: tuple[XY, ...], pivot: XY | None) -> MovingBody:
+    """Return the body of a polygon in WKB, cached: one body is planned for many times. Nothing writes to its arrays."""
     shape = shapely.from_wkb(wkb)
-    specks = [shapely.Point(p).buffer(SPECK, quad_segs=1) for p in points]
+    specks = [shapely.Point(p).buffer(POINT_HALF_DIAGONAL, quad_segs=1) for p in points]
     whole = shapely.union_all([shape, *specks]) if specks else shape
     if whole is None or not len(edges := boundary_edges(whole)):
         raise ValueError("the body has no area")
-    middle = np.array(shapely.minimum_bounding_circle(whole).centroid.coords[0] if pivot is None else pivot)
-    edges -= np.tile(middle, 2)
+    centre = np.array(shapely.minimum_bounding_circle(whole).centroid.coords[0] if pivot is None else pivot)
+    edges -= np.tile(centre, 2)
     radius = float(np.hypot(edges[:, 0], edges[:, 1]).max())
     corners = np.column_stack([edges[:, :2], np.zeros(len(edges))])
-    probes = np.vstack([_discs(shape, middle), corners])
+    probes = np.vstack([_inscribed_discs(shape, centre), corners])
     away = np.hypot(probes[:, 0], probes[:, 1])
-    seeds = np.array([part.exterior.coords[0] for part in shapely.get_parts(whole)]) - middle
+    seeds = np.array([part.exterior.coords[0] for part in shapely.get_parts(whole)]) - centre
     return MovingBody(
-        with_normals(edges), np.ascontiguousarray(np.column_stack([probes, away])), radius, -middle, seeds
+        with_normals(edges), np.ascontiguousarray(np.column_stack([probes, away])), radius, -centre, seeds
     )
 
 
-def _discs(shape: Any, middle: Floats) -> Floats:
-    """Discs within the shape that cover most of it, the greatest first: (k, 3) rows x, y, r about the middle.
+def _inscribed_discs(shape: Any, centre: Floats) -> Floats:
+    """Return discs within the shape that cover most of it, the largest first: (k, 3) rows x, y, r about `centre`.
 
-    Of the places on a grid the one with the most room is taken, then the next that is not near one taken before.
+    Method: of the candidates on a grid take the one with the most room, then the next that is not near a taken one.
     """
     x0, y0, x1, y1 = shape.bounds
-    step = max(x1 - x0, y1 - y0) / GRID
+    step = max(x1 - x0, y1 - y0) / CANDIDATES_PER_SIDE
     x, y = np.meshgrid(np.arange(x0 + step / 2, x1, step), np.arange(y0 + step / 2, y1, step))
     best = shapely.maximum_inscribed_circle(shape).coords[0] if shape.geom_type == "Polygon" else (x0, y0)
     places = np.vstack([[best], np.column_stack([x.ravel(), y.ravel()])])
@@ -74,22 +80,24 @@ def _discs(shape: Any, middle: Floats) -> Floats:
         near = any(math.dist(places[n], places[m]) < 0.75 * room[m] for m in taken)
         if room[n] > 0.0 and not near:
             taken.append(int(n))
-        if len(taken) == DISCS:
+        if len(taken) == MAX_DISCS:
             break
-    return np.column_stack([places[taken] - middle, room[taken]])
+    return np.column_stack([places[taken] - centre, room[taken]])
 
 
-def centre_pose(mover: MovingBody, pose: Pose) -> Floats:
-    """The pose of the enclosing circle's centre, (x, y, radians), when the reference point is at a pose."""
+def centre_pose(body: MovingBody, pose: Pose) -> Floats:
+    """Return the pose (x, y, radians) of the body's centre when its reference point is at `pose`.
+
+    Parameters
+    ----------
+    body : body made by this module.
+    pose : pose of the reference point, table frame, squares and degrees.
+
+    Returns
+    -------
+    (3,) float64: x, y of the centre in squares, table frame; angle in radians, counter-clockwise positive.
+    """
     angle = math.radians(pose.degrees)
     c, s = math.cos(angle), math.sin(angle)
-    ox, oy = mover.reference
+    ox, oy = body.reference
     return np.array([pose.x - c * ox + s * oy, pose.y - s * ox - c * oy, angle])
-
-
-def reference_pose(mover: MovingBody, pose: Floats) -> Pose:
-    """The pose of the reference point when the centre's is (x, y, radians)."""
-    x, y, angle = (float(v) for v in pose)
-    c, s = math.cos(angle), math.sin(angle)
-    ox, oy = mover.reference
-    return Pose(float(x + c * ox - s * oy), float(y + s * ox + c * oy), math.degrees(angle))

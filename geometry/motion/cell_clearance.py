@@ -1,8 +1,9 @@
-"""How far apart a placed body and the obstacles are, and whether they overlap wherever in a cell the body is.
+"""Clearance of a placed body, and the classification of cells of poses: free, blocked or undecided.
 
-Plain loops for numba. The body is drawn about a centre, as a rule that of its enclosing circle; a pose
-is a place (x, y) of that centre and an angle as (cosine, sine). Obstacle edges that may matter near a place are found
-in the ground's blocks.
+Plain loops for numba. The body is drawn about a centre, as a rule that of its smallest enclosing circle. A pose is
+a place (x, y) of that centre in squares, table frame, and an angle, often given as (cosine, sine) = (c, s). Obstacle
+edges that may matter near a place are looked up by blocks of raster pixels. Rows of edges are x0, y0, x1, y1, outward
+unit normal x and y, length; the interior lies on their left.
 """
 
 import math
@@ -11,15 +12,21 @@ from typing import NamedTuple
 from geometry.kernels.arrays import Floats, Longs
 from geometry.kernels.jit import bare
 
-FREE, OPEN, SHUT, FULL, DEAD = 0, 1, 2, 3, 4
+# The kinds of cells (see classify_cell). Their order is compared. The search sets CELL_GIVEN_UP.
+CELL_FREE, CELL_CENTRE_FREE, CELL_UNDECIDED, CELL_BLOCKED, CELL_GIVEN_UP = 0, 1, 2, 3, 4
 
 
 class MovingBody(NamedTuple):
-    """A body about a centre.
+    """A body drawn about the centre that it is turned about. Lengths in squares, body frame with that centre as origin.
 
-    edges: (m, 7) rows x0, y0, x1, y1, outward normal, length. probes: (k, 4) rows x, y, r, distance from the centre:
-    the body covers the disc of radius r about (x, y); r is 0 at its corners. radius: of the circle about the centre
-    that encloses it. reference: the (x, y) of the body's own origin. seeds: (parts, 2) a corner of each part of it.
+    Attributes
+    ----------
+    edges : (m, 7) rows x0, y0, x1, y1, outward unit normal x and y, length.
+    probes : (k, 4) rows x, y, r, distance of (x, y) from the centre. The body covers the disc of radius r about (x, y);
+        first come the inscribed discs, the largest first, then the corners with r = 0.
+    radius : radius of the circle about the centre that encloses the body.
+    reference : (2,) x, y of the body's reference point, its own origin.
+    seeds : (parts, 2) one corner of each connected part.
     """
 
     edges: Floats
@@ -30,50 +37,59 @@ class MovingBody(NamedTuple):
 
 
 class NearbyEdges(NamedTuple):
-    """Where a body moves.
+    """Obstacle edges looked up by place, and the bounds within which a body moves. Squares, table frame.
 
-    edges: (n, 7) of the united obstacles. raster: (rows, columns) signed distance to the obstacles at pixel centres,
-    negative inside. frame: x, y of the raster's corner and its pixel. first, near: for each block of pixels which edges
-    are within reach of a body there. blocks: columns of blocks, pixels a block. reach: edges further than this from the
-    body are not in the block's list. bounds: x0, y0, x1, y1 of the body's reference point.
+    Attributes
+    ----------
+    edges : (n, 7) edges of the united obstacles, as in MovingBody.
+    raster : (rows, columns) signed distance from pixel centres to the obstacles, negative inside.
+    frame : (3,) x, y of the raster's lower left corner, side of a pixel.
+    block_start : (blocks + 1,) where the list of each block begins in `block_edges`.
+    block_edges : for each block of pixels the indices of the edges within reach of a body whose centre is there.
+    blocks : (2,) blocks in a row of blocks, pixels along the side of a block.
+    reach : edges further than this from the body may be missing in the block's list.
+    bounds : (4,) x0, y0, x1, y1 for the body's reference point.
     """
 
     edges: Floats
     raster: Floats
     frame: Floats
-    first: Longs
-    near: Longs
+    block_start: Longs
+    block_edges: Longs
     blocks: Longs
     reach: float
     bounds: Floats
 
 
 @bare
-def rough_distance(ground: NearbyEdges, x: float, y: float) -> tuple[float, float]:
-    """The signed distance to the obstacles at the nearest pixel, and how far that is from (x, y)."""
-    rows, columns = ground.raster.shape
-    pixel = ground.frame[2]
-    column = min(max(int((x - ground.frame[0]) / pixel), 0), columns - 1)
-    row = min(max(int((y - ground.frame[1]) / pixel), 0), rows - 1)
-    dx = x - ground.frame[0] - (column + 0.5) * pixel
-    dy = y - ground.frame[1] - (row + 0.5) * pixel
-    return ground.raster[row, column], math.sqrt(dx * dx + dy * dy)
+def raster_distance(nearby: NearbyEdges, x: float, y: float) -> tuple[float, float]:
+    """Return (signed distance to the obstacles at the pixel of (x, y), how far its centre is from there), in squares.
+
+    The true distance at (x, y) differs from the first by at most the second.
+    """
+    rows, columns = nearby.raster.shape
+    pixel = nearby.frame[2]
+    column = min(max(int((x - nearby.frame[0]) / pixel), 0), columns - 1)
+    row = min(max(int((y - nearby.frame[1]) / pixel), 0), rows - 1)
+    dx = x - nearby.frame[0] - (column + 0.5) * pixel
+    dy = y - nearby.frame[1] - (row + 0.5) * pixel
+    return nearby.raster[row, column], math.sqrt(dx * dx + dy * dy)
 
 
 @bare
-def block_at(ground: NearbyEdges, x: float, y: float) -> int:
-    """The block of a place."""
-    size = ground.frame[2] * ground.blocks[1]
-    columns = ground.blocks[0]
-    rows = (len(ground.first) - 1) // columns
-    column = min(max(int((x - ground.frame[0]) / size), 0), columns - 1)
-    row = min(max(int((y - ground.frame[1]) / size), 0), rows - 1)
+def block_at(nearby: NearbyEdges, x: float, y: float) -> int:
+    """Return the index of the block of pixels that (x, y) lies in, or the nearest one outside the raster."""
+    size = nearby.frame[2] * nearby.blocks[1]
+    columns = nearby.blocks[0]
+    rows = (len(nearby.block_start) - 1) // columns
+    column = min(max(int((x - nearby.frame[0]) / size), 0), columns - 1)
+    row = min(max(int((y - nearby.frame[1]) / size), 0), rows - 1)
     return int(row * columns + column)
 
 
 @bare
-def point_to_edge(x: float, y: float, edges: Floats, j: int) -> float:
-    """The squared distance from a point to an edge."""
+def squared_distance_to_edge(x: float, y: float, edges: Floats, j: int) -> float:
+    """Return the squared distance, in squares squared, from the point (x, y) to edge number j."""
     px, py = x - edges[j, 0], y - edges[j, 1]
     nx, ny = edges[j, 4], edges[j, 5]
     along = nx * py - ny * px
@@ -83,8 +99,8 @@ def point_to_edge(x: float, y: float, edges: Floats, j: int) -> float:
 
 
 @bare
-def inside(x: float, y: float, edges: Floats) -> bool:
-    """Whether a point is inside closed rings, by counting crossings; either answer on the boundary."""
+def is_inside(x: float, y: float, edges: Floats) -> bool:
+    """Return whether (x, y) is inside closed rings, by counting crossings. On the boundary either answer may come."""
     odd = False
     for j in range(len(edges)):
         y0, y1 = edges[j, 1], edges[j, 3]
@@ -94,13 +110,16 @@ def inside(x: float, y: float, edges: Floats) -> bool:
 
 
 @bare
-def signed_distance(x: float, y: float, ground: NearbyEdges, block: int) -> float:
-    """The distance from a point of the body to the obstacles, negative inside them; at most the ground's reach."""
-    edges = ground.edges
-    best, side = ground.reach * ground.reach, 1e9
-    for k in range(ground.first[block], ground.first[block + 1]):
-        j = ground.near[k]
-        d2 = point_to_edge(x, y, edges, j)
+def signed_distance(x: float, y: float, nearby: NearbyEdges, block: int) -> float:
+    """Return the distance in squares from (x, y) to the obstacles: negative inside them, capped at nearby.reach.
+
+    `block` is the block of the body's centre, and (x, y) a point of that body.
+    """
+    edges = nearby.edges
+    best, side = nearby.reach * nearby.reach, 1e9
+    for k in range(nearby.block_start[block], nearby.block_start[block + 1]):
+        j = nearby.block_edges[k]
+        d2 = squared_distance_to_edge(x, y, edges, j)
         if d2 > best * (1.0 + 1e-12) + 1e-24:
             continue
         across = edges[j, 4] * (x - edges[j, 0]) + edges[j, 5] * (y - edges[j, 1])
@@ -111,38 +130,47 @@ def signed_distance(x: float, y: float, ground: NearbyEdges, block: int) -> floa
 
 
 @bare
-def distance_at(mover: MovingBody, ground: NearbyEdges, x: float, y: float, c: float, s: float) -> float:
-    """The distance between the placed body and the obstacles, at most the ground's reach; -1 when they overlap."""
-    edges, body = ground.edges, mover.edges
-    best = ground.reach * ground.reach
-    block = block_at(ground, x, y)
-    for k in range(ground.first[block], ground.first[block + 1]):
-        j = ground.near[k]
-        if point_to_edge(x, y, edges, j) > (mover.radius + math.sqrt(best)) ** 2:
+def distance_at(body: MovingBody, nearby: NearbyEdges, x: float, y: float, c: float, s: float) -> float:
+    """Return the distance in squares between the placed body and the obstacles; -1.0 if they overlap.
+
+    Distances are capped at nearby.reach.
+
+    Parameters
+    ----------
+    body, nearby : the body, and the obstacle edges prepared for its radius.
+    x, y : place of the body's centre, table frame, squares.
+    c, s : cosine and sine of the body's angle.
+    """
+    edges, body_edges = nearby.edges, body.edges
+    best = nearby.reach * nearby.reach
+    block = block_at(nearby, x, y)
+    for k in range(nearby.block_start[block], nearby.block_start[block + 1]):
+        j = nearby.block_edges[k]
+        if squared_distance_to_edge(x, y, edges, j) > (body.radius + math.sqrt(best)) ** 2:
             continue
         ax, ay = edges[j, 0] - x, edges[j, 1] - y
         ax, ay = c * ax + s * ay, c * ay - s * ax
         bx, by = edges[j, 2] - x, edges[j, 3] - y
         bx, by = c * bx + s * by, c * by - s * bx
-        best = min(best, _edge_to_body(ax, ay, bx, by, edges[j, 6], body))
+        best = min(best, _edge_to_body(ax, ay, bx, by, edges[j, 6], body_edges))
         if best < 0.0:
             return -1.0
-    for k in range(len(mover.seeds)):
-        px, py = mover.seeds[k, 0], mover.seeds[k, 1]
-        if inside(x + c * px - s * py, y + s * px + c * py, edges):
+    for k in range(len(body.seeds)):
+        px, py = body.seeds[k, 0], body.seeds[k, 1]
+        if is_inside(x + c * px - s * py, y + s * px + c * py, edges):
             return -1.0
     return math.sqrt(best)
 
 
 @bare
-def _edge_to_body(ax: float, ay: float, bx: float, by: float, length: float, body: Floats) -> float:
-    """The squared distance from an edge to the body, both in the body's frame; negative when they overlap."""
+def _edge_to_body(ax: float, ay: float, bx: float, by: float, length: float, body_edges: Floats) -> float:
+    """Return the squared distance from an edge (a to b) to the body, both in the body's frame; -1.0 if they overlap."""
     ux, uy = (bx - ax) / length, (by - ay) / length
     best, odd = 1e18, False
-    before = ux * (body[0, 1] - ay) - uy * (body[0, 0] - ax)
-    for i in range(len(body)):
-        px, py, qx, qy = body[i, 0], body[i, 1], body[i, 2], body[i, 3]
-        nx, ny = body[i, 4], body[i, 5]
+    before = ux * (body_edges[0, 1] - ay) - uy * (body_edges[0, 0] - ax)
+    for i in range(len(body_edges)):
+        px, py, qx, qy = body_edges[i, 0], body_edges[i, 1], body_edges[i, 2], body_edges[i, 3]
+        nx, ny = body_edges[i, 4], body_edges[i, 5]
         before = ux * (py - ay) - uy * (px - ax)
         after = ux * (qy - ay) - uy * (qx - ax)
         side_a = nx * (ax - px) + ny * (ay - py)
@@ -151,7 +179,7 @@ def _edge_to_body(ax: float, ay: float, bx: float, by: float, length: float, bod
             return -1.0
         if (py > ay) != (qy > ay) and ax < px + (ay - py) / (qy - py) * (qx - px):
             odd = not odd
-        best = min(best, point_to_edge(ax, ay, body, i))
+        best = min(best, squared_distance_to_edge(ax, ay, body_edges, i))
         along = ux * (px - ax) + uy * (py - ay)
         along -= min(max(along, 0.0), length)
         best = min(best, along * along + before * before)
@@ -159,81 +187,96 @@ def _edge_to_body(ax: float, ay: float, bx: float, by: float, length: float, bod
 
 
 @bare
-def classify(
-    mover: MovingBody, ground: NearbyEdges, x: float, y: float, angle: float, spread: float, half: float
+def classify_cell(
+    body: MovingBody, nearby: NearbyEdges, x: float, y: float, angle: float, spread: float, half: float
 ) -> int:
-    """What a cell of poses is: about (x, y, angle), places at most `spread` away, angles at most `half`.
+    """Return the kind of a cell of poses: places at most `spread` from (x, y), angles at most `half` from `angle`.
 
-    FREE: the body overlaps nothing in any of them. FULL: it overlaps an obstacle in all. OPEN: neither is known, and at
-    the centre it overlaps nothing. SHUT: neither is known, and at the centre it does, or nobody has looked yet.
+    Parameters
+    ----------
+    x, y, angle : the middle of the cell: squares, table frame; radians.
+    spread : greatest distance of a place in the cell from (x, y), in squares.
+    half : half of the cell's interval of angles, in radians.
+
+    Returns
+    -------
+    CELL_FREE : the body overlaps nothing at any pose of the cell, and its reference point is within bounds.
+    CELL_BLOCKED : at every pose it overlaps an obstacle or is out of bounds.
+    CELL_CENTRE_FREE : neither is known, and the pose in the middle is free.
+    CELL_UNDECIDED : neither is known, and the pose in the middle is not free or was not looked at.
     """
     c, s = math.cos(angle), math.sin(angle)
     swing = 2.0 * math.sin(min(half, math.pi) / 2)
-    where = _in_bounds(mover, ground, x, y, c, s, spread, swing)
-    if where == FULL:
-        return FULL
-    rough, off = rough_distance(ground, x, y)
-    if rough - off > mover.radius + spread:
+    where = _in_bounds(body, nearby, x, y, c, s, spread, swing)
+    if where == CELL_BLOCKED:
+        return CELL_BLOCKED
+    rough, off = raster_distance(nearby, x, y)
+    if rough - off > body.radius + spread:
         return where
-    for k in range(len(mover.probes)):
-        px, py, r = mover.probes[k, 0], mover.probes[k, 1], mover.probes[k, 2]
-        rough, off = rough_distance(ground, x + c * px - s * py, y + s * px + c * py)
-        if rough + off + spread + swing * mover.probes[k, 3] < r:
-            return FULL
-    slack = spread + swing * mover.radius
-    if slack > ground.reach:
-        return SHUT
-    distance = distance_at(mover, ground, x, y, c, s)
+    for k in range(len(body.probes)):
+        px, py, r = body.probes[k, 0], body.probes[k, 1], body.probes[k, 2]
+        rough, off = raster_distance(nearby, x + c * px - s * py, y + s * px + c * py)
+        if rough + off + spread + swing * body.probes[k, 3] < r:
+            return CELL_BLOCKED
+    slack = spread + swing * body.radius
+    if slack > nearby.reach:
+        return CELL_UNDECIDED
+    distance = distance_at(body, nearby, x, y, c, s)
     if distance > slack:
         return where
     if distance >= 0.0:
-        return OPEN if where == FREE else where
-    return FULL if _always_overlaps(mover, ground, x, y, c, s, spread, swing) else SHUT
+        return CELL_CENTRE_FREE if where == CELL_FREE else where
+    return CELL_BLOCKED if _always_overlaps(body, nearby, x, y, c, s, spread, swing) else CELL_UNDECIDED
 
 
 @bare
 def _in_bounds(
-    mover: MovingBody, ground: NearbyEdges, x: float, y: float, c: float, s: float, spread: float, swing: float
+    body: MovingBody, nearby: NearbyEdges, x: float, y: float, c: float, s: float, spread: float, swing: float
 ) -> int:
-    """FREE, OPEN, SHUT or FULL by the bounds of the reference point alone."""
-    ox, oy = mover.reference[0], mover.reference[1]
+    """Return the cell's kind (FREE, CENTRE_FREE, UNDECIDED or BLOCKED) by the bounds of the reference point alone."""
+    ox, oy = body.reference[0], body.reference[1]
     rx, ry = x + c * ox - s * oy, y + s * ox + c * oy
-    bounds = ground.bounds
+    bounds = nearby.bounds
     room = min(min(rx - bounds[0], bounds[2] - rx), min(ry - bounds[1], bounds[3] - ry))
     slack = spread + swing * math.sqrt(ox * ox + oy * oy)
     if room >= slack:
-        return FREE
+        return CELL_FREE
     if room < -slack:
-        return FULL
-    return OPEN if room >= 0.0 else SHUT
+        return CELL_BLOCKED
+    return CELL_CENTRE_FREE if room >= 0.0 else CELL_UNDECIDED
 
 
 @bare
 def _always_overlaps(
-    mover: MovingBody, ground: NearbyEdges, x: float, y: float, c: float, s: float, spread: float, swing: float
+    body: MovingBody, nearby: NearbyEdges, x: float, y: float, c: float, s: float, spread: float, swing: float
 ) -> bool:
-    """Whether an inscribed disc or a corner of either stays within the other, or two edges go on crossing."""
-    block = block_at(ground, x, y)
-    if _keeps_crossing(mover.edges, ground.edges, ground.near, ground.first, block, x, y, c, s, spread, swing):
+    """Return whether the body surely overlaps an obstacle at every pose of a cell.
+
+    Proofs tried: an inscribed disc or a corner of one stays inside the other, or two edges keep crossing.
+    """
+    block = block_at(nearby, x, y)
+    if _keeps_crossing(
+        body.edges, nearby.edges, nearby.block_edges, nearby.block_start, block, x, y, c, s, spread, swing
+    ):
         return True
-    for k in range(len(mover.probes)):
-        px, py, r = mover.probes[k, 0], mover.probes[k, 1], mover.probes[k, 2]
-        depth = r - signed_distance(x + c * px - s * py, y + s * px + c * py, ground, block)
-        if depth > spread + swing * mover.probes[k, 3]:
+    for k in range(len(body.probes)):
+        px, py, r = body.probes[k, 0], body.probes[k, 1], body.probes[k, 2]
+        depth = r - signed_distance(x + c * px - s * py, y + s * px + c * py, nearby, block)
+        if depth > spread + swing * body.probes[k, 3]:
             return True
-    for k in range(ground.first[block], ground.first[block + 1]):
-        j = ground.near[k]
-        wx, wy = ground.edges[j, 0] - x, ground.edges[j, 1] - y
+    for k in range(nearby.block_start[block], nearby.block_start[block + 1]):
+        j = nearby.block_edges[k]
+        wx, wy = nearby.edges[j, 0] - x, nearby.edges[j, 1] - y
         away = math.sqrt(wx * wx + wy * wy)
         slack = spread + swing * away
-        if away + slack >= mover.radius:
+        if away + slack >= body.radius:
             continue
         wx, wy = c * wx + s * wy, c * wy - s * wx
-        if not inside(wx, wy, mover.edges):
+        if not is_inside(wx, wy, body.edges):
             continue
         depth2 = 1e18
-        for i in range(len(mover.edges)):
-            depth2 = min(depth2, point_to_edge(wx, wy, mover.edges, i))
+        for i in range(len(body.edges)):
+            depth2 = min(depth2, squared_distance_to_edge(wx, wy, body.edges, i))
         if depth2 > slack * slack:
             return True
     return False
@@ -241,10 +284,10 @@ def _always_overlaps(
 
 @bare
 def _keeps_crossing(
-    body: Floats,
+    body_edges: Floats,
     edges: Floats,
-    near: Longs,
-    first: Longs,
+    block_edges: Longs,
+    block_start: Longs,
     block: int,
     x: float,
     y: float,
@@ -253,19 +296,19 @@ def _keeps_crossing(
     spread: float,
     swing: float,
 ) -> bool:
-    """Whether an edge of the body crosses one of an obstacle wherever in a cell the body is.
+    """Return whether some edge of the body crosses one of an obstacle at every pose of a cell.
 
-    They do while the ends of each stay on their sides of the other's line: no end is moved over it by the cell's slack.
+    Edges keep crossing while the ends of each stay on their sides of the other's line: the cell moves no end across it.
     """
-    for k in range(first[block], first[block + 1]):
-        j = near[k]
+    for k in range(block_start[block], block_start[block + 1]):
+        j = block_edges[k]
         ax, ay, bx, by = edges[j, 0] - x, edges[j, 1] - y, edges[j, 2] - x, edges[j, 3] - y
         ax, ay, bx, by = c * ax + s * ay, c * ay - s * ax, c * bx + s * by, c * by - s * bx
         slack_a = spread + swing * math.sqrt(ax * ax + ay * ay)
         slack_b = spread + swing * math.sqrt(bx * bx + by * by)
         ux, uy = (bx - ax) / edges[j, 6], (by - ay) / edges[j, 6]
-        for i in range(len(body)):
-            px, py, qx, qy = body[i, 0], body[i, 1], body[i, 2], body[i, 3]
+        for i in range(len(body_edges)):
+            px, py, qx, qy = body_edges[i, 0], body_edges[i, 1], body_edges[i, 2], body_edges[i, 3]
             side_p, side_q = ux * (py - ay) - uy * (px - ax), ux * (qy - ay) - uy * (qx - ax)
             if side_p * side_q >= 0.0:
                 continue
@@ -273,8 +316,8 @@ def _keeps_crossing(
                 continue
             if abs(side_q) <= spread + swing * math.sqrt(qx * qx + qy * qy):
                 continue
-            side_a = body[i, 4] * (ax - px) + body[i, 5] * (ay - py)
-            side_b = body[i, 4] * (bx - px) + body[i, 5] * (by - py)
+            side_a = body_edges[i, 4] * (ax - px) + body_edges[i, 5] * (ay - py)
+            side_b = body_edges[i, 4] * (bx - px) + body_edges[i, 5] * (by - py)
             if side_a * side_b < 0.0 and abs(side_a) > slack_a and abs(side_b) > slack_b:
                 return True
     return False

@@ -1,7 +1,8 @@
-"""A floor prepared for many motions: obstacles as one, a raster of distances to them, and which of them are near where.
+"""An obstacle field: obstacles united and prepared once for many motions among them.
 
-All that does not depend on the body is made once; what depends on its radius is kept by radius. Kernels are plain loops
-for numba.
+It holds the united boundary, a raster of signed distances to it, and for each block of pixels the edges near it. What
+does not depend on the body is made once; what depends on its radius is kept by radius. Kernels are plain loops for
+numba.
 """
 
 import heapq
@@ -17,18 +18,18 @@ from geometry.kernels.arrays import Floats, Longs
 from geometry.kernels.bucket_queue import Queue, new_queue, put, take
 from geometry.kernels.jit import bare, compiled
 from geometry.motion.body import centre_pose
-from geometry.motion.cell_clearance import MovingBody, NearbyEdges, distance_at, inside, point_to_edge
+from geometry.motion.cell_clearance import MovingBody, NearbyEdges, distance_at, is_inside, squared_distance_to_edge
 from geometry.motion.first_contact import Obstacles
 from geometry.motion.se2 import Pose
-from geometry.motion.validation import FURTHEST, sound
+from geometry.motion.validation import MAX_COORDINATE, sound
 
-PIXELS = 128  # along the longer side of the raster
-BLOCK = 8  # pixels along the side of a block
-RIM = 0.1  # of the longer side, around the bounds
-TOUCH = 1e-6  # squares: a start or goal may be this deep in an obstacle, or out of bounds
-SIDE, DIAGONAL = 10, 14  # the cost of a pixel's way
-FAR = 2**40  # dearer than any
-WALL = 60  # going through pixels where the disc does not fit, but for a slot in them, looks so much dearer
+RASTER_PIXELS = 128  # pixels along the longer side of the raster; tuned on random worlds (benchmarks.campaign)
+BLOCK_PIXELS = 8  # pixels along the side of a block; tuned likewise
+RASTER_MARGIN = 0.1  # width of the raster's rim around the bounds, as a part of their longer side; a convention
+OVERLAP_TOLERANCE = 1e-6  # squares: a start or goal may be this deep in an obstacle, or out of bounds; a convention
+PIXEL_STEP_COST, PIXEL_DIAGONAL_COST = 10, 14  # costs of a step to a neighbouring pixel; 14 / 10 approximates sqrt(2)
+COST_NOT_REACHED = 2**40  # above every cost of a path
+TIGHT_PIXEL_FACTOR = 60  # a step into a pixel where the disc does not fit costs so many times more; tuned likewise
 
 
 class ObstacleField:
@@ -36,8 +37,21 @@ class ObstacleField:
 
     Parameters
     ----------
-    obstacles : shapely geometry or a sequence of them, squares, table frame. Only polygons count.
-    bounds : (x0, y0, x1, y1) of the body's reference point; None for the box around the obstacles.
+    obstacles : shapely geometry or a list of them, squares, table frame. Only polygons count.
+    bounds : (x0, y0, x1, y1) of the body's reference point; None for the bounding box of the obstacles.
+
+    Attributes
+    ----------
+    polygons : the obstacles' polygons, valid.
+    bounds : (4,) x0, y0, x1, y1 in squares.
+    side : the longer side of the bounds, in squares.
+    surface : the united boundary, for exact first contact.
+    frame : (3,) x, y of the raster's lower left corner, side of a pixel.
+    raster : (rows, columns) signed distance from pixel centres to the obstacles in squares, negative inside.
+
+    Raises
+    ------
+    ValueError : a number is not finite or too large, or the bounds are missing or empty.
     """
 
     def __init__(self, obstacles: Any, bounds: Sequence[float] | None = None) -> None:
@@ -45,77 +59,102 @@ class ObstacleField:
         self.polygons = [part for each in several for part in shapely.get_parts(sound(each, "obstacles"))]
         if bounds is None:
             bounds = shapely.total_bounds(self.polygons).tolist() if self.polygons else None
-        if bounds is None or len(bounds) != 4 or not (np.abs(bounds) <= FURTHEST).all():
-            raise ValueError(f"bounds must be four finite numbers of at most {FURTHEST:g}, not {bounds}")
+        if bounds is None or len(bounds) != 4 or not (np.abs(bounds) <= MAX_COORDINATE).all():
+            raise ValueError(f"bounds must be four finite numbers of at most {MAX_COORDINATE:g}, not {bounds}")
         if bounds[2] <= bounds[0] or bounds[3] <= bounds[1]:
             raise ValueError(f"bounds must be x0 < x1, y0 < y1, not {bounds}")
         self.bounds = np.array(bounds, dtype=float)
         self.surface = Obstacles(self.polygons).point_surface
         self.side = float(max(self.bounds[2:] - self.bounds[:2]))
-        pixel = self.side * (1 + 2 * RIM) / PIXELS
-        corner = self.bounds[:2] - RIM * self.side
-        columns, rows = np.ceil((self.bounds[2:] - self.bounds[:2] + 2 * RIM * self.side) / pixel).astype(int)
+        pixel = self.side * (1 + 2 * RASTER_MARGIN) / RASTER_PIXELS
+        corner = self.bounds[:2] - RASTER_MARGIN * self.side
+        columns, rows = np.ceil((self.bounds[2:] - self.bounds[:2] + 2 * RASTER_MARGIN * self.side) / pixel).astype(int)
         self.frame = np.array([corner[0], corner[1], pixel])
         self.raster = np.empty((int(rows), int(columns)))
-        _measure(self.surface.hull, self.frame, self.raster)
+        _fill_signed_distances(self.surface.hull, self.frame, self.raster)
         self._grounds: dict[float, NearbyEdges] = {}
-        self._around: dict[bytes, ObstacleField] = {}
+        self._complements: dict[bytes, ObstacleField] = {}
 
-    def finer(self, times: int) -> tuple[Floats, Floats]:
-        """The frame and the raster with pixels of which so many make the side of one."""
+    def finer_raster(self, times: int) -> tuple[Floats, Floats]:
+        """Return frame and raster as of this field, with `times` pixels along each side of one of its pixels."""
         frame = self.frame * np.array([1.0, 1.0, 1.0 / times])
         raster = np.empty((times * self.raster.shape[0], times * self.raster.shape[1]))
-        _measure(self.surface.hull, frame, raster)
+        _fill_signed_distances(self.surface.hull, frame, raster)
         return frame, raster
 
-    def ground(self, mover: MovingBody) -> NearbyEdges:
-        """What the kernels need to know of the floor for a body of this radius."""
-        if mover.radius not in self._grounds:
-            self._grounds[mover.radius] = self._prepare(mover.radius)
-        return self._grounds[mover.radius]
+    def ground(self, body: MovingBody) -> NearbyEdges:
+        """Return the obstacle edges looked up by place for a body of this radius; made once for each radius."""
+        if body.radius not in self._grounds:
+            self._grounds[body.radius] = self._prepare(body.radius)
+        return self._grounds[body.radius]
 
-    def around(self, polygon: Any) -> "ObstacleField":
-        """The floor on which all but a polygon is an obstacle: where a body is free it is within the polygon."""
+    def complement_of(self, polygon: Any) -> "ObstacleField":
+        """Return the field in which all but `polygon` is an obstacle: a body free there lies within the polygon."""
         key = shapely.to_wkb(polygon)
-        if key not in self._around:
+        if key not in self._complements:
             outer = shapely.box(*self.bounds).buffer(self.side, join_style="mitre")
             for part in shapely.get_parts(polygon):
                 outer = outer.difference(part)
-            self._around[key] = ObstacleField(outer, self.bounds.tolist())
-        return self._around[key]
+            self._complements[key] = ObstacleField(outer, self.bounds.tolist())
+        return self._complements[key]
 
     def _prepare(self, radius: float) -> NearbyEdges:
+        """Return the edges by block for a body of some radius, in squares."""
         rows, columns = self.raster.shape
-        down, across = math.ceil(rows / BLOCK), math.ceil(columns / BLOCK)
-        first, near = _blocks(self.surface.hull, self.frame, down, across, 2 * radius)
-        blocks = np.array([across, BLOCK])
-        return NearbyEdges(self.surface.hull, self.raster, self.frame, first, near, blocks, radius, self.bounds)
+        down, across = math.ceil(rows / BLOCK_PIXELS), math.ceil(columns / BLOCK_PIXELS)
+        block_start, block_edges = _list_block_edges(self.surface.hull, self.frame, down, across, 2 * radius)
+        blocks = np.array([across, BLOCK_PIXELS])
+        return NearbyEdges(
+            self.surface.hull, self.raster, self.frame, block_start, block_edges, blocks, radius, self.bounds
+        )
 
-    def has_room(self, mover: MovingBody, shape: Any, points: Sequence[tuple[float, float]], pose: Pose) -> bool:
-        """Whether a body at a pose of its reference point is within bounds and at most touches obstacles.
+    def is_free_at(self, body: MovingBody, shape: Any, points: Sequence[tuple[float, float]], pose: Pose) -> bool:
+        """Return whether a body whose reference point is at `pose` is within bounds and at most touches obstacles.
 
-        mover : the same shape and points, ready to be moved. Only what may touch needs the shape itself looked at.
+        Parameters
+        ----------
+        body : the body made of `shape` and `points`. The shape itself is looked at only where the body is near
+            obstacles.
+        shape : shapely polygon in squares, body frame. points : (x, y) in that frame that move with it.
+        pose : pose of the reference point, squares and degrees, table frame.
         """
         x0, y0, x1, y1 = self.bounds
-        if not (x0 - TOUCH <= pose.x <= x1 + TOUCH and y0 - TOUCH <= pose.y <= y1 + TOUCH):
+        if not (
+            x0 - OVERLAP_TOLERANCE <= pose.x <= x1 + OVERLAP_TOLERANCE
+            and y0 - OVERLAP_TOLERANCE <= pose.y <= y1 + OVERLAP_TOLERANCE
+        ):
             return False
-        x, y, angle = centre_pose(mover, pose).tolist()
-        if distance_at(mover, self.ground(mover), x, y, math.cos(angle), math.sin(angle)) > TOUCH:
+        x, y, angle = centre_pose(body, pose).tolist()
+        if distance_at(body, self.ground(body), x, y, math.cos(angle), math.sin(angle)) > OVERLAP_TOLERANCE:
             return True
-        body = shapely.buffer(pose.place(shape), -TOUCH, join_style="mitre")
-        specks = [pose.place(shapely.Point(p)) for p in points]
-        if shapely.intersects(self.polygons, body).any():
+        inner = shapely.buffer(pose.place(shape), -OVERLAP_TOLERANCE, join_style="mitre")
+        points_placed = [pose.place(shapely.Point(p)) for p in points]
+        if shapely.intersects(self.polygons, inner).any():
             return False
-        deep = [shapely.buffer(polygon, -TOUCH, join_style="mitre") for polygon in self.polygons] if specks else []
-        return not any(polygon.intersects(speck) for polygon in deep for speck in specks)
+        deep = (
+            [shapely.buffer(polygon, -OVERLAP_TOLERANCE, join_style="mitre") for polygon in self.polygons]
+            if points_placed
+            else []
+        )
+        return not any(polygon.intersects(speck) for polygon in deep for speck in points_placed)
 
-    def ways(self, goals: npt.NDArray[np.bool_], radius: float) -> Floats:
-        """How far it is from every pixel to the nearest goal pixel for a disc: (rows, columns). A guess, never inf."""
-        ways: Floats = disc_ways(self.raster < radius - self.frame[2], goals) * (self.frame[2] / SIDE)
-        return ways
+    def disc_distances(self, goals: npt.NDArray[np.bool_], radius: float) -> Floats:
+        """Return for every pixel the estimated length, in squares, of a disc's path to the nearest goal pixel.
 
-    def pixel_of(self, x: float, y: float) -> npt.NDArray[np.bool_]:
-        """The raster with one pixel True: the one of a place."""
+        (rows, columns) float64, finite everywhere: pixels too tight for the disc are passed at TIGHT_PIXEL_FACTOR times
+        the length.
+
+        Parameters
+        ----------
+        goals : (rows, columns) pixels where paths end.
+        radius : radius of the disc, in squares.
+        """
+        unit = self.frame[2] / PIXEL_STEP_COST
+        distances: Floats = disc_path_costs(self.raster < radius - self.frame[2], goals) * unit
+        return distances
+
+    def pixel_mask(self, x: float, y: float) -> npt.NDArray[np.bool_]:
+        """Return a mask (rows, columns) that is True at the one pixel of (x, y), or at the nearest pixel."""
         goals = np.zeros(self.raster.shape, bool)
         column, row = ((np.array([x, y]) - self.frame[:2]) / self.frame[2]).astype(int)
         goals[min(max(row, 0), len(goals) - 1), min(max(column, 0), goals.shape[1] - 1)] = True
@@ -123,91 +162,103 @@ class ObstacleField:
 
 
 @bare
-def _measure(edges: Floats, frame: Floats, raster: Floats) -> None:
-    """Fill a raster with the signed distance to the obstacles at every pixel's centre."""
+def _fill_signed_distances(edges: Floats, frame: Floats, raster: Floats) -> None:
+    """Fill `raster` with the signed distance, in squares, from every pixel's centre to the obstacles."""
     for row in range(raster.shape[0]):
         y = frame[1] + (row + 0.5) * frame[2]
         for column in range(raster.shape[1]):
             x = frame[0] + (column + 0.5) * frame[2]
             best = 1e12
             for j in range(len(edges)):
-                best = min(best, point_to_edge(x, y, edges, j))
-            raster[row, column] = -math.sqrt(best) if inside(x, y, edges) else math.sqrt(best)
+                best = min(best, squared_distance_to_edge(x, y, edges, j))
+            raster[row, column] = -math.sqrt(best) if is_inside(x, y, edges) else math.sqrt(best)
 
 
 @compiled
-def _blocks(edges: Floats, frame: Floats, rows: int, columns: int, reach: float) -> tuple[Longs, Longs]:
-    """For each block of pixels the edges within reach of a place in it: (blocks + 1,) where each list begins, lists."""
-    first = np.zeros(rows * columns + 1, np.int64)
-    near = np.empty(rows * columns * max(len(edges), 1), np.int64)
-    size = frame[2] * BLOCK
+def _list_block_edges(edges: Floats, frame: Floats, rows: int, columns: int, reach: float) -> tuple[Longs, Longs]:
+    """Return the edges within `reach` squares of each block of pixels, as (block_start, block_edges)."""
+    block_start = np.zeros(rows * columns + 1, np.int64)
+    block_edges = np.empty(rows * columns * max(len(edges), 1), np.int64)
+    size = frame[2] * BLOCK_PIXELS
     count = 0
     for block in range(rows * columns):
         x = frame[0] + (block % columns + 0.5) * size
         y = frame[1] + (block // columns + 0.5) * size
         for j in range(len(edges)):
-            if point_to_edge(x, y, edges, j) <= (reach + 0.7072 * size) ** 2:
-                near[count] = j
+            if squared_distance_to_edge(x, y, edges, j) <= (reach + 0.7072 * size) ** 2:
+                block_edges[count] = j
                 count += 1
-        first[block + 1] = count
-    return first, near[:count].copy()
+        block_start[block + 1] = count
+    return block_start, block_edges[:count].copy()
 
 
-def disc_ways(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_]) -> Longs:
-    """Dijkstra's algorithm from the goal pixels over the eight neighbours, WALL times as dear where it is tight.
+def disc_path_costs(tight: npt.NDArray[np.bool_], goals: npt.NDArray[np.bool_]) -> Longs:
+    """Return the cost of the cheapest 8-connected path from every pixel to a goal pixel (Dijkstra's algorithm).
 
-    Returns (rows, columns), in units of which SIDE make a pixel's way.
+    Parameters
+    ----------
+    tight : (rows, columns) pixels that cost TIGHT_PIXEL_FACTOR times as much to enter.
+    goals : (rows, columns) pixels where paths end.
+
+    Returns
+    -------
+    (rows, columns) int64; PIXEL_STEP_COST stands for the length of one pixel.
     """
-    price = np.pad(np.where(tight, WALL, 1), 1)
-    ways = np.pad(np.where(goals, 0, FAR), 1, constant_values=-1)
-    _spread(price.reshape(-1), ways.reshape(-1), tight.shape[1] + 2, new_queue(8 * tight.size))
-    return ways[1:-1, 1:-1]
+    price = np.pad(np.where(tight, TIGHT_PIXEL_FACTOR, 1), 1)
+    costs = np.pad(np.where(goals, 0, COST_NOT_REACHED), 1, constant_values=-1)
+    _relax_all(price.reshape(-1), costs.reshape(-1), tight.shape[1] + 2, new_queue(8 * tight.size))
+    return costs[1:-1, 1:-1]
 
 
 @bare
-def _spread(price: Longs, ways: Longs, width: int, queue: Queue) -> None:
-    """Find the ways of all pixels, from those that are 0. The rim of pixels around them, all -1, leads nowhere."""
-    for at in range(len(ways)):
-        if ways[at] == 0:
+def _relax_all(price: Longs, costs: Longs, width: int, queue: Queue) -> None:
+    """Fill the costs of all pixels from those of cost 0. The rim of pixels around the raster, all -1, leads nowhere."""
+    for at in range(len(costs)):
+        if costs[at] == 0:
             put(queue, 0, at)
-    beside = (1, -1, width, -width, width + 1, width - 1, -width + 1, -width - 1)
+    neighbours = (1, -1, width, -width, width + 1, width - 1, -width + 1, -width - 1)
     now = 0
     while queue.used[1] > 0:
         at = take(queue, now)
         if at < 0:
             now += 1
             continue
-        if ways[at] != now:
+        if costs[at] != now:
             continue
         for k in range(8):
-            other = at + beside[k]
-            then = now + (SIDE if k < 4 else DIAGONAL) * price[other]
-            if then < ways[other]:
-                ways[other] = then
+            other = at + neighbours[k]
+            then = now + (PIXEL_STEP_COST if k < 4 else PIXEL_DIAGONAL_COST) * price[other]
+            if then < costs[other]:
+                costs[other] = then
                 put(queue, then, other)
 
 
 @compiled
-def cheapest(price: Floats, goals: npt.NDArray[np.bool_]) -> Floats:
-    """Dijkstra's algorithm from the goal pixels over the eight neighbours. price : (rows, columns) to enter a pixel."""
+def cheapest_path_costs(price: Floats, goals: npt.NDArray[np.bool_]) -> Floats:
+    """Return the cost of the cheapest 8-connected path from every pixel to a goal pixel (Dijkstra's algorithm).
+
+    `price` : (rows, columns) float64, cost of entering a pixel by its side; by its corner sqrt(2) times as much. Pixels
+        that
+    cannot be reached get 1e15.
+    """
     rows, columns = price.shape
-    ways = np.full(rows * columns, 1e15)
+    costs = np.full(rows * columns, 1e15)
     heap = [(0.0, 0)]
     heap.pop()
     for row in range(rows):
         for column in range(columns):
             if goals[row, column]:
-                ways[row * columns + column] = 0.0
+                costs[row * columns + column] = 0.0
                 heapq.heappush(heap, (0.0, row * columns + column))
     while len(heap) > 0:
-        way, at = heapq.heappop(heap)
-        if way > ways[at]:
+        cost, at = heapq.heappop(heap)
+        if cost > costs[at]:
             continue
         row, column = at // columns, at % columns
         for up in range(max(row - 1, 0), min(row + 2, rows)):
             for along in range(max(column - 1, 0), min(column + 2, columns)):
                 step = price[up, along] * (1.4142135623730951 if up != row and along != column else 1.0)
-                if way + step < ways[up * columns + along]:
-                    ways[up * columns + along] = way + step
-                    heapq.heappush(heap, (way + step, up * columns + along))
-    return ways.reshape(rows, columns)
+                if cost + step < costs[up * columns + along]:
+                    costs[up * columns + along] = cost + step
+                    heapq.heappush(heap, (cost + step, up * columns + along))
+    return costs.reshape(rows, columns)

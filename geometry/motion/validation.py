@@ -1,4 +1,4 @@
-"""What is handed in made sound: numbers finite and not too large to be told apart finely, rings that do not cross."""
+"""Validation of what callers hand in: numbers are finite and bounded, rings of polygons do not cross."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -6,15 +6,25 @@ from typing import Any
 import numpy as np
 import shapely
 
-FURTHEST = 1e7  # squares: further off the skin of first contact, 1e-8, is lost in the rounding of coordinates
+MAX_COORDINATE = 1e7  # squares; derived: beyond it, rounding of coordinates exceeds the skin of first contact, 1e-8
 
 
 def sound(shape: Any, what: str) -> Any:
-    """A shapely polygon or several as they are, or with rings that cross read even-odd; of all else its polygons.
+    """Return a geometry's polygons as one valid shapely geometry.
+
+    Parameters
+    ----------
+    shape : shapely geometry in squares, or None. Parts that are not polygons are left out.
+    what : name of the argument in the message of an error.
+
+    Returns
+    -------
+    The same object if it is None or a valid Polygon or MultiPolygon. Otherwise a Polygon or MultiPolygon in which rings
+    that cross each other are read by the even-odd rule.
 
     Raises
     ------
-    ValueError : when a coordinate is not finite or beyond FURTHEST.
+    ValueError : a coordinate is not finite, or its magnitude is above MAX_COORDINATE.
     """
     check(shapely.get_coordinates(shape), what)
     if shape is None or (shape.geom_type in ("Polygon", "MultiPolygon") and shapely.is_valid(shape)):
@@ -25,12 +35,17 @@ def sound(shape: Any, what: str) -> Any:
 
 
 def check(numbers: Any, what: str) -> None:
-    """Raise when some numbers are not all finite and at most FURTHEST.
+    """Raise ValueError unless all numbers are finite and of a magnitude of at most MAX_COORDINATE.
+
+    Parameters
+    ----------
+    numbers : a number, or an iterable (also nested, of equal lengths) of numbers.
+    what : name of the argument in the message of the error.
 
     Raises
     ------
-    ValueError : says what is wrong of what.
+    ValueError : a number is nan, infinite or too large.
     """
     values = np.asarray(list(numbers) if isinstance(numbers, Iterable) else numbers, dtype=float)
-    if not (np.abs(values) <= FURTHEST).all():
-        raise ValueError(f"{what} must be finite, and no coordinate beyond {FURTHEST:g}")
+    if not (np.abs(values) <= MAX_COORDINATE).all():
+        raise ValueError(f"{what} must be finite, and no coordinate beyond {MAX_COORDINATE:g}")

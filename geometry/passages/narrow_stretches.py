@@ -1,4 +1,4 @@
-"""How far the floor stays narrow about a passage: where its narrowest line may lie if its walls are less thick."""
+"""Narrow stretches about a passage: where its narrowest line may lie if its walls are less thick than they seem."""
 
 import numpy as np
 import shapely
@@ -6,46 +6,57 @@ import shapely
 from geometry.passages.necks import Passage, Segment
 from geometry.passages.walls import Walls
 
-HAIR = 1e-6  # squares
+TOUCH_TOLERANCE = 1e-6  # squares; convention: what an area loses at its edge, so that mere contact does not count
 
 
 def narrow_squares(walls: Walls, passage: Passage, spare: float) -> set[tuple[int, int]]:
-    """The squares (column, row) of which a part lies between two lines from wall to wall that are nearly as short.
+    """Return the squares (column, row) between lines from wall to wall that are nearly as short as a passage is wide.
 
-    The floor is followed from the mouths of the passage on, both ways, for as long as such lines are not longer than
-    the passage is wide and so many squares more.
+    The floor is followed from the mouths of the passage in both directions, as long as such lines are at most `spare`
+    squares longer than the passage is wide.
+
+    Parameters
+    ----------
+    walls : the triangulated floor.
+    passage : the passage from which the floor is followed.
+    spare : in squares.
+
+    Returns
+    -------
+    set of (column, row)
+        The squares of which a part lies between two such lines.
     """
-    most = (passage.width + spare) ** 2
-    number = {edge: k for k, edge in enumerate(map(tuple, walls.corners[walls.edges].reshape(-1, 4).tolist()))}
-    beside: dict[int, list[int]] = {}
+    limit = (passage.width + spare) ** 2
+    edge_of = {edge: k for k, edge in enumerate(map(tuple, walls.corners[walls.edges].reshape(-1, 4).tolist()))}
+    short_edges_of: dict[int, list[int]] = {}
     for edge, sides in enumerate(walls.sides.tolist()):
-        if walls.length[edge] <= most:
+        if walls.length[edge] <= limit:
             for triangle in sides:
-                beside.setdefault(triangle, []).append(edge)
-    todo = [number[key] for mouth in passage.mouths for key in _keys(mouth) if key in number]
-    seen, inner = set(todo), set()
-    while todo:
-        for triangle in walls.sides[todo.pop()].tolist():
-            short = beside.get(triangle, [])
+                short_edges_of.setdefault(triangle, []).append(edge)
+    queue = [edge_of[key] for mouth in passage.mouths for key in _edge_keys(mouth) if key in edge_of]
+    seen, inner = set(queue), set()
+    while queue:
+        for triangle in walls.sides[queue.pop()].tolist():
+            short = short_edges_of.get(triangle, [])
             if len(short) > 1:
                 inner.add(triangle)
-                todo += [edge for edge in short if edge not in seen]
+                queue += [edge for edge in short if edge not in seen]
                 seen.update(short)
-    return _touched(shapely.union_all(shapely.polygons(walls.corners[walls.triangles[sorted(inner)]])))
+    return _touched_squares(shapely.union_all(shapely.polygons(walls.corners[walls.triangles[sorted(inner)]])))
 
 
-def _keys(mouth: Segment) -> list[tuple[int, ...]]:
-    """A mouth as the corners of an edge, one way and the other."""
+def _edge_keys(mouth: Segment) -> list[tuple[int, ...]]:
+    """Return a mouth as the corners of an edge, in both directions."""
     (a, b), (c, d) = mouth
     return [(int(a), int(b), int(c), int(d)), (int(c), int(d), int(a), int(b))]
 
 
-def _touched(area: shapely.Geometry) -> set[tuple[int, int]]:
-    """The squares of which a part lies in an area between corners of squares."""
+def _touched_squares(area: shapely.Geometry) -> set[tuple[int, int]]:
+    """Return the squares (column, row) of which a part lies in an area between corners of squares."""
     if area.is_empty:
         return set()
     x0, y0, x1, y1 = (int(v) for v in area.bounds)
     columns, rows = (v.ravel() for v in np.meshgrid(np.arange(x0, x1), np.arange(y0, y1)))
     shapely.prepare(area)
-    some = shapely.intersects(area.buffer(-HAIR), shapely.box(columns, rows, columns + 1, rows + 1))
-    return set(zip(columns[some].tolist(), rows[some].tolist(), strict=True))
+    touched = shapely.intersects(area.buffer(-TOUCH_TOLERANCE), shapely.box(columns, rows, columns + 1, rows + 1))
+    return set(zip(columns[touched].tolist(), rows[touched].tolist(), strict=True))

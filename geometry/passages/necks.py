@@ -1,10 +1,10 @@
-"""Passages: the necks of the floor, each with the walls that form it and how wide the floor is on either side.
+"""Passages: the necks of the floor, each with the walls that form it and the width of the floor on either side.
 
-# Strategy: cut along all necks (see walls.py), the floor falls apart. From the widest down they are opened again, all
-of one width at once: so it is a matter of shape alone, and of no order of squares, what the floor is like on both
-sides of a neck before any that is as narrow. Where that is not wide enough on one side, the floor goes on there through
-necks just as narrow, or ends. Necks that hang together so are one doorway: a wall of some depth, a passage with a bend
-or a niche. What it leads to are its mouths: the outermost of its necks, behind which the floor is wide.
+# Strategy: cut along all necks (see walls.py), the floor falls apart. From the widest down the necks are opened again,
+all of one width at once. So the floor on both sides of a neck, before any neck that is as narrow, depends on the shape
+alone and not on the order of squares. Where that floor is not wide enough on one side, it goes on there through necks
+just as narrow, or ends. Necks that hang together so are one doorway: a wall of some depth, a passage with a bend or a
+niche. A doorway's mouths are the outermost of its necks, behind which the floor is wide.
 """
 
 from collections import defaultdict
@@ -20,43 +20,48 @@ from geometry.kernels.jit import compiled
 from geometry.passages.walls import Walls
 
 Segment = tuple[XY, XY]
-DOOR = 2.0  # times as wide as a door the floor is at least on both sides of it: the definition
-HAIR = 1e-6
-TIE = 1e-9  # by which squared widths may differ for rounding
+DOOR = 2.0  # ratio; convention: the floor on both sides of a door is at least so many times as wide as the door
+GATE_OFFSET = 1e-6  # share of a mouth's length; convention: the step across the mouth that tells its two sides apart
+SQUARED_WIDTH_TOLERANCE = 1e-9  # square units; rounding by which squared widths may differ
 
 
 class Passage(NamedTuple):
-    """A neck of the floor, or a doorway of several just as narrow; all measures in squares."""
+    """A neck of the floor, or a doorway of several equally narrow necks; all measures in squares.
+
+    Attributes
+    ----------
+    width : from wall to wall at its narrowest.
+    sides : the greatest clearance on either side, before any neck that is narrower.
+    mouths : the two straight lines on the floor, from wall to wall, where it opens to either side; the same line twice
+        where it has no depth. Each begins with the end on the left of a robot that goes from the first side to the
+        second.
+    gates : the centres of free squares just beyond the mouths, (x, y).
+    between : the squares (column, row) whose centres lie between the mouths, or on them.
+    """
 
     width: float
-    """From wall to wall at its narrowest."""
     sides: tuple[float, float]
-    """The greatest clearance on either side, before any neck that is narrower."""
     mouths: tuple[Segment, Segment]
-    """Where it opens to either side: straight lines on the floor, from wall to wall. The same line twice where it
-    has no depth. Of each first the end on the left of who goes from the first side to the second."""
     gates: tuple[XY, XY]
-    """The centres of free squares just beyond the mouths."""
     between: tuple[tuple[int, int], ...]
-    """The squares (column, row) whose centres lie between the mouths, or on them."""
 
     @property
     def a(self) -> XY:
-        """Its end on the left, halfway between the mouths."""
+        """Return its left end, halfway between the mouths, (x, y) in squares."""
         return _halfway(self.mouths[0][0], self.mouths[1][0])
 
     @property
     def b(self) -> XY:
-        """Its end on the right, halfway between the mouths."""
+        """Return its right end, halfway between the mouths, (x, y) in squares."""
         return _halfway(self.mouths[0][1], self.mouths[1][1])
 
     @property
     def place(self) -> XY:
-        """The middle between both ends."""
+        """Return the midpoint between both ends, (x, y) in squares."""
         return _halfway(self.a, self.b)
 
     def shifted(self, columns: int, rows: int) -> "Passage":
-        """The same passage where the origin lies so many squares further west and south."""
+        """Return the same passage in a frame whose origin lies that many squares further west and south."""
 
         def there(point: XY) -> XY:
             return point[0] + columns, point[1] + rows
@@ -68,12 +73,20 @@ class Passage(NamedTuple):
 
 
 def _halfway(one: XY, other: XY) -> XY:
+    """Return the midpoint of two points."""
     return (one[0] + other[0]) / 2, (one[1] + other[1]) / 2
 
 
 class _Mouth(NamedTuple):
-    """An end of a doorway: a neck, on which side of it the floor is wide, the squared width of that floor, and the
-    triangles that make it up."""
+    """An end of a doorway.
+
+    Attributes
+    ----------
+    edge : the neck, an edge of the triangulation.
+    side : the side of the neck on which the floor is wide, 0 or 1.
+    room : the squared width of that floor, in squared squares.
+    floor : the triangles of that floor.
+    """
 
     edge: int
     side: int
@@ -82,7 +95,7 @@ class _Mouth(NamedTuple):
 
 
 class _Doorway(NamedTuple):
-    """Two mouths, and the squares between them."""
+    """Two mouths, and the squares (column, row) between them."""
 
     one: _Mouth
     two: _Mouth
@@ -90,14 +103,17 @@ class _Doorway(NamedTuple):
 
 
 def find_passages(walls: Walls, pinch: float = DOOR) -> list[Passage]:
-    """All passages, by place.
+    """Return all passages, ordered by place: row, then column.
 
-    pinch : how many times as wide as the neck the floor must be on both sides of it, more than 1.
+    Parameters
+    ----------
+    walls : the triangulated floor.
+    pinch : how many times as wide as the neck the floor must be on both sides of it; more than 1.
     """
     floor = _Floor(walls)
     found: list[_Doorway] = []
-    for edges in _by_width(walls):
-        least = pinch**2 * int(walls.length[edges[0]]) - TIE
+    for edges in _necks_by_width(walls):
+        least = pinch**2 * int(walls.length[edges[0]]) - SQUARED_WIDTH_TOLERANCE
         if least <= floor.widest:
             for mouths, inner in _clusters(walls, floor, edges, least):
                 between = _squares_of(walls, [t for node in inner for t in floor.members[node]])
@@ -110,7 +126,14 @@ def find_passages(walls: Walls, pinch: float = DOOR) -> list[Passage]:
 
 
 class _Floor:
-    """The parts of the floor between necks that are still shut: triangles, joined step by step."""
+    """The parts of the floor between necks that are still closed: a union-find over triangles.
+
+    Attributes
+    ----------
+    members : by representative, the triangles of its part.
+    room : by representative, the squared width of the floor in its part.
+    widest : the squared width of the widest part of all.
+    """
 
     def __init__(self, walls: Walls) -> None:
         number = len(walls.triangles)
@@ -123,7 +146,7 @@ class _Floor:
             self.join(one, other)
 
     def of(self, triangle: int) -> int:
-        """The part in which a triangle lies."""
+        """Return the representative of the part in which a triangle lies."""
         parent = self._parent
         while parent[triangle] != triangle:
             parent[triangle] = triangle = parent[parent[triangle]]
@@ -142,8 +165,8 @@ class _Floor:
         self.room[a] = max(self.room[a], self.room[b])
 
 
-def _by_width(walls: Walls) -> Iterator[list[int]]:
-    """The necks in groups of one width, the widest first."""
+def _necks_by_width(walls: Walls) -> Iterator[list[int]]:
+    """Yield the necks in groups of equal width, widest first."""
     necks = np.flatnonzero(walls.neck)
     order = necks[np.argsort(-walls.length[necks], kind="stable")].tolist()
     for _, group in groupby(order, key=lambda edge: int(walls.length[edge])):
@@ -151,7 +174,10 @@ def _by_width(walls: Walls) -> Iterator[list[int]]:
 
 
 def _clusters(walls: Walls, floor: _Floor, edges: list[int], least: float) -> Iterator[tuple[list[_Mouth], set[int]]]:
-    """Necks of one width that hang together through floor that is not so wide: their mouths, and that floor."""
+    """Yield the necks of one width that hang together through narrower floor: mouths, and parts of that floor.
+
+    `least` is the squared width from which on floor counts as wide.
+    """
     ends = {edge: [floor.of(triangle) for triangle in walls.sides[edge].tolist()] for edge in edges}
     meeting: dict[int, list[int]] = defaultdict(list)
     for edge in edges:
@@ -160,10 +186,10 @@ def _clusters(walls: Walls, floor: _Floor, edges: list[int], least: float) -> It
                 meeting[node].append(edge)
     left = dict.fromkeys(edges)
     while left:
-        todo, inner, mouths = [next(iter(left))], set(), []
-        del left[todo[0]]
-        while todo:
-            edge = todo.pop()
+        queue, inner, mouths = [next(iter(left))], set(), []
+        del left[queue[0]]
+        while queue:
+            edge = queue.pop()
             for side, node in enumerate(ends[edge]):
                 if floor.room[node] >= least:
                     mouths.append((edge, side, node))
@@ -172,15 +198,15 @@ def _clusters(walls: Walls, floor: _Floor, edges: list[int], least: float) -> It
                 for other in meeting[node] if node in inner else ():
                     if other in left:
                         del left[other]
-                        todo.append(other)
+                        queue.append(other)
         if len(mouths) > 1:
             yield [_Mouth(e, side, floor.room[node], tuple(floor.members[node])) for e, side, node in mouths], inner
 
 
 def _doorways(walls: Walls, mouths: list[_Mouth], between: tuple[tuple[int, int], ...]) -> Iterator[_Doorway]:
-    """The doorway of two mouths; or one of no depth in each, where they are more.
+    """Yield the doorway of two mouths; of more mouths, a doorway of no depth in each.
 
-    Where three or more meet, what lies between them is floor like other floor.
+    Where three or more meet, the floor between them is floor like any other.
     """
     if len(mouths) == 2:
         one, two = mouths
@@ -193,20 +219,20 @@ def _doorways(walls: Walls, mouths: list[_Mouth], between: tuple[tuple[int, int]
 
 
 def _passage(walls: Walls, doorway: _Doorway, taken: set[tuple[int, int]]) -> Passage:
-    """The passage of a doorway. taken : the squares (column, row) between the mouths of any."""
-    ways = [(_gate(walls, mouth, taken), mouth) for mouth in (doorway.one, doorway.two)]
-    (here, one), (there, two) = sorted(ways, key=lambda way: way[0][::-1])
+    """Return the passage of a doorway; `taken` are the squares (column, row) between the mouths of any doorway."""
+    gates = [(_gate(walls, mouth, taken), mouth) for mouth in (doorway.one, doorway.two)]
+    (here, one), (there, two) = sorted(gates, key=lambda way: way[0][::-1])
     return Passage(
         sqrt(float(walls.length[one.edge])),
         (sqrt(one.room) / 2, sqrt(two.room) / 2),
-        (_ends(walls, one), _ends(walls, two)[::-1]),
+        (_mouth_ends(walls, one), _mouth_ends(walls, two)[::-1]),
         (here, there),
         doorway.between,
     )
 
 
-def _ends(walls: Walls, mouth: _Mouth) -> Segment:
-    """The ends of a mouth, on the left and right of who comes in by it."""
+def _mouth_ends(walls: Walls, mouth: _Mouth) -> Segment:
+    """Return the ends of a mouth, first that on the left, then that on the right of a robot that enters by it."""
     p, q = walls.corners[walls.edges[mouth.edge]].tolist()
     x, y = walls.opposite(mouth.edge, mouth.side).tolist()
     leftward = (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) > 0
@@ -215,32 +241,32 @@ def _ends(walls: Walls, mouth: _Mouth) -> Segment:
 
 
 def _gate(walls: Walls, mouth: _Mouth, taken: set[tuple[int, int]]) -> XY:
-    """The centre of the square beyond a mouth that is nearest to its middle, in the floor to which it opens."""
-    (ax, ay), (bx, by) = _ends(walls, mouth)
+    """Return the centre of the square beyond a mouth that is nearest to its midpoint, in the floor it opens to."""
+    (ax, ay), (bx, by) = _mouth_ends(walls, mouth)
     x, y = (ax + bx) / 2, (ay + by) / 2
     found = [
         ((column + 0.5 - x) ** 2 + (row + 0.5 - y) ** 2, row, column)
         for column, row in _squares_of(walls, mouth.floor)
         if (bx - ax) * (row + 0.5 - ay) - (by - ay) * (column + 0.5 - ax) < 0 and (column, row) not in taken
     ]
-    if not found:  # in so small a piece of floor no centre lies: the square that begins at the middle
-        return np.floor(x + HAIR * (by - ay)) + 0.5, np.floor(y - HAIR * (bx - ax)) + 0.5
+    if not found:  # no centre lies in so small a piece of floor: take the square that begins at the midpoint
+        return np.floor(x + GATE_OFFSET * (by - ay)) + 0.5, np.floor(y - GATE_OFFSET * (bx - ax)) + 0.5
     _, row, column = min(found)
     return column + 0.5, row + 0.5
 
 
 def _squares_of(walls: Walls, triangles: Iterable[int]) -> tuple[tuple[int, int], ...]:
-    """The squares whose centres lie in some triangles, or on their edges."""
+    """Return the squares whose centres lie in some triangles, or on their edges."""
     return _centres(walls.corners[walls.triangles[list(triangles)]])
 
 
 def _squares_on(walls: Walls, edge: int) -> tuple[tuple[int, int], ...]:
-    """The squares whose centres lie on an edge."""
+    """Return the squares whose centres lie on an edge."""
     return _centres(walls.corners[walls.edges[edge][[0, 1, 1]]][None])
 
 
 def _centres(triangles: Longs) -> tuple[tuple[int, int], ...]:
-    """The squares (column, row) whose centres lie in triangles (n, 3, 2), or on their edges; by row."""
+    """Return the squares (column, row) whose centres lie in triangles (n, 3, 2), or on their edges; by row."""
     if not len(triangles):
         return ()
     (west, south), (east, north) = triangles.min(axis=(0, 1)).tolist(), triangles.max(axis=(0, 1)).tolist()
@@ -252,7 +278,7 @@ def _centres(triangles: Longs) -> tuple[tuple[int, int], ...]:
 
 @compiled
 def mark_centres(triangles: Longs, mask: Bools) -> None:
-    """Mark the squares whose centres lie in triangles (n, 3, 2), in half squares, or on their edges."""
+    """Set `mask` at the squares whose centres lie in triangles (n, 3, 2), given in half squares, or on their edges."""
     for n in range(triangles.shape[0]):
         (ax, ay), (bx, by), (cx, cy) = triangles[n, 0], triangles[n, 1], triangles[n, 2]
         for row in range(min(ay, by, cy) // 2, max(ay, by, cy) // 2):

@@ -10,10 +10,15 @@ from geometry.passages.necks import Passage
 
 
 def find_parts(free: Bools, passages: Iterable[Passage]) -> Labels:
-    """(rows, columns) int: the number of the part, from 1 in the order of the parts' first squares.
+    """Return the number of each square's part, (rows, columns) int, from 1 in the order of the parts' first squares.
 
-    0 on blocked squares, on those whose centres lie on a mouth, and on the floor between two mouths of a passage, with
-    all that can be reached from there alone; unless another passage leads there.
+    It is 0 on blocked squares, on squares whose centres lie on a mouth, and on the floor between two mouths of a
+    passage with all that can be reached from there alone, unless another passage leads there.
+
+    Parameters
+    ----------
+    free : (rows, columns) bool.
+    passages : the passages along whose mouths the floor is cut.
     """
     some = list(passages)
     label = cut_floor(np.pad(free, 1), some)[0]
@@ -37,29 +42,32 @@ def cut_floor(floor: Bools, passages: Iterable[Passage]) -> tuple[Labels, Bools]
     Parameters
     ----------
     floor : (rows + 2, columns + 2) bool, with a frame that is not floor.
+    passages : the passages along whose mouths the floor is cut.
 
     Returns
     -------
-    label : (rows + 2, columns + 2) int, the number of the piece, from 1; 0 off the floor and on squares whose centres
-        lie on a mouth.
-    shut : (2, rows + 2, columns + 2) bool, the steps from each cell to the east (0) and to the north (1). Two cells
-        have one label exactly when steps that are not shut lead from one to the other.
+    label : (rows + 2, columns + 2) int, the number of the piece, from 1; 0 off the floor and on squares whose
+        centres lie
+        on a mouth.
+    closed : (2, rows + 2, columns + 2) bool, the steps from each cell to the east (0) and to the north (1). Two
+        cells have
+        one label exactly when steps that are not closed lead from one to the other.
     """
-    shut, whole = np.zeros((2, *floor.shape), np.bool_), floor.copy()
+    closed, whole = np.zeros((2, *floor.shape), np.bool_), floor.copy()
     for mouth in dict.fromkeys(mouth for passage in passages for mouth in passage.mouths):
-        mark_crossed(shut, np.array(mouth))
-        bar_centres(whole, *mouth)
+        close_crossed_steps(closed, np.array(mouth))
+        block_centres(whole, *mouth)
     barred = floor & ~whole
-    shut[:, barred] = True
-    shut[0, :, :-1] |= barred[:, 1:]
-    shut[1, :-1] |= barred[1:]
+    closed[:, barred] = True
+    closed[0, :, :-1] |= barred[:, 1:]
+    closed[1, :-1] |= barred[1:]
     label = np.zeros(floor.shape, np.int32)
-    number_parts(whole, shut, label, np.empty(floor.size, np.int32))
-    return label, shut
+    number_parts(whole, closed, label, np.empty(floor.size, np.int32))
+    return label, closed
 
 
-def bar_centres(floor: Bools, a: tuple[float, float], b: tuple[float, float]) -> None:
-    """Block the squares of a framed floor whose centres lie on a line between corners of squares."""
+def block_centres(floor: Bools, a: tuple[float, float], b: tuple[float, float]) -> None:
+    """Block the squares of a framed floor whose centres lie on a line a-b between corners of squares."""
     (ax, ay), (bx, by) = a, b
     west, south, east, north = (int(v) for v in (min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
     rows, columns = np.mgrid[south:north, west:east]
@@ -68,10 +76,13 @@ def bar_centres(floor: Bools, a: tuple[float, float], b: tuple[float, float]) ->
 
 
 @compiled
-def mark_crossed(shut: Bools, line: Floats) -> None:
-    """Mark the steps between centres of squares that a line crosses an odd number of times.
+def close_crossed_steps(closed: Bools, line: Floats) -> None:
+    """Close the steps between centres of squares that a line crosses an odd number of times.
 
-    line : (n, 2) points (x, y).
+    Parameters
+    ----------
+    closed : (2, rows + 2, columns + 2) bool, steps to the east (0) and to the north (1).
+    line : (n, 2) points (x, y), in squares.
     """
     low_x = high_x = line[0, 0]
     low_y = high_y = line[0, 1]
@@ -86,33 +97,39 @@ def mark_crossed(shut: Bools, line: Floats) -> None:
         for row in range(int(np.floor(min(ay, by))) - 1, int(np.floor(max(ay, by))) + 2):
             for column in range(int(np.floor(min(ax, bx))) - 1, int(np.floor(max(ax, bx))) + 2):
                 x, y = column + 0.5, row + 0.5
-                odd[0, row - south, column - west] ^= meets(ax, ay, bx, by, x, y, x + 1.0, y)
-                odd[1, row - south, column - west] ^= meets(ax, ay, bx, by, x, y, x, y + 1.0)
-    for row in range(max(south, 0), min(south + high, shut.shape[1] - 2)):
-        for column in range(max(west, 0), min(west + wide, shut.shape[2] - 2)):
+                odd[0, row - south, column - west] ^= segments_cross(ax, ay, bx, by, x, y, x + 1.0, y)
+                odd[1, row - south, column - west] ^= segments_cross(ax, ay, bx, by, x, y, x, y + 1.0)
+    for row in range(max(south, 0), min(south + high, closed.shape[1] - 2)):
+        for column in range(max(west, 0), min(west + wide, closed.shape[2] - 2)):
             for k in range(2):
-                shut[k, row + 1, column + 1] |= odd[k, row - south, column - west]
+                closed[k, row + 1, column + 1] |= odd[k, row - south, column - west]
 
 
 @compiled
-def meets(ax: float, ay: float, bx: float, by: float, px: float, py: float, qx: float, qy: float) -> bool:
-    """Whether the segments a-b and p-q cross."""
-    apart = (turn(ax, ay, bx, by, px, py) > 0) != (turn(ax, ay, bx, by, qx, qy) > 0)
-    return apart and (turn(px, py, qx, qy, ax, ay) > 0) != (turn(px, py, qx, qy, bx, by) > 0)
+def segments_cross(ax: float, ay: float, bx: float, by: float, px: float, py: float, qx: float, qy: float) -> bool:
+    """Return whether the segments a-b and p-q cross."""
+    apart = (orientation(ax, ay, bx, by, px, py) > 0) != (orientation(ax, ay, bx, by, qx, qy) > 0)
+    return apart and (orientation(px, py, qx, qy, ax, ay) > 0) != (orientation(px, py, qx, qy, bx, by) > 0)
 
 
 @compiled
-def turn(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> float:
-    """Positive when c lies left of the ray from a through b."""
+def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> float:
+    """Return a positive number when c lies left of the ray from a through b, negative when right."""
     return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 
 
 @bare
-def number_parts(free: Bools, shut: Bools, label: Labels, stack: Ints) -> int:
-    """Number the parts of the padded free cells; returns how many there are."""
+def number_parts(free: Bools, closed: Bools, label: Labels, stack: Ints) -> int:
+    """Write the number of each padded free cell's part to `label`, from 1, and return how many parts there are.
+
+    Parameters
+    ----------
+    free : (rows + 2, columns + 2) bool. closed : (2, rows + 2, columns + 2) bool, the steps that are cut.
+    label : (rows + 2, columns + 2) int, 0 at first. stack : (cells,) scratch.
+    """
     width = free.shape[1]
     open_cells, labels = free.reshape(-1), label.reshape(-1)
-    east, north = shut[0].reshape(-1), shut[1].reshape(-1)
+    east, north = closed[0].reshape(-1), closed[1].reshape(-1)
     count = 0
     for seed in range(open_cells.shape[0]):
         if not open_cells[seed] or labels[seed] > 0:
@@ -127,8 +144,8 @@ def number_parts(free: Bools, shut: Bools, label: Labels, stack: Ints) -> int:
             for k in range(4):
                 other = cell + (1 if k == 0 else width if k == 1 else -1 if k == 2 else -width)
                 low = min(cell, other)
-                closed = north[low] if k % 2 == 1 else east[low]
-                if open_cells[other] and labels[other] == 0 and not closed:
+                is_closed = north[low] if k % 2 == 1 else east[low]
+                if open_cells[other] and labels[other] == 0 and not is_closed:
                     labels[other] = count
                     stack[size] = other
                     size += 1

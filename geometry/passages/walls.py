@@ -1,10 +1,10 @@
 """The floor as triangles between the corners of its walls, and the widths that follow from them.
 
-# Strategy: a circle among the walls is as large as can be when corners of walls hold it on all sides: it is the circle
-about a triangle of the Delaunay triangulation of these corners that is not obtuse. A line from wall to wall is shorter
-than all lines beside it when no corner lies in the circle over it: it is an edge with acute angles on both sides
-(Gabriel's condition). All of this is decided with whole numbers, so that it is the same however the floor is turned,
-mirrored or moved; where several corners lie on one circle any triangulation of them tells the same.
+# Strategy: a circle among the walls is locally largest when corners of walls hold it on all sides: it is the
+circumcircle of a triangle of the Delaunay triangulation of these corners that is not obtuse. A line from wall to wall
+is shorter than all lines beside it when no corner lies in the circle over it: it is an edge with acute angles on both
+sides (Gabriel's condition). All of this is decided with whole numbers, so that it is the same however the floor is
+turned, mirrored or moved. Where several corners lie on one circle, any triangulation of them gives the same.
 """
 
 from typing import NamedTuple
@@ -16,13 +16,15 @@ from geometry.kernels.arrays import Bools, Floats, Longs
 
 
 class Walls(NamedTuple):
-    """The floor between the corners of its walls.
+    """The floor as a triangulation of the corners of its walls.
 
-    corners : (n, 2) the corners of blocked squares that touch free ones, (x, y).
+    Attributes
+    ----------
+    corners : (n, 2) int, the corners of blocked squares that touch free ones, (x, y) in squares.
     triangles : (m, 3) numbers of corners; together they are the free squares.
     room : (m,) the squared width of the floor about each triangle: 0 where that is greatest elsewhere.
-    edges : (k, 2) numbers of the corners at the ends of what two triangles share.
-    sides : (k, 2) these triangles.
+    edges : (k, 2) numbers of the corners at the ends of each edge that two triangles share.
+    sides : (k, 2) these two triangles.
     length : (k,) the squared length of each edge.
     neck : (k,) whether all lines from wall to wall beside the edge are longer.
     """
@@ -36,7 +38,7 @@ class Walls(NamedTuple):
     neck: Bools
 
     def opposite(self, edge: int, side: int) -> Longs:
-        """The corner (x, y) of one of the two triangles of an edge that is not on the edge."""
+        """Return the corner (x, y) of one of the two triangles of an edge that is not on the edge."""
         ends = self.edges[edge]
         (other,) = (c for c in self.triangles[self.sides[edge, side]].tolist() if c not in ends)
         point: Longs = self.corners[other]
@@ -44,7 +46,12 @@ class Walls(NamedTuple):
 
 
 def find_walls(free: Bools) -> Walls:
-    """Triangulate the free squares of a screen; everything outside it is blocked."""
+    """Return the triangulated free squares of a screen; everything outside it is blocked.
+
+    Parameters
+    ----------
+    free : (rows, columns) bool.
+    """
     floor = np.pad(free, 1)
     corners, triangles = _triangulate(floor)
     middle = corners[triangles].sum(axis=1) // 3 + 1  # of a triangle that is free all squares about it are
@@ -57,7 +64,7 @@ def find_walls(free: Bools) -> Walls:
 
 
 def _triangulate(floor: Bools) -> tuple[Longs, Longs]:
-    """The corners of walls and the triangles of all between them. floor : the free squares in a frame of blocked."""
+    """Return the corners of walls and the triangles between them; `floor` are the free squares in a blocked frame."""
     around = [floor[:-1, :-1], floor[:-1, 1:], floor[1:, :-1], floor[1:, 1:]]
     on_wall = np.logical_or.reduce(around) & ~np.logical_and.reduce(around)
     corners = np.argwhere(on_wall)[:, ::-1].astype(np.int64)
@@ -69,7 +76,7 @@ def _triangulate(floor: Bools) -> tuple[Longs, Longs]:
 
 
 def _shared(triangles: Longs) -> tuple[Longs, Longs, Longs]:
-    """The edges that two triangles share: their ends, these triangles, and the corners opposite."""
+    """Return the edges that two triangles share: their ends, these triangles, and the corners opposite."""
     ends = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
     owner, tip = np.tile(np.arange(len(triangles)), 3), np.concatenate([triangles[:, k] for k in (2, 0, 1)])
     order = np.lexsort((owner, ends[:, 1], ends[:, 0]))
@@ -80,10 +87,10 @@ def _shared(triangles: Longs) -> tuple[Longs, Longs, Longs]:
 
 
 def _widths(points: Longs) -> Floats:
-    """The squared width of the floor about triangles, from their corners (m, 3, 2); 0 about those that are obtuse.
+    """Return the squared width of the floor about triangles with corners (m, 3, 2); 0 about obtuse ones.
 
-    Walls go straight on between corners that are one square apart, so they come nearer to the centre than these by
-    what such a chord cuts off: of four times the squared radius one square is taken.
+    Walls go straight on between corners that are one square apart, so they come nearer to the centre than these corners
+    by what such a chord cuts off: 1 is subtracted from four times the squared radius.
     """
     a, b, c = (points[:, k] for k in range(3))
     u, v, w = b - a, c - b, a - c
@@ -96,6 +103,6 @@ def _widths(points: Longs) -> Floats:
 
 
 def _dot(u: Longs, v: Longs) -> Longs:
-    """The inner products of (n, 2) vectors."""
+    """Return the inner products of (n, 2) vectors, (n,)."""
     product: Longs = u[:, 0] * v[:, 0] + u[:, 1] * v[:, 1]
     return product

@@ -1,6 +1,6 @@
-"""A path-finder to compare with: A* on the eight-connected grid of squares (Hart, Nilsson and Raphael 1968).
+"""A* on the eight-connected grid of squares (Hart, Nilsson and Raphael 1968), for comparison.
 
-Diagonal steps are allowed where both squares beside them are free. The way goes from centre to centre.
+Diagonal steps are allowed where both squares beside them are free. The path goes from centre to centre.
 """
 
 from heapq import heappop, heappush
@@ -11,30 +11,39 @@ import numpy as np
 from geometry.kernels.arrays import Bools, Floats, Square
 
 DIAGONAL = sqrt(2.0)
-STRAIGHT = ((1, 0, 1.0), (0, 1, 1.0), (-1, 0, 1.0), (0, -1, 1.0))
-STEPS = (*STRAIGHT, *((dx, dy, DIAGONAL) for dx, dy in ((1, 1), (-1, 1), (-1, -1), (1, -1))))
+STRAIGHT_STEPS = ((1, 0, 1.0), (0, 1, 1.0), (-1, 0, 1.0), (0, -1, 1.0))
+STEPS = (*STRAIGHT_STEPS, *((dx, dy, DIAGONAL) for dx, dy in ((1, 1), (-1, 1), (-1, -1), (1, -1))))
 
 
 def grid_way(free: Bools, start: tuple[float, float], goal: tuple[float, float]) -> Floats | None:
-    """(n, 2) the shortest way over squares, from start to goal; None when there is none.
+    """Return the shortest path over squares from start to goal; None when there is none.
 
     Parameters
     ----------
-    free : (rows, columns) bool
-    start, goal : (x, y)
-        In free squares.
+    free : (rows, columns) bool, True where a point may be.
+    start, goal : (x, y) in squares, in free squares.
+
+    Returns
+    -------
+    (n, 2) float64 or None
+        The points of the path, in squares, both ends included.
+
+    Raises
+    ------
+    ValueError
+        When start or goal lies in a blocked square.
     """
     first, last = (int(start[0]), int(start[1])), (int(goal[0]), int(goal[1]))
     padded = np.pad(free, 1).tolist()
     if not (padded[first[1] + 1][first[0] + 1] and padded[last[1] + 1][last[0] + 1]):
         raise ValueError("start and goal must lie in free squares")
     done: dict[Square, float] = {first: 0.0}
-    came: dict[Square, Square] = {}
-    heap = [(octile(first, last), 0.0, first)]
+    came_from: dict[Square, Square] = {}
+    heap = [(octile_distance(first, last), 0.0, first)]
     while heap:
         _, length, square = heappop(heap)
         if square == last:
-            return unroll(came, square, start, goal)
+            return points_of_path(came_from, square, start, goal)
         if length > done[square]:
             continue
         x, y = square
@@ -43,22 +52,24 @@ def grid_way(free: Bools, start: tuple[float, float], goal: tuple[float, float])
                 other, total = (x + dx, y + dy), length + step
                 if total < done.get(other, np.inf):
                     done[other] = total
-                    came[other] = square
-                    heappush(heap, (total + octile(other, last), total, other))
+                    came_from[other] = square
+                    heappush(heap, (total + octile_distance(other, last), total, other))
     return None
 
 
-def octile(a: Square, b: Square) -> float:
-    """The length of the way between two squares on an empty grid."""
+def octile_distance(a: Square, b: Square) -> float:
+    """Return the length of the shortest path between two squares on an empty grid, in squares."""
     dx, dy = abs(a[0] - b[0]), abs(a[1] - b[1])
     return max(dx, dy) + (DIAGONAL - 1.0) * min(dx, dy)
 
 
-def unroll(came: dict[Square, Square], square: Square, start: tuple[float, float], goal: tuple[float, float]) -> Floats:
-    """The way back to the first square, turned round, with the true ends."""
+def points_of_path(
+    came_from: dict[Square, Square], square: Square, start: tuple[float, float], goal: tuple[float, float]
+) -> Floats:
+    """Return the path to a square: start, centres of squares, goal, (n, 2) in squares."""
     squares = [square]
-    while square in came:
-        square = came[square]
+    while square in came_from:
+        square = came_from[square]
         squares.append(square)
     centres = [(x + 0.5, y + 0.5) for x, y in reversed(squares)]
     whole = [tuple(start), *[p for p in centres if p not in (tuple(start), tuple(goal))], tuple(goal)]

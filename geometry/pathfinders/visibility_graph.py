@@ -1,8 +1,7 @@
-"""A path-finder to compare with: straight lines between extreme points, as Shakey's (Nilsson 1984).
+"""Visibility graph of extreme points: A* along straight open lines, as Shakey's (Nilsson 1984), for comparison.
 
-The extreme points are the corners where blocked squares stick out into free space. A line between two points is
-open when it stays in free space; it may touch walls but never passes between two blocked squares that touch at a
-corner.
+The extreme points are the corners where blocked squares stick out into free space. A line between two points is open
+when it stays in free space. It may touch walls but never passes between two blocked squares that touch at a corner.
 """
 
 from heapq import heappop, heappush
@@ -14,81 +13,113 @@ from geometry.kernels.jit import bare
 
 
 def extreme_points(free: Bools) -> Floats:
-    """(n, 2) the corners with exactly one blocked square of four about them."""
+    """Return the extreme points, (n, 2) float64 in squares: corners with exactly one blocked square about them.
+
+    Parameters
+    ----------
+    free : (rows, columns) bool, True where a point may be.
+    """
     wall = ~np.pad(free, 1)
-    about = wall[1:, 1:].astype(np.int8) + wall[1:, :-1] + wall[:-1, 1:] + wall[:-1, :-1]
-    rows, columns = np.nonzero(about == 1)
+    blocked_count = wall[1:, 1:].astype(np.int8) + wall[1:, :-1] + wall[:-1, 1:] + wall[:-1, :-1]
+    rows, columns = np.nonzero(blocked_count == 1)
     return np.stack([columns, rows], axis=1).astype(np.float64)
 
 
 def visibility_way(free: Bools, start: XY, goal: XY) -> Floats | None:
-    """(n, 2) the shortest way along open lines between start, extreme points and goal; None when there is none."""
+    """Return the shortest path along open lines between start, extreme points and goal; None when there is none.
+
+    Parameters
+    ----------
+    free : (rows, columns) bool, True where a point may be.
+    start, goal : (x, y) in squares.
+
+    Returns
+    -------
+    (n, 2) float64 or None
+        The corners of the path, in squares, both ends included.
+
+    Raises
+    ------
+    ValueError
+        When start or goal lies in a blocked square.
+    """
     if not (free[int(start[1]), int(start[0])] and free[int(goal[1]), int(goal[0])]):
         raise ValueError("start and goal must lie in free squares")
     points = np.vstack([[start], extreme_points(free), [goal]])
     last = len(points) - 1
     best = np.full(len(points), np.inf)
     best[0] = 0.0
-    came = np.zeros(len(points), np.int64)
+    came_from = np.zeros(len(points), np.int64)
     closed = np.zeros(len(points), np.bool_)
     padded = np.pad(free, 1)
     heap = [(0.0, 0)]
     while heap:
-        _, at = heappop(heap)
-        if at == last:
-            return trail(points, came, at)
-        if closed[at]:
+        _, here = heappop(heap)
+        if here == last:
+            return points_of_path(points, came_from, here)
+        if closed[here]:
             continue
-        closed[at] = True
-        steps = np.hypot(*(points - points[at]).T)
-        nearer = ~closed & (best[at] + steps < best)
+        closed[here] = True
+        steps = np.hypot(*(points - points[here]).T)
+        nearer = ~closed & (best[here] + steps < best)
         for other in np.flatnonzero(nearer).tolist():
-            if leaves_own_square(padded, points, at, other) and line_open(padded, *points[at], *points[other]):
-                best[other] = best[at] + steps[other]
-                came[other] = at
-                ahead = float(np.hypot(*(points[other] - points[last])))
-                heappush(heap, (float(best[other]) + ahead, other))
+            if leaves_own_square(padded, points, here, other) and line_open(padded, *points[here], *points[other]):
+                best[other] = best[here] + steps[other]
+                came_from[other] = here
+                to_goal = float(np.hypot(*(points[other] - points[last])))
+                heappush(heap, (float(best[other]) + to_goal, other))
     return None
 
 
-def leaves_own_square(padded: Bools, points: Floats, at: int, other: int) -> bool:
-    """Return whether a line between two points keeps, at start or goal, to the side of the pinch on which they are.
+def leaves_own_square(padded: Bools, points: Floats, here: int, other: int) -> bool:
+    """Return whether a line leaves a start or goal that is a pinch on the side where its square lies.
 
-    A point where two blocked squares touch at a corner belongs, as all points, to the square north-east of it. The
-    corners between start and goal are no pinches.
+    A pinch is a point where two blocked squares touch at a corner. It belongs, as all points, to the square north-east
+    of it. The extreme points are no pinches.
+
+    Parameters
+    ----------
+    padded : (rows + 2, columns + 2) bool, the free squares with a blocked frame.
+    points : (n, 2), start first, goal last. here, other : indices of the line's ends.
     """
     last = len(points) - 1
-    for end, far in ((at, other), (other, at)):
+    for end, far in ((here, other), (other, here)):
         x, y = points[end].tolist()
-        if end in (0, last) and y == int(y) and pinched(padded, x, int(y)) and x == int(x):
+        if end in (0, last) and y == int(y) and is_pinch(padded, x, int(y)) and x == int(x):
             u, v = points[far].tolist()
             if u < x or v < y:
                 return False
     return True
 
 
-def trail(points: Floats, came: np.ndarray[tuple[int], np.dtype[np.int64]], at: int) -> Floats:
-    """The points on the way to one of them."""
-    order = [at]
-    while at:
-        at = int(came[at])
-        order.append(at)
+def points_of_path(points: Floats, came_from: np.ndarray[tuple[int], np.dtype[np.int64]], here: int) -> Floats:
+    """Return the points on the path to one of them, from the start on, (n, 2) in squares."""
+    order = [here]
+    while here:
+        here = int(came_from[here])
+        order.append(here)
     return points[order[::-1]]
 
 
 @bare
 def line_open(padded: Bools, x0: float, y0: float, x1: float, y1: float) -> bool:
-    """Whether a segment stays in free space: row by row, the squares that it enters."""
+    """Return whether a segment stays in free space. It may touch walls but passes no pinch.
+
+    Parameters
+    ----------
+    padded : (rows + 2, columns + 2) bool, the free squares with a blocked frame.
+    x0, y0, x1, y1 : the ends, in squares, without padding.
+    """
     if y0 > y1:
         x0, y0, x1, y1 = x1, y1, x0, y0
     if y0 == y1:
-        return level_open(padded, min(x0, x1), max(x0, x1), y0)
+        return horizontal_open(padded, min(x0, x1), max(x0, x1), y0)
     slope = (x1 - x0) / (y1 - y0)
     for row in range(int(np.floor(y0)), int(np.ceil(y1))):
         a = x0 + slope * (max(y0, float(row)) - y0)
         b = x0 + slope * (min(y1, row + 1.0) - y0)
         low, high = min(a, b), max(a, b)
-        if row > y0 and pinched(padded, a, row):
+        if row > y0 and is_pinch(padded, a, row):
             return False
         if high - low < 1e-9 and abs(low - np.floor(low + 0.5)) < 1e-9:  # along a vertical line: either side will do
             column = int(np.floor(low + 0.5))
@@ -102,8 +133,11 @@ def line_open(padded: Bools, x0: float, y0: float, x1: float, y1: float) -> bool
 
 
 @bare
-def level_open(padded: Bools, low: float, high: float, y: float) -> bool:
-    """Whether a horizontal segment stays in free space; along a line between rows either side will do."""
+def horizontal_open(padded: Bools, low: float, high: float, y: float) -> bool:
+    """Return whether a horizontal segment from x `low` to `high` stays in free space.
+
+    On a line between two rows it is enough that the square on one side is free.
+    """
     row = int(np.floor(y))
     for column in range(int(np.floor(low)), int(np.ceil(high))):
         if y == row:
@@ -113,14 +147,14 @@ def level_open(padded: Bools, low: float, high: float, y: float) -> bool:
             return False
     if y == row:
         for column in range(int(np.floor(low)) + 1, int(np.ceil(high))):
-            if pinched(padded, float(column), row):
+            if is_pinch(padded, float(column), row):
                 return False
     return True
 
 
 @bare
-def pinched(padded: Bools, x: float, row: int) -> bool:
-    """Whether a point on the line below a row is where two blocked squares touch at a corner."""
+def is_pinch(padded: Bools, x: float, row: int) -> bool:
+    """Return whether the point (x, row) is a pinch: two of the squares about it are blocked, and touch there."""
     column = int(np.floor(x + 0.5))
     if abs(x - column) > 1e-9:
         return False

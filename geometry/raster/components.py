@@ -1,4 +1,4 @@
-"""Connected components of a raster (edge adjacency), and the rectangles that contain them.
+"""Connected components of a raster (by shared edges), and the rectangles that contain them.
 
 Source: the two-pass labelling of Rosenfeld and Pfaltz (1966), with union-find.
 """
@@ -13,7 +13,13 @@ from geometry.kernels.jit import compiled
 
 
 class Components(NamedTuple):
-    """labels: (rows, columns) int32, 0 outside the mask, 1..number inside, by first square in raster order."""
+    """The 4-connected components of a mask.
+
+    Attributes
+    ----------
+    labels : (rows, columns) int32; 0 outside the mask, 1..number inside, numbered by first square in raster order.
+    number : number of components.
+    """
 
     labels: Labels
     number: int
@@ -22,15 +28,23 @@ class Components(NamedTuple):
 def components(mask: Bools) -> Components:
     """Label the 4-connected components of a (rows, columns) mask.
 
+    Returns
+    -------
+    Components
+
+    Examples
+    --------
     >>> components(np.array([[1, 0, 1], [1, 0, 1], [0, 1, 1]], bool)).labels.tolist()
     [[1, 0, 2], [1, 0, 2], [0, 2, 2]]
     """
     labels = np.zeros(mask.shape, np.int32)
-    return Components(labels, int(_label(np.ascontiguousarray(mask), labels, np.empty(mask.size // 2 + 2, np.int32))))
+    return Components(
+        labels, int(_label_components(np.ascontiguousarray(mask), labels, np.empty(mask.size // 2 + 2, np.int32)))
+    )
 
 
 def edged(mask: Bools) -> Bools:
-    """A mask, and all squares that share an edge with one of it."""
+    """Return a (rows, columns) mask dilated by one square: all its squares, and those that share an edge with one."""
     edges = mask.copy()
     edges[1:] |= mask[:-1]
     edges[:-1] |= mask[1:]
@@ -40,20 +54,32 @@ def edged(mask: Bools) -> Bools:
 
 
 def boxes(labels: Labels, number: int) -> NDArray[np.int64]:
-    """(number + 1, 4) by label: its first row, first column, last row and last column; -1 as last ones of no square.
+    """Return the bounding rectangle of each label.
 
+    Parameters
+    ----------
+    labels : (rows, columns) int32, values 0..number.
+    number : the greatest label.
+
+    Returns
+    -------
+    (number + 1, 4) int64, row n for label n: first row, first column, last row, last column (inclusive). A label of no
+    square has -1 as last row and column.
+
+    Examples
+    --------
     >>> boxes(np.array([[1, 0, 2], [1, 2, 2]], np.int32), 2)[1:].tolist()
     [[0, 0, 1, 0], [0, 1, 1, 2]]
     """
-    found = np.empty((number + 1, 4), np.int64)
-    found[:] = (*labels.shape, -1, -1)
-    _enclose(np.ascontiguousarray(labels), found)
-    return found
+    box_of = np.empty((number + 1, 4), np.int64)
+    box_of[:] = (*labels.shape, -1, -1)
+    _extend(np.ascontiguousarray(labels), box_of)
+    return box_of
 
 
 @compiled
-def _label(mask: Bools, labels: Labels, parent: Labels) -> int:
-    """Fill in the labels; returns how many there are."""
+def _label_components(mask: Bools, labels: Labels, parent: Labels) -> int:
+    """Fill in the labels of a mask; return the number of components. `parent` is scratch."""
     rows, columns = mask.shape
     count = 0
     for row in range(rows):
@@ -74,12 +100,12 @@ def _label(mask: Bools, labels: Labels, parent: Labels) -> int:
                 while parent[south] != south:
                     parent[south] = parent[parent[south]]
                     south = parent[south]
-                least = min(west, south)
-                parent[west], parent[south] = least, least
-                labels[row, column] = least
+                root = min(west, south)
+                parent[west], parent[south] = root, root
+                labels[row, column] = root
     parent[0] = 0
     number = 0
-    for label in range(1, count + 1):  # a root comes before all that hang on it
+    for label in range(1, count + 1):  # a root has a smaller label than all its descendants
         if parent[label] == label:
             number += 1
             parent[label] = number
@@ -92,10 +118,11 @@ def _label(mask: Bools, labels: Labels, parent: Labels) -> int:
 
 
 @compiled
-def _enclose(labels: Labels, found: NDArray[np.int64]) -> None:
+def _extend(labels: Labels, box_of: NDArray[np.int64]) -> None:
+    """Extend the rectangle of each label over all its squares, in place."""
     rows, columns = labels.shape
     for row in range(rows):
         for column in range(columns):
-            box = found[labels[row, column]]
+            box = box_of[labels[row, column]]
             box[0], box[1] = min(box[0], row), min(box[1], column)
             box[2], box[3] = max(box[2], row), max(box[3], column)

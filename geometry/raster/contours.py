@@ -1,45 +1,52 @@
-"""The outline of a region of squares: rings of straight segments along grid lines."""
+"""Contours: the boundary of a region of squares as rings of straight segments along grid lines."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-Corner = tuple[int, int]
-Ring = tuple[Corner, ...]
+Corner = tuple[int, int]  # (x, y) of a corner of squares, in grid units; also a unit step between two of them
+Ring = tuple[Corner, ...]  # a closed polyline, its first corner not repeated
 
 
 def outline(mask: NDArray[np.bool_]) -> list[Ring]:
-    """The boundary rings of the True squares of a (rows, columns) mask.
+    """Return the boundary rings of the True squares of a mask.
+
+    Parameters
+    ----------
+    mask : (rows, columns) bool.
 
     Returns
     -------
-    Rings of corners (x, y) in grid units, without repeating the first; the region lies on their left, so that outer
-    rings run counter-clockwise and
-    holes clockwise. Regions are edge-connected: where squares touch at a corner only, their rings stay apart. Rings
-    start at their least corner and come in the order of it.
+    Rings of corners (x, y) in grid units, without repeating the first. The region lies on their left, so that outer
+    rings run counter-clockwise and holes clockwise. Regions are edge-connected: where squares touch at a corner only,
+    their rings stay apart. A ring starts at its least corner (x first); rings are sorted.
 
+    Examples
+    --------
     >>> outline(np.array([[True, True]]))
     [((0, 0), (2, 0), (2, 1), (0, 1))]
     """
-    ahead = _edges(mask)
-    return sorted(_canonical(_ring(corner, ahead)) for corner in sorted(ahead) for _ in ahead.get(corner, [])[:1])
+    outgoing = _outgoing_edges(mask)
+    return sorted(
+        _normalise(_pop_ring(corner, outgoing)) for corner in sorted(outgoing) for _ in outgoing.get(corner, [])[:1]
+    )
 
 
-def _ring(start: Corner, ahead: dict[Corner, list[Corner]]) -> list[Corner]:
-    """Follow the boundary from a corner until it closes, and take its edges away."""
-    ring, here, direction = [start], start, min(ahead[start])
+def _pop_ring(start: Corner, outgoing: dict[Corner, list[Corner]]) -> list[Corner]:
+    """Follow the boundary from a corner until it closes, removing its edges from `outgoing`; return the corners."""
+    ring, here, direction = [start], start, min(outgoing[start])
     while True:
-        ahead[here].remove(direction)
+        outgoing[here].remove(direction)
         here = (here[0] + direction[0], here[1] + direction[1])
-        turned = _leftmost(direction, ahead[here])
-        if turned is None:
+        turn = _leftmost(direction, outgoing[here])
+        if turn is None:
             return ring
-        if turned != direction:
+        if turn != direction:
             ring.append(here)
-        direction = turned
+        direction = turn
 
 
-def _edges(mask: NDArray[np.bool_]) -> dict[Corner, list[Corner]]:
-    """From each corner the directions of the boundary edges that leave it, with the region on their left."""
+def _outgoing_edges(mask: NDArray[np.bool_]) -> dict[Corner, list[Corner]]:
+    """Return for each corner the directions of the boundary edges that leave it, with the region on their left."""
     framed = np.pad(mask, 1)
     inner = framed[1:-1, 1:-1]
     sides = (
@@ -48,25 +55,25 @@ def _edges(mask: NDArray[np.bool_]) -> dict[Corner, list[Corner]]:
         (inner & ~framed[2:, 1:-1], (1, 1), (-1, 0)),
         (inner & ~framed[1:-1, :-2], (0, 1), (0, -1)),
     )
-    ahead: dict[Corner, list[Corner]] = {}
-    for bare, (dx, dy), direction in sides:
-        rows, columns = np.nonzero(bare)
+    outgoing: dict[Corner, list[Corner]] = {}
+    for boundary, (dx, dy), direction in sides:
+        rows, columns = np.nonzero(boundary)
         for x, y in zip((columns + dx).tolist(), (rows + dy).tolist(), strict=True):
-            ahead.setdefault((x, y), []).append(direction)
-    return ahead
+            outgoing.setdefault((x, y), []).append(direction)
+    return outgoing
 
 
 def _leftmost(direction: Corner, choices: list[Corner]) -> Corner | None:
-    """Of the directions that leave a corner, the one furthest to the left: it stays with the same square."""
+    """Return the one of `choices` that turns furthest to the left, which stays with the same square; None if empty."""
     dx, dy = direction
-    for turned in ((-dy, dx), (dx, dy), (dy, -dx)):
-        if turned in choices:
-            return turned
+    for turn in ((-dy, dx), (dx, dy), (dy, -dx)):
+        if turn in choices:
+            return turn
     return None
 
 
-def _canonical(ring: list[Corner]) -> Ring:
-    """Without corners on straight stretches, from the least corner on."""
+def _normalise(ring: list[Corner]) -> Ring:
+    """Return the ring without corners on straight stretches, rotated to begin at its least corner."""
     count = len(ring)
     kept = [
         corner

@@ -1,9 +1,9 @@
-"""Distances along one row where walls are near, by looking at every site within reach: loops that vectorise.
+"""The distance transform of rows near walls, by looking at every site within reach: loops that vectorise.
 
 # Strategy: a site t squares off adds (2t - 1)^2 to a cell's squared distance, so only sites with (2t - 1)^2 below the
 value found so far matter. Clearance grows by at most one square from row to row: in each stretch of columns the
 greatest value of the row before says how far to look. Near walls that is few steps of 16-bit arithmetic on many cells
-at once, many times as fast as an envelope; far from them the envelope of distance_transform.py takes over.
+at once, many times as fast as an envelope. Far from them the envelope of distance_transform takes over.
 """
 
 from typing import NamedTuple
@@ -14,88 +14,103 @@ from geometry.kernels.arrays import Ints, SquaredDistances
 from geometry.kernels.jit import bare
 from geometry.raster.distance_transform import Gaps, Sites, count_steps, measure_run, roof_of
 
-STRETCH = 128  # columns that share one reach
-FARTHEST = 60
-ROOM = FARTHEST + 4  # room on either side of a row of own distances, where there are walls
-TALLEST = 67  # squares; own distances beyond count as so much, lest 16 bits overflow; more than FARTHEST + 1
+COLUMNS_PER_STRETCH = 128  # columns that share one reach; tuned for speed (benchmarks.screens)
+MAX_SITE_STEPS = 60  # columns: how far sites are looked at one by one before the envelope takes over; tuned likewise
+ROW_PADDING = MAX_SITE_STEPS + 4  # columns of walls on either side of a row of column distances; derived
+MAX_COLUMN_STEPS = 67  # squares: column distances are capped here, lest 16 bits overflow; above MAX_SITE_STEPS + 1
 
 
 class RowWindow(NamedTuple):
-    """Scratch of measuring rows of a padded width, from the north."""
+    """Scratch memory for measuring rows of a padded width, one after another from the north.
+
+    Attributes
+    ----------
+    gap : (width,) steps to the nearest blocked square in each column of the row last measured.
+    own : (2 ROW_PADDING + width,) squared distances to those, in half squares, between walls.
+    value : (width,) squared distances of the row.
+    reach : (width / COLUMNS_PER_STRETCH, rounded up) for each stretch how many columns its values make one look aside.
+    sites, heights : (width + 1,) of an envelope.
+    """
 
     gap: Gaps
-    """(width,) the steps to the nearest blocked square in each column of the row last measured."""
     own: Gaps
-    """(2 ROOM + width) the squared distances to those, between walls."""
     value: Gaps
-    """(width,)"""
     reach: Ints
-    """(width / STRETCH, rounded up) how far each stretch of the row last measured made one look."""
     sites: Sites
-    """(width + 1,) of an envelope."""
     heights: Sites
-    """(width + 1,)"""
 
 
 def new_window(width: int) -> RowWindow:
-    """Scratch as it is north of all rows."""
-    own, reach = np.zeros(width + 2 * ROOM, np.int16), np.zeros(-(-width // STRETCH), np.int32)
+    """Return scratch memory for rows of a padded width, as it is north of all rows."""
+    own, reach = np.zeros(width + 2 * ROW_PADDING, np.int16), np.zeros(-(-width // COLUMNS_PER_STRETCH), np.int32)
     sites, heights = np.empty((2, width + 1), np.int64)
     return RowWindow(np.zeros(width, np.int16), own, np.empty(width, np.int16), reach, sites, heights)
 
 
 @bare
 def measure_rows(square: SquaredDistances, steps: Gaps, south: int, north: int, window: RowWindow) -> bool:
-    """Fill rows of ``square`` (rows + 2, columns + 2) from ``north`` down to ``south``, after those further north.
+    """Fill rows of squared distances from `north` down to `south`, inclusive; return whether their type holds them all.
 
-    ``steps`` (rows + 2, columns + 2 or more) has the steps to the nearest blocked square below; it may lie in the same
-    memory, row by row. Returns False when clearances are found that the type of ``square`` does not hold.
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) output, half squares squared, padded.
+    steps : (rows + 2, columns + 2 or more) steps to the nearest blocked square to the south. It may lie in the same
+        memory as `square`, row by row.
+    south, north : padded rows.
+    window : scratch, as the row north of `north` left it.
     """
     width, roof, fits = square.shape[1], roof_of(square), True
     gap, own, value, reach, sites, heights = window
     for row in range(north, south - 1, -1):
         out = square[row]
-        complete(steps[row], gap, own[ROOM : ROOM + width])
+        add_column_distances(steps[row], gap, own[ROW_PADDING : ROW_PADDING + width])
         for k in range(reach.shape[0]):
-            first, last = k * STRETCH, (k + 1) * STRETCH if (k + 1) * STRETCH < width else width
-            if reach[k] < FARTHEST:
-                look_about(own[first : last + 2 * ROOM], value[first:last], reach[k] + 1)
-                reach[k] = steps_for(publish(value[first:last], out[first:last]))
-        far = 0
+            first, last = k * COLUMNS_PER_STRETCH, (k + 1) * COLUMNS_PER_STRETCH
+            last = last if last < width else width
+            if reach[k] < MAX_SITE_STEPS:
+                minimise_over_sites(own[first : last + 2 * ROW_PADDING], value[first:last], reach[k] + 1)
+                reach[k] = steps_needed_for(copy_row(value[first:last], out[first:last]))
+        done_up_to = 0
         for k in range(reach.shape[0]):
-            if reach[k] >= FARTHEST:
-                first, last = k * STRETCH, (k + 1) * STRETCH if (k + 1) * STRETCH < width else width
-                far = measure_far(gap, out, first, last, far, roof, sites, heights)
-                most = greatest(out[first:last])
-                reach[k] = steps_for(most)
-                fits &= most < roof  # which no square is: they are 1 or 2 beyond a multiple of 8
+            if reach[k] >= MAX_SITE_STEPS:
+                first, last = k * COLUMNS_PER_STRETCH, (k + 1) * COLUMNS_PER_STRETCH
+                last = last if last < width else width
+                done_up_to = fill_by_envelope(gap, out, first, last, done_up_to, roof, sites, heights)
+                largest = greatest(out[first:last])
+                reach[k] = steps_needed_for(largest)
+                fits &= largest < roof  # which no square is: they are 1 or 2 beyond a multiple of 8
     return fits
 
 
 @bare
-def complete(steps: Gaps, gap: Gaps, own: Gaps) -> None:
-    """From the steps down, and those of the row above in ``gap``, the steps to the nearest blocked square in the
-    column, and the squared distance to it in half squares."""
+def add_column_distances(steps: Gaps, gap: Gaps, own: Gaps) -> None:
+    """Update `gap` for the next row to the south, and write the squared column distances, in half squares, to `own`."""
     count_steps(steps, gap)
     for j in range(gap.shape[0]):
         nearest = gap[j]
-        edge = np.int16(2 * (nearest if nearest < TALLEST else TALLEST) - 1)
+        edge = np.int16(2 * (nearest if nearest < MAX_COLUMN_STEPS else MAX_COLUMN_STEPS) - 1)
         own[j] = np.int16(edge * edge) if nearest > 0 else np.int16(0)
 
 
 @bare
-def look_about(own: Gaps, value: Gaps, steps: int) -> None:
-    """Fill ``value`` with the least over the sites up to so many columns off; ``own`` starts ROOM columns before."""
-    here = own[ROOM:]
+def minimise_over_sites(own: Gaps, value: Gaps, steps: int) -> None:
+    """Fill `value` with the least squared distance over the sites up to `steps` columns off.
+
+    `own` starts ROW_PADDING columns before `value`.
+    """
+    here = own[ROW_PADDING:]
     for j in range(value.shape[0]):
         value[j] = here[j]
     for t in range(1, steps + 1, 4):
-        four_sites(own[ROOM - t - 3 :], own[ROOM + t :], t, value)
+        minimise_over_four(own[ROW_PADDING - t - 3 :], own[ROW_PADDING + t :], t, value)
 
 
 @bare
-def four_sites(west: Gaps, east: Gaps, t: int, value: Gaps) -> None:
-    """Compare with the sites t to t + 3 columns off; ``west`` starts t + 3 columns before, ``east`` t behind."""
+def minimise_over_four(west: Gaps, east: Gaps, t: int, value: Gaps) -> None:
+    """Lower `value` by the sites t to t + 3 columns off.
+
+    `west` starts t + 3 columns before `value`, `east` t columns behind it.
+    """
     a, b = np.int16((2 * t - 1) ** 2), np.int16((2 * t + 1) ** 2)
     c, d = np.int16((2 * t + 3) ** 2), np.int16((2 * t + 5) ** 2)
     for j in range(value.shape[0]):
@@ -110,35 +125,35 @@ def four_sites(west: Gaps, east: Gaps, t: int, value: Gaps) -> None:
 
 
 @bare
-def publish(value: Gaps, out: SquaredDistances) -> int:
-    """Copy, and return the greatest."""
-    most = np.int16(0)
+def copy_row(value: Gaps, out: SquaredDistances) -> int:
+    """Copy the values to `out` and return the greatest."""
+    largest = np.int16(0)
     for j in range(value.shape[0]):
         out[j] = value[j]
-        most = value[j] if value[j] > most else most
-    return int(most)
+        largest = value[j] if value[j] > largest else largest
+    return int(largest)
 
 
 @bare
 def greatest(out: SquaredDistances) -> int:
-    """The greatest of some values."""
-    most = 0 * out[0]
+    """Return the greatest of some squared distances."""
+    largest = 0 * out[0]
     for j in range(out.shape[0]):
-        most = out[j] if out[j] > most else most
-    return int(most)
+        largest = out[j] if out[j] > largest else largest
+    return int(largest)
 
 
 @bare
-def steps_for(most: int) -> int:
-    """How many columns one must look to either side for values up to the given one."""
-    return int(np.ceil(0.5 * np.sqrt(float(most)) - 0.5))
+def steps_needed_for(largest: int) -> int:
+    """Return how many columns to either side matter to squared distances up to `largest`, in half squares squared."""
+    return int(np.ceil(0.5 * np.sqrt(float(largest)) - 0.5))
 
 
 @bare
-def measure_far(
+def fill_by_envelope(
     gap: Gaps, out: SquaredDistances, first: int, last: int, done: int, roof: int, sites: Sites, heights: Sites
 ) -> int:
-    """Measure the runs that meet a stretch, but for columns up to ``done``; returns how far these runs go."""
+    """Measure by envelopes the runs that meet columns first..last, but for columns below `done`; return their end."""
     column = first if first > done else done
     while column < last:
         if gap[column] == 0:

@@ -1,16 +1,15 @@
-"""How far each square's centre is from the nearest square that is not free: exact, in integers.
+"""Exact Euclidean distance transform: from each square's centre to the nearest square that is not free, in integers.
 
 All arrays are padded by one blocked square on each side: cell ``(row + 1) * width + column + 1`` with ``width =
-columns + 2``. ``square`` is the squared distance in *half squares* from the centre to the nearest blocked square's
-edge or corner, 0 on blocked squares. A blocked square at offset (dx, dy) is ``(max(2|dx| - 1, 0))^2 + (max(2|dy| - 1,
-0))^2`` away, so ``sqrt(square) / 2`` is the clearance.
+columns + 2``. ``square`` is the squared distance, in *half squares*, from the centre of a square to the nearest edge or
+corner of a blocked square; 0 on blocked squares. A blocked square at offset (dx, dy) is ``(max(2|dx| - 1, 0))^2 +
+(max(2|dy| - 1, 0))^2`` away, so ``sqrt(square) / 2`` is the clearance in squares.
 
-# Strategy: columns first, then along each run of free squares of a row the lower envelope of parabolas
-(Felzenszwalb and Huttenlocher 2012), here as the lower convex hull of (site, height + site^2), which needs no
-division. Between squares j and j + 1 a column's edge stands at 2j + 1 half squares, so a run has a site between any
-two of its squares, with the lower of their two column distances as its height. Where walls are near,
-distance_rows.py finds
-the same faster. A row's ``gap`` is the number of steps to the nearest blocked square in each column.
+# Strategy: columns first, then along each run of free squares of a row the lower envelope of parabolas (Felzenszwalb
+and Huttenlocher 2012). It is computed as the lower convex hull of (site, height + site^2), which needs no division.
+Between squares j and j + 1 a column's edge stands at 2j + 1 half squares. So a run has a site between any two of its
+squares, with the lower of their two column distances as its height. Where walls are near, distance_rows finds the same
+faster. A row's ``gap`` is the number of steps to the nearest blocked square in each column.
 """
 
 import numpy as np
@@ -19,33 +18,34 @@ from numpy.typing import NDArray
 from geometry.kernels.arrays import Bools, SquaredDistances
 from geometry.kernels.jit import bare
 
-Gaps = NDArray[np.int16]
-Sites = NDArray[np.int64]
+Gaps = NDArray[np.int16]  # numbers of steps along columns to a blocked square
+Sites = NDArray[np.int64]  # sites, or heights, of an envelope of parabolas, in half squares
 
-TILE = 16  # squares
+TILE_SIDE = 16  # squares; derived: 7 x 7 whole tiles fit every window of 129 x 129 squares
 
 
 def type_of_squares(free: Bools) -> type[np.int16] | type[np.int32]:
-    """The smaller type that holds ``square`` of these free squares; now and then, on wide floor, the larger.
+    """Return the smaller integer type that holds all squared distances of a raster; on wide floor perhaps a larger one.
 
-    16 bits hold clearances up to 90.5 squares. Any larger one has 129 x 129 free squares about it, and these 7 x 7
-    whole tiles of 16 x 16: where no such are found, 16 bits surely do. Of a tile one diagonal is looked at, which
-    crosses every wall, and a quarter of that first.
+    `free` : (rows, columns). 16 bits hold clearances up to 90.5 squares. Any larger one has 129 x 129 free squares
+        about
+    it, and these 7 x 7 whole tiles of 16 x 16: where no such are found, 16 bits surely suffice. Of a tile one diagonal
+    is looked at, which crosses every wall, and a quarter of that first.
     """
     if min(free.shape) < 129:
         return np.int16
-    rows, columns = (n // TILE * TILE for n in free.shape)
-    open_tiles = np.ones((rows // TILE, columns // TILE), np.bool_)
+    rows, columns = (n // TILE_SIDE * TILE_SIDE for n in free.shape)
+    open_tiles = np.ones((rows // TILE_SIDE, columns // TILE_SIDE), np.bool_)
     for first in range(4):
-        for k in range(first, TILE, 4):
-            open_tiles &= free[k:rows:TILE, k:columns:TILE]
-        if not has_block(open_tiles):
+        for k in range(first, TILE_SIDE, 4):
+            open_tiles &= free[k:rows:TILE_SIDE, k:columns:TILE_SIDE]
+        if not has_open_block(open_tiles):
             return np.int16
     return np.int32
 
 
-def has_block(tiles: Bools) -> bool:
-    """Whether 7 x 7 of them are open."""
+def has_open_block(tiles: Bools) -> bool:
+    """Return whether some 7 x 7 of the tiles are all open."""
     for n in (1, 2, 3):  # whether 2, 4, 7 to the north and east are
         tiles = tiles[n:] & tiles[:-n]
         tiles = tiles[:, n:] & tiles[:, :-n]
@@ -54,8 +54,10 @@ def has_block(tiles: Bools) -> bool:
 
 @bare
 def count_columns(free: Bools, steps: Gaps) -> None:
-    """Fill ``steps`` (rows + 1, columns + 2 or more) with the steps to the nearest blocked square below, in the same
-    column."""
+    """Fill `steps` with the steps from each square south to the nearest blocked one in its column; 0 if it is blocked.
+
+    `free` : (rows, columns). `steps` : (rows + 1, columns + 2 or more), padded.
+    """
     rows, columns = free.shape
     for j in range(columns + 2):
         steps[0, j] = 0
@@ -69,7 +71,10 @@ def count_columns(free: Bools, steps: Gaps) -> None:
 
 @bare
 def count_steps(steps: Gaps, gap: Gaps) -> None:
-    """From the steps down, and those of the row above in ``gap``, the steps to the nearest blocked square."""
+    """Update `gap` from the row to the north: steps to the nearest blocked square of the column, to the south or north.
+
+    `steps` : (width,) of this row, to the south. `gap` : (width,) of the row to the north; overwritten with this row's.
+    """
     for j in range(gap.shape[0]):
         down, up = steps[j], np.int16(gap[j] + 1)
         gap[j] = down if down < up else up
@@ -77,7 +82,7 @@ def count_steps(steps: Gaps, gap: Gaps) -> None:
 
 @bare
 def roof_of(square: SquaredDistances) -> int:
-    """The greatest value of its type."""
+    """Return the greatest value that the integer type of an array holds."""
     return int((1 << 8 * square.itemsize - 1) - 1)
 
 
@@ -89,15 +94,21 @@ def measure_run(
     last: int,
     begin: int,
     end: int,
-    roof: int,
+    limit: int,
     sites: Sites,
     heights: Sites,
 ) -> None:
-    """Fill ``begin <= column < end`` with values up to a ``roof``, in the free squares ``first <= column < last``.
+    """Fill the squared distances of columns `begin` to `end` (exclusive) within a run of free squares of one row.
 
-    What is further out, on either side, must not count for any of them.
+    Parameters
+    ----------
+    gap : (width,) steps to the nearest blocked square in each column.
+    square : (width,) output, half squares squared; values above `limit` are capped there.
+    first, last : the run's free squares are first <= column < last. Squares outside the run must not be nearest to any
+        of the columns asked for.
+    sites, heights : scratch.
     """
-    top = envelope(gap, first, last, sites, heights)
+    top = lower_envelope(gap, first, last, sites, heights)
     best = 0
     for column in range(begin, end):
         x = 2 * (column - first)
@@ -109,12 +120,12 @@ def measure_run(
             value = other
             best += 1
         own = 2 * np.int64(gap[column]) - 1
-        square[column] = min(own * own, value + x * x, roof)
+        square[column] = min(own * own, value + x * x, limit)
 
 
 @bare
-def envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> int:
-    """The sites whose parabolas are lowest somewhere; relative to ``first``. Returns the index of the last."""
+def lower_envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> int:
+    """Write the sites, relative to `first`, whose parabolas are lowest somewhere; return the index of the last one."""
     top = -1
     before = np.int64(gap[first - 1])
     for column in range(first, last + 1):
@@ -124,7 +135,7 @@ def envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> 
         before = here
         site = 2 * (column - first) - 1
         height = edge * edge + site * site
-        while top > 0 and hidden(sites, heights, top, site, height):
+        while top > 0 and is_hidden(sites, heights, top, site, height):
             top -= 1
         top += 1
         sites[top] = site
@@ -133,7 +144,7 @@ def envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> 
 
 
 @bare
-def hidden(sites: Sites, heights: Sites, top: int, site: int, height: np.int64 | int) -> bool:
-    """Whether the top site lies on or above the line from the one beneath it to the new one."""
+def is_hidden(sites: Sites, heights: Sites, top: int, site: int, height: np.int64 | int) -> bool:
+    """Return whether the top site lies on or above the line from the one beneath it to the new one."""
     rise = (heights[top] - heights[top - 1]) * (site - sites[top])
     return bool(rise >= (height - heights[top]) * (sites[top] - sites[top - 1]))

@@ -1,7 +1,7 @@
-"""How far every square of a raster is from a start, walking over the eight neighbours.
+"""Geodesic distances: the length of the shortest path from a start to every square, over the eight neighbours.
 
-Dijkstra's algorithm with a ring of buckets (Dial 1969): steps cost 5 along rows and columns and 7 diagonally, which
-is within 1.1 % of the true ratio. A diagonal step needs both squares beside it free.
+Dijkstra's algorithm with a ring of buckets (Dial 1969): steps cost 5 along rows and columns and 7 diagonally, which is
+within 1.1 % of the true ratio. A diagonal step needs both squares beside it free.
 """
 
 import numpy as np
@@ -9,20 +9,28 @@ from numpy.typing import NDArray
 
 from geometry.kernels.jit import compiled
 
-UNREACHED = -1
-_SIDE, _DIAGONAL = 5, 7
+UNREACHED = -1  # the distance of a square that no path leads to
+GEODESIC_STEP, GEODESIC_DIAGONAL = 5, 7  # fifths of squares: lengths of steps; 7 / 5 is within 1.1 % of sqrt(2)
 
 
 def reach(free: NDArray[np.bool_], column: int, row: int) -> NDArray[np.int32]:
-    """(rows, columns) int32: the length of the shortest way from a square, in fifths of squares; UNREACHED (-1) where
-    none leads.
+    """Return the length of the shortest path from a start to every square, in fifths of squares.
 
     Parameters
     ----------
-    free : (rows, columns) bool. column, row : the start, which must be free.
+    free : (rows, columns) bool.
+    column, row : the start, which must be free.
 
-    Raises ValueError when the start is not a free square of the raster.
+    Returns
+    -------
+    (rows, columns) int32; UNREACHED (-1) where no path leads.
 
+    Raises
+    ------
+    ValueError : the start is not a free square of the raster.
+
+    Examples
+    --------
     >>> reach(np.array([[True, True, False], [True, True, True]]), 0, 0).tolist()
     [[0, 5, -1], [5, 7, 12]]
     """
@@ -30,14 +38,15 @@ def reach(free: NDArray[np.bool_], column: int, row: int) -> NDArray[np.int32]:
     if not (0 <= row < rows and 0 <= column < columns and free[row, column]):
         raise ValueError(f"the start ({column}, {row}) is not a free square")
     distance = np.full(free.shape, UNREACHED, np.int32)
-    _spread(np.ascontiguousarray(free), column, row, distance)
+    _fill_distances(np.ascontiguousarray(free), column, row, distance)
     return distance
 
 
 @compiled
-def _spread(free, column, row, distance):  # type: ignore[no-untyped-def]
+def _fill_distances(free, column, row, distance):  # type: ignore[no-untyped-def]
+    """Fill `distance`, all UNREACHED before, with the lengths of shortest paths in fifths of squares."""
     rows, columns = free.shape
-    ring = _DIAGONAL + 1
+    ring = GEODESIC_DIAGONAL + 1
     first = np.full(ring, -1, np.int64)  # per distance modulo the ring: the last entry that was put there
     place = np.empty(8 * rows * columns + 1, np.int32)
     before = np.empty(8 * rows * columns + 1, np.int32)
@@ -59,11 +68,11 @@ def _spread(free, column, row, distance):  # type: ignore[no-untyped-def]
                 p, q = r + dr, c + dc
                 if (dr == 0 and dc == 0) or p < 0 or q < 0 or p >= rows or q >= columns or not free[p, q]:
                     continue
-                cost = _SIDE
+                cost = GEODESIC_STEP
                 if dr != 0 and dc != 0:
                     if not free[r, q] or not free[p, c]:
                         continue
-                    cost = _DIAGONAL
+                    cost = GEODESIC_DIAGONAL
                 if distance[p, q] < 0 or now + cost < distance[p, q]:
                     distance[p, q] = now + cost
                     place[count], before[count] = p * columns + q, first[(now + cost) % ring]

@@ -1,10 +1,10 @@
-"""The digital representation of a shape: the squares whose open interior meets the shape's interior.
+"""Rasterization of shapes: the squares whose interior meets the shape's interior.
 
 # Strategy: no square is ever intersected with the shape. Each boundary edge is cut where it crosses a grid line, so
 # that every piece lies in one square. A piece that climbs by dy covers, in its own square, the area to its right, and
 # in every square further right the whole height dy. Summing the signed areas along each row gives the exact area of
 # the shape in every square (the accumulation buffer of font renderers: Levien, font-rs, 2016). Edges that run along a
-# grid line add nothing beyond it, as the definition wants.
+# grid line add nothing beyond it, as the definition demands.
 """
 
 import math
@@ -19,16 +19,17 @@ from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import compiled
 from geometry.motion.se2 import Motion
 
-TOUCH = 1e-9  # squares^2: a smaller common area is mere touching
+MIN_COVERED_AREA = 1e-9  # squares squared: a square covered by less is only touched; a convention, above rounding
 
 
 def squares(shape: Any, width: int, height: int) -> npt.NDArray[np.bool_]:
-    """The squares of a table that a shape occupies.
+    """Return the squares of a table that a shape covers.
 
     Parameters
     ----------
     shape : shapely geometry
-        Polygon or MultiPolygon (holes allowed), in squares, table frame. Other geometries have no area: nothing.
+        Polygon or MultiPolygon (holes allowed), in squares, table frame. Other geometries have no area and cover
+        nothing.
     width, height : int
         Size of the table in squares.
 
@@ -42,44 +43,62 @@ def squares(shape: Any, width: int, height: int) -> npt.NDArray[np.bool_]:
     array([[0, 1, 1, 0],
            [0, 0, 0, 0]])
     """
-    return areas(shape, width, height) > TOUCH
+    return areas(shape, width, height) > MIN_COVERED_AREA
 
 
 def squares_after(shape: Any, motions: Sequence[Motion], width: int, height: int) -> npt.NDArray[np.bool_]:
-    """The squares of a table that a shape occupies after one or another of some motions of it.
+    """Return the squares of a table that a shape covers after at least one of some motions.
 
-    As `squares` of the shape after each, all together: (height, width) bool, row 0 in the south.
+    Parameters
+    ----------
+    shape : shapely Polygon or MultiPolygon, in squares, table frame.
+    motions : each is applied to the shape as given; they do not follow each other.
+    width, height : size of the table in squares.
+
+    Returns
+    -------
+    (height, width) bool, row 0 in the south: the union of `squares` of the shape after each motion.
     """
-    edges, found = _edges(shape), np.zeros((height, width), np.bool_)
+    edges, covered = _boundary_edges(shape), np.zeros((height, width), np.bool_)
     if not len(edges) or not len(motions):
-        return found
+        return covered
     moved = np.array([motion.points(edges.reshape(-1, 2)) for motion in motions])
     corner = np.floor(moved.min(1)).astype(np.intp)
     moved -= corner[:, None]
-    wide, high = (np.ceil(moved.max((0, 1))).astype(np.intp) + 1).tolist()
-    moved[:, :, 1] += high * np.arange(len(motions))[:, None]  # one above the other, each in a window of its own
-    occupied = _areas(moved.reshape(-1, 4), wide, high * len(motions)) > TOUCH
-    number, row, column = np.nonzero(occupied.reshape(len(motions), high, wide))
+    columns_needed, rows_needed = (np.ceil(moved.max((0, 1))).astype(np.intp) + 1).tolist()
+    moved[:, :, 1] += rows_needed * np.arange(len(motions))[:, None]  # one above the other, each in a window of its own
+    occupied = _covered_areas(moved.reshape(-1, 4), columns_needed, rows_needed * len(motions)) > MIN_COVERED_AREA
+    number, row, column = np.nonzero(occupied.reshape(len(motions), rows_needed, columns_needed))
     column, row = column + corner[number, 0], row + corner[number, 1]
-    seen = (column >= 0) & (column < width) & (row >= 0) & (row < height)
-    found[row[seen], column[seen]] = True
-    return found
+    on_table = (column >= 0) & (column < width) & (row >= 0) & (row < height)
+    covered[row[on_table], column[on_table]] = True
+    return covered
 
 
 def areas(shape: Any, width: int, height: int) -> Floats:
-    """The area that a shape covers in every square: (height, width) floats, exact but for rounding (about 1e-12)."""
-    return _areas(_edges(shape), width, height)
+    """Return the area that a shape covers in every square of a table: (height, width) float64, squares squared.
+
+    Parameters
+    ----------
+    shape : shapely Polygon or MultiPolygon, in squares, table frame.
+    width, height : size of the table in squares.
+
+    Returns
+    -------
+    (height, width) float64, row 0 in the south; exact but for rounding (about 1e-12).
+    """
+    return _covered_areas(_boundary_edges(shape), width, height)
 
 
-def _areas(edges: Floats, width: int, height: int) -> Floats:
-    """The area to the left of closed rings of edges, (n, 4), in every square."""
+def _covered_areas(edges: Floats, width: int, height: int) -> Floats:
+    """Return the area to the left of closed rings of edges (n, 4) in every square: (height, width)."""
     sums = np.zeros((2, height, width + 2))
     _accumulate(edges, sums)
     return np.cumsum(sums[0] + sums[1], axis=1)[:, :width]
 
 
-def _edges(shape: Any) -> Floats:
-    """All boundary edges as (n, 4) x0, y0, x1, y1, the interior on their left."""
+def _boundary_edges(shape: Any) -> Floats:
+    """Return all boundary edges of a shape, the interior on their left: (n, 4) rows x0, y0, x1, y1."""
     rings = []
     for part in shapely.get_parts(shapely.orient_polygons(shape)):
         if part.geom_type == "Polygon" and not part.is_empty:
@@ -91,9 +110,9 @@ def _edges(shape: Any) -> Floats:
 
 @compiled
 def _accumulate(edges: Floats, sums: Floats) -> None:
-    """Add up what every edge covers in its own squares (sums[0]) and hands on to the next ones (sums[1]), row by row.
+    """Add what every edge covers in its own squares to sums[0], and what it hands on to the next squares to sums[1].
 
-    Each edge is cut at all grid lines that lie strictly between its ends; sums is (2, rows, columns + 2).
+    Each edge is cut at all grid lines that lie strictly between its ends; `sums` is (2, rows, columns + 2).
     """
     height, width = sums.shape[1], sums.shape[2] - 2
     for n in range(len(edges)):
@@ -124,9 +143,10 @@ def _accumulate(edges: Floats, sums: Floats) -> None:
 def _cut_at(
     x0: float, y0: float, x1: float, y1: float, start: float, stop: float, number: int, lines: int
 ) -> tuple[float, float]:
-    """Where an edge is cut for the `number`th time, in its order, of so many grid lines that it crosses; its ends, too.
+    """Return where an edge meets number `number` of the `lines` grid lines that it crosses in order.
 
-    start, stop : the coordinate at its ends that grows or falls from line to line.
+    Numbers 0 and lines + 1 stand for its ends. `start`, `stop` : the coordinate, at its ends, that is whole on these
+    lines.
     """
     if number == 0:
         return x0, y0

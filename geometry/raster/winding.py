@@ -1,10 +1,8 @@
-"""Shortest ways over a raster with a prescribed crossing number: how often, with sign, they cross a ray from a given
-point.
+"""Shortest paths over a raster with a given crossing number: how often, with sign, they cross a ray from a point.
 
-# Strategy: the raster is taken in several sheets, one for each crossing number so far; a step over the ray leads to
-# the next sheet up or
-# down. This is a piece of the universal cover of the plane without the point, and Dijkstra's algorithm runs on it as
-# on any raster.
+# Strategy: the raster is taken in several sheets, one for each crossing number so far. A step over the ray leads to the
+# next sheet up or down. This is a piece of the universal cover of the plane without the point, and Dijkstra's algorithm
+# runs on it as on any raster.
 """
 
 import numpy as np
@@ -13,16 +11,24 @@ from numpy.typing import NDArray
 from geometry.kernels.arrays import Square
 from geometry.kernels.jit import compiled
 
-MOST = 2  # crossings: sheets from -MOST to MOST
-_SIDE, _DIAGONAL = 5, 7
+MOST = 2  # largest magnitude of a crossing number: sheets go from -MOST to MOST; a convention
+WINDING_STEP, WINDING_DIAGONAL = 5, 7  # fifths of squares: lengths of steps; 7 / 5 is within 1.1 % of sqrt(2)
 
 
 def crossings(points: NDArray[np.float64], about: tuple[float, float]) -> int:
-    """How often a polyline crosses the ray from a point towards +x: upwards counts +1, downwards -1.
+    """Return how often a polyline crosses the ray from a point towards +x: upwards counts +1, downwards -1.
 
-    points: (n, 2). Of a closed polyline this is its winding number about the point. A point at the ray's own height
-    counts as above it.
+    Parameters
+    ----------
+    points : (n, 2) corners x, y of the polyline, in squares. A point at the ray's own height counts as above it.
+    about : (x, y), where the ray begins.
 
+    Returns
+    -------
+    The signed number; of a closed polyline it is the winding number about the point.
+
+    Examples
+    --------
     >>> crossings(np.array([[1, -1], [1, 1], [-1, 1], [-1, -1], [1, -1]]), (0.0, 0.0))
     1
     """
@@ -37,19 +43,25 @@ def crossings(points: NDArray[np.float64], about: tuple[float, float]) -> int:
 def winding_way(
     free: NDArray[np.bool_], start: Square, goal: Square, about: tuple[float, float], number: int
 ) -> list[Square] | None:
-    """The shortest way over free squares (eight neighbours, no corners cut) with a given crossing number.
+    """Return the shortest path over free squares (eight neighbours, no corners cut) with a given crossing number.
 
     Parameters
     ----------
-    free : (rows, columns) bool. start, goal : (column, row) of free squares; they may be the same.
-    about : (x, y), the point from which the ray goes towards +x. number : the signed crossings wanted, -2 to 2.
+    free : (rows, columns) bool.
+    start, goal : (column, row) of free squares; they may be the same.
+    about : (x, y) in squares, the point from which the ray goes towards +x.
+    number : the crossing number wanted, -2 to 2.
 
     Returns
     -------
-    The squares from start to goal, or None when no such way exists within crossing numbers -2 to 2 on all of it.
+    The squares (column, row) from start to goal, or None if no such path has crossing numbers -2 to 2 all along it.
 
-    Raises ValueError when an end is not free or the number is out of range.
+    Raises
+    ------
+    ValueError : an end is not free, or the number is out of range.
 
+    Examples
+    --------
     >>> free = np.ones((3, 3), bool); free[1, 1] = False
     >>> len(winding_way(free, (0, 0), (0, 0), (1.5, 1.5), 1))
     9
@@ -60,36 +72,41 @@ def winding_way(
     for column, row in (start, goal):
         if not (0 <= row < rows and 0 <= column < columns and free[row, column]):
             raise ValueError(f"({column}, {row}) is not a free square")
-    before = np.full((2 * MOST + 1) * rows * columns, -1, np.int64)
+    parent = np.full((2 * MOST + 1) * rows * columns, -1, np.int64)
     ray = np.arange(columns) + 0.5 > about[0]
     first = int(np.ceil(about[1] - 0.5))  # the lowest row whose centres count as above the ray
     origin = (MOST * rows + start[1]) * columns + start[0]
     end = ((MOST + number) * rows + goal[1]) * columns + goal[0]
-    if not _search(np.ascontiguousarray(free), origin, end, first, ray, before):
+    if not _search_sheets(np.ascontiguousarray(free), origin, end, first, ray, parent):
         return None
     cells = [end]
     while cells[-1] != origin:
-        cells.append(int(before[cells[-1]]))
+        cells.append(int(parent[cells[-1]]))
     return [(cell % columns, cell // columns % rows) for cell in reversed(cells)]
 
 
 @compiled
-def _search(free, origin, end, first, ray, before):  # type: ignore[no-untyped-def]
+def _search_sheets(free, origin, end, first, ray, parent):  # type: ignore[no-untyped-def]
+    """Fill `parent` along shortest paths from `origin` until `end` is reached; return whether it is.
+
+    Cells are numbered (sheet * rows + row) * columns + column. `first` is the lowest row above the ray, `ray` :
+    (columns,) where the ray passes.
+    """
     rows, columns = free.shape
-    sheets = before.shape[0] // (rows * columns)
-    ring = _DIAGONAL + 1
-    bucket = np.full(ring, -1, np.int64)
-    distance = np.full(before.shape[0], -1, np.int32)
-    cell_of = np.empty(8 * before.shape[0] + 1, np.int64)
-    under = np.empty(8 * before.shape[0] + 1, np.int64)
-    cell_of[0], under[0], bucket[0], distance[origin] = origin, -1, 0, 0
+    sheets = parent.shape[0] // (rows * columns)
+    ring = WINDING_DIAGONAL + 1
+    first_entry = np.full(ring, -1, np.int64)
+    distance = np.full(parent.shape[0], -1, np.int32)
+    cell_of = np.empty(8 * parent.shape[0] + 1, np.int64)
+    next_entry = np.empty(8 * parent.shape[0] + 1, np.int64)
+    cell_of[0], next_entry[0], first_entry[0], distance[origin] = origin, -1, 0, 0
     count, waiting, now = 1, 1, 0
     while waiting > 0:
-        entry = bucket[now % ring]
+        entry = first_entry[now % ring]
         if entry < 0:
             now += 1
             continue
-        bucket[now % ring] = under[entry]
+        first_entry[now % ring] = next_entry[entry]
         waiting -= 1
         cell = cell_of[entry]
         if distance[cell] != now:
@@ -102,11 +119,11 @@ def _search(free, origin, end, first, ray, before):  # type: ignore[no-untyped-d
                 p, q = r + dr, c + dc
                 if (dr == 0 and dc == 0) or p < 0 or q < 0 or p >= rows or q >= columns or not free[p, q]:
                     continue
-                cost = _SIDE
+                cost = WINDING_STEP
                 if dr != 0 and dc != 0:
                     if not free[r, q] or not free[p, c]:
                         continue
-                    cost = _DIAGONAL
+                    cost = WINDING_DIAGONAL
                 level = sheet
                 if p >= first and r < first and ray[q] and ray[c]:
                     level += 1
@@ -117,9 +134,9 @@ def _search(free, origin, end, first, ray, before):  # type: ignore[no-untyped-d
                 other = (level * rows + p) * columns + q
                 if distance[other] < 0 or now + cost < distance[other]:
                     distance[other] = now + cost
-                    before[other] = cell
-                    cell_of[count], under[count] = other, bucket[(now + cost) % ring]
-                    bucket[(now + cost) % ring] = count
+                    parent[other] = cell
+                    cell_of[count], next_entry[count] = other, first_entry[(now + cost) % ring]
+                    first_entry[(now + cost) % ring] = count
                     count += 1
                     waiting += 1
     return False

@@ -1,1 +1,19 @@
-"""."""
+"""Routes: topologically distinct shortest paths over a screen, by the pathgraph.
+
+Modules, in reading order:
+
+route  A route: a tight path and its homotopy class.
+layer  A layer: pathgraph, strips and landmarks for a body of one radius.
+astar  A* over the pathgraph, and exact distances to the goal.
+k_shortest  The k shortest paths over the pathgraph (Yen 1971, Lawler 1972).
+router  The kernel: start and goal anchored, paths found, each pulled tight.
+tighten  One path at a time: routes from words, and words from crossing numbers.
+lifting  From a word to its path over the skeleton: its chains and its clearance.
+barrier  Passages that a route must avoid.
+goal_sets  Goals that are sets of squares: their parts, and classes of routes to them.
+goal_routes  Routes to the nearest of many squares.
+loops  Closed paths that wind once about given blocked squares.
+queries  All queries about one layer, and their scratch.
+
+Public names: `Route`, `Layer`, `level_of`, `LayerQueries`, `routes_to_area`, `checked_goal`, `word_of_crossings`.
+"""

@@ -1,9 +1,9 @@
-"""Shortest ways over the pathgraph: A*, and exact distances to the goal.
+"""A* over the pathgraph, and exact distances to the goal.
 
 A query adds two nodes to the n of the pathgraph: the start (n) and the goal (n + 1). An arc is coded as 2 chain + 1
-when walked backwards, 2 chain when forwards; with m chains, 2m and 2m + 1 lead from the start to the ends of its
-chain, 2m + 2 and 2m + 3 from the ends of the goal's chain to the goal, and 2m + 4 from the start to the goal along
-a chain they share.
+when walked backwards, 2 chain when forwards. With m chains, 2m and 2m + 1 lead from the start to the ends of its chain,
+2m + 2 and 2m + 3 from the ends of the goal's chain to the goal, and 2m + 4 from the start to the goal along a chain
+that they share.
 """
 
 from typing import NamedTuple
@@ -16,53 +16,64 @@ from geometry.kernels.heap import pop, push
 from geometry.kernels.jit import bare
 from geometry.skeleton.skeleton import States
 
-EAGER = 1.05  # times the bound, where arcs are made dearer anyway: a third of the time on random squares, as good ways
+PATH_SLACK = 1.05  # factor on the lower bound in biased searches; tuned on random squares: a third of the time
 
 
 class RouteQuery(NamedTuple):
-    """What one question adds to the pathgraph."""
+    """The nodes, arcs and closed chains that one query adds to the pathgraph.
+
+    Attributes
+    ----------
+    joint : (4,) the nodes to which the start's two arcs lead, and those from which the goal's two arcs come.
+    cost : (5,) the lengths of the five arcs, in squares; infinite where there is none.
+    sight : (2, landmarks) the goal's distances from the landmarks, and the start's, in squares.
+    line : (4,) a point of the straight line from start to goal, and the line's normal, scaled: an arc's cost grows
+        by the
+        share that the product of this normal and the offset of the arc's head from the point gives; 0 for no bias.
+    closed : (m,) 0 for chains that may be walked from end to end; bit 0: closed on request, bit 1: split by an end.
+    closed_steps : (b, 2) chain and position of the steps that may not be taken: each from that position to the next
+        one.
+    """
 
     joint: Ints
-    """(4,) the nodes that the start's two arcs lead to and the goal's two come from."""
     cost: Floats
-    """(5,) the lengths of the five arcs; infinite where there is none."""
     sight: Floats
-    """(2, landmarks) the goal's distances from the landmarks, and the start's."""
     line: Floats
-    """(4,) a point of the straight line from start to goal and the line's normal, scaled: how much dearer an arc is."""
-    shut: States
-    """(m,) not 0 for chains that may not be walked from end to end: bit 0 by wish, bit 1 because an end splits them."""
-    bars: Ints
-    """(b, 2) chain and position of the steps that may not be taken: each from that position to the next one."""
+    closed: States
+    closed_steps: Ints
 
 
 class Search(NamedTuple):
-    """Scratch of a search. An entry counts only if its mark equals the current stamp."""
+    """Scratch of a search; an entry counts only if its mark equals the current stamp.
+
+    Attributes
+    ----------
+    best : (n + 2,) the cost of the cheapest path found so far to each node.
+    arrival : (n + 2,) the arc by which that path arrives.
+    seen : (n + 2,) mark of `best` and `arrival`.
+    node_ban : (n + 2,) mark of nodes that the present search must not enter.
+    arc_ban : (2m + 5,) mark of arcs that the present search must not use from its origin.
+    goal_distance : (n + 2,) exact distances to the goal, in squares, when filled.
+    nodes : (n + 2,) the nodes of the path from which deviations are sought.
+    key : (2m + 8,) heap: lower bounds of costs.
+    node : (2m + 8,) heap: nodes.
+    stamp : (2,) the current stamp; whether `goal_distance` is filled.
+    """
 
     best: Floats
-    """(n + 2,) the shortest way found so far."""
-    came: Ints
-    """(n + 2,) the arc by which it came."""
+    arrival: Ints
     seen: Ints
-    """(n + 2,) mark of ``best`` and ``came``."""
-    barred: Ints
-    """(n + 2,) mark of nodes that the present search must not enter."""
-    sealed: Ints
-    """(2m + 5,) mark of arcs that the present search must not use from its origin."""
-    ahead: Floats
-    """(n + 2,) exact distance to the goal, when ``known``."""
-    path: Ints
-    """(n + 2,) the nodes of the way that is being varied."""
+    node_ban: Ints
+    arc_ban: Ints
+    goal_distance: Floats
+    nodes: Ints
     key: Floats
-    """(2m + 8,) heap of promising nodes."""
     node: Ints
-    """(2m + 8,)"""
     stamp: Ints
-    """(2,) the current stamp; whether ``ahead`` is filled."""
 
 
 def new_search(nodes: int, chains: int) -> Search:
-    """Scratch for a pathgraph of that size."""
+    """Return scratch for a pathgraph of that many nodes and chains."""
     return Search(
         np.empty(nodes + 2),
         np.empty(nodes + 2, np.int32),
@@ -78,23 +89,24 @@ def new_search(nodes: int, chains: int) -> Search:
 
 
 @bare
-def seek(ways: Landmarks, query: RouteQuery, search: Search, origin: int) -> bool:
-    """A* from a node to the goal, under the stamp's bars and seals; the way is then in ``came``.
+def find_path_to_goal(landmarks: Landmarks, query: RouteQuery, search: Search, origin: int) -> bool:
+    """Search a path from a node to the goal (A*), and return whether there is one; it is left in `search.arrival`.
 
-    The shortest way, unless the query's line makes arcs dearer: then one at most EAGER times as dear as the cheapest.
+    Nodes and arcs banned under the current stamp are left out. The path is the shortest, unless the query's line makes
+    arcs costlier: then its cost is at most PATH_SLACK times the least.
 
-    One loop without calls that pass many arrays, all of them local names: taking an array out of a tuple, or handing
-    it on, costs more than the arc it serves.
+    This is one loop without calls that pass many arrays, all of them local names: taking an array out of a tuple, or
+    handing it on, costs more than the arc for which it is used.
     """
-    arc, head, step, place, sight = ways.arc, ways.head, ways.step, ways.place, ways.sight
+    arc, head, step, place, sight = landmarks.arc, landmarks.head, landmarks.step, landmarks.place, landmarks.sight
     joint, extra, line, goal = query.joint, query.cost, query.line, query.sight
-    shut = query.shut
-    best, came, seen, barred, sealed = search.best, search.came, search.seen, search.barred, search.sealed
-    ahead, key, spot = search.ahead, search.key, search.node
-    n, arcs, stamp, exact = head.shape[0], 2 * shut.shape[0], search.stamp[0], search.stamp[1] != 0
-    bowed = line[2] != 0.0 or line[3] != 0.0
-    eager = EAGER if bowed else 1.0
-    best[origin], came[origin], seen[origin] = 0.0, -1, stamp
+    closed = query.closed
+    best, arrival, seen, node_ban, arc_ban = search.best, search.arrival, search.seen, search.node_ban, search.arc_ban
+    goal_distance, key, spot = search.goal_distance, search.key, search.node
+    n, arcs, stamp, exact = head.shape[0], 2 * closed.shape[0], search.stamp[0], search.stamp[1] != 0
+    biased = line[2] != 0.0 or line[3] != 0.0
+    inflation = PATH_SLACK if biased else 1.0
+    best[origin], arrival[origin], seen[origin] = 0.0, -1, stamp
     node, size = origin, 0
     while node != n + 1:
         for slot in range(6):
@@ -106,41 +118,43 @@ def seek(ways: Landmarks, query: RouteQuery, search: Search, origin: int) -> boo
                 cost = extra[code - arcs]
             elif slot < 4:
                 to, code, cost = 0 + head[node, slot], 0 + arc[node, slot], step[node, slot]
-                if to < 0 or shut[code >> 1]:
+                if to < 0 or closed[code >> 1]:
                     continue
             else:
                 to, code, cost = n + 1, arcs + slot - 2, extra[slot - 2]
                 if joint[slot - 2] != node:
                     continue
-            if node == origin and sealed[code] == stamp:
+            if node == origin and arc_ban[code] == stamp:
                 continue
-            if (
-                to < n and bowed
-            ):  # among ways of one length, the one nearest to the straight line is shortest when tight
+            if to < n and biased:  # among paths of one length, that nearest the straight line is shortest when tight
                 cost *= 1.0 + abs((place[to, 0] - line[0]) * line[2] + (place[to, 1] - line[1]) * line[3])
             total = best[node] + cost
-            if total == np.inf or barred[to] == stamp or (seen[to] == stamp and best[to] <= total):
+            if total == np.inf or node_ban[to] == stamp or (seen[to] == stamp and best[to] <= total):
                 continue
-            best[to], came[to], seen[to] = total, code, stamp
+            best[to], arrival[to], seen[to] = total, code, stamp
             rest = 0.0
             if to < n:
-                rest = ahead[to] if exact else eager * bound(sight, goal, 0, to)
+                rest = goal_distance[to] if exact else inflation * landmark_bound(sight, goal, 0, to)
             if rest < np.inf:
                 size = push(key, spot, size, total + rest, to)
-        while size > 0 and (node == origin or barred[node] == stamp):
+        while size > 0 and (node == origin or node_ban[node] == stamp):
             node, size = pop(key, spot, size)
-            if barred[node] != stamp:
+            if node_ban[node] != stamp:
                 break
         else:
             return False
         if node < n:
-            barred[node] = stamp  # done with: its way is the shortest
+            node_ban[node] = stamp  # finished: its path is the shortest
     return True
 
 
 @bare
-def bound(sight: Floats, ends: Floats, end: int, node: int) -> float:
-    """A lower bound of the way from a node to the goal (end 0) or the start (1), by the landmarks' triangles."""
+def landmark_bound(sight: Floats, ends: Floats, end: int, node: int) -> float:
+    """Return a lower bound of the path length from a node to the goal (end 0) or to the start (end 1), in squares.
+
+    It is the best triangle inequality over the landmarks. `sight` are the nodes' distances from them, `ends` the
+    query's.
+    """
     least = 0.0
     for k in range(sight.shape[1]):
         if sight[node, k] != ends[end, k]:  # not both infinite
@@ -150,37 +164,37 @@ def bound(sight: Floats, ends: Floats, end: int, node: int) -> float:
 
 
 @bare
-def survey(ways: Landmarks, query: RouteQuery, search: Search, limit: float) -> None:
-    """Fill ``ahead`` with the exact distances to the goal: Dijkstra, backwards.
+def fill_goal_distances(landmarks: Landmarks, query: RouteQuery, search: Search, limit: float) -> None:
+    """Fill `search.goal_distance` with exact distances to the goal in squares, by Dijkstra's algorithm backwards.
 
-    Nodes that no way up to the limit can pass are left out.
+    Nodes that no path from start to goal of at most `limit` squares can pass are left at infinity.
     """
-    arc, head, step, sight = ways.arc, ways.head, ways.step, ways.sight
-    joint, cost, ends, shut = query.joint, query.cost, query.sight, query.shut
-    ahead, key, spot = search.ahead, search.key, search.node
+    arc, head, step, sight = landmarks.arc, landmarks.head, landmarks.step, landmarks.sight
+    joint, cost, ends, closed = query.joint, query.cost, query.sight, query.closed
+    goal_distance, key, spot = search.goal_distance, search.key, search.node
     n, size = head.shape[0], 0
     for k in range(n + 2):
-        ahead[k] = np.inf
+        goal_distance[k] = np.inf
     for k in range(2, 4):
-        if cost[k] < np.inf and cost[k] < ahead[joint[k]]:
-            ahead[joint[k]] = cost[k]
+        if cost[k] < np.inf and cost[k] < goal_distance[joint[k]]:
+            goal_distance[joint[k]] = cost[k]
             size = push(key, spot, size, cost[k], 0 + joint[k])
     while size > 0:
         done = key[0]
         node, size = pop(key, spot, size)
-        if done > ahead[node]:
+        if done > goal_distance[node]:
             continue
         for slot in range(4):
             other = 0 + head[node, slot]
-            if other < 0 or shut[arc[node, slot] >> 1]:
+            if other < 0 or closed[arc[node, slot] >> 1]:
                 continue
             total = done + step[node, slot]
-            if total < ahead[other] and total + bound(sight, ends, 1, other) <= limit:
-                ahead[other] = total
+            if total < goal_distance[other] and total + landmark_bound(sight, ends, 1, other) <= limit:
+                goal_distance[other] = total
                 size = push(key, spot, size, total, other)
-    ahead[n + 1] = 0.0
-    ahead[n] = cost[4]
+    goal_distance[n + 1] = 0.0
+    goal_distance[n] = cost[4]
     for k in range(2):
-        if cost[k] < np.inf and cost[k] + ahead[joint[k]] < ahead[n]:
-            ahead[n] = cost[k] + ahead[joint[k]]
+        if cost[k] < np.inf and cost[k] + goal_distance[joint[k]] < goal_distance[n]:
+            goal_distance[n] = cost[k] + goal_distance[joint[k]]
     search.stamp[1] = 1

@@ -1,9 +1,9 @@
-"""Passages that a route must not lead through: the floor cut along their necks, as partition.py cuts it.
+"""Barriers: passages that a route must not lead through; the floor is cut along their necks, as partition.py cuts it.
 
-# Strategy: a route keeps clear of the passages exactly when it can be deformed into a way from square to square that
-takes no step that is cut. So the pathgraph is barred at those of its steps, and a start or goal whose steepest way up
-would take one goes to the nearest skeleton within its own part instead. Where the pathgraph is cut although the part is
-in one piece, which happens where a neck runs over another chain, a way over the part's squares is taken.
+# Strategy: a route keeps clear of the passages exactly when it can be deformed into a path from square to square that
+takes no step that is cut. So the pathgraph is closed at those of its steps. A start or goal whose steepest ascent would
+take such a step goes to the nearest skeleton within its own part instead. Where the pathgraph is cut although the part
+is in one piece, which happens where a neck runs over another chain, a path over the part's squares is taken.
 """
 
 from collections import deque
@@ -23,40 +23,49 @@ from geometry.skeleton.skeleton import steepest, stride
 
 
 class Barrier(NamedTuple):
-    """The floor of a layer, cut."""
+    """The floor of a layer, cut along the necks of passages.
+
+    Attributes
+    ----------
+    label : (rows + 2, columns + 2) the part of each cell; 0 on a cut.
+    closed : (2, rows + 2, columns + 2) the steps from each cell to the east and to the north that are cut.
+    closed_steps : (b, 2) chain and position of the pathgraph's steps that are cut (see astar.py).
+    """
 
     label: Labels
-    """(rows + 2, columns + 2) the part of each cell."""
-    shut: Bools
-    """(2, rows + 2, columns + 2) the steps to the east and to the north that are cut."""
-    bars: Ints
-    """(b, 2) chain and position of the pathgraph's steps that are cut (see astar.py)."""
+    closed: Bools
+    closed_steps: Ints
 
-    def parted(self, one: int, other: int) -> bool:
-        """Return whether two cells lie in different parts, or one of them on a cut."""
+    def separates(self, one: int, other: int) -> bool:
+        """Return whether two padded cells lie in different parts, or one of them on a cut."""
         label = self.label.reshape(-1)
         return bool(one != other and (label[one] != label[other] or not label[one]))
 
-    def is_shut(self, cell: int, other: int) -> bool:
-        """Return whether the step between edge neighbours is cut."""
+    def is_closed(self, cell: int, other: int) -> bool:
+        """Return whether the step between two edge neighbours is cut."""
         low = min(cell, other)
-        return bool(self.shut[int(abs(cell - other) > 1)].reshape(-1)[low])
+        return bool(self.closed[int(abs(cell - other) > 1)].reshape(-1)[low])
 
 
-def raise_barrier(layer: Layer, level: int, passages: Iterable[Passage]) -> Barrier:
-    """Cut the floor of a layer along the necks of passages."""
-    label, shut = cut_floor(layer.square >= level, passages)
+def build_barrier(layer: Layer, level: int, passages: Iterable[Passage]) -> Barrier:
+    """Return the floor of a layer, cut along the necks of passages.
+
+    Parameters
+    ----------
+    level : the least squared clearance of a cell where the body may be, in half squares.
+    """
+    label, closed = cut_floor(layer.square >= level, passages)
     width, states = layer.square.shape[1], layer.state.reshape(-1)
-    bars = []
-    for direction, row, column in np.argwhere(shut).tolist():
+    closed_steps = []
+    for direction, row, column in np.argwhere(closed).tolist():
         cell = row * width + column
         if states[cell] >> direction & 1:
-            bars.append(bar_at(layer, cell, cell + stride(direction, width)))
-    return Barrier(label, shut, np.array(bars, np.int32).reshape(-1, 2))
+            closed_steps.append(chain_step_of(layer, cell, cell + stride(direction, width)))
+    return Barrier(label, closed, np.array(closed_steps, np.int32).reshape(-1, 2))
 
 
-def bar_at(layer: Layer, cell: int, other: int) -> tuple[int, int]:
-    """Return the chain of a step of the skeleton, and the lower of the two positions on it."""
+def chain_step_of(layer: Layer, cell: int, other: int) -> tuple[int, int]:
+    """Return the chain of a step of the skeleton between two cells, and the lower of the two positions on it."""
     states, width, chains = layer.state.reshape(-1), layer.square.shape[1], layer.chains
     if is_node(states[cell]) and is_node(states[other]):
         return int(chains.leave[find(chains.node, cell), direction_of(other - cell)]), 0
@@ -67,31 +76,39 @@ def bar_at(layer: Layer, cell: int, other: int) -> tuple[int, int]:
     return anchor.chain, anchor.position - (0 if onward else 1)
 
 
-def way_to_skeleton(layer: Layer, level: int, barrier: Barrier, cell: int) -> list[int] | None:
-    """Return the cells from a cell to the skeleton of its part: the steepest way up if nothing of it is cut."""
+def path_to_skeleton(layer: Layer, level: int, barrier: Barrier, cell: int) -> list[int] | None:
+    """Return the cells from a cell to the skeleton of its part: the steepest ascent if no step of it is cut.
+
+    Otherwise the fewest cells over steps that are not cut; None when there are none.
+    """
     heights, states, width = layer.square.reshape(-1), layer.state.reshape(-1), layer.square.shape[1]
     cells = [cell]
     while not states[cells[-1]]:
         higher = steepest(cells[-1], heights, width)
-        if barrier.is_shut(cells[-1], higher):
-            return way_over_cells(layer, level, barrier, cell, states > 0)
+        if barrier.is_closed(cells[-1], higher):
+            return path_over_cells(layer, level, barrier, cell, states > 0)
         cells.append(higher)
     return cells
 
 
-def way_over_cells(layer: Layer, level: int, barrier: Barrier, cell: int, goal: Bools) -> list[int] | None:
-    """Return the fewest cells from a cell to one of some, over steps that are not cut; None when there is no way."""
+def path_over_cells(layer: Layer, level: int, barrier: Barrier, cell: int, goal: Bools) -> list[int] | None:
+    """Return the fewest cells from a cell to a goal cell over steps that are not cut; None when there is no path.
+
+    Parameters
+    ----------
+    goal : (cells,) bool, the goal cells, flat over the padded grid.
+    """
     heights, width = layer.square.reshape(-1), layer.square.shape[1]
     came, queue = {cell: cell}, deque([cell])
     while queue:
         here = queue.popleft()
         if goal[here]:
-            way = [here]
-            while way[-1] != cell:
-                way.append(came[way[-1]])
-            return way[::-1]
+            path = [here]
+            while path[-1] != cell:
+                path.append(came[path[-1]])
+            return path[::-1]
         for other in (here + 1, here + width, here - 1, here - width):
-            if other not in came and heights[other] >= level and not barrier.is_shut(here, other):
+            if other not in came and heights[other] >= level and not barrier.is_closed(here, other):
                 came[other] = here
                 queue.append(other)
     return None

@@ -1,4 +1,4 @@
-"""A layer: everything known of the free space of a body of one radius."""
+"""A layer: the pathgraph, strips and landmarks of the free space of a body of one radius."""
 
 from math import ceil, inf
 from numbers import Real
@@ -6,34 +6,47 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.homotopy.landmarks import Landmarks, find_ways
-from geometry.homotopy.strips import Strips, find_runs
+from geometry.homotopy.landmarks import Landmarks, compute_landmarks
+from geometry.homotopy.strips import Strips, find_strips
 from geometry.kernels.arrays import SquaredDistances
 from geometry.skeleton.chains import Chains
 from geometry.skeleton.graph import SkeletonGraph, contract
 from geometry.skeleton.skeleton import States, Words
 from geometry.skeleton.sweep import grow_all
 
-ROUNDING = 1e-12  # of a squared radius: a clearance that was told, squared again, is the level that it came from
-HIGHEST = 2**31 - 1  # above any square
+RADIUS_ROUNDING = 1e-12  # share of a squared radius; derived: a clearance, squared again, gives the level it came from
+MAX_LEVEL = 2**31 - 1  # half squares, squared; derived: above every squared clearance of a screen
 
 
 class Layer(NamedTuple):
-    """What a query needs."""
+    """All that a query reads of the free space of a body of one radius.
+
+    Attributes
+    ----------
+    square : (rows + 2, columns + 2) int, squared clearances in half squares, padded by one cell on each side.
+    state : (rows + 2, columns + 2) uint8, links and flags of the skeleton (see skeleton.py).
+    chains : the chains of the pathgraph.
+    runs : the strips and portals of the free space.
+    landmarks : words and lengths of the chains, and distances from landmark nodes.
+    body : False for a point, which may use whole squares; True for a body, whose centre keeps to the lines of centres.
+    """
 
     square: SquaredDistances
-    """(rows + 2, columns + 2) squared clearances in half squares."""
     state: States
-    """(rows + 2, columns + 2) links and flags of the skeleton."""
     chains: Chains
     runs: Strips
-    ways: Landmarks
+    landmarks: Landmarks
     body: bool
-    """False for a point, which may use whole squares; True for a body, whose centre keeps to the lines of centres."""
 
 
 def new_state(shape: tuple[int, ...], words: Words | None = None) -> tuple[States, Words]:
-    """A ``state`` of that padded shape and the same memory by eights, fresh or as given."""
+    """Return a skeleton `state` of that padded shape, and the same memory as words of eight cells.
+
+    Parameters
+    ----------
+    shape : (rows + 2, columns + 2).
+    words : memory to use, uint64; None for fresh memory.
+    """
     cells = shape[0] * shape[1]
     if words is None:
         words = np.zeros((cells + 7) // 8, np.uint64)
@@ -41,23 +54,35 @@ def new_state(shape: tuple[int, ...], words: Words | None = None) -> tuple[State
 
 
 def find_bones(square: SquaredDistances, level: int, state: States, words: Words) -> SkeletonGraph:
-    """The pathgraph of the cells whose ``square`` is at least ``level``; fills ``state``."""
+    """Return the pathgraph of the cells whose squared clearance is at least `level` (half squares); fill `state`."""
     grow_all(square, level, state, words)
     return contract(square, state, words)
 
 
 def find_layer(square: SquaredDistances, level: int, body: bool, state: States, chains: Chains) -> Layer:
-    """Strips and ways for a pathgraph."""
-    runs = find_runs(square, level)
-    return Layer(square, state, chains, runs, find_ways(square, chains, runs, body), body)
+    """Return the layer of a pathgraph: find its strips and landmarks.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int, squared clearances in half squares.
+    level : the least squared clearance of a cell where the body may be, in half squares.
+    body : True for a body, False for a point.
+    state, chains : the skeleton and the chains of its pathgraph.
+    """
+    runs = find_strips(square, level)
+    return Layer(square, state, chains, runs, compute_landmarks(square, chains, runs, body), body)
 
 
 def level_of(radius: float) -> int:
-    """Return the least ``square`` of a cell where the centre of a body of that radius may be.
+    """Return the least squared clearance, in half squares, of a cell at whose centre a body of that radius may be.
 
     The centres of squares decide for all places between them: seen from one coordinate, the distance to a blocked
-    square only grows, only falls or is 0 between two neighbouring centres, for walls stand on whole numbers. So on the
-    segment between two centres, and in the square between four, one of these centres is the nearest to every wall.
+    square only grows, only falls or is 0 between two neighbouring centres, because walls stand on whole numbers. So on
+    the segment between two centres, and in the square between four, one of these centres is the nearest to every wall.
+
+    Parameters
+    ----------
+    radius : in squares; 0 for a point.
 
     Raises
     ------
@@ -66,5 +91,5 @@ def level_of(radius: float) -> int:
     """
     if not (isinstance(radius, Real) and 0.0 <= radius < inf):
         raise ValueError(f"radius must be a finite number and not negative, but is {radius!r}")
-    reach = 4.0 * float(radius) ** 2 * (1.0 - ROUNDING)
-    return max(1, ceil(reach)) if reach < HIGHEST else HIGHEST
+    level = 4.0 * float(radius) ** 2 * (1.0 - RADIUS_ROUNDING)
+    return max(1, ceil(level)) if level < MAX_LEVEL else MAX_LEVEL

@@ -1,10 +1,10 @@
-"""From the word of a route to its way over the skeleton: which chains it walks, and how low it must go.
+"""Lifting: from the word of a route to its path over the skeleton, that is, its chains and its least clearance.
 
-# Strategy: every class of ways holds exactly one over the skeleton that never turns back. It is found by raising any
-way of the class, cell by cell. From a cell, the ways to the higher cells of one group (see skeleton.py) can be deformed
-into each other over higher cells only, so a step up to a cell of a group becomes the step to the group's highest edge
-neighbour and on along the ring. A cell that is left as it was reached is a spur, and is dropped. What cannot be raised
-is a step of the skeleton, or of the steepest way up to it from an end.
+# Strategy: every class of paths holds exactly one path over the skeleton that never turns back. It is found by raising
+any path of the class, cell by cell. From a cell, the paths to the higher cells of one group (see skeleton.py) can be
+deformed into each other over higher cells only, so a step up to a cell of a group becomes the step to the group's
+highest edge neighbour and on along the ring. A cell that is left as it was reached is a spur, and is dropped. What
+cannot be raised is a step of the skeleton, or of the steepest ascent to it from an end.
 """
 
 from typing import NamedTuple
@@ -21,82 +21,94 @@ from geometry.skeleton.chains import Chains
 from geometry.skeleton.graph import find, is_node
 from geometry.skeleton.skeleton import GROUPS, Flags, Heights, above, beside, higher_about, highest_of
 
-FULL = -1
-GONE = -1  # the cell of a link of the way that was dropped
+TRAIL_OVERFLOW = -1  # returned when the trail has no room
+DROPPED = -1  # the cell of a link that was dropped from its path
 
 
 class Lifted(NamedTuple):
-    """A way over the skeleton."""
+    """A path over the skeleton.
+
+    Attributes
+    ----------
+    lowest : the least squared clearance on it, its ends included, in half squares.
+    chains : the chains that it follows, in order.
+    """
 
     lowest: int
-    """The least square on it, its ends included, in half squares."""
     chains: tuple[int, ...]
-    """The chains that it walks, in order."""
 
 
 class Trail(NamedTuple):
-    """A way as a linked list of cells, each an edge neighbour of the one before; link 0 is the start, 1 the goal."""
+    """A path as a linked list of cells, each an edge neighbour of the one before; link 0 is the start, link 1 the goal.
+
+    Attributes
+    ----------
+    cell : (room,) the padded cell of each link, or DROPPED.
+    before : (room,) the link before, or DROPPED.
+    after : (room,) the link after, or DROPPED.
+    queue : (room,) links to examine.
+    queued : (room,) whether a link is in the queue.
+    counts : (2,) how many links were ever made, and how many are in the queue.
+    """
 
     cell: Ints
-    """(room,) padded cells."""
     before: Ints
-    """(room,)"""
     after: Ints
-    """(room,)"""
     queue: Ints
-    """(room,) links to look at."""
-    waits: Ints
-    """(room,) whether a link is in the queue."""
-    tally: Ints
-    """(2,) how many links were ever made, and how many wait."""
+    queued: Ints
+    counts: Ints
 
 
 def new_trail(room: int) -> Trail:
-    """Return room for so many links."""
+    """Return scratch for a path of at most `room` links."""
     cell, before, after, queue = (np.empty(room, np.int32) for _ in range(4))
     return Trail(cell, before, after, queue, np.zeros(room, np.int32), np.zeros(2, np.int32))
 
 
-def lift(layer: Layer, ends: Ends, word: Ints, trail: Trail | None = None) -> tuple[Lifted, Trail]:
-    """Return the one way over the skeleton, without turning back, of the class of a reduced word.
+def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None = None) -> tuple[Lifted, Trail]:
+    """Return the one path over the skeleton, without turning back, of the class of a reduced word.
 
     Parameters
     ----------
-    ends : x and y of the start, x and y of the goal, in squares, in squares where the body may be.
-    word : signed portals from the start's run to the goal's.
-    trail : scratch, from a call before.
+    ends : x and y of the start, x and y of the goal, in squares; both in squares where the body may be.
+    word : signed portals from the start's strip to the goal's.
+    trail : scratch from an earlier call.
 
     Returns
     -------
-    The way, and the scratch that was used.
+    (Lifted, Trail)
+        The path, and the scratch that was used.
     """
     trail = trail or new_trail(4 * len(word) + 1024)
     heights, states, width = layer.square.reshape(-1), layer.state.reshape(-1), layer.square.shape[1]
-    while (size := lift_word(heights, states, width, layer.chains, layer.runs, ends, word, trail)) == FULL:
+    while (size := lift_word(heights, states, width, layer.chains, layer.runs, ends, word, trail)) == TRAIL_OVERFLOW:
         trail = new_trail(4 * len(trail.cell))
     lowest, *chains = trail.queue[:size].tolist()
     return Lifted(lowest, tuple(chains)), trail
 
 
 def cells_of_word(layer: Layer, ends: Ends, word: Ints) -> list[int]:
-    """Return the cells of a way of a word, along each run to the nearest square of the next portal."""
+    """Return the padded cells of a path with this word: along each strip to the nearest square of the next portal."""
     trail = new_trail(4 * len(word) + 1024)
-    while lay(layer.runs, ends, word, layer.square.shape[1], trail) == FULL:
+    while write_cells_of_word(layer.runs, ends, word, layer.square.shape[1], trail) == TRAIL_OVERFLOW:
         trail = new_trail(4 * len(trail.cell))
-    cells = [int(trail.cell[0]), *trail.cell[2 : trail.tally[0]].tolist(), int(trail.cell[1])]
+    cells = [int(trail.cell[0]), *trail.cell[2 : trail.counts[0]].tolist(), int(trail.cell[1])]
     return cells if trail.after[0] != 1 or cells[0] != cells[-1] else cells[:1]
 
 
 @bare
 def lift_word(
-    heights: Heights, states: Flags, width: int, chains: Chains, runs: Strips, ends: Ends, word: Ints, trail: Trail
+    heights: Heights, states: Flags, width: int, chains: Chains, strips: Strips, ends: Ends, word: Ints, trail: Trail
 ) -> int:
-    """Write the lowest square and the chains of a word's way over the skeleton to the trail's queue.
+    """Write the least square and the chains of a word's path over the skeleton to the trail's queue.
 
-    Returns how many numbers these are, or FULL when there is no room.
+    Returns how many numbers these are, or TRAIL_OVERFLOW when there is no room.
     """
-    if lay(runs, ends, word, width, trail) == FULL or raise_trail(heights, width, trail) == FULL:
-        return FULL
+    if (
+        write_cells_of_word(strips, ends, word, width, trail) == TRAIL_OVERFLOW
+        or raise_to_skeleton(heights, width, trail) == TRAIL_OVERFLOW
+    ):
+        return TRAIL_OVERFLOW
     cell, after, out = trail.cell, trail.after, trail.queue
     link, last, size, lowest = 0, -1, 1, heights[cell[0]]
     while link >= 0:
@@ -117,17 +129,21 @@ def lift_word(
 
 @bare
 def direction_of(step: int) -> int:
-    """Return the direction of an index step between edge neighbours."""
+    """Return the direction of an index step between edge neighbours: 0 east, 1 north, 2 west, 3 south."""
     if step == 1 or step == -1:
         return 1 - step
     return 1 if step > 0 else 3
 
 
 @bare
-def lay(runs: Strips, ends: Ends, word: Ints, width: int, trail: Trail) -> int:
-    """Lay a way of a word, along each run to the nearest square of the next portal; FULL when there is no room."""
-    cell, before, after, queue, waits, tally = trail
-    left, right = runs.left, runs.right
+def write_cells_of_word(strips: Strips, ends: Ends, word: Ints, width: int, trail: Trail) -> int:
+    """Write the cells of a path with this word as a linked list, and return the number of links.
+
+    The path goes along each strip to the nearest square of the next portal. Returns TRAIL_OVERFLOW when there is no
+    room.
+    """
+    cell, before, after, queue, queued, counts = trail
+    left, right = strips.left, strips.right
     row, column, last, new = int(ends[1]), int(ends[0]), 0, 2
     cell[0] = (row + 1) * width + column + 1
     for k in range(word.shape[0] + 1):
@@ -137,7 +153,7 @@ def lay(runs: Strips, ends: Ends, word: Ints, width: int, trail: Trail) -> int:
         if not end:
             target = left[portal] if column < left[portal] else right[portal] if column > right[portal] else column
         if new + abs(target - column) + 32 > cell.shape[0]:
-            return FULL
+            return TRAIL_OVERFLOW
         while column != target or not end:
             if column != target:
                 column += 1 if column < target else -1
@@ -152,37 +168,40 @@ def lay(runs: Strips, ends: Ends, word: Ints, width: int, trail: Trail) -> int:
         cell[1], last = cell[last], before[last]
     else:
         cell[1] = cell[0]
-    before[1], after[last], before[0], after[1] = last, 1, GONE, GONE
+    before[1], after[last], before[0], after[1] = last, 1, DROPPED, DROPPED
     for link in range(new):
-        queue[link], waits[link] = link, 1
-    tally[0], tally[1] = new, new
+        queue[link], queued[link] = link, 1
+    counts[0], counts[1] = new, new
     return new
 
 
 @bare
-def raise_trail(heights: Heights, width: int, trail: Trail) -> int:
-    """Raise a way to the skeleton; returns the number of links made, or FULL when there is no room for more."""
-    cell, before, after, queue, waits, tally = trail
-    while tally[1] > 0:
-        tally[1] -= 1
-        link = 0 + queue[tally[1]]
-        waits[link] = 0
-        if cell[link] == GONE:
+def raise_to_skeleton(heights: Heights, width: int, trail: Trail) -> int:
+    """Raise a path to the skeleton and return the number of links made, or TRAIL_OVERFLOW without room for more."""
+    cell, before, after, queue, queued, counts = trail
+    while counts[1] > 0:
+        counts[1] -= 1
+        link = 0 + queue[counts[1]]
+        queued[link] = 0
+        if cell[link] == DROPPED:
             continue
-        if tally[0] + 16 > cell.shape[0]:
-            return FULL
+        if counts[0] + 16 > cell.shape[0]:
+            return TRAIL_OVERFLOW
         if link != 1:
             raise_step(heights, width, trail, link, 0 + after[link], True)
         if link != 0:
             raise_step(heights, width, trail, link, 0 + before[link], False)
         if link > 1 and cell[before[link]] == cell[after[link]]:
             drop_spur(trail, link)
-    return int(tally[0])
+    return int(counts[0])
 
 
 @bare
 def raise_step(heights: Heights, width: int, trail: Trail, link: int, next_link: int, forward: bool) -> None:
-    """Lead the step from a link to a higher one over the highest edge neighbour of its group."""
+    """Lead the step from a link to a higher one over the highest edge neighbour of its group.
+
+    `forward` says whether `next_link` comes after `link` on the path.
+    """
     cell = trail.cell
     here, there = 0 + cell[link], 0 + cell[next_link]
     if here == there or not above(there, here, heights):
@@ -197,59 +216,59 @@ def raise_step(heights: Heights, width: int, trail: Trail, link: int, next_link:
     if best == side:
         return
     turn = 1
-    spot = best
-    while spot != side:  # which way round there are only higher cells
-        spot = (spot + 1) & 7
-        if not higher >> spot & 1:
+    position = best
+    while position != side:  # which way round there are only higher cells
+        position = (position + 1) & 7
+        if not higher >> position & 1:
             turn = 7
             break
-    spot, last = best, link
-    while spot != side:
-        last = insert_link(trail, here + beside(spot, width), last, next_link, forward)
-        spot = (spot + turn) & 7
-    wait(trail, link)
-    wait(trail, next_link)
+    position, last = best, link
+    while position != side:
+        last = insert_link(trail, here + beside(position, width), last, next_link, forward)
+        position = (position + turn) & 7
+    enqueue(trail, link)
+    enqueue(trail, next_link)
 
 
 @bare
 def insert_link(trail: Trail, cell: int, last: int, next_link: int, forward: bool) -> int:
-    """Put a cell between two links of a way; returns its link."""
-    new = 0 + trail.tally[0]
-    trail.tally[0] += 1
-    trail.cell[new], trail.waits[new] = cell, 0
+    """Put a cell between two links of a path and return its link."""
+    new = 0 + trail.counts[0]
+    trail.counts[0] += 1
+    trail.cell[new], trail.queued[new] = cell, 0
     if forward:
         trail.after[last], trail.before[new], trail.after[new], trail.before[next_link] = new, last, next_link, new
     else:
         trail.before[last], trail.after[new], trail.before[new], trail.after[next_link] = new, last, next_link, new
-    wait(trail, new)
+    enqueue(trail, new)
     return int(new)
 
 
 @bare
 def drop_spur(trail: Trail, link: int) -> None:
-    """Drop a link that is left as it was reached, with one of the two beside it, which are the same cell."""
+    """Drop a link that is left as it was reached, with one of its two neighbours, which are the same cell."""
     cell, before, after = trail.cell, trail.before, trail.after
     first, last = 0 + before[link], 0 + after[link]
-    cell[link] = GONE
+    cell[link] = DROPPED
     if first == 0 and last == 1:
         after[0], before[1] = 1, 0
         return
     if last == 1:
-        cell[first] = GONE
+        cell[first] = DROPPED
         first = 0 + before[first]
         after[first], before[last] = last, first
     else:
-        cell[last] = GONE
+        cell[last] = DROPPED
         last = 0 + after[last]
         after[first], before[last] = last, first
-    wait(trail, first)
-    wait(trail, last)
+    enqueue(trail, first)
+    enqueue(trail, last)
 
 
 @bare
-def wait(trail: Trail, link: int) -> None:
-    """Look at a link again."""
-    if not trail.waits[link]:
-        trail.waits[link] = 1
-        trail.queue[trail.tally[1]] = link
-        trail.tally[1] += 1
+def enqueue(trail: Trail, link: int) -> None:
+    """Put a link into the queue of links to examine, unless it is there."""
+    if not trail.queued[link]:
+        trail.queued[link] = 1
+        trail.queue[trail.counts[1]] = link
+        trail.counts[1] += 1

@@ -1,4 +1,4 @@
-"""LayerQueries put to one layer of a screen, and the scratch they share."""
+"""Queries about one layer of a screen: routes, loops, the shortest path of all; and the scratch that they share."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -8,43 +8,64 @@ from typing import cast
 import numpy as np
 
 from geometry.homotopy.funnel import Ends
-from geometry.homotopy.landmarks import ascend, find_ways, locate
+from geometry.homotopy.landmarks import ascend, compute_landmarks, locate
 from geometry.homotopy.portals import crossings_of, join_words, word_of_line
-from geometry.homotopy.strips import find_runs
+from geometry.homotopy.strips import find_strips
 from geometry.kernels.arrays import XY, Bools, Ints
 from geometry.passages.necks import Passage
-from geometry.pathfinders.polyanya import FULL, NONE, PolyanyaSearch, new_scout, shortest_line
+from geometry.pathfinders.polyanya import NO_PATH, SEARCH_OVERFLOW, PolyanyaSearch, new_polyanya_search, shortest_line
 from geometry.raster.exact_clearance import keeps_clear
-from geometry.routes.barrier import Barrier, raise_barrier, way_over_cells, way_to_skeleton
+from geometry.routes.barrier import Barrier, build_barrier, path_over_cells, path_to_skeleton
 from geometry.routes.goal_sets import word_of_cells
 from geometry.routes.layer import Layer
-from geometry.routes.lifting import Lifted, Trail, lift, lift_word, new_trail
-from geometry.routes.loops import Arc, cells_of_way, closed_ways
-from geometry.routes.route import Route, length_of, read_answers
-from geometry.routes.router import OVERFLOW, RouterBuffers, RoutingData, ground_of, itineraries, new_desk
+from geometry.routes.lifting import Lifted, Trail, lift_to_skeleton, lift_word, new_trail
+from geometry.routes.loops import Arc, cells_of_path, closed_paths
+from geometry.routes.route import Route, polyline_length, routes_of_answers
+from geometry.routes.router import (
+    ROUTER_OVERFLOW,
+    RouterBuffers,
+    RoutingData,
+    itineraries,
+    new_router_buffers,
+    routing_data,
+)
 from geometry.routes.tighten import tight_route
 from geometry.skeleton.chains import Chains
 
-SPARE, FEWER = 8, 1  # ways tried beyond those wanted, since their order changes when ropes are pulled tight
-SMALL = 128  # chains of a pathgraph up to which SPARE ways are tried, else FEWER
-CLOSE = 1e-9  # squares by which lengths may differ for rounding
-NO_BARS: Ints = np.zeros((0, 2), np.int32)
+# Paths tried beyond those wanted, since their order changes when they are pulled tight; tuned on the benchmark maps.
+EXTRA_PATHS = 8  # on pathgraphs of at most SMALL_PATHGRAPH chains
+EXTRA_PATHS_IF_LARGE = 1  # on larger pathgraphs
+SMALL_PATHGRAPH = 128  # chains
+LENGTH_TOLERANCE = 1e-9  # squares; lengths that differ by less are equal but for rounding
+NO_CLOSED_STEPS: Ints = np.zeros((0, 2), np.int32)
 
 
 def rehearse() -> None:
-    """Compile the longest, the searches for routes, before there is a screen, for arrays of the types they meet."""
+    """Compile the routing kernels, which take longest, for the array types of screens, before there is a screen."""
     ints, ends_of, none = np.zeros(1, np.int32), np.full((1, 4), -1, np.int32), np.full((1, 4), -1, np.int16)
     chains = Chains(ints, ends_of, np.empty((0, 2), np.int32), ints, ints, ints[:0])  # one node, no chain
-    runs = find_runs(none, 1)
-    ground = RoutingData(none[0], np.zeros(1, np.uint8), 1, chains, runs, find_ways(none, chains, runs, False), False)
+    strips = find_strips(none, 1)
+    data = RoutingData(
+        none[0], np.zeros(1, np.uint8), 1, chains, strips, compute_landmarks(none, chains, strips, False), False
+    )
     ends = 0.0, 0.0, 0.0, 0.0
-    itineraries.entry(ground, ends, 1, new_desk(1, 1, 1, 1, 8, NO_BARS))
-    shortest_line.entry(runs, ends, inf, *new_scout(8, runs))
-    lift_word.entry(none[0], ground.states, 1, chains, runs, ends, ints, new_trail(1))
+    itineraries.entry(data, ends, 1, new_router_buffers(1, 1, 1, 1, 8, NO_CLOSED_STEPS))
+    shortest_line.entry(strips, ends, inf, *new_polyanya_search(8, strips))
+    lift_word.entry(none[0], data.states, 1, chains, strips, ends, ints, new_trail(1))
 
 
 class LayerQueries:
-    """A layer with the scratch of its searches, which grows as needed."""
+    """A layer with the scratch of its searches, which grows as needed.
+
+    Points are (x, y) in squares. A body moves between centres of squares; its routes begin and end with straight lines
+    from and to its true ends.
+
+    Attributes
+    ----------
+    layer : the layer that is asked.
+    level : the least squared clearance of a cell where the body may be, in half squares.
+    radius : of the body, in squares; 0 for a point.
+    """
 
     def __init__(self, layer: Layer, level: int, radius: float) -> None:
         self.layer = layer
@@ -52,171 +73,197 @@ class LayerQueries:
         self.radius = radius
         self._width: int = layer.square.shape[1]
         self._winding = bool(layer.runs.crossing.any())
-        self._desks: dict[int, RouterBuffers] = {}
-        self._scout: PolyanyaSearch | None = None
-        self._ground = ground_of(layer)
-        self._solve: Callable[[RoutingData, Ends, int, RouterBuffers], int] | None = None
-        self._trail: Trail | None = None
-        self._raised: tuple[tuple[Passage, ...], Barrier] | None = None
+        self._buffers_of: dict[int, RouterBuffers] = {}
+        self._polyanya: PolyanyaSearch | None = None
+        self._data = routing_data(layer)
+        self._kernel: Callable[[RoutingData, Ends, int, RouterBuffers], int] | None = None
+        self._trail_scratch: Trail | None = None
+        self._barrier: tuple[tuple[Passage, ...], Barrier] | None = None
 
     def admits(self, point: XY) -> bool:
-        """Whether the body may be at a point, in the middle of the point's square, and on the straight way there."""
+        """Return whether the body may be at a point, at the centre of its square, and on the line between them."""
         if self.layer.square.item(int(point[1]) + 1, int(point[0]) + 1) < self.level:
             return False
         return not self.layer.body or keeps_clear(self.layer.square, point, self.snap(point), self.radius)
 
     def to_point(self, start: XY, goal: XY, k: int, avoid: tuple[Passage, ...] = ()) -> list[Route]:
-        """Routes between two points."""
+        """Return at most k routes between two points, shortest first.
+
+        Parameters
+        ----------
+        start, goal : (x, y) in squares, where `admits` holds.
+        k : how many routes at most.
+        avoid : passages through which no route may lead.
+        """
         if avoid:
             return self._avoiding(start, goal, k, self.barrier(avoid))
-        desk, found = self._search((*self.snap(start), *self.snap(goal)), self._tries(k), NO_BARS)
-        routes = read_answers(desk.answers, found, k)
+        buffers, found = self._search((*self.snap(start), *self.snap(goal)), self._candidate_count(k), NO_CLOSED_STEPS)
+        routes = routes_of_answers(buffers.answers, found, k)
         if not self.layer.body:
             return self._with_shortest(routes, start, goal, k) if k > 1 and self._winding and routes else routes
         return [self.with_ends(route, start, goal) for route in routes]
 
-    def _tries(self, k: int) -> int:
-        """How many ways over the pathgraph are pulled tight for so many routes."""
-        return 1 if k == 1 else k + (SPARE if len(self.layer.ways.length) <= SMALL else FEWER)
+    def _candidate_count(self, k: int) -> int:
+        """Return how many paths over the pathgraph are pulled tight for k routes."""
+        return (
+            1
+            if k == 1
+            else k + (EXTRA_PATHS if len(self.layer.landmarks.length) <= SMALL_PATHGRAPH else EXTRA_PATHS_IF_LARGE)
+        )
 
-    def _search(self, ends: Ends, wanted: int, bars: Ints) -> tuple[RouterBuffers, int]:
-        """The best ways over the pathgraph, pulled tight, and how many there are."""
-        found, room = OVERFLOW, 0
-        while found == OVERFLOW:
-            desk = self._desk(wanted, room)
-            if len(bars):
-                desk.query.shut[bars[:, 0]] |= 1
-                desk = desk._replace(query=desk.query._replace(bars=bars))
-            if self._solve is None:
-                self._solve = itineraries.entry(self._ground, ends, wanted, desk)
-            found = self._solve(self._ground, ends, wanted, desk)
-            if len(bars):
-                desk.query.shut[:] = 0
-            room = 4 * len(desk.start)
-        return desk, found
+    def _search(self, ends: Ends, wanted: int, closed_steps: Ints) -> tuple[RouterBuffers, int]:
+        """Find the best paths over the pathgraph, pulled tight; return the buffers that hold them, and their number."""
+        found, room = ROUTER_OVERFLOW, 0
+        while found == ROUTER_OVERFLOW:
+            buffers = self._router_buffers(wanted, room)
+            if len(closed_steps):
+                buffers.query.closed[closed_steps[:, 0]] |= 1
+                buffers = buffers._replace(query=buffers.query._replace(closed_steps=closed_steps))
+            if self._kernel is None:
+                self._kernel = itineraries.entry(self._data, ends, wanted, buffers)
+            found = self._kernel(self._data, ends, wanted, buffers)
+            if len(closed_steps):
+                buffers.query.closed[:] = 0
+            room = 4 * len(buffers.start)
+        return buffers, found
 
     def _with_shortest(self, routes: list[Route], start: XY, goal: XY, k: int) -> list[Route]:
-        """The routes with the shortest of all before them, should none of them be of its class."""
-        first = routes[0].length - CLOSE
+        """Return the routes, preceded by the shortest path of all if none of them is of its class."""
+        first = routes[0].length - LENGTH_TOLERANCE
         if first <= hypot(goal[0] - start[0], goal[1] - start[1]):
             return routes
-        length = self.measure(start, goal, first)
-        return routes if length >= first else [self._scouted(length, (*start, *goal)), *routes][:k]
+        length = self.shortest_length(start, goal, first)
+        return routes if length >= first else [self._polyanya_route(length, (*start, *goal)), *routes][:k]
 
-    def lifted(self, route: Route) -> Route:
-        """The same route with what is known of its class over the skeleton."""
+    def with_skeleton_path(self, route: Route) -> Route:
+        """Return the same route with the clearance and the chains of its class's path over the skeleton."""
         ends = (*self.snap(route.points[0].tolist()), *self.snap(route.points[-1].tolist()))
-        found = self._lift(ends, word_of_line(self.layer.runs, route.points.tolist()))
+        found = self._lifted(ends, word_of_line(self.layer.runs, route.points.tolist()))
         return Route(route.points, route.length, 0.5 * found.lowest**0.5, route.signature, found.chains)
 
     def barrier(self, avoid: tuple[Passage, ...]) -> Barrier:
-        """The floor cut along some passages; the last one is kept."""
-        if self._raised is None or self._raised[0] != avoid:
-            self._raised = avoid, raise_barrier(self.layer, self.level, avoid)
-        return self._raised[1]
+        """Return the floor cut along some passages; the last barrier is kept."""
+        if self._barrier is None or self._barrier[0] != avoid:
+            self._barrier = avoid, build_barrier(self.layer, self.level, avoid)
+        return self._barrier[1]
 
     def _avoiding(self, start: XY, goal: XY, k: int, barrier: Barrier) -> list[Route]:
-        """Routes between two points that lead through no passage of a barrier."""
+        """Return at most k routes between two points that lead through no passage of a barrier, shortest first."""
         first, last = self.cell(start), self.cell(goal)
-        if barrier.parted(first, last):
+        if barrier.separates(first, last):
             return []
-        up = way_to_skeleton(self.layer, self.level, barrier, first)
-        down = way_to_skeleton(self.layer, self.level, barrier, last)
+        up = path_to_skeleton(self.layer, self.level, barrier, first)
+        down = path_to_skeleton(self.layer, self.level, barrier, last)
         words: list[Ints] = []
         if up and down:
             rise, fall = (
                 word_of_cells(self.layer.runs, up, self._width),
                 word_of_cells(self.layer.runs, down, self._width),
             )
-            desk, found = self._search((*self.centre(up[-1]), *self.centre(down[-1])), self._tries(k), barrier.bars)
-            for route in read_answers(desk.answers, found, found):
+            buffers, found = self._search(
+                (*self.centre(up[-1]), *self.centre(down[-1])), self._candidate_count(k), barrier.closed_steps
+            )
+            for route in routes_of_answers(buffers.answers, found, found):
                 between = word_of_line(self.layer.runs, route.points.tolist())
                 words.append(join_words(rise, between, -fall[::-1]))
         if not words:
             goals = np.zeros(self.layer.square.size, np.bool_)
             goals[last] = True
-            way = way_over_cells(self.layer, self.level, barrier, first, goals) or []
-            words.append(join_words(word_of_cells(self.layer.runs, way, self._width)))
+            path = path_over_cells(self.layer, self.level, barrier, first, goals) or []
+            words.append(join_words(word_of_cells(self.layer.runs, path, self._width)))
         routes = sorted((self.of_word(start, goal, word) for word in words), key=lambda route: route.length)
         return routes[:k]
 
     def of_word(self, start: XY, goal: XY, word: Ints) -> Route:
-        """The route of a reduced word."""
+        """Return the route of a reduced word between two points."""
         ends = (*self.snap(start), *self.snap(goal))
-        found = self._lift(ends, word)
+        found = self._lifted(ends, word)
         route = tight_route(self.layer, ends, word, 0.5 * found.lowest**0.5, found.chains)
         return self.with_ends(route, start, goal)
 
-    def measure(self, start: XY, goal: XY, limit: float = inf) -> float:
-        """The length of the shortest way of all, which is left in the scout; infinite when none is below the limit."""
-        runs = self.layer.runs
-        if self._scout is None:
-            self._scout = new_scout(1 << 14, runs)
-        length = shortest_line(runs, (*start, *goal), limit, *self._scout)
-        while self._scout.sizes[0] == FULL:
-            self._scout = new_scout(4 * len(self._scout.nodes.key), runs)
-            length = shortest_line(runs, (*start, *goal), limit, *self._scout)
-        return inf if self._scout.sizes[0] == NONE else float(length)
+    def shortest_length(self, start: XY, goal: XY, limit: float = inf) -> float:
+        """Return the length of the shortest path of all, in squares; infinite when none is shorter than the limit.
+
+        The path itself is left in the scratch.
+        """
+        strips = self.layer.runs
+        if self._polyanya is None:
+            self._polyanya = new_polyanya_search(1 << 14, strips)
+        length = shortest_line(strips, (*start, *goal), limit, *self._polyanya)
+        while self._polyanya.sizes[0] == SEARCH_OVERFLOW:
+            self._polyanya = new_polyanya_search(4 * len(self._polyanya.nodes.key), strips)
+            length = shortest_line(strips, (*start, *goal), limit, *self._polyanya)
+        return inf if self._polyanya.sizes[0] == NO_PATH else float(length)
 
     def shortest(self, start: XY, goal: XY) -> Route | None:
-        """The shortest way of all, or None."""
-        length = self.measure(start, goal)
-        return None if length == inf else self._scouted(length, None)
+        """Return the shortest route of all, at any angle, or None. Its clearance and chains are not known."""
+        length = self.shortest_length(start, goal)
+        return None if length == inf else self._polyanya_route(length, None)
 
-    def _scouted(self, length: float, ends: Ends | None) -> Route:
-        """The way left in the scout; with its way over the skeleton when its ends are told."""
-        scout = cast(PolyanyaSearch, self._scout)
-        size, corners = scout.sizes.tolist()
-        points, word = scout.line[:corners].copy(), scout.word[:size]
+    def _polyanya_route(self, length: float, ends: Ends | None) -> Route:
+        """Return the route left in the scratch, lifted to the skeleton when its ends are given."""
+        polyanya = cast(PolyanyaSearch, self._polyanya)
+        size, corners = polyanya.sizes.tolist()
+        points, word = polyanya.line[:corners].copy(), polyanya.word[:size]
         points.flags.writeable = False
         clearance, chains = nan, cast(tuple[int, ...], ())
         if ends is not None:
-            found = self._lift(ends, word)
+            found = self._lifted(ends, word)
             clearance, chains = 0.5 * found.lowest**0.5, found.chains
         return Route(points, length, clearance, crossings_of(self.layer.runs, word), chains)
 
-    def _lift(self, ends: Ends, word: Ints) -> Lifted:
-        """The way over the skeleton of a reduced word."""
-        found, self._trail = lift(self.layer, ends, word, self._trail)
+    def _lifted(self, ends: Ends, word: Ints) -> Lifted:
+        """Return the path over the skeleton of a reduced word."""
+        found, self._trail_scratch = lift_to_skeleton(self.layer, ends, word, self._trail_scratch)
         return found
 
     def loops(self, start: XY, around: Bools, k: int) -> list[Route]:
-        """Closed routes that wind once about blocked squares."""
+        """Return at most k closed tight routes that wind once, counter-clockwise, about blocked squares.
+
+        They stand shortest first.
+
+        Parameters
+        ----------
+        start : (x, y) in squares, where every loop begins and ends.
+        around : (rows, columns) bool, the blocked squares.
+        """
         cell = (int(start[1]) + 1) * self._width + int(start[0]) + 1
-        ground, runs, chains = self._ground, self.layer.runs, self.layer.chains
+        data, strips, chains = self._data, self.layer.runs, self.layer.chains
         rise = np.empty(self.layer.square.size, np.int32)
-        cell, size = ascend(cell, ground.heights, ground.states, ground.width, runs.row, runs.up, runs.left, rise)
-        tracks = chains.node, chains.leave, chains.start, chains.cells
-        anchor = locate(cell, ground.states, ground.width, *tracks)
-        ways = closed_ways(self.layer, anchor, around, k + SPARE)
-        routes = [self._loop(start, rise[:size], way) for way in ways]
+        cell, size = ascend(cell, data.heights, data.states, data.width, strips.row, strips.up, strips.left, rise)
+        chain_arrays = chains.node, chains.leave, chains.start, chains.cells
+        anchor = locate(cell, data.states, data.width, *chain_arrays)
+        paths = closed_paths(self.layer, anchor, around, k + EXTRA_PATHS)
+        routes = [self._loop_of(start, rise[:size], path) for path in paths]
         return sorted(routes, key=lambda route: route.length)[:k]
 
-    def _loop(self, start: XY, rise: Ints, way: list[Arc]) -> Route:
-        """The tight loop of a closed way over the pathgraph."""
-        cells = cells_of_way(self.layer.chains, way)
+    def _loop_of(self, start: XY, rise: Ints, path: list[Arc]) -> Route:
+        """Return the tight loop of a closed path over the pathgraph."""
+        cells = cells_of_path(self.layer.chains, path)
         word = join_words(rise, word_of_cells(self.layer.runs, cells, self._width), -rise[::-1])
-        lowest = min(int(self.layer.square.reshape(-1)[cells].min()), self._height(start))
+        lowest = min(int(self.layer.square.reshape(-1)[cells].min()), self._squared_clearance(start))
         at = self.snap(start)
-        chains = tuple(arc.chain for arc in way)
+        chains = tuple(arc.chain for arc in path)
         route = tight_route(self.layer, (*at, *at), word, 0.5 * lowest**0.5, chains)
         return self.with_ends(route, start, start)
 
-    def _desk(self, wanted: int, room: int) -> RouterBuffers:
-        """Scratch for that many routes, with at least that much room for words."""
-        desk = self._desks.get(wanted)
-        if desk is None or len(desk.start) < room:
-            nodes, sights = self.layer.ways.sight.shape
-            desk = new_desk(nodes, len(self.layer.ways.length), sights, wanted, max(room, 1024), NO_BARS)
-            self._desks[wanted] = desk
-        return desk
+    def _router_buffers(self, wanted: int, room: int) -> RouterBuffers:
+        """Return scratch for that many routes, with room for words of at least that many symbols."""
+        buffers = self._buffers_of.get(wanted)
+        if buffers is None or len(buffers.start) < room:
+            nodes, landmark_distances = self.layer.landmarks.sight.shape
+            buffers = new_router_buffers(
+                nodes, len(self.layer.landmarks.length), landmark_distances, wanted, max(room, 1024), NO_CLOSED_STEPS
+            )
+            self._buffers_of[wanted] = buffers
+        return buffers
 
     def snap(self, point: XY) -> XY:
-        """Where a rope ends: a body's at the centre of its square."""
+        """Return the point at which a tight path ends: for a body the centre of the point's square, else the point."""
         return (int(point[0]) + 0.5, int(point[1]) + 0.5) if self.layer.body else point
 
     def with_ends(self, route: Route, start: XY, goal: XY) -> Route:
-        """A body's route with its true ends, if they are not at centres."""
+        """Return a body's route extended to its true ends, if they are not centres of squares."""
         line = [(x, y) for x, y in route.points.tolist()]
         if len(line) == 1 and keeps_clear(self.layer.square, start, goal, self.radius):
             line = [start, goal]  # within one square
@@ -226,16 +273,17 @@ class LayerQueries:
         if np.array_equal(points, route.points):
             return route
         points.flags.writeable = False
-        return Route(points, length_of(points), route.clearance, route.signature, route.chains)
+        return Route(points, polyline_length(points), route.clearance, route.signature, route.chains)
 
     def cell(self, point: XY) -> int:
-        """The padded cell of a point's square."""
+        """Return the padded cell of a point's square."""
         return (int(point[1]) + 1) * self._width + int(point[0]) + 1
 
     def centre(self, cell: int) -> XY:
-        """The centre of a padded cell."""
+        """Return the centre of a padded cell, (x, y) in squares."""
         return cell % self._width - 0.5, cell // self._width - 0.5
 
-    def _height(self, point: XY) -> int:
+    def _squared_clearance(self, point: XY) -> int:
+        """Return the squared clearance of a point's square, in half squares."""
         height: int = self.layer.square.reshape(-1)[self.cell(point)].item()
         return height

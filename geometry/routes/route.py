@@ -1,4 +1,4 @@
-"""A route: a tight way over a screen, and the class it belongs to."""
+"""A route: a tight path over a screen, and the homotopy class that it belongs to."""
 
 from dataclasses import dataclass
 
@@ -10,28 +10,31 @@ from geometry.routes.router import RouteAnswers
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Route:
-    """A locally shortest way from a start to a goal.
+    """A locally shortest path from a start to a goal.
 
     Two routes with the same ends on the same screen, for bodies of one radius, can be deformed into each other over
     free space exactly when their signatures are equal.
+
+    Attributes
+    ----------
+    points : (n, 2) float64, corners in squares, start and goal included.
+    length : in squares.
+    clearance : the radius of the largest body that can follow this route over the skeleton, from square to square, in
+        squares; nan when the path over the skeleton is not known (from `shortest` alone).
+    signature : signed crossing numbers of the portals crossed (see strips.py); empty for the class without any.
+    chains : the chains of the pathgraph that the route follows, in order (its ends may lie inside the first and last);
+        empty when not known.
     """
 
     points: Floats
-    """(n, 2) corners in squares, start and goal included."""
     length: float
-    """In squares."""
     clearance: float
-    """The radius of the largest body that can go this way, over the skeleton, from square to square; nan when the way
-    over the skeleton is not known (from ``shortest`` alone)."""
     signature: tuple[int, ...]
-    """Signed crossing numbers of the portals crossed (see strips.py); empty for the class without any."""
     chains: tuple[int, ...]
-    """The chains of the pathgraph that the way uses, in order (its ends may lie inside the first and last); empty
-    when not known."""
 
 
-def read_answers(answers: RouteAnswers, found: int, most: int) -> list[Route]:
-    """The routes of a query, shortest first, at most so many."""
+def routes_of_answers(answers: RouteAnswers, found: int, most: int) -> list[Route]:
+    """Return at most `most` of the first `found` routes in a router's answers, shortest first."""
     bounds = answers.bounds[: found + 1].tolist()
     lengths, lowest = answers.length[:found].tolist(), answers.lowest[:found].tolist()
     corners, crossings, chains = bounds[found]
@@ -46,6 +49,6 @@ def read_answers(answers: RouteAnswers, found: int, most: int) -> list[Route]:
     return routes
 
 
-def length_of(points: Floats) -> float:
-    """The length of a polyline."""
+def polyline_length(points: Floats) -> float:
+    """Return the length of a polyline, (n, 2), in the unit of its points."""
     return float(np.hypot(*np.diff(points, axis=0).T).sum())

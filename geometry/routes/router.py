@@ -1,69 +1,90 @@
-"""From start and goal to tight routes: anchor both on the skeleton, find ways over the pathgraph, pull each rope
-tight.
-"""
+"""The routing kernel: anchor start and goal on the skeleton, find paths over the pathgraph, pull each one tight."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from geometry.homotopy.funnel import Ends, Funnel, measure_line, new_rope, tighten_word
+from geometry.homotopy.funnel import Ends, Funnel, measure_line, new_funnel, tighten_word
 from geometry.homotopy.landmarks import Anchor, Landmarks, add_chain, add_word, ascend, locate
 from geometry.homotopy.strips import Strips
 from geometry.kernels.arrays import Floats, Ints
 from geometry.kernels.jit import bare
 from geometry.routes.astar import RouteQuery, Search, new_search
-from geometry.routes.k_shortest import PathStore, new_album, shortest_ways
+from geometry.routes.k_shortest import PathStore, k_shortest_paths, new_path_store
 from geometry.routes.layer import Layer
 from geometry.skeleton.chains import Chains
 from geometry.skeleton.skeleton import Flags, Heights, States
 
 
 class RouteAnswers(NamedTuple):
-    """Room for the routes found. What belongs to route k lies between its bounds k and k + 1."""
+    """Room for the routes found; what belongs to route k lies between its bounds k and k + 1.
+
+    Attributes
+    ----------
+    bounds : (room + 1, 3) bounds in `corners`, `crossings` and `chains`.
+    corners : (size, 2) corners of the routes, in squares.
+    crossings : (size,) signed crossing numbers.
+    chains : (size,) chains of the pathgraph.
+    length : (room,) in squares.
+    lowest : (room,) the least squared clearance on the path over the skeleton, in half squares.
+    """
 
     bounds: Ints
-    """(room + 1, 3) bounds in ``corners``, ``crossings`` and ``chains``."""
     corners: Floats
-    """(size, 2) corners of the routes, in squares."""
     crossings: Ints
-    """(size,) signed crossing numbers."""
     chains: Ints
-    """(size,) chains of the pathgraph."""
     length: Floats
-    """(room,) in squares."""
     lowest: Ints
-    """(room,) the least squared clearance on the way over the skeleton, in half squares."""
 
 
 class RouterBuffers(NamedTuple):
-    """All scratch of a query."""
+    """All scratch of a query.
+
+    Attributes
+    ----------
+    query : the nodes and arcs that the query adds to the pathgraph.
+    search : scratch of A*.
+    store : the paths over the pathgraph.
+    funnel : scratch for pulling a path tight.
+    answers : the routes found.
+    start : (room,) word from the start up to the skeleton.
+    goal : (room,) word from the goal up to the skeleton.
+    whole : (room,) word from start to goal.
+    stretch : (n + 2, 3) the chains that a path follows, and the positions between which.
+    """
 
     query: RouteQuery
     search: Search
-    album: PathStore
-    rope: Funnel
+    store: PathStore
+    funnel: Funnel
     answers: RouteAnswers
     start: Ints
-    """From the start up to the skeleton."""
     goal: Ints
-    """From the goal up to the skeleton."""
     whole: Ints
-    """From start to goal."""
     stretch: Ints
-    """(n + 2, 3) chains that a way walks, and the positions between which."""
 
 
-def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars: Ints) -> RouterBuffers:
-    """Scratch for ``wanted`` routes of words up to ``room`` over a pathgraph of that size."""
+def new_router_buffers(
+    nodes: int, chains: int, landmark_count: int, wanted: int, room: int, closed_steps: Ints
+) -> RouterBuffers:
+    """Return scratch for a query.
+
+    Parameters
+    ----------
+    nodes, chains, landmark_count : the numbers of nodes, chains and landmarks of the pathgraph.
+    wanted : the number of routes.
+    room : symbols of the longest word.
+    closed_steps : (b, 2) chain and position of steps that may not be taken.
+    """
     query = RouteQuery(
         np.empty(4, np.int32),
         np.empty(5),
-        np.empty((2, sights)),
+        np.empty((2, landmark_count)),
         np.zeros(4),
         np.zeros(chains, np.uint8),
-        bars,
+        closed_steps,
     )
-    answered = wanted if wanted > 1 else len(BOWS)
+    answered = wanted if wanted > 1 else len(BIASES)
     answers = RouteAnswers(
         np.zeros((answered + 1, 3), np.int32),
         np.empty((8 * room, 2)),
@@ -77,8 +98,8 @@ def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars:
     return RouterBuffers(
         query,
         new_search(nodes, chains),
-        new_album(wanted, nodes + 2),
-        new_rope(room),
+        new_path_store(wanted, nodes + 2),
+        new_funnel(room),
         answers,
         start,
         goal,
@@ -87,104 +108,129 @@ def new_desk(nodes: int, chains: int, sights: int, wanted: int, room: int, bars:
     )
 
 
-OVERFLOW = -1
-BOWS = 0.2, 6.0, 1.0  # by trial among the best three on the benchmark maps and others like them (docs/geometry.md)
-ENOUGH = 1.02  # times the straight line: no other way is looked for when a rope is no longer
+ROUTER_OVERFLOW = -1  # returned when some scratch is too small
+BIASES = 0.2, 6.0, 1.0  # shares of arc length (see set_bias); tuned: the best three on the benchmark maps
+STRAIGHT_ENOUGH = 1.02  # times the straight line: a route no longer than this ends the search for a shorter one
 
 
 class RoutingData(NamedTuple):
-    """What a query reads of a layer, for kernels."""
+    """What the kernels read of a layer, flat where it is read by cell.
+
+    Attributes
+    ----------
+    heights : (cells,) squared clearances in half squares.
+    states : (cells,) links and flags of the skeleton.
+    width : columns of the padded grid.
+    chains, strips, landmarks, body : those of the layer.
+    """
 
     heights: Heights
     states: Flags
     width: int
     chains: Chains
-    runs: Strips
-    ways: Landmarks
+    strips: Strips
+    landmarks: Landmarks
     body: bool
 
 
-def ground_of(layer: Layer) -> RoutingData:
-    """The same arrays, flat where they are read by cell."""
+def routing_data(layer: Layer) -> RoutingData:
+    """Return what the kernels read of a layer; the arrays are views."""
     heights, states = layer.square.reshape(-1), layer.state.reshape(-1)
-    return RoutingData(heights, states, layer.square.shape[1], layer.chains, layer.runs, layer.ways, layer.body)
+    return RoutingData(heights, states, layer.square.shape[1], layer.chains, layer.runs, layer.landmarks, layer.body)
 
 
 @bare
-def itineraries(ground: RoutingData, ends: Ends, wanted: int, desk: RouterBuffers) -> int:
-    """Fill the desk's answers with up to ``wanted`` tight routes, by the length of their ways over the pathgraph.
+def itineraries(data: RoutingData, ends: Ends, wanted: int, buffers: RouterBuffers) -> int:
+    """Fill the answers with up to `wanted` tight routes and return their number, or ROUTER_OVERFLOW.
 
-    When one is wanted, with up to three, the best ways for several bows, of which the shortest is meant. Returns their
-    number, or OVERFLOW when some scratch is too small.
+    The routes stand in the order of their paths over the pathgraph, shortest first. When one is wanted, up to three are
+    found: the best paths for several biases, of which the shortest is meant. ROUTER_OVERFLOW says that some scratch is
+    too small.
+
+    Parameters
+    ----------
+    ends : x and y of the start, x and y of the goal, in squares, in free squares.
     """
-    heights, states, width, chains, runs, ways, body = ground
-    query, album = desk.query, desk.album
-    rows, up, left = runs.row, runs.up, runs.left
+    heights, states, width, chains, strips, landmarks, body = data
+    query, store = buffers.query, buffers.store
+    rows, up, left = strips.row, strips.up, strips.left
     first = (int(ends[1]) + 1) * width + int(ends[0]) + 1
     last = (int(ends[3]) + 1) * width + int(ends[2]) + 1
-    above, rise = ascend(first, heights, states, width, rows, up, left, desk.start)
+    above, rise = ascend(first, heights, states, width, rows, up, left, buffers.start)
     start = locate(above, states, width, chains.node, chains.leave, chains.start, chains.cells)
-    above, fall = ascend(last, heights, states, width, rows, up, left, desk.goal)
+    above, fall = ascend(last, heights, states, width, rows, up, left, buffers.goal)
     goal = locate(above, states, width, chains.node, chains.leave, chains.start, chains.cells)
-    if rise >= desk.start.shape[0] or fall >= desk.start.shape[0]:
-        return OVERFLOW
-    pose(query, start, goal, chains.ends, chains.start, ways.length)
-    sight_ends(query.joint, query.cost, ways.sight, query.sight)
+    if rise >= buffers.start.shape[0] or fall >= buffers.start.shape[0]:
+        return ROUTER_OVERFLOW
+    set_query_arcs(query, start, goal, chains.ends, chains.start, landmarks.length)
+    fill_end_distances(query.joint, query.cost, landmarks.sight, query.sight)
     floor = heights[first] if heights[first] < heights[last] else heights[last]
-    stretch, written = desk.stretch, 0
-    enough = ENOUGH * np.sqrt((ends[2] - ends[0]) ** 2 + (ends[3] - ends[1]) ** 2)
-    for share in BOWS:
-        bow(query.line, ends, share if wanted == 1 else 0.0)
-        split(query.shut, start, goal, 2)
-        found = shortest_ways(chains.ends, ways, query, desk.search, album, wanted)
-        split(query.shut, start, goal, 0)
+    stretch, written = buffers.stretch, 0
+    enough = STRAIGHT_ENOUGH * np.sqrt((ends[2] - ends[0]) ** 2 + (ends[3] - ends[1]) ** 2)
+    for bias in BIASES:
+        set_bias(query.line, ends, bias if wanted == 1 else 0.0)
+        set_split_chains(query.closed, start, goal, 2)
+        found = k_shortest_paths(chains.ends, landmarks, query, buffers.search, store, wanted)
+        set_split_chains(query.closed, start, goal, 0)
         for k in range(found):
-            row = 0 + album.place[k]
-            steps = stretches(chains.ends, chains.start, album.arcs, row, 0 + album.size[row], start, goal, stretch)
-            if wanted == 1 and repeats(desk.answers.bounds, desk.answers.chains, written, stretch, steps):
+            row = 0 + store.place[k]
+            steps = write_stretches(
+                chains.ends, chains.start, store.arcs, row, 0 + store.size[row], start, goal, stretch
+            )
+            if wanted == 1 and is_repeated(buffers.answers.bounds, buffers.answers.chains, written, stretch, steps):
                 return written
-            low = lowest_on(chains.start, chains.cells, chains.neck, heights, stretch, steps, floor)
-            desk.answers.lowest[written] = low
-            size = spell(chains.start, ways, desk.start, rise, stretch, steps, desk.goal, fall, desk.whole)
-            if not publish(runs, body, desk.whole, size, ends, desk.rope, stretch, steps, desk.answers, written):
-                return OVERFLOW
+            low = lowest_square_on(chains.start, chains.cells, chains.neck, heights, stretch, steps, floor)
+            buffers.answers.lowest[written] = low
+            size = write_word(
+                chains.start, landmarks, buffers.start, rise, stretch, steps, buffers.goal, fall, buffers.whole
+            )
+            if not write_route(
+                strips, body, buffers.whole, size, ends, buffers.funnel, stretch, steps, buffers.answers, written
+            ):
+                return ROUTER_OVERFLOW
             written += 1
-        if wanted > 1 or found == 0 or desk.answers.length[written - 1] <= enough:
+        if wanted > 1 or found == 0 or buffers.answers.length[written - 1] <= enough:
             break
     return written
 
 
 @bare
-def split(shut: States, start: Anchor, goal: Anchor, flag: int) -> None:
-    """Shut the chains that an anchor splits (flag 2), or open them again (0)."""
+def set_split_chains(closed: States, start: Anchor, goal: Anchor, flag: int) -> None:
+    """Close the chains that start and goal split (flag 2), or open them again (flag 0)."""
     if start.node < 0:
-        shut[start.chain] = shut[start.chain] & 1 | flag
+        closed[start.chain] = closed[start.chain] & 1 | flag
     if goal.node < 0:
-        shut[goal.chain] = shut[goal.chain] & 1 | flag
+        closed[goal.chain] = closed[goal.chain] & 1 | flag
 
 
 @bare
-def bow(line: Floats, ends: Ends, share: float) -> None:
-    """Make arcs dearer by that share of their length times their distance from the straight line, in its lengths."""
+def set_bias(line: Floats, ends: Ends, bias: float) -> None:
+    """Set the query's line so that arcs far from the straight line cost more.
+
+    The cost grows by `bias` times the distance of the arc's head from the straight line, in lengths of that line.
+    """
     dx, dy = ends[2] - ends[0], ends[3] - ends[1]
     square = dx * dx + dy * dy
     if square < 1.0:
         square = 1.0
     line[0], line[1] = ends[0], ends[1]
-    line[2], line[3] = -dy * share / square, dx * share / square
+    line[2], line[3] = -dy * bias / square, dx * bias / square
 
 
 @bare
-def pose(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, length: Floats) -> None:
-    """Set the query's five arcs."""
-    joint, cost, bars = query.joint, query.cost, query.bars
+def set_query_arcs(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, length: Floats) -> None:
+    """Set the ends and the lengths of the query's five arcs.
+
+    `ends`, `starts` and `length` are those of the chains.
+    """
+    joint, cost, closed_steps = query.joint, query.cost, query.closed_steps
     for k in range(2):
         anchor = goal if k else start
         for j in range(2):
             if anchor.node < 0:
                 end = j * (starts[anchor.chain + 1] - starts[anchor.chain] - 1)
                 joint[2 * k + j] = ends[anchor.chain, j]
-                cost[2 * k + j] = part(bars, starts, length, anchor.chain, anchor.position, end)
+                cost[2 * k + j] = length_between(closed_steps, starts, length, anchor.chain, anchor.position, end)
             else:
                 joint[2 * k + j] = anchor.node if j == 0 else -1
                 cost[2 * k + j] = 0.0 if j == 0 else np.inf
@@ -194,24 +240,24 @@ def pose(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, starts: Int
             cost[k] = np.inf
         cost[4] = 0.0
     elif start.chain == goal.chain and start.node < 0 and goal.node < 0:
-        cost[4] = part(bars, starts, length, start.chain, start.position, goal.position)
+        cost[4] = length_between(closed_steps, starts, length, start.chain, start.position, goal.position)
         backward = int(start.position > goal.position)  # the arcs that would pass the other end and come back
         cost[1 - backward] = cost[2 + backward] = np.inf
 
 
 @bare
-def part(bars: Ints, starts: Ints, length: Floats, chain: int, begin: int, end: int) -> float:
-    """The length of a part of a chain, in proportion to its cells; infinite when it takes a barred step."""
+def length_between(closed_steps: Ints, starts: Ints, length: Floats, chain: int, begin: int, end: int) -> float:
+    """Return the length of a part of a chain in squares, in proportion to its cells; infinite with a closed step."""
     low, high = (begin, end) if begin < end else (end, begin)
-    for k in range(bars.shape[0]):
-        if bars[k, 0] == chain and low <= bars[k, 1] < high:
+    for k in range(closed_steps.shape[0]):
+        if closed_steps[k, 0] == chain and low <= closed_steps[k, 1] < high:
             return np.inf
     return float(length[chain] * (high - low) / (starts[chain + 1] - starts[chain] - 1))
 
 
 @bare
-def sight_ends(joint: Ints, cost: Floats, sight: Floats, out: Floats) -> None:
-    """The distances of goal and start from the landmarks."""
+def fill_end_distances(joint: Ints, cost: Floats, sight: Floats, out: Floats) -> None:
+    """Write the distances of goal and start from the landmarks to `out`, (2, landmarks), in squares."""
     for k in range(sight.shape[1]):
         for end in range(2):
             least = np.inf
@@ -222,8 +268,10 @@ def sight_ends(joint: Ints, cost: Floats, sight: Floats, out: Floats) -> None:
 
 
 @bare
-def stretches(ends: Ints, starts: Ints, arcs: Ints, row: int, size: int, start: Anchor, goal: Anchor, out: Ints) -> int:
-    """Write the chains that a way walks, and the positions between which; returns how many."""
+def write_stretches(
+    ends: Ints, starts: Ints, arcs: Ints, row: int, size: int, start: Anchor, goal: Anchor, out: Ints
+) -> int:
+    """Write the chains that a path follows and the positions between which, and return their number."""
     first, used = 2 * ends.shape[0], 0
     for k in range(size):
         code = arcs[row, k]
@@ -249,11 +297,11 @@ def stretches(ends: Ints, starts: Ints, arcs: Ints, row: int, size: int, start: 
 
 
 @bare
-def repeats(bounds: Ints, chains: Ints, written: int, stretch: Ints, steps: int) -> bool:
-    """Whether a way walks the same chains as one of those published."""
-    for way in range(written):
-        first = bounds[way, 2]
-        same = steps == bounds[way + 1, 2] - first
+def is_repeated(bounds: Ints, chains: Ints, written: int, stretch: Ints, steps: int) -> bool:
+    """Return whether a path follows the same chains as one of the routes written."""
+    for route in range(written):
+        first = bounds[route, 2]
+        same = steps == bounds[route + 1, 2] - first
         for k in range(steps if same else 0):
             same = same and chains[first + k] == stretch[k, 0]
         if same:
@@ -262,8 +310,10 @@ def repeats(bounds: Ints, chains: Ints, written: int, stretch: Ints, steps: int)
 
 
 @bare
-def lowest_on(starts: Ints, cells: Ints, neck: Ints, heights: Heights, stretch: Ints, steps: int, lowest: int) -> int:
-    """The least square on a way, at most the given one."""
+def lowest_square_on(
+    starts: Ints, cells: Ints, neck: Ints, heights: Heights, stretch: Ints, steps: int, lowest: int
+) -> int:
+    """Return the least squared clearance on a path, at most `lowest`, in half squares."""
     for k in range(steps):
         chain = stretch[k, 0]
         low, high = stretch[k, 1], stretch[k, 2]
@@ -278,9 +328,9 @@ def lowest_on(starts: Ints, cells: Ints, neck: Ints, heights: Heights, stretch: 
 
 
 @bare
-def spell(
+def write_word(
     starts: Ints,
-    ways: Landmarks,
+    landmarks: Landmarks,
     rise: Ints,
     risen: int,
     stretch: Ints,
@@ -289,8 +339,15 @@ def spell(
     fallen: int,
     word: Ints,
 ) -> int:
-    """Write the portals of a way from start to goal; returns the word's size."""
-    symbol, words, spelt = ways.symbol, ways.word, ways.spelt
+    """Write the reduced word of a path from start to goal, and return its size.
+
+    Parameters
+    ----------
+    rise, risen : the word from the start up to the skeleton, and its size.
+    stretch, steps : the chains that the path follows, and their number.
+    fall, fallen : the word from the goal up to the skeleton, and its size.
+    """
+    symbol, words, spelt = landmarks.symbol, landmarks.word, landmarks.spelt
     size = add_word(rise, 0, risen, False, word, 0)
     for k in range(steps):
         chain, begin, end = 0 + stretch[k, 0], 0 + stretch[k, 1], 0 + stretch[k, 2]
@@ -302,30 +359,30 @@ def spell(
 
 
 @bare
-def publish(
-    runs: Strips,
+def write_route(
+    strips: Strips,
     body: bool,
     word: Ints,
     size: int,
     ends: Ends,
-    rope: Funnel,
+    funnel: Funnel,
     stretch: Ints,
     steps: int,
     answers: RouteAnswers,
     k: int,
 ) -> bool:
-    """Pull the rope tight and write the k-th route; False when there is no room."""
+    """Pull a word tight and write it as the k-th route; return False when there is no room."""
     bounds, line, crossings, chains = answers.bounds, answers.corners, answers.crossings, answers.chains
     corner, crossing, chain = bounds[k, 0], bounds[k, 1], bounds[k, 2]
     room, needed = line.shape[0] - corner, 4 * size + 8
-    if size >= word.shape[0] or room < needed or rope.x.shape[0] < needed:
+    if size >= word.shape[0] or room < needed or funnel.x.shape[0] < needed:
         return False
     if crossings.shape[0] < crossing + size or chains.shape[0] < chain + steps:
         return False
     line = line[corner:]
-    corners = tighten_word(runs.left, runs.right, runs.line, body, word, size, ends, rope, line)
+    corners = tighten_word(strips.left, strips.right, strips.line, body, word, size, ends, funnel, line)
     answers.length[k] = measure_line(line, corners)
-    number = runs.crossing
+    number = strips.crossing
     for j in range(size):
         crossed = number[abs(word[j]) - 1]
         if crossed != 0:

@@ -1,4 +1,4 @@
-"""Where to lay shapes on an image: all whole ones, and a fan of turned ones that then settle. Plain loops for numba."""
+"""Shape candidates for an image: all with whole corners, and turned ones that descend. Plain loops for numba."""
 
 import math
 
@@ -7,44 +7,49 @@ import numpy as np
 from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import compiled
 from geometry.shapes.misfit import (
-    BRICK,
-    DISC,
-    ELL,
-    HORSESHOE,
-    NUMBERS,
-    SQUARE,
-    TRIANGLE,
-    UNKNOWN,
-    WANTED,
+    BRICK_CLASS,
+    DISC_CLASS,
+    ELL_CLASS,
+    HORSESHOE_CLASS,
+    IMAGE_OCCUPIED,
+    IMAGE_UNKNOWN,
+    PARAMETER_COUNT,
+    SQUARE_CLASS,
+    TRIANGLE_CLASS,
     Image,
+    class_violation,
+    count_wrong_squares,
+    descend,
     disagreement,
-    impropriety,
-    misfit,
-    settle,
 )
 
-STEPS = 150  # of settling
-ANGLES = 24  # in the fan, a whole turn
-CREDIT = 1  # squares more that arms of two widths must explain than arms of one
-NOTCH = 2  # squares that the notch of an L with arms of two widths is long and wide, at least
-STARTS = 4  # that settle
-FINE, ROUNDS = 0.03, 5  # squares by which a disc is moved, and how often, for fewer squares to be wrong
-SLACK = 2  # unknown squares by which a whole shape may reach beyond what is known of it
+# All tuned on random shapes (tests/geometry/shapes), for the right class in reasonable time.
+DESCENT_STEPS = 150  # steps of a descent, at most
+DESCENT_STARTS = 4  # candidates from which a descent begins
+FAN_ANGLES = 24  # angles of candidates in a whole turn
+UNEVEN_CREDIT = 1  # squares; arms of two widths must explain more than so many more than arms of one
+MIN_NOTCH = 2  # squares; the least length and width of the notch of an L with arms of two widths
+DISC_STEP = 0.03  # squares; step of the place and radius of a disc that is refined
+DISC_STEP_COUNT = 5  # such steps in each direction
+MAX_UNKNOWN_RIM = 2  # squares; how far a whole shape may reach into unknown squares beyond the known ones
 
 
 @compiled
-def whole_best(kind: int, image: Image) -> tuple[Floats, float]:
-    """The best shape of a class with whole corners and sides along the axes, and its misfit (infinite: none)."""
-    best, at = math.inf, np.zeros(NUMBERS)
-    if kind == DISC:
+def best_whole_shape(kind: int, image: Image) -> tuple[Floats, float]:
+    """Return the best shape of a class with whole corners and sides along the axes, and how many squares are wrong.
+
+    The number is infinite when there is no such shape.
+    """
+    best, at = math.inf, np.zeros(PARAMETER_COUNT)
+    if kind == DISC_CLASS:
         return at, best
-    s0, n1, w0, e1 = _extent(image, WANTED)
-    s1, n0, w1, e0 = _extent(image, UNKNOWN)
-    for south in range(max(min(s0, s1), s0 - SLACK), s0 + 1):
-        for north in range(n1, min(max(n1, n0), n1 + SLACK) + 1):
-            for west in range(max(min(w0, w1), w0 - SLACK), w0 + 1):
-                for east in range(e1, min(max(e1, e0), e1 + SLACK) + 1):
-                    if kind == TRIANGLE:
+    s0, n1, w0, e1 = _extent(image, IMAGE_OCCUPIED)
+    s1, n0, w1, e0 = _extent(image, IMAGE_UNKNOWN)
+    for south in range(max(min(s0, s1), s0 - MAX_UNKNOWN_RIM), s0 + 1):
+        for north in range(n1, min(max(n1, n0), n1 + MAX_UNKNOWN_RIM) + 1):
+            for west in range(max(min(w0, w1), w0 - MAX_UNKNOWN_RIM), w0 + 1):
+                for east in range(e1, min(max(e1, e0), e1 + MAX_UNKNOWN_RIM) + 1):
+                    if kind == TRIANGLE_CLASS:
                         shape, wrong = _whole_triangle(image, west, south, east, north, best)
                     else:
                         shape, wrong = _whole_rectangles(kind, image, west, south, east, north, best)
@@ -55,7 +60,7 @@ def whole_best(kind: int, image: Image) -> tuple[Floats, float]:
 
 @compiled
 def _extent(image: Image, state: int) -> tuple[int, int, int, int]:
-    """South, north, west, east of the squares of one state: first and one beyond the last."""
+    """Return south, north, west, east of the squares of one state: first, and one beyond the last."""
     south, north, west, east = 10**6, -(10**6), 10**6, -(10**6)
     for row in range(image.shape[0]):
         for column in range(image.shape[1]):
@@ -69,42 +74,46 @@ def _extent(image: Image, state: int) -> tuple[int, int, int, int]:
 def _whole_rectangles(
     kind: int, image: Image, west: int, south: int, east: int, north: int, limit: float
 ) -> tuple[Floats, float]:
-    """The best square, brick, L, T or U that just fits in a rectangle, in all four directions."""
-    best, at = limit, np.zeros(NUMBERS)
-    wide, high = east - west, north - south
-    if kind == SQUARE and wide != high:
+    """Return the best square, brick, L, T or U that just fits in a rectangle, and how many squares are wrong.
+
+    All four directions are tried.
+    """
+    best, at = limit, np.zeros(PARAMETER_COUNT)
+    width, height = east - west, north - south
+    if kind == SQUARE_CLASS and width != height:
         return at, math.inf
-    for quarter in range(1 if kind <= BRICK else 4):
-        a, b = (wide, high) if quarter % 2 == 0 else (high, wide)
-        for thick in range(1, 2 if kind <= BRICK else min(a, b)):
+    for quarter in range(1 if kind <= BRICK_CLASS else 4):
+        a, b = (width, height) if quarter % 2 == 0 else (height, width)
+        for thickness in range(1, 2 if kind <= BRICK_CLASS else min(a, b)):
             angle = quarter * math.pi / 2
-            shape = np.array([angle, (west + east) / 2, (south + north) / 2, a, b, thick, 0.0])
-            if impropriety(kind, shape) == 0.0:
-                wrong = misfit(kind, shape, image, best)
+            shape = np.array([angle, (west + east) / 2, (south + north) / 2, a, b, thickness, 0.0])
+            if class_violation(kind, shape) == 0.0:
+                wrong = count_wrong_squares(kind, shape, image, best)
                 if wrong < best:
                     best, at = float(wrong), shape
-    if kind == ELL and best > 0.0:
-        return _whole_uneven(image, west, south, east, north, best, at)
+    if kind == ELL_CLASS and best > 0.0:
+        return _whole_uneven_ell(image, west, south, east, north, best, at)
     return at, best if best < limit else math.inf
 
 
 @compiled
-def _whole_uneven(
+def _whole_uneven_ell(
     image: Image, west: int, south: int, east: int, north: int, limit: float, shape: Floats
 ) -> tuple[Floats, float]:
-    """The best L with arms of two widths that just fits in a rectangle, if it is better than a shape.
+    """Return the best L with arms of two widths that just fits in a rectangle, if it is better than a shape.
 
-    Its notch is at least NOTCH squares long and wide: a turned rectangle may lack a square or two of a row at a corner.
+    Its notch is at least MIN_NOTCH squares long and wide: the image of a turned rectangle may lack a square or two of a
+    row at a corner.
     """
     best, at = limit, shape
     for quarter in range(4):
         a, b = (east - west, north - south) if quarter % 2 == 0 else (north - south, east - west)
-        for foot in range(1, b - NOTCH + 1):
-            for stem in range(1, a - NOTCH + 1):
+        for foot in range(1, b - MIN_NOTCH + 1):
+            for stem in range(1, a - MIN_NOTCH + 1):
                 angle = quarter * math.pi / 2
                 other = np.array([angle, (west + east) / 2, (south + north) / 2, a, b, foot, stem])
-                if foot != stem and impropriety(ELL, other) == 0.0:
-                    wrong = misfit(ELL, other, image, best)
+                if foot != stem and class_violation(ELL_CLASS, other) == 0.0:
+                    wrong = count_wrong_squares(ELL_CLASS, other, image, best)
                     if wrong < best:
                         best, at = float(wrong), other
     return at, best
@@ -112,11 +121,11 @@ def _whole_uneven(
 
 @compiled
 def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, limit: float) -> tuple[Floats, float]:
-    """The best triangle with a side on a rectangle's and a whole corner on the opposite one.
+    """Return the best triangle with a side on a rectangle's side and a whole corner on the opposite one.
 
     Right-angled ones are tried first, then those with two equal sides, then the rest.
     """
-    best, at = limit, np.zeros(NUMBERS)
+    best, at = limit, np.zeros(PARAMETER_COUNT)
     for turn in range(3):
         for side in range(4):
             length = east - west if side < 2 else north - south
@@ -130,122 +139,123 @@ def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, 
                 else:
                     x0, x1 = (west, east) if side == 2 else (east, west)
                     shape = np.array([x0, south, x0, north, x1, south + tip, 0.0], np.float64)
-                wrong = misfit(TRIANGLE, shape, image)
+                wrong = count_wrong_squares(TRIANGLE_CLASS, shape, image)
                 if wrong < best:
                     best, at = float(wrong), shape
     return at, best if best < limit else math.inf
 
 
 @compiled
-def settled_best(kind: int, image: Image) -> tuple[Floats, float]:
-    """The best shape of a class at any place and angle that settling finds, and its misfit."""
-    free, starts = freedom(kind), _fan(kind, image)
-    at, best = _settled(kind, starts, free, image)
-    if kind == ELL and best > 0.0:  # perhaps with arms of two widths
+def best_turned_shape(kind: int, image: Image) -> tuple[Floats, float]:
+    """Return the best shape of a class at any place and angle that descents find, and how many squares are wrong."""
+    free, starts = initial_steps(kind), _starts(kind, image)
+    at, best = _best_descended(kind, starts, free, image)
+    if kind == ELL_CLASS and best > 0.0:  # perhaps with arms of two widths
         starts[:, 6] = starts[:, 5]
         free[6] = free[5]
-        other, wrong = _settled(kind, starts, free, image)
-        if wrong + CREDIT < best:
+        other, wrong = _best_descended(kind, starts, free, image)
+        if wrong + UNEVEN_CREDIT < best:
             return other, wrong
     return at, best
 
 
 @compiled
-def _settled(kind: int, starts: Floats, free: Floats, image: Image) -> tuple[Floats, float]:
-    """The best of shapes that settle, and its misfit."""
+def _best_descended(kind: int, starts: Floats, free: Floats, image: Image) -> tuple[Floats, float]:
+    """Return the best shape that descents from the best starts reach, and how many squares are wrong."""
     losses = np.empty(len(starts))
     for k in range(len(starts)):
         losses[k] = disagreement(kind, starts[k], image)
     best, at, least = math.inf, starts[0], math.inf
-    for _ in range(min(STARTS, len(losses))):
+    for _ in range(min(DESCENT_STARTS, len(losses))):
         next_best = np.argmin(losses)
         losses[next_best] = math.inf
         shape = starts[next_best].copy()
-        loss = settle(kind, shape, free, image, STEPS)
-        wrong = float(misfit(kind, shape, image))
-        if impropriety(kind, shape) > 0.01:
+        loss = descend(kind, shape, free, image, DESCENT_STEPS)
+        wrong = float(count_wrong_squares(kind, shape, image))
+        if class_violation(kind, shape) > 0.01:
             wrong += 1.0
         if wrong < best or (wrong == best and loss < least):
             best, at, least = wrong, shape, loss
         if least == 0.0:
             break
-    if kind == DISC and best > 0.0:
-        return _round_best(at, best, image)
+    if kind == DISC_CLASS and best > 0.0:
+        return _refined_disc(at, best, image)
     return at, best
 
 
 @compiled
-def _round_best(disc: Floats, wrong: float, image: Image) -> tuple[Floats, float]:
-    """The disc near one, at places and of radii in fine steps, that gets the fewest squares wrong.
+def _refined_disc(disc: Floats, wrong: float, image: Image) -> tuple[Floats, float]:
+    """Return the disc near one, at places and radii in fine steps, with the fewest wrong squares, and their number.
 
-    What disagrees least in sum may get several squares wrong by a hair: of a wide disc the rim passes many corners.
+    The disc of least disagreement may get several squares wrong by very little, because the rim of a wide disc passes
+    many corners of squares.
     """
-    best, at, least = wrong, disc, disagreement(DISC, disc, image)
-    for i in range(-ROUNDS, ROUNDS + 1):
-        for j in range(-ROUNDS, ROUNDS + 1):
-            for k in range(-ROUNDS, ROUNDS + 1):
+    best, at, least = wrong, disc, disagreement(DISC_CLASS, disc, image)
+    for i in range(-DISC_STEP_COUNT, DISC_STEP_COUNT + 1):
+        for j in range(-DISC_STEP_COUNT, DISC_STEP_COUNT + 1):
+            for k in range(-DISC_STEP_COUNT, DISC_STEP_COUNT + 1):
                 other = disc.copy()
-                other[0] += i * FINE
-                other[1] += j * FINE
-                other[2] += k * FINE
-                fewer = float(misfit(DISC, other, image))
-                if fewer <= best and impropriety(DISC, other) == 0.0:
-                    loss = disagreement(DISC, other, image)
+                other[0] += i * DISC_STEP
+                other[1] += j * DISC_STEP
+                other[2] += k * DISC_STEP
+                fewer = float(count_wrong_squares(DISC_CLASS, other, image))
+                if fewer <= best and class_violation(DISC_CLASS, other) == 0.0:
+                    loss = disagreement(DISC_CLASS, other, image)
                     if fewer < best or loss < least:
                         best, at, least = fewer, other, loss
     return at, best
 
 
 @compiled
-def freedom(kind: int) -> Floats:
-    """How far each number of a class is moved at first when it settles; 0 where it stays."""
-    if kind == DISC:
+def initial_steps(kind: int) -> Floats:
+    """Return how far each number of a class is moved at first in a descent, (PARAMETER_COUNT,); 0 where it stays."""
+    if kind == DISC_CLASS:
         return np.array([0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0])
-    if kind == TRIANGLE:
+    if kind == TRIANGLE_CLASS:
         return np.array([0.4, 0.4, 0.4, 0.4, 0.4, 0.4, 0.0])
     free = np.array([0.1, 0.3, 0.3, 0.4, 0.4, 0.3, 0.0])
-    if kind <= BRICK:
+    if kind <= BRICK_CLASS:
         free[5] = 0.0
-    if kind == SQUARE:
+    if kind == SQUARE_CLASS:
         free[4] = 0.0
     return free
 
 
 @compiled
-def _fan(kind: int, image: Image) -> Floats:
-    """Shapes to start from: (n, NUMBERS)."""
-    if kind == DISC:
-        return _round_start(image)
-    thicknesses = 3 if kind >= ELL and kind <= HORSESHOE else 1
-    angles = ANGLES if kind >= ELL else ANGLES // 4
-    starts = np.zeros((angles * thicknesses, NUMBERS))
+def _starts(kind: int, image: Image) -> Floats:
+    """Return the shapes from which descents may begin, (n, PARAMETER_COUNT)."""
+    if kind == DISC_CLASS:
+        return _start_disc(image)
+    thickness_count = 3 if kind >= ELL_CLASS and kind <= HORSESHOE_CLASS else 1
+    angles = FAN_ANGLES if kind >= ELL_CLASS else FAN_ANGLES // 4
+    starts = np.zeros((angles * thickness_count, PARAMETER_COUNT))
     for k in range(angles):
-        angle = 2 * math.pi * k / ANGLES
-        for t in range(thicknesses):
-            _start(kind, image, angle, 1.5 + t * 0.9, starts[k * thicknesses + t])
+        angle = 2 * math.pi * k / FAN_ANGLES
+        for t in range(thickness_count):
+            _write_start(kind, image, angle, 1.5 + t * 0.9, starts[k * thickness_count + t])
     return starts
 
 
 @compiled
-def _round_start(image: Image) -> Floats:
-    """A disc about the middle of the squares, of nearly their area."""
+def _start_disc(image: Image) -> Floats:
+    """Return a disc about the mean of the occupied squares, of nearly their area, (1, PARAMETER_COUNT)."""
     x = y = 0.0
     count = 0
     for row in range(image.shape[0]):
         for column in range(image.shape[1]):
-            if image[row, column] == WANTED:
+            if image[row, column] == IMAGE_OCCUPIED:
                 x += column + 0.5
                 y += row + 0.5
                 count += 1
-    start = np.zeros((1, NUMBERS))
+    start = np.zeros((1, PARAMETER_COUNT))
     start[0, 0], start[0, 1] = x / count, y / count
     start[0, 2] = max(math.sqrt(count / math.pi) - 0.5, 0.7)
     return start
 
 
 @compiled
-def _start(kind: int, image: Image, angle: float, thick: float, out: Floats) -> None:
-    """Write a shape in one direction to out (NUMBERS,), its sizes read off the extent of the squares.
+def _write_start(kind: int, image: Image, angle: float, thickness: float, out: Floats) -> None:
+    """Write a shape in one direction to `out`, (PARAMETER_COUNT,), its sizes read off the extent of the squares.
 
     A shape reaches into its outermost squares by less than half of what a square measures across that direction; a
     little less than that is taken off.
@@ -254,7 +264,7 @@ def _start(kind: int, image: Image, angle: float, thick: float, out: Floats) -> 
     u0, u1, v0, v1, tip = 1e9, -1e9, 1e9, -1e9, 0.0
     for row in range(image.shape[0]):
         for column in range(image.shape[1]):
-            if image[row, column] == WANTED:
+            if image[row, column] == IMAGE_OCCUPIED:
                 u = c * (column + 0.5) + s * (row + 0.5)
                 v = -s * (column + 0.5) + c * (row + 0.5)
                 if v > v1:
@@ -262,14 +272,14 @@ def _start(kind: int, image: Image, angle: float, thick: float, out: Floats) -> 
                 u0, u1, v0 = min(u0, u), max(u1, u), min(v0, v)
     off = (abs(c) + abs(s)) / 2 - 0.3
     u0, u1, v0, v1 = u0 + off, u1 - off, v0 + off, v1 - off
-    if kind == TRIANGLE:
+    if kind == TRIANGLE_CLASS:
         out[0], out[1] = c * u0 - s * v0, s * u0 + c * v0
         out[2], out[3] = c * u1 - s * v0, s * u1 + c * v0
         out[4], out[5] = c * tip - s * v1, s * tip + c * v1
         return
     mid_u, mid_v = (u0 + u1) / 2, (v0 + v1) / 2
-    wide, high = max(u1 - u0, 1.0), max(v1 - v0, 1.0)
-    if kind == SQUARE:
-        wide = (wide + high) / 2
+    width, height = max(u1 - u0, 1.0), max(v1 - v0, 1.0)
+    if kind == SQUARE_CLASS:
+        width = (width + height) / 2
     out[0], out[1], out[2] = angle, c * mid_u - s * mid_v, s * mid_u + c * mid_v
-    out[3], out[4], out[5] = wide, high, thick
+    out[3], out[4], out[5] = width, height, thickness

@@ -1,14 +1,13 @@
-"""Measuring what shape an object may have from the squares that it occupies.
+"""Shape fitting: the shape of each class that agrees best with the squares that an object occupies.
 
-Geometry measures here and does not decide: for each class of shape it lays the one that agrees best over the image, at
-any place and angle, and says how many squares are wrong. What to believe is for whoever asked.
+Geometry measures here and does not decide: for each class of shape it fits the one that agrees best with the image, at
+any place and angle, and says how many squares are wrong. What to believe is the caller's decision.
 
-# Strategy: shapes with whole corners and sides along the axes are tried one and all, since most things are so and their
-# images are exact. For turned ones a coarse fan of angles, with sizes read off the image's extent in that direction,
-# gives starts; the best few settle downhill on the sum of the wrong gaps (geometry.shapes.misfit), which tells the
-# way where
-# the number of wrong squares is flat. Of classes that then agree equally well the one comes first that makes such an
-# image most likely (geometry.shapes.shape_likelihood).
+# Strategy: shapes with whole corners and sides along the axes are tried exhaustively, since most objects are such and
+their images are exact. For turned shapes a coarse set of angles, with sizes read off the image's extent in that
+direction, gives starts. The best few descend on the sum of the wrong gaps (geometry.shapes.misfit), which has a slope
+where the number of wrong squares is flat. Of classes that then agree equally well, the one comes first that makes such
+an image most likely (geometry.shapes.shape_likelihood).
 """
 
 import math
@@ -21,21 +20,21 @@ import shapely
 
 from geometry.kernels.arrays import Bools, Floats
 from geometry.shapes import misfit
-from geometry.shapes.candidates import settled_best, whole_best
-from geometry.shapes.shape_likelihood import room_for
+from geometry.shapes.candidates import best_turned_shape, best_whole_shape
+from geometry.shapes.shape_likelihood import parameter_volume
 
 CLASSES = {
-    "square": misfit.SQUARE,
-    "brick": misfit.BRICK,
-    "disc": misfit.DISC,
-    "triangle": misfit.TRIANGLE,
-    "l_shape": misfit.ELL,
-    "t_shape": misfit.TEE,
-    "u_shape": misfit.HORSESHOE,
-}  # by the number of their parameters, then as the eye prefers them
-PAD = 2  # squares of known floor that are looked at around the image
-CORNERS = 32  # of the polygon that stands for a disc
-SLIGHT = 0.3  # of its sides: such a notch an L hardly has
+    "square": misfit.SQUARE_CLASS,
+    "brick": misfit.BRICK_CLASS,
+    "disc": misfit.DISC_CLASS,
+    "triangle": misfit.TRIANGLE_CLASS,
+    "l_shape": misfit.ELL_CLASS,
+    "t_shape": misfit.TEE_CLASS,
+    "u_shape": misfit.HORSESHOE_CLASS,
+}  # ordered by the number of their parameters, then as the eye prefers them; convention
+RIM = 2  # squares of known floor around the image that count; convention
+DISC_CORNERS = 32  # corners of the polygon that stands for a disc; convention
+MAX_SLIGHT_NOTCH = 0.3  # share of the sides; an L with a smaller notch is likelier a disc; tuned on random discs
 
 
 @dataclass(frozen=True)
@@ -47,11 +46,14 @@ class Fit:
     shape : "square", "brick", "l_shape", "t_shape", "u_shape", "triangle" or "disc".
     misfit : number of squares wrong: occupied and not covered, or free and covered.
     polygon : shapely Polygon, in squares, origin at the corner of the image's square (0, 0).
-    whole : all sides along the axes or corners on whole squares, tried exactly.
-    width, height, thick : sizes in squares: of the rectangle that holds the shape, in the shape's own frame (a disc's
-        diameter, a triangle's longest side and the height on it), and of its arms or walls (0 where there are none; of
-        an L with arms of two widths that of its foot, the arm as long as the rectangle is wide).
-    degrees : how far the shape is turned, 0 to 360.
+    whole : whether all sides lie along the axes, or all corners on whole squares, and the shape was found exhaustively.
+    width : in squares, of the rectangle that holds the shape, in the shape's own frame; of a disc the diameter, of a
+        triangle the longest side.
+    height : in squares, of that rectangle; of a disc the diameter, of a triangle the height on its longest side.
+    thick : in squares, of the arms or walls; 0 where there are none; of an L with arms of two widths that of its
+        foot, the
+        arm as long as the rectangle is wide.
+    degrees : the angle by which the shape is turned, 0 to 360, counter-clockwise.
     """
 
     shape: str
@@ -65,22 +67,26 @@ class Fit:
 
 
 def fit_shapes(occupied: Bools, possible: Bools | None = None) -> list[Fit]:
-    """Lay a shape of every class over the image of one object.
+    """Return the best shape of every class for the image of one object, the likeliest first.
+
+    The order is by misfit, then whole corners before others, then fewer parameters. Of turned shapes that agree best,
+    the one comes first of whose class most shapes agree. A disc comes before an L with a slight notch.
 
     Parameters
     ----------
     occupied : (rows, columns) bool. Squares that the object is known to occupy; row 0 in the south. At least one.
-    possible : (rows, columns) bool, or None for nowhere. Squares of which it is not known. All others, and everything
-        beyond the array, are known to be free of the object.
+    possible : (rows, columns) bool, or None for nowhere. Squares of which it is not known whether the object occupies
+        them. All others, and everything beyond the array, are known to be free of the object.
 
     Returns
     -------
-    One Fit a class, the likeliest first: by misfit, then whole corners before others, then fewer parameters, but of
-    others that agree best the one of whose class most shapes do. A disc comes before an L with a slight notch.
+    list of Fit
+        One for each class.
 
     Raises
     ------
-    ValueError : when no square is occupied, or the arrays differ in shape.
+    ValueError
+        When no square is occupied, or the arrays differ in shape.
 
     Examples
     --------
@@ -89,15 +95,16 @@ def fit_shapes(occupied: Bools, possible: Bools | None = None) -> list[Fit]:
     ('square', 0, 3.0)
     """
     image, west, south = _image(occupied, possible)
-    laid = sorted(
-        (_lay(name, kind, image) for name, kind in CLASSES.items()), key=lambda one: (one.wrong, not one.whole)
+    candidate = sorted(
+        (_best_of_class(name, kind, image) for name, kind in CLASSES.items()),
+        key=lambda one: (one.wrong, not one.whole),
     )
-    ties = sum(one.wrong == laid[0].wrong for one in laid)
-    return [_fit(one, west, south) for one in (*_likeliest_first(laid[:ties], image), *laid[ties:])]
+    ties = sum(one.wrong == candidate[0].wrong for one in candidate)
+    return [_fit(one, west, south) for one in (*_likeliest_first(candidate[:ties], image), *candidate[ties:])]
 
 
-class _Laid(NamedTuple):
-    """The best shape of a class for an image, as in geometry.shapes.misfit, with how many squares are wrong."""
+class _Candidate(NamedTuple):
+    """The best shape of a class for an image, as in misfit.py, and the number of squares that it gets wrong."""
 
     name: str
     kind: int
@@ -106,37 +113,40 @@ class _Laid(NamedTuple):
     whole: bool
 
 
-def _lay(name: str, kind: int, image: misfit.Image) -> _Laid:
-    """The best of a class: the best whole one unless a turned one has fewer squares wrong."""
-    shape, wrong = whole_best(kind, image)
+def _best_of_class(name: str, kind: int, image: misfit.Image) -> _Candidate:
+    """Return the best shape of a class: the best whole one unless a turned one gets fewer squares wrong."""
+    shape, wrong = best_whole_shape(kind, image)
     if wrong > 0:
-        other, worse = settled_best(kind, image)
+        other, worse = best_turned_shape(kind, image)
         if worse < wrong:
-            return _Laid(name, kind, other, int(worse), False)
-    return _Laid(name, kind, shape, int(wrong), True)
+            return _Candidate(name, kind, other, int(worse), False)
+    return _Candidate(name, kind, shape, int(wrong), True)
 
 
-def _likeliest_first(ties: Sequence[_Laid], image: misfit.Image) -> list[_Laid]:
-    """Shapes that agree equally well, whole ones before others; those that are all right are laid amid all such."""
+def _likeliest_first(ties: Sequence[_Candidate], image: misfit.Image) -> list[_Candidate]:
+    """Return shapes that agree equally well, whole ones first, then by likelihood.
+
+    A turned shape that gets no square wrong is replaced by the mean of all such shapes of its class.
+    """
     whole = [one for one in ties if one.whole]
     others = [one for one in ties if not one.whole]
     if len(others) > 1 or (others and not others[0].wrong):
-        rooms = [(one, room_for(one.kind, one.shape, image, one.wrong)) for one in others]
+        rooms = [(one, parameter_volume(one.kind, one.shape, image, one.wrong)) for one in others]
         rooms.sort(key=lambda pair: -pair[1].log_likelihood)
         others = [one if one.wrong else one._replace(shape=room.mean) for one, room in rooms]
-    rounded = bool(whole) and _is_cut_square(whole[0]) and not (image == misfit.UNKNOWN).any()
-    return sorted([*whole, *others], key=lambda one: not (rounded and one.kind == misfit.DISC))
+    rounded = bool(whole) and _is_cut_square(whole[0]) and not (image == misfit.IMAGE_UNKNOWN).any()
+    return sorted([*whole, *others], key=lambda one: not (rounded and one.kind == misfit.DISC_CLASS))
 
 
-def _is_cut_square(laid: _Laid) -> bool:
-    """Is it an L that is hardly one: with a notch less than SLIGHT of its sides, as a small disc leaves it?"""
-    wide, high, thick = laid.shape[3:6]
-    notch = max((wide - misfit.stem_of(laid.shape)) / wide, (high - thick) / high)
-    return laid.kind == misfit.ELL and bool(notch < SLIGHT)
+def _is_cut_square(candidate: _Candidate) -> bool:
+    """Return whether a shape is an L with a notch as slight as the image of a small disc has."""
+    width, height, thickness = candidate.shape[3:6]
+    notch = max((width - misfit.stem_of(candidate.shape)) / width, (height - thickness) / height)
+    return candidate.kind == misfit.ELL_CLASS and bool(notch < MAX_SLIGHT_NOTCH)
 
 
 def _image(occupied: Bools, possible: Bools | None) -> tuple[misfit.Image, int, int]:
-    """The image cut to what may be the object and a rim of PAD squares, and the place of its corner."""
+    """Return the image cut to the squares that may be the object and a rim, and the column and row of its corner."""
     occupied = np.asarray(occupied, bool)
     unknown = np.zeros_like(occupied) if possible is None else np.asarray(possible, bool)
     if occupied.ndim != 2 or unknown.shape != occupied.shape or not occupied.any():
@@ -144,31 +154,31 @@ def _image(occupied: Bools, possible: Bools | None) -> tuple[misfit.Image, int, 
     unknown = unknown & ~occupied
     rows, columns = np.nonzero(occupied | unknown)
     south, west = int(rows.min()), int(columns.min())
-    high, wide = int(rows.max()) + 1 - south, int(columns.max()) + 1 - west
-    image = np.zeros((high + 2 * PAD, wide + 2 * PAD), np.int8)
-    inner = image[PAD : PAD + high, PAD : PAD + wide]
-    inner[unknown[south : south + high, west : west + wide]] = misfit.UNKNOWN
-    inner[occupied[south : south + high, west : west + wide]] = misfit.WANTED
-    return image, west - PAD, south - PAD
+    height, width = int(rows.max()) + 1 - south, int(columns.max()) + 1 - west
+    image = np.zeros((height + 2 * RIM, width + 2 * RIM), np.int8)
+    inner = image[RIM : RIM + height, RIM : RIM + width]
+    inner[unknown[south : south + height, west : west + width]] = misfit.IMAGE_UNKNOWN
+    inner[occupied[south : south + height, west : west + width]] = misfit.IMAGE_OCCUPIED
+    return image, west - RIM, south - RIM
 
 
-def _fit(laid: _Laid, west: int, south: int) -> Fit:
-    """What was laid, in squares of what was asked for. west, south : of the image's corner."""
-    polygon = shapely.Polygon(outline(laid.kind, laid.shape) + np.array([west, south], float))
-    wide, high, thick = _sizes(laid.kind, laid.shape, polygon)
-    degrees = 0.0 if laid.kind == misfit.DISC else _turn(laid.kind, laid.shape)
-    return Fit(laid.name, laid.wrong, polygon, laid.whole, wide, high, thick, degrees)
+def _fit(candidate: _Candidate, west: int, south: int) -> Fit:
+    """Return a candidate in the squares of the whole array; `west` and `south` are those of the image's corner."""
+    polygon = shapely.Polygon(outline(candidate.kind, candidate.shape) + np.array([west, south], float))
+    width, height, thickness = _sizes(candidate.kind, candidate.shape, polygon)
+    degrees = 0.0 if candidate.kind == misfit.DISC_CLASS else _rotation(candidate.kind, candidate.shape)
+    return Fit(candidate.name, candidate.wrong, polygon, candidate.whole, width, height, thickness, degrees)
 
 
 def outline(kind: int, shape: Floats) -> Floats:
-    """The corners (n, 2) of a shape, in order."""
-    if kind == misfit.TRIANGLE:
+    """Return the corners (n, 2) of a shape, in order, in squares of the image."""
+    if kind == misfit.TRIANGLE_CLASS:
         return shape[:6].reshape(3, 2)
-    if kind == misfit.DISC:
-        angles = 2 * math.pi * (np.arange(CORNERS) + 0.5) / CORNERS
+    if kind == misfit.DISC_CLASS:
+        angles = 2 * math.pi * (np.arange(DISC_CORNERS) + 0.5) / DISC_CORNERS
         return np.column_stack([shape[0] + shape[2] * np.cos(angles), shape[1] + shape[2] * np.sin(angles)])
-    wide, high, thick = shape[3], shape[3] if kind == misfit.SQUARE else shape[4], shape[5]
-    corners = np.array(_corners(kind, wide, high, thick, misfit.stem_of(shape))) - np.array([wide, high]) / 2
+    width, height, thickness = shape[3], shape[3] if kind == misfit.SQUARE_CLASS else shape[4], shape[5]
+    corners = np.array(_corners(kind, width, height, thickness, misfit.stem_of(shape))) - np.array([width, height]) / 2
     quarters = shape[0] / (math.pi / 2)
     c, s = math.cos(shape[0]), math.sin(shape[0])
     if quarters == round(quarters):
@@ -177,35 +187,46 @@ def outline(kind: int, shape: Floats) -> Floats:
     return np.column_stack([shape[1] + c * x - s * y, shape[2] + s * x + c * y])
 
 
-def _corners(kind: int, wide: float, high: float, thick: float, stem: float) -> list[tuple[float, float]]:
-    """The corners of a shape made of rectangles, not turned, lower left at the origin. stem : the width of an L's."""
-    if kind <= misfit.BRICK:
-        return [(0, 0), (wide, 0), (wide, high), (0, high)]
-    if kind == misfit.ELL:
-        return [(0, 0), (wide, 0), (wide, thick), (stem, thick), (stem, high), (0, high)]
-    left, right = (wide - thick) / 2, (wide + thick) / 2
-    foot = [(0, 0), (wide, 0)]
-    if kind == misfit.TEE:
-        return [*foot, (wide, thick), (right, thick), (right, high), (left, high), (left, thick), (0, thick)]
-    inner = [(wide - thick, high), (wide - thick, thick), (thick, thick), (thick, high)]
-    return [*foot, (wide, high), *inner, (0, high)]
+def _corners(kind: int, width: float, height: float, thickness: float, stem: float) -> list[tuple[float, float]]:
+    """Return the corners of a shape made of rectangles, not turned, lower left at the origin.
+
+    `stem` is the width of an L's stem.
+    """
+    if kind <= misfit.BRICK_CLASS:
+        return [(0, 0), (width, 0), (width, height), (0, height)]
+    if kind == misfit.ELL_CLASS:
+        return [(0, 0), (width, 0), (width, thickness), (stem, thickness), (stem, height), (0, height)]
+    left, right = (width - thickness) / 2, (width + thickness) / 2
+    foot = [(0, 0), (width, 0)]
+    if kind == misfit.TEE_CLASS:
+        return [
+            *foot,
+            (width, thickness),
+            (right, thickness),
+            (right, height),
+            (left, height),
+            (left, thickness),
+            (0, thickness),
+        ]
+    inner = [(width - thickness, height), (width - thickness, thickness), (thickness, thickness), (thickness, height)]
+    return [*foot, (width, height), *inner, (0, height)]
 
 
 def _sizes(kind: int, shape: Floats, polygon: Any) -> tuple[float, float, float]:
-    """Width, height and thickness of a shape."""
-    if kind == misfit.DISC:
+    """Return the width, height and thickness of a shape, in squares."""
+    if kind == misfit.DISC_CLASS:
         return 2 * float(shape[2]), 2 * float(shape[2]), 0.0
-    if kind == misfit.TRIANGLE:
+    if kind == misfit.TRIANGLE_CLASS:
         corners = shape[:6].reshape(3, 2)
         sides = np.hypot(*(corners - np.roll(corners, 1, axis=0)).T)
         return float(sides.max()), float(2 * polygon.area / sides.max()), 0.0
-    high = shape[3] if kind == misfit.SQUARE else shape[4]
-    return float(shape[3]), float(high), float(shape[5]) if kind >= misfit.ELL else 0.0
+    height = shape[3] if kind == misfit.SQUARE_CLASS else shape[4]
+    return float(shape[3]), float(height), float(shape[5]) if kind >= misfit.ELL_CLASS else 0.0
 
 
-def _turn(kind: int, shape: Floats) -> float:
-    """The degrees that a shape is turned; of a triangle the direction of its longest side."""
-    if kind != misfit.TRIANGLE:
+def _rotation(kind: int, shape: Floats) -> float:
+    """Return the angle by which a shape is turned, in degrees; of a triangle the direction of its longest side."""
+    if kind != misfit.TRIANGLE_CLASS:
         return math.degrees(float(shape[0])) % 360.0
     corners = shape[:6].reshape(3, 2)
     sides = np.roll(corners, -1, axis=0) - corners

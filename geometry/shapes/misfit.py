@@ -1,12 +1,12 @@
-"""How badly a shape laid over a digital image agrees with it. Plain loops for numba.
+"""Misfit: how badly a shape laid over a digital image agrees with it. Plain loops for numba.
 
-A shape is a class and seven numbers. SQUARE, BRICK, ELL, TEE and HORSESHOE: radians turned, centre x and y of the
-rectangle that holds it, its width, its height, its thickness, and of an ELL the thickness of its stem where that is
-another one, else 0. TRIANGLE: three corners x, y. DISC: centre x and y, radius.
+A shape is a class and seven numbers, in squares of the image and radians counter-clockwise. SQUARE, BRICK, ELL, TEE and
+HORSESHOE: angle, centre x and y of the rectangle that holds the shape, its width, its height, its thickness, and of an
+ELL the thickness of its stem where that differs, else 0. TRIANGLE: three corners x, y. DISC: centre x and y, radius.
 
-An image is an array of WANTED, UNWANTED and UNKNOWN squares. A shape and a square overlap when no line separates them:
-their gap is the widest such separation, negative when there is none. Every class is a union of convex pieces, so the
-gap to a shape is the least of the gaps to its pieces.
+An image is an array of IMAGE_OCCUPIED, IMAGE_FREE and IMAGE_UNKNOWN squares, with row 0 in the south. A shape and a
+square overlap when no line separates them: their gap is the widest such separation, negative when there is none. Every
+class is a union of convex pieces, so the gap to a shape is the least of the gaps to its pieces.
 """
 
 import math
@@ -18,79 +18,86 @@ from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import compiled
 
 Image = npt.NDArray[np.int8]
-UNWANTED, WANTED, UNKNOWN = 0, 1, 2
-SQUARE, BRICK, ELL, TEE, HORSESHOE, TRIANGLE, DISC = 0, 1, 2, 3, 4, 5, 6
-MARGIN = 0.02  # squares: agreement by less than this still costs
-NUMBERS = 7  # of a shape
-LEAST = 0.7  # squares: arms, gaps and notches are at least so long
-OBLONG = 1.15  # a brick is at least so much longer than wide
+IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN = 0, 1, 2  # states of a square of an image
+SQUARE_CLASS, BRICK_CLASS, ELL_CLASS, TEE_CLASS, HORSESHOE_CLASS, TRIANGLE_CLASS, DISC_CLASS = 0, 1, 2, 3, 4, 5, 6
+PARAMETER_COUNT = 7  # numbers of a shape, of whatever class
+AGREEMENT_MARGIN = 0.02  # squares; a gap with the right sign still costs below this; tuned on random shapes
+MIN_FEATURE = 0.7  # squares; convention: arms, gaps and notches of a proper shape are at least so long
+MIN_BRICK_RATIO = 1.15  # length by width; convention: a brick is at least so much longer than wide
 
 
 @compiled
 def disagreement(kind: int, shape: Floats, image: Image) -> float:
-    """How much a shape would have to move for every known square to agree: the sum of all wrong gaps, 0 at best."""
-    loss = 10.0 * impropriety(kind, shape)
+    """Return how far a shape would have to move for every known square to agree: the sum of all wrong gaps, in squares.
+
+    It is 0 at best. A shape that is no proper one of its class costs ten times its violation more.
+    """
+    loss = 10.0 * class_violation(kind, shape)
     pieces = convex_pieces(kind, shape)
     for row in range(image.shape[0]):
         for column in range(image.shape[1]):
-            if image[row, column] == UNKNOWN:
+            if image[row, column] == IMAGE_UNKNOWN:
                 continue
-            gap = gap_to(pieces, column + 0.5, row + 0.5)
-            if image[row, column] == WANTED:
-                loss += max(0.0, gap + MARGIN)
+            gap = gap_to_square(pieces, column + 0.5, row + 0.5)
+            if image[row, column] == IMAGE_OCCUPIED:
+                loss += max(0.0, gap + AGREEMENT_MARGIN)
             else:
-                loss += max(0.0, MARGIN - gap)
+                loss += max(0.0, AGREEMENT_MARGIN - gap)
     return float(loss)
 
 
 @compiled
-def misfit(kind: int, shape: Floats, image: Image, most: float = math.inf) -> int:
-    """The number of known squares that a shape gets wrong, or one that is not below `most`.
+def count_wrong_squares(kind: int, shape: Floats, image: Image, most: float = math.inf) -> int:
+    """Return the number of known squares that a shape gets wrong, or some number not below `most`.
 
-    Touching is not overlapping.
+    A square that the shape only touches is not covered.
     """
     wrong: int = 0
     pieces = convex_pieces(kind, shape)
     for row in range(image.shape[0]):
         for column in range(image.shape[1]):
-            if image[row, column] != UNKNOWN:
-                covered = gap_to(pieces, column + 0.5, row + 0.5) < -1e-9
-                wrong += covered != (image[row, column] == WANTED)
+            if image[row, column] != IMAGE_UNKNOWN:
+                covered = gap_to_square(pieces, column + 0.5, row + 0.5) < -1e-9
+                wrong += covered != (image[row, column] == IMAGE_OCCUPIED)
         if wrong >= most:
             break
     return wrong
 
 
 @compiled
-def impropriety(kind: int, shape: Floats) -> float:
-    """By how much a shape fails to be a proper one of its class."""
-    if kind == DISC:
-        return float(max(0.0, LEAST - shape[2]))
-    if kind == TRIANGLE:
-        return max(0.0, LEAST - _least_height(shape))
-    wide, high, thick = shape[3], shape[4], shape[5]
+def class_violation(kind: int, shape: Floats) -> float:
+    """Return by how much a shape fails to be a proper one of its class, in squares; 0 for a proper shape."""
+    if kind == DISC_CLASS:
+        return float(max(0.0, MIN_FEATURE - shape[2]))
+    if kind == TRIANGLE_CLASS:
+        return max(0.0, MIN_FEATURE - _smallest_height(shape))
+    width, height, thickness = shape[3], shape[4], shape[5]
     stem = stem_of(shape)
-    bad = max(0.0, LEAST - wide)
-    if kind >= BRICK:
-        bad += max(0.0, LEAST - high)
-    if kind == BRICK:
-        bad += max(0.0, OBLONG * min(wide, high) - max(wide, high))
-    if kind >= ELL:
-        across = stem if kind == ELL else 2 * thick if kind == HORSESHOE else thick + LEAST
-        bad += max(0.0, LEAST - thick) + max(0.0, thick + LEAST - high) + max(0.0, across + LEAST - wide)
-        bad += max(0.0, LEAST - stem)
+    bad = max(0.0, MIN_FEATURE - width)
+    if kind >= BRICK_CLASS:
+        bad += max(0.0, MIN_FEATURE - height)
+    if kind == BRICK_CLASS:
+        bad += max(0.0, MIN_BRICK_RATIO * min(width, height) - max(width, height))
+    if kind >= ELL_CLASS:
+        across = stem if kind == ELL_CLASS else 2 * thickness if kind == HORSESHOE_CLASS else thickness + MIN_FEATURE
+        bad += (
+            max(0.0, MIN_FEATURE - thickness)
+            + max(0.0, thickness + MIN_FEATURE - height)
+            + max(0.0, across + MIN_FEATURE - width)
+        )
+        bad += max(0.0, MIN_FEATURE - stem)
     return float(bad)
 
 
 @compiled
 def stem_of(shape: Floats) -> float:
-    """How thick the stem of a shape is: as its other arms, but for an ELL with arms of two widths."""
+    """Return the thickness of a shape's stem, in squares; it differs from the other arms only in some ELLs."""
     return float(shape[6] if shape[6] != 0.0 else shape[5])
 
 
 @compiled
-def _least_height(shape: Floats) -> float:
-    """The least of a triangle's three heights."""
+def _smallest_height(shape: Floats) -> float:
+    """Return the least of a triangle's three heights."""
     area = (shape[2] - shape[0]) * (shape[5] - shape[1]) - (shape[3] - shape[1]) * (shape[4] - shape[0])
     longest = 1e-9
     for k in range(3):
@@ -101,34 +108,35 @@ def _least_height(shape: Floats) -> float:
 
 @compiled
 def convex_pieces(kind: int, shape: Floats) -> Floats:
-    """A shape's convex pieces as separating lines: rows (normal x, y, offset), six a piece.
+    """Return a shape's convex pieces as separating lines (n, 3): rows (normal x, y, offset), eight a piece.
 
-    A square with its centre at p is apart from a piece by at least normal . p - offset, for each of its rows.
+    A square with its centre at p is apart from a piece by at least normal . p - offset, for each of its rows. For a
+    disc the one row is (centre x, centre y, radius).
     """
-    if kind == DISC:
+    if kind == DISC_CLASS:
         return shape[:3].copy().reshape(1, 3)
-    if kind == TRIANGLE:
+    if kind == TRIANGLE_CLASS:
         return _triangle_lines(shape)
-    wide, high, thick = shape[3], shape[4], shape[5]
-    high = wide if kind == SQUARE else high
-    west, south, east, north = -wide / 2, -high / 2, wide / 2, high / 2
-    if kind <= BRICK:
+    width, height, thickness = shape[3], shape[4], shape[5]
+    height = width if kind == SQUARE_CLASS else height
+    west, south, east, north = -width / 2, -height / 2, width / 2, height / 2
+    if kind <= BRICK_CLASS:
         lines = np.empty((8, 3))
-    elif kind <= TEE:
+    elif kind <= TEE_CLASS:
         lines = np.empty((16, 3))
     else:
         lines = np.empty((24, 3))
-    if kind <= BRICK:
+    if kind <= BRICK_CLASS:
         _rectangle_lines(shape, west, south, east, north, lines, 0)
         return lines
-    _rectangle_lines(shape, west, south, east, south + thick, lines, 0)
-    if kind == TEE:
-        _rectangle_lines(shape, -thick / 2, south, thick / 2, north, lines, 8)
+    _rectangle_lines(shape, west, south, east, south + thickness, lines, 0)
+    if kind == TEE_CLASS:
+        _rectangle_lines(shape, -thickness / 2, south, thickness / 2, north, lines, 8)
         return lines
     stem = stem_of(shape)
     _rectangle_lines(shape, west, south, west + stem, north, lines, 8)
-    if kind == HORSESHOE:
-        _rectangle_lines(shape, east - thick, south, east, north, lines, 16)
+    if kind == HORSESHOE_CLASS:
+        _rectangle_lines(shape, east - thickness, south, east, north, lines, 16)
     return lines
 
 
@@ -136,7 +144,7 @@ def convex_pieces(kind: int, shape: Floats) -> Floats:
 def _rectangle_lines(
     shape: Floats, west: float, south: float, east: float, north: float, lines: Floats, first: int
 ) -> None:
-    """The eight lines of a turned rectangle given in the shape's own frame: its four sides, then its bounding box."""
+    """Write the eight lines of a rectangle given in the shape's own frame: its four sides, then its bounding box."""
     c, s = math.cos(shape[0]), math.sin(shape[0])
     u, v = (west + east) / 2, (south + north) / 2
     x, y = shape[1] + c * u - s * v, shape[2] + s * u + c * v
@@ -150,7 +158,7 @@ def _rectangle_lines(
 
 @compiled
 def _two_lines(lines: Floats, row: int, nx: float, ny: float, x: float, y: float, half: float) -> None:
-    """The two lines across a normal at a distance from a centre."""
+    """Write the two lines across a normal at distance `half` from a centre."""
     middle = nx * x + ny * y
     lines[row, 0], lines[row, 1], lines[row, 2] = nx, ny, middle + half
     lines[row + 1, 0], lines[row + 1, 1], lines[row + 1, 2] = -nx, -ny, half - middle
@@ -158,7 +166,7 @@ def _two_lines(lines: Floats, row: int, nx: float, ny: float, x: float, y: float
 
 @compiled
 def _triangle_lines(shape: Floats) -> Floats:
-    """The lines of a triangle: three sides, its bounding box, and one more that never separates."""
+    """Return the lines of a triangle: three sides, its bounding box, and one more that never separates."""
     lines = np.zeros((8, 3))
     area = (shape[2] - shape[0]) * (shape[5] - shape[1]) - (shape[3] - shape[1]) * (shape[4] - shape[0])
     sign = 1.0 if area >= 0 else -1.0
@@ -178,8 +186,8 @@ def _triangle_lines(shape: Floats) -> Floats:
 
 
 @compiled
-def gap_to(pieces: Floats, x: float, y: float) -> float:
-    """The gap between the square centred at (x, y) and a shape; negative when they overlap."""
+def gap_to_square(pieces: Floats, x: float, y: float) -> float:
+    """Return the gap in squares between the square centred at (x, y) and a shape's pieces; negative if they overlap."""
     if len(pieces) == 1:  # a disc
         dx = max(abs(x - pieces[0, 0]) - 0.5, 0.0)
         dy = max(abs(y - pieces[0, 1]) - 0.5, 0.0)
@@ -196,76 +204,81 @@ def gap_to(pieces: Floats, x: float, y: float) -> float:
 
 
 @compiled
-def settle(kind: int, shape: Floats, free: Floats, image: Image, steps: int) -> float:
-    """Move a shape to where it disagrees least nearby, in place (Nelder and Mead 1965); its disagreement there.
+def descend(kind: int, shape: Floats, free: Floats, image: Image, steps: int) -> float:
+    """Move a shape, in place, to the least disagreement nearby, and return its disagreement there.
 
-    free: how far each of the numbers is moved at first; 0 for those that stay.
+    The method is that of Nelder and Mead (1965).
+
+    Parameters
+    ----------
+    free : (PARAMETER_COUNT,), how far each number is moved at first; 0 for numbers that stay.
+    steps : the number of steps at most.
     """
-    simplex = np.empty((NUMBERS + 1, NUMBERS))
-    losses = np.empty(NUMBERS + 1)
-    middle, trial, further = np.empty(NUMBERS), np.empty(NUMBERS), np.empty(NUMBERS)
-    _mix(1.0, shape, 0.0, shape, simplex[0])
+    simplex = np.empty((PARAMETER_COUNT + 1, PARAMETER_COUNT))
+    losses = np.empty(PARAMETER_COUNT + 1)
+    middle, trial, further = np.empty(PARAMETER_COUNT), np.empty(PARAMETER_COUNT), np.empty(PARAMETER_COUNT)
+    _combine(1.0, shape, 0.0, shape, simplex[0])
     n = 0
-    for k in range(NUMBERS):
+    for k in range(PARAMETER_COUNT):
         if free[k] > 0.0:
             n += 1
-            _mix(1.0, shape, 0.0, shape, simplex[n])
+            _combine(1.0, shape, 0.0, shape, simplex[n])
             simplex[n, k] += free[k]
     for k in range(n + 1):
         losses[k] = disagreement(kind, simplex[k], image)
     low = 0
     for _ in range(steps):
-        low, high, second = _ends(losses, n + 1)
-        if losses[low] <= 0.0 or losses[high] - losses[low] < 1e-4:
+        low, height, second = _extremes(losses, n + 1)
+        if losses[low] <= 0.0 or losses[height] - losses[low] < 1e-4:
             break
-        for m in range(NUMBERS):
+        for m in range(PARAMETER_COUNT):
             middle[m] = 0.0
             for k in range(n + 1):
-                if k != high:
+                if k != height:
                     middle[m] += simplex[k, m] / n
-        _mix(2.0, middle, -1.0, simplex[high], trial)
+        _combine(2.0, middle, -1.0, simplex[height], trial)
         loss = disagreement(kind, trial, image)
         if loss < losses[low]:
-            _mix(3.0, middle, -2.0, simplex[high], further)
+            _combine(3.0, middle, -2.0, simplex[height], further)
             other = disagreement(kind, further, image)
             if other < loss:
                 trial, further, loss = further, trial, other
         elif loss >= losses[second]:
-            _mix(0.5, middle, 0.5, trial if loss < losses[high] else simplex[high], further)
+            _combine(0.5, middle, 0.5, trial if loss < losses[height] else simplex[height], further)
             other = disagreement(kind, further, image)
-            if other < min(loss, losses[high]):
+            if other < min(loss, losses[height]):
                 trial, further, loss = further, trial, other
             else:
                 for k in range(n + 1):
                     if k != low:
-                        _mix(0.5, simplex[k], 0.5, simplex[low], simplex[k])
+                        _combine(0.5, simplex[k], 0.5, simplex[low], simplex[k])
                         losses[k] = disagreement(kind, simplex[k], image)
                 continue
-        _mix(1.0, trial, 0.0, trial, simplex[high])
-        losses[high] = loss
-    low, high, second = _ends(losses, n + 1)
-    _mix(1.0, simplex[low], 0.0, shape, shape)
+        _combine(1.0, trial, 0.0, trial, simplex[height])
+        losses[height] = loss
+    low, height, second = _extremes(losses, n + 1)
+    _combine(1.0, simplex[low], 0.0, shape, shape)
     return float(losses[low])
 
 
 @compiled
-def _mix(p: float, one: Floats, q: float, other: Floats, out: Floats) -> None:
-    """Write p one + q other into out, which may be one of them."""
-    for k in range(NUMBERS):
+def _combine(p: float, one: Floats, q: float, other: Floats, out: Floats) -> None:
+    """Write p one + q other to `out`, which may be one of them."""
+    for k in range(PARAMETER_COUNT):
         out[k] = p * one[k] + q * other[k]
 
 
 @compiled
-def _ends(losses: Floats, n: int) -> tuple[int, int, int]:
-    """Which of the first n numbers is the least, the greatest and the second greatest."""
-    low, high = 0, 0
+def _extremes(losses: Floats, n: int) -> tuple[int, int, int]:
+    """Return the indices of the least, the greatest and the second greatest of the first n numbers."""
+    low, height = 0, 0
     for k in range(1, n):
         if losses[k] < losses[low]:
             low = k
-        if losses[k] >= losses[high]:
-            high = k
-    second = 1 if high == 0 else 0
+        if losses[k] >= losses[height]:
+            height = k
+    second = 1 if height == 0 else 0
     for k in range(n):
-        if k != high and losses[k] >= losses[second]:
+        if k != height and losses[k] >= losses[second]:
             second = k
-    return low, high, second
+    return low, height, second

@@ -1,11 +1,11 @@
-"""How likely a class of shapes makes a digital image: what tells classes apart that agree with it equally well.
+"""Shape likelihood: how likely a class of shapes makes a digital image. It tells classes apart that agree equally well.
 
 A class is the likelier the more of its shapes make the very image (Occam's factor: MacKay, Information Theory,
 Inference, and Learning Algorithms, 2003, chapter 28). One in four of the images of turned Ts is that of an L, too, yet
-of few Ls; a disc of radius 2 mostly has that of a turned square, yet of few squares.
+of few Ls; a disc of radius 2 mostly has the image of a turned square, yet of few squares.
 
-# Strategy: a walk among the shapes that agree, from one of them, tells where they lie about: their mean and their
-# spread. So many shapes at random in the box that these span, and how many of them agree, tell how much room there is.
+# Strategy: a random walk among the shapes that agree gives their mean and spread. Then shapes are drawn at random in
+the box that these span, and the share of them that agree gives the volume.
 """
 
 import math
@@ -16,97 +16,116 @@ import numpy as np
 
 from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import compiled
-from geometry.shapes.candidates import freedom
-from geometry.shapes.misfit import BRICK, DISC, ELL, NUMBERS, SQUARE, TRIANGLE, Image, impropriety, misfit
+from geometry.shapes.candidates import initial_steps
+from geometry.shapes.misfit import (
+    BRICK_CLASS,
+    DISC_CLASS,
+    ELL_CLASS,
+    PARAMETER_COUNT,
+    SQUARE_CLASS,
+    TRIANGLE_CLASS,
+    Image,
+    class_violation,
+    count_wrong_squares,
+)
 
-DRAWS = 2000  # shapes of the walk, and at random in the box
-SEED = 1
-SCALES = 5  # lengths of the steps of the walk, each half of the one before
-SPREAD = 2.0  # standard deviations from the mean to the sides of the box
-SIZES, WIDTHS = 5.0, 2.0  # squares over which lengths and widths of arms are equally likely
-REACH = 10.0  # squares, to the east and to the north, over which two corners of a triangle are, seen from the third
+SAMPLES_PER_STAGE = 2000  # shapes of the random walk, and then of the box; tuned for a spread of a few percent
+VOLUME_SEED = 1  # convention
+STEP_SCALES = 5  # step lengths of the walk, each half of the one before; tuned with the number of samples
+BOX_DEVIATIONS = 2.0  # standard deviations from the mean to the sides of the box; tuned with the number of samples
+SIZE_RANGE, WIDTH_RANGE = 5.0, 2.0  # squares; prior: lengths and widths of arms are uniform over such ranges
+CORNER_RANGE = 10.0  # squares; prior: offsets of a triangle's corners from its third are uniform over such a range
 
 
 class ParameterVolume(NamedTuple):
-    """The room that a class has for an image.
+    """The volume of a class's parameters that agree with an image.
 
-    mean : (NUMBERS,), in the middle of the shapes that agree. log_likelihood : of the image.
+    Attributes
+    ----------
+    mean : (PARAMETER_COUNT,), the mean of the shapes that agree.
+    log_likelihood : the log likelihood of the image.
     """
 
     mean: Floats
     log_likelihood: float
 
 
-def room_for(kind: int, shape: Floats, image: Image, wrong: int) -> ParameterVolume:
-    """The room about a shape that gets so many squares of an image wrong. kind, shape, image : as in
-    geometry.shapes.misfit.
+def parameter_volume(kind: int, shape: Floats, image: Image, wrong: int) -> ParameterVolume:
+    """Return the volume of the parameters about a shape that gets at most so many squares of an image wrong.
 
-    Shapes turned by any angle are equally likely, lengths and diameters over SIZES squares.
+    Shapes turned by any angle are equally likely, and so are lengths and diameters over SIZE_RANGE squares.
+
+    Parameters
+    ----------
+    kind, shape, image : class, numbers and image, as in geometry.shapes.misfit.
+    wrong : the number of squares that the shape gets wrong.
     """
-    free = freedom(kind)
-    if kind == ELL and shape[6] != 0.0:
+    free = initial_steps(kind)
+    if kind == ELL_CLASS and shape[6] != 0.0:
         free[6] = free[5]
-    mean, volume = _wander(kind, shape, image, wrong, free, _luck())
-    return ParameterVolume(mean, math.log(volume) + _density(kind, bool(free[6])))
+    mean, volume = _sample_volume(kind, shape, image, wrong, free, _random_numbers())
+    return ParameterVolume(mean, math.log(volume) + _log_density(kind, bool(free[6])))
 
 
-def _density(kind: int, uneven: bool) -> float:
-    """The log density of a class in its numbers, all that stand for one shape taken together.
+def _log_density(kind: int, uneven: bool) -> float:
+    """Return the log density of a class in its numbers, all that stand for one shape taken together.
 
-    uneven : an L with arms of two widths.
+    `uneven` says whether the shape is an L with arms of two widths.
     """
-    if kind == DISC:
-        return -math.log(SIZES / 2)
-    if kind == TRIANGLE:
-        return math.log(6.0) - 4.0 * math.log(REACH)
+    if kind == DISC_CLASS:
+        return -math.log(SIZE_RANGE / 2)
+    if kind == TRIANGLE_CLASS:
+        return math.log(6.0) - 4.0 * math.log(CORNER_RANGE)
     turned = -math.log(2.0 * math.pi)
-    if kind == SQUARE:
-        return turned + math.log(4.0 / SIZES)
-    if kind == BRICK:
-        return turned + math.log(4.0 / SIZES**2)
-    return turned - math.log(SIZES**2 * WIDTHS ** (1 + uneven))
+    if kind == SQUARE_CLASS:
+        return turned + math.log(4.0 / SIZE_RANGE)
+    if kind == BRICK_CLASS:
+        return turned + math.log(4.0 / SIZE_RANGE**2)
+    return turned - math.log(SIZE_RANGE**2 * WIDTH_RANGE ** (1 + uneven))
 
 
 @cache
-def _luck() -> Floats:
-    """(2 DRAWS, NUMBERS): random numbers from -1 to 1, the same always."""
-    return np.random.default_rng(SEED).uniform(-1.0, 1.0, (2 * DRAWS, NUMBERS))
+def _random_numbers() -> Floats:
+    """Return random numbers from -1 to 1, always the same, (2 SAMPLES_PER_STAGE, PARAMETER_COUNT)."""
+    return np.random.default_rng(VOLUME_SEED).uniform(-1.0, 1.0, (2 * SAMPLES_PER_STAGE, PARAMETER_COUNT))
 
 
 @compiled
-def _wander(kind: int, shape: Floats, image: Image, wrong: int, free: Floats, luck: Floats) -> tuple[Floats, float]:
-    """The mean of the shapes about one that get no more squares wrong, and the volume that they fill.
+def _sample_volume(
+    kind: int, shape: Floats, image: Image, wrong: int, free: Floats, random: Floats
+) -> tuple[Floats, float]:
+    """Return the mean of the shapes about one that get no more squares wrong, and the volume that they fill.
 
-    free : (NUMBERS,), how far the walk goes in each number at one step; 0 for those that stay.
+    `free` (PARAMETER_COUNT,) is how far the walk goes in each number in one step; 0 for numbers that stay.
     """
-    draws = len(luck) // 2
+    count = len(random) // 2
     at, other = shape.copy(), shape.copy()
-    total, squared = np.zeros(NUMBERS), np.zeros(NUMBERS)
-    for n in range(draws):
-        for k in range(NUMBERS):
-            other[k] = at[k] + luck[n, k] * free[k] / 2 ** (n % SCALES)
+    total, squared = np.zeros(PARAMETER_COUNT), np.zeros(PARAMETER_COUNT)
+    for n in range(count):
+        for k in range(PARAMETER_COUNT):
+            other[k] = at[k] + random[n, k] * free[k] / 2 ** (n % STEP_SCALES)
         if _agrees(kind, other, image, wrong):
             at[:] = other
-        for k in range(NUMBERS):
+        for k in range(PARAMETER_COUNT):
             total[k] += at[k] - shape[k]
             squared[k] += (at[k] - shape[k]) ** 2
-    mean, half = shape.copy(), np.zeros(NUMBERS)
+    mean, half = shape.copy(), np.zeros(PARAMETER_COUNT)
     volume = 1.0
-    for k in range(NUMBERS):
-        mean[k] += total[k] / draws
-        half[k] = SPREAD * math.sqrt(max(squared[k] / draws - (total[k] / draws) ** 2, 0.0))
+    for k in range(PARAMETER_COUNT):
+        mean[k] += total[k] / count
+        half[k] = BOX_DEVIATIONS * math.sqrt(max(squared[k] / count - (total[k] / count) ** 2, 0.0))
         volume *= max(2.0 * half[k], 1e-9) if free[k] > 0.0 else 1.0
     inside = 0
-    for n in range(draws, 2 * draws):
-        for k in range(NUMBERS):
-            other[k] = mean[k] + luck[n, k] * half[k]
+    for n in range(count, 2 * count):
+        for k in range(PARAMETER_COUNT):
+            other[k] = mean[k] + random[n, k] * half[k]
         inside += _agrees(kind, other, image, wrong)
     if not _agrees(kind, mean, image, wrong):
         mean[:] = shape
-    return mean, volume * (inside + 0.5) / draws
+    return mean, volume * (inside + 0.5) / count
 
 
 @compiled
 def _agrees(kind: int, shape: Floats, image: Image, wrong: int) -> bool:
-    """Is it a proper shape of its class that gets no more squares wrong than that?"""
-    return impropriety(kind, shape) == 0.0 and misfit(kind, shape, image, wrong + 1.0) <= wrong
+    """Return whether a shape is a proper one of its class and gets at most `wrong` squares wrong."""
+    return class_violation(kind, shape) == 0.0 and count_wrong_squares(kind, shape, image, wrong + 1.0) <= wrong

@@ -38,15 +38,55 @@ def contract(square: SquaredDistances, state: States, words: Words) -> SkeletonG
     heights, states, width = square.reshape(-1), state.reshape(-1), state.shape[1]
     eights, size, notes = words.view(np.int64), len(words), new_notes(len(states))
     base, since = np.empty((size + 15) // 16, np.int32), np.empty(size, np.uint8)
-    while True:
-        nodes, ends, links = count(eights, base, since)
-        node, port = np.empty(nodes + 1, np.int32), np.empty((ends // 2, 2), np.int32)
-        neck, steps = np.empty(ends // 2, np.int32), np.empty(ends // 2, np.int32)
-        seen = np.zeros(nodes, np.uint8)
-        if pace_all(heights, states, eights, width, base, since, node, port, neck, steps, seen, notes) == links:
-            return SkeletonGraph(node[:nodes], port, neck, steps)
-        del node, port, neck, steps, seen  # their memory is wanted again
+    nodes, ends, links = count(eights, base, since)
+    node, port = np.empty(nodes + 1, np.int32), np.empty((ends // 2, 2), np.int32)
+    neck, steps = np.empty(ends // 2, np.int32), np.empty(ends // 2, np.int32)
+    seen = np.zeros(nodes, np.uint8)
+    walked = pace_all(heights, states, eights, width, base, since, node, port, neck, steps, seen, notes)
+    found = SkeletonGraph(node[:nodes], port, neck, steps)
+    if walked < links:
         halt_rings(heights, states, width, words)
+        found = insert_rings(heights, states, width, found, notes[0])
+    return found
+
+
+def insert_rings(heights: Heights, states: Flags, width: int, bones: SkeletonGraph, notes: Ints) -> SkeletonGraph:
+    """Return the graph with the rings added whose first cells are flagged. ``notes`` is scratch."""
+    cells = np.flatnonzero(states >= HALT).astype(np.int32)
+    place = bones.node.searchsorted(cells)
+    node, ring = np.insert(bones.node, place, cells), (place + np.arange(len(cells))).astype(np.int32)
+    port, neck, steps = np.empty((len(ring), 2), np.int32), np.empty(len(ring), np.int32), np.empty(len(ring), np.int32)
+    pace_rings(heights, states, width, node, ring, port, neck, steps, notes)
+    shift = 4 * np.bincount(place, minlength=len(bones.node)).cumsum(dtype=np.int32)
+    old = bones.port + shift[bones.port >> 2]
+    place = old[:, 0].searchsorted(port[:, 0])
+    return SkeletonGraph(
+        node,
+        np.insert(old, place, port, axis=0),
+        np.insert(bones.neck, place, neck),
+        np.insert(bones.steps, place, steps),
+    )
+
+
+@bare
+def pace_rings(
+    heights: Heights,
+    states: Flags,
+    width: int,
+    node: Ints,
+    ring: Ints,
+    port: Ints,
+    neck: Ints,
+    steps: Ints,
+    notes: Ints,
+) -> None:
+    """Walk once around each ring whose only node has a number in ``ring``, and fill its ends, lowest cell and steps."""
+    for k in range(ring.shape[0]):
+        cell = int(node[ring[k]])
+        direction = first_way(int(states[cell] & LINKS))
+        _, back, steps[k], noted = pace(cell, direction, heights, states, width, notes, 0)
+        port[k, 0], port[k, 1] = 4 * ring[k] + direction, 4 * ring[k] + back
+        neck[k] = lowest_of(notes, 0, noted, heights)
 
 
 @bare

@@ -1,10 +1,9 @@
-"""The cheapest way to carry a body over a board of squares: pushes, quarter and half turns, letting go, taking again.
+"""The cheapest path of carrying on the state lattice: pushes, quarter and half turns, letting go, grasping again.
 
-# Strategy: A* over nodes (hold, quarter turn, direction being pushed in, place) with
-# geometry.state_lattice.heuristic for what is left.
-# Walking round the body is dear to work out and seldom wanted: letting go is first queued at its least price, and the
-# walk is measured only when that comes to the head of the queue. The floor about a pose is walked once from each side.
-# Ties are broken by node number: the same question has the same answer.
+# Strategy: A* over nodes (hold, quarter turn, direction being pushed in, place), with the heuristic module for the cost
+to go. Walking round the body is costly to compute and seldom wanted: letting go is first queued at its least cost, and
+the walk is measured only when that comes to the head of the queue. The floor about a pose is walked once from each
+side. Ties are broken by node number: the same question has the same answer.
 """
 
 import heapq
@@ -14,50 +13,63 @@ import numpy as np
 from geometry.kernels.arrays import Longs
 from geometry.kernels.jit import compiled
 from geometry.state_lattice.heuristic import NEVER, STILL
-from geometry.state_lattice.lattice import COMMAND, REGRASP, WALK, Costs, StateLattice, turn_cost, turned_place
+from geometry.state_lattice.lattice import COMMAND, REGRASP, WALK_COST, Costs, StateLattice, place_after_turn, turn_cost
 
-CALM = 4  # the haste of a search that takes the time it needs
+CALM = 4  # the weight of the heuristic, in quarters, with which A* finds the cheapest path
 
 
 @compiled
 def haul(
-    board: StateLattice,
-    left: Costs,
-    ends: Costs,
-    begin: Costs,
+    lattice: StateLattice,
+    remaining: Costs,
+    end_costs: Costs,
+    grasp_costs: Costs,
     place: int,
-    bend: int,
-    haste: int,
-    most: int,
+    redirect_cost: int,
+    weight: int,
+    max_settled: int,
     cost: Costs,
     parent: Costs,
 ) -> Longs:
-    """The nodes from the first grasp to the goal, in order; empty when there is none.
+    """Return the nodes of the cheapest path from the first grasp to the goal, in order; empty if there is none.
 
-    left : geometry.state_lattice.heuristic.guess. ends : the price of ending at each pose, -1 off the goal. begin
-    : (holds,) the price of
-    having walked to each hold and taken the body, -1 where Utak cannot. place : where the body lies, unturned.
-    bend : the price of going on in another direction in the same push, as told to guess.
-    A node is ((hold * 4 + quarter) * 9 + direction) * squares + place, direction STILL when it lies.
-    haste : CALM for the cheapest way; above it ways are found sooner that may be dearer by the same factor.
-    most : so many nodes are settled at most. cost, parent : a number for each node, all of cost 0.
+    A node is ((hold * 4 + quarter turn) * 9 + direction) * squares + place, with direction STILL while the body lies.
+
+    Parameters
+    ----------
+    lattice : the state lattice.
+    remaining : (4, 9, squares) the heuristic, made with the same end_costs and redirect_cost.
+    end_costs : (4, squares) cost of ending at a pose, -1 off the goal.
+    grasp_costs : (holds,) cost of having walked to each hold and grasped the body; -1 where the robot cannot.
+    place : where the body lies, unturned.
+    redirect_cost : cost of going on in another direction in the same push.
+    weight : weight of the heuristic in quarters. CALM finds the cheapest path; a larger weight finds one sooner that
+        may cost more by the same factor.
+    max_settled : number of nodes that are settled at most.
+    cost, parent : scratch, a number for each node; all costs 0.
+
+    Returns
+    -------
+    (n,) int64.
     """
-    squares, holds = ends.shape[1], len(begin)
+    squares, holds = end_costs.shape[1], len(grasp_costs)
     total = len(cost)
-    # cost is one more than the price, 0 unknown. It comes from numpy, which leaves untouched memory alone.
+    # The array `cost` holds one more than the cost, 0 for unknown: fresh zeros from numpy take no memory until written.
     walked = np.zeros((4 * squares, holds), np.bool_)  # which holds of a pose have been walked to or from
-    walk, seen = np.empty(holds, np.int32), np.zeros(squares, np.int32)
-    around, price = np.empty(16, np.int64), np.empty(16, np.int64)
+    walk_cost, seen = np.empty(holds, np.int32), np.zeros(squares, np.int32)
+    successor, step_cost = np.empty(16, np.int64), np.empty(16, np.int64)
     final, final_cost = -1, NEVER
     heap = [(0, 0, 0)]
     heap.pop()
     for hold in range(holds):
-        if begin[hold] >= 0 and left[0, STILL, place] < NEVER:
+        if grasp_costs[hold] >= 0 and remaining[0, STILL, place] < NEVER:
             node = (hold * 36 + STILL) * squares + place
-            cost[node], parent[node] = begin[hold] + 1, -1
-            heapq.heappush(heap, (begin[hold] + left[0, STILL, place] * haste // CALM, -begin[hold], node))
+            cost[node], parent[node] = grasp_costs[hold] + 1, -1
+            heapq.heappush(
+                heap, (grasp_costs[hold] + remaining[0, STILL, place] * weight // CALM, -grasp_costs[hold], node)
+            )
     settled = 0
-    while len(heap) > 0 and settled < most:
+    while len(heap) > 0 and settled < max_settled:
         whole, minus, node = heapq.heappop(heap)
         if whole >= final_cost:
             break
@@ -71,123 +83,140 @@ def haul(
         if letting_go:
             if walked[k * squares + p, hold]:
                 continue
-            _walk(board, hold, k, p, walk, seen, settled)
+            _write_walk_costs(lattice, hold, k, p, walk_cost, seen, settled)
             for other in range(holds):
-                if walk[other] >= 0:
+                if walk_cost[other] >= 0:
                     walked[k * squares + p, other] = True
                     after = ((other * 4 + k) * 9 + STILL) * squares + p
-                    then = spent + REGRASP + walk[other] + board.grip[other]
+                    then = spent + REGRASP + walk_cost[other] + lattice.grasp_cost[other]
                     if cost[after] == 0 or then < cost[after] - 1:
                         cost[after], parent[after] = then + 1, node
-                        heapq.heappush(heap, (then + left[k, STILL, p] * haste // CALM, -then, after))
+                        heapq.heappush(heap, (then + remaining[k, STILL, p] * weight // CALM, -then, after))
             continue
         if m == STILL:
-            if ends[k, p] >= 0 and spent + ends[k, p] < final_cost:
-                final, final_cost = node, spent + ends[k, p]
-            ahead = left[k, STILL, p] * haste // CALM
+            if end_costs[k, p] >= 0 and spent + end_costs[k, p] < final_cost:
+                final, final_cost = node, spent + end_costs[k, p]
+            ahead = remaining[k, STILL, p] * weight // CALM
             heapq.heappush(heap, (spent + REGRASP + COMMAND + ahead, -spent, node + total))
-        count = _nexts(board, hold, k, m, p, bend, around, price)
+        count = _write_successors(lattice, hold, k, m, p, redirect_cost, successor, step_cost)
         for n in range(count):
-            after, then = around[n], spent + price[n]
-            ahead = left[after // squares // 9 % 4, after // squares % 9, after % squares]
+            after, then = successor[n], spent + step_cost[n]
+            ahead = remaining[after // squares // 9 % 4, after // squares % 9, after % squares]
             if ahead < NEVER and (cost[after] == 0 or then < cost[after] - 1):
                 cost[after], parent[after] = then + 1, node
-                heapq.heappush(heap, (then + ahead * haste // CALM, -then, after))
-    return _traced(parent, final)
+                heapq.heappush(heap, (then + ahead * weight // CALM, -then, after))
+    return _path_to(parent, final)
 
 
 @compiled
-def _traced(parent: Costs, final: int) -> Longs:
-    """The nodes that lead to one, in order."""
+def _path_to(parent: Costs, final: int) -> Longs:
+    """Return the nodes that lead to `final`, in order; empty if it is -1."""
     length, node = 0, final
     while node >= 0:
         length, node = length + 1, parent[node]
-    way = np.empty(length, np.int64)
+    nodes = np.empty(length, np.int64)
     node = final
     for n in range(length - 1, -1, -1):
-        way[n] = node
+        nodes[n] = node
         node = parent[node]
-    return way
+    return nodes
 
 
 @compiled
-def _nexts(board: StateLattice, hold: int, k: int, m: int, p: int, bend: int, around: Longs, price: Longs) -> int:
-    """The nodes to which one step with the body in hand leads, and its price; how many."""
-    squares = len(board.solid)
+def _write_successors(
+    lattice: StateLattice, hold: int, k: int, m: int, p: int, redirect_cost: int, successor: Longs, step_cost: Longs
+) -> int:
+    """Write the nodes to which one step with the body in hand leads, and their costs; return how many.
+
+    `k`, `m`, `p` : quarter turn, direction and place of the node. `successor`, `step_cost` : output.
+    """
+    squares = len(lattice.solid)
     base = (hold * 4 + k) * 9
-    own = p + board.holds[k, hold]
+    robot = p + lattice.holds[k, hold]
     if m < STILL:
-        around[0], price[0] = (base + STILL) * squares + p, 0
+        successor[0], step_cost[0] = (base + STILL) * squares + p, 0
         count = 1
         for d in range(8):
-            if d != m and (bend == COMMAND or not board.allowed[k, hold, d]):
+            if d != m and (redirect_cost == COMMAND or not lattice.push_allowed[k, hold, d]):
                 continue
-            if board.push[k, d, p] > 0 and board.utak[d, own]:
-                around[count] = (base + d) * squares + p + board.steps[d]
-                price[count] = board.push[k, d, p] + (bend if d != m else 0)
+            if lattice.push_cost[k, d, p] > 0 and lattice.robot_can_step[d, robot]:
+                successor[count] = (base + d) * squares + p + lattice.steps[d]
+                step_cost[count] = lattice.push_cost[k, d, p] + (redirect_cost if d != m else 0)
                 count += 1
         return count
     count = 0
     for d in range(8):
-        if board.allowed[k, hold, d] and board.push[k, d, p] > 0 and board.utak[d, own]:
-            around[count], price[count] = (base + d) * squares + p + board.steps[d], COMMAND + board.push[k, d, p]
+        if lattice.push_allowed[k, hold, d] and lattice.push_cost[k, d, p] > 0 and lattice.robot_can_step[d, robot]:
+            successor[count] = (base + d) * squares + p + lattice.steps[d]
+            step_cost[count] = COMMAND + lattice.push_cost[k, d, p]
             count += 1
-    for way in (1, -1):
-        extra = turn_cost(board, hold, k, p, way)
+    for sense in (1, -1):
+        extra = turn_cost(lattice, hold, k, p, sense)
         if extra < 0:
             continue
-        p1, k1 = turned_place(board, hold, k, p, way), (k + way) % 4
-        around[count], price[count] = ((hold * 4 + k1) * 9 + STILL) * squares + p1, board.turn + extra
+        p1, k1 = place_after_turn(lattice, hold, k, p, sense), (k + sense) % 4
+        successor[count], step_cost[count] = ((hold * 4 + k1) * 9 + STILL) * squares + p1, lattice.turn_price + extra
         count += 1
-        more = turn_cost(board, hold, k1, p1, way)
+        more = turn_cost(lattice, hold, k1, p1, sense)
         if more >= 0:
-            p2, k2 = turned_place(board, hold, k1, p1, way), (k + 2) % 4
-            around[count], price[count] = ((hold * 4 + k2) * 9 + STILL) * squares + p2, board.turn + max(extra, more)
+            p2, k2 = place_after_turn(lattice, hold, k1, p1, sense), (k + 2) % 4
+            successor[count] = ((hold * 4 + k2) * 9 + STILL) * squares + p2
+            step_cost[count] = lattice.turn_price + max(extra, more)
             count += 1
     return count
 
 
 @compiled
-def _walk(board: StateLattice, hold: int, k: int, p: int, walk: Costs, seen: Costs, mark: int) -> None:
-    """Write what it costs to walk from a hold to each of the others while the body lies: (holds,), -1 without a way."""
-    for n in range(board.image.first[k], board.image.first[k + 1]):
-        seen[p + board.image.items[n]] = mark
-    _spread(board, p + board.holds[k], p + board.holds[k, hold], walk, seen, mark)
+def _write_walk_costs(
+    lattice: StateLattice, hold: int, k: int, p: int, walk_cost: Costs, seen: Costs, mark: int
+) -> None:
+    """Write the cost of walking from a hold to each of the others while the body lies: (holds,); -1 without a path."""
+    for n in range(lattice.covered.first[k], lattice.covered.first[k + 1]):
+        seen[p + lattice.covered.items[n]] = mark
+    _flood_walk_costs(lattice, p + lattice.holds[k], p + lattice.holds[k, hold], walk_cost, seen, mark)
 
 
 @compiled
-def _spread(board: StateLattice, wanted: Longs, start: int, walk: Costs, seen: Costs, mark: int) -> None:
-    """Write the price of walking from a square to each of those wanted. Squares seen with the mark are closed."""
+def _flood_walk_costs(
+    lattice: StateLattice, targets: Longs, start: int, walk_cost: Costs, seen: Costs, mark: int
+) -> None:
+    """Write the cost of walking from a square to each of the targets. Squares whose `seen` equals `mark` are closed.
+
+    Method: breadth-first search over four neighbours.
+    """
     waiting = 0
-    for n in range(len(wanted)):
-        walk[n] = -1
-        waiting += 1 if board.grip[n] >= 0 and board.walk[wanted[n]] and seen[wanted[n]] != mark else 0
-    stride = board.steps[2]
+    for n in range(len(targets)):
+        walk_cost[n] = -1
+        waiting += 1 if lattice.grasp_cost[n] >= 0 and lattice.walkable[targets[n]] and seen[targets[n]] != mark else 0
+    stride = lattice.steps[2]
     queue = [start]
     seen[start] = mark
-    way, head = 0, 0
+    steps_walked, head = 0, 0
     while head < len(queue) and waiting > 0:
         tail = len(queue)
         for n in range(head, tail):
             here = queue[n]
-            for h in range(len(wanted)):
-                if wanted[h] == here and board.grip[h] >= 0 and not board.solid[here]:
-                    walk[h] = way * WALK + (COMMAND if way > 0 else 0)
+            for h in range(len(targets)):
+                if targets[h] == here and lattice.grasp_cost[h] >= 0 and not lattice.solid[here]:
+                    walk_cost[h] = steps_walked * WALK_COST + (COMMAND if steps_walked > 0 else 0)
                     waiting -= 1
             for step in (1, stride, -1, -stride):
-                if board.walk[here + step] and seen[here + step] != mark:
+                if lattice.walkable[here + step] and seen[here + step] != mark:
                     seen[here + step] = mark
                     queue.append(here + step)
-        head, way = tail, way + 1
+        head, steps_walked = tail, steps_walked + 1
 
 
 @compiled
-def first_walk(board: StateLattice, place: int, start: int) -> Costs:
-    """The price of walking from a square to each hold of the body where it lies unturned and taking it; -1 if none."""
-    begin, seen = np.empty(len(board.grip), np.int32), np.zeros(len(board.solid), np.int32)
-    for n in range(board.image.first[0], board.image.first[1]):
-        seen[place + board.image.items[n]] = 1
-    _spread(board, place + board.holds[0], start, begin, seen, 1)
-    for n in range(len(begin)):
-        begin[n] += board.grip[n] if begin[n] >= 0 else 0
-    return begin
+def first_walk(lattice: StateLattice, place: int, start: int) -> Costs:
+    """Return the cost of walking from square `start` to each hold of the body, where it lies unturned, and grasping it.
+
+    `place` : the body's place. Returns (holds,) int32; -1 where no path leads.
+    """
+    grasp_costs, seen = np.empty(len(lattice.grasp_cost), np.int32), np.zeros(len(lattice.solid), np.int32)
+    for n in range(lattice.covered.first[0], lattice.covered.first[1]):
+        seen[place + lattice.covered.items[n]] = 1
+    _flood_walk_costs(lattice, place + lattice.holds[0], start, grasp_costs, seen, 1)
+    for n in range(len(grasp_costs)):
+        grasp_costs[n] += lattice.grasp_cost[n] if grasp_costs[n] >= 0 else 0
+    return grasp_costs

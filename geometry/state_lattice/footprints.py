@@ -1,8 +1,9 @@
-"""What a body covers on a lattice of squares: lying in its four quarter turns, pushed by a step, turned about a hold.
+"""Footprints: the squares that a body covers in its quarter turns, meets in a push by one square, meets in a turn.
 
-Wherever a shape lies, and at whatever angle: as long as Utak stands in the middle of a square when he takes it, pushes
-by whole squares and quarter turns about him bring it only to the same place within the squares, seen from another side.
-So all its poses are a quarter turn and the square in which its centroid lies, and what it covers is worked out once.
+Wherever a shape lies, and at whatever angle: as long as the robot stands in the middle of a square when it takes hold,
+pushes by whole squares and quarter turns about the robot bring the shape only to the same place within the squares,
+seen from another side. So all its poses are a quarter turn and the square in which its centroid lies, and what it
+covers is computed once.
 
 # Strategy: the squares met by a push of one square along an axis are those of its two ends. Those met by a diagonal
 # push are the squares of the hexagon swept. Those met by a turn are found one by one with exact first contact.
@@ -20,21 +21,25 @@ from shapely import affinity
 from geometry.kernels.arrays import Bools, Floats, Longs
 from geometry.kernels.jit import compiled
 from geometry.motion.first_contact import ContactBody, Obstacles
-from geometry.motion.time_of_impact import turn_through_skin
+from geometry.motion.time_of_impact import first_turn_skin_hit
 from geometry.raster.rasterize import squares
 
-DIRECTIONS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))  # a quarter turn is two further
+DIRECTIONS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
+"""Steps (columns, rows) of a push, counter-clockwise from the east: a quarter turn is two further in this order."""
 
 
 @dataclass(frozen=True)
 class Footprints:
-    """A shape among squares, as (columns, rows) offsets from the square of its centroid.
+    """The squares of a shape as (columns, rows) offsets from the square of its centroid.
 
+    Attributes
+    ----------
     home : (column, row) of the centroid's square where the shape lies now.
-    holds : (n, 2) the squares about its own squares, where Utak can stand to take it; unturned. Also the square where
-        he stands who has it already, wherever that is.
-    lying : the squares that it covers, unturned (m, 2). steps : those met by a push of one square in each direction.
-    turns : for each hold those met by a quarter turn counter-clockwise about the middle of the hold.
+    holds : (n, 2) squares next to its own, by an edge or a corner, where the robot can stand to grasp it; unturned. If
+        the robot already holds it, the robot's square is among them, wherever that is.
+    lying : (m, 2) squares that it covers, unturned.
+    steps : for each of the eight directions, (k, 2) squares met by a push of one square.
+    turns : for each hold, (k, 2) squares met by a quarter turn counter-clockwise about the middle of the hold.
     """
 
     home: tuple[int, int]
@@ -44,50 +49,54 @@ class Footprints:
     turns: tuple[Longs, ...]
 
 
-def new_stencil(near: Any, own: tuple[int, int] | None = None, holds: Longs | None = None) -> Footprints:
-    """The stencil of a shape whose centroid lies in the square (0, 0).
+def new_stencil(shape: Any, own_square: tuple[int, int] | None = None, holds: Longs | None = None) -> Footprints:
+    """Return the footprints of a shape whose centroid lies in the square (0, 0).
 
-    own : the square of the one who has hold of it. holds : those that it is about, None for all that there are.
+    Parameters
+    ----------
+    shape : shapely Polygon, in squares.
+    own_square : (column, row) of the robot if it already holds the shape.
+    holds : (n, 2) the holds to compute turns for; None for all squares next to the shape.
     """
-    lying = _offsets(near)
-    holds = _ring(lying, own) if holds is None else holds
-    body = ContactBody(near)
-    steps = tuple(_step(near, lying, dx, dy) for dx, dy in DIRECTIONS)
-    return Footprints((0, 0), holds, lying, steps, tuple(_turn(body, lying, hold) for hold in holds))
+    lying = _covered_offsets(shape)
+    holds = _squares_about(lying, own_square) if holds is None else holds
+    body = ContactBody(shape)
+    steps = tuple(_squares_of_push(shape, lying, dx, dy) for dx, dy in DIRECTIONS)
+    return Footprints((0, 0), holds, lying, steps, tuple(_squares_of_turn(body, lying, hold) for hold in holds))
 
 
 def quarter(offsets: Longs, count: int) -> Longs:
-    """Offsets (n, 2) after so many quarter turns about the middle of the square (0, 0)."""
+    """Return offsets (n, 2) after `count` quarter turns counter-clockwise about the middle of the square (0, 0)."""
     for _ in range(count % 4):
         offsets = np.column_stack([-offsets[:, 1], offsets[:, 0]])
     return offsets
 
 
-def _offsets(shape: Any) -> Longs:
-    """The squares that a shape covers as offsets (n, 2), in order."""
-    far = math.ceil(max(abs(v) for v in shape.bounds)) + 1
-    rows, columns = np.nonzero(squares(affinity.translate(shape, far, far), 2 * far, 2 * far))
-    offsets: Longs = np.column_stack([columns, rows]).astype(np.int64) - far
+def _covered_offsets(shape: Any) -> Longs:
+    """Return the squares that a shape covers as sorted offsets (n, 2)."""
+    reach = math.ceil(max(abs(v) for v in shape.bounds)) + 1
+    rows, columns = np.nonzero(squares(affinity.translate(shape, reach, reach), 2 * reach, 2 * reach))
+    offsets: Longs = np.column_stack([columns, rows]).astype(np.int64) - reach
     return offsets
 
 
-def _ring(lying: Longs, own: tuple[int, int] | None) -> Longs:
-    """The squares that touch the given ones, by an edge or a corner, and one more: offsets (n, 2), in order."""
+def _squares_about(lying: Longs, own_square: tuple[int, int] | None) -> Longs:
+    """Return the squares that touch the given ones by an edge or a corner, and `own_square`: sorted offsets (n, 2)."""
     covered = {(int(x), int(y)) for x, y in lying}
     about = {(x + dx, y + dy) for x, y in covered for dx, dy in DIRECTIONS} - covered
-    return np.array(sorted(about | ({own} if own else set())), dtype=np.int64).reshape(-1, 2)
+    return np.array(sorted(about | ({own_square} if own_square else set())), dtype=np.int64).reshape(-1, 2)
 
 
-def _step(near: Any, lying: Longs, dx: int, dy: int) -> Longs:
-    """The squares met by a push of one square."""
+def _squares_of_push(shape: Any, lying: Longs, dx: int, dy: int) -> Longs:
+    """Return the squares met by a push by (dx, dy), one square: offsets (n, 2)."""
     moved = lying + np.array([dx, dy])
     if dx == 0 or dy == 0:
         return np.unique(np.vstack([lying, moved]), axis=0)
-    return np.unique(np.vstack([lying, moved, _offsets(swept(near, dx, dy))]), axis=0)
+    return np.unique(np.vstack([lying, moved, _covered_offsets(swept_polygon(shape, dx, dy))]), axis=0)
 
 
-def swept(shape: Any, dx: float, dy: float) -> Any:
-    """The polygon that a shape sweeps in a push."""
+def swept_polygon(shape: Any, dx: float, dy: float) -> Any:
+    """Return the polygon that a shape sweeps in a push by (dx, dy) squares."""
     parts = [shape, affinity.translate(shape, dx, dy)]
     for (ax, ay), (bx, by) in pairwise(shape.exterior.coords):
         side = shapely.Polygon([(ax, ay), (bx, by), (bx + dx, by + dy), (ax + dx, ay + dy)])
@@ -95,43 +104,48 @@ def swept(shape: Any, dx: float, dy: float) -> Any:
     return shapely.union_all(parts)
 
 
-def _turn(body: ContactBody, lying: Longs, hold: Longs) -> Longs:
-    """The squares met by a quarter turn counter-clockwise about the middle of a square."""
+def _squares_of_turn(body: ContactBody, lying: Longs, hold: Longs) -> Longs:
+    """Return the squares met by a quarter turn counter-clockwise about the middle of square `hold`: offsets (n, 2)."""
     pivot = hold + 0.5
-    far = math.ceil(float(np.hypot(*(body.edges[:, :2] - pivot).T).max())) + 1
-    met = np.zeros((2 * far + 1, 2 * far + 1), np.bool_)
+    reach = math.ceil(float(np.hypot(*(body.edges[:, :2] - pivot).T).max())) + 1
+    met = np.zeros((2 * reach + 1, 2 * reach + 1), np.bool_)
     for known in (lying - hold, quarter(lying - hold, 1)):
-        met[known[:, 1] + far, known[:, 0] + far] = True
-    _meet(body.edges, body.edges, met, float(pivot[0]), float(pivot[1]), *UNIT)
+        met[known[:, 1] + reach, known[:, 0] + reach] = True
+    _mark_met(body.edges, body.edges, met, float(pivot[0]), float(pivot[1]), *UNIT_SQUARE_SURFACE)
     rows, columns = np.nonzero(met)
-    return np.column_stack([columns, rows]) - far + hold
+    return np.column_stack([columns, rows]) - reach + hold
 
 
-def _unit() -> tuple[Floats, Floats, Floats]:
-    """The edges, skin and chunks of the square (0, 0)."""
+def _unit_square_surface() -> tuple[Floats, Floats, Floats]:
+    """Return hull, skin and chunks of the square (0, 0), as in time_of_impact.Surface."""
     surface = Obstacles([shapely.box(0, 0, 1, 1)]).surface
     return surface.hull, surface.skin, surface.chunks
 
 
-UNIT = _unit()
+UNIT_SQUARE_SURFACE = _unit_square_surface()
 
 
 @compiled
-def _meet(
+def _mark_met(
     corners: Floats, body: Floats, met: Bools, cx: float, cy: float, hull: Floats, skin: Floats, chunks: Floats
 ) -> None:
-    """Mark the squares of a window about a place that a body runs into in a quarter turn about it."""
-    far = len(met) // 2
-    reach = 0.0
+    """Mark the squares of a window about (cx, cy) that a body runs into in a quarter turn about (cx, cy).
+
+    `met` : (2 window + 1, 2 window + 1) bool, its middle square the one about (cx, cy); squares already marked are
+        skipped.
+    `hull`, `skin`, `chunks` : of the square (0, 0).
+    """
+    window = len(met) // 2
+    squared_radius = 0.0
     for corner in corners:
-        reach = max(reach, (corner[0] - cx) ** 2 + (corner[1] - cy) ** 2)
+        squared_radius = max(squared_radius, (corner[0] - cx) ** 2 + (corner[1] - cy) ** 2)
     shifted, inner, box = hull.copy(), skin.copy(), chunks.copy()
-    for i in range(2 * far + 1):
-        for j in range(2 * far + 1):
-            u, v = max(abs(j - far) - 0.5, 0.0), max(abs(i - far) - 0.5, 0.0)
-            if met[i, j] or u * u + v * v >= reach:
+    for i in range(2 * window + 1):
+        for j in range(2 * window + 1):
+            u, v = max(abs(j - window) - 0.5, 0.0), max(abs(i - window) - 0.5, 0.0)
+            if met[i, j] or u * u + v * v >= squared_radius:
                 continue
-            dx, dy = cx - 0.5 + j - far, cy - 0.5 + i - far
+            dx, dy = cx - 0.5 + j - window, cy - 0.5 + i - window
             for k in range(4):
                 for n in range(4):
                     step = dx if n % 2 == 0 else dy
@@ -140,4 +154,4 @@ def _meet(
             for n in range(4):
                 box[0, 2 + n] = chunks[0, 2 + n] + (dx if n % 2 == 0 else dy)
             turn = math.pi / 2
-            met[i, j] = turn_through_skin(corners, body, shifted, inner, box, cx, cy, 1.0, turn)[1] != 0
+            met[i, j] = first_turn_skin_hit(corners, body, shifted, inner, box, cx, cy, 1.0, turn)[1] != 0

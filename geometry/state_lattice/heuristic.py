@@ -1,40 +1,49 @@
-"""What is left to be done at least, from every pose on the board: carrying with Utak's own body and walks left out.
+"""The least cost to go from every pose on the state lattice, without the robot's own body and its walks.
+
+It never exceeds the true cost: an admissible heuristic.
 
 # Strategy: Dijkstra's algorithm backwards from the goal, over poses and the direction in which the body is being pushed
-# (none: it lies), so that going on in the same direction is no new command. Costs are small whole numbers: a ring of
-# buckets holds the queue (geometry.kernels.bucket_queue).
+# (none while it lies), so that going on in the same direction is no new command. Costs are small whole numbers: a ring
+# of buckets holds the queue (kernels.bucket_queue).
 """
 
 import numpy as np
 
 from geometry.kernels.bucket_queue import new_queue, put, take
 from geometry.kernels.jit import compiled
-from geometry.state_lattice.lattice import COMMAND, Costs, StateLattice, turn_cost, turned_place
+from geometry.state_lattice.lattice import COMMAND, Costs, StateLattice, place_after_turn, turn_cost
 
-STILL = 8  # the direction of a body that lies
-NEVER = 2**30
-PUTS = 64  # entries for each pose: far more than come to be, and memory that is not touched costs nothing
+STILL = 8  # stands for the direction of a body that lies, in place of 0..7
+NEVER = 2**30  # above every cost to go
+QUEUE_ENTRIES_PER_POSE = 64  # bounds the queue: far more than occur, and memory that is not touched costs nothing
 
 
 @compiled
-def guess(board: StateLattice, ends: Costs, bend: int) -> Costs:
-    """The least cost left: (4, 9, squares), by quarter turn and direction of the push that is under way.
+def guess(lattice: StateLattice, end_costs: Costs, redirect_cost: int) -> Costs:
+    """Return the least cost to go from every pose, by quarter turn, direction of the push under way, and place.
 
-    ends : (4, squares) the price of ending at a pose, -1 where the goal is not met; below RING. bend : the price of
-    going on in another direction in the same push; COMMAND: that is another push.
-    NEVER where the goal cannot be reached; -1 where a body that lies would overlap something.
+    Parameters
+    ----------
+    lattice : the state lattice.
+    end_costs : (4, squares) cost of ending at a pose, -1 where the goal is not met; below bucket_queue.BUCKETS.
+    redirect_cost : cost of going on in another direction in the same push; COMMAND stands for starting another push.
+
+    Returns
+    -------
+    (4, 9, squares) int32, direction STILL for a body that lies. NEVER where the goal cannot be reached; -1 where a body
+    that lies would overlap something.
     """
-    squares = ends.shape[1]
-    left = np.full((4, 9, squares), NEVER, np.int32)
-    size = PUTS * 4 * squares
+    squares = end_costs.shape[1]
+    remaining = np.full((4, 9, squares), NEVER, np.int32)
+    size = QUEUE_ENTRIES_PER_POSE * 4 * squares
     queue = new_queue(size)
     for k in range(4):
         for p in range(squares):
-            if not board.lies[k, p]:
-                left[k, STILL, p] = -1
-            elif ends[k, p] >= 0:
-                left[k, STILL, p] = ends[k, p]
-                put(queue, ends[k, p], (p << 8) + (STILL << 4) + k)
+            if not lattice.lies[k, p]:
+                remaining[k, STILL, p] = -1
+            elif end_costs[k, p] >= 0:
+                remaining[k, STILL, p] = end_costs[k, p]
+                put(queue, end_costs[k, p], (p << 8) + (STILL << 4) + k)
     now = 0
     while queue.used[1] > 0:
         node = take(queue, now)
@@ -42,58 +51,64 @@ def guess(board: StateLattice, ends: Costs, bend: int) -> Costs:
             now += 1
             continue
         p, m, k = node >> 8, (node >> 4) & 15, node & 15
-        if left[k, m, p] != now:
+        if remaining[k, m, p] != now:
             continue
         if m < STILL:
             for d in range(8):
-                if bend < COMMAND and now + bend < left[k, d, p]:
-                    left[k, d, p] = now + bend
-                    put(queue, now + bend, (p << 8) + (d << 4) + k)
-            _back(board, left, queue, k, m, p, now)
+                if redirect_cost < COMMAND and now + redirect_cost < remaining[k, d, p]:
+                    remaining[k, d, p] = now + redirect_cost
+                    put(queue, now + redirect_cost, (p << 8) + (d << 4) + k)
+            _relax_push_step(lattice, remaining, queue, k, m, p, now)
             continue
         for d in range(8):
-            if now < left[k, d, p]:
-                left[k, d, p] = now
-                _back(board, left, queue, k, d, p, now)
-        _turn_back(board, left, queue, k, p, now + board.turn)
-    return left
+            if now < remaining[k, d, p]:
+                remaining[k, d, p] = now
+                _relax_push_step(lattice, remaining, queue, k, d, p, now)
+        _relax_turns(lattice, remaining, queue, k, p, now + lattice.turn_price)
+    return remaining
 
 
 @compiled
-def _turn_back(board, left, queue, k, p, then):  # type: ignore[no-untyped-def]
-    """Go back over the turns that end at a pose, about every hold."""
-    for hold in range(len(board.grip)):
-        if board.grip[hold] < 0 or board.solid[p + board.holds[k, hold]]:
+def _relax_turns(lattice, remaining, queue, k, p, cost_before):  # type: ignore[no-untyped-def]
+    """Relax backwards the quarter and half turns, about every hold, that end at a pose.
+
+    `k`, `p` : quarter turn and place of the pose. `cost_before` : its cost plus that of a turn.
+    """
+    for hold in range(len(lattice.grasp_cost)):
+        if lattice.grasp_cost[hold] < 0 or lattice.solid[p + lattice.holds[k, hold]]:
             continue
-        for way in (1, -1):
-            p1, p2 = turned_place(board, hold, k, p, way), turned_place(board, hold, k, p, 2 * way)
-            k1, k2 = (k + way) % 4, (k + 2) % 4
-            if then >= left[k1, STILL, p1] and then >= left[k2, STILL, p2]:
+        for sense in (1, -1):
+            p1, p2 = place_after_turn(lattice, hold, k, p, sense), place_after_turn(lattice, hold, k, p, 2 * sense)
+            k1, k2 = (k + sense) % 4, (k + 2) % 4
+            if cost_before >= remaining[k1, STILL, p1] and cost_before >= remaining[k2, STILL, p2]:
                 continue
-            extra = turn_cost(board, hold, k, p, way)
+            extra = turn_cost(lattice, hold, k, p, sense)
             if extra < 0:
                 continue
-            if then + extra < left[k1, STILL, p1]:
-                left[k1, STILL, p1] = then + extra
-                put(queue, then + extra, (p1 << 8) + (STILL << 4) + k1)
-            if then + extra < left[k2, STILL, p2]:
-                more = turn_cost(board, hold, k1, p1, way)
-                if more >= 0 and then + max(extra, more) < left[k2, STILL, p2]:
-                    left[k2, STILL, p2] = then + max(extra, more)
-                    put(queue, then + max(extra, more), (p2 << 8) + (STILL << 4) + k2)
+            if cost_before + extra < remaining[k1, STILL, p1]:
+                remaining[k1, STILL, p1] = cost_before + extra
+                put(queue, cost_before + extra, (p1 << 8) + (STILL << 4) + k1)
+            if cost_before + extra < remaining[k2, STILL, p2]:
+                more = turn_cost(lattice, hold, k1, p1, sense)
+                if more >= 0 and cost_before + max(extra, more) < remaining[k2, STILL, p2]:
+                    remaining[k2, STILL, p2] = cost_before + max(extra, more)
+                    put(queue, cost_before + max(extra, more), (p2 << 8) + (STILL << 4) + k2)
 
 
 @compiled
-def _back(board, left, queue, k, m, p, now):  # type: ignore[no-untyped-def]
-    """Go back a step of a push: to the same push under way, and to where it began."""
-    before = p - board.steps[m]
-    price = board.push[k, m, before]
+def _relax_push_step(lattice, remaining, queue, k, m, p, now):  # type: ignore[no-untyped-def]
+    """Relax backwards one step of a push: to the same push under way, and to where it began.
+
+    `k`, `m`, `p` : quarter turn, direction and place after the step. `now` : the cost there.
+    """
+    place_before = p - lattice.steps[m]
+    price = lattice.push_cost[k, m, place_before]
     if price == 0:
         return
-    then = now + price
-    if then < left[k, m, before]:
-        left[k, m, before] = then
-        put(queue, then, (before << 8) + (m << 4) + k)
-    if then + COMMAND < left[k, STILL, before]:
-        left[k, STILL, before] = then + COMMAND
-        put(queue, then + COMMAND, (before << 8) + (STILL << 4) + k)
+    cost_before = now + price
+    if cost_before < remaining[k, m, place_before]:
+        remaining[k, m, place_before] = cost_before
+        put(queue, cost_before, (place_before << 8) + (m << 4) + k)
+    if cost_before + COMMAND < remaining[k, STILL, place_before]:
+        remaining[k, STILL, place_before] = cost_before + COMMAND
+        put(queue, cost_before + COMMAND, (place_before << 8) + (STILL << 4) + k)

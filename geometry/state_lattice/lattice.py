@@ -1,8 +1,7 @@
-"""The squares on which something is carried: where it can lie, what each push costs, and where Utak can walk.
+"""The state lattice of a body among squares: where it can lie, what each push costs, and where the robot can walk.
 
-A pose on the board is a quarter turn 0..3 and a place, the square of the body's centroid. Squares are counted row by
+A pose on the lattice is a quarter turn 0..3 and a place, the square of the body's centroid. Squares are numbered row by
 row on a table that is padded all round with solid squares, so that no step or turn leads out of the arrays.
-Costs are whole numbers: COMMAND for a command, SIDE and DIAGONAL for the squares travelled.
 """
 
 from typing import NamedTuple
@@ -15,15 +14,16 @@ from geometry.kernels.jit import compiled
 from geometry.state_lattice.footprints import DIRECTIONS, Footprints, quarter
 
 Costs = npt.NDArray[np.int32]
-COMMAND = 500
-SIDE, DIAGONAL = 5, 7
-TIGHT_PUSH, TIGHT_TURN = 25, 600  # a square pushed, a turn made with less than the margin wished for
-WALK = COMMAND // 12  # a square walked
-REGRASP = 2 * COMMAND  # to let go and take again, without the walk between
-AWKWARD = COMMAND // 5  # a grasp of a square that is reached over a corner only
+# Costs are whole numbers. COMMAND is a convention, the others are tuned on random worlds (benchmarks.campaign).
+COMMAND = 500  # one command: a push or a turn
+PUSH_SIDE_COST, PUSH_DIAGONAL_COST = 5, 7  # a push by one square; 7 / 5 approximates sqrt(2)
+TIGHT_PUSH_COST, TIGHT_TURN_COST = 25, 600  # added to a push by one square, and to a turn, with less than the margin
+WALK_COST = COMMAND // 12  # a square walked
+REGRASP = 2 * COMMAND  # letting go and grasping again, without the walk between
+AWKWARD = COMMAND // 5  # added to a grasp across a corner of the robot's square
 
 
-class Lists(NamedTuple):
+class OffsetLists(NamedTuple):
     """Lists of numbers one after another: list n is items[first[n] : first[n + 1]]."""
 
     items: Longs
@@ -33,34 +33,46 @@ class Lists(NamedTuple):
 class StateLattice(NamedTuple):
     """All that the search asks of table and body, in arrays for numba. Offsets are differences of square numbers.
 
-    solid, walk : (squares,) what stops a body; where Utak may walk when nothing is in his way.
-    holds : (4, n) the offset of each hold from the body's place, by quarter turn. grip : (n,) the price of a grasp
-    there, -1 where it is not to be used.
-    push : (4, 8, squares) the price of a push by one square, 0 when it is blocked. utak : (8, squares) whether he can
-    make the step himself. lies : (4, squares) whether the body can lie at a place.
-    image : by quarter turn, the squares of the body. turns : by hold * 4 + quarter turn, those that it meets in a turn
-    counter-clockwise about the hold. wide : the same of the body with its margin.
-    allowed : (4, n, 8) whether one may push in a direction from a hold.
-    steps : (8,) the offset of each direction. turn : the price of a turn where there is room for it.
+    Attributes
+    ----------
+    solid : (squares,) whether a square stops the body.
+    walkable : (squares,) whether the robot may walk there while the body is not in its way.
+    holds : (4, n) by quarter turn, the offset of each hold from the body's place.
+    grasp_cost : (n,) cost of a grasp at each hold; -1 where the hold is not to be used.
+    push_cost : (4, 8, squares) by quarter turn and direction, the cost of a push by one square; 0 where it is blocked.
+    robot_can_step : (8, squares) whether the robot itself can make the step.
+    lies : (4, squares) whether the body can lie at a place.
+    covered : by quarter turn, the squares of the body.
+    turns : by hold * 4 + quarter turn, the squares that the body meets in a turn counter-clockwise about the hold.
+    wide : the same for the body with its margin.
+    push_allowed : (4, n, 8) whether the robot may push in a direction from a hold.
+    steps : (8,) the offset of each direction.
+    turn_price : cost of a turn where there is room for it.
     """
 
     solid: Bools
-    walk: Bools
+    walkable: Bools
     holds: Longs
-    grip: Costs
-    push: Costs
-    utak: Bools
+    grasp_cost: Costs
+    push_cost: Costs
+    robot_can_step: Bools
     lies: Bools
-    image: Lists
-    turns: Lists
-    wide: Lists
-    allowed: Bools
+    covered: OffsetLists
+    turns: OffsetLists
+    wide: OffsetLists
+    push_allowed: Bools
     steps: Longs
-    turn: int
+    turn_price: int
 
 
 class Grid(NamedTuple):
-    """How the squares of a table of columns x rows are counted: padded by `pad` all round, row by row."""
+    """The numbering of the squares of a table: padded by `pad` squares all round, row by row.
+
+    Attributes
+    ----------
+    columns, rows : size of the table in squares.
+    pad : width of the padding in squares.
+    """
 
     columns: int
     rows: int
@@ -68,92 +80,112 @@ class Grid(NamedTuple):
 
     @property
     def stride(self) -> int:
-        """How many squares there are in a padded row."""
+        """Return the number of squares in a padded row."""
         return self.columns + 2 * self.pad
 
     def number(self, column: int, row: int) -> int:
-        """The number of a square."""
+        """Return the number of a square."""
         return (row + self.pad) * self.stride + column + self.pad
 
     def square(self, number: int) -> tuple[int, int]:
-        """The (column, row) of a number."""
+        """Return the (column, row) of a square's number."""
         return number % self.stride - self.pad, number // self.stride - self.pad
 
     def padded(self, squares: Bools, value: bool) -> Bools:
-        """A (rows, columns) array as (squares,)."""
+        """Return a (rows, columns) array as (squares,), with `value` in the padding."""
         return np.pad(squares, self.pad, constant_values=value).ravel()
 
     def offsets(self, offsets: Longs) -> Longs:
-        """Offsets (n, 2) of columns and rows as differences of numbers."""
+        """Return offsets (n, 2) of columns and rows as differences of square numbers (n,)."""
         flat: Longs = offsets[:, 1] * self.stride + offsets[:, 0]
         return flat
 
-    def places(self) -> Longs:
-        """The numbers of all squares of the table."""
+    def table_squares(self) -> Longs:
+        """Return the numbers of all squares of the table, without the padding."""
         row, column = np.divmod(np.arange(self.rows * self.columns), self.columns)
         return (row + self.pad) * self.stride + column + self.pad
 
     def clear(self, solid: Bools, offsets: Longs) -> Bools:
-        """At which squares of the table none of the offsets (n, 2) is solid: (squares,), False off the table."""
-        return _clear(solid, self.places(), self.offsets(offsets))
+        """Return at which squares of the table none of the offsets (n, 2) is solid: (squares,), False off the table."""
+        return _mark_clear(solid, self.table_squares(), self.offsets(offsets))
 
 
 def new_grid(free: Bools, body: Footprints, wide: Footprints) -> Grid:
-    """A grid padded widely enough for every step and turn of a body."""
+    """Return a grid for a table of free squares (rows, columns), padded enough for every step and turn of a body."""
     reach = max(int(np.abs(part).max()) for part in (*body.turns, *wide.turns, *wide.steps))
     return Grid(free.shape[1], free.shape[0], max(reach, 2 * int(np.abs(body.holds).max())) + 2)
 
 
 def new_board(
-    grid: Grid, free: Bools, walk: Bools, body: Footprints, wide: Footprints, grip: Costs, allowed: Bools, turn: int
+    grid: Grid,
+    free: Bools,
+    walkable: Bools,
+    body: Footprints,
+    wide: Footprints,
+    grasp_cost: Costs,
+    push_allowed: Bools,
+    turn_price: int,
 ) -> StateLattice:
-    """The board of free squares (rows, columns) for a body, and for the same body with its margin."""
+    """Return the state lattice of a body on a table.
+
+    Parameters
+    ----------
+    grid : the numbering of squares.
+    free : (rows, columns) squares that do not stop the body. walkable : (rows, columns) where the robot may walk.
+    body : footprints of the body. wide : those of the body with its margin, or the same object without a margin.
+    grasp_cost, push_allowed, turn_price : as in StateLattice.
+    """
     solid = grid.padded(~free, True)
-    places, quarters = grid.places(), [quarter(body.lying, k) for k in range(4)]
-    push = _pushes(solid, places, _stepped(grid, body), _stepped(grid, wide), wide is not body)
-    image, turns = _listed([grid.offsets(lying) for lying in quarters]), _turned(grid, body)
+    table_squares, quarters = grid.table_squares(), [quarter(body.lying, k) for k in range(4)]
+    push_cost = _push_costs(
+        solid, table_squares, _push_footprints(grid, body), _push_footprints(grid, wide), wide is not body
+    )
+    covered, turns = _joined([grid.offsets(lying) for lying in quarters]), _turn_footprints(grid, body)
     return StateLattice(
         solid,
-        grid.padded(walk, False),
+        grid.padded(walkable, False),
         np.array([grid.offsets(quarter(body.holds, k)) for k in range(4)]),
-        grip,
-        push,
-        np.array([_clear(solid, places, grid.offsets(_corner(dx, dy))) for dx, dy in DIRECTIONS]),
-        np.array([_clear(solid, places, grid.offsets(lying)) for lying in quarters]),
-        image,
+        grasp_cost,
+        push_cost,
+        np.array(
+            [_mark_clear(solid, table_squares, grid.offsets(_squares_of_robot_step(dx, dy))) for dx, dy in DIRECTIONS]
+        ),
+        np.array([_mark_clear(solid, table_squares, grid.offsets(lying)) for lying in quarters]),
+        covered,
         turns,
-        turns if wide is body else _turned(grid, wide),
-        allowed,
+        turns if wide is body else _turn_footprints(grid, wide),
+        push_allowed,
         grid.offsets(np.array(DIRECTIONS)),
-        turn,
+        turn_price,
     )
 
 
-def _stepped(grid: Grid, body: Footprints) -> Lists:
-    """The squares met by a push, by quarter turn * 8 + direction."""
-    return _listed([grid.offsets(quarter(body.steps[(d - 2 * k) % 8], k)) for k in range(4) for d in range(8)])
+def _push_footprints(grid: Grid, body: Footprints) -> OffsetLists:
+    """Return the squares met by a push of one square, by quarter turn * 8 + direction."""
+    return _joined([grid.offsets(quarter(body.steps[(d - 2 * k) % 8], k)) for k in range(4) for d in range(8)])
 
 
-def _turned(grid: Grid, body: Footprints) -> Lists:
-    """The squares met by a quarter turn counter-clockwise, by hold * 4 + quarter turn."""
-    return _listed([grid.offsets(quarter(turn, k)) for turn in body.turns for k in range(4)])
+def _turn_footprints(grid: Grid, body: Footprints) -> OffsetLists:
+    """Return the squares met by a quarter turn counter-clockwise, by hold * 4 + quarter turn."""
+    return _joined([grid.offsets(quarter(turn, k)) for turn in body.turns for k in range(4)])
 
 
-def _corner(dx: int, dy: int) -> Longs:
-    """The squares that must be free for Utak to take a step: his own and the next, both sides of a diagonal too."""
+def _squares_of_robot_step(dx: int, dy: int) -> Longs:
+    """Return the squares that must be free for a robot's step: its own, the next, and both beside a diagonal step."""
     return np.array(sorted({(0, 0), (dx, 0), (0, dy), (dx, dy)}), dtype=np.int64)
 
 
-def _listed(lists: list[Longs]) -> Lists:
-    """Lists one after another."""
+def _joined(lists: list[Longs]) -> OffsetLists:
+    """Return lists as one OffsetLists."""
     first = np.concatenate([[0], np.cumsum([len(each) for each in lists])]).astype(np.int64)
-    return Lists(np.concatenate([np.empty(0, np.int64), *lists]), first)
+    return OffsetLists(np.concatenate([np.empty(0, np.int64), *lists]), first)
 
 
 @compiled
-def _clear(solid: Bools, places: Longs, offsets: Longs) -> Bools:
+def _mark_clear(solid: Bools, table_squares: Longs, offsets: Longs) -> Bools:
+    """Return at which of the places none of the offsets is solid: (squares,) bool, False elsewhere."""
     clear = np.zeros(len(solid), np.bool_)
-    for place in places:
+    for place in table_squares:
         clear[place] = True
         for offset in offsets:
             if solid[place + offset]:
@@ -163,41 +195,49 @@ def _clear(solid: Bools, places: Longs, offsets: Longs) -> Bools:
 
 
 @compiled
-def _pushes(solid: Bools, places: Longs, body: Lists, wide: Lists, with_margin: bool) -> Costs:
-    """The prices of StateLattice.push."""
-    push = np.zeros((4, 8, len(solid)), np.int32)
+def _push_costs(solid: Bools, table_squares: Longs, body: OffsetLists, wide: OffsetLists, with_margin: bool) -> Costs:
+    """Return StateLattice.push_cost."""
+    push_cost = np.zeros((4, 8, len(solid)), np.int32)
     for k in range(4):
         for d in range(8):
-            for place in places:
-                if _fits(solid, body, k * 8 + d, place):
-                    tight = with_margin and not _fits(solid, wide, k * 8 + d, place)
-                    push[k, d, place] = (SIDE if d % 2 == 0 else DIAGONAL) + (TIGHT_PUSH if tight else 0)
-    return push
+            for place in table_squares:
+                if _is_clear(solid, body, k * 8 + d, place):
+                    tight = with_margin and not _is_clear(solid, wide, k * 8 + d, place)
+                    push_cost[k, d, place] = (PUSH_SIDE_COST if d % 2 == 0 else PUSH_DIAGONAL_COST) + (
+                        TIGHT_PUSH_COST if tight else 0
+                    )
+    return push_cost
 
 
 @compiled
-def turned_place(board: StateLattice, hold: int, quarters: int, place: int, way: int) -> int:
-    """Where the body's centroid comes to in so many quarter turns about a hold, counter-clockwise positive."""
-    return int(place + board.holds[quarters, hold] - board.holds[(quarters + way) % 4, hold])
+def place_after_turn(lattice: StateLattice, hold: int, quarters: int, place: int, quarters_turned: int) -> int:
+    """Return the place of the body after a turn about a hold.
+
+    `quarters` : the body's quarter turn before. `quarters_turned` : quarter turns made, counter-clockwise positive.
+    """
+    return int(place + lattice.holds[quarters, hold] - lattice.holds[(quarters + quarters_turned) % 4, hold])
 
 
 @compiled
-def turn_cost(board: StateLattice, hold: int, quarters: int, place: int, way: int) -> int:
-    """The cost of a quarter turn (way 1 or -1) about a hold without the command itself, -1 when it is blocked."""
-    if way < 0:
-        place = turned_place(board, hold, quarters, place, way)
+def turn_cost(lattice: StateLattice, hold: int, quarters: int, place: int, quarters_turned: int) -> int:
+    """Return the cost of a quarter turn about a hold in addition to the price of every turn; -1 if it is blocked.
+
+    `quarters`, `place` : the pose before. `quarters_turned` : 1 for counter-clockwise, -1 for clockwise.
+    """
+    if quarters_turned < 0:
+        place = place_after_turn(lattice, hold, quarters, place, quarters_turned)
         quarters = (quarters + 3) % 4
-    if not board.lies[quarters, place]:
+    if not lattice.lies[quarters, place]:
         return -1
     which = hold * 4 + quarters
-    if not _fits(board.solid, board.turns, which, place):
+    if not _is_clear(lattice.solid, lattice.turns, which, place):
         return -1
-    return 0 if _fits(board.solid, board.wide, which, place) else TIGHT_TURN
+    return 0 if _is_clear(lattice.solid, lattice.wide, which, place) else TIGHT_TURN_COST
 
 
 @compiled
-def _fits(solid: Bools, lists: Lists, which: int, place: int) -> bool:
-    """Whether none of the offsets in a list, seen from a place, is solid."""
+def _is_clear(solid: Bools, lists: OffsetLists, which: int, place: int) -> bool:
+    """Return whether none of the offsets in list `which`, seen from a place, is solid."""
     for n in range(lists.first[which], lists.first[which + 1]):  # noqa: SIM110 (numba)
         if solid[place + lists.items[n]]:
             return False

@@ -1,4 +1,4 @@
-"""What may stand as an argument of a fact: small checks of one term, each with its own complaint and hint."""
+"""Argument types of facts: the check of one term, with the complaint and the hint for a term that does not fit."""
 
 import re
 from collections.abc import Callable, Iterable
@@ -9,17 +9,28 @@ from kb.language.terms import Number, Symbol, Term, Text
 
 
 class Complaint(NamedTuple):
-    """Why a term cannot stand where it does."""
+    """The reason why a term does not fit its argument.
+
+    Attributes
+    ----------
+    span : the place of the term in its source.
+    what : the error message, without its place.
+    hint : a remedy, or '' for none.
+    """
 
     span: Span
     what: str
     hint: str = ""
 
 
-class Slot(NamedTuple):
-    """One place among a fact's arguments: how the vocabulary names it, and the check of what stands there.
+class ArgumentType(NamedTuple):
+    """The type of one argument of a predicate.
 
-    limits : the least and the greatest number that may stand there; None where no number does.
+    Attributes
+    ----------
+    name : the name of the argument in messages and in the vocabulary.
+    check : returns the complaint about a term, or None when the term fits.
+    limits : (least, greatest) integer that fits; None when integers do not fit.
     """
 
     name: str
@@ -27,72 +38,80 @@ class Slot(NamedTuple):
     limits: tuple[int, int] | None = None
 
 
-def short(term: Term) -> str:
-    """A term as a message shows it."""
+def abbreviated(term: Term) -> str:
+    """Return a term as text of at most 40 characters, for messages."""
     text = str(term)
     return text if len(text) <= 40 else f"{text[:37]}..."
 
 
-def whole(name: str, low: int, high: int) -> Slot:
-    """An integer from `low` to `high`."""
+def integer_argument(name: str, low: int, high: int) -> ArgumentType:
+    """Return the type of integers from `low` to `high`, both included."""
 
     def check(term: Term) -> Complaint | None:
         if not isinstance(term, Number):
-            return Complaint(term.span, f"{name} must be an integer, not {short(term)}")
+            return Complaint(term.span, f"{name} must be an integer, not {abbreviated(term)}")
         if not low <= term.value <= high:
             return Complaint(term.span, f"{name} must be from {low} to {high}, not {term.value}")
         return None
 
-    return Slot(name, check, (low, high))
+    return ArgumentType(name, check, (low, high))
 
 
-def word(name: str, known: Iterable[str]) -> Slot:
-    """One of a few words."""
+def word_argument(name: str, known: Iterable[str]) -> ArgumentType:
+    """Return the type of the names in `known`: no other name fits."""
     words = tuple(known)
 
     def check(term: Term) -> Complaint | None:
         if isinstance(term, Symbol) and not term.args and term.name in words:
             return None
         hint = did_you_mean(str(term).strip('"').lower(), words) or f"one of {', '.join(words)}"
-        return Complaint(term.span, f"unknown {name} {short(term)}", hint)
+        return Complaint(term.span, f"unknown {name} {abbreviated(term)}", hint)
 
-    return Slot(name, check)
+    return ArgumentType(name, check)
 
 
-def _name(term: Term) -> Complaint | None:
+def _check_name(term: Term) -> Complaint | None:
+    """Return a complaint unless the term is a name without arguments."""
     if isinstance(term, Symbol) and not term.args:
         return None
     hint = f"write {term.value.lower()} without quotes" if isinstance(term, Text) and term.value.isidentifier() else ""
-    return Complaint(term.span, f"a name was expected, not {short(term)}", hint)
+    return Complaint(term.span, f"a name was expected, not {abbreviated(term)}", hint)
 
 
-def _colour(term: Term) -> Complaint | None:
+def _check_colour(term: Term) -> Complaint | None:
+    """Return a complaint unless the term is one lower-case letter."""
     if isinstance(term, Symbol) and not term.args and len(term.name) == 1 and term.name.isalpha():
         return None
-    return Complaint(term.span, f"a colour is a single lower-case letter, not {short(term)}")
+    return Complaint(term.span, f"a colour is a single lower-case letter, not {abbreviated(term)}")
 
 
-def named(name: str, pattern: str, such_as: str) -> Slot:
-    """A name of the robot's own making, such as o1. pattern : of such names, as a regular expression."""
+def pattern_argument(name: str, pattern: str, such_as: str) -> ArgumentType:
+    """Return the type of the names that match a regular expression, such as o1 for `o[0-9]+`.
+
+    name : the name of the argument in messages. such_as : an example of a valid name, for the hint.
+    """
     form = re.compile(pattern)
 
     def check(term: Term) -> Complaint | None:
         if isinstance(term, Symbol) and not term.args and form.fullmatch(term.name):
             return None
-        return Complaint(term.span, f"unknown {name} {short(term)}", f"such as {such_as}")
+        return Complaint(term.span, f"unknown {name} {abbreviated(term)}", f"such as {such_as}")
 
-    return Slot(name, check)
+    return ArgumentType(name, check)
 
 
-def shape_text(name: str, *kinds: str) -> Slot:
-    """A shape as quoted text, of one of the kinds given (POINT, LINESTRING, POLYGON, MULTIPOLYGON)."""
+def wkt_argument(name: str, *kinds: str) -> ArgumentType:
+    """Return the type of quoted shapes in well-known text.
+
+    kinds : the kinds of shapes that fit, of POINT, LINESTRING, POLYGON and MULTIPOLYGON.
+    """
 
     def check(term: Term) -> Complaint | None:
         from kb.language.wkt import WktError, parse_wkt
 
         if not isinstance(term, Text):
             return Complaint(
-                term.span, f"{name} must be a quoted text, not {short(term)}", f'such as "{kinds[0]} (...)"'
+                term.span, f"{name} must be a quoted text, not {abbreviated(term)}", f'such as "{kinds[0]} (...)"'
             )
         try:
             parse_wkt(term.value, kinds)
@@ -103,8 +122,8 @@ def shape_text(name: str, *kinds: str) -> Slot:
             return Complaint(span, f"{name}: {error.what}")
         return None
 
-    return Slot(name, check)
+    return ArgumentType(name, check)
 
 
-NAME = Slot("name", _name)
-COLOUR = Slot("colour", _colour)
+NAME_ARGUMENT = ArgumentType("name", _check_name)
+COLOUR_ARGUMENT = ArgumentType("colour", _check_colour)

@@ -1,15 +1,22 @@
-"""What is wrong with a file that the user wrote: where, what, and how to put it right."""
+"""Problems in files that the user wrote: the place, the message and a hint."""
 
 from collections.abc import Iterable
 from typing import NamedTuple
 
-AT_MOST = 20  # problems shown in one go
-ENOUGH = 100  # problems of one file after which no more are looked for
-WIDTH = 120  # characters of a source line that are shown
+MAX_PROBLEMS_SHOWN = 20  # problems printed at once (docs/files.md)
+MAX_PROBLEMS_PER_FILE = 100  # the search for more problems in a file ends here; a convention
+MAX_SOURCE_LINE_WIDTH = 120  # characters of a source line that a message shows; a convention
 
 
 class Span(NamedTuple):
-    """A stretch of one source line; lines and columns count from 1 in characters, `end` is the last column."""
+    """A range of columns on one line of a source; lines and columns count from 1, in characters.
+
+    Attributes
+    ----------
+    line : the line.
+    start : the first column.
+    end : the last column, which belongs to the range.
+    """
 
     line: int
     start: int
@@ -17,7 +24,16 @@ class Span(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """One thing wrong: the file as the user named it, where, what, the source line, and a hint or ''."""
+    """One error in a user's file.
+
+    Attributes
+    ----------
+    file : the file's name as the user gave it.
+    span : the place of the error.
+    what : the error message, without its place.
+    source : the text of the line at `span`; '' when it is not shown.
+    hint : a remedy, or '' for none.
+    """
 
     file: str
     span: Span
@@ -26,7 +42,7 @@ class Problem(NamedTuple):
     hint: str = ""
 
     def __str__(self) -> str:
-        """Return `file:line:col-col: error: what`, the source line, a caret and the hint."""
+        """Return `file:line:col-col: error: what`, then the source line, a caret and the hint."""
         line, start, end = self.span
         text = [f"{self.file}:{line}:{start}-{end}: error: {self.what}"]
         if self.source:
@@ -39,32 +55,53 @@ class Problem(NamedTuple):
 
 
 class BadInputError(Exception):
-    """A file of the user's is not as it must be; carries every problem found, in the order of the files."""
+    """A user's file has errors.
+
+    Attributes
+    ----------
+    problems : all problems found, in the order of the files.
+    """
 
     def __init__(self, problems: Iterable[Problem]) -> None:
         self.problems = tuple(problems)
-        super().__init__(render(self.problems))
+        super().__init__(format_problems(self.problems))
 
 
 class CannotOpenError(Exception):
-    """A file of the user's cannot be opened or read at all."""
+    """A user's file cannot be opened or read.
+
+    Attributes
+    ----------
+    path : the file's name as the user gave it.
+    why : the reason.
+    """
 
     def __init__(self, path: str, why: str) -> None:
         self.path, self.why = path, why
         super().__init__(f"{path}: cannot open: {why}")
 
 
-def render(problems: Iterable[Problem]) -> str:
-    """Return the first 20 problems as text, and whether there are more."""
+def format_problems(problems: Iterable[Problem]) -> str:
+    """Return the first `MAX_PROBLEMS_SHOWN` problems as text, and a last line when there are more."""
     every = list(problems)
-    text = [str(problem) for problem in every[:AT_MOST]]
-    if len(every) > AT_MOST:
+    text = [str(problem) for problem in every[:MAX_PROBLEMS_SHOWN]]
+    if len(every) > MAX_PROBLEMS_SHOWN:
         text.append("... and more")
     return "\n".join(text)
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return a hint that names the known word most like `word`, or '' when none is like it."""
+    """Return the hint "did you mean X?" for the word X of `known` most similar to `word`.
+
+    Parameters
+    ----------
+    word : the misspelt word; only its first 80 characters are compared.
+    known : the valid words.
+
+    Returns
+    -------
+    The hint; '' when no valid word is similar (a difflib ratio below 0.6).
+    """
     import difflib  # only when something is misspelt
 
     near = difflib.get_close_matches(word[:80], sorted(known), n=1, cutoff=0.6)
@@ -74,5 +111,5 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 def _window(source: str, start: int) -> tuple[str, int]:
     """Return the part of a long line around column `start`, and how many characters were cut off on its left."""
     clean = "".join(c if " " <= c <= "~" else " " if c == "\t" else "?" for c in source)
-    left = 0 if len(clean) <= WIDTH else max(0, start - 1 - WIDTH // 3)
-    return clean[left : left + WIDTH], left
+    left = 0 if len(clean) <= MAX_SOURCE_LINE_WIDTH else max(0, start - 1 - MAX_SOURCE_LINE_WIDTH // 3)
+    return clean[left : left + MAX_SOURCE_LINE_WIDTH], left

@@ -1,38 +1,51 @@
-"""Integers in texts that clingo is to read: it wraps any to 32 bits in silence, so they are checked before."""
+"""The check for integers beyond 32 bits in texts that clingo will read.
+
+clingo's integers have 32 bits, and it wraps greater ones without a message. So all integers are checked before.
+"""
 
 import re
 from collections.abc import Iterator
 
 from kb.language.diagnostics import Problem, Span
 from kb.language.source_text import Source
-from kb.language.tokens import tokens
+from kb.language.tokens import tokenize
 
-LOW, HIGH = -(2**31), 2**31 - 1
-BASES = {"0x": 16, "0o": 8, "0b": 2}
-LITERAL = re.compile(r"0x[0-9A-Fa-f]+|0o[0-7]+|0b[01]+|[0-9]+")
-BEFORE_A_TERM = frozenset("(,;=<>+*/\\&?^|{:[@") | {"<=", ">=", "!=", "..", "**", ":-", ":~", "not", "#count"}
-LONGEST = 40  # digits of a number that are worked out
+MIN_INT32, MAX_INT32 = -(2**31), 2**31 - 1  # the range of clingo's integers
+INTEGER_BASES = {"0x": 16, "0o": 8, "0b": 2}  # by the prefix of a literal of gringo's language
+INTEGER_LITERAL = re.compile(r"0x[0-9A-Fa-f]+|0o[0-7]+|0b[01]+|[0-9]+")
+# A minus sign after one of these tokens, or after a directive, is a sign and no subtraction.
+TOKENS_BEFORE_A_TERM = frozenset("(,;=<>+*/\\&?^|{:[@") | {"<=", ">=", "!=", "..", "**", ":-", ":~", "not", "#count"}
+MAX_DIGITS_CONVERTED = 40  # a literal with more digits is beyond 32 bits in every base; its value is not computed
 
 
-def wide_integers(source: Source) -> Iterator[Problem]:
-    """Yield a problem for each integer of a program's text that has more than 32 bits, wherever it stands.
+def integers_beyond_32_bits(source: Source) -> Iterator[Problem]:
+    """Yield a problem for each integer of a program's text that does not fit in 32 bits.
 
-    Those in texts and comments are none. -2147483648 is one where its sign belongs to it.
+    Integers in strings and comments are ignored. 2147483648 is accepted only after a minus sign that negates it.
+
+    Parameters
+    ----------
+    source : the text of a logic program or a query.
+
+    Yields
+    ------
+    One problem an integer, in the order of the text.
     """
     ahead, before = "(", "("
-    for token in tokens(source, []):
+    for token in tokenize(source, []):
         if token.kind == "number":
             line = source.lines[token.span.line - 1]
-            match = LITERAL.match(line, token.span.start - 1)
+            match = INTEGER_LITERAL.match(line, token.span.start - 1)
             assert match is not None
-            lowest = before == "-" and (ahead in BEFORE_A_TERM or ahead.startswith("#"))
-            if _magnitude(match.group()) > HIGH + lowest:
+            lowest = before == "-" and (ahead in TOKENS_BEFORE_A_TERM or ahead.startswith("#"))
+            if _magnitude(match.group()) > MAX_INT32 + lowest:
                 span = Span(token.span.line, token.span.start, match.end())
                 yield source.problem(span, "a number beyond 32 bits", "-2147483648 .. 2147483647")
         ahead, before = before, token.text
 
 
 def _magnitude(text: str) -> int:
-    base = BASES.get(text[:2], 10)
+    """Return the value of an integer literal, or any value beyond 32 bits for a literal of too many digits."""
+    base = INTEGER_BASES.get(text[:2], 10)
     digits = (text[2:] if base != 10 else text).lstrip("0")
-    return int(digits or "0", base) if len(digits) <= LONGEST else HIGH + 2
+    return int(digits or "0", base) if len(digits) <= MAX_DIGITS_CONVERTED else MAX_INT32 + 2

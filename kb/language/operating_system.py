@@ -1,6 +1,6 @@
-"""What some operating systems lack, asked for in one place: limits of a process, locks, opening without waiting.
+"""Features that some operating systems lack: process limits, file locks, opening a file without waiting.
 
-Every function does what the system can do and says by its value whether it did; `lacking` names what is missing.
+Every function does what the system supports and returns whether it did. `missing_features` lists what is missing.
 """
 
 import os
@@ -12,14 +12,18 @@ from contextlib import suppress
 from types import ModuleType
 from typing import Any
 
-READ = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
-WRITE = os.O_RDWR | os.O_CREAT | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
-PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of Linux's prctl
-KILL = 9
-PIECE = 65536  # bytes that are read at once, as many as a pipe holds
+# Flags of os.open for reading and for writing; opening neither waits for a FIFO nor translates line ends.
+READ_FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
+WRITE_FLAGS = (
+    os.O_RDWR | os.O_CREAT | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
+)
+PR_SET_PDEATHSIG = 1  # option of prctl(2): the signal that this process gets when its parent ends
+SIGKILL = 9  # signal(7); the module signal lacks it on Windows
+MAX_BYTES_PER_READ = 65536  # bytes; the capacity of a pipe on Linux
 
 
 def _optional(name: str) -> ModuleType | None:
+    """Return a module of the standard library, or None when this system does not have it."""
     try:
         return __import__(name)
     except ImportError:
@@ -31,8 +35,8 @@ _fcntl: Any = _optional("fcntl")  # not on Windows
 _msvcrt: Any = None if _fcntl else _optional("msvcrt")
 
 
-def lacking() -> list[str]:
-    """Return what this system lacks, each as a sentence for users; empty where nothing is missing."""
+def missing_features() -> list[str]:
+    """Return one sentence for users about each feature that this system lacks; [] when nothing is missing."""
     missing = []
     if _resource is None:
         missing.append("the memory of a question is not limited on this system: only its time is")
@@ -41,23 +45,31 @@ def lacking() -> list[str]:
     return missing
 
 
-def limit(kind: str, most: int) -> bool:
-    """Limit what this process may use from now on: `AS` bytes of memory, `NOFILE` open files, `CORE` bytes of a dump.
+def limit_resource(kind: str, most: int) -> bool:
+    """Limit what this process may use from now on.
 
-    Returns whether the system does that.
+    Parameters
+    ----------
+    kind : the suffix of the RLIMIT constant: `AS` (bytes of memory), `NOFILE` (open files), `CORE` (bytes of a core
+        dump).
+    most : the limit.
+
+    Returns
+    -------
+    Whether the system supports and accepted the limit.
     """
     which = getattr(_resource, f"RLIMIT_{kind}", None)
     if which is None:
         return False
     try:
         _resource.setrlimit(which, (most, most))
-    except (OSError, ValueError):  # macOS has no limit of memory, though it has its name
+    except (OSError, ValueError):  # macOS defines RLIMIT_AS, but refuses it
         return False
     return True
 
 
 def limit_processor_time(seconds: int) -> bool:
-    """Let the system end this process when it has worked for so many more seconds. Returns whether it does that."""
+    """Let the system end this process after `seconds` more seconds of processor time; return whether it does so."""
     if not hasattr(_resource, "RLIMIT_CPU"):
         return False
     used = sum(_resource.getrusage(_resource.RUSAGE_SELF)[:2])
@@ -70,32 +82,33 @@ def limit_processor_time(seconds: int) -> bool:
 
 
 def end_with_parent() -> bool:
-    """Let the system kill this process as soon as the one that started it ends. Returns whether it does that.
+    """Let the system kill this process as soon as its parent process ends; return whether the system does so.
 
-    A parent that has ended before is not noticed: `lines_of_parent` notices it, by the end of the input.
+    A parent that ended before this call is not noticed. `read_lines_from_parent` notices it: the input has ended.
     """
     if not sys.platform.startswith("linux"):
         return False
     try:
         import ctypes
 
-        return bool(ctypes.CDLL(None).prctl(PARENT_DEATH_SIGNAL, KILL, 0, 0, 0) == 0)
+        return bool(ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, SIGKILL, 0, 0, 0) == 0)
     except (ImportError, OSError, AttributeError):
         return False
 
 
-def lines_of_parent() -> Iterator[bytes]:
-    """Yield the lines of the standard input; when it ends this process ends at once, whatever it is doing.
+def read_lines_from_parent() -> Iterator[bytes]:
+    """Yield the lines of the standard input, without line ends; end this process at once when the input ends.
 
-    A thread watches the input, for it ends with the parent on every system.
+    A thread watches the input, because the input ends with the parent process on every system. The process ends with
+    exit code 0, whatever it is doing then.
     """
     lines: queue.SimpleQueue[bytes] = queue.SimpleQueue()
 
     def watch() -> None:
         rest = b""
         with suppress(OSError):
-            # Not through sys.stdin: Python aborts when it ends while a thread waits with the lock of that.
-            while piece := os.read(0, PIECE):
+            # Not through sys.stdin: Python aborts at exit while a thread waits for input with the lock of sys.stdin.
+            while piece := os.read(0, MAX_BYTES_PER_READ):
                 *whole, rest = (rest + piece).split(b"\n")
                 for line in whole:
                     lines.put(line)
@@ -106,8 +119,17 @@ def lines_of_parent() -> Iterator[bytes]:
         yield lines.get()
 
 
-def lock(handle: int) -> bool:
-    """Lock an open file for this process alone, until it is closed. Returns False when another process has it."""
+def lock_file(handle: int) -> bool:
+    """Lock an open file for this process alone, until the file is closed.
+
+    Parameters
+    ----------
+    handle : the file descriptor.
+
+    Returns
+    -------
+    False when another process holds the lock. True otherwise, also where the file system has no locks.
+    """
     try:
         if _fcntl is not None:
             _fcntl.flock(handle, _fcntl.LOCK_EX | _fcntl.LOCK_NB)
@@ -115,6 +137,6 @@ def lock(handle: int) -> bool:
             _msvcrt.locking(handle, _msvcrt.LK_NBLCK, 1)
     except BlockingIOError:
         return False
-    except OSError as error:  # a file system without locks; Windows refuses with a bare error
+    except OSError as error:  # a file system without locks; Windows reports a lock that is held as EACCES (13)
         return _msvcrt is None or error.errno != 13
     return True

@@ -1,45 +1,71 @@
-r"""Our own reader for fact files.
+r"""The reader of fact files.
 
-A fact file holds facts and comments, nothing else: no rule, no directive, no variable. Reading executes nothing, and
-the text never reaches clingo (which a stray byte can kill, and which wraps big numbers and accepts misspelt predicates
-in silence).
+A fact file holds facts and comments, nothing else: no rule, no directive, no variable. Reading executes nothing. The
+text never reaches clingo: a stray byte can crash clingo, and clingo wraps great integers and accepts misspelt
+predicates without a message.
 
     fact  = name [ "(" term { "," term } ")" ] "."
     term  = ["-"] digits | '"' characters '"' | name [ "(" term { "," term } ")" ]
 
-A name is any word of letters, digits, `_` and `'` that begins with a small letter (after any `_`), except `not`.
-Strings know the escapes `\"`, `\\` and `\n`; comments run from `%` to the end of the line, or from `%*` to `*%`, which
-nest.
+A name is a word of letters, digits, `_` and `'` that begins with a lower-case letter (after any `_`), except `not`.
+Strings have the escapes `\"`, `\\` and `\n`. Comments run from `%` to the end of the line, or from `%*` to `*%`; the
+latter can be nested.
 """
 
 import re
 from pathlib import Path
 
-from kb.language.diagnostics import ENOUGH, BadInputError, Problem, Span
+from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, Span
 from kb.language.source_text import Source, decode, read_source
 from kb.language.terms import Fact, Number, Symbol, Term, Text
-from kb.language.tokens import Token, tokens
+from kb.language.tokens import Token, tokenize
 
-DEEPEST = 64  # how far terms may be nested
-BITS = range(-(2**31), 2**31)
-MOST_FACTS = 100_000
-KEYWORDS = frozenset({"not"})  # names that the grammar of answer set programs keeps for itself
-ESCAPE = re.compile(r"\\.")
-ESCAPES = {"\\n": "\n", '\\"': '"', "\\\\": "\\"}
+MAX_TERM_DEPTH = 64  # terms nested in each other (docs/files.md)
+INT32_RANGE = range(-(2**31), 2**31)  # the range of clingo's integers
+MAX_FACTS = 100_000  # facts of one file (docs/files.md)
+ASP_KEYWORDS = frozenset({"not"})  # words of the ASP language that cannot be names
+ESCAPE_SEQUENCE = re.compile(r"\\.")
+ESCAPED_CHARACTERS = {"\\n": "\n", '\\"': '"', "\\\\": "\\"}
 
 
 def read_facts(path: Path | str) -> tuple[Source, tuple[Fact, ...]]:
-    """Read the facts of a file, in order.
+    """Read a fact file.
 
-    Raises CannotOpenError when it cannot be read and BadInputError with every problem of form that it has.
+    Parameters
+    ----------
+    path : the file.
+
+    Returns
+    -------
+    The source text, and the facts in the order of the file.
+
+    Raises
+    ------
+    CannotOpenError : the file cannot be read.
+    BadInputError : the text has syntax errors; carries all of them.
     """
     source = read_source(path)
     return source, parse_facts(source)
 
 
 def facts_of(text: str, file: str = "input") -> tuple[Fact, ...]:
-    """Return the facts that a piece of text states (what a user typed); raises BadInputError.
+    """Return the facts that a text states.
 
+    Parameters
+    ----------
+    text : facts and comments.
+    file : the name of the text in messages.
+
+    Returns
+    -------
+    The facts in the order of the text.
+
+    Raises
+    ------
+    BadInputError : the text has syntax errors; carries all of them.
+
+    Examples
+    --------
     >>> [str(fact) for fact in facts_of('object(x). shape(x, square).  % a claim')]
     ['object(x)', 'shape(x,square)']
     """
@@ -47,7 +73,20 @@ def facts_of(text: str, file: str = "input") -> tuple[Fact, ...]:
 
 
 def parse_facts(source: Source) -> tuple[Fact, ...]:
-    """Return the facts of a text; raises BadInputError with every problem of form that it has."""
+    """Return the facts of a source text, in order.
+
+    Parameters
+    ----------
+    source : the text of a fact file.
+
+    Returns
+    -------
+    The facts. Only the syntax is checked; `kb.language.vocabulary.check_facts` checks predicates and arguments.
+
+    Raises
+    ------
+    BadInputError : the text has syntax errors; carries all of them.
+    """
     reader = _Reader(source)
     facts = reader.facts()
     if reader.problems:
@@ -56,38 +95,40 @@ def parse_facts(source: Source) -> tuple[Fact, ...]:
 
 
 class _RefusedError(Exception):
-    """The fact being read is none; the reader goes on after the next full stop."""
+    """A fact with a syntax error; the reader continues after the next full stop."""
 
 
 class _Reader:
-    """A recursive-descent reader over the tokens of one text."""
+    """A recursive-descent parser over the tokens of one text."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
         self.problems: list[Problem] = []
-        self._coming = tokens(source, self.problems)
+        self._coming = tokenize(source, self.problems)
         self.peek = next(self._coming)
-        self.ended = False  # the full stop of the fact that is refused has been taken
+        self.ended = False  # whether the full stop of the refused fact has been read
 
     def facts(self) -> tuple[Fact, ...]:
+        """Return all facts; problems are collected in `self.problems`."""
         found = []
-        while self.peek.kind != "end" and len(self.problems) < ENOUGH:
+        while self.peek.kind != "end" and len(self.problems) < MAX_PROBLEMS_PER_FILE:
             try:
                 found.append(self.fact())
             except _RefusedError:
                 self.skip()
-            if len(found) > MOST_FACTS:
-                self.refuse(self.peek, f"more than {MOST_FACTS} facts")
+            if len(found) > MAX_FACTS:
+                self.refuse(self.peek, f"more than {MAX_FACTS} facts")
                 break
         return tuple(found)
 
     def take(self) -> Token:
+        """Return the next token and move on to the one after it."""
         token = self.peek
         self.peek = next(self._coming, token)
         return token
 
     def skip(self) -> None:
-        """Go on after the next full stop, or where a fact plainly begins on a new line."""
+        """Continue after the next full stop, or where a fact begins in the first column of a new line."""
         if self.ended:
             self.ended = False
             return
@@ -99,10 +140,12 @@ class _Reader:
                 return
 
     def refuse(self, token: Token, what: str, hint: str = "") -> _RefusedError:
+        """Record a problem at a token, and return the exception to raise."""
         self.problems.append(self.source.problem(token.span, what, hint))
         return _RefusedError()
 
     def fact(self) -> Fact:
+        """Read one fact with its full stop."""
         token = self.peek
         if token.kind != "name":
             raise self.not_a_fact(token)
@@ -113,9 +156,10 @@ class _Reader:
         return fact
 
     def term(self, depth: int) -> Term:
+        """Read one term. depth : the number of terms around it."""
         token = self.peek
-        if depth > DEEPEST:
-            raise self.refuse(token, f"terms are nested more than {DEEPEST} deep")
+        if depth > MAX_TERM_DEPTH:
+            raise self.refuse(token, f"terms are nested more than {MAX_TERM_DEPTH} deep")
         if token.kind == "name":
             return self.symbol(depth)
         if token.kind == "string":
@@ -127,8 +171,9 @@ class _Reader:
         raise self.not_a_term(token)
 
     def symbol(self, depth: int) -> Symbol:
+        """Read a name with its arguments, if there are any. depth : the number of terms around it."""
         name = self.take()
-        if name.text in KEYWORDS and (depth or self.peek.kind not in ("name", "variable")):
+        if name.text in ASP_KEYWORDS and (depth or self.peek.kind not in ("name", "variable")):
             what = f"{name.text} is a word of the language and cannot name anything"
             raise self.refuse(name, what, "take another name")
         if self.peek.text != "(":
@@ -146,13 +191,15 @@ class _Reader:
         return Symbol(name.text, tuple(args), Span(name.span.line, name.span.start, end))
 
     def string(self) -> Text:
+        """Read a quoted string and replace its escapes."""
         token = self.take()
-        unknown = [piece for piece in ESCAPE.findall(token.text) if piece not in ESCAPES]
+        unknown = [piece for piece in ESCAPE_SEQUENCE.findall(token.text) if piece not in ESCAPED_CHARACTERS]
         if unknown:
             raise self.refuse(token, f"unknown escape {unknown[0]} in a string", 'strings know \\", \\\\ and \\n')
-        return Text(ESCAPE.sub(lambda match: ESCAPES[match[0]], token.text[1:-1]), token.span)
+        return Text(ESCAPE_SEQUENCE.sub(lambda match: ESCAPED_CHARACTERS[match[0]], token.text[1:-1]), token.span)
 
     def number(self) -> Number:
+        """Read an integer with its sign."""
         sign = self.take() if self.peek.text == "-" else None
         token = self.take()
         if token.kind != "number":
@@ -161,9 +208,9 @@ class _Reader:
         digits = token.text.lstrip("0") or "0"
         value = int(digits) if len(digits) <= 10 else 2**31
         value = -value if sign else value
-        if value not in BITS or len(digits) > 10:
+        if value not in INT32_RANGE or len(digits) > 10:
             raise self.refuse(Token("number", token.text, span), "a number beyond 32 bits", "-2147483648 .. 2147483647")
-        if self.peek.text == ".":  # a fact cannot end inside of a term
+        if self.peek.text == ".":  # a fraction, or a fact that ends inside a term
             stop = self.take()
             self.ended = self.peek.kind != "number"
             if self.ended:
@@ -172,11 +219,12 @@ class _Reader:
         return Number(value, span)
 
     def not_a_fact(self, token: Token) -> _RefusedError:
+        """Return the error for a token with which no fact begins."""
         if token.kind == "directive":
             return self.refuse(token, f"{token.text} is a directive; a fact file holds facts alone")
         if token.kind == "variable":
             return self.refuse(
-                token, f"a fact cannot begin with the variable {token.text}", f"write {lower(token.text)}"
+                token, f"a fact cannot begin with the variable {token.text}", f"write {_lower_case_name(token.text)}"
             )
         if token.text in (":-", ":~"):
             return self.refuse(token, "a constraint; a fact file holds facts alone")
@@ -184,31 +232,36 @@ class _Reader:
             return self.refuse(token, "a negated fact; state only what holds")
         if token.text == "{":
             return self.refuse(token, "a choice; a fact file holds facts alone")
-        return self.refuse(token, f"a fact was expected, {token.named} found")
+        return self.refuse(token, f"a fact was expected, {token.in_words} found")
 
     def not_the_end(self, fact: Fact, token: Token) -> _RefusedError:
+        """Return the error for a token that stands where the full stop of a fact belongs."""
         if token.text == ":-":
             return self.refuse(token, "a rule; a fact file holds facts alone", "remove everything from :- on")
         if token.text in (",", ";", "|", ":"):
-            return self.refuse(token, f"a fact ends in a full stop, not in {token.named}", "write one fact at a time")
+            return self.refuse(
+                token, f"a fact ends in a full stop, not in {token.in_words}", "write one fact at a time"
+            )
         if token.kind == "name" and fact.name == "not":
             return self.refuse(token, "a negated fact; state only what holds")
-        return self.refuse(token, f"a full stop was expected after the fact, {token.named} found")
+        return self.refuse(token, f"a full stop was expected after the fact, {token.in_words} found")
 
     def not_a_term(self, token: Token) -> _RefusedError:
+        """Return the error for a token with which no term begins."""
         if token.kind == "variable":
             what = f"{token.text} is a variable; facts have none"
-            return self.refuse(token, what, f'write {lower(token.text)}, or "{token.text}" for a text')
+            return self.refuse(token, what, f'write {_lower_case_name(token.text)}, or "{token.text}" for a text')
         if token.text == ")":
             return self.refuse(token, "an argument is missing before ')'")
-        return self.refuse(token, f"a term was expected, {token.named} found")
+        return self.refuse(token, f"a term was expected, {token.in_words} found")
 
     def not_closed(self, token: Token) -> _RefusedError:
+        """Return the error for a token that stands where ',' or ')' belongs."""
         if token.text in ("..", ";", "+", "-", "*", "/", "**", "|", "&", "?", "^", "\\", "@"):
-            return self.refuse(token, f"{token.named}: intervals, pools and sums are not facts", "write them out")
-        return self.refuse(token, f"',' or ')' was expected, {token.named} found")
+            return self.refuse(token, f"{token.in_words}: intervals, pools and sums are not facts", "write them out")
+        return self.refuse(token, f"',' or ')' was expected, {token.in_words} found")
 
 
-def lower(name: str) -> str:
-    """Return a variable's name as the name of a thing: X1 becomes x1, _ becomes x."""
+def _lower_case_name(name: str) -> str:
+    """Return the name that a variable suggests: X1 becomes x1, _ becomes x."""
     return name.strip("_").lower() or "x"

@@ -1,4 +1,4 @@
-"""The text of a file that the user wrote, read with care: never hangs, never reads more than it must, ASCII alone."""
+"""The text of a user's file, read safely: no waiting, no more bytes than needed, ASCII only."""
 
 import os
 import stat
@@ -6,80 +6,134 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from kb.language.diagnostics import ENOUGH, BadInputError, CannotOpenError, Problem, Span
-from kb.language.operating_system import READ
+from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, Span
+from kb.language.operating_system import READ_FLAGS
 
-LARGEST = 4_000_000  # bytes
-WIDE = {b"\xff\xfe": "UTF-16", b"\xfe\xff": "UTF-16", b"\xef\xbb\xbf": "a UTF-8 byte order mark"}
-QUOTES = "\u2018\u2019\u201a\u201b\u201c\u201d\u201e\u201f"
-HIDDEN = "not as it must be; it is a link out of its folder, so nothing of its text is shown"
-SPACES = "\u00a0\u2002\u2003\u2009\u200b\u202f\u3000"
+MAX_FILE_BYTES = 4_000_000  # bytes of a user's file (docs/files.md)
+# Byte order marks at the start of files that are not ASCII, and how messages name them.
+UNSUPPORTED_ENCODINGS = {b"\xff\xfe": "UTF-16", b"\xfe\xff": "UTF-16", b"\xef\xbb\xbf": "a UTF-8 byte order mark"}
+TYPOGRAPHIC_QUOTES = "\u2018\u2019\u201a\u201b\u201c\u201d\u201e\u201f"
+HIDDEN_TEXT_MESSAGE = "not as it must be; it is a link out of its folder, so nothing of its text is shown"
+UNUSUAL_SPACES = "\u00a0\u2002\u2003\u2009\u200b\u202f\u3000"
 
 
 @dataclass(frozen=True)
 class Source:
-    """A file's name as the user gave it, and its text (ASCII).
+    """The text of a user's file.
 
-    `foreign` is set where the name is a link out of its folder: then nothing of the text is shown, for whoever made the
-    link may not be whoever may read the file.
+    Attributes
+    ----------
+    file : the file's name as the user gave it.
+    text : the text; ASCII when `decode` accepted it.
+    hide_text : the file is a link that leads out of its folder. Then messages show none of its text, because the author
+        of
+        the link may have no right to read the file.
     """
 
     file: str
     text: str = field(repr=False)
-    foreign: bool = False
+    hide_text: bool = False
 
     @cached_property
     def lines(self) -> list[str]:
-        """The text in lines, without their ends."""
+        """The lines of the text, without line ends."""
         return [line.removesuffix("\r") for line in self.text.split("\n")]
 
     def problem(self, span: Span, what: str, hint: str = "") -> Problem:
-        """Return what is wrong at `span`, with the line it stands on."""
-        if self.foreign:
-            return Problem(self.file, span, HIDDEN, hint="check the file that it leads to, or copy it into the folder")
+        """Return the problem `what` at `span`, with the source line; a general problem when the text is hidden."""
+        if self.hide_text:
+            return Problem(
+                self.file, span, HIDDEN_TEXT_MESSAGE, hint="check the file that it leads to, or copy it into the folder"
+            )
         source = self.lines[span.line - 1] if span.line <= len(self.lines) else ""
         return Problem(self.file, span, what, source, hint)
 
     def start(self) -> Span:
-        """The first column of the file, where problems of the whole file are put."""
+        """Return the first column of the file, the place of problems that concern the whole file."""
         return Span(1, 1, 1)
 
 
 def read_source(path: Path | str) -> Source:
     """Read a text file.
 
-    Raises CannotOpenError for a file that is absent, unreadable or no regular file (a FIFO or a device is not waited
-    for), and BadInputError for one that is too big or holds anything but printable ASCII, tabs and line ends.
+    Parameters
+    ----------
+    path : the file. A FIFO or a device is refused, not waited for.
+
+    Returns
+    -------
+    The text with the file's name.
+
+    Raises
+    ------
+    CannotOpenError : the file does not exist, is unreadable, or is no regular file.
+    BadInputError : the file has more than `MAX_FILE_BYTES` bytes, or other characters than printable ASCII, tabs, line
+        ends.
     """
-    return decode(str(path), read_bytes(str(path), LARGEST), leads_out(path))
+    return decode(str(path), read_bytes(str(path), MAX_FILE_BYTES), lies_outside(path))
 
 
-def leads_out(path: Path | str, folder: Path | str | None = None) -> bool:
-    """Return whether a file lies, all links followed, outside of a folder: by default of that in which it is named."""
+def lies_outside(path: Path | str, folder: Path | str | None = None) -> bool:
+    """Return whether a file lies outside of a folder when all links are followed.
+
+    Parameters
+    ----------
+    path : the file.
+    folder : the folder; None for the folder in which the file is named.
+    """
     named = os.path.abspath(path)  # noqa: PTH100 (a link in the folder's own name is not followed yet)
     home = os.path.realpath(folder if folder is not None else os.path.dirname(named))  # noqa: PTH120
     return not os.path.realpath(named).startswith(os.path.join(home, ""))  # noqa: PTH118
 
 
-def decode(file: str, raw: bytes, foreign: bool = False) -> Source:
-    """Return the text of `raw`, which must be ASCII; raises BadInputError that says what else is there."""
-    if len(raw) > LARGEST:
-        raise BadInputError([Problem(file, Span(1, 1, 1), f"the file is larger than {LARGEST} bytes")])
-    for mark, name in WIDE.items():
+def decode(file: str, raw: bytes, hide_text: bool = False) -> Source:
+    """Return the text of a file's bytes, checked to be ASCII.
+
+    Parameters
+    ----------
+    file : the file's name in messages.
+    raw : the bytes.
+    hide_text : the messages must not show the text.
+
+    Returns
+    -------
+    The text with the file's name.
+
+    Raises
+    ------
+    BadInputError : there are too many bytes, or characters that are not allowed; names each of them.
+    """
+    if len(raw) > MAX_FILE_BYTES:
+        raise BadInputError([Problem(file, Span(1, 1, 1), f"the file is larger than {MAX_FILE_BYTES} bytes")])
+    for mark, name in UNSUPPORTED_ENCODINGS.items():
         if raw.startswith(mark):
             hint = "save the file as plain ASCII (or UTF-8 without byte order mark)"
             raise BadInputError([Problem(file, Span(1, 1, 1), f"the file begins with {name}", hint=hint)])
-    source = Source(file, raw.decode("utf-8", errors="surrogateescape"), foreign)
-    problems = _strangers(source)
+    source = Source(file, raw.decode("utf-8", errors="surrogateescape"), hide_text)
+    problems = _disallowed_characters(source)
     if problems:
         raise BadInputError(problems)
     return source
 
 
 def read_bytes(path: str, most: int) -> bytes:
-    """Return the bytes of a regular file, one more than `most` at most; raises CannotOpenError."""
+    """Return the bytes of a regular file.
+
+    Parameters
+    ----------
+    path : the file.
+    most : at most `most` + 1 bytes are read, so that a caller notices a file with more than `most` bytes.
+
+    Returns
+    -------
+    The bytes from the start of the file.
+
+    Raises
+    ------
+    CannotOpenError : the file does not exist, is unreadable, or is no regular file.
+    """
     try:
-        handle = os.open(path, READ)
+        handle = os.open(path, READ_FLAGS)
     except (OSError, ValueError) as error:
         raise CannotOpenError(path, getattr(error, "strerror", None) or str(error)) from None
     try:
@@ -94,8 +148,8 @@ def read_bytes(path: str, most: int) -> bytes:
         os.close(handle)
 
 
-def _strangers(source: Source) -> list[Problem]:
-    """One problem for each run of characters that are not allowed in a text file of ours."""
+def _disallowed_characters(source: Source) -> list[Problem]:
+    """Return one problem for each run of equal characters that are not allowed in users' text files."""
     if source.text.isascii() and source.text.translate(_ALLOWED) == "":
         return []
     problems: list[Problem] = []
@@ -103,7 +157,7 @@ def _strangers(source: Source) -> list[Problem]:
         if line.isascii() and line.translate(_ALLOWED) == "":
             continue
         column = 1
-        while column <= len(line) and len(problems) < ENOUGH:
+        while column <= len(line) and len(problems) < MAX_PROBLEMS_PER_FILE:
             char = line[column - 1]
             if " " <= char <= "~" or char == "\t":
                 column += 1
@@ -111,17 +165,17 @@ def _strangers(source: Source) -> list[Problem]:
             end = column
             while end < len(line) and line[end] == char:
                 end += 1
-            problems.append(source.problem(Span(number, column, end), *_name(char)))
+            problems.append(source.problem(Span(number, column, end), *_character_and_remedy(char)))
             column = end + 1
     return problems
 
 
-def _name(char: str) -> tuple[str, str]:
-    """What a character that is not allowed is, and what to write instead."""
+def _character_and_remedy(char: str) -> tuple[str, str]:
+    """Return the description of a character that is not allowed, and a hint."""
     code = ord(char)
-    if char in QUOTES:
+    if char in TYPOGRAPHIC_QUOTES:
         return f"a typographic quotation mark (U+{code:04X})", 'write plain " quotes'
-    if char in SPACES:
+    if char in UNUSUAL_SPACES:
         return f"a space that is no plain space (U+{code:04X})", "write a plain space"
     if 0xDC80 <= code <= 0xDCFF:
         return f"the byte 0x{code - 0xDC00:02X}, which is not ASCII", "save the file as plain ASCII"

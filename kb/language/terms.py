@@ -1,6 +1,6 @@
-"""The values of a fact file: facts and their terms, each with the place where it stands.
+"""Facts and their terms as values, each with its place in the source.
 
-Two terms are equal when they say the same, wherever they stand.
+Two terms are equal when their content is equal; their places are not compared.
 """
 
 from dataclasses import dataclass, field
@@ -10,30 +10,51 @@ from kb.language.diagnostics import Span
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """An integer of 32 bits."""
+    """An integer of 32 bits.
+
+    Attributes
+    ----------
+    value : the integer.
+    span : the place in the source.
+    """
 
     value: int
     span: Span = field(compare=False)
 
     def __str__(self) -> str:
+        """Return the integer in decimal digits."""
         return str(self.value)
 
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A quoted string, without its quotes and escapes."""
+    """A quoted string.
+
+    Attributes
+    ----------
+    value : the characters, without quotes and escapes.
+    span : the place in the source.
+    """
 
     value: str
     span: Span = field(compare=False)
 
     def __str__(self) -> str:
+        """Return the string in quotes, with escapes."""
         quoted = self.value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
         return f'"{quoted}"'
 
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """A name, with arguments or without: `square`, `corner(northeast)`. A whole fact is a symbol too."""
+    """A name with or without arguments, such as `square` or `corner(northeast)`. A fact is a symbol, too.
+
+    Attributes
+    ----------
+    name : the name.
+    args : the arguments; () for a plain name.
+    span : the place in the source.
+    """
 
     name: str
     args: tuple["Term", ...]
@@ -45,6 +66,7 @@ class Symbol:
         return self.name, len(self.args)
 
     def __str__(self) -> str:
+        """Return the term without blanks: `at(utak,corner(northeast))`."""
         return f"{self.name}({','.join(map(str, self.args))})" if self.args else self.name
 
 

@@ -1,4 +1,4 @@
-"""The words of a fact file: names, variables, numbers, strings and marks, each with its place."""
+"""Tokens of a fact file: names, variables, numbers, strings and punctuation marks, each with its place."""
 
 import re
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from typing import NamedTuple
 from kb.language.diagnostics import Problem, Span
 from kb.language.source_text import Source
 
-WORD = re.compile(
+TOKEN_PATTERN = re.compile(
     r"""
     (?P<space>[ \t\r\n]+)
   | (?P<block>%\*)
@@ -22,13 +22,17 @@ WORD = re.compile(
     """,
     re.VERBOSE,
 )
-COMMENT_EDGE = re.compile(r"%\*|\*%")
+BLOCK_COMMENT_MARK = re.compile(r"%\*|\*%")
 
 
 class Token(NamedTuple):
-    """One word: its kind, text and place.
+    """One token.
 
-    Kinds are `name`, `variable`, `number`, `string`, `directive`, `mark`, `open` (a string that is not closed), `end`.
+    Attributes
+    ----------
+    kind : `name`, `variable`, `number`, `string`, `directive`, `mark`, `open` (a string that is not closed) or `end`.
+    text : the characters as they stand in the source.
+    span : the place in the source.
     """
 
     kind: str
@@ -36,18 +40,21 @@ class Token(NamedTuple):
     span: Span
 
     @property
-    def named(self) -> str:
-        """The token as a message names it."""
+    def in_words(self) -> str:
+        """The token as messages show it, at most 40 characters."""
         if self.kind == "end":
             return "the end of the file"
         return self.text if len(self.text) <= 40 else f"{self.text[:37]}..."
 
 
-def tokens(source: Source, problems: list[Problem]) -> Iterator[Token]:
-    """Yield the words of a text, the last one of kind `end`; problems of form are appended to `problems`."""
+def tokenize(source: Source, problems: list[Problem]) -> Iterator[Token]:
+    """Yield the tokens of a text; the last one has the kind `end`.
+
+    source : the text. problems : the problem of each comment or string that is not closed is appended to this list.
+    """
     text, at, line, begin = source.text, 0, 1, 0
     while at < len(text):
-        match = WORD.match(text, at)
+        match = TOKEN_PATTERN.match(text, at)
         assert match is not None  # every character but a line end is at least a mark, and line ends are spaces
         kind, end = match.lastgroup or "", match.end()
         span = Span(line, at - begin + 1, end - begin)
@@ -69,9 +76,9 @@ def tokens(source: Source, problems: list[Problem]) -> Iterator[Token]:
 
 
 def _block_end(text: str, start: int) -> int:
-    """Where the block comment that begins at `start` ends (they nest), or -1."""
+    """Return the index after the block comment that begins at `start` (comments nest), or -1 when it is not closed."""
     depth = 0
-    for edge in COMMENT_EDGE.finditer(text, start):
+    for edge in BLOCK_COMMENT_MARK.finditer(text, start):
         depth += 1 if edge.group() == "%*" else -1
         if depth == 0:
             return edge.end()

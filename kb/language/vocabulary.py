@@ -1,163 +1,228 @@
-"""The declared vocabulary of each kind of fact file, and the check of facts against it (docs/files.md)."""
+"""The predicates of fact files and of the world model, with the types of their arguments (docs/files.md)."""
 
 from collections.abc import Iterable, Mapping
 from enum import StrEnum
 from typing import NamedTuple
 
-from kb.language.arguments import COLOUR, NAME, Complaint, Slot, named, shape_text, short, whole, word
+from kb.language.arguments import (
+    COLOUR_ARGUMENT,
+    NAME_ARGUMENT,
+    ArgumentType,
+    Complaint,
+    abbreviated,
+    integer_argument,
+    pattern_argument,
+    wkt_argument,
+    word_argument,
+)
 from kb.language.diagnostics import Problem, did_you_mean
 from kb.language.source_text import Source
 from kb.language.terms import Fact, Symbol, Term
 
-Vocabulary = Mapping[str, tuple[Slot, ...]]
+Signature = tuple[str, int]  # the name of a predicate and its number of arguments
+Vocabulary = Mapping[str, tuple[ArgumentType, ...]]
 
-SHAPES = ("square", "brick", "rectangle", "l_shape", "t_shape", "u_shape", "triangle", "disc", "polygon")
-CORNERS = ("northeast", "northwest", "southeast", "southwest")
-RESERVED = frozenset({"utak", "start", "next", "corner", "room", "verge", *CORNERS})
-DEGREES = whole("an angle in degrees", -36000, 36000)
-MOST_SQUARES = 4096  # along either side of a table
+SHAPE_CLASSES = ("square", "brick", "rectangle", "l_shape", "t_shape", "u_shape", "triangle", "disc", "polygon")
+CORNER_NAMES = ("northeast", "northwest", "southeast", "southwest")
+RESERVED_PARAMETER_NAMES = frozenset({"utak", "start", "next", "corner", "room", "verge", *CORNER_NAMES})
+DEGREES_ARGUMENT = integer_argument("an angle in degrees", -36000, 36000)
+MAX_TABLE_SIDE = 4096  # squares along each side of a table (docs/files.md)
 
 WORLD: Vocabulary = {
-    "table": (whole("a table's width", 1, MOST_SQUARES), whole("a table's height", 1, MOST_SQUARES)),
-    "verge": (shape_text("the verge", "POLYGON", "MULTIPOLYGON"),),
-    "object": (NAME, COLOUR, shape_text("an object's shape", "POLYGON")),
-    "fixed": (NAME, COLOUR, shape_text("a fixed object's shape", "POLYGON")),
-    "utak": (shape_text("Utak's place", "POINT"), DEGREES),
+    "table": (
+        integer_argument("a table's width", 1, MAX_TABLE_SIDE),
+        integer_argument("a table's height", 1, MAX_TABLE_SIDE),
+    ),
+    "verge": (wkt_argument("the verge", "POLYGON", "MULTIPOLYGON"),),
+    "object": (NAME_ARGUMENT, COLOUR_ARGUMENT, wkt_argument("an object's shape", "POLYGON")),
+    "fixed": (NAME_ARGUMENT, COLOUR_ARGUMENT, wkt_argument("a fixed object's shape", "POLYGON")),
+    "utak": (wkt_argument("Utak's place", "POINT"), DEGREES_ARGUMENT),
 }
 
-ANYWHERE = shape_text("a place", "POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")
+WKT_ANY_SHAPE = wkt_argument("a place", "POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")
 EXPECT: Vocabulary = {
-    "inside": (NAME, shape_text("a region", "POLYGON", "MULTIPOLYGON")),
-    "near": (NAME, ANYWHERE, whole("a distance in squares", 0, MOST_SQUARES)),
-    "visits": (NAME, shape_text("a region", "POLYGON", "MULTIPOLYGON")),
-    "circles": (word("walker", ["utak"]), NAME),
-    "unmoved": (NAME,),
-    "within": (whole("a number of steps", 0, 1_000_000),),
+    "inside": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
+    "near": (NAME_ARGUMENT, WKT_ANY_SHAPE, integer_argument("a distance in squares", 0, MAX_TABLE_SIDE)),
+    "visits": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
+    "circles": (word_argument("walker", ["utak"]), NAME_ARGUMENT),
+    "unmoved": (NAME_ARGUMENT,),
+    "within": (integer_argument("a number of steps", 0, 1_000_000),),
     "fails": (),
 }
 
 
-def _compound(name: str, argument: Slot, otherwise: str) -> Slot:
-    """A plain name, or `name(argument)`: such as corner(northeast)."""
+def _compound(name: str, argument: ArgumentType, otherwise: str) -> ArgumentType:
+    """Return the type of a name or of `name(argument)`, such as corner(northeast).
+
+    otherwise : an example of the inner argument, for hints.
+    """
 
     def check(term: Term) -> Complaint | None:
         if not isinstance(term, Symbol) or not term.args:
-            return NAME.check(term)
+            return NAME_ARGUMENT.check(term)
         if term.name != name:
             hint = did_you_mean(term.name, [name]) or f"such as {name}({otherwise})"
-            return Complaint(term.span, f"unknown place {short(term)}", hint)
+            return Complaint(term.span, f"unknown place {abbreviated(term)}", hint)
         if len(term.args) != 1:
             return Complaint(
                 term.span, f"{name} takes 1 argument, not {len(term.args)}", f"such as {name}({otherwise})"
             )
         return argument.check(term.args[0])
 
-    return Slot(f"{name} or name", check)
+    return ArgumentType(f"{name} or name", check)
 
 
-def _fact_of(name: str, vocabulary: Vocabulary) -> Slot:
-    """A whole fact of a vocabulary, as an argument."""
+def _fact_of(name: str, vocabulary: Vocabulary) -> ArgumentType:
+    """Return the type of an argument that is a whole fact of a vocabulary."""
 
     def check(term: Term) -> Complaint | None:
         if not isinstance(term, Symbol):
-            return Complaint(term.span, f"{name} must be a fact, not {short(term)}")
+            return Complaint(term.span, f"{name} must be a fact, not {abbreviated(term)}")
         return next(iter(_complaints(term, vocabulary)), None)
 
-    return Slot(name, check)
+    return ArgumentType(name, check)
 
 
-CLAIMS: Vocabulary = {"shape": (NAME, word("shape", SHAPES)), "colour": (NAME, COLOUR)}
+CLAIMS: Vocabulary = {
+    "shape": (NAME_ARGUMENT, word_argument("shape", SHAPE_CLASSES)),
+    "colour": (NAME_ARGUMENT, COLOUR_ARGUMENT),
+}
 START: Vocabulary = {
-    "object": (NAME,),
-    "door": (NAME,),
-    "room": (NAME,),
+    "object": (NAME_ARGUMENT,),
+    "door": (NAME_ARGUMENT,),
+    "room": (NAME_ARGUMENT,),
     **CLAIMS,
-    "confidence": (_fact_of("what is claimed", CLAIMS), whole("a confidence", 0, 100)),
+    "confidence": (_fact_of("what is claimed", CLAIMS), integer_argument("a confidence", 0, 100)),
 }
-ATTAINED: Vocabulary = {
-    "at": (NAME, _compound("corner", word("corner", CORNERS), "northeast")),
-    "in": (NAME, _compound("room", word("room", ["next"]), "next")),
-    "through": (NAME, NAME),
-    "around": (NAME, word("place", ["corner"])),
-    "circled": (word("walker", ["utak"]), NAME),
-    "beside": (NAME, NAME),
-    "pose": (NAME, shape_text("a place", "POINT"), DEGREES),
-    "not_through": (NAME, NAME),
+GOAL_CONDITIONS: Vocabulary = {
+    "at": (NAME_ARGUMENT, _compound("corner", word_argument("corner", CORNER_NAMES), "northeast")),
+    "in": (NAME_ARGUMENT, _compound("room", word_argument("room", ["next"]), "next")),
+    "through": (NAME_ARGUMENT, NAME_ARGUMENT),
+    "around": (NAME_ARGUMENT, word_argument("place", ["corner"])),
+    "circled": (word_argument("walker", ["utak"]), NAME_ARGUMENT),
+    "beside": (NAME_ARGUMENT, NAME_ARGUMENT),
+    "pose": (NAME_ARGUMENT, wkt_argument("a place", "POINT"), DEGREES_ARGUMENT),
+    "not_through": (NAME_ARGUMENT, NAME_ARGUMENT),
 }
-GOAL: Vocabulary = {**ATTAINED, "first": (_fact_of("a goal", ATTAINED),), "then": (_fact_of("a goal", ATTAINED),)}
+GOAL: Vocabulary = {
+    **GOAL_CONDITIONS,
+    "first": (_fact_of("a goal", GOAL_CONDITIONS),),
+    "then": (_fact_of("a goal", GOAL_CONDITIONS),),
+}
 
 
 class Open(StrEnum):
-    """Of what more of a predicate may hold than is believed."""
+    """The extent to which a predicate may hold beyond what is believed."""
 
     NEVER = "never"
-    """Of nothing: the robot knows all of it."""
+    """All facts of this predicate are known."""
     UNSEEN = "unseen"
-    """Of what was not seen yet, as long as a part of the table is unseen."""
+    """It may hold for things not seen yet, as long as a part of the table is unseen."""
     UNTOLD = "untold"
-    """Of that, and of things of which nothing is believed that this predicate says."""
+    """As UNSEEN; and it may hold for known things of which no fact of this predicate is believed."""
 
 
-class Declared(NamedTuple):
+class BeliefPredicate(NamedTuple):
     """A predicate of the world model.
 
-    slots : its arguments. open : of what more of it may hold. subject : which argument it speaks of, from 0.
-    confident : its last argument is a confidence; one between 0 and 100 may turn out to be any other.
-    settled : subjects of which all is believed that ever will be.
+    Attributes
+    ----------
+    arguments : the types of its arguments.
+    open : the extent to which it may hold beyond what is believed.
+    subject : the index of the argument that the fact is about.
+    confident : the last argument is a confidence. A fact with a confidence between 0 and 100 may have any other in
+        truth.
+    settled : the subjects of which the world model states all facts of this predicate that will ever hold.
     """
 
-    slots: tuple[Slot, ...]
+    arguments: tuple[ArgumentType, ...]
     open: Open
     subject: int = 0
     confident: bool = False
     settled: frozenset[str] = frozenset()
 
 
-THING = named("thing", "org|floor|verge|o[0-9]+", "o1, floor, verge, or org, which is Utak")
-ROOM = named("room", "r[0-9]+", "r1")
-DOOR = named("door", "d[0-9]+", "d1")
-CONFIDENCE = whole("a confidence", 0, 100)
-LENGTH = whole("a length in hundredths of squares", -(2**31), 2**31 - 1)
-COUNT = whole("a count", 0, 2**31 - 1)
-KIND = word("kind", ("utak", "floor", "verge", "object"))
-NO_THINGS = frozenset({"org", "floor", "verge"})
-# The predicates of kb/asp/belief.lp, and object/1.
-BELIEF: Mapping[tuple[str, int], Declared] = {
-    ("node", 1): Declared((THING,), Open.UNSEEN),
-    ("object", 1): Declared((THING,), Open.UNSEEN),
-    ("kind", 3): Declared((THING, KIND, CONFIDENCE), Open.UNSEEN, confident=True),
-    ("child", 2): Declared((THING, THING), Open.UNSEEN, subject=1),
-    ("offset", 3): Declared((THING, LENGTH, LENGTH), Open.UNSEEN),
-    ("held", 1): Declared((THING,), Open.NEVER),
-    ("rect", 5): Declared((THING, LENGTH, LENGTH, LENGTH, LENGTH), Open.UNSEEN),
-    ("segment", 7): Declared((THING, COUNT, LENGTH, LENGTH, LENGTH, LENGTH, CONFIDENCE), Open.UNSEEN, confident=True),
-    ("shape", 3): Declared((THING, word("shape", SHAPES), CONFIDENCE), Open.UNTOLD, 0, True, NO_THINGS),
-    ("colour", 3): Declared((THING, COLOUR, CONFIDENCE), Open.UNTOLD, 0, True, NO_THINGS),
-    ("movable", 2): Declared((THING, CONFIDENCE), Open.UNTOLD, 0, True, NO_THINGS),
-    ("adjacent", 2): Declared((THING, THING), Open.UNTOLD, settled=frozenset({"org"})),
-    ("room", 1): Declared((ROOM,), Open.UNSEEN),
-    ("door", 1): Declared((DOOR,), Open.UNSEEN),
-    ("connects", 3): Declared((DOOR, ROOM, ROOM), Open.UNSEEN),
-    ("width", 2): Declared((DOOR, LENGTH), Open.UNSEEN),
-    ("in", 2): Declared((THING, ROOM), Open.UNSEEN),
-    ("corner", 3): Declared((word("corner", CORNERS), LENGTH, LENGTH), Open.NEVER),
-    ("unseen", 2): Declared((ROOM, COUNT), Open.NEVER),
+THING_ARGUMENT = pattern_argument("thing", "org|floor|verge|o[0-9]+", "o1, floor, verge, or org, which is Utak")
+ROOM_ARGUMENT = pattern_argument("room", "r[0-9]+", "r1")
+DOOR_ARGUMENT = pattern_argument("door", "d[0-9]+", "d1")
+CONFIDENCE_ARGUMENT = integer_argument("a confidence", 0, 100)
+LENGTH_ARGUMENT = integer_argument("a length in hundredths of squares", -(2**31), 2**31 - 1)
+COUNT_ARGUMENT = integer_argument("a count", 0, 2**31 - 1)
+KIND_ARGUMENT = word_argument("kind", ("utak", "floor", "verge", "object"))
+NEVER_OBJECTS = frozenset({"org", "floor", "verge"})
+# The predicates of the world model (kb/asp/belief.lp), and object/1; by name and number of arguments.
+BELIEF: Mapping[tuple[str, int], BeliefPredicate] = {
+    ("node", 1): BeliefPredicate((THING_ARGUMENT,), Open.UNSEEN),
+    ("object", 1): BeliefPredicate((THING_ARGUMENT,), Open.UNSEEN),
+    ("kind", 3): BeliefPredicate((THING_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT), Open.UNSEEN, confident=True),
+    ("child", 2): BeliefPredicate((THING_ARGUMENT, THING_ARGUMENT), Open.UNSEEN, subject=1),
+    ("offset", 3): BeliefPredicate((THING_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Open.UNSEEN),
+    ("held", 1): BeliefPredicate((THING_ARGUMENT,), Open.NEVER),
+    ("rect", 5): BeliefPredicate(
+        (THING_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Open.UNSEEN
+    ),
+    ("segment", 7): BeliefPredicate(
+        (
+            THING_ARGUMENT,
+            COUNT_ARGUMENT,
+            LENGTH_ARGUMENT,
+            LENGTH_ARGUMENT,
+            LENGTH_ARGUMENT,
+            LENGTH_ARGUMENT,
+            CONFIDENCE_ARGUMENT,
+        ),
+        Open.UNSEEN,
+        confident=True,
+    ),
+    ("shape", 3): BeliefPredicate(
+        (THING_ARGUMENT, word_argument("shape", SHAPE_CLASSES), CONFIDENCE_ARGUMENT),
+        Open.UNTOLD,
+        0,
+        True,
+        NEVER_OBJECTS,
+    ),
+    ("colour", 3): BeliefPredicate(
+        (THING_ARGUMENT, COLOUR_ARGUMENT, CONFIDENCE_ARGUMENT), Open.UNTOLD, 0, True, NEVER_OBJECTS
+    ),
+    ("movable", 2): BeliefPredicate((THING_ARGUMENT, CONFIDENCE_ARGUMENT), Open.UNTOLD, 0, True, NEVER_OBJECTS),
+    ("adjacent", 2): BeliefPredicate((THING_ARGUMENT, THING_ARGUMENT), Open.UNTOLD, settled=frozenset({"org"})),
+    ("room", 1): BeliefPredicate((ROOM_ARGUMENT,), Open.UNSEEN),
+    ("door", 1): BeliefPredicate((DOOR_ARGUMENT,), Open.UNSEEN),
+    ("connects", 3): BeliefPredicate((DOOR_ARGUMENT, ROOM_ARGUMENT, ROOM_ARGUMENT), Open.UNSEEN),
+    ("width", 2): BeliefPredicate((DOOR_ARGUMENT, LENGTH_ARGUMENT), Open.UNSEEN),
+    ("in", 2): BeliefPredicate((THING_ARGUMENT, ROOM_ARGUMENT), Open.UNSEEN),
+    ("corner", 3): BeliefPredicate(
+        (word_argument("corner", CORNER_NAMES), LENGTH_ARGUMENT, LENGTH_ARGUMENT), Open.NEVER
+    ),
+    ("unseen", 2): BeliefPredicate((ROOM_ARGUMENT, COUNT_ARGUMENT), Open.NEVER),
 }
 
 
 def check_facts(source: Source, facts: Iterable[Fact], vocabulary: Vocabulary) -> list[Problem]:
-    """Return what is wrong with facts against a vocabulary: unknown names, numbers and kinds of arguments."""
+    """Return what is wrong with facts against a vocabulary: unknown predicates, wrong numbers and types of arguments.
+
+    Parameters
+    ----------
+    source : the text in which the facts stand.
+    facts : the facts.
+    vocabulary : the predicates of this kind of file.
+
+    Returns
+    -------
+    The problems in the order of the facts; [] when all facts are valid.
+    """
     return [source.problem(*complaint) for fact in facts for complaint in _complaints(fact, vocabulary)]
 
 
 def _complaints(fact: Fact, vocabulary: Vocabulary) -> list[Complaint]:
-    slots = vocabulary.get(fact.name)
-    if slots is None:
+    """Return the complaints about one fact; [] when it is valid."""
+    types = vocabulary.get(fact.name)
+    if types is None:
         hint = did_you_mean(fact.name, vocabulary) or f"known here: {', '.join(sorted(vocabulary))}"
         return [Complaint(fact.span, f"unknown predicate {fact.name}/{len(fact.args)}", hint)]
-    if len(slots) != len(fact.args):
-        form = f"{fact.name}({', '.join(slot.name for slot in slots)})" if slots else fact.name
-        what = f"{fact.name} takes {len(slots)} argument{'s' * (len(slots) != 1)}, not {len(fact.args)}"
+    if len(types) != len(fact.args):
+        form = f"{fact.name}({', '.join(type_.name for type_ in types)})" if types else fact.name
+        what = f"{fact.name} takes {len(types)} argument{'s' * (len(types) != 1)}, not {len(fact.args)}"
         return [Complaint(fact.span, what, f"write {form}")]
-    found = (slot.check(term) for slot, term in zip(slots, fact.args, strict=True))
+    found = (type_.check(term) for type_, term in zip(types, fact.args, strict=True))
     return [complaint for complaint in found if complaint is not None]

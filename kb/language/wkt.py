@@ -1,4 +1,4 @@
-"""Shapes written as text (well-known text, WKT): our own reader, which says at which character a text goes wrong.
+"""The reader of shapes in well-known text (WKT); an error names the character at which the text goes wrong.
 
 shape   = "POINT" "(" point ")" | "LINESTRING" line | "POLYGON" polygon | "MULTIPOLYGON" "(" polygon { "," polygon } ")"
 polygon = "(" line { "," line } ")"       the outer ring, then the holes; a ring ends where it begins
@@ -6,8 +6,8 @@ line    = "(" point { "," point } ")"
 point   = number number                   x and y in squares
 number  = [ "+" | "-" ] ( digits [ "." [ digits ] ] | "." digits ) [ ( "e" | "E" ) [ "+" | "-" ] digits ]
 
-Words are parted by blanks, brackets and commas, by nothing else: `10.5.5` and `8-5` are one word each, and no number.
-Nothing but blanks may follow the last bracket.
+Only blanks, brackets and commas separate words: `10.5.5` and `8-5` are one word each, and no numbers. Only blanks may
+follow the last bracket.
 """
 
 import re
@@ -15,28 +15,47 @@ from typing import Any, NamedTuple
 
 import shapely
 
-NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
-WORD = re.compile(r"[(),]|[^\s(),]+")
-KINDS = ("POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")
-FURTHEST = 1e6  # squares: no coordinate is greater
+WKT_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+WKT_WORD = re.compile(r"[(),]|[^\s(),]+")
+WKT_KINDS = ("POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")
+MAX_COORDINATE = 1e6  # squares; no coordinate has a greater absolute value (a convention)
 
-Point = tuple[float, float]
-Line = list[Point]
+_Point = tuple[float, float]
+_Ring = list[_Point]
 
 
 class WktError(ValueError):
-    """A text is no shape; `at` is the character (from 0) where it goes wrong."""
+    """A text is not a valid shape.
+
+    Attributes
+    ----------
+    at : the index of the character where the text goes wrong, from 0.
+    what : the reason.
+    """
 
     def __init__(self, at: int, what: str) -> None:
         self.at, self.what = at, what
         super().__init__(what)
 
 
-def parse_wkt(text: str, kinds: tuple[str, ...] = KINDS) -> Any:
-    """Return the shapely geometry that a text describes, which must be one of `kinds` and valid.
+def parse_wkt(text: str, kinds: tuple[str, ...] = WKT_KINDS) -> Any:
+    """Return the shapely geometry that a text describes.
 
-    Raises WktError for anything else: no number, a ring that is not closed, a boundary that crosses itself.
+    Parameters
+    ----------
+    text : the shape in well-known text; coordinates in squares.
+    kinds : the kinds of shapes that are accepted.
 
+    Returns
+    -------
+    A valid, non-empty geometry.
+
+    Raises
+    ------
+    WktError : a syntax error, another kind, a ring that is not closed, or a boundary that crosses itself.
+
+    Examples
+    --------
     >>> parse_wkt("POLYGON ((0 0, 4 0, 4 2, 0 0))").area
     4.0
     """
@@ -53,7 +72,7 @@ def parse_wkt(text: str, kinds: tuple[str, ...] = KINDS) -> Any:
 
 
 def _flaw(shape: Any) -> str:
-    """Why shapely holds a shape to be invalid, in our words."""
+    """Return the reason why a geometry is invalid, in plain words."""
     reason = shapely.is_valid_reason(shape)
     what, _, place = reason.partition("[")
     words = {
@@ -70,31 +89,36 @@ def _flaw(shape: Any) -> str:
 
 
 class _Token(NamedTuple):
+    """A word of the text and the index of its first character."""
+
     text: str
     at: int
 
 
 class _Reader:
-    """Reads words from left to right."""
+    """A recursive-descent parser over the words of one text."""
 
     def __init__(self, text: str) -> None:
         self.text = text
-        self.tokens = [_Token(m.group(), m.start()) for m in WORD.finditer(text)]
+        self.tokens = [_Token(m.group(), m.start()) for m in WKT_WORD.finditer(text)]
         self.tokens.append(_Token("", len(text)))
         self.next = 0
 
     def take(self) -> _Token:
+        """Return the next word and move on; the word after the last one is ''."""
         token = self.tokens[self.next]
         self.next += bool(token.text)
         return token
 
     def kind(self, kinds: tuple[str, ...]) -> str:
+        """Read the kind of a shape, in upper case."""
         token = self.take()
         if token.text.upper() not in kinds:
             raise WktError(token.at, f"a shape here is a {' or '.join(kinds)}, not {token.text[:20] or 'nothing'!r}")
         return token.text.upper()
 
     def expect(self, marks: str) -> str:
+        """Read one of the given marks."""
         token = self.take()
         if token.text not in tuple(marks):
             wanted = " or ".join(repr(mark) for mark in marks)
@@ -102,41 +126,46 @@ class _Reader:
         return token.text
 
     def finish(self) -> None:
+        """Raise WktError unless the text ends here."""
         token = self.take()
         if token.text:
             raise WktError(token.at, f"the shape ends before {token.text[:20]!r}")
 
     def number(self) -> float:
+        """Read a coordinate in squares."""
         token = self.take()
-        if not NUMBER.fullmatch(token.text):
+        if not WKT_NUMBER.fullmatch(token.text):
             raise WktError(token.at, f"a number was expected, {token.text[:20] or 'the end'!r} found")
         value = float(token.text)
-        if not abs(value) <= FURTHEST:
-            raise WktError(token.at, f"a coordinate beyond {FURTHEST:.0f} squares")
+        if not abs(value) <= MAX_COORDINATE:
+            raise WktError(token.at, f"a coordinate beyond {MAX_COORDINATE:.0f} squares")
         return value
 
-    def point(self) -> Point:
+    def point(self) -> _Point:
+        """Read the two coordinates of a point."""
         return self.number(), self.number()
 
-    def single(self) -> Point:
-        """`( point )`: one point alone."""
+    def single(self) -> _Point:
+        """Read one point in brackets: `( point )`."""
         self.expect("(")
         point = self.point()
         self.expect(")")
         return point
 
     def several(self, part: Any) -> list[Any]:
-        """`( part , part ... )`."""
+        """Read a list in brackets: `( part , part ... )`. part : the function that reads one part."""
         self.expect("(")
         parts = [part()]
         while self.expect(",)") == ",":
             parts.append(part())
         return parts
 
-    def line(self) -> Line:
+    def line(self) -> _Ring:
+        """Read the points of a line: `( point , point ... )`."""
         return self.several(self.point)
 
-    def ring(self) -> Line:
+    def ring(self) -> _Ring:
+        """Read a closed ring with at least three corners; the last point repeats the first."""
         at = self.tokens[self.next].at
         points = self.line()
         if points[0] != points[-1]:
@@ -146,6 +175,7 @@ class _Reader:
         return points
 
     def polygon(self) -> Any:
+        """Read a polygon: the outer ring and the holes."""
         outer, *holes = self.several(self.ring)
         return shapely.Polygon(outer, holes)
 

@@ -1,1 +1,14 @@
-"""."""
+"""Localisation: what happened on the last motion, where Utak is, and how the grid of the map lies in Utak's own frame.
+
+Explanations of an observation are proposed, scored, chosen in ASP, and applied by one writer. In reading order:
+
+tracker  the one owner of the state; it applies the chosen explanation and integrates the observation
+state  the state as one frozen value: pose, frame hypotheses, occupancy map, held objects
+after_walk  explanations of an observation after a walk, or on waking
+after_carry  explanations of an observation after a push or a turn, and the held object after it
+score  what contradicts an explanation, slower proposals, and the choice among all
+hypotheses  the values: frames, outcomes, contacts, explanations, and maps remapped to another frame
+propose  the proposals, one kind a module
+
+Public names: `tracker.Tracker`, `state.TrackerState`, `hypotheses.explanation.Accommodated`.
+"""

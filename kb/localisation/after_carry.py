@@ -1,124 +1,209 @@
-"""What a look says that was received after a push or a turn with something in hand: what came of the motion."""
+"""Explanations of an observation after a push or a turn with an object in hand, and the object's state after it."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geometry.motion.se2 import Motion, Rotate
-from kb.localisation.hypotheses.carry_outcomes import Outcome, otherwise, predicted
-from kb.localisation.hypotheses.contacts import Obstructions, led_to, suspects
+from kb.localisation.hypotheses.carry_outcomes import CarryOutcome, other_outcomes, predicted_outcome
+from kb.localisation.hypotheses.contacts import (
+    NO_SQUARES,
+    ContactHypothesis,
+    Obstructions,
+    contact_outcomes,
+    suspected_squares,
+)
 from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.what_if import Surprise, agreeing, clashes
-from kb.localisation.propose.blocked import halts, whole_first
-from kb.localisation.propose.contradicted_motion import overlooked
-from kb.localisation.propose.held_object_state import after, leaning
-from kb.localisation.propose.larger_object import larger
-from kb.localisation.score import CONTRADICTED, Judging, Place
+from kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
+from kb.localisation.hypotheses.what_if import Surprise, agreeing_hypotheses, count_clashes
+from kb.localisation.propose.blocked import has_whole_way, possible_ends
+from kb.localisation.propose.contradicted_motion import overlooked_contact
+from kb.localisation.propose.held_object_state import lean_on_obstacle, object_after
+from kb.localisation.propose.larger_object import larger_objects
+from kb.localisation.score import (
+    CONTRADICTION_RESIDUAL,
+    Judgement,
+    SearchBudget,
+    choose,
+    consistent_ends,
+    is_simple,
+    propose_blocked_push_and_origin,
+    propose_earlier_motions,
+    propose_frame,
+    residual_at,
+)
+from kb.localisation.state import TrackerState
 from kb.mapping.patch import covered
-from kb.objects.held_object import ROUNDING, HeldObject
+from kb.objects.held_object import ROUNDING, HeldObject, Square
 
-CLEAR = 0.25  # how likely a motion is stopped, at most, that comes upon nothing
+MAX_CLEAR_CHANCE = 0.25  # probability of a contact up to which a motion counts as clear of obstacles; tuned
 
 
-class Carried(Judging):
-    """What is held true, with the explanations of a look after a motion of what he holds."""
+def explain_carry(state: TrackerState, surprise: Surprise, load: HeldObject, motion: Motion) -> Judgement:
+    """Return the explanation chosen for the observation after a push or a turn.
 
-    def _came_of(self, surprise: Surprise, load: HeldObject, motion: Motion) -> Explanation:
-        """What came of a motion with a load in hand, by the look after it."""
-        ranges = surprise.ranges
-        whole = self._outcome(surprise, predicted(self.place, load.polygon, motion))
-        halted = self._halted_push(surprise, load, motion)
-        if whole_first(halted):
-            return self._choose(halted)
-        if not whole.misfits and not halted:
-            stop = overlooked(surprise, load, motion)
-            if stop is None:
-                return whole
-            return self._choose([whole._replace(misfits=CONTRADICTED), self._outcome(surprise, stop)])
-        if not whole.misfits:
-            whole = whole._replace(misfits=CONTRADICTED)
-        stops = surprise.hindrances.stops(self.place, load.polygon, motion)
-        ends = led_to(stops, self.place, load.polygon, motion)
-        outcomes = halted or [one for one in (self._outcome(surprise, end) for end in ends) if not one.misfits]
-        outcomes += [self._outcome(surprise, other) for other in otherwise(self.place, load.polygon, motion)]
-        outcomes += [*self._smaller(ranges, load, whole), *larger(surprise, load, motion)]
-        simple = any(not one.misfits for one in outcomes if one.how != "slipped" or self.slipped)
-        explanations = [whole, *outcomes, *self._elsewhere(surprise, whole.misfits, simple)]
-        explanations += self._recalled(surprise, explanations)
-        if not any(map(self._simple, explanations)):
-            explanations += self._halted_elsewhere(surprise)
-        clear = sum(stop.chance for stop in stops) <= CLEAR
-        unchanged, uneven = (
-            np.array_equal(ranges, self.observations[-1].ranges),
-            load.insets and any(load.insets.believed),
+    load : the object in hand, before the motion. motion : as commanded, map frame.
+    """
+    whole = _outcome(state, surprise, predicted_outcome(state.place, load.polygon, motion))
+    blocked = _blocked_push(state, surprise, load, motion)
+    budget = SearchBudget(state.search_count)
+    if has_whole_way(blocked):
+        return Judgement(choose(state, list(blocked)), budget.spent, blocked)
+    if not whole.residual and not blocked:
+        contact = overlooked_contact(surprise, load, motion)
+        if contact is None:
+            return Judgement(whole, budget.spent)
+        doubtful = whole._replace(residual=CONTRADICTION_RESIDUAL)
+        return Judgement(choose(state, [doubtful, _outcome(state, surprise, contact)]), budget.spent)
+    if not whole.residual:
+        whole = whole._replace(residual=CONTRADICTION_RESIDUAL)
+    contacts = surprise.obstructions.contacts(state.place, load.polygon, motion)
+    explanations = [whole, *_outcomes(state, surprise, load, motion, whole, blocked, contacts)]
+    simple = any(not one.residual for one in explanations[1:] if one.how != "slipped" or state.slipped)
+    explanations += propose_frame(state, surprise, whole.residual, budget, simple)
+    explanations += propose_earlier_motions(state, surprise, explanations, budget)
+    if not any(is_simple(state, one) for one in explanations):
+        explanations += propose_blocked_push_and_origin(surprise, budget)
+    chosen = choose(state, explanations, _facts(state, surprise, load, contacts))
+    return Judgement(chosen, budget.spent, blocked)
+
+
+def _outcomes(
+    state: TrackerState,
+    surprise: Surprise,
+    load: HeldObject,
+    motion: Motion,
+    whole: Explanation,
+    blocked: Iterable[Explanation],
+    contacts: Iterable[ContactHypothesis],
+) -> list[Explanation]:
+    """Return what else may have come of the motion in the believed frame: blocked, stuck, slipped, smaller, larger.
+
+    whole : the motion as commanded. blocked : where a push may have ended. contacts : all that the motion may have met.
+    """
+    ends = contact_outcomes(contacts, state.place, load.polygon, motion)
+    outcomes = [*blocked] or [one for one in (_outcome(state, surprise, end) for end in ends) if not one.residual]
+    outcomes += [_outcome(state, surprise, other) for other in other_outcomes(state.place, load.polygon, motion)]
+    outcomes += [*_smaller(state, surprise.ranges, load, whole), *larger_objects(surprise, load, motion)]
+    return outcomes
+
+
+def _facts(
+    state: TrackerState, surprise: Surprise, load: HeldObject, contacts: Iterable[ContactHypothesis]
+) -> list[str]:
+    """Return the facts about the motion on which the choice depends. contacts : the contacts it may have met."""
+    facts = {
+        "unchanged": np.array_equal(surprise.ranges, state.observations[-1].ranges),
+        "clear": sum(contact.chance for contact in contacts) <= MAX_CLEAR_CHANCE,
+        "uneven": load.insets is not None and any(load.insets.believed),
+    }
+    return [fact for fact, holds in facts.items() if holds]
+
+
+def _blocked_push(state: TrackerState, surprise: Surprise, load: HeldObject, motion: Motion) -> tuple[Explanation, ...]:
+    """Return where a push may have ended, its whole way included, as far as the observation agrees."""
+    ended = []
+    for end in possible_ends(surprise, load, motion):
+        assert end.outcome is not None
+        ended.append((end, _outcome(state, surprise, end.outcome)))
+    return consistent_ends(surprise, ended)
+
+
+def _smaller(state: TrackerState, ranges: FieldRanges, load: HeldObject, whole: Explanation) -> list[Explanation]:
+    """Return the explanation that the object does not fill its squares, if there is one. whole : as commanded."""
+    outcome = whole.outcome
+    assert outcome is not None
+    lying = load.moved(outcome.polygon, load.slack, outcome.degrees, commanded=True)
+    less = refined_extent(state, lying, ranges, outcome.place)
+    if less is None:
+        return []
+    smaller = outcome._replace(how="smaller", polygon=less.polygon, insets=less.insets)
+    return [whole._replace(how="smaller", residual=0, outcome=smaller)]
+
+
+def _outcome(state: TrackerState, surprise: Surprise, outcome: CarryOutcome) -> Explanation:
+    """Return the explanation that the motion of the object in hand had an outcome, in the believed frame."""
+    residual = residual_at(state, surprise.ranges, outcome.place, surprise.objects_after(outcome))
+    return Explanation(outcome.how, outcome.place, state.frame, residual, outcome.distance, outcome)
+
+
+def refined_extent(state: TrackerState, load: HeldObject, ranges: FieldRanges, place: Position) -> HeldObject | None:
+    """Return an object with the sub-cell extent that an observation at `place` shows; None when none agrees with it.
+
+    Squares that the object may leave free are taken for floor, not for something that happens to fill them.
+    """
+    frame, others, nothing = state.frame, state.others(load), NO_SQUARES
+    floor = state.occupancy.supposing(covered(load.polygon).squares())
+
+    def agrees(outline: Any) -> bool:
+        lying = replace(load, polygon=outline, slack=0.0, full=nothing, empty=nothing)
+        return not count_clashes(frame, floor, [*others, lying], place, ranges)
+
+    return load.told(agrees)
+
+
+def contact_suspects(state: TrackerState, load: HeldObject, chosen: Explanation, motion: Motion) -> frozenset[Square]:
+    """Return the open squares one of which probably stopped an object, map frame; none when what stopped it is known.
+
+    load : the object before the motion. motion : as commanded, map frame.
+    """
+    return suspected_squares(chosen.outcome, motion, load, state.others(load), state.occupancy)
+
+
+def moved_object(
+    state: TrackerState,
+    load: HeldObject,
+    chosen: Explanation,
+    motion: Motion,
+    ranges: FieldRanges,
+    suspected: frozenset[Square],
+) -> HeldObject:
+    """Return the object in hand after the chosen outcome of a motion.
+
+    load : the object before the motion. motion : as commanded, map frame. suspected : of `contact_suspects`.
+    """
+    others, place = state.others(load), chosen.place
+    load = replace(load, inexact=load.inexact or state.slipped)
+    carried = object_after(load, chosen.outcome, chosen.residual, bool(suspected))
+    if carried.inexact and carried.proven and not suspected and chosen.outcome and chosen.outcome.stopped:
+        known = Obstructions(state.occupancy, place, carried.polygon, motion).known
+        carried = lean_on_obstacle(
+            carried, motion, known, lambda lying: residual_at(state, ranges, place, [*others, lying])
         )
-        told = {"unchanged": unchanged, "clear": clear, "uneven": uneven}
-        return self._choose(explanations, [fact for fact, so in told.items() if so])
+    return carried
 
-    def _halted_push(self, surprise: Surprise, load: HeldObject, motion: Motion) -> list[Explanation]:
-        """Where a push came to a halt that may have been stopped, of the halts that the look bears out."""
-        ended = []
-        for halt in halts(surprise, load, motion):
-            assert halt.outcome is not None
-            ended.append((halt, self._outcome(surprise, halt.outcome)))
-        return self._halted(surprise, ended)
 
-    def _carried(self, load: HeldObject, chosen: Explanation, motion: Motion, ranges: NDArray[np.int16]) -> None:
-        """Believe what came of a motion with a load in hand."""
-        self.slipped |= chosen.how == "slipped"
-        others, place = self._others(load), chosen.place
-        suspected = suspects(chosen.outcome, motion, load, others, self.occupancy)
-        self.suspected |= suspected
-        load = replace(load, inexact=load.inexact or self.slipped)
-        carried = after(load, chosen.outcome, chosen.misfits, bool(suspected))
-        if carried.inexact and carried.proven and not suspected and chosen.outcome and chosen.outcome.stopped:
-            walls = Obstructions(self.occupancy, place, carried.polygon, motion).walls
-            carried = leaning(carried, motion, walls, lambda lying: self._clashes(ranges, place, [*others, lying]))
-        self.loads[load.name] = carried
+def agreeing_origins(state: TrackerState, ranges: FieldRanges) -> tuple[FrameHypothesis, ...]:
+    """Return the frame hypotheses left by an observation of objects that were turned.
 
-    def _smaller(self, ranges: NDArray[np.int16], load: HeldObject, whole: Explanation) -> list[Explanation]:
-        """That less of a thing was seen than was predicted, for it does not fill its squares. whole : as predicted."""
-        outcome = whole.outcome
-        assert outcome is not None
-        lying = load.moved(outcome.polygon, load.slack, outcome.degrees, commanded=True)
-        less = self._told(lying, ranges, outcome.place)
-        if less is None:
-            return []
-        told = outcome._replace(how="smaller", polygon=less.polygon, insets=less.insets)
-        return [whole._replace(how="smaller", misfits=0, outcome=told)]
+    Where several exact origins of the believed orientation are left, those are returned that agree with the
+    observation; otherwise all hypotheses.
+    """
+    within = _exact_origins(state)
+    if len(within) <= 1:
+        return state.hypotheses
+    return agreeing_hypotheses(
+        within, state.frame, state.place, state.occupancy, state.observations, state.loads, ranges
+    )
 
-    def _told(self, load: HeldObject, ranges: NDArray[np.int16], place: Place) -> HeldObject | None:
-        """What a look tells of how far in the sides of a thing lie; None when it agrees with no such outline.
 
-        Where the thing may lie there is rather floor than something that happens to fill what the thing leaves free.
-        """
-        frame, others, nothing = self.frame, self._others(load), frozenset[tuple[int, int]]()
-        rather = self.occupancy.supposing(covered(load.polygon).squares())
+def objects_astray(state: TrackerState) -> dict[str, HeldObject]:
+    """Return all held objects with how far each may lie from its believed place because the origin is uncertain.
 
-        def agrees(outline: Any) -> bool:
-            lying = replace(load, polygon=outline, slack=0.0, full=nothing, empty=nothing)
-            return not clashes(frame, rather, [*others, lying], place, ranges)
+    Every turn was about the true place of Utak, so an origin that is open leaves the place of a turned object open.
+    """
+    origins = [hypothesis.frame.origin for hypothesis in _exact_origins(state)]
+    away = np.array(origins).reshape(-1, 2) - np.array(state.frame.origin)
+    loads = {}
+    for name, load in state.loads.items():
+        far = np.hypot(*(away - Rotate(load.turned, (0.0, 0.0)).points(away)).T)
+        least = ROUNDING if state.beside_line and load.turned % 360 else 0.0
+        loads[name] = replace(load, astray=float(far.max(initial=least)))
+    return loads
 
-        return load.told(agrees)
 
-    def _others(self, load: HeldObject) -> list[HeldObject]:
-        """All loads but one."""
-        return [other for other in self.loads.values() if other.name != load.name]
-
-    def _stray(self, ranges: NDArray[np.int16]) -> None:
-        """How far what was turned may lie from where it is believed to, as it is open where in his square he woke."""
-        within = tuple(h for h in self.hypotheses if h.angle == self.frame.angle and h.is_point)
-        if len(within) > 1:
-            within = agreeing(within, self.frame, self.place, self.occupancy, self.observations, self.loads, ranges)
-            self.hypotheses = within
-        away = np.array([h.frame.origin for h in within]).reshape(-1, 2) - np.array(self.frame.origin)
-        for name, load in self.loads.items():
-            far = np.hypot(*(away - Rotate(load.turned, (0.0, 0.0)).points(away)).T)
-            least = ROUNDING if self._beside_line and load.turned % 360 else 0.0
-            self.loads[name] = replace(load, astray=float(far.max(initial=least)))
-
-    def _outcome(self, surprise: Surprise, outcome: Outcome) -> Explanation:
-        misfits = self._clashes(surprise.ranges, outcome.place, surprise.lying(outcome))
-        return Explanation(outcome.how, outcome.place, self.frame, misfits, outcome.distance, outcome)
+def _exact_origins(state: TrackerState) -> tuple[FrameHypothesis, ...]:
+    """Return the hypotheses of the believed orientation that name an exact origin."""
+    return tuple(h for h in state.hypotheses if h.angle == state.frame.angle and h.is_point)

@@ -1,201 +1,265 @@
-"""What a look says that was received after a walk, or on waking: how it came about, and how the lattice lies."""
+"""Explanations of an observation after a walk, or on waking: where the walk ended, and how the frame lies."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import cache, lru_cache
-
-import numpy as np
-from numpy.typing import NDArray
 
 from geometry.motion.se2 import Translate
 from kb.body import Command, Move
-from kb.localisation.hypotheses.explanation import Explanation, misled
+from kb.localisation.hypotheses.explanation import Explanation, reestimated_explanations
 from kb.localisation.hypotheses.frames import (
-    DOUBTED,
-    MEMORY,
+    MAX_CHECKED_OBSERVATIONS,
+    PLAUSIBLE_COST,
+    FieldRanges,
     FrameHypothesis,
     Observation,
-    anywhere,
-    candidates,
-    cramped,
-    search,
-    standing,
+    Position,
+    any_origin,
+    consistent_hypotheses,
+    frames_to_try,
+    is_cramped,
+    prune_hypotheses,
 )
-from kb.localisation.hypotheses.map_prior import weighed
-from kb.localisation.hypotheses.remap import Prefixes, relaid
+from kb.localisation.hypotheses.map_prior import weigh_hypotheses
+from kb.localisation.hypotheses.remap import ReplayPrefixes, remap
 from kb.localisation.hypotheses.walk_outcomes import (
-    MotionHypothesis,
     ReestimatedWalk,
-    around,
-    retold,
-    retold_both,
-    views,
+    observation_places,
+    reestimate_two_walks,
+    reestimate_walk,
+    slipped_ends,
 )
-from kb.localisation.propose.blocked import halts, whole_first
-from kb.localisation.propose.origin import misplaced
-from kb.localisation.score import CONTRADICTED, MOST_SEARCHES, Judging, Place
+from kb.localisation.propose.blocked import has_whole_way, possible_ends
+from kb.localisation.propose.origin import blocked_walks_with_origin
+from kb.localisation.score import (
+    CONTRADICTION_RESIDUAL,
+    Judgement,
+    SearchBudget,
+    choose,
+    consistent_ends,
+    is_simple,
+    prior_cost,
+    propose_earlier_motions,
+    propose_frame,
+    residual_at,
+    with_chance,
+)
+from kb.localisation.state import TrackerState
 from kb.perception.frame import Frame
 
-MOST_REPLAYS = 120  # looks that are taken in anew, to try lattices, before one is believed
-KEPT = 16  # lattices on which the first looks are kept laid, for other motions
-NONE_FITS = 10**6  # misfits of no lattice at all
-SETTLED = math.radians(5)  # by which angles may differ while that hardly is why looks contradict
+MAX_REPLAYED_OBSERVATIONS = 120  # observations replayed to try frames, for one choice: bounds its time; tuned
+MIN_TRIED_FRAMES = 6  # frames that are tried at least, however many observations there are; tuned
+MAX_KEPT_REPLAYS = 16  # frames whose replayed first observations are kept for other motions: bounds memory; tuned
+NO_FRAME_RESIDUAL = 10**6  # residual fields when no frame is left: more than any frame can have
+SETTLED_SPREAD = math.radians(5)  # orientations that differ by less hardly cause contradictions; tuned
 
 
-class Walked(Judging):
-    """What is held true, with the explanations of a look after a walk."""
+@dataclass(frozen=True)
+class DeadReckoning:
+    """The end of a walk by dead reckoning.
 
-    def _explain(
-        self, ranges: NDArray[np.int16], predicted: Place, stops: tuple[Place, ...], command: Command | None
-    ) -> Explanation:
-        ahead = [self._explanation("predicted", place, ranges, predicted) for place in views(predicted)]
-        first = min(ahead, key=lambda one: one.misfits)
-        predicted = first.place
-        observation = Observation(ranges, self.frame.place_to_utak(*predicted))
-        halted = self._halted_walk(command, ranges) if stops and command is not None else []
-        if halted and not whole_first(halted) and not first.misfits:
-            first = first._replace(misfits=CONTRADICTED)
-        observations = [*self.observations, observation]
-        begun = lru_cache(KEPT)(lambda frame: Prefixes(frame, observations, {}))
-        told = cache(lambda motion: tuple(retold(motion, self.frame, observations, begun)))
-        stopped = [motion for motion in self.earlier if motion.stopped]
-        if first.misfits and not self.loads and any(not one.misfits for motion in stopped for one in told(motion)):
-            turned = self._stopped(observation, map(told, stopped))
-        elif not self.loads:
-            recent = [*self.observations[-MEMORY:], observation]
-            left = weighed(standing(self.hypotheses, recent), recent)
-            if not first.misfits and any(hypothesis.holds(self.frame) for hypothesis in left):
-                return self._plainest(halted or [first], observation, left)
-            turned = self._turned(observation, left, recent)
-        elif first.misfits and command is not None:
-            turned = self._elsewhere(self._surprise(command, ranges), first.misfits)
-        elif halted:
-            return self._choose(halted)
+    Attributes
+    ----------
+    predicted : where the walk ends if nothing blocked it, map frame.
+    blocked : where it may have been blocked, the last place first; empty when there was no walk. Map frame.
+    """
+
+    predicted: Position
+    blocked: tuple[Position, ...]
+
+
+def explain_walk(state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, command: Command | None) -> Judgement:
+    """Return the explanation chosen for an observation after a walk, or after another motion of an empty hand.
+
+    ranges : (160, 2) least and greatest counts of the fields. command : None on waking.
+    """
+    return _WalkExplainer(state, ranges, ends, command).judge()
+
+
+class _WalkExplainer:
+    """The proposals for one observation, in the order in which they are made; each is made only when it is needed."""
+
+    def __init__(self, state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, command: Command | None) -> None:
+        self._state, self._ranges, self._blocked_places, self._command = state, ranges, ends.blocked, command
+        self._budget = SearchBudget(state.search_count)
+        ahead = [self._explanation("predicted", place, ends.predicted) for place in observation_places(ends.predicted)]
+        self._whole = min(ahead, key=lambda one: one.residual)
+        self._predicted = self._whole.place
+        self._observation = Observation(ranges, state.frame.place_to_utak(*self._predicted))
+        self._observations = [*state.observations, self._observation]
+        self._possible_ends = self._blocked_walk(command) if ends.blocked and isinstance(command, Move) else ()
+        if self._possible_ends and not has_whole_way(self._possible_ends) and not self._whole.residual:
+            self._whole = self._whole._replace(residual=CONTRADICTION_RESIDUAL)
+        begun = lru_cache(MAX_KEPT_REPLAYS)(lambda frame: ReplayPrefixes(frame, self._observations, {}))
+        self._reestimations = cache(
+            lambda motion: tuple(reestimate_walk(motion, state.frame, self._observations, begun))
+        )
+
+    def judge(self) -> Judgement:
+        """Return the chosen explanation, with what was learnt while choosing."""
+        state, first = self._state, self._whole
+        if not state.loads:
+            stopped = [motion for motion in state.earlier if motion.blocked]
+            if first.residual and any(not one.residual for motion in stopped for one in self._reestimations(motion)):
+                turned = self._blocked_elsewhere(map(self._reestimations, stopped))
+            else:
+                recent = [*state.observations[-MAX_CHECKED_OBSERVATIONS:], self._observation]
+                left = weigh_hypotheses(prune_hypotheses(state.hypotheses, recent), recent)
+                if not first.residual and any(hypothesis.contains(state.frame) for hypothesis in left):
+                    return self._judgement(self._best_prior(self._possible_ends or [first], left), left)
+                turned = self._other_frame(left, recent)
+        elif first.residual and self._command is not None:
+            surprise = state.surprise(self._command, self._ranges)
+            turned = propose_frame(state, surprise, first.residual, self._budget)
+        elif self._possible_ends:
+            return self._judgement(choose(state, list(self._possible_ends)))
         else:
             turned = []
-        if not first.misfits and not turned:
-            return first
-        if not first.misfits:  # no settled square is otherwise, but two looks contradict each other on this lattice
-            first = first._replace(misfits=CONTRADICTED)
+        if not first.residual and not turned:
+            return self._judgement(first)
+        if not first.residual:  # no settled square contradicts it, but two observations contradict each other
+            first = first._replace(residual=CONTRADICTION_RESIDUAL)
+        return self._judgement(choose(state, self._all(first, turned)))
+
+    def _judgement(self, chosen: Explanation, left: tuple[FrameHypothesis, ...] | None = None) -> Judgement:
+        """Return a chosen explanation with what was learnt. left : the hypotheses weighed anew, if they were."""
+        return Judgement(chosen, self._budget.spent, self._possible_ends, left)
+
+    def _all(self, first: Explanation, turned: list[Explanation]) -> list[Explanation]:
+        """Return all explanations: first the walk as predicted, then blocked, slipped, other frames, earlier motions.
+
+        turned : the explanations by another frame.
+        """
+        state = self._state
         explanations = [first]
-        explanations += [one for one in halted if one.how != "predicted"]
-        explanations += [self._explanation("blocked", stop, ranges, predicted) for stop in stops if not halted]
-        explanations += [self._explanation("slipped", place, ranges, predicted) for place in around(predicted)]
+        explanations += [one for one in self._possible_ends if one.how != "predicted"]
+        explanations += [
+            self._explanation("blocked", place, self._predicted)
+            for place in self._blocked_places
+            if not self._possible_ends
+        ]
+        explanations += [
+            self._explanation("slipped", place, self._predicted) for place in slipped_ends(self._predicted)
+        ]
         explanations += turned
-        if self.loads and command is not None:
-            explanations += self._recalled(self._surprise(command, ranges), explanations)
-        elif stops:
-            explanations += self._misled(observation, told, turned, explanations)
-            if not any(map(self._simple, explanations)):
-                explanations += self._at_length(
-                    lambda: misplaced(self.tellable, self.frame, [*self.observations, observation])
+        if state.loads and self._command is not None:
+            surprise = state.surprise(self._command, self._ranges)
+            explanations += propose_earlier_motions(state, surprise, explanations, self._budget)
+        elif self._blocked_places:
+            explanations += self._earlier_walks(turned, explanations)
+            if not any(is_simple(state, one) for one in explanations):
+                explanations += self._budget.search(
+                    lambda: blocked_walks_with_origin(state.reestimable, state.frame, self._observations)
                 )
-        return self._choose(explanations)
+        return explanations
 
-    def _halted_walk(self, command: Command, ranges: NDArray[np.int16]) -> list[Explanation]:
-        """Where a walk came to a halt that may have been stopped, of the halts that the look bears out."""
-        assert isinstance(command, Move)
-        surprise = self._surprise(command, ranges)
-        motion = Translate(*self.frame.to_lattice(command.east, command.north))
-        found = halts(surprise, None, motion)
-        ended = [(halt, self._explanation(halt.how, halt.place, ranges, found[0].place)) for halt in found]
-        return self._halted(surprise, ended)
+    def _blocked_walk(self, command: Move) -> tuple[Explanation, ...]:
+        """Return where the walk may have ended, its whole way included, as far as the observation agrees."""
+        surprise = self._state.surprise(command, self._ranges)
+        motion = Translate(*self._state.frame.to_lattice(command.east, command.north))
+        found = possible_ends(surprise, None, motion)
+        ended = [(end, self._explanation(end.how, end.place, found[0].place)) for end in found]
+        return consistent_ends(surprise, ended)
 
-    def _misled(
-        self,
-        observation: Observation,
-        told: Callable[[MotionHypothesis], Iterable[ReestimatedWalk]],
-        turned: list[Explanation],
-        others: list[Explanation],
-    ) -> list[Explanation]:
-        """That the newest motion, or an earlier one, was stopped where nobody thought so. look : as predicted.
+    def _earlier_walks(self, turned: list[Explanation], others: list[Explanation]) -> list[Explanation]:
+        """Return explanations by which the newest walk, or an earlier one, was blocked where nothing was known.
 
-        told : what may have come of a motion. turned : the lattices to believe instead, if all went as commanded; where
-        one of them explains all, only stops by something known are thought of. others : all explanations so far.
+        Where another frame explains everything, only contacts with something known are proposed.
+
+        turned : the explanations by another frame. others : all explanations so far.
         """
-        if all(e.misfits for e in turned):
-            simple = any(not e.misfits for e in others if e.how != "slipped" or self.slipped)
-            return self._stopped(observation, map(told, self.earlier if simple else self.tellable))
-        met = [e for e in self._stopped(observation, map(told, self.tellable)) if e.met or e.chance]
-        if self._off_middle or not all(e.odd for e in turned):
-            met = [e for e in met if e.frame == self.frame]
-        return met or self._stopped_twice(observation)
+        state = self._state
+        if all(e.residual for e in turned):
+            simple = any(not e.residual for e in others if e.how != "slipped" or state.slipped)
+            return self._blocked_elsewhere(map(self._reestimations, state.earlier if simple else state.reestimable))
+        met = [
+            e for e in self._blocked_elsewhere(map(self._reestimations, state.reestimable)) if e.met_known or e.chance
+        ]
+        if state.off_middle or not all(e.is_odd for e in turned):
+            met = [e for e in met if e.frame == state.frame]
+        return met or self._both_blocked()
 
-    def _stopped(self, observation: Observation, told: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
-        """That one of some motions was stopped, as it was told. look : as predicted.
+    def _blocked_elsewhere(self, walks: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
+        """Return explanations by which one of some walks was blocked elsewhere than believed.
 
-        Where the newest one came to a halt on the lattice held is judged already, if it may have been stopped at all.
+        Ends of the newest walk in the believed frame are left out if they were proposed already.
+
+        walks : the re-estimations of each walk.
         """
-        judged = len(self.observations) if self.ended else None
-        found = ((e, e.retold) for e in misled(observation, told) if e.retold is not None)
+        state = self._state
+        judged = len(state.observations) if self._possible_ends else None
+        found = ((e, e.reestimated) for e in reestimated_explanations(walks) if e.reestimated is not None)
         return [
-            self._doubted(e._replace(crooked=one.hypothesis.dear))
+            with_chance(state, e._replace(prior_cost=one.hypothesis.prior_cost))
             for e, one in found
-            if one.correction.since != judged or e.frame != self.frame
+            if one.correction.since != judged or e.frame != state.frame
         ]
 
-    def _stopped_twice(self, observation: Observation) -> list[Explanation]:
-        """That the newest motion was stopped, and one before it unnoticed, on the lattice held. look : as predicted."""
-        observations, newest, found = [*self.observations, observation], self.moved[-1], []
-        held = [hypothesis for hypothesis in newest.hypotheses if hypothesis.frame == self.frame][:1]
-        pairs = [(motion, hypothesis) for hypothesis in held for motion in reversed(self.earlier)]
-        for told in (one for motion, h in pairs for one in retold_both(motion, newest, h, observations)):
-            far = math.hypot(*told.correction.shift) + math.dist(told.newest, observation.place)
-            place = self.frame.place_from_utak(*told.newest)
-            found.append(Explanation("misled", place, self.frame, 0, far, None, self.hypotheses, told))
+    def _both_blocked(self) -> list[Explanation]:
+        """Return explanations by which both the newest walk and an earlier one were blocked, in the believed frame."""
+        state, newest, found = self._state, self._state.motions[-1], []
+        held = [hypothesis for hypothesis in newest.hypotheses if hypothesis.frame == state.frame][:1]
+        pairs = [(motion, hypothesis) for hypothesis in held for motion in reversed(state.earlier)]
+        for walk in (one for motion, h in pairs for one in reestimate_two_walks(motion, newest, h, self._observations)):
+            distance = math.hypot(*walk.correction.shift) + math.dist(walk.newest, self._observation.place)
+            place = state.frame.place_from_utak(*walk.newest)
+            found.append(Explanation("misled", place, state.frame, 0, distance, None, state.hypotheses, walk))
         return found
 
-    def _plainest(
-        self, ended: Sequence[Explanation], observation: Observation, left: tuple[FrameHypothesis, ...]
-    ) -> Explanation:
-        """The lattice held, on which nothing contradicts, or another one on which the table looks plainer.
+    def _best_prior(self, ended: Sequence[Explanation], left: tuple[FrameHypothesis, ...]) -> Explanation:
+        """Return the choice between the believed frame, which nothing contradicts, and the one of the best map prior.
 
-        ended : explanations of a look on the lattice held. left : the hypotheses that stand, weighed.
+        ended : the explanations in the believed frame. left : the frame hypotheses that are left, weighed.
         """
-        self.hypotheses = left
-        dear = next(h.dear for h in left if h.holds(self.frame))
-        explanations = [one._replace(crooked=one.crooked + dear) for one in ended]
-        if dear > 0:
-            plainest = candidates(left, self.frame)[0]
-            place = plainest.place_from_utak(*observation.place)
-            explanations.append(Explanation("turned", place, plainest, 0, 0.0, None, left))
-        return self._choose(explanations, ["stands"])
+        state = self._state
+        cost = next(h.prior_cost for h in left if h.contains(state.frame))
+        explanations = [one._replace(prior_cost=one.prior_cost + cost) for one in ended]
+        if cost > 0:
+            best = frames_to_try(left, state.frame)[0]
+            place = best.place_from_utak(*self._observation.place)
+            explanations.append(Explanation("turned", place, best, 0, 0.0, None, left))
+        return choose(state, explanations, ["stands"])
 
-    def _turned(
-        self, observation: Observation, left: tuple[FrameHypothesis, ...], recent: list[Observation]
-    ) -> list[Explanation]:
-        """The lattice to believe instead of the one held, on which looks contradict.
+    def _other_frame(self, left: tuple[FrameHypothesis, ...], recent: list[Observation]) -> list[Explanation]:
+        """Return the explanation by another frame, where observations contradict the believed one; if there is one.
 
-        look : the new one, as predicted, recent : the last ones with it. left : the hypotheses that stand.
+        left : the frame hypotheses that are left. recent : the last observations, the new one included.
         """
-        if self.likely_spread <= SETTLED:  # rather he woke elsewhere in his square than that the angle is another one
-            beside = search(recent, anywhere((self.frame.angle,)))
-            left = weighed((*beside, *(h for h in left if h.angle != self.frame.angle)), recent)
-        frame, misfits = self._borne_out(left, observation)
-        if (misfits or self._dear(frame.angle) > DOUBTED) and self.searches < MOST_SEARCHES:
-            self.searches += 1
-            found = tuple(one._replace(dear=self._dear(one.angle)) for one in search(recent))
-            another, fewer = self._borne_out(found, observation)
-            if (fewer, self._dear(another.angle)) < (misfits, self._dear(frame.angle)):
-                left, frame, misfits = found, another, fewer
+        state, observation = self._state, self._observation
+        if state.likely_spread <= SETTLED_SPREAD:  # another origin is likelier than another orientation
+            beside = consistent_hypotheses(recent, any_origin((state.frame.angle,)))
+            left = weigh_hypotheses((*beside, *(h for h in left if h.angle != state.frame.angle)), recent)
+        frame, residual = self._best_frame(left)
+        if (residual or prior_cost(state, frame.angle) > PLAUSIBLE_COST) and self._budget.frames_left:
+            self._budget.spent += 1
+            found = tuple(
+                one._replace(prior_cost=prior_cost(state, one.angle)) for one in consistent_hypotheses(recent)
+            )
+            another, fewer = self._best_frame(found)
+            if (fewer, prior_cost(state, another.angle)) < (residual, prior_cost(state, frame.angle)):
+                left, frame, residual = found, another, fewer
         place = frame.place_from_utak(*observation.place)
-        misfits += cramped(left, len(self.observations))
-        crooked = self._dear(frame.angle)
-        return [Explanation("turned", place, frame, misfits, 0.0, None, left, crooked=crooked)] * bool(left)
+        residual += is_cramped(left, len(state.observations))
+        cost = prior_cost(state, frame.angle)
+        return [Explanation("turned", place, frame, residual, 0.0, None, left, prior_cost=cost)] * bool(left)
 
-    def _borne_out(self, left: tuple[FrameHypothesis, ...], observation: Observation) -> tuple[Frame, int]:
-        """Of the lattices left, the one that all looks bear out best, and how many fields it leaves as noise."""
+    def _best_frame(self, left: tuple[FrameHypothesis, ...]) -> tuple[Frame, int]:
+        """Return the frame of the least residual over all observations among those left, and that residual."""
+        state = self._state
         if not left:
-            return self.frame, NONE_FITS
+            return state.frame, NO_FRAME_RESIDUAL
         tried: list[tuple[int, int]] = []
-        frames = candidates(left, self.frame)[: max(6, MOST_REPLAYS // (len(self.observations) + 1))]
+        most = max(MIN_TRIED_FRAMES, MAX_REPLAYED_OBSERVATIONS // (len(state.observations) + 1))
+        frames = frames_to_try(left, state.frame)[:most]
         for number, frame in enumerate(frames):
-            tried.append((relaid(frame, self.frame, [*self.observations, observation], ()).misfits, number))
+            tried.append((remap(frame, state.frame, self._observations, ()).residual, number))
             if tried[-1][0] == 0:
                 break
-        misfits, number = min(tried)
-        return frames[number], misfits
+        residual, number = min(tried)
+        return frames[number], residual
 
-    def _explanation(self, how: str, place: Place, ranges: NDArray[np.int16], predicted: Place) -> Explanation:
-        misfits = self._clashes(ranges, place, self.loads.values())
-        return Explanation(how, place, self.frame, misfits, math.dist(place, predicted))
+    def _explanation(self, how: str, place: Position, predicted: Position) -> Explanation:
+        """Return the explanation that the observation was made at `place`. predicted : by dead reckoning; map frame."""
+        residual = residual_at(self._state, self._ranges, place, self._state.loads.values())
+        return Explanation(how, place, self._state.frame, residual, math.dist(place, predicted))

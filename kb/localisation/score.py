@@ -1,180 +1,219 @@
-"""What speaks for and against an explanation of a look: what contradicts it, and what else may have come about."""
+"""Scoring of explanations of an observation: what contradicts each, what else is proposed, and which one is chosen.
+
+Expensive proposals are made only when cheap ones leave something unexplained. kb/asp/accommodation.lp chooses.
+"""
 
 import math
-from collections.abc import Callable, Iterable
-from typing import TypeVar
+from collections.abc import Callable, Iterable, Sequence
+from typing import NamedTuple, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
-from kb.body import Command
-from kb.localisation.holding import Holding
 from kb.localisation.hypotheses.explanation import Explanation, cheapest
-from kb.localisation.hypotheses.map_prior import UNTRIED
-from kb.localisation.hypotheses.remap import RemapCache, relaid
-from kb.localisation.hypotheses.what_if import Surprise, clashes
+from kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
+from kb.localisation.hypotheses.map_prior import UNTRIED_COST
+from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
+from kb.localisation.hypotheses.what_if import Surprise, count_clashes
 from kb.localisation.propose import blocked
-from kb.localisation.propose.earlier_motion import ReestimatedMotion, recalled, recalled_elsewhere
-from kb.localisation.propose.frame import explained, halted_elsewhere
-from kb.objects.held_object import HeldObject, borne_out
+from kb.localisation.propose.earlier_motion import (
+    ReestimatedMotion,
+    reestimate_motions,
+    reestimate_with_origin,
+)
+from kb.localisation.propose.frame import best_frame, blocked_pushes_with_origin
+from kb.localisation.state import TrackerState
+from kb.objects.held_object import HeldObject
 
-MOST_SEARCHES = 6  # times that all lattices are tried anew before slips are blamed for what contradicts
-HOPELESS = 18  # times that nothing else explained it better before nothing more is tried that takes as long
-CONTRADICTED = 2  # misfits that a contradiction of looks weighs as much as: more than any other lattice costs
-Place = tuple[float, float]
-T = TypeVar("T")
+MAX_FRAME_SEARCHES = 6  # searches over all frames before slips are blamed for residuals; tuned on random worlds
+MAX_FAILED_SEARCHES = 18  # searches that explained nothing, after which no slow proposal is made; tuned likewise
+CONTRADICTION_RESIDUAL = 2  # fields that a contradiction of observations counts as: more than any other frame costs
+Found = TypeVar("Found")
 
 
-class Judging(Holding):
-    """What is held true, with what it says of new looks and of explanations of them."""
+class SearchBudget:
+    """The searches over all frames that are spent, counted while one observation is explained.
 
-    def _surprise(self, command: Command, ranges: NDArray[np.int16]) -> Surprise:
-        """A look that contradicts what is believed, now that things have been moved."""
-        return Surprise(
-            command,
-            ranges,
-            self.frame,
-            self.place,
-            self.occupancy,
-            self.observations,
-            self.loads,
-            self.held,
-            self.hypotheses,
-            self.pictures,
-        )
+    Attributes
+    ----------
+    spent : the number of searches, over the whole life of the tracker.
+    """
 
-    def _halted(
-        self, surprise: Surprise, ended: Iterable[tuple[blocked.BlockedMotion, Explanation]]
-    ) -> list[Explanation]:
-        """Of the halts of the newest motion, told so, those that its look bears out: they are remembered."""
-        told = (one._replace(chance=halt.chance, against=halt.against) for halt, one in ended if not one.misfits)
-        self.ended = tuple(blocked.borne_out(surprise, told))
-        return list(self.ended)
+    def __init__(self, spent: int) -> None:
+        self.spent = spent
 
-    def _elsewhere(self, surprise: Surprise, misfits: int, simple: bool = False) -> list[Explanation]:
-        """The lattice that explains a surprise better, if there is one.
+    @property
+    def frames_left(self) -> bool:
+        """Return whether all frames may be searched once more."""
+        return self.spent < MAX_FRAME_SEARCHES
 
-        simple : is it explained by a motion that ended early?
-        """
-        if self.searches >= HOPELESS:
+    @property
+    def exhausted(self) -> bool:
+        """Return whether no slow proposal may be made any more."""
+        return self.spent >= MAX_FAILED_SEARCHES
+
+    def search(self, propose: Callable[[], list[Found]]) -> list[Found]:
+        """Return what a slow proposal finds; nothing, without asking it, when the budget is exhausted."""
+        if self.exhausted:
             return []
-        found = explained(surprise, self.searches < MOST_SEARCHES, simple)
-        if found is None or found.misfits >= misfits:
-            self.searches += 1
-            return []
-        self.searches += found.searched
-        outcome = found.outcome
-        pushed = outcome is not None and outcome.stopped and surprise.degrees == 0.0
-        if simple and pushed and found.frame == self.frame:  # where that was is judged more finely already
-            return []
-        if found.frame != self.frame or set(found.hypotheses) != set(self.hypotheses):
-            far = 0.0 if outcome is None else outcome.distance
-            turned = Explanation("turned", found.place, found.frame, found.misfits, far, outcome, found.hypotheses)
-            return [turned._replace(crooked=self._dear(found.frame.angle))]
-        if outcome is None or outcome.how == "predicted":  # as is judged already
-            return []
-        return [Explanation(outcome.how, outcome.place, self.frame, found.misfits, outcome.distance, outcome)]
-
-    def _halted_elsewhere(self, surprise: Surprise) -> list[Explanation]:
-        """That a push was stopped, and he woke elsewhere in his square: each the likelier the more of that is left."""
-        found = []
-        for one, chance, against in self._at_length(lambda: halted_elsewhere(surprise)):
-            far = 0.0 if one.outcome is None else one.outcome.distance
-            turned = Explanation("turned", one.place, one.frame, 0, far, one.outcome, one.hypotheses)
-            found.append(turned._replace(chance=chance, crooked=against, weighed=True))
+        found = propose()
+        self.spent += not found
         return found
 
-    def _recalled(self, surprise: Surprise, others: Iterable[Explanation]) -> list[Explanation]:
-        """Earlier motions that ended elsewhere than is believed.
 
-        Where a simple thing explains all as the lattice is, only those that likely did by the look after them, and none
-        if it is known how likely that thing is. That he woke elsewhere in his square as well is told only where nothing
-        simple explains it on any other lattice either.
-        """
-        simple = [other for other in others if self._simple(other)]
-        here = [other for other in simple if other.frame == self.frame]
-        if here:
-            known = any(other.chance is not None for other in here)
-            likely = [] if known else [self._told_again(one) for one in recalled(surprise, self.in_doubt)]
-            return [one for one in likely if one.chance is not None]
-        found = recalled(surprise, self.earlier)
-        if not found and not simple:
-            found = self._at_length(lambda: recalled_elsewhere(surprise, self.earlier))
-        return [self._told_again(one) for one in found]
+class Judgement(NamedTuple):
+    """The explanation chosen for an observation, and what was learnt while choosing it.
 
-    def _at_length(self, tell: Callable[[], list[T]]) -> list[T]:
-        """What is told by trying much; nothing any more after that told nothing too often."""
-        if self.searches >= HOPELESS:
-            return []
-        found = tell()
-        self.searches += not found
-        return found
+    Attributes
+    ----------
+    explanation : the chosen one.
+    searches : the number of searches over all frames so far.
+    blocked : where the newest motion may have ended, by the observation; empty when it met nothing.
+    hypotheses : the frame hypotheses that are left, if they were weighed anew; None when they stay as they are.
+    """
 
-    def _simple(self, explanation: Explanation) -> bool:
-        """Does an explanation leave nothing as noise, and say neither that he slipped nor that the angle is another?"""
-        likely = explanation.how != "slipped" or self.slipped
-        return likely and not explanation.misfits and explanation.frame.angle == self.frame.angle
+    explanation: Explanation
+    searches: int
+    blocked: tuple[Explanation, ...] = ()
+    hypotheses: tuple[FrameHypothesis, ...] | None = None
 
-    def _told_again(self, recalled: ReestimatedMotion) -> Explanation:
-        """That an earlier motion ended elsewhere than is believed, as it was told again."""
-        told, one = recalled
-        far = math.hypot(*told.correction.shift)
-        misled = Explanation("misled", one.place, one.frame, 0, far, one.outcome, one.hypotheses, told)
-        return self._doubted(misled)
 
-    def _doubted(self, explanation: Explanation) -> Explanation:
-        """That an earlier motion ended otherwise, with how likely that was by the look after it, if that was told."""
-        assert explanation.retold is not None
-        correction = explanation.retold.correction
-        motion = next((motion for motion in self.moved if motion.number == correction.since), None)
-        if motion is None or motion.number >= len(self.observations) or explanation.frame != self.frame:
-            return explanation
-        return explanation._replace(chance=motion.doubt(correction.place(self.observations[motion.number].place)))
+def residual_at(state: TrackerState, ranges: FieldRanges, place: Position, loads: Iterable[HeldObject]) -> int:
+    """Return how many fields of an observation at `place` contradict the map, with the objects where `loads` lie."""
+    return count_clashes(state.frame, state.occupancy, loads, place, ranges)
 
-    def _doubt(self, chosen: Explanation) -> None:
-        """Remember where else the newest motion may have ended than an explanation says that is believed."""
-        if not self.ended or chosen.frame != self.frame or self.moved[-1].number != len(self.observations):
-            return
-        weights = [(one, (one.chance or 0.0) * math.exp(-one.crooked)) for one in self.ended]
-        total = sum(weight for _, weight in weights)
-        others = [(self.frame.place_to_utak(*one.place), w / total) for one, w in weights if one.place != chosen.place]
-        self.moved = (*self.moved[:-1], self.moved[-1]._replace(doubts=tuple(others)))
 
-    def _dear(self, angle: int) -> float:
-        """How much less plain the table looked at an angle than at the one believed, by all looks before."""
-        if angle == self.frame.angle:
-            return 0.0
-        return min((one.dear for one in self.hypotheses if one.angle == angle), default=UNTRIED)
+def consistent_ends(
+    surprise: Surprise, ended: Iterable[tuple[blocked.BlockedMotion, Explanation]]
+) -> tuple[Explanation, ...]:
+    """Return those possible ends of the newest motion that its observation agrees with, each with its chance.
 
-    def _clashes(self, ranges: NDArray[np.int16], place: Place, loads: Iterable[HeldObject]) -> int:
-        """How many fields cannot be right if the impression was received at a place, with the loads where they lie."""
-        return clashes(self.frame, self.occupancy, loads, place, ranges)
+    ended : each possible end, with the explanation that the motion ended there.
+    """
+    fitting = (
+        one._replace(chance=end.chance, contact_squares=end.contact_squares) for end, one in ended if not one.residual
+    )
+    return tuple(blocked.consistent_explanations(surprise, fitting))
 
-    def _choose(self, explanations: list[Explanation], told: Iterable[str] = ()) -> Explanation:
-        """The explanation to believe. told : facts about the motion and the look."""
-        facts = [f"trust({0 if self._off_middle else self.trust})", *["slips"] * self.slipped]
-        facts += ["off_middle"] * self._off_middle
-        facts += [f"met({n})" for n, e in enumerate(explanations) if e.met and e.frame == self.frame]
-        facts += ["proven"] * (self.held is not None and self.loads[self.held].proven)
-        return cheapest(explanations, [*facts, *told])
 
-    def _lie(self, chosen: Explanation) -> None:
-        """Believe what an explanation says of the lattice and of earlier motions; if that is new, all is laid anew."""
-        loads = self.loads
-        if chosen.anew:
-            self.hypotheses, self.trust = chosen.hypotheses, 0
-            loads = borne_out(loads, self.held)
-        if chosen.retold is not None:
-            correction = chosen.retold.correction
-            own = self.frame.place_to_utak(*self.place)
-            self.place = self.frame.place_from_utak(*correction.place(own))
-            self.observations, loads = correction.observations(self.observations), correction.loads(loads, self.frame)
-        elif chosen.frame == self.frame:
-            return
-        if chosen.retold is not None or len(loads) < len(self.loads):
-            under = relaid(chosen.frame, self.frame, self.observations, loads.values())
-        else:
-            under = RemapCache(self.frame, self.occupancy, self.observations, loads).on(chosen.frame)
-        if under.occupancy is not self.occupancy:
-            self.barred, self.suspected, self.pictures = set(), set(), None
-        self.frame, self.occupancy, self.loads = chosen.frame, under.occupancy, dict(under.loads)
+def propose_frame(
+    state: TrackerState, surprise: Surprise, residual: int, budget: SearchBudget, simple: bool = False
+) -> list[Explanation]:
+    """Return the frame that explains a surprise with fewer than `residual` unexplained fields, if there is one.
+
+    simple : whether a motion that ended early explains it in the believed frame.
+    """
+    if budget.exhausted:
+        return []
+    found = best_frame(surprise, budget.frames_left, simple)
+    if found is None or found.residual >= residual:
+        budget.spent += 1
+        return []
+    budget.spent += found.searched
+    outcome = found.outcome
+    pushed = outcome is not None and outcome.stopped and surprise.degrees == 0.0
+    if simple and pushed and found.frame == state.frame:  # finer proposals of where it was blocked exist already
+        return []
+    if found.frame != state.frame or set(found.hypotheses) != set(state.hypotheses):
+        distance = 0.0 if outcome is None else outcome.distance
+        turned = Explanation("turned", found.place, found.frame, found.residual, distance, outcome, found.hypotheses)
+        return [turned._replace(prior_cost=prior_cost(state, found.frame.angle))]
+    if outcome is None or outcome.how == "predicted":  # proposed already
+        return []
+    return [Explanation(outcome.how, outcome.place, state.frame, found.residual, outcome.distance, outcome)]
+
+
+def propose_blocked_push_and_origin(surprise: Surprise, budget: SearchBudget) -> list[Explanation]:
+    """Return explanations by which a push was blocked and the origin of the frame lies elsewhere in its square.
+
+    Each costs the less the larger the part of the square is in which the origin may lie then.
+    """
+    found = []
+    for one, chance, against in budget.search(lambda: blocked_pushes_with_origin(surprise)):
+        distance = 0.0 if one.outcome is None else one.outcome.distance
+        turned = Explanation("turned", one.place, one.frame, 0, distance, one.outcome, one.hypotheses)
+        found.append(turned._replace(chance=chance, prior_cost=against, origin_weighed=True))
+    return found
+
+
+class EarlierMotionProposers(NamedTuple):
+    """The two proposers of earlier motions that ended elsewhere than believed.
+
+    Attributes
+    ----------
+    in_frame : proposes other ends in the believed frame.
+    with_origin : proposes other ends together with another origin of the frame.
+    """
+
+    in_frame: Callable[[Surprise, Sequence[MotionHypothesis]], list[ReestimatedMotion]] = reestimate_motions
+    with_origin: Callable[[Surprise, Sequence[MotionHypothesis]], list[ReestimatedMotion]] = reestimate_with_origin
+
+
+EARLIER_MOTION_PROPOSERS = EarlierMotionProposers()  # the ones in use; tests pass others
+
+
+def propose_earlier_motions(
+    state: TrackerState,
+    surprise: Surprise,
+    others: Iterable[Explanation],
+    budget: SearchBudget,
+    proposers: EarlierMotionProposers = EARLIER_MOTION_PROPOSERS,
+) -> list[Explanation]:
+    """Return explanations by which an earlier motion ended elsewhere than believed.
+
+    Where a simple explanation in the believed frame exists, only motions that were in doubt are re-estimated, and none
+    if the chance of the simple explanation is known. Another origin of the frame is proposed as well only where
+    nothing simple explains the observation in any frame.
+
+    others : all explanations so far.
+    """
+    simple = [other for other in others if is_simple(state, other)]
+    here = [other for other in simple if other.frame == state.frame]
+    if here:
+        known = any(other.chance is not None for other in here)
+        likely = [] if known else [_earlier_motion(state, one) for one in proposers.in_frame(surprise, state.doubtful)]
+        return [one for one in likely if one.chance is not None]
+    found = proposers.in_frame(surprise, state.earlier)
+    if not found and not simple:
+        found = budget.search(lambda: proposers.with_origin(surprise, state.earlier))
+    return [_earlier_motion(state, one) for one in found]
+
+
+def is_simple(state: TrackerState, explanation: Explanation) -> bool:
+    """Return whether an explanation leaves no residual and needs neither a first slip nor another orientation."""
+    likely = explanation.how != "slipped" or state.slipped
+    return likely and not explanation.residual and explanation.frame.angle == state.frame.angle
+
+
+def _earlier_motion(state: TrackerState, motion: ReestimatedMotion) -> Explanation:
+    """Return the explanation that an earlier motion ended as it was re-estimated."""
+    walk, one = motion
+    distance = math.hypot(*walk.correction.shift)
+    misled = Explanation("misled", one.place, one.frame, 0, distance, one.outcome, one.hypotheses, walk)
+    return with_chance(state, misled)
+
+
+def with_chance(state: TrackerState, explanation: Explanation) -> Explanation:
+    """Return a re-estimation of an earlier motion with its chance by the observation after that motion, if known."""
+    assert explanation.reestimated is not None
+    correction = explanation.reestimated.correction
+    motion = next((motion for motion in state.motions if motion.number == correction.since), None)
+    if motion is None or motion.number >= len(state.observations) or explanation.frame != state.frame:
+        return explanation
+    return explanation._replace(chance=motion.chance_of_end(correction.place(state.observations[motion.number].place)))
+
+
+def prior_cost(state: TrackerState, angle: int) -> float:
+    """Return by how much the map prior of an orientation is worse than the best one, in log odds.
+
+    angle : the orientation in degrees. The cost of the believed orientation is 0.
+    """
+    if angle == state.frame.angle:
+        return 0.0
+    return min((one.prior_cost for one in state.hypotheses if one.angle == angle), default=UNTRIED_COST)
+
+
+def choose(state: TrackerState, explanations: list[Explanation], facts: Iterable[str] = ()) -> Explanation:
+    """Return the cheapest explanation (kb/asp/accommodation.lp). facts : facts about the motion and observation."""
+    known = [f"trust({0 if state.off_middle else state.confirmations})", *["slips"] * state.slipped]
+    known += ["off_middle"] * state.off_middle
+    known += [f"met({n})" for n, e in enumerate(explanations) if e.met_known and e.frame == state.frame]
+    known += ["proven"] * (state.held is not None and state.loads[state.held].proven)
+    return cheapest(explanations, [*known, *facts])

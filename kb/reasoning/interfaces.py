@@ -1,94 +1,112 @@
-"""The predicates between the robot and the encodings that rules of users reach: what stands in each of their arguments.
+"""The predicates of the encodings that users' rules may use, with the types of their arguments.
 
-A slot whose name is one of `DOMAINS` holds what a given fact of that kind names: rules cannot invent a region, a neck
-or a thing.
+An argument type whose name is in `DEFINING_FACTS` accepts only what a given fact of that kind names. So rules cannot
+invent a region, a neck or an object.
 """
 
 from collections.abc import Mapping
 
-from kb.language.arguments import COLOUR, NAME, Slot, named, whole, word
-from kb.language.vocabulary import CONFIDENCE, CORNERS, KIND, LENGTH, SHAPES
+from kb.language.arguments import (
+    COLOUR_ARGUMENT,
+    NAME_ARGUMENT,
+    ArgumentType,
+    integer_argument,
+    pattern_argument,
+    word_argument,
+)
+from kb.language.vocabulary import (
+    CONFIDENCE_ARGUMENT,
+    CORNER_NAMES,
+    KIND_ARGUMENT,
+    LENGTH_ARGUMENT,
+    SHAPE_CLASSES,
+    Signature,
+)
 
-Signature = tuple[str, int]
-Interface = Mapping[Signature, tuple[Slot, ...]]
+Interface = Mapping[Signature, tuple[ArgumentType, ...]]
 
-LARGE = 1_000_000  # no count, price or length in these facts is greater
-AMOUNT = whole("an amount", 0, LARGE)
-NUMBER = whole("a number", 0, LARGE)
-
-
-def _named(name: str) -> Slot:
-    return Slot(name, NAME.check)
+MAX_AMOUNT = 1_000_000  # the greatest count, price or length that users' rules may derive; a convention
+AMOUNT_ARGUMENT = integer_argument("an amount", 0, MAX_AMOUNT)
+NUMBER_ARGUMENT = integer_argument("a number", 0, MAX_AMOUNT)
 
 
-def _numbered(name: str) -> Slot:
-    return Slot(name, NUMBER.check, NUMBER.limits)
+def _name_argument(name: str) -> ArgumentType:
+    """Return the type of names, with its own name for messages."""
+    return ArgumentType(name, NAME_ARGUMENT.check)
 
 
-REGION, THING, PARAMETER = (_named(name) for name in ("region", "candidate", "parameter"))
-NODE = named("thing", "o[0-9]+", "o1")
-NECK, CONVEX = _numbered("neck"), _numbered("convex corner")
-PROPERTY = word("property", ("shape", "colour"))
-SHAPE = word("shape", SHAPES)
-# By the name of a slot, the facts that name such things, and in which argument.
-DOMAINS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
+def _number_argument(name: str) -> ArgumentType:
+    """Return the type of numbers from 0 to `MAX_AMOUNT`, with its own name for messages."""
+    return ArgumentType(name, NUMBER_ARGUMENT.check, NUMBER_ARGUMENT.limits)
+
+
+REGION_ARGUMENT, CANDIDATE_ARGUMENT, PARAMETER_ARGUMENT = (
+    _name_argument(name) for name in ("region", "candidate", "parameter")
+)
+NODE_ARGUMENT = pattern_argument("thing", "o[0-9]+", "o1")
+NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT = _number_argument("neck"), _number_argument("convex corner")
+PROPERTY_ARGUMENT = word_argument("property", ("shape", "colour"))
+SHAPE_ARGUMENT = word_argument("shape", SHAPE_CLASSES)
+# By the name of an argument type: the predicates whose facts name all such things, and the index of that argument.
+DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
     "region": ((("region", 3), 0),),
     "candidate": ((("candidate", 2), 0),),
     "parameter": ((("wanted", 1), 0),),
     "neck": ((("neck", 5), 0),),
     "convex corner": ((("convex", 3), 0),),
 }
-# Numbers that mean something else from one impression to the next: no rule states one as a constant.
-PASSING = frozenset({"neck", "convex corner"})
+# Argument types whose numbers mean other things after the next impression. No rule may state one as a constant.
+TRANSIENT_NUMBERS = frozenset({"neck", "convex corner"})
+# By the name of an encoding: the predicates that users' rules may use there, with their argument types.
 REACHED: Mapping[str, Interface] = {
     "interpretation": {
-        ("region", 3): (REGION, word("state", ("zero", "nonzero")), CONFIDENCE),
-        ("rim", 1): (REGION,),
-        ("own", 1): (REGION,),
-        ("surrounds", 2): (REGION, REGION),
-        ("extent", 2): (REGION, AMOUNT),
-        ("mass", 2): (REGION, AMOUNT),
-        ("touched", 2): (REGION, COLOUR),
-        ("kind", 3): (REGION, KIND, CONFIDENCE),
-        ("hidden_passage", 2): (REGION, REGION),
+        ("region", 3): (REGION_ARGUMENT, word_argument("state", ("zero", "nonzero")), CONFIDENCE_ARGUMENT),
+        ("rim", 1): (REGION_ARGUMENT,),
+        ("own", 1): (REGION_ARGUMENT,),
+        ("surrounds", 2): (REGION_ARGUMENT, REGION_ARGUMENT),
+        ("extent", 2): (REGION_ARGUMENT, AMOUNT_ARGUMENT),
+        ("mass", 2): (REGION_ARGUMENT, AMOUNT_ARGUMENT),
+        ("touched", 2): (REGION_ARGUMENT, COLOUR_ARGUMENT),
+        ("kind", 3): (REGION_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("hidden_passage", 2): (REGION_ARGUMENT, REGION_ARGUMENT),
     },
     "shapes": {
-        ("fit", 4): (NODE, SHAPE, AMOUNT, whole("a rank", 1, len(SHAPES))),
-        ("open_squares", 2): (NODE, AMOUNT),
-        ("full_squares", 2): (NODE, AMOUNT),
-        ("shape", 3): (NODE, SHAPE, CONFIDENCE),
+        ("fit", 4): (NODE_ARGUMENT, SHAPE_ARGUMENT, AMOUNT_ARGUMENT, integer_argument("a rank", 1, len(SHAPE_CLASSES))),
+        ("open_squares", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
+        ("full_squares", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
+        ("shape", 3): (NODE_ARGUMENT, SHAPE_ARGUMENT, CONFIDENCE_ARGUMENT),
     },
     "rooms": {
-        ("neck", 5): (NECK, AMOUNT, AMOUNT, AMOUNT, CONFIDENCE),
-        ("door", 2): (NECK, CONFIDENCE),
-        ("opening", 1): (NECK,),
+        ("neck", 5): (NECK_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, AMOUNT_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("door", 2): (NECK_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("opening", 1): (NECK_ARGUMENT,),
     },
     "corners": {
-        ("convex", 3): (CONVEX, LENGTH, LENGTH),
-        ("furthest", 2): (word("corner", CORNERS), CONVEX),
+        ("convex", 3): (CONVEX_CORNER_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT),
+        ("furthest", 2): (word_argument("corner", CORNER_NAMES), CONVEX_CORNER_ARGUMENT),
     },
     "reconciliation": {
-        ("wanted", 1): (PARAMETER,),
-        ("named", 1): (PARAMETER,),
-        ("claim", 4): (PARAMETER, PROPERTY, NAME, CONFIDENCE),
-        ("candidate", 2): (THING, CONFIDENCE),
-        ("has", 4): (THING, PROPERTY, NAME, CONFIDENCE),
-        ("settled", 2): (THING, PROPERTY),
-        ("distance", 2): (THING, AMOUNT),
-        ("bound_before", 2): (PARAMETER, THING),
-        ("carried", 1): (PARAMETER,),
-        ("fixed", 1): (THING,),
-        ("moved", 1): (THING,),
-        ("may_be", 3): (THING, PROPERTY, NAME),
-        ("bind", 2): (PARAMETER, THING),
-        ("hypothesised", 1): (PARAMETER,),
-        ("doubtful", 2): (PARAMETER, THING),
-        ("contradicted", 3): (PARAMETER, THING, PROPERTY),
-        ("unmovable", 2): (PARAMETER, THING),
-        ("measurable", 2): (PARAMETER, THING),
+        ("wanted", 1): (PARAMETER_ARGUMENT,),
+        ("named", 1): (PARAMETER_ARGUMENT,),
+        ("claim", 4): (PARAMETER_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("candidate", 2): (CANDIDATE_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("has", 4): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("settled", 2): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT),
+        ("distance", 2): (CANDIDATE_ARGUMENT, AMOUNT_ARGUMENT),
+        ("bound_before", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
+        ("carried", 1): (PARAMETER_ARGUMENT,),
+        ("fixed", 1): (CANDIDATE_ARGUMENT,),
+        ("moved", 1): (CANDIDATE_ARGUMENT,),
+        ("may_be", 3): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT),
+        ("bind", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
+        ("hypothesised", 1): (PARAMETER_ARGUMENT,),
+        ("doubtful", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
+        ("contradicted", 3): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT),
+        ("unmovable", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
+        ("measurable", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
     },
 }
-# What says which things there are, and how they are numbered: rules of users read it and add nothing to it.
+# Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.
 READ_ONLY: frozenset[Signature] = frozenset(
     {("region", 3), ("own", 1), ("neck", 5), ("convex", 3), ("wanted", 1), ("candidate", 2), ("fit", 4)}
 )

@@ -1,10 +1,9 @@
-"""Questions to the world model: the body of a rule, answered over its facts in a process that can be killed.
+"""Queries over the world model: the body of a rule, answered in a separate process that can be killed.
 
-A query without variables is answered yes, no or don't know; one with variables by the rows of their values that hold
-for certain, or, when there is none, by no or don't know. Beside the facts there is `object(N)`, which stands for
-`kind(N, object, C)`. What is certain, what may be and what is not: kb.three_valued.evaluation, over the table
-`BELIEF` of
-kb.language.vocabulary; docs/files.md describes it.
+A query without variables has the answer yes, no or don't know. A query with variables has the rows of values for which
+it certainly holds; when there is none, no or don't know. Besides the facts, queries can use `object(N)`, which stands
+for `kind(N, object, C)`. `kb.three_valued.evaluation` decides what is certain, possible or false, by the table `BELIEF`
+of kb.language.vocabulary; docs/files.md describes the rules.
 """
 
 from collections.abc import Sequence
@@ -12,7 +11,7 @@ from dataclasses import dataclass
 from types import TracebackType
 
 from kb.language.diagnostics import BadInputError, Problem, Span
-from kb.language.integers import wide_integers
+from kb.language.integers import integers_beyond_32_bits
 from kb.language.reader import parse_facts
 from kb.language.source_text import decode
 from kb.language.terms import Fact, Number
@@ -20,26 +19,26 @@ from kb.language.vocabulary import BELIEF
 from kb.reasoning.rulebook import Statement
 from kb.reasoning.worker import Worker
 
-SECONDS = 5.0  # after which a query is given up
-LONGEST = 10_000  # characters of a query
-MOST_ROWS = 10_000  # of an answer, unless more are asked for
-VOCABULARY = tuple(BELIEF)
+MAX_QUERY_SECONDS = 5.0  # seconds of wall-clock time for one query, by default; a convention
+MAX_QUERY_CHARACTERS = 10_000  # characters of a query; a convention
+MAX_ANSWER_ROWS = 10_000  # rows of an answer, by default; a convention
+VOCABULARY = tuple(BELIEF)  # the predicates of which queries can be made, by name and number of arguments
 
 
 class QueryLimitError(Exception):
-    """A query was given up: it took too long or too much memory."""
+    """A query took too much time or memory."""
 
 
 @dataclass(frozen=True)
-class Answer:
-    """What the world model says.
+class QueryAnswer:
+    """The answer to a query.
 
     Attributes
     ----------
     kind : "bindings", "yes", "no" or "don't know".
     variables : the names of the query's variables, in the order in which they appear.
     rows : the values of the variables, integers or terms as text, sorted; empty unless kind is "bindings".
-    more : there are more rows than are kept.
+    more : whether there are more rows than `rows` holds.
     """
 
     kind: str
@@ -48,7 +47,7 @@ class Answer:
     more: bool = False
 
     def __str__(self) -> str:
-        """The answer as text: a table of the bindings, or a word."""
+        """Return a table of the rows, or the kind of the answer in words."""
         if self.kind != "bindings":
             return self.kind
         cells = [list(self.variables), *([str(value) for value in row] for row in self.rows)]
@@ -58,18 +57,25 @@ class Answer:
 
 
 class QueryEngine:
-    """Answers queries one after another; use it in a `with` statement, which ends its process.
+    """Answers queries one after another in one separate process; leaving a `with` statement ends the process.
 
-    rules : files with rules of a user; predicates that they define over what is believed can be asked for, too.
+    Parameters
+    ----------
+    seconds : the limit of wall-clock time for each query.
+    rules : the names of files with users' rules. Queries can use the predicates that these rules define.
+
+    Attributes
+    ----------
+    seconds : the limit of wall-clock time for each query.
     """
 
-    def __init__(self, seconds: float = SECONDS, rules: Sequence[str] = ()) -> None:
+    def __init__(self, seconds: float = MAX_QUERY_SECONDS, rules: Sequence[str] = ()) -> None:
         self.seconds = seconds
         self._rules: Sequence[Statement] = ()
         if rules:
-            from kb.reasoning.user_rules import read_rules  # only who has rules of his own waits for it
+            from kb.reasoning.user_rules import read_rules  # imported only when there are users' rules: it takes time
 
-            self._rules = read_rules(rules).queried
+            self._rules = read_rules(rules).query_rules
         self._worker = Worker()
 
     def __enter__(self) -> "QueryEngine":
@@ -79,22 +85,35 @@ class QueryEngine:
         self.close()
 
     def close(self) -> None:
-        """End the process."""
+        """End the separate process."""
         self._worker.close()
 
-    def ask(self, facts: Sequence[str], query: str, most: int = MOST_ROWS) -> Answer:
-        """Answer a query over facts such as `kind(o1,object,95).`, with so many rows at most.
+    def ask(self, facts: Sequence[str], query: str, max_rows: int = MAX_ANSWER_ROWS) -> QueryAnswer:
+        """Return the answer to a query.
 
-        Raises BadInputError when it is no query or one of the facts is none, QueryLimitError when it takes too long.
+        Parameters
+        ----------
+        facts : the world model, such as `kind(o1,object,95).`, one fact a text.
+        query : the body of a rule on one line; `?-` before it and a full stop after it are ignored.
+        max_rows : the greatest number of rows of the answer.
+
+        Returns
+        -------
+        The answer with its rows.
+
+        Raises
+        ------
+        BadInputError : the query, a fact or one of the rules has an error.
+        QueryLimitError : the query takes too much time or memory.
         """
         text = query.strip().removeprefix("?-").strip().removesuffix(".").strip()
-        _check(text)
+        _check_query(text)
         world = parse_facts(decode("belief", "\n".join(facts).encode("utf-8")))
         request = {
-            "facts": [_entry(fact) for fact in world],
+            "facts": [_request_entry(fact) for fact in world],
             "query": text,
             "rules": [one.written for one in self._rules],
-            "most": most,
+            "max_rows": max_rows,
         }
         found = self._worker.exchange(request, self.seconds)
         if "limit" in found:
@@ -102,29 +121,30 @@ class QueryEngine:
         if "rule" in found:
             raise BadInputError([self._rules[found["rule"]].problem(found["error"], hint=found["hint"])])
         if "error" in found:
-            raise _problem(text, found["error"], found["at"], found["hint"])
-        return Answer(found["answer"], tuple(found["variables"]), tuple(map(tuple, found["rows"])), found["more"])
+            raise _query_error(text, found["error"], found["at"], found["hint"])
+        return QueryAnswer(found["answer"], tuple(found["variables"]), tuple(map(tuple, found["rows"])), found["more"])
 
 
-def _entry(fact: Fact) -> list[int | str]:
-    """A fact as the worker takes it: its name and its arguments, integers or terms as text."""
+def _request_entry(fact: Fact) -> list[int | str]:
+    """Return a fact as the worker takes it: its name, then its arguments, integers or terms as text."""
     return [fact.name, *(term.value if isinstance(term, Number) else str(term) for term in fact.args)]
 
 
-def _problem(text: str, what: str, at: int = 0, hint: str = "") -> BadInputError:
+def _query_error(text: str, what: str, at: int = 0, hint: str = "") -> BadInputError:
+    """Return the error `what` at a character of the query, from 1; at the whole query for 0."""
     line = text.split("\n")[0]
     span = Span(1, at, at) if 1 <= at <= len(line) else Span(1, 1, max(1, len(line)))
     return BadInputError([Problem("query", span, what, line, hint)])
 
 
-def _check(text: str) -> None:
-    """Whether a text may be handed to the worker."""
+def _check_query(text: str) -> None:
+    """Raise BadInputError when a text cannot be a query; its syntax is checked by the worker."""
     if not text:
-        raise _problem(text, "the query is empty", hint="such as object(X), shape(X, square, C)")
-    if len(text) > LONGEST:
-        raise _problem(text[:100], f"a query has at most {LONGEST} characters")
+        raise _query_error(text, "the query is empty", hint="such as object(X), shape(X, square, C)")
+    if len(text) > MAX_QUERY_CHARACTERS:
+        raise _query_error(text[:100], f"a query has at most {MAX_QUERY_CHARACTERS} characters")
     if "\n" in text or "%" in text:
-        raise _problem(text, "a query is one line without comments")
-    problems = list(wide_integers(decode("query", text.encode("utf-8", errors="surrogateescape"))))
+        raise _query_error(text, "a query is one line without comments")
+    problems = list(integers_beyond_32_bits(decode("query", text.encode("utf-8", errors="surrogateescape"))))
     if problems:
         raise BadInputError(problems)

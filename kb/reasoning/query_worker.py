@@ -1,8 +1,8 @@
-"""The process in which queries are answered: it reads one JSON line a query and writes one JSON line an answer.
+"""The separate process that answers queries: it reads one JSON line a request and writes one JSON line a response.
 
-Run by `kb.reasoning.worker`, which kills it when it takes too long. It has little memory, can open no file, and
-clingo's death
-is its own alone. A query is the body of one rule; its answers are the values of the variables in it.
+`kb.reasoning.worker` starts it, and kills it when a request takes too long. The process has little memory and can open
+no file; a crash of clingo ends this process only. A query is the body of one rule; its answer holds the values of its
+variables.
 """
 
 import json
@@ -16,26 +16,29 @@ from clingo.ast import AST, ASTType, parse_string
 from kb.language import operating_system
 from kb.language.diagnostics import did_you_mean
 from kb.language.vocabulary import BELIEF
-from kb.reasoning.rule_solver import read, solved
-from kb.three_valued.aliases import with_org
-from kb.three_valued.clauses import Clause, ClauseError, clauses_of, global_variables
+from kb.reasoning.rule_solver import Response, read_rule_text, solve_with_rules
+from kb.three_valued.aliases import rename_utak_to_org
+from kb.three_valued.clauses import Clause, ClauseError, global_variables, translate_rule
 from kb.three_valued.derivation import derive
-from kb.three_valued.evaluation import Bindings, bindings
-from kb.three_valued.join_order import unsafe
-from kb.three_valued.known_words import check_body, stated_names
-from kb.three_valued.open_world import Beliefs, Row
+from kb.three_valued.evaluation import Bindings, find_bindings
+from kb.three_valued.join_order import unsafe_variable_error
+from kb.three_valued.known_words import check_body, names_in_facts
+from kb.three_valued.open_world import Beliefs, FactRow
 from kb.three_valued.uncertain_values import Value
 
-MEMORY = 1_500_000_000  # bytes of address space
-PROCESSOR_TIME = 60  # seconds on one request: far more than anybody waits for, should nobody be there to end it
-MOST_ROWS = 10_000
-HEAD = "q__ :- "
-
-Answer = dict[str, Any]
+MAX_MEMORY_BYTES = 1_500_000_000  # bytes of address space; a convention
+# Seconds of processor time for one request; a convention, well above every limit at which the parent ends the process.
+MAX_PROCESSOR_SECONDS = 60
+QUERY_HEAD = "q__ :- "  # put before a query, to make it a rule
 
 
 class RuleError(Exception):
-    """A rule cannot be worked out; carries the ClauseError, whose line is the rule's number."""
+    """A user's rule cannot be evaluated.
+
+    Attributes
+    ----------
+    error : the ClauseError; its line is the number of the rule, from 1.
+    """
 
     def __init__(self, error: ClauseError) -> None:
         self.error = error
@@ -43,7 +46,13 @@ class RuleError(Exception):
 
 
 class QueryError(Exception):
-    """A query is not one: what, and at which of its characters (from 1, 0 when unknown)."""
+    """A text is no query.
+
+    Attributes
+    ----------
+    what : the reason.
+    at : the character of the query, from 1; 0 when unknown.
+    """
 
     def __init__(self, what: str, at: int = 0) -> None:
         self.what, self.at = what, at
@@ -51,17 +60,33 @@ class QueryError(Exception):
 
 
 def answer(
-    facts: Iterable[Sequence[int | str]], query: str, rules: Sequence[str] = (), most: int = MOST_ROWS
-) -> Answer:
-    """Return the answer to a query over facts: its kind, its variables, and the rows of their values.
+    facts: Iterable[Sequence[int | str]], query: str, rules: Sequence[str] = (), max_rows: int | None = None
+) -> Response:
+    """Return the answer to a query over facts.
 
-    facts : of each the name and the arguments, integers or terms as text. rules : plain rules of a user, which define
-    predicates that can be asked for, too. most : how many rows are kept.
+    Parameters
+    ----------
+    facts : of each fact its name and its arguments, integers or terms as text.
+    query : the body of a rule.
+    rules : users' rules, each with one atom as its head. Queries can use the predicates that they define.
+    max_rows : the greatest number of rows that are kept; None for all.
+
+    Returns
+    -------
+    A dictionary with "answer" ("bindings", "yes", "no" or "don't know"), "variables" (names), "rows" (values, sorted)
+        and
+    "more" (whether rows were left out).
+
+    Raises
+    ------
+    ClauseError : the query uses an unknown predicate, constant or construct.
+    QueryError : the text is not one query.
+    RuleError : a rule cannot be evaluated.
     """
-    clauses = [with_org(clause) for clause in clauses_of(_rule(query))]
+    clauses = [rename_utak_to_org(clause) for clause in translate_rule(_query_as_rule(query))]
     beliefs = Beliefs(_facts(facts))
-    names = stated_names(beliefs.signatures())
-    defining = _defining(rules)
+    names = names_in_facts(beliefs.signatures())
+    defining = _clauses_of_rules(rules)
     defined = {clause.head.signature for clause in defining if clause.head is not None}
     for clause in clauses:
         check_body(clause.body, {*BELIEF, *beliefs.signatures(), *defined}, names)
@@ -70,56 +95,62 @@ def answer(
     except ClauseError as error:
         raise RuleError(error) from None
     variables = list(dict.fromkeys(name for clause in clauses for name in global_variables(clause.body)))
-    rows: dict[Row, None] = {}
+    rows: dict[FactRow, None] = {}
     for clause in clauses:
-        rows |= dict.fromkeys(_row(found, variables, clause) for found in bindings(clause.body, {}, beliefs, False))
+        rows |= dict.fromkeys(
+            _row(found, variables, clause) for found in find_bindings(clause.body, {}, beliefs, False)
+        )
     found = {"variables": variables, "rows": [], "more": False}
     if rows:
-        told = sorted(([_value(value) for value in row] for row in rows), key=_order)
+        sorted_rows = sorted(([_json_value(value) for value in row] for row in rows), key=_sort_key)
         return (
             found
-            | {"answer": "bindings" if variables else "yes", "rows": told[:most] if variables else []}
-            | {"more": len(told) > most}
+            | {"answer": "bindings" if variables else "yes", "rows": sorted_rows[:max_rows] if variables else []}
+            | {"more": max_rows is not None and len(sorted_rows) > max_rows}
         )
-    perhaps = any(True for clause in clauses for _ in bindings(clause.body, {}, beliefs, True))
-    return found | {"answer": "don't know" if perhaps else "no"}
+    possible = any(True for clause in clauses for _ in find_bindings(clause.body, {}, beliefs, True))
+    return found | {"answer": "don't know" if possible else "no"}
 
 
-def _defining(rules: Sequence[str]) -> list[Clause]:
-    """The clauses of rules; the line of each is its number among them, from 1."""
+def _clauses_of_rules(rules: Sequence[str]) -> list[Clause]:
+    """Return the clauses of rules; the line of each clause is the number of its rule, from 1."""
     parts: list[AST] = []
-    parse_string("\n".join(rules), parts.append, logger=_raise, message_limit=20)
+    parse_string("\n".join(rules), parts.append, logger=_record_message, message_limit=20)
     try:
-        return [clause for part in parts if part.ast_type == ASTType.Rule for clause in clauses_of(part)]
+        return [clause for part in parts if part.ast_type == ASTType.Rule for clause in translate_rule(part)]
     except ClauseError as error:
         raise RuleError(error) from None
 
 
-def _row(found: Bindings, variables: list[str], clause: Clause) -> Row:
+def _row(found: Bindings, variables: list[str], clause: Clause) -> FactRow:
+    """Return the values of the variables; raise ClauseError when the query does not bind one of them."""
     missing = [name for name in variables if name not in found]
     if missing:
-        raise unsafe(missing[0], clause.at)
+        raise unsafe_variable_error(missing[0], clause.at)
     return tuple(found[name] for name in variables)
 
 
-def _order(row: list[Any]) -> list[tuple[bool, Any]]:
+def _sort_key(row: list[Any]) -> list[tuple[bool, Any]]:
+    """Return a key that sorts rows: integers before texts, column by column."""
     return [(isinstance(value, str), value) for value in row]
 
 
-def _facts(entries: Iterable[Sequence[int | str]]) -> Iterator[tuple[str, Row]]:
+def _facts(entries: Iterable[Sequence[int | str]]) -> Iterator[tuple[str, FactRow]]:
+    """Yield the name and the values of each fact of a request."""
     for name, *arguments in entries:
-        yield str(name), tuple(term if isinstance(term, int) else _parsed(term) for term in arguments)
+        yield str(name), tuple(term if isinstance(term, int) else _parse_term(term) for term in arguments)
 
 
 @lru_cache(maxsize=65536)
-def _parsed(term: str) -> clingo.Symbol:
+def _parse_term(term: str) -> clingo.Symbol:
+    """Return the clingo symbol that a text denotes."""
     return clingo.parse_term(term)
 
 
-def _rule(query: str) -> AST:
-    """The rule of which a query is the body; exactly one, or it is no query."""
+def _query_as_rule(query: str) -> AST:
+    """Return the rule with the query as its body; raise QueryError unless the text is exactly one body."""
     parts: list[AST] = []
-    parse_string(f"{HEAD}{query}\n.", parts.append, logger=_raise, message_limit=20)
+    parse_string(f"{QUERY_HEAD}{query}\n.", parts.append, logger=_record_message, message_limit=20)
     if len(parts) != 2 or parts[1].ast_type != ASTType.Rule:
         raise QueryError("one query at a time, without a full stop in it")
     if str(parts[1].head) != "q__":
@@ -127,38 +158,40 @@ def _rule(query: str) -> AST:
     return parts[1]
 
 
-def _value(term: Value) -> int | str:
+def _json_value(term: Value) -> int | str:
+    """Return a value as JSON takes it: an integer, or the text of a term."""
     return term if isinstance(term, int) else str(term)
 
 
-def _raise(code: clingo.MessageCode, message: str) -> None:
-    """Turn clingo's first message into an error; columns count from the start of the query."""
+def _record_message(code: clingo.MessageCode, message: str) -> None:
+    """Record a message of clingo's as an error; its column counts from the start of the query."""
     place, _, what = message.partition(": error: ")
     if not what:
         place, _, what = message.partition(": info: ")
     column = place.split(":")[2].split("-")[0] if place.count(":") >= 2 else "0"
-    at = max(0, int(column) - len(HEAD)) if column.isdigit() else 0
+    at = max(0, int(column) - len(QUERY_HEAD)) if column.isdigit() else 0
     _messages.append(QueryError(" ".join(what.split()) or message.strip(), at))
 
 
 _messages: list[QueryError] = []
 
 
-def _respond(line: bytes) -> Answer:
+def _respond(line: bytes) -> Response:
+    """Return the response to one request."""
     _messages.clear()
     try:
         request = json.loads(line)
         if "read" in request:
-            return read(request["read"])
+            return read_rule_text(request["read"])
         if "program" in request:
-            return solved(request["program"], request["rules"], request["heads"], request["conflicts"])
-        found = answer(request["facts"], request["query"], request["rules"], request.get("most", MOST_ROWS))
+            return solve_with_rules(request["program"], request["rules"], request["heads"], request["conflicts"])
+        found = answer(request["facts"], request["query"], request["rules"], request.get("max_rows"))
     except QueryError as error:
         return {"error": error.what, "at": error.at, "hint": ""}
     except RuleError as bad:
         return {"error": bad.error.what, "rule": bad.error.at[0] - 1, "hint": bad.error.hint}
     except ClauseError as error:
-        return {"error": error.what, "at": max(0, error.at[1] - len(HEAD)), "hint": error.hint}
+        return {"error": error.what, "at": max(0, error.at[1] - len(QUERY_HEAD)), "hint": error.hint}
     except RecursionError:
         return {"error": "it is nested too deep", "at": 0, "hint": ""}
     except MemoryError:
@@ -171,18 +204,19 @@ def _respond(line: bytes) -> Answer:
 
 
 def main() -> None:
-    """Answer queries until the input ends, and end then at once."""
+    """Answer requests until the input ends; then end at once."""
     operating_system.end_with_parent()
-    operating_system.limit("AS", MEMORY)
-    operating_system.limit("CORE", 0)
-    json.loads('{"a": [1.5, "b"]}')  # everything that is imported late is imported now
+    operating_system.limit_resource("AS", MAX_MEMORY_BYTES)
+    operating_system.limit_resource("CORE", 0)
+    # One request of each kind, so that all modules are imported before the limit on open files.
+    json.loads('{"a": [1.5, "b"]}')
     answer([["room", "r1"]], "room(X), not room(r2)")
     did_you_mean("room", ["door"])
-    requests = operating_system.lines_of_parent()
-    operating_system.limit("NOFILE", 3)
+    requests = operating_system.read_lines_from_parent()
+    operating_system.limit_resource("NOFILE", 3)
     print("ready", flush=True)
     for line in requests:
-        operating_system.limit_processor_time(PROCESSOR_TIME)
+        operating_system.limit_processor_time(MAX_PROCESSOR_SECONDS)
         print(json.dumps(_respond(line)), flush=True)
 
 

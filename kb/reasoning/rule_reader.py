@@ -1,8 +1,7 @@
-"""Rule files as clingo reads them: statement by statement, with the predicates in each and its arithmetic checked.
+"""Parser of users' rule files: statements, the predicates in each of them, and checked arithmetic.
 
-Runs in the process of kb.reasoning.query_worker. Arithmetic is handed to `Calculator`, which works it out exactly:
-what clingo
-would wrap to 32 bits in silence is an error at its place.
+It runs in the process of kb.reasoning.query_worker. Arithmetic is rewritten to calls of `Calculator`, which computes
+exactly: where clingo would wrap a result to 32 bits without a message, the rule has an error.
 """
 
 from collections.abc import Iterator
@@ -22,11 +21,12 @@ from clingo.ast import (
 )
 
 from kb.three_valued.arithmetic import CalculationError, calculate
-from kb.three_valued.clauses import BINARY, UNARY, ClauseError, place_of
+from kb.three_valued.clauses import BINARY_SIGNS, UNARY_SIGNS, ClauseError, place_of
 
-COUNTING = (ASTType.Rule, ASTType.Minimize, ASTType.Defined)
-SILENT = ("Definition", "ShowSignature", "ShowTerm", "Program", "Comment")  # queries say what is shown
-REFUSED = {
+KEPT_STATEMENTS = (ASTType.Rule, ASTType.Minimize, ASTType.Defined)
+# Constants are substituted, and queries decide what is shown: these statements have no effect of their own.
+IGNORED_STATEMENTS = ("Definition", "ShowSignature", "ShowTerm", "Program", "Comment")
+REFUSED_STATEMENTS = {  # by clingo's name of the statement: the message
     "Script": "#script is not allowed: rules run no programs",
     "External": "#external is not known here",
     "Edge": "#edge is not known here",
@@ -37,44 +37,59 @@ REFUSED = {
 }
 
 
-class CannotReadError(Exception):
-    """A text is no file of rules: clingo's message, with its place."""
+class RuleSyntaxError(Exception):
+    """A text is no file of rules; the message is clingo's, with its place."""
 
 
-def statements_of(text: str) -> list[dict[str, Any]]:
-    """Return the statements of a rule file, as JSON values; raises ClauseError or CannotReadError."""
+def read_statements(text: str) -> list[dict[str, Any]]:
+    """Return the statements of a rule file.
+
+    Parameters
+    ----------
+    text : the whole file.
+
+    Returns
+    -------
+    One dictionary a statement that has an effect, with the fields of `kb.reasoning.rulebook.Statement`.
+
+    Raises
+    ------
+    ClauseError : a statement is not allowed in users' rules.
+    RuleSyntaxError : clingo cannot parse the text.
+    """
     messages: list[str] = []
     found: list[AST] = []
     try:
         parse_string(text, found.append, logger=lambda _code, message: messages.append(message), message_limit=20)
     except RuntimeError as error:
-        raise CannotReadError(messages[0] if messages else str(error)) from None
+        raise RuleSyntaxError(messages[0] if messages else str(error)) from None
     constants = _constants(found)
-    return [_entry(_Constants(constants).visit(node)) for node in found if _kept(node)]
+    return [_entry(_ConstantSubstitution(constants).visit(node)) for node in found if _kept(node)]
 
 
 def _kept(node: AST) -> bool:
-    """Whether a statement says something; raises ClauseError for one that is not allowed."""
+    """Return whether a statement has an effect; raise ClauseError for one that is not allowed."""
     name = str(node.ast_type).rpartition(".")[2]
-    if node.ast_type not in COUNTING and name not in SILENT:
-        raise ClauseError(REFUSED.get(name, f"{name} is not known here"), place_of(node))
+    if node.ast_type not in KEPT_STATEMENTS and name not in IGNORED_STATEMENTS:
+        raise ClauseError(REFUSED_STATEMENTS.get(name, f"{name} is not known here"), place_of(node))
     if node.ast_type == ASTType.Program and (node.name != "base" or list(node.parameters)):
         raise ClauseError("#program is not known here", place_of(node))
-    return node.ast_type in COUNTING
+    return node.ast_type in KEPT_STATEMENTS
 
 
 def _entry(node: AST) -> dict[str, Any]:
+    """Return a statement as a dictionary of JSON values."""
     if node.ast_type == ASTType.Defined:
         entry = {"at": place_of(node), "heads": [], "body": [], "text": "", "written": "", "plain": False}
         return entry | {"declares": [node.name, node.arity]}
-    chosen, conditions = _head(node.head) if node.ast_type == ASTType.Rule else ([], [])
+    chosen, conditions = _split_head(node.head) if node.ast_type == ASTType.Rule else ([], [])
     heads = [atom for part in chosen for atom in _atoms(part)]
     body = [atom for part in (*node.body, *conditions) for atom in _atoms(part)]
     return {
         "at": place_of(node),
         "heads": heads,
         "body": body,
-        "text": str(_Checked().visit(node)),
+        "text": str(_ArithmeticRewriter().visit(node)),
         "written": str(node),
         "plain": _is_plain(node),
         "declares": None,
@@ -82,14 +97,14 @@ def _entry(node: AST) -> dict[str, Any]:
 
 
 def _is_plain(node: AST) -> bool:
-    """Whether a statement is a rule with one atom as its head."""
+    """Return whether a statement is a rule with one atom as its head."""
     if node.ast_type != ASTType.Rule or node.head.ast_type != ASTType.Literal:
         return False
     return bool(node.head.sign == Sign.NoSign and node.head.atom.ast_type == ASTType.SymbolicAtom)
 
 
-def _head(head: AST) -> tuple[list[AST], list[AST]]:
-    """The literals that a head states or chooses, and those on which that depends."""
+def _split_head(head: AST) -> tuple[list[AST], list[AST]]:
+    """Return the literals that a head states or chooses, and the literals on which they depend."""
     if head.ast_type == ASTType.Literal:
         return [head], []
     if head.ast_type not in (ASTType.Aggregate, ASTType.Disjunction, ASTType.HeadAggregate):
@@ -103,14 +118,14 @@ def _head(head: AST) -> tuple[list[AST], list[AST]]:
 
 
 def _atoms(node: AST) -> Iterator[dict[str, Any]]:
-    """The atoms in a part: name, arguments that are constants (None for others), place, and whether `not` is before."""
-    reader = _Atoms()
+    """Yield the atoms in a part of a statement, each as a dictionary of JSON values."""
+    reader = _AtomCollector()
     reader.visit(node)
     yield from reader.found
 
 
-class _Atoms(Transformer):
-    """Collects atoms; those in aggregates and conditions count as if `not` stood before them."""
+class _AtomCollector(Transformer):
+    """Collects atoms. An atom in an aggregate or in a condition counts as negated."""
 
     def __init__(self) -> None:
         self.found: list[dict[str, Any]] = []
@@ -157,7 +172,7 @@ class _Atoms(Transformer):
 
 
 def _constants(nodes: list[AST]) -> dict[str, clingo.Symbol]:
-    """What `#const` defines: numbers and names."""
+    """Return the values of `#const` definitions: numbers and names."""
     found = {}
     for node in nodes:
         if node.ast_type == ASTType.Definition:
@@ -167,8 +182,8 @@ def _constants(nodes: list[AST]) -> dict[str, clingo.Symbol]:
     return found
 
 
-class _Constants(Transformer):
-    """Puts the values of constants in their places: those of one file's own."""
+class _ConstantSubstitution(Transformer):
+    """Replaces the constants of a file by their values."""
 
     def __init__(self, values: dict[str, clingo.Symbol]) -> None:
         self._values = values
@@ -183,18 +198,18 @@ class _Constants(Transformer):
         return node if value is None else SymbolicTerm(node.location, value)
 
 
-class _Checked(Transformer):
-    """Hands arithmetic to the calculator."""
+class _ArithmeticRewriter(Transformer):
+    """Replaces arithmetic by calls of the calculator."""
 
     def visit_BinaryOperation(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        return self._call(node, BINARY[node.operator_type], [self.visit(node.left), self.visit(node.right)])
+        return self._call(node, BINARY_SIGNS[node.operator_type], [self.visit(node.left), self.visit(node.right)])
 
     def visit_UnaryOperation(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
         if node.argument.ast_type == ASTType.SymbolicTerm:
             number = node.argument.symbol
-            if UNARY[node.operator_type] == "-" and number.type == clingo.SymbolType.Number:
+            if UNARY_SIGNS[node.operator_type] == "-" and number.type == clingo.SymbolType.Number:
                 return node  # a negative number
-        return self._call(node, UNARY[node.operator_type], [self.visit(node.argument)])
+        return self._call(node, UNARY_SIGNS[node.operator_type], [self.visit(node.argument)])
 
     def visit_Function(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
         if node.external:
@@ -211,27 +226,38 @@ class _Checked(Transformer):
         return node.update(**self.visit_children(node))
 
     def _call(self, node: AST, sign: str, parts: list[AST]) -> AST:
+        """Return the call that computes an operation; it carries the place of the operation."""
         line, column = place_of(node)
-        told = [SymbolicTerm(node.location, value) for value in (clingo.String(sign), _at(line, column))]
-        return Function(node.location, "calculated", [*told, *parts], 1)
+        call_site = [SymbolicTerm(node.location, value) for value in (clingo.String(sign), _place_term(line, column))]
+        return Function(node.location, "calculated", [*call_site, *parts], 1)
 
 
 def _has_variable(node: AST) -> bool:
+    """Return whether a term has a variable."""
     return any(char.isupper() for char in str(node).split('"')[0])
 
 
-def _at(line: int, column: int) -> clingo.Symbol:
+def _place_term(line: int, column: int) -> clingo.Symbol:
+    """Return a place as the term (line, column)."""
     return clingo.Function("", [clingo.Number(line), clingo.Number(column)])
 
 
 class Calculator:
-    """The arithmetic of rules: `calculated` is called while clingo grounds; the first error is kept."""
+    """The arithmetic of rules; clingo calls `calculated` while it grounds.
+
+    Attributes
+    ----------
+    error : the first error, or None.
+    """
 
     def __init__(self) -> None:
         self.error: ClauseError | None = None
 
     def calculated(self, sign: clingo.Symbol, at: clingo.Symbol, *parts: clingo.Symbol) -> list[clingo.Symbol]:
-        """Return the result, or nothing when there is none."""
+        """Return a list with the result of an operation; [] when it has none, after recording the error.
+
+        sign : the operator as a string. at : the place (line, column). parts : one or two operands.
+        """
         place = (at.arguments[0].number, at.arguments[1].number)
         strange = [part for part in parts if part.type != clingo.SymbolType.Number]
         try:

@@ -1,24 +1,25 @@
-"""The work on users' rules in the process of kb.reasoning.query_worker: reading them, and solving our encodings
-with them.
-"""
+"""Users' rules read and encodings solved with them, in the process of kb.reasoning.query_worker."""
 
 from collections.abc import Sequence
 from typing import Any
 
 import clingo
 
-from kb.reasoning.rule_reader import Calculator, CannotReadError, statements_of
+from kb.reasoning.rule_reader import Calculator, RuleSyntaxError, read_statements
 from kb.three_valued.clauses import ClauseError
 
-Answer = dict[str, Any]
-MOST_TRIED = 200  # rules that are left out in turn to find those that contradict
+Response = dict[str, Any]
+MAX_RULES_TRIED = 200  # rules left out in turn, one solving each, to find those that contradict; a convention
 
 
-def read(text: str) -> Answer:
-    """Return {"statements": [...]} of a rule file, {"message": clingo's} or {"error", "at", "hint"}."""
+def read_rule_text(text: str) -> Response:
+    """Return the statements of a rule file: {"statements": [...]}.
+
+    text : the whole file. An error is returned as {"message": clingo's message} or {"error", "at", "hint"}.
+    """
     try:
-        return {"statements": statements_of(text)}
-    except CannotReadError as error:
+        return {"statements": read_statements(text)}
+    except RuleSyntaxError as error:
         return {"message": str(error)}
     except ClauseError as error:
         return {"error": error.what, "at": error.at, "hint": error.hint}
@@ -26,13 +27,24 @@ def read(text: str) -> Answer:
         return {"error": "a term is nested too deep", "at": (1, 1), "hint": ""}
 
 
-def solved(program: str, rules: Sequence[str], heads: Sequence[Sequence[Any]], conflicts: int) -> Answer:
-    """Return the best answer set of a program of ours with rules of a user.
+def solve_with_rules(program: str, rules: Sequence[str], heads: Sequence[Sequence[Any]], conflicts: int) -> Response:
+    """Return the best answer set of an encoding together with users' rules.
 
-    conflicts : of the search, after which it is cut off; 0 when nothing is searched, only made sure that all can be.
-    {"atoms": those shown, "derived": those of `heads`}; {"message": clingo's, whose lines are those of the rules};
-    {"error", "at", "rule"} for arithmetic; {"cut": why} when the search was cut off after so many conflicts; or
-    {"against": numbers of rules} that leave no answer together.
+    Parameters
+    ----------
+    program : the encoding and its facts.
+    rules : the text of each rule, with checked arithmetic.
+    heads : [name, number of arguments] of the predicates whose derived atoms are returned.
+    conflicts : the limit of the search; 0 to ground only, which tests whether everything can be computed.
+
+    Returns
+    -------
+    One of these dictionaries:
+
+    - {"atoms": shown atoms, "derived": atoms of `heads`}; - {} when nothing was searched and no error occurred; -
+    {"message": clingo's message}, with line numbers that count the rules; - {"error", "at", "rule"} for an error of
+    arithmetic; - {"cut": reason} when the search reached the limit; - {"against": numbers of rules} that together leave
+    no answer.
     """
     rules = [" ".join(rule.split("\n")) for rule in rules]
     control, failed = _grounded(program, rules)
@@ -53,11 +65,12 @@ def solved(program: str, rules: Sequence[str], heads: Sequence[Sequence[Any]], c
     if result.unknown or (priced[0] and not result.exhausted):
         return {"cut": f"after {conflicts} conflicts"}
     if best[0] is None:
-        return {"against": _against(program, rules)}
+        return {"against": _conflicting_rules(program, rules)}
     return {"atoms": best[0], "derived": derived}
 
 
-def _grounded(program: str, rules: Sequence[str]) -> tuple[clingo.Control, Answer | None]:
+def _grounded(program: str, rules: Sequence[str]) -> tuple[clingo.Control, Response | None]:
+    """Return the grounded program, and the response to an error or None."""
     messages: list[str] = []
     calculator = Calculator()
     control = clingo.Control([], logger=lambda _code, text: messages.append(text), message_limit=20)
@@ -75,10 +88,13 @@ def _grounded(program: str, rules: Sequence[str]) -> tuple[clingo.Control, Answe
     return control, {"message": telling[0]} if telling else None
 
 
-def _against(program: str, rules: Sequence[str]) -> list[int]:
-    """The numbers of rules that leave no answer together: without any one of them there is one."""
+def _conflicting_rules(program: str, rules: Sequence[str]) -> list[int]:
+    """Return the numbers of rules that together leave no answer; without any one of them there is an answer.
+
+    Only the first `MAX_RULES_TRIED` rules are tested; the numbers of later rules are all returned.
+    """
     left = list(range(len(rules)))
-    for number in range(min(len(rules), MOST_TRIED) - 1, -1, -1):
+    for number in range(min(len(rules), MAX_RULES_TRIED) - 1, -1, -1):
         fewer = [other for other in left if other != number]
         if not _satisfiable(program, [rules[other] for other in fewer]):
             left = fewer
@@ -86,5 +102,6 @@ def _against(program: str, rules: Sequence[str]) -> list[int]:
 
 
 def _satisfiable(program: str, rules: Sequence[str]) -> bool:
+    """Return whether the program with these rules has an answer set."""
     control, failed = _grounded(program, rules)
     return failed is None and bool(control.solve().satisfiable)

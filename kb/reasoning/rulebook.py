@@ -1,23 +1,24 @@
-"""What the rules of a user say, held against the vocabulary: which encodings they reach, and what is wrong with them.
+"""Users' rules checked against the vocabulary: the encodings that each rule reaches, and the errors in it.
 
-A rule counts in an encoding when all that it speaks of is known there: documented predicates of that encoding, and
-predicates of the user's own that rules define there. `belief` stands for the facts that queries are asked of.
+A rule reaches an encoding when all its predicates are known there: documented predicates of that encoding, or
+predicates of the user's own that rules define there. `belief` stands for the facts that queries read.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from kb.language.arguments import Slot
+from kb.language.arguments import ArgumentType
 from kb.language.diagnostics import BadInputError, Problem, Span, did_you_mean
 from kb.language.reader import facts_of
 from kb.language.source_text import Source
 from kb.language.terms import Fact
-from kb.language.vocabulary import BELIEF
-from kb.reasoning.interfaces import DOMAINS, PASSING, REACHED, READ_ONLY, Signature
+from kb.language.vocabulary import BELIEF, Signature
+from kb.reasoning.interfaces import DEFINING_FACTS, REACHED, READ_ONLY, TRANSIENT_NUMBERS
 
-QUERIES = "belief"
-UNREACHED: Mapping[Signature, tuple[str, ...]] = {
+QUERY_INTERFACE = "belief"  # the name under which the facts that queries read stand among the encodings
+# Predicates of encodings that users' rules do not reach, and those encodings.
+INTERNAL_PREDICATES: Mapping[Signature, tuple[str, ...]] = {
     ("chosen", 1): ("accommodation",), ("explanation", 4): ("accommodation",), ("choose", 1): ("aims", "routes"),
     ("aim", 3): ("aims",), ("chance", 2): ("aims",), ("last", 1): ("aims", "routes", "transport"),
     ("take", 1): ("boldness",), ("plan", 2): ("boldness",), ("hopes", 1): ("boldness",), ("askew", 1): ("boldness",),
@@ -29,16 +30,26 @@ UNREACHED: Mapping[Signature, tuple[str, ...]] = {
     ("trust", 1): ("accommodation",), ("slips", 0): ("accommodation",), ("proven", 0): ("accommodation",),
     ("clear", 0): ("accommodation",), ("uneven", 0): ("accommodation",), ("unchanged", 0): ("accommodation",),
 }  # fmt: skip
-KNOWN: Mapping[str, frozenset[Signature]] = {
+PREDICATES_BY_ENCODING: Mapping[str, frozenset[Signature]] = {
     **{name: frozenset(interface) for name, interface in REACHED.items()},
-    QUERIES: frozenset(BELIEF),
+    QUERY_INTERFACE: frozenset(BELIEF),
 }
-DECLARED = frozenset(signature for known in KNOWN.values() for signature in known)
+# All predicates of the world model and of the encodings that users' rules may use.
+INTERFACE_PREDICATES = frozenset(signature for known in PREDICATES_BY_ENCODING.values() for signature in known)
 
 
 @dataclass(frozen=True)
 class RuleAtom:
-    """An atom in a rule. constants : arguments that are given, as text; None for others. places : line and column."""
+    """An atom in a rule.
+
+    Attributes
+    ----------
+    name : the name of the predicate.
+    constants : of each argument its text when it is a constant, else None.
+    at : line and column of the atom.
+    places : line and column of each argument.
+    negative : whether `not` stands before the atom, or it stands in an aggregate or a condition.
+    """
 
     name: str
     constants: tuple[str | None, ...]
@@ -56,8 +67,16 @@ class RuleAtom:
 class Statement:
     """A statement of a rule file.
 
-    text : as it is given to clingo, with checked arithmetic. plain : a rule with one atom as its head; `written` is
-    its text as the user wrote it. declares : the predicate of a `#defined`, which states nothing.
+    Attributes
+    ----------
+    source : the file.
+    at : line and column of the statement.
+    heads : the atoms that it states or chooses.
+    body : the atoms on which these depend.
+    text : the statement as clingo gets it, with checked arithmetic.
+    written : the statement as the user wrote it, with constants replaced.
+    is_single_atom_rule : whether it is a rule with one atom as its head.
+    declares : the predicate of a `#defined`, which states nothing; None for other statements.
     """
 
     source: Source
@@ -66,17 +85,17 @@ class Statement:
     body: tuple[RuleAtom, ...]
     text: str
     written: str
-    plain: bool
+    is_single_atom_rule: bool
     declares: Signature | None
 
     def problem(self, what: str, at: tuple[int, int] | None = None, hint: str = "") -> Problem:
-        """Return what is wrong with this statement, at its place or another one."""
+        """Return the problem `what` at the statement's place, or at another line and column."""
         line, column = at or self.at
         return self.source.problem(Span(line, column, column), what, hint)
 
 
 def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
-    """Return a statement from what the worker has read (kb.reasoning.rule_reader)."""
+    """Return a statement from the JSON values of the worker (kb.reasoning.rule_reader)."""
     heads, body = (tuple(_atom(one) for one in entry[part]) for part in ("heads", "body"))
     declares = (entry["declares"][0], entry["declares"][1]) if entry["declares"] else None
     return Statement(
@@ -86,128 +105,172 @@ def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
         body=body,
         text=entry["text"],
         written=entry["written"],
-        plain=entry["plain"],
+        is_single_atom_rule=entry["plain"],
         declares=declares,
     )
 
 
 def _atom(entry: Mapping[str, Any]) -> RuleAtom:
+    """Return an atom from the JSON values of the worker."""
     line, column = entry["at"]
     places = tuple((place[0], place[1]) for place in entry["places"])
     return RuleAtom(entry["name"], tuple(entry["constants"]), (line, column), places, entry["negative"])
 
 
 class Rulebook:
-    """The rules of all files of a user together; raises BadInputError when they cannot be what is meant."""
+    """The rules of all files of a user together.
+
+    Parameters
+    ----------
+    statements : the statements of all files, in order.
+
+    Attributes
+    ----------
+    statements : the statements that state something.
+    own_predicates : the predicates that only these rules define.
+
+    Raises
+    ------
+    BadInputError : a rule uses an unknown or forbidden predicate, an impossible constant, or has no effect.
+    """
 
     def __init__(self, statements: Sequence[Statement]) -> None:
         self.statements = tuple(one for one in statements if one.declares is None)
         self._declared = {one.declares for one in statements if one.declares is not None}
-        self.own = {atom.signature for one in self.statements for atom in one.heads} - DECLARED - set(UNREACHED)
-        problems = [problem for one in self.statements for problem in self._wrong(one)]
+        self.own_predicates = (
+            {atom.signature for one in self.statements for atom in one.heads}
+            - INTERFACE_PREDICATES
+            - set(INTERNAL_PREDICATES)
+        )
+        problems = [problem for one in self.statements for problem in self._invalid_parts(one)]
         if problems:
             raise BadInputError(problems)
-        self._counting = {name: self._applicable(known) for name, known in KNOWN.items()}
-        problems = [problem for one in self.statements for problem in self._useless(one)]
+        self._counting = {name: self._applicable(known) for name, known in PREDICATES_BY_ENCODING.items()}
+        problems = [problem for one in self.statements for problem in self._without_effect(one)]
         if problems:
             raise BadInputError(problems)
 
-    def counting(self, encoding: str) -> tuple[Statement, ...]:
-        """Return the rules that count in an encoding, in the order of the files."""
+    def rules_reaching(self, encoding: str) -> tuple[Statement, ...]:
+        """Return the rules that take part in an encoding, in the order of the files.
+
+        encoding : the name of the encoding without `.lp`, or "belief" for queries.
+        """
         return self._counting.get(encoding, ())
 
     @property
-    def alone(self) -> tuple[Statement, ...]:
-        """The rules that speak of nothing but what they define themselves."""
+    def self_contained(self) -> tuple[Statement, ...]:
+        """The rules that depend on no predicate but those that they define themselves."""
         return self._applicable(frozenset())
 
     @property
-    def queried(self) -> tuple[Statement, ...]:
-        """The plain rules over what is believed, which define predicates that can be asked for."""
-        return tuple(one for one in self.counting(QUERIES) if one.plain and one.heads[0].signature in self.own)
+    def query_rules(self) -> tuple[Statement, ...]:
+        """The rules over the world model with one atom as the head; queries can use the predicates that they define."""
+        return tuple(
+            one
+            for one in self.rules_reaching(QUERY_INTERFACE)
+            if one.is_single_atom_rule and one.heads[0].signature in self.own_predicates
+        )
 
-    def _wrong(self, one: Statement) -> Iterator[Problem]:
-        """What is wrong with a statement by itself."""
+    def _invalid_parts(self, one: Statement) -> Iterator[Problem]:
+        """Yield the problems of one statement: unknown, unreachable and read-only predicates, impossible constants."""
         for atom in (*one.heads, *one.body):
-            if atom.signature in UNREACHED and atom.signature not in DECLARED | self.own:
-                where = " and ".join(f"{name}.lp" for name in UNREACHED[atom.signature])
+            if (
+                atom.signature in INTERNAL_PREDICATES
+                and atom.signature not in INTERFACE_PREDICATES | self.own_predicates
+            ):
+                where = " and ".join(f"{name}.lp" for name in INTERNAL_PREDICATES[atom.signature])
                 what = f"{_form(atom.signature)} belongs to {where}, which rules of users do not reach"
                 yield one.problem(what, atom.at, f"they reach {', '.join(f'{name}.lp' for name in sorted(REACHED))}")
         for atom in one.body:
-            if atom.signature not in DECLARED | self.own | self._declared | set(UNREACHED):
-                yield one.problem(*_unknown(atom, DECLARED | self.own))
+            if atom.signature not in INTERFACE_PREDICATES | self.own_predicates | self._declared | set(
+                INTERNAL_PREDICATES
+            ):
+                yield one.problem(*_unknown(atom, INTERFACE_PREDICATES | self.own_predicates))
         for atom in one.heads:
             if atom.signature in READ_ONLY:
                 what = f"{_form(atom.signature)} says what there is, and rules add nothing to it"
                 yield one.problem(what, atom.at)
-            elif atom.signature in DECLARED:
-                yield from self._bad_constants(one, atom)
-            elif atom.name in {name for name, _ in DECLARED} and atom.signature in self.own:
-                yield one.problem(*_unknown(atom, DECLARED))
+            elif atom.signature in INTERFACE_PREDICATES:
+                yield from self._constants_outside_domains(one, atom)
+            elif atom.name in {name for name, _ in INTERFACE_PREDICATES} and atom.signature in self.own_predicates:
+                yield one.problem(*_unknown(atom, INTERFACE_PREDICATES))
 
-    def _bad_constants(self, one: Statement, atom: RuleAtom) -> Iterator[Problem]:
-        """Constants that can stand in no encoding where they do."""
+    def _constants_outside_domains(self, one: Statement, atom: RuleAtom) -> Iterator[Problem]:
+        """Yield the problems of constants that no encoding accepts at their place."""
         options = [interface[atom.signature] for interface in REACHED.values() if atom.signature in interface]
         for number, constant in enumerate(atom.constants):
             if constant is not None and options:
                 term = facts_of(f"p({constant}).")[0].args[0]
-                complaints = [slots[number].check(term) for slots in options]
-                if options[0][number].name in PASSING:
+                complaints = [types[number].check(term) for types in options]
+                if options[0][number].name in TRANSIENT_NUMBERS:
                     what = f"there is no {options[0][number].name} {constant}: they are numbered anew each time"
                     yield one.problem(what, atom.places[number], "take the number from the facts, as a variable")
                 elif all(complaint is not None for complaint in complaints) and complaints[0] is not None:
                     yield one.problem(complaints[0].what, atom.places[number], complaints[0].hint)
 
     def _applicable(self, known: frozenset[Signature]) -> tuple[Statement, ...]:
-        """The statements of which all is known in an encoding: the greatest set in which own predicates are defined."""
+        """Return the greatest set of statements whose predicates are all in `known` or defined by the set itself."""
         found = self.statements
         while True:
-            defined = {atom.signature for one in found for atom in one.heads} & self.own | self._declared
+            defined = {atom.signature for one in found for atom in one.heads} & self.own_predicates | self._declared
             left = tuple(one for one in found if self._counts(one, known, defined))
             if left == found:
                 return found
             found = left
 
     def _counts(self, one: Statement, known: frozenset[Signature], defined: set[Signature]) -> bool:
-        stated = all(atom.signature in known or atom.signature in self.own for atom in one.heads)
+        """Return whether all predicates of a statement are known or defined."""
+        stated = all(atom.signature in known or atom.signature in self.own_predicates for atom in one.heads)
         return stated and all(atom.signature in known | defined for atom in one.body)
 
-    def _useless(self, one: Statement) -> Iterator[Problem]:
-        """Why a statement has no effect, if it has none."""
-        where = [name for name in KNOWN if one in self._counting[name]]
+    def _without_effect(self, one: Statement) -> Iterator[Problem]:
+        """Yield the reason why a statement has no effect, if it has none."""
+        where = [name for name in PREDICATES_BY_ENCODING if one in self._counting[name]]
         if not where:
-            names = sorted({_form(atom.signature) for atom in (*one.heads, *one.body)} - {_form(s) for s in self.own})
+            names = sorted(
+                {_form(atom.signature) for atom in (*one.heads, *one.body)} - {_form(s) for s in self.own_predicates}
+            )
             what = f"this rule counts nowhere: no encoding knows all of {', '.join(names) or 'what it rests on'}"
             yield one.problem(what, hint="docs/vocabulary.md says which predicates are known together")
-        elif where == [QUERIES] and not (one.plain and one.heads[0].signature in self.own):
+        elif where == [QUERY_INTERFACE] and not (
+            one.is_single_atom_rule and one.heads[0].signature in self.own_predicates
+        ):
             what = "this changes nothing: what is believed is stated by the robot, and this rule reaches queries alone"
             yield one.problem(what, hint="define a predicate of your own, which can be asked for")
 
 
 def _form(signature: Signature) -> str:
+    """Return a predicate as text, such as shape/3."""
     return f"{signature[0]}/{signature[1]}"
 
 
 def _unknown(atom: RuleAtom, known: Iterable[Signature]) -> tuple[str, tuple[int, int], str]:
-    """What is said of an atom whose predicate does not exist."""
+    """Return message, place and hint for an atom whose predicate does not exist."""
     known = set(known)
     forms = sorted(_form(other) for other in known if other[0] == atom.name)
     hint = f"there is {', '.join(forms)}" if forms else did_you_mean(atom.name, {name for name, _ in known})
     return f"unknown predicate {_form(atom.signature)}", atom.at, hint
 
 
-def misfit(encoding: str, atom: Fact, given: Mapping[Signature, Sequence[Fact]]) -> str:
-    """Return why an atom that rules derived cannot stand in an encoding, or ''. given : the facts, by predicate."""
-    slots = REACHED[encoding][atom.signature]
-    for slot, term in zip(slots, atom.args, strict=True):
-        complaint = slot.check(term)
+def why_not_in_domain(encoding: str, atom: Fact, given: Mapping[Signature, Sequence[Fact]]) -> str:
+    """Return the reason why an encoding cannot take an atom that users' rules derived; '' when it can.
+
+    Parameters
+    ----------
+    encoding : the name of the encoding without `.lp`.
+    atom : the derived atom; its predicate belongs to the interface of the encoding.
+    given : the facts that the encoding gets, by predicate.
+    """
+    types = REACHED[encoding][atom.signature]
+    for type_, term in zip(types, atom.args, strict=True):
+        complaint = type_.check(term)
         if complaint is not None:
             return complaint.what
-        if slot.name in DOMAINS and str(term) not in _domain(slot, given):
-            return f"there is no {slot.name} {term}"
+        if type_.name in DEFINING_FACTS and str(term) not in _domain(type_, given):
+            return f"there is no {type_.name} {term}"
     return ""
 
 
-def _domain(slot: Slot, given: Mapping[Signature, Sequence[Fact]]) -> set[str]:
-    """The names of what given facts speak of."""
-    return {str(fact.args[at]) for signature, at in DOMAINS[slot.name] for fact in given.get(signature, ())}
+def _domain(type_: ArgumentType, given: Mapping[Signature, Sequence[Fact]]) -> set[str]:
+    """Return the names of all things of a kind that given facts mention."""
+    return {str(fact.args[at]) for signature, at in DEFINING_FACTS[type_.name] for fact in given.get(signature, ())}

@@ -1,7 +1,7 @@
-"""The one place where encodings meet clingo: files by absolute path, facts as text, every message an error.
+"""The single place where encodings meet clingo: files by absolute path, facts as text, every message an error.
 
-Facts come from our own values, never as raw text from a user; with a user's own rules (`--kb`) all is worked on in
-another process, by kb.reasoning.user_rules.
+Facts come from our own values, never as raw text of a user. With rules of a user (`--kb`) everything is solved in a
+separate process, by kb.reasoning.user_rules.
 """
 
 from collections.abc import Iterable, Sequence
@@ -10,26 +10,33 @@ from pathlib import Path
 
 import clingo
 
-KB = Path(__file__).resolve().parent.parent / "asp"
-OURS = (KB, KB.parent.parent / "planner" / "asp")
+KB = Path(__file__).resolve().parent.parent / "asp"  # the folder of the encodings of kb
+ENCODING_FOLDERS = (KB, KB.parent.parent / "planner" / "asp")  # files elsewhere are rules of users
 
 
 class EncodingError(Exception):
-    """An encoding is wrong, or contradicts the facts: a fault of ours or of the user's own rules."""
+    """An encoding is wrong, or it contradicts the facts: an error in our encodings or in a user's rules."""
 
 
 def solve(files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0) -> list[clingo.Symbol] | None:
-    """The shown atoms of the best answer set found, in the order of their text; None when there is none.
+    """Return the shown atoms of the best answer set found.
 
-    The same files and facts are answered from memory: an answer depends on nothing else.
+    The same files and facts are answered from a cache: an answer depends on nothing else.
 
     Parameters
     ----------
-    files : paths of the encodings.
-    facts : atoms without the full stop.
-    seconds : the search stops then, with the best answer so far.
+    files : paths of encodings, and of files with users' rules.
+    facts : atoms without a full stop.
+    seconds : the limit of wall-clock time of the search, after which the best answer so far is returned.
 
-    Raises EncodingError on any message of clingo, and BadInputError where files that are not ours cause one.
+    Returns
+    -------
+    The atoms, sorted by their text; None when there is no answer set.
+
+    Raises
+    ------
+    EncodingError : clingo gives any message.
+    BadInputError : users' rules cause an error.
     """
     answer = _answer(tuple(files), tuple(facts), seconds)
     return None if answer is None else list(answer)
@@ -37,12 +44,13 @@ def solve(files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0) ->
 
 @lru_cache(maxsize=256)
 def _answer(files: tuple[Path, ...], facts: tuple[str, ...], seconds: float) -> tuple[clingo.Symbol, ...] | None:
-    users = [path for path in files if path.resolve().parent not in OURS]
+    """Return the answer of `solve` as a tuple."""
+    users = [path for path in files if path.resolve().parent not in ENCODING_FOLDERS]
     if users:
-        from kb.reasoning.user_rules import solve_apart  # only who has rules of his own waits for it
+        from kb.reasoning.user_rules import solve_with_user_rules  # imported only when needed: it takes time
 
         files = tuple(path for path in files if path not in users)
-        found = solve_apart(files, users, facts)
+        found = solve_with_user_rules(files, users, facts)
         if found is not None:
             return tuple(sorted(found, key=str))
     messages: list[str] = []

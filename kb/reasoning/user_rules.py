@@ -1,9 +1,8 @@
-"""The user's own rules (`--kb FILE`) beside our encodings, worked on in a process that can be killed
-(kb.reasoning.worker).
+"""Users' rules (`--kb FILE`) together with our encodings, solved in a separate process (kb.reasoning.worker).
 
-Clingo cannot be stopped while it grounds, and some bytes kill it. So a rule that never ends, needs too much memory or
-is no rule at all is an error of its file, and nothing worse. What rules say is checked when they are read
-(kb.reasoning.rulebook), and what they derive each time that they are asked.
+clingo cannot be stopped while it grounds, and some bytes crash it. In a separate process, a rule that never ends, needs
+too much memory or is no rule at all is only an error of its file. The rules are checked when they are read
+(kb.reasoning.rulebook); the atoms that they derive are checked at each solving.
 """
 
 import atexit
@@ -16,47 +15,77 @@ from typing import Any
 import clingo
 
 from kb.language.diagnostics import BadInputError, Problem, Span
-from kb.language.integers import wide_integers
-from kb.language.reader import DEEPEST, facts_of
+from kb.language.integers import integers_beyond_32_bits
+from kb.language.reader import MAX_TERM_DEPTH, facts_of
 from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact
-from kb.language.tokens import tokens
-from kb.reasoning.interfaces import REACHED, Signature
-from kb.reasoning.rulebook import DECLARED, Rulebook, Statement, misfit, statement_of
+from kb.language.tokens import tokenize
+from kb.language.vocabulary import Signature
+from kb.reasoning.interfaces import REACHED
+from kb.reasoning.rulebook import INTERFACE_PREDICATES, Rulebook, Statement, statement_of, why_not_in_domain
+from kb.reasoning.solver import KB
 from kb.reasoning.worker import Worker
 
-KB = Path(__file__).resolve().parent.parent / "asp"
-SECONDS = 10.0  # of work on one question with the user's rules
-CONFLICTS = 100_000  # of the search, after which it is cut off
-PLACE = re.compile(r"<\w+>:(\d+):(\d+)(?:-(?:\d+:)?(\d+))?: (?:error|info|warning): (.*)", re.DOTALL)
+MAX_RULE_SECONDS = 10.0  # seconds of wall-clock time to read rules, or to solve one encoding with them; a convention
+MAX_CONFLICTS = 100_000  # conflicts of clingo's search for the best answer; bounds it on every machine alike
+# clingo's messages: line, first column, column after the last one, text.
+CLINGO_MESSAGE = re.compile(r"<\w+>:(\d+):(\d+)(?:-(?:\d+:)?(\d+))?: (?:error|info|warning): (.*)", re.DOTALL)
 
 
 def read_rules(paths: Sequence[Path | str]) -> Rulebook:
-    """Return the rules of some files; raises CannotOpenError, or BadInputError with what is wrong with them."""
+    """Return the rules of some files, parsed and checked against the vocabulary.
+
+    Parameters
+    ----------
+    paths : the files, in order.
+
+    Returns
+    -------
+    The rules of all files together.
+
+    Raises
+    ------
+    CannotOpenError : a file cannot be read.
+    BadInputError : the rules have errors; carries all of them.
+    """
     return _rulebook(tuple(read_source(path) for path in paths))
 
 
 def checked_rules(paths: Sequence[Path | str]) -> Rulebook:
-    """Return the rules of some files once they were tried out: as `read_rules`, and raises for more.
+    """Return the rules of some files after a test with every encoding that they reach.
 
-    What contradicts or never ends whatever is given, and what can be worked out in no case, is found here.
+    The test finds rules that contradict each other or never end whatever is given, and arithmetic without a result.
+
+    Parameters
+    ----------
+    paths : the files, in order.
+
+    Returns
+    -------
+    The rules of all files together.
+
+    Raises
+    ------
+    CannotOpenError : a file cannot be read.
+    BadInputError : the rules have errors, or the test fails.
     """
     rules = read_rules(paths)
-    if rules.alone:
-        _answered("", "", rules.alone)
+    if rules.self_contained:
+        _solved_by_worker("", "", rules.self_contained)
     for name in REACHED:
-        if counting := rules.counting(name):
-            _answered(f"{name}.lp", (KB / f"{name}.lp").read_text(), counting, search=False)
-    if rules.queried:
-        asked = {"facts": [], "query": "#true", "rules": [one.written for one in rules.queried]}
-        found = _worker().exchange(asked, SECONDS)
+        if reaching := rules.rules_reaching(name):
+            _solved_by_worker(f"{name}.lp", (KB / f"{name}.lp").read_text(), reaching, search=False)
+    if rules.query_rules:
+        asked = {"facts": [], "query": "#true", "rules": [one.written for one in rules.query_rules]}
+        found = _worker().exchange(asked, MAX_RULE_SECONDS)
         if "rule" in found:
-            raise BadInputError([rules.queried[found["rule"]].problem(found["error"], hint=found["hint"])])
+            raise BadInputError([rules.query_rules[found["rule"]].problem(found["error"], hint=found["hint"])])
     return rules
 
 
 @lru_cache(maxsize=16)
 def _rulebook(sources: tuple[Source, ...]) -> Rulebook:
+    """Return the checked rules of some sources."""
     problems: list[Problem] = []
     statements: list[Statement] = []
     for source in sources:
@@ -70,14 +99,15 @@ def _rulebook(sources: tuple[Source, ...]) -> Rulebook:
 
 
 def _statements(source: Source) -> list[Statement]:
-    problems = [*wide_integers(source), *_not_taken(source)]
+    """Return the statements of one source; raise BadInputError when it is no file of rules."""
+    problems = [*integers_beyond_32_bits(source), *_not_allowed(source)]
     if problems:
         raise BadInputError(problems)
-    found = _worker().exchange({"read": source.text}, SECONDS)
+    found = _worker().exchange({"read": source.text}, MAX_RULE_SECONDS)
     if "limit" in found:
         raise BadInputError([source.problem(source.start(), f"these rules were given up: {found['limit']}")])
     if "message" in found:
-        raise _located(source, found["message"])
+        raise _error_at_place(source, found["message"])
     if "error" in found:
         raise BadInputError([source.problem(_span(found["at"]), found["error"], found["hint"])])
     if not found["statements"]:
@@ -85,65 +115,80 @@ def _statements(source: Source) -> list[Statement]:
     return [statement_of(source, entry) for entry in found["statements"]]
 
 
-def _not_taken(source: Source) -> Iterator[Problem]:
-    """What clingo must not see: other files, and brackets so deep that it would break down."""
+def _not_allowed(source: Source) -> Iterator[Problem]:
+    """Yield the problems of what must not reach clingo: `#include`, and brackets nested so deep that it would crash."""
     depth = 0
-    for token in tokens(source, []):
+    for token in tokenize(source, []):
         if token.text == "#include":
             yield source.problem(token.span, "#include is not allowed", "give each file with a --kb of its own")
         depth += (token.text == "(") - (token.text == ")")
-        if depth > DEEPEST:
-            yield source.problem(token.span, f"brackets are nested more than {DEEPEST} deep")
+        if depth > MAX_TERM_DEPTH:
+            yield source.problem(token.span, f"brackets are nested more than {MAX_TERM_DEPTH} deep")
             return
 
 
-def solve_apart(ours: Sequence[Path], users: Sequence[Path], facts: Sequence[str]) -> list[clingo.Symbol] | None:
-    """The shown atoms of the best answer set, found in another process; None when no rule counts in this encoding.
+def solve_with_user_rules(
+    ours: Sequence[Path], users: Sequence[Path], facts: Sequence[str]
+) -> list[clingo.Symbol] | None:
+    """Return the shown atoms of the best answer set of an encoding with users' rules.
 
-    Raises CannotOpenError, and BadInputError when the users' rules are none, contradict what is given, derive what
-    cannot be, or take too long or too much memory.
+    Parameters
+    ----------
+    ours : the path of the encoding; exactly one.
+    users : the paths of the users' rules.
+    facts : the facts of the encoding, without full stops.
+
+    Returns
+    -------
+    The atoms; None when none of the rules reaches this encoding.
+
+    Raises
+    ------
+    CannotOpenError : a file cannot be read.
+    BadInputError : the rules have errors, contradict the facts, derive invalid atoms, or take too much time or memory.
     """
     rules = read_rules(users)
     (encoding,) = ours
-    counting = rules.counting(encoding.stem)
-    if not counting:
+    reaching = rules.rules_reaching(encoding.stem)
+    if not reaching:
         return None
     program = "\n".join([encoding.read_text(), *(f"{fact}." for fact in facts)])
-    found = _answered(encoding.name, program, counting)
+    found = _solved_by_worker(encoding.name, program, reaching)
     given: dict[Signature, list[Fact]] = {}
     for fact in facts_of("".join(f"{fact}.\n" for fact in facts)):
         given.setdefault(fact.signature, []).append(fact)
     for text in found["derived"]:
-        atom = _fact(text)
-        why = "it is no fact" if atom is None else misfit(encoding.stem, atom, given)
+        atom = _as_fact(text)
+        why = "it is no fact" if atom is None else why_not_in_domain(encoding.stem, atom, given)
         if why:
-            raise _blamed(counting, text, atom, f"these rules derive {text}, in {encoding.name}: {why}")
+            raise _error_at_source_rule(reaching, text, atom, f"these rules derive {text}, in {encoding.name}: {why}")
     return [clingo.parse_term(text) for text in found["atoms"]]
 
 
-def _answered(name: str, program: str, counting: Sequence[Statement], search: bool = True) -> dict[str, Any]:
-    """What the worker answers to a program of ours with rules; raises BadInputError when it has no answer.
+def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], search: bool = True) -> dict[str, Any]:
+    """Return the worker's response to a program with users' rules; raise BadInputError when it has no answer.
 
-    name : of the program, for messages. search : for the best answer; else rules are only tried out.
+    name : the name of the program in messages; '' for the rules alone. search : whether to search for the best answer;
+    else the program is only grounded.
     """
-    heads = sorted({atom.signature for one in counting for atom in one.heads if atom.signature in DECLARED})
-    request = {"program": program, "rules": [one.text for one in counting], "heads": heads}
-    found = _worker().exchange(request | {"conflicts": CONFLICTS if search else 0}, SECONDS)
+    heads = sorted({atom.signature for one in reaching for atom in one.heads if atom.signature in INTERFACE_PREDICATES})
+    request = {"program": program, "rules": [one.text for one in reaching], "heads": heads}
+    found = _worker().exchange(request | {"conflicts": MAX_CONFLICTS if search else 0}, MAX_RULE_SECONDS)
     if "limit" in found:
         where = f", in {name}" if name else ""
-        raise _together(counting, f"these rules were given up: {found['limit']}{where}")
+        raise _error_at_first_rule(reaching, f"these rules were given up: {found['limit']}{where}")
     if "message" in found:
-        message, place = found["message"], PLACE.search(found["message"])
-        one = counting[min(int(place[1]) if place else 1, len(counting)) - 1]
-        raise BadInputError([one.problem(_said(place[4] if place else message))])
+        message, place = found["message"], CLINGO_MESSAGE.search(found["message"])
+        one = reaching[min(int(place[1]) if place else 1, len(reaching)) - 1]
+        raise BadInputError([one.problem(_unsafe_variable_message(place[4] if place else message))])
     if "error" in found:
         line, column = found["at"]
-        raise BadInputError([counting[found["rule"]].problem(found["error"], (line, column))])
+        raise BadInputError([reaching[found["rule"]].problem(found["error"], (line, column))])
     if "cut" in found:
         what = f"the search for the best answer of {name or 'these rules'} was cut off: {found['cut']}"
-        raise _together(counting, what)
+        raise _error_at_first_rule(reaching, what)
     if "against" in found:
-        blamed = [counting[number] for number in found["against"]]
+        blamed = [reaching[number] for number in found["against"]]
         first, *rest = sorted(blamed, key=lambda one: len(one.heads) > 0)  # a constraint before what it forbids
         what = "this rule leaves no answer, whatever is given: it contradicts itself"
         if name:
@@ -153,7 +198,8 @@ def _answered(name: str, program: str, counting: Sequence[Statement], search: bo
     return found
 
 
-def _fact(text: str) -> Fact | None:
+def _as_fact(text: str) -> Fact | None:
+    """Return the fact that a derived atom denotes; None when fact files could not express it."""
     try:
         (fact,) = facts_of(f"{text}.")
     except (BadInputError, ValueError):
@@ -161,57 +207,64 @@ def _fact(text: str) -> Fact | None:
     return fact
 
 
-def _blamed(counting: Sequence[Statement], text: str, atom: Fact | None, what: str) -> BadInputError:
-    """The error at the first rule that may have derived an atom."""
+def _error_at_source_rule(reaching: Sequence[Statement], text: str, atom: Fact | None, what: str) -> BadInputError:
+    """Return the error at the first rule that may have derived an atom."""
     name = text.partition("(")[0]
-    for one in counting:
+    for one in reaching:
         for head in one.heads:
-            if head.name == name and (atom is None or _may_be(head.constants, atom)):
+            if head.name == name and (atom is None or _may_have_derived(head.constants, atom)):
                 return BadInputError([one.problem(what, head.at)])
-    return _together(counting, what)
+    return _error_at_first_rule(reaching, what)
 
 
-def _may_be(constants: Sequence[str | None], atom: Fact) -> bool:
+def _may_have_derived(constants: Sequence[str | None], atom: Fact) -> bool:
+    """Return whether the constants of a head agree with an atom."""
     return len(constants) == len(atom.args) and all(
         constant is None or constant == str(term) for constant, term in zip(constants, atom.args, strict=True)
     )
 
 
-def _together(counting: Sequence[Statement], what: str) -> BadInputError:
-    return BadInputError([counting[0].problem(what)])
+def _error_at_first_rule(reaching: Sequence[Statement], what: str) -> BadInputError:
+    """Return the error at the first of the rules."""
+    return BadInputError([reaching[0].problem(what)])
 
 
 @cache
 def _worker() -> Worker:
+    """Return the process that all users' rules of this process share."""
     worker = Worker()
     atexit.register(worker.close)
     return worker
 
 
-def _located(source: Source, message: str) -> BadInputError:
-    """The error at the place in the user's file of which clingo speaks."""
-    place = PLACE.search(message)
+def _error_at_place(source: Source, message: str) -> BadInputError:
+    """Return the error for a message of clingo's, at its place in the user's file."""
+    place = CLINGO_MESSAGE.search(message)
     if place is None:
-        return BadInputError([source.problem(source.start(), _plain(message))])
+        return BadInputError([source.problem(source.start(), _one_line(message))])
     line, start, end = int(place[1]), int(place[2]), int(place[3] or place[2])
     if line > len(source.lines):  # the end of the file
         line, start = len(source.lines), len(source.lines[-1])
-    return BadInputError([source.problem(Span(line, max(1, start), max(1, start, end - 1)), _plain(place[4]))])
+    return BadInputError([source.problem(Span(line, max(1, start), max(1, start, end - 1)), _one_line(place[4]))])
 
 
 def _span(at: Sequence[int]) -> Span:
+    """Return the span of one column."""
     return Span(at[0], at[1], at[1])
 
 
-def _plain(message: str) -> str:
-    """A message of clingo's in one line, without the program's text as it was rewritten."""
+def _one_line(message: str) -> str:
+    """Return the first line of a message of clingo's; the lines below show the rewritten program."""
     return " ".join(message.split("\n")[0].split()).rstrip(":")
 
 
-def _said(message: str) -> str:
-    """A message of clingo's on a rule whose arithmetic was rewritten."""
+def _unsafe_variable_message(message: str) -> str:
+    """Return a message of clingo's in one line; a message of our own for an unsafe variable.
+
+    clingo's own message would show the rewritten arithmetic.
+    """
     unsafe = re.findall(r"'(\w+)' is unsafe", message)
     if not unsafe:
-        return _plain(message)
+        return _one_line(message)
     names = ", ".join(dict.fromkeys(unsafe))
     return f"nothing says what {names} can be: it must be in an atom that holds, not in a calculation alone"

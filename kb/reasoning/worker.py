@@ -1,7 +1,6 @@
-"""A process beside ours in which clingo reads what users wrote (kb.reasoning.query_worker): it can be killed, and
-dies alone.
+"""A separate process in which clingo reads what users wrote (kb.reasoning.query_worker); it can be killed.
 
-It is isolated: nothing in the working directory or on PYTHONPATH is executed. It ends when this process ends.
+The process is isolated: nothing in the working directory or on PYTHONPATH is executed. It ends when this process ends.
 """
 
 import json
@@ -13,16 +12,19 @@ from typing import IO, Any
 
 from utak_command import beside
 
-START = 30.0  # seconds in which a worker must be ready
-Lines = queue.SimpleQueue[bytes]
+MAX_START_SECONDS = 30.0  # seconds of wall-clock time until a worker must be ready; a convention
+LineQueue = queue.SimpleQueue[bytes]
 
 
 class Worker:
-    """Starts when it is first asked; one that dies or takes too long is replaced for the next request."""
+    """A handle of the process, which starts with the first request.
+
+    After a crash or a timeout, a new process is started for the next request.
+    """
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
-        self._lines: Lines = queue.SimpleQueue()
+        self._lines: LineQueue = queue.SimpleQueue()
 
     def close(self) -> None:
         """End the process."""
@@ -31,20 +33,30 @@ class Worker:
             _end(worker)
 
     def exchange(self, request: dict[str, Any], seconds: float) -> dict[str, Any]:
-        """What the worker answers; {"limit": why} when it does not within so many seconds.
+        """Return the response of the process to a request.
 
-        One that is interrupted while it works is ended, for its answer would be taken for that of the next request.
+        Parameters
+        ----------
+        request : JSON values.
+        seconds : the limit of wall-clock time.
+
+        Returns
+        -------
+        The response; {"limit": reason} when the process gives none in time or ends.
+
+        An exception while the process works, such as a keyboard interrupt, ends the process. Else its late response
+        would be taken for that of the next request.
         """
         if self._process is None:
-            self._process, self._lines = _started()
+            self._process, self._lines = _start()
         worker, self._process = self._process, None
         line: bytes | None = b""
         try:
             assert worker.stdin is not None
-            with suppress(OSError):  # it has ended
+            with suppress(OSError):  # the process has ended
                 worker.stdin.write(json.dumps(request, allow_nan=False).encode("ascii") + b"\n")
                 worker.stdin.flush()
-                line = _line(self._lines, seconds)
+                line = _next_line(self._lines, seconds)
         except BaseException:
             _end(worker)
             raise
@@ -57,29 +69,29 @@ class Worker:
         return found
 
 
-def _started() -> "tuple[subprocess.Popen[bytes], Lines]":
-    """A fresh worker, ready, and the lines that it writes."""
+def _start() -> "tuple[subprocess.Popen[bytes], LineQueue]":
+    """Return a new process that is ready, and the queue of the lines that it writes."""
     worker = subprocess.Popen(
         beside("kb.reasoning.query_worker"),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
-        start_new_session=True,  # Ctrl-C is for the prompt, which ends the worker itself
+        start_new_session=True,  # Ctrl-C must reach the parent only, which then ends the worker
         creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # the same on Windows
     )
-    lines: Lines = queue.SimpleQueue()
+    lines: LineQueue = queue.SimpleQueue()
     try:
-        threading.Thread(target=_collect, args=(worker.stdout, lines), daemon=True).start()
-        if (_line(lines, START) or b"").rstrip() != b"ready":
-            raise RuntimeError("the process beside ours does not start")
+        threading.Thread(target=_forward_lines, args=(worker.stdout, lines), daemon=True).start()
+        if (_next_line(lines, MAX_START_SECONDS) or b"").rstrip() != b"ready":
+            raise RuntimeError("the worker process for queries and rules does not start")
     except BaseException:
         _end(worker)
         raise
     return worker, lines
 
 
-def _collect(stream: IO[bytes], lines: Lines) -> None:
-    """Put the lines of a stream into a queue, and an empty one at its end."""
+def _forward_lines(stream: IO[bytes], lines: LineQueue) -> None:
+    """Put the lines of a stream into a queue, and b"" at its end."""
     with suppress(OSError, ValueError):
         for line in stream:
             lines.put(line)
@@ -88,8 +100,8 @@ def _collect(stream: IO[bytes], lines: Lines) -> None:
         stream.close()
 
 
-def _line(lines: Lines, seconds: float) -> bytes | None:
-    """The next line; empty when they have ended, None when it does not come in time."""
+def _next_line(lines: LineQueue, seconds: float) -> bytes | None:
+    """Return the next line; b"" when the stream has ended, None after `seconds` seconds."""
     try:
         return lines.get(timeout=max(0.0, seconds))
     except queue.Empty:
@@ -97,7 +109,7 @@ def _line(lines: Lines, seconds: float) -> bytes | None:
 
 
 def _end(worker: "subprocess.Popen[bytes]") -> None:
-    """End a process, and forget what it has not read."""
+    """Kill a process and close its input."""
     worker.kill()
     worker.wait()
     if worker.stdin is not None:

@@ -1,4 +1,4 @@
-"""Reconciliation of the task with the world model: which thing each parameter means (kb/asp/reconciliation.lp)."""
+"""Reconciliation of the task with the world model: the object that each parameter means (kb/asp/reconciliation.lp)."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -12,12 +12,16 @@ from kb.world.model import Node, WorldModel
 
 
 class Reconciled(NamedTuple):
-    """What the task's objects are in the world model.
+    """The objects of the world model that the task's parameters mean.
 
-    binding : parameter -> node. hypothesised : parameters of goals that nothing seen so far can be.
-    doubtful : (parameter, node) pairs that a closer look decides. contradicted : (parameter, node, property).
-    unmovable : (parameter, node) pairs that agree, but what is to be carried cannot be moved.
-    measurable : (parameter, node) pairs that may agree when it is told better how large the node is.
+    Attributes
+    ----------
+    binding : the node of each bound parameter.
+    hypothesised : parameters of goals that match nothing seen so far.
+    doubtful : (parameter, node) pairs that need another observation to decide.
+    contradicted : (parameter, node, property) where the best match contradicts a claim; property is shape or colour.
+    unmovable : (parameter, node) pairs that match, but the task moves the parameter and the node cannot be moved.
+    measurable : (parameter, node) pairs that may match, which a better estimate of the node's size decides.
     """
 
     binding: Mapping[str, str]
@@ -36,10 +40,24 @@ def reconcile(
     rules: tuple[Path, ...] = (),
     carried: Iterable[str] = (),
 ) -> Reconciled:
-    """Bind the object parameters of a task by the best match.
+    """Return the best match of the task's object parameters with objects of the world model.
 
-    distances: way to each node in squares, where one is known. before: the binding up to now, which is kept unless
-    another is clearly better. carried : the parameters that shall be brought somewhere.
+    Parameters
+    ----------
+    task : the task.
+    model : the world model.
+    distances : the length of the way to each node, in squares, where it is known.
+    before : the binding up to now; it is kept unless another one is clearly better.
+    rules : files with users' rules.
+    carried : the parameters that the goals move.
+
+    Returns
+    -------
+    The binding, and what is open about it.
+
+    Raises
+    ------
+    BadInputError : users' rules cause an error.
     """
     facts = [*_task_facts(task), *(f"carried({x})" for x in carried)]
     facts += [fact for node in model.objects for fact in _node_facts(node)]
@@ -59,10 +77,11 @@ def reconcile(
 
 
 def _task_facts(task: Task) -> Iterable[str]:
+    """Yield the object parameters and their claims as facts."""
     for name, parameter in task.parameters.items():
         if parameter.kind == "object":
             yield f"wanted({name})"
-            if name in task.named:
+            if name in task.goal_parameters:
                 yield f"named({name})"
     for claim in task.claims:
         x, value = claim.fact.args
@@ -71,6 +90,7 @@ def _task_facts(task: Task) -> Iterable[str]:
 
 
 def _node_facts(node: Node) -> Iterable[str]:
+    """Yield what is believed about an object as facts."""
     yield f"candidate({node.name},{node.confidence})"
     for shape, confidence in sorted(node.shape.items()):
         yield f"has({node.name},shape,{shape},{confidence})"

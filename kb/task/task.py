@@ -1,4 +1,4 @@
-"""The task: two parameterised world models, what is claimed at the start (start.lp) and what shall hold (goal.lp)."""
+"""The task: parameters and claims about them (start.lp), and goals (goal.lp)."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -8,14 +8,14 @@ from kb.language.diagnostics import BadInputError, Problem, Span, did_you_mean
 from kb.language.reader import parse_facts
 from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact, Number, Symbol, Term
-from kb.language.vocabulary import GOAL, RESERVED, START, Vocabulary, check_facts
+from kb.language.vocabulary import GOAL, RESERVED_PARAMETER_NAMES, START, Vocabulary, check_facts
 
-CERTAIN = 100
-KINDS = ("object", "door", "room")
-# The shapes that one thing can have at once: a square and a brick are rectangles, and everything is a polygon.
-ALSO = {"rectangle": {"square", "brick"}}
-# Which kinds of parameters a goal wants, argument by argument; None stands for an argument that names no parameter.
-WANTED: Mapping[str, tuple[tuple[str, ...] | None, ...]] = {
+CERTAIN_CONFIDENCE = 100  # percent; the confidence of a claim that stands alone
+PARAMETER_KINDS = ("object", "door", "room")
+# The shape classes that a shape class includes; everything is a polygon, too.
+SHAPE_SUBCLASSES = {"rectangle": {"square", "brick"}}
+# By the name of a goal: the kinds of parameters that each argument accepts; None where an argument is no parameter.
+GOAL_ARGUMENT_KINDS: Mapping[str, tuple[tuple[str, ...] | None, ...]] = {
     "at": (("object", "utak"), ("object", "start")),
     "in": (("object", "utak"), ("room",)),
     "through": (("object", "utak"), ("door",)),
@@ -29,7 +29,14 @@ WANTED: Mapping[str, tuple[tuple[str, ...] | None, ...]] = {
 
 @dataclass(frozen=True)
 class Parameter:
-    """A thing that the task speaks of: its name, and whether it is an object, a door or a room."""
+    """A thing that the task mentions.
+
+    Attributes
+    ----------
+    name : its name in the task.
+    kind : "object", "door" or "room".
+    span : the place in start.lp that introduces it.
+    """
 
     name: str
     kind: str
@@ -38,20 +45,26 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Claim:
-    """What start.lp says of a parameter, such as `shape(x, square)`, and the confidence in it (0 to 100)."""
+    """A claim about an object.
+
+    Attributes
+    ----------
+    fact : the claim, such as `shape(x, square)`.
+    confidence : percent, 0 to 100.
+    """
 
     fact: Fact
-    confidence: int = CERTAIN
+    confidence: int = CERTAIN_CONFIDENCE
 
 
 @dataclass(frozen=True)
 class Task:
-    """What Utak is told.
+    """What the robot is given to do.
 
     Attributes
     ----------
-    parameters : by name, in the order in which start.lp introduces them.
-    claims : what is claimed of the parameters, in order.
+    parameters : the parameters by name, in the order of start.lp.
+    claims : the claims about parameters, in order.
     goals : what shall hold, in order; `first(G)` and `then(G)` are kept as they stand.
     """
 
@@ -60,18 +73,32 @@ class Task:
     goals: tuple[Fact, ...]
 
     @property
-    def named(self) -> frozenset[str]:
-        """The parameters that the goals name."""
-        words = {str(term) for goal in self.goals for term in _plain(goal).args}
+    def goal_parameters(self) -> frozenset[str]:
+        """The names of the parameters that goals mention."""
+        words = {str(term) for goal in self.goals for term in _inner_goal(goal).args}
         return frozenset(words & set(self.parameters))
 
     def claims_of(self, name: str) -> tuple[Claim, ...]:
-        """Return what is claimed of one parameter."""
+        """Return the claims about one parameter."""
         return tuple(claim for claim in self.claims if claim.fact.args[0] == Symbol(name, (), Span(0, 0, 0)))
 
 
 def read_task(start: Path | str, goal: Path | str) -> Task:
-    """Read a task from its two files; raises CannotOpenError, or BadInputError with the problems of both."""
+    """Return the task of a scenario.
+
+    Parameters
+    ----------
+    start, goal : the files start.lp and goal.lp.
+
+    Returns
+    -------
+    The task.
+
+    Raises
+    ------
+    CannotOpenError : a file cannot be read.
+    BadInputError : the files have errors; carries those of both.
+    """
     problems: list[Problem] = []
     sources: list[Source | None] = []
     for path in (start, goal):
@@ -80,45 +107,75 @@ def read_task(start: Path | str, goal: Path | str) -> Task:
         except BadInputError as bad:
             problems += bad.problems
             sources.append(None)
-    begin, end = (_checked(s, v, problems) for s, v in zip(sources, (START, GOAL), strict=True))
+    start_facts, goal_facts = (_checked_facts(s, v, problems) for s, v in zip(sources, (START, GOAL), strict=True))
     if problems or sources[0] is None or sources[1] is None:
         raise BadInputError(problems)
-    return task_of(sources[0], begin, sources[1], end)
+    return task_of(sources[0], start_facts, sources[1], goal_facts)
 
 
 def read_start(path: Path | str) -> tuple[Fact, ...]:
-    """Read start.lp alone and check it; raises as `read_task` does."""
+    """Return the facts of start.lp, checked without goal.lp.
+
+    Parameters
+    ----------
+    path : the file.
+
+    Returns
+    -------
+    The facts in order.
+
+    Raises
+    ------
+    CannotOpenError : the file cannot be read.
+    BadInputError : the file has errors.
+    """
     source = read_source(path)
     problems: list[Problem] = []
-    begin = _checked(source, START, problems)
+    start_facts = _checked_facts(source, START, problems)
     if not problems:
-        problems = _start_problems(source, begin)[2]
+        problems = _start_problems(source, start_facts)[2]
     if problems:
         raise BadInputError(problems)
-    return begin
+    return start_facts
 
 
-def task_of(start: Source, begin: tuple[Fact, ...], goal: Source, end: tuple[Fact, ...]) -> Task:
-    """Return the task that checked facts of start.lp and goal.lp state; raises BadInputError."""
-    parameters, claims, problems = _start_problems(start, begin)
-    problems += _repeated(goal, end)
-    problems += _goal_problems(goal, end, parameters)
+def task_of(start: Source, start_facts: tuple[Fact, ...], goal: Source, goal_facts: tuple[Fact, ...]) -> Task:
+    """Return the task that the facts of two sources state.
+
+    Parameters
+    ----------
+    start, start_facts : the source and the facts of start.lp.
+    goal, goal_facts : the source and the facts of goal.lp. The vocabulary of the facts has been checked.
+
+    Returns
+    -------
+    The task.
+
+    Raises
+    ------
+    BadInputError : parameters, claims or goals contradict each other.
+    """
+    parameters, claims, problems = _start_problems(start, start_facts)
+    problems += _duplicates(goal, goal_facts)
+    problems += _goal_problems(goal, goal_facts, parameters)
     if problems:
         raise BadInputError(problems)
-    return Task(parameters, tuple(claims), end)
+    return Task(parameters, tuple(claims), goal_facts)
 
 
-def _start_problems(source: Source, begin: tuple[Fact, ...]) -> tuple[dict[str, Parameter], list[Claim], list[Problem]]:
-    """What start.lp introduces and claims, and what is wrong with it."""
-    problems = _repeated(source, begin)
-    parameters = _parameters(source, begin, problems)
-    claims = _claims(source, begin, parameters, problems)
+def _start_problems(
+    source: Source, start_facts: tuple[Fact, ...]
+) -> tuple[dict[str, Parameter], list[Claim], list[Problem]]:
+    """Return the parameters and the claims of start.lp, and the problems in it."""
+    problems = _duplicates(source, start_facts)
+    parameters = _parameters(source, start_facts, problems)
+    claims = _claims(source, start_facts, parameters, problems)
     problems += _contradictions(source, claims)
     return parameters, claims, problems
 
 
-def _checked(source: Source | None, vocabulary: Vocabulary, problems: list[Problem]) -> tuple[Fact, ...]:
-    """The facts of a source; what is wrong with them is appended to `problems`."""
+def _checked_facts(source: Source | None, vocabulary: Vocabulary, problems: list[Problem]) -> tuple[Fact, ...]:
+    """Return the facts of a source; append its problems to `problems`."""
     if source is None:
         return ()
     try:
@@ -130,8 +187,8 @@ def _checked(source: Source | None, vocabulary: Vocabulary, problems: list[Probl
     return facts
 
 
-def _repeated(source: Source, facts: tuple[Fact, ...]) -> list[Problem]:
-    """Facts that are stated twice; a step of a sequence may come again, for it is another step."""
+def _duplicates(source: Source, facts: tuple[Fact, ...]) -> list[Problem]:
+    """Return a problem for each fact that is stated twice, except `then(G)`, which is another step each time."""
     seen: dict[Fact, int] = {}
     problems = []
     for fact in facts:
@@ -144,12 +201,13 @@ def _repeated(source: Source, facts: tuple[Fact, ...]) -> list[Problem]:
 
 
 def _parameters(source: Source, facts: tuple[Fact, ...], problems: list[Problem]) -> dict[str, Parameter]:
+    """Return the parameters that start.lp introduces; append problems to `problems`."""
     found: dict[str, Parameter] = {}
     for fact in facts:
-        if fact.name not in KINDS:
+        if fact.name not in PARAMETER_KINDS:
             continue
         name, span = str(fact.args[0]), fact.args[0].span
-        if name in RESERVED:
+        if name in RESERVED_PARAMETER_NAMES:
             problems.append(source.problem(span, f"{name} is a reserved word and cannot name a parameter"))
         elif name in found and found[name].kind != fact.name:
             what = f"{name} is already a{'n' * (found[name].kind == 'object')} {found[name].kind}"
@@ -162,27 +220,29 @@ def _parameters(source: Source, facts: tuple[Fact, ...], problems: list[Problem]
 def _claims(
     source: Source, facts: tuple[Fact, ...], parameters: Mapping[str, Parameter], problems: list[Problem]
 ) -> list[Claim]:
+    """Return the claims of start.lp; append problems to `problems`."""
     claims: list[Claim] = []
-    said: dict[Fact, int] = {}
+    confidences: dict[Fact, int] = {}
     for fact in facts:
-        if fact.name in KINDS:
+        if fact.name in PARAMETER_KINDS:
             continue
         claim = _claim(fact)
         name = claim.fact.args[0]
         if str(name) not in parameters:
-            problems.append(source.problem(name.span, *_unknown(str(name), parameters)))
+            problems.append(source.problem(name.span, *_not_introduced(str(name), parameters)))
         elif parameters[str(name)].kind != "object":
             what = f"{name} is a {parameters[str(name)].kind}; only objects have a {claim.fact.name}"
             problems.append(source.problem(name.span, what))
-        if claim.fact in said and said[claim.fact] != claim.confidence:
-            what = f"{claim.fact} is claimed with confidence {said[claim.fact]} and {claim.confidence}"
+        if claim.fact in confidences and confidences[claim.fact] != claim.confidence:
+            what = f"{claim.fact} is claimed with confidence {confidences[claim.fact]} and {claim.confidence}"
             problems.append(source.problem(fact.span, what))
-        said[claim.fact] = claim.confidence
+        confidences[claim.fact] = claim.confidence
         claims.append(claim)
     return claims
 
 
 def _claim(fact: Fact) -> Claim:
+    """Return the claim that a fact states."""
     if fact.name != "confidence":
         return Claim(fact)
     inner, degree = fact.args
@@ -192,10 +252,10 @@ def _claim(fact: Fact) -> Claim:
 
 
 def _contradictions(source: Source, claims: list[Claim]) -> Iterator[Problem]:
-    """Two certain claims of one thing that cannot both be."""
+    """Yield a problem for each pair of certain claims about one object that cannot both hold."""
     certain: dict[tuple[str, Term], Fact] = {}
     for claim in claims:
-        if claim.confidence < CERTAIN:
+        if claim.confidence < CERTAIN_CONFIDENCE:
             continue
         key = (claim.fact.name, claim.fact.args[0])
         before = certain.setdefault(key, claim.fact)
@@ -206,61 +266,69 @@ def _contradictions(source: Source, claims: list[Claim]) -> Iterator[Problem]:
 
 
 def _compatible(one: Fact, other: Fact) -> bool:
+    """Return whether two claims of the same kind about one object can both hold."""
     first, second = str(one.args[1]), str(other.args[1])
     if first == second:
         return True
     if one.name != "shape":
         return False
-    return "polygon" in (first, second) or first in ALSO.get(second, ()) or second in ALSO.get(first, ())
+    return (
+        "polygon" in (first, second)
+        or first in SHAPE_SUBCLASSES.get(second, ())
+        or second in SHAPE_SUBCLASSES.get(first, ())
+    )
 
 
 def _goal_problems(source: Source, goals: tuple[Fact, ...], parameters: Mapping[str, Parameter]) -> Iterator[Problem]:
-    begun = False
+    """Yield the problems of goals: their order, their arguments, and an empty goal."""
+    has_goal = False
     for fact in goals:
-        goal = _plain(fact)
-        if fact.name == "first" and begun:
+        goal = _inner_goal(fact)
+        if fact.name == "first" and has_goal:
             yield source.problem(fact.span, "first(...) must come before every other step", "write then(...)")
-        if fact.name == "then" and not begun:
+        if fact.name == "then" and not has_goal:
             yield source.problem(fact.span, "then(...) without anything before it", "begin with first(...)")
         if goal.name == "not_through" and fact.name in ("first", "then"):
             yield source.problem(goal.span, f"{fact.name}(...) needs something to attain, not a constraint")
-        begun = begun or goal.name != "not_through"
-        for term, kinds in zip(goal.args, WANTED[goal.name], strict=True):
+        has_goal = has_goal or goal.name != "not_through"
+        for term, kinds in zip(goal.args, GOAL_ARGUMENT_KINDS[goal.name], strict=True):
             if kinds is not None and isinstance(term, Symbol) and not term.args:
-                yield from _misused(source, goal, term, kinds, parameters)
+                yield from _wrong_kind(source, goal, term, kinds, parameters)
         if len(goal.args) == 2 and goal.args[0] == goal.args[1]:
             yield source.problem(goal.span, f"{goal.name} relates {goal.args[0]} to itself")
-    if not begun:
+    if not has_goal:
         yield source.problem(
             source.start(), "the goal is empty: nothing shall hold", "such as at(utak, corner(northeast))."
         )
 
 
-def _plain(fact: Fact) -> Fact:
-    """The goal inside first(...) and then(...)."""
+def _inner_goal(fact: Fact) -> Fact:
+    """Return the goal inside `first(G)` or `then(G)`; other goals as they are."""
     inner = fact.args[0] if fact.name in ("first", "then") else fact
     assert isinstance(inner, Symbol)
     return inner
 
 
-def _misused(
+def _wrong_kind(
     source: Source, goal: Fact, term: Symbol, kinds: tuple[str, ...], parameters: Mapping[str, Parameter]
 ) -> Iterator[Problem]:
+    """Yield the problem of an argument that is no parameter of an accepted kind."""
     if term.name in kinds:
         return
-    wanted = " or ".join(f"a{'n' * (kind == 'object')} {kind}" if kind in KINDS else kind for kind in kinds)
+    wanted = " or ".join(f"a{'n' * (kind == 'object')} {kind}" if kind in PARAMETER_KINDS else kind for kind in kinds)
     if term.name in parameters:
         kind = parameters[term.name].kind
         if kind not in kinds:
             yield source.problem(
                 term.span, f"{term} is a{'n' * (kind == 'object')} {kind}; {goal.name} wants {wanted} here"
             )
-    elif term.name in RESERVED:
+    elif term.name in RESERVED_PARAMETER_NAMES:
         yield source.problem(term.span, f"{goal.name} wants {wanted} here, not {term}")
     else:
-        yield source.problem(term.span, *_unknown(term.name, parameters))
+        yield source.problem(term.span, *_not_introduced(term.name, parameters))
 
 
-def _unknown(name: str, parameters: Mapping[str, Parameter]) -> tuple[str, str]:
+def _not_introduced(name: str, parameters: Mapping[str, Parameter]) -> tuple[str, str]:
+    """Return message and hint for a parameter that start.lp does not introduce."""
     hint = did_you_mean(name, [*parameters, "utak", "start"])
     return f"{name} is not introduced in start.lp", hint or f"write object({name}). in start.lp (or door, room)"

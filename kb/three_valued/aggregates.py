@@ -1,25 +1,33 @@
-"""The value of an aggregate, of which some tuples are counted for certain and others only may be."""
+"""The value of an aggregate, some tuples of which are certain and others only possible."""
 
 import clingo
 
-from kb.language.integers import HIGH, LOW
-from kb.three_valued.arithmetic import checked
-from kb.three_valued.uncertain_values import Unknown, Value, bounds, symbol
+from kb.language.integers import MAX_INT32, MIN_INT32
+from kb.three_valued.arithmetic import require_int32
+from kb.three_valued.uncertain_values import Unknown, Value, as_clingo, bounds
 
-Tuple = tuple[Value, ...]
+ValueTuple = tuple[Value, ...]
 
 
 class Tally:
-    """Collects the tuples of one aggregate; `value` is its value, or an Unknown with its bounds."""
+    """Collects the tuples of one aggregate.
+
+    Parameters
+    ----------
+    function : `#count`, `#sum`, `#sum+`, `#min` or `#max`.
+    """
 
     def __init__(self, function: str) -> None:
         self._function = function
-        self._certain: dict[Tuple, None] = {}
-        self._possible: dict[Tuple, None] = {}
-        self._vague: list[Tuple] = []
+        self._certain: dict[ValueTuple, None] = {}
+        self._possible: dict[ValueTuple, None] = {}
+        self._vague: list[ValueTuple] = []
 
-    def add(self, values: Tuple, possible: bool) -> None:
-        """Count a tuple. possible : it only may be there."""
+    def add(self, values: ValueTuple, possible: bool) -> None:
+        """Add a tuple of terms.
+
+        values : the tuple; its first value is the weight. possible : whether the tuple may be absent.
+        """
         if not possible:
             self._certain[values] = None
         elif not any(isinstance(value, Unknown) for value in values):
@@ -28,48 +36,56 @@ class Tally:
             self._vague.append(values)
 
     def value(self) -> Value:
-        """Return the aggregate's value; raises CalculationError for one beyond 32 bits."""
-        more = [values for values in self._possible if values not in self._certain]
+        """Return the value of the aggregate; an `Unknown` with bounds when it is not certain.
+
+        Raises CalculationError for a value beyond 32 bits.
+        """
+        new_possible = [values for values in self._possible if values not in self._certain]
         if self._function == "#count":
-            return self._between(len(self._certain), len(more), 0)
+            return self._between(len(self._certain), len(new_possible), 0)
         if self._function in ("#sum", "#sum+"):
-            return self._sum(more)
-        return self._extreme(more)
+            return self._sum(new_possible)
+        return self._least_or_greatest(new_possible)
 
     def _between(self, least: int, up: int, down: int) -> Value:
-        """A number from `least` - `down` to `least` + `up`; without an upper bound where there are vague tuples."""
-        checked(least)
-        high = HIGH if self._vague else min(HIGH, least + up)
-        low = max(LOW, least - down)
+        """Return a number from `least` - `down` to `least` + `up`.
+
+        There is no upper bound where a tuple has unknown values.
+        """
+        require_int32(least)
+        high = MAX_INT32 if self._vague else min(MAX_INT32, least + up)
+        low = max(MIN_INT32, least - down)
         return least if low == high == least else Unknown(low, high)
 
-    def _sum(self, more: list[Tuple]) -> Value:
-        def weight(values: Tuple) -> int:
+    def _sum(self, new_possible: list[ValueTuple]) -> Value:
+        """Return the sum of the weights; values that are no numbers count 0."""
+
+        def weight(values: ValueTuple) -> int:
             value = values[0] if values else 0
             number = value if isinstance(value, int) else 0
             return max(0, number) if self._function == "#sum+" else number
 
-        weights = [weight(values) for values in more]
-        vague_down = any((bounds(values[0]) or (LOW, HIGH))[0] < 0 for values in self._vague if values)
+        weights = [weight(values) for values in new_possible]
+        vague_down = any((bounds(values[0]) or (MIN_INT32, MAX_INT32))[0] < 0 for values in self._vague if values)
         down = -sum(w for w in weights if w < 0)
         if vague_down and self._function == "#sum":
-            down = HIGH - LOW
+            down = MAX_INT32 - MIN_INT32
         return self._between(sum(map(weight, self._certain)), sum(w for w in weights if w > 0), down)
 
-    def _extreme(self, more: list[Tuple]) -> Value:
-        """The least or the greatest first value; that of no tuples is beyond all others."""
+    def _least_or_greatest(self, new_possible: list[ValueTuple]) -> Value:
+        """Return the least or the greatest first value; for no tuples, the value beyond all others."""
         least = self._function == "#min"
         best = clingo.Supremum if least else clingo.Infimum
         for values in self._certain:
-            if values and _beyond(values[0], best, least):
-                best = symbol(values[0])
-        open_ = any(values and _beyond(values[0], best, least) for values in more) or any(
+            if values and _is_beyond(values[0], best, least):
+                best = as_clingo(values[0])
+        open_ = any(values and _is_beyond(values[0], best, least) for values in new_possible) or any(
             _may_go_beyond(values[0], best, least) for values in self._vague if values
         )
         found: Value = best.number if best.type == clingo.SymbolType.Number else best
         if not open_:
             return found
-        ends = [bounds(values[0]) for values in (*more, *self._vague) if values]
+        ends = [bounds(values[0]) for values in (*new_possible, *self._vague) if values]
         if bounds(found) is None or None in ends:
             return Unknown(anything=True)
         spans = [(found, found), *(end for end in ends if end is not None)]
@@ -77,13 +93,15 @@ class Tally:
         return Unknown(low, found if least else max(span[1] for span in spans))
 
 
-def _beyond(value: Value, best: object, least: bool) -> bool:
-    one = symbol(value)
+def _is_beyond(value: Value, best: object, least: bool) -> bool:
+    """Return whether a value is less (for `least`), or greater, than the best one."""
+    one = as_clingo(value)
     return bool(one < best) if least else bool(one > best)
 
 
 def _may_go_beyond(value: Value, best: object, least: bool) -> bool:
+    """Return whether a value, unknown or not, can be less (for `least`), or greater, than the best one."""
     ends = bounds(value)
     if ends is None:
         return True
-    return _beyond(ends[0] if least else ends[1], best, least)
+    return _is_beyond(ends[0] if least else ends[1], best, least)

@@ -1,4 +1,4 @@
-"""The robot has two names: users call it `utak`, the knowledge base `org`. `utak` is a kind of region there, too."""
+"""The two names of the robot: queries call it `utak`, facts call it `org`. `utak` is also a kind of node in facts."""
 
 from collections.abc import Set
 from dataclasses import fields, is_dataclass, replace
@@ -6,39 +6,42 @@ from typing import Any
 
 import clingo
 
-from kb.language.vocabulary import BELIEF, KIND
+from kb.language.vocabulary import BELIEF, KIND_ARGUMENT
 from kb.three_valued.clauses import Atom, Clause, Comparison, Constant, Variable, atoms_of
 
-UTAK, ORG = clingo.Function("utak"), clingo.Function("org")
+UTAK_TERM, ORG_TERM = clingo.Function("utak"), clingo.Function("org")
 
 
-def with_org(clause: Clause) -> Clause:
-    """Return a clause in which the robot is called as in the facts, wherever `utak` does not stand for a kind."""
+def rename_utak_to_org(clause: Clause) -> Clause:
+    """Return a clause with `org` in the place of `utak`, except where `utak` stands for a kind."""
     kinds = {
         part.name
         for atom in atoms_of(clause.body)
-        for part in (atom.parts[at] for at in _kinds(atom))
+        for part in (atom.parts[at] for at in _kind_arguments(atom))
         if isinstance(part, Variable)
     }
     return replace(clause, body=_renamed(clause.body, kinds))
 
 
-def _kinds(atom: Atom) -> list[int]:
-    """Which arguments of an atom are kinds."""
-    slots = BELIEF[atom.signature].slots if atom.signature in BELIEF else ()
-    return [at for at, slot in enumerate(slots) if slot is KIND]
+def _kind_arguments(atom: Atom) -> list[int]:
+    """Return the indices of the arguments of an atom that are kinds."""
+    slots = BELIEF[atom.signature].arguments if atom.signature in BELIEF else ()
+    return [at for at, slot in enumerate(slots) if slot is KIND_ARGUMENT]
 
 
 def _renamed(part: Any, kinds: Set[str]) -> Any:
-    """A part of a clause. kinds : variables that stand for kinds; what they are compared with is one."""
+    """Return a part of a clause with `org` in the place of `utak`.
+
+    kinds : variables that stand for kinds; a comparison with one of them is kept.
+    """
     if isinstance(part, Constant):
-        return replace(part, value=ORG) if part.value == UTAK else part
+        return replace(part, value=ORG_TERM) if part.value == UTAK_TERM else part
     if isinstance(part, Comparison) and any(
         isinstance(term, Variable) and term.name in kinds for term in (part.first, *(term for _, term in part.rest))
     ):
         return part
     if isinstance(part, Atom):
-        kept = _kinds(part)
+        kept = _kind_arguments(part)
         return replace(
             part, parts=tuple(term if at in kept else _renamed(term, kinds) for at, term in enumerate(part.parts))
         )

@@ -1,45 +1,48 @@
-"""Integer arithmetic as answer set programs know it, with checks: clingo's integers have 32 bits and wrap in silence.
+"""Exact integer arithmetic of answer set programs; clingo's own integers have 32 bits and wrap without a message.
 
-Division and remainder are those of clingo (towards zero); a power with a negative exponent is 0.
+Division and remainder round towards zero, as clingo's do. A power with a negative exponent is 0.
 """
 
 from collections.abc import Callable, Mapping
 
-from kb.language.integers import HIGH, LOW
+from kb.language.integers import MAX_INT32, MIN_INT32
 
-MOST_BITS = 64  # no power with more of them is worked out
+MAX_EXPONENT = 64  # every power of 2 or more with a greater exponent is beyond 32 bits, so it is not computed
 
 
 class CalculationError(Exception):
-    """A calculation has no result of 32 bits; says why."""
+    """A calculation has no 32-bit result; the message says why."""
 
 
-def checked(value: int) -> int:
-    """Return an integer that has at most 32 bits; raises CalculationError for any other."""
-    if LOW <= value <= HIGH:
+def require_int32(value: int) -> int:
+    """Return the integer; raise CalculationError when it does not fit in 32 bits."""
+    if MIN_INT32 <= value <= MAX_INT32:
         return value
-    raise CalculationError(f"a number beyond 32 bits ({LOW} to {HIGH})")
+    raise CalculationError(f"a number beyond 32 bits ({MIN_INT32} to {MAX_INT32})")
 
 
 def _divide(a: int, b: int) -> int:
+    """Return the quotient of two integers, rounded towards zero."""
     if b == 0:
         raise CalculationError("a division by zero")
     return abs(a) // abs(b) * (1 if (a < 0) == (b < 0) else -1)
 
 
 def _remainder(a: int, b: int) -> int:
+    """Return the remainder of the division rounded towards zero; it has the sign of `a`."""
     return a - b * _divide(a, b)
 
 
 def _power(a: int, b: int) -> int:
+    """Return a to the power of b; 0 for negative b."""
     if b < 0:
         return 0
-    if abs(a) > 1 and b > MOST_BITS:
-        return checked(HIGH + 1)
-    return int(a ** (b if abs(a) > 1 else min(b, 2 + b % 2)))  # of 0, 1 and -1 high powers are those of 2 and 3
+    if abs(a) > 1 and b > MAX_EXPONENT:
+        return require_int32(MAX_INT32 + 1)
+    return int(a ** (b if abs(a) > 1 else min(b, 2 + b % 2)))  # the powers of 0, 1 and -1 repeat after two exponents
 
 
-BINARY: Mapping[str, Callable[[int, int], int]] = {
+BINARY_OPERATIONS: Mapping[str, Callable[[int, int], int]] = {
     "+": lambda a, b: a + b,
     "-": lambda a, b: a - b,
     "*": lambda a, b: a * b,
@@ -50,13 +53,28 @@ BINARY: Mapping[str, Callable[[int, int], int]] = {
     "?": lambda a, b: a | b,
     "^": lambda a, b: a ^ b,
 }
-UNARY: Mapping[str, Callable[[int], int]] = {"-": lambda a: -a, "~": lambda a: ~a, "|": abs}
+UNARY_OPERATIONS: Mapping[str, Callable[[int], int]] = {"-": lambda a: -a, "~": lambda a: ~a, "|": abs}
 
 
 def calculate(sign: str, *values: int) -> int:
-    """Return the result of one operation on one or two integers; raises CalculationError when it has none.
+    """Return the result of an operation on one or two integers.
 
+    Parameters
+    ----------
+    sign : the operator in ASP syntax; `|` with one value is the absolute value, `?` is bitwise or, `^` exclusive or.
+    values : one or two integers.
+
+    Returns
+    -------
+    The result.
+
+    Raises
+    ------
+    CalculationError : a division by zero, or a result beyond 32 bits.
+
+    Examples
+    --------
     >>> calculate("*", 65536, -32768)
     -2147483648
     """
-    return checked(UNARY[sign](*values) if len(values) == 1 else BINARY[sign](*values))
+    return require_int32(UNARY_OPERATIONS[sign](*values) if len(values) == 1 else BINARY_OPERATIONS[sign](*values))

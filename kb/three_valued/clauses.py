@@ -1,6 +1,7 @@
-"""Bodies of rules as values: what clingo has read, turned into a few plain kinds of terms and literals.
+"""Rules as values: clingo's syntax trees translated to a few kinds of terms and literals.
 
-Pools are multiplied out: a body with pools becomes several. An interval in an argument becomes a variable of its own.
+A rule with pools becomes several clauses, one for each choice. An interval in an argument becomes a variable of its own
+that is compared with the interval. In every class, `at` is (line, column) of the part in its text, from 1.
 """
 
 import itertools
@@ -11,26 +12,35 @@ from typing import Any
 import clingo
 from clingo.ast import AST, AggregateFunction, ASTType, BinaryOperator, ComparisonOperator, Sign, UnaryOperator
 
-from kb.language.integers import LOW
+from kb.language.integers import MIN_INT32
+from kb.three_valued.uncertain_values import MIRRORED_SIGNS
 
-SIGNS = {
+# clingo's operators as written in programs.
+COMPARISON_SIGNS = {
     ComparisonOperator.GreaterThan: ">", ComparisonOperator.LessThan: "<", ComparisonOperator.LessEqual: "<=",
     ComparisonOperator.GreaterEqual: ">=", ComparisonOperator.NotEqual: "!=", ComparisonOperator.Equal: "=",
 }  # fmt: skip
-BINARY = {
+BINARY_SIGNS = {
     BinaryOperator.XOr: "^", BinaryOperator.Or: "?", BinaryOperator.And: "&", BinaryOperator.Plus: "+",
     BinaryOperator.Minus: "-", BinaryOperator.Multiplication: "*", BinaryOperator.Division: "/",
     BinaryOperator.Modulo: "\\", BinaryOperator.Power: "**",
 }  # fmt: skip
-UNARY = {UnaryOperator.Minus: "-", UnaryOperator.Negation: "~", UnaryOperator.Absolute: "|"}
-FUNCTIONS = {
+UNARY_SIGNS = {UnaryOperator.Minus: "-", UnaryOperator.Negation: "~", UnaryOperator.Absolute: "|"}
+AGGREGATE_FUNCTIONS = {
     AggregateFunction.Count: "#count", AggregateFunction.Sum: "#sum", AggregateFunction.SumPlus: "#sum+",
     AggregateFunction.Min: "#min", AggregateFunction.Max: "#max",
 }  # fmt: skip
 
 
 class ClauseError(Exception):
-    """A text says something that is not known here: what, and at which place."""
+    """A rule or a query uses an unknown word or a construct that is not supported.
+
+    Attributes
+    ----------
+    what : the message.
+    at : line and column.
+    hint : a remedy, or '' for none.
+    """
 
     def __init__(self, what: str, at: tuple[int, int], hint: str = "") -> None:
         self.what, self.at, self.hint = what, at, hint
@@ -39,7 +49,7 @@ class ClauseError(Exception):
 
 @dataclass(frozen=True)
 class Constant:
-    """A number, a name or another ground term."""
+    """A ground term: an integer, or a clingo symbol (a name, a string, a compound term)."""
 
     value: Any
     at: tuple[int, int]
@@ -47,7 +57,10 @@ class Constant:
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable. Each `_` has a name of its own, such as `?1`; an interval in an argument has one such as `.1`."""
+    """A variable.
+
+    Each `_` has a unique name such as `?1`; the variable for an interval in an argument has a name such as `.1`.
+    """
 
     name: str
     at: tuple[int, int]
@@ -55,10 +68,10 @@ class Variable:
 
 @dataclass(frozen=True)
 class Operation:
-    """Arithmetic on one or two terms; `..` stands for an interval."""
+    """Arithmetic on one or two terms; the sign `..` denotes an interval."""
 
     sign: str
-    parts: tuple["Term", ...]
+    parts: tuple["ClauseTerm", ...]
     at: tuple[int, int]
 
 
@@ -67,19 +80,27 @@ class Compound:
     """A term with arguments; a tuple has the name ''."""
 
     name: str
-    parts: tuple["Term", ...]
+    parts: tuple["ClauseTerm", ...]
     at: tuple[int, int]
 
 
-Term = Constant | Variable | Operation | Compound
+ClauseTerm = Constant | Variable | Operation | Compound
 
 
 @dataclass(frozen=True)
 class Atom:
-    """A predicate with arguments. negations : how many `not` stand before it, 0 to 2."""
+    """A predicate with arguments.
+
+    Attributes
+    ----------
+    name : the predicate.
+    parts : the arguments.
+    negations : the number of `not` before the atom, 0 to 2.
+    at : line and column.
+    """
 
     name: str
-    parts: tuple[Term, ...]
+    parts: tuple[ClauseTerm, ...]
     negations: int
     at: tuple[int, int]
 
@@ -91,36 +112,45 @@ class Atom:
 
 @dataclass(frozen=True)
 class Comparison:
-    """`first sign term sign term ...`, or that this does not hold."""
+    """A chain of comparisons `first sign term sign term ...`; when `negated`, that the chain does not hold."""
 
-    first: Term
-    rest: tuple[tuple[str, Term], ...]
+    first: ClauseTerm
+    rest: tuple[tuple[str, ClauseTerm], ...]
     negated: bool
     at: tuple[int, int]
 
 
 @dataclass(frozen=True)
-class Element:
-    """What an aggregate counts: the terms, where all literals hold."""
+class AggregateElement:
+    """An element of an aggregate: the tuple of terms counts where all literals of the condition hold."""
 
-    terms: tuple[Term, ...]
+    terms: tuple[ClauseTerm, ...]
     condition: tuple["Literal", ...]
 
 
 @dataclass(frozen=True)
 class Aggregate:
-    """`term sign #function { elements }` for each of its guards, or that one of these does not hold."""
+    """An aggregate `term sign #function { elements }` with its guards; when `negated`, that one of them does not hold.
+
+    Attributes
+    ----------
+    function : `#count`, `#sum`, `#sum+`, `#min` or `#max`.
+    elements : what is counted or summed.
+    guards : (sign, term) such that `term sign value` must hold.
+    negated : whether `not` stands before it.
+    at : line and column.
+    """
 
     function: str
-    elements: tuple[Element, ...]
-    guards: tuple[tuple[str, Term], ...]
+    elements: tuple[AggregateElement, ...]
+    guards: tuple[tuple[str, ClauseTerm], ...]
     negated: bool
     at: tuple[int, int]
 
 
 @dataclass(frozen=True)
-class Every:
-    """The literal holds wherever all literals of the condition do."""
+class ConditionalLiteral:
+    """A conditional literal `literal : condition`: the literal holds wherever all literals of the condition hold."""
 
     literal: "Literal"
     condition: tuple["Literal", ...]
@@ -128,49 +158,74 @@ class Every:
 
 
 @dataclass(frozen=True)
-class Always:
-    """`#true` or `#false`."""
+class BooleanLiteral:
+    """The literal `#true` or `#false`."""
 
     value: bool
     at: tuple[int, int]
 
 
-Literal = Atom | Comparison | Aggregate | Every | Always
+Literal = Atom | Comparison | Aggregate | ConditionalLiteral | BooleanLiteral
 
 
 @dataclass(frozen=True)
 class Clause:
-    """A rule without pools. head : None for a constraint or a query."""
+    """A rule without pools.
+
+    Attributes
+    ----------
+    head : the atom that it states; None for a constraint or a query.
+    body : its literals.
+    at : line and column.
+    """
 
     head: Atom | None
     body: tuple[Literal, ...]
     at: tuple[int, int]
 
 
-def clauses_of(rule: AST) -> list[Clause]:
-    """Return a rule with one plain atom as its head, or none, as clauses; raises ClauseError for any other."""
+def translate_rule(rule: AST) -> list[Clause]:
+    """Return a rule as clauses, one for each choice of values in its pools.
+
+    Parameters
+    ----------
+    rule : a rule of clingo's syntax tree, with one atom as its head, or none.
+
+    Returns
+    -------
+    The clauses.
+
+    Raises
+    ------
+    ClauseError : the rule has another head, or a construct that is not supported.
+    """
     return [_Translator().clause(part) for part in rule.unpool()]
 
 
 def place_of(node: AST) -> tuple[int, int]:
-    """Return the place at which a part begins."""
+    """Return the line and the column at which a part of a syntax tree begins."""
     begin = node.location.begin
     return begin.line, begin.column
 
 
 class _Translator:
-    """Translates one rule; intervals that it meets in arguments wait in `intervals` for their conjunction."""
+    """Translates one rule.
+
+    The comparisons for intervals in arguments are collected in `_intervals`, until their conjunction is complete.
+    """
 
     def __init__(self) -> None:
         self._numbers = itertools.count()
         self._intervals: list[Literal] = []
 
     def clause(self, rule: AST) -> Clause:
+        """Return a rule without pools as a clause."""
         head = self._head(rule.head)
         waiting, self._intervals = self._intervals, []
         return Clause(head, (*self._conjunction(rule.body), *waiting), place_of(rule))
 
     def _head(self, node: AST) -> Atom | None:
+        """Return the head atom, or None for a constraint."""
         if node.ast_type == ASTType.Literal and node.sign == Sign.NoSign:
             if node.atom.ast_type == ASTType.BooleanConstant and not node.atom.value:
                 return None
@@ -179,6 +234,7 @@ class _Translator:
         raise ClauseError("a rule has one plain atom as its head here", place_of(node))
 
     def _conjunction(self, nodes: Iterable[AST]) -> tuple[Literal, ...]:
+        """Return the literals, followed by the comparisons for the intervals in their arguments."""
         outer, self._intervals = self._intervals, []
         found = [self._literal(node) for node in nodes]
         found += self._intervals
@@ -186,25 +242,27 @@ class _Translator:
         return tuple(found)
 
     def _literal(self, node: AST) -> Literal:
+        """Return one literal."""
         if node.ast_type == ASTType.ConditionalLiteral:
             condition = self._conjunction(node.condition)
             (literal, *intervals) = self._conjunction([node.literal])
             if intervals:
                 raise ClauseError("no interval stands here", place_of(node))
-            return Every(literal, condition, place_of(node))
+            return ConditionalLiteral(literal, condition, place_of(node))
         atom, at = node.atom, place_of(node)
         if atom.ast_type == ASTType.BooleanConstant:
-            return Always(bool(atom.value) != (node.sign == Sign.Negation), at)
+            return BooleanLiteral(bool(atom.value) != (node.sign == Sign.Negation), at)
         if atom.ast_type == ASTType.SymbolicAtom:
             return self._atom(node)
         if atom.ast_type == ASTType.Comparison:
-            rest = tuple((SIGNS[guard.comparison], self._term(guard.term, True)) for guard in atom.guards)
+            rest = tuple((COMPARISON_SIGNS[guard.comparison], self._term(guard.term, True)) for guard in atom.guards)
             return Comparison(self._term(atom.term, True), rest, node.sign == Sign.Negation, at)
         if atom.ast_type in (ASTType.BodyAggregate, ASTType.Aggregate):
             return self._aggregate(atom, node.sign == Sign.Negation, at)
         raise ClauseError("theory atoms are not known here", at)
 
     def _atom(self, node: AST) -> Atom:
+        """Return an atom with its negations."""
         found, at = node.atom.symbol, place_of(node.atom.symbol)
         if found.ast_type == ASTType.UnaryOperation:
             raise ClauseError("classical negation is not known here", at, "write not, for what is not believed")
@@ -213,9 +271,13 @@ class _Translator:
         return Atom(found.name, tuple(map(self._term, found.arguments)), int(node.sign), at)
 
     def _aggregate(self, node: AST, negated: bool, at: tuple[int, int]) -> Aggregate:
+        """Return an aggregate; signs of right guards are mirrored, so that `term sign value` holds for every guard."""
         sides = ((node.left_guard, 0), (node.right_guard, 1))
         guards = [
-            (SIGNS[guard.comparison] if left == 0 else _TURNED[SIGNS[guard.comparison]], self._term(guard.term))
+            (
+                COMPARISON_SIGNS[guard.comparison] if left == 0 else MIRRORED_SIGNS[COMPARISON_SIGNS[guard.comparison]],
+                self._term(guard.term),
+            )
             for guard, left in sides
             if guard is not None
         ]
@@ -223,25 +285,29 @@ class _Translator:
             elements = [self._choice(number, element) for number, element in enumerate(node.elements)]
             return Aggregate("#count", tuple(elements), tuple(guards), negated, at)
         elements = [self._element(element.terms, element.condition) for element in node.elements]
-        return Aggregate(FUNCTIONS[node.function], tuple(elements), tuple(guards), negated, at)
+        return Aggregate(AGGREGATE_FUNCTIONS[node.function], tuple(elements), tuple(guards), negated, at)
 
-    def _element(self, terms: Iterable[AST], condition: Iterable[AST]) -> Element:
+    def _element(self, terms: Iterable[AST], condition: Iterable[AST]) -> AggregateElement:
+        """Return an element of an aggregate with terms."""
         outer, self._intervals = self._intervals, []
         found = tuple(map(self._term, terms))
         waiting, self._intervals = self._intervals, outer
-        return Element(found, (*self._conjunction(condition), *waiting))
+        return AggregateElement(found, (*self._conjunction(condition), *waiting))
 
-    def _choice(self, number: int, node: AST) -> Element:
-        """An element of `{ literal : condition }`: its instances are counted."""
+    def _choice(self, number: int, node: AST) -> AggregateElement:
+        """Return an element of `{ literal : condition }`; the tuple holds the literal's name and arguments.
+
+        number : the index of the element, which identifies it when it is no atom.
+        """
         literals = self._conjunction([node.literal, *node.condition])
         at = place_of(node)
         first = literals[0]
-        parts: tuple[Term, ...] = first.parts if isinstance(first, Atom) and first.negations == 0 else ()
+        parts: tuple[ClauseTerm, ...] = first.parts if isinstance(first, Atom) and first.negations == 0 else ()
         name = f"{first.name}/{len(parts)}" if isinstance(first, Atom) else str(number)
-        return Element((Constant(clingo.String(name), at), *parts), literals)
+        return AggregateElement((Constant(clingo.String(name), at), *parts), literals)
 
-    def _term(self, node: AST, whole: bool = False) -> Term:
-        """A term. whole : it may be an interval, for it stands in a comparison by itself."""
+    def _term(self, node: AST, whole: bool = False) -> ClauseTerm:
+        """Return a term; whole : whether it may be an interval, because it is one side of a comparison."""
         at = place_of(node)
         if node.ast_type == ASTType.SymbolicTerm:
             value = node.symbol
@@ -256,23 +322,21 @@ class _Translator:
             self._intervals.append(Comparison(variable, (("=", interval),), False, at))
             return variable
         if node.ast_type == ASTType.UnaryOperation:
-            inner, sign = self._term(node.argument), UNARY[node.operator_type]
-            plain = sign == "-" and node.argument.ast_type == ASTType.SymbolicTerm
-            if plain and isinstance(inner, Constant) and isinstance(inner.value, int):
-                return Constant(inner.value if inner.value == LOW else -inner.value, at)  # LOW: 2147483648, wrapped
+            inner, sign = self._term(node.argument), UNARY_SIGNS[node.operator_type]
+            is_literal_number = sign == "-" and node.argument.ast_type == ASTType.SymbolicTerm
+            if is_literal_number and isinstance(inner, Constant) and isinstance(inner.value, int):
+                # clingo has wrapped the literal 2147483648 to -2147483648.
+                return Constant(inner.value if inner.value == MIN_INT32 else -inner.value, at)
             return Operation(sign, (inner,), at)
         if node.ast_type == ASTType.BinaryOperation:
-            return Operation(BINARY[node.operator_type], (self._term(node.left), self._term(node.right)), at)
+            return Operation(BINARY_SIGNS[node.operator_type], (self._term(node.left), self._term(node.right)), at)
         if node.ast_type == ASTType.Function and not node.external:
             return Compound(node.name, tuple(map(self._term, node.arguments)), at)
         raise ClauseError("operation undefined: there are no functions from outside", at)
 
 
-_TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "!=": "!="}
-
-
 def variables_of(part: Any) -> Iterator[str]:
-    """Yield the names of the variables in a term, in a literal, or in several; those of elements are among them."""
+    """Yield the names of all variables in a term, a literal or a tuple of them, those inside aggregates included."""
     if isinstance(part, Variable):
         yield part.name
     elif isinstance(part, tuple):
@@ -284,29 +348,30 @@ def variables_of(part: Any) -> Iterator[str]:
         yield from variables_of((part.first, *(term for _, term in part.rest)))
     elif isinstance(part, Aggregate):
         yield from variables_of((*(term for _, term in part.guards), *part.elements))
-    elif isinstance(part, Element):
+    elif isinstance(part, AggregateElement):
         yield from variables_of((part.terms, part.condition))
-    elif isinstance(part, Every):
+    elif isinstance(part, ConditionalLiteral):
         yield from variables_of((part.literal, part.condition))
 
 
 def global_variables(body: Sequence[Literal]) -> dict[str, None]:
-    """Return the named variables of a body that are its own, in the order in which they appear.
+    """Return the named variables of a body, in the order in which they appear.
 
-    What stands only in elements of aggregates and in conditional literals is theirs.
+    A variable that appears only inside the elements of aggregates or in conditional literals is local, and left out.
+    The result is a dictionary that serves as an ordered set.
     """
     found: dict[str, None] = {}
     for literal in body:
         if isinstance(literal, Aggregate):
             outer: Any = tuple(term for _, term in literal.guards)
         else:
-            outer = () if isinstance(literal, Every) else literal
+            outer = () if isinstance(literal, ConditionalLiteral) else literal
         found |= dict.fromkeys(name for name in variables_of(outer) if not name.startswith(("?", ".")))
     return found
 
 
 def atoms_of(part: Any) -> Iterator[Atom]:
-    """Yield the atoms in literals, also those in aggregates and conditions."""
+    """Yield the atoms in literals, those in aggregates and conditions included."""
     if isinstance(part, Atom):
         yield part
     elif isinstance(part, tuple):
@@ -315,5 +380,5 @@ def atoms_of(part: Any) -> Iterator[Atom]:
     elif isinstance(part, Aggregate):
         for element in part.elements:
             yield from atoms_of(element.condition)
-    elif isinstance(part, Every):
+    elif isinstance(part, ConditionalLiteral):
         yield from atoms_of((part.literal, part.condition))

@@ -1,55 +1,66 @@
-"""What rules of a user derive from what is believed: for certain, and what may hold besides."""
+"""Atoms that users' rules derive from the believed facts: certain atoms, and atoms that may hold besides."""
 
 from collections.abc import Iterable, Sequence
 
-from kb.three_valued.clauses import Aggregate, Atom, Clause, ClauseError, Every, Literal, atoms_of
-from kb.three_valued.evaluation import bindings, confidences_read, value_of
-from kb.three_valued.open_world import Beliefs, Signature
+from kb.language.vocabulary import Signature
+from kb.three_valued.clauses import Aggregate, Atom, Clause, ClauseError, ConditionalLiteral, Literal, atoms_of
+from kb.three_valued.evaluation import find_bindings, fixed_confidence_variables, value_of
+from kb.three_valued.open_world import Beliefs
 
 
 def derive(clauses: Sequence[Clause], beliefs: Beliefs) -> None:
-    """Add to beliefs what clauses with heads derive; raises ClauseError where one is defined through its own negation.
+    """Add to `beliefs` all atoms that the clauses derive.
 
-    Predicates are worked out one after the other, those that others rest on first, so that `not` speaks of what is
-    whole.
+    Predicates are evaluated in the order of their dependencies, so that `not` reads complete predicates (stratified
+    negation).
+
+    Parameters
+    ----------
+    clauses : rules with heads.
+    beliefs : the facts, to which derived atoms are added.
+
+    Raises
+    ------
+    ClauseError : a predicate is defined through its own negation, or arithmetic has no result.
     """
-    for group in _in_order(clauses):
+    for group in _dependency_groups(clauses):
         grows = True
         while grows:
             grows = sum(_apply(clause, beliefs, possible) for possible in (False, True) for clause in group) > 0
 
 
 def _apply(clause: Clause, beliefs: Beliefs, possible: bool) -> int:
-    """How many new rows a clause derives."""
+    """Add the atoms that a clause derives, and return how many of them are new."""
     assert clause.head is not None
-    head, now = clause.head, confidences_read(clause.body, ())
-    found = list(bindings(clause.body, {}, beliefs, possible, now))
+    head, fixed_confidences = clause.head, fixed_confidence_variables(clause.body, ())
+    found = list(find_bindings(clause.body, {}, beliefs, possible, fixed_confidences))
     rows = [tuple(value_of(part, one, beliefs) for part in head.parts) for one in found]
-    return sum(beliefs.derive(head.signature, row, possible) for row in rows)
+    return sum(beliefs.add_derived(head.signature, row, possible) for row in rows)
 
 
-def _in_order(clauses: Sequence[Clause]) -> list[list[Clause]]:
-    """The clauses in groups of those that define each other."""
+def _dependency_groups(clauses: Sequence[Clause]) -> list[list[Clause]]:
+    """Return the clauses in groups that define each other, each group after those on which it depends."""
     heads = {clause.head.signature: clause for clause in clauses if clause.head is not None}
     uses: dict[Signature, set[Signature]] = {head: set() for head in heads}
     for clause in clauses:
         assert clause.head is not None
         uses[clause.head.signature] |= {atom.signature for atom in atoms_of(clause.body)} & heads.keys()
-    reach = {head: _reached(head, uses) for head in uses}
+    reach = {head: _reachable(head, uses) for head in uses}
     groups: list[list[Clause]] = []
     placed: set[Signature] = set()
     for head in sorted(uses, key=lambda one: (len(reach[one]), one)):
         if head in placed:
             continue
-        together = {other for other in reach[head] if head in reach[other]} | {head}
-        placed |= together
-        group = [clause for clause in clauses if clause.head is not None and clause.head.signature in together]
-        _check(group, together)
+        mutual = {other for other in reach[head] if head in reach[other]} | {head}
+        placed |= mutual
+        group = [clause for clause in clauses if clause.head is not None and clause.head.signature in mutual]
+        _check_stratified(group, mutual)
         groups.append(group)
     return groups
 
 
-def _reached(head: Signature, uses: dict[Signature, set[Signature]]) -> set[Signature]:
+def _reachable(head: Signature, uses: dict[Signature, set[Signature]]) -> set[Signature]:
+    """Return all predicates on which a predicate depends, directly or not."""
     found: set[Signature] = set()
     edge = [head]
     while edge:
@@ -59,17 +70,19 @@ def _reached(head: Signature, uses: dict[Signature, set[Signature]]) -> set[Sign
     return found
 
 
-def _check(group: Iterable[Clause], together: set[Signature]) -> None:
+def _check_stratified(group: Iterable[Clause], mutual: set[Signature]) -> None:
+    """Raise ClauseError when a group of predicates depends on the negation of one of them."""
     for clause in group:
-        for atom in _under_negation(clause.body):
-            if atom.signature in together:
+        for atom in _negated_atoms(clause.body):
+            if atom.signature in mutual:
                 what = f"{atom.name}/{len(atom.parts)} is defined through its own negation"
                 raise ClauseError(what, clause.at)
 
 
-def _under_negation(body: Iterable[Literal]) -> Iterable[Atom]:
+def _negated_atoms(body: Iterable[Literal]) -> Iterable[Atom]:
+    """Yield the atoms of a body that are negated or stand in aggregates or conditional literals."""
     for literal in body:
         if isinstance(literal, Atom) and literal.negations:
             yield literal
-        elif isinstance(literal, Aggregate | Every):
+        elif isinstance(literal, Aggregate | ConditionalLiteral):
             yield from atoms_of(literal)

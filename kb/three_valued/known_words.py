@@ -1,38 +1,45 @@
-"""Are the words of a query or a rule those that the robot knows: its predicates, and constants where they can stand?"""
+"""The check of queries and rules for unknown predicates, and for constants that cannot stand where they do."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 import clingo
 
-from kb.language.arguments import Slot, short
+from kb.language.arguments import ArgumentType, abbreviated
 from kb.language.diagnostics import Span, did_you_mean
-from kb.language.terms import Number, Symbol, Text
-from kb.language.terms import Term as Word
-from kb.language.vocabulary import BELIEF
+from kb.language.terms import Number, Symbol, Term, Text
+from kb.language.vocabulary import BELIEF, Signature
 from kb.three_valued.clauses import (
     Aggregate,
     Atom,
     ClauseError,
+    ClauseTerm,
     Comparison,
+    ConditionalLiteral,
     Constant,
-    Every,
     Literal,
-    Term,
     Variable,
     atoms_of,
 )
 from kb.three_valued.uncertain_values import Value
 
-Signature = tuple[str, int]
-Names = Mapping[str, frozenset[str]]
-NOWHERE = Span(1, 1, 1)
+ConstantNames = Mapping[str, frozenset[str]]
+NO_PLACE = Span(1, 1, 1)  # the place of values that stand in no file
 
 
-def stated_names(rows: Mapping[Signature, Iterable[Sequence[Value]]]) -> Names:
-    """Return, by the name of a slot, the constants that facts have there: they are known, whatever they are."""
+def names_in_facts(rows: Mapping[Signature, Iterable[Sequence[Value]]]) -> ConstantNames:
+    """Return the constants that facts have in each type of argument; all of them are accepted in queries.
+
+    Parameters
+    ----------
+    rows : the facts by predicate.
+
+    Returns
+    -------
+    The constants as text, by the name of the argument type.
+    """
     found: dict[str, set[str]] = {}
     for signature, stated in rows.items():
-        slots = BELIEF[signature].slots if signature in BELIEF else ()
+        slots = BELIEF[signature].arguments if signature in BELIEF else ()
         for row in stated:
             for slot, value in zip(slots, row, strict=False):
                 if not isinstance(value, int):
@@ -40,25 +47,29 @@ def stated_names(rows: Mapping[Signature, Iterable[Sequence[Value]]]) -> Names:
     return {name: frozenset(words) for name, words in found.items()}
 
 
-def check_body(body: Sequence[Literal], known: Collection[Signature], names: Names) -> None:
-    """Raise ClauseError for a predicate that does not exist, or a constant that cannot stand where it does.
+def check_body(body: Sequence[Literal], known: Collection[Signature], names: ConstantNames) -> None:
+    """Raise ClauseError for an unknown predicate, or for a constant that cannot stand where it does.
 
-    known : the predicates that there are. names : as `stated_names` returns them.
+    Parameters
+    ----------
+    body : the literals of a query or a rule.
+    known : all predicates that exist.
+    names : the constants in facts, from `names_in_facts`.
     """
     for atom in atoms_of(tuple(body)):
         check_predicate(atom, known)
         if atom.signature in BELIEF:
-            for slot, part in zip(BELIEF[atom.signature].slots, atom.parts, strict=True):
+            for slot, part in zip(BELIEF[atom.signature].arguments, atom.parts, strict=True):
                 check_constant(slot, part, names)
     for literals in _conjunctions(body):
-        slots = {name: slot for atom in literals if isinstance(atom, Atom) for name, slot in _slots_of(atom)}
+        slots = {name: slot for atom in literals if isinstance(atom, Atom) for name, slot in _variable_types(atom)}
         for name, other in _equated(literals):
             if name in slots:
                 check_constant(slots[name], other, names)
 
 
 def check_predicate(atom: Atom, known: Collection[Signature]) -> None:
-    """Raise ClauseError when there is no such predicate."""
+    """Raise ClauseError unless the predicate of an atom exists."""
     if atom.signature in known:
         return
     name, arity = atom.signature
@@ -67,52 +78,53 @@ def check_predicate(atom: Atom, known: Collection[Signature]) -> None:
     raise ClauseError(f"unknown predicate {name}/{arity}", atom.at, hint)
 
 
-def check_constant(slot: Slot, term: Term, names: Names) -> None:
-    """Raise ClauseError when a constant cannot stand in a slot."""
+def check_constant(slot: ArgumentType, term: ClauseTerm, names: ConstantNames) -> None:
+    """Raise ClauseError when a term is a constant that an argument type does not accept."""
     if not isinstance(term, Constant) or str(term.value) in names.get(slot.name, ()):
         return
-    complaint = slot.check(as_word(term.value))
+    complaint = slot.check(as_fact_term(term.value))
     if complaint is not None:
         hint = did_you_mean(str(term.value), names.get(slot.name, ())) or complaint.hint
         if complaint.what.startswith("unknown"):
-            what = f"unknown constant {short(as_word(term.value))}, which is no {slot.name}"
+            what = f"unknown constant {abbreviated(as_fact_term(term.value))}, which is no {slot.name}"
             raise ClauseError(what, term.at, hint.replace("one of ", "did you mean one of ") + "?" * ("one of" in hint))
         raise ClauseError(complaint.what, term.at, hint)
 
 
-def as_word(value: Value) -> Word:
-    """Return a known value as the vocabulary's checks take it."""
+def as_fact_term(value: Value) -> Term:
+    """Return a known value as a term of a fact file, which argument types can check."""
     if isinstance(value, int):
-        return Number(value, NOWHERE)
+        return Number(value, NO_PLACE)
     if value.type == clingo.SymbolType.String:
-        return Text(value.string, NOWHERE)
+        return Text(value.string, NO_PLACE)
     if value.type == clingo.SymbolType.Function:
         inner = tuple(
-            as_word(part.number if part.type == clingo.SymbolType.Number else part) for part in value.arguments
+            as_fact_term(part.number if part.type == clingo.SymbolType.Number else part) for part in value.arguments
         )
-        return Symbol(value.name if value.positive else f"-{value.name}", inner, NOWHERE)
-    return Symbol(str(value), (), NOWHERE)
+        return Symbol(value.name if value.positive else f"-{value.name}", inner, NO_PLACE)
+    return Symbol(str(value), (), NO_PLACE)
 
 
 def _conjunctions(body: Sequence[Literal]) -> Iterator[tuple[Literal, ...]]:
-    """A body, and each body in it, with the literals about it."""
+    """Yield a body, and each conjunction inside it together with the atoms around it."""
     yield tuple(body)
     for literal in body:
         inner = [element.condition for element in literal.elements] if isinstance(literal, Aggregate) else []
-        inner += [(literal.literal, *literal.condition)] if isinstance(literal, Every) else []
+        inner += [(literal.literal, *literal.condition)] if isinstance(literal, ConditionalLiteral) else []
         for part in inner:
             yield from _conjunctions((*part, *(one for one in body if isinstance(one, Atom))))
 
 
-def _slots_of(atom: Atom) -> Iterator[tuple[str, Slot]]:
-    slots = BELIEF[atom.signature].slots if atom.signature in BELIEF else ()
+def _variable_types(atom: Atom) -> Iterator[tuple[str, ArgumentType]]:
+    """Yield each variable among the arguments of an atom with its argument type; numbers are left out."""
+    slots = BELIEF[atom.signature].arguments if atom.signature in BELIEF else ()
     for slot, part in zip(slots, atom.parts, strict=False):
         if isinstance(part, Variable) and slot.limits is None:
             yield part.name, slot
 
 
 def _equated(literals: Iterable[Literal]) -> Iterator[tuple[str, Constant]]:
-    """Variables and the constants with which they are compared for being the same."""
+    """Yield each variable that is compared with a constant by `=` or `!=`, and the constant."""
     for literal in literals:
         if not isinstance(literal, Comparison):
             continue

@@ -1,82 +1,104 @@
-"""What is believed, and what may hold besides: the rows of each predicate, as far as the vocabulary leaves it open."""
+"""The believed facts, and the facts that may hold besides, as far as the vocabulary leaves a predicate open."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from kb.language.vocabulary import BELIEF, Declared, Open
+from kb.language.vocabulary import BELIEF, BeliefPredicate, Open, Signature
 from kb.three_valued.uncertain_values import Unknown, Value, compare
 
-Signature = tuple[str, int]
-Row = tuple[Value, ...]
-OBJECT = ("object", 1)
+FactRow = tuple[Value, ...]
+OBJECT_SIGNATURE = ("object", 1)
 
 
 class Beliefs:
-    """The facts of a world model, and what may hold besides.
+    """The facts of a world model, with the atoms that rules derive.
 
-    names : all names that a fact gives to something. seen : nothing of the table is unseen, so that there is nothing
-    new. Predicates that rules derive are added with `derive`.
+    Parameters
+    ----------
+    facts : predicate name and arguments of each fact.
+
+    Attributes
+    ----------
+    known_names : the names of all things that facts are about.
+    everything_seen : whether no part of the table is unseen, so that no new things can appear.
+    join_orders : a cache of kb.three_valued.evaluation: bodies and their orders of evaluation.
     """
 
-    def __init__(self, facts: Iterable[tuple[str, Row]]) -> None:
-        self.plans: dict[tuple[int, frozenset[str]], Any] = {}  # bodies and their orders (kb.three_valued.evaluation)
-        self._rows: dict[Signature, dict[Row, None]] = {}
-        self._perhaps: dict[Signature, dict[Row, None]] = {}
-        self._index: dict[tuple[Signature, int], dict[Value, list[Row]]] = {}
+    def __init__(self, facts: Iterable[tuple[str, FactRow]]) -> None:
+        self.join_orders: dict[tuple[int, frozenset[str]], Any] = {}  # written by kb.three_valued.evaluation
+        self._rows: dict[Signature, dict[FactRow, None]] = {}
+        self._possible: dict[Signature, dict[FactRow, None]] = {}
+        self._index: dict[tuple[Signature, int], dict[Value, list[FactRow]]] = {}
         for name, row in facts:
             self._rows.setdefault((name, len(row)), {})[row] = None
             if name == "kind" and len(row) == 3 and str(row[1]) == "object":
-                self._rows.setdefault(OBJECT, {})[(row[0],)] = None
-        self.names = frozenset(
+                self._rows.setdefault(OBJECT_SIGNATURE, {})[(row[0],)] = None
+        self.known_names = frozenset(
             str(row[declared.subject])
             for signature, declared in BELIEF.items()
             for row in self._rows.get(signature, ())
         )
         counts = [row[1] for row in self._rows.get(("unseen", 2), ())]
-        self.seen = not any(isinstance(count, int) and count > 0 for count in counts)
-        self._things = sorted(row[0] for row in self._rows.get(OBJECT, ()))
+        self.everything_seen = not any(isinstance(count, int) and count > 0 for count in counts)
+        self._objects = sorted(row[0] for row in self._rows.get(OBJECT_SIGNATURE, ()))
 
-    def signatures(self) -> dict[Signature, list[Row]]:
-        """The predicates that facts state, with their rows."""
+    def signatures(self) -> dict[Signature, list[FactRow]]:
+        """Return the predicates that facts state, with their rows."""
         return {signature: list(rows) for signature, rows in self._rows.items()}
 
-    def derive(self, signature: Signature, row: Row, possible: bool) -> bool:
-        """Add a row of a predicate that rules define; False when it is there already. possible : it only may hold."""
-        rows = (self._perhaps if possible else self._rows).setdefault(signature, {})
-        if row in rows or (possible and (row in self._rows.get(signature, {}) or self._covered(signature, row))):
+    def add_derived(self, signature: Signature, row: FactRow, possible: bool) -> bool:
+        """Add a row of a predicate that rules define. Return whether it is new.
+
+        possible : whether the row only may hold.
+        """
+        rows = (self._possible if possible else self._rows).setdefault(signature, {})
+        if row in rows or (
+            possible and (row in self._rows.get(signature, {}) or self._already_possible(signature, row))
+        ):
             return False
         rows[row] = None
         if not possible:
             self._index = {key: index for key, index in self._index.items() if key[0] != signature}
         return True
 
-    def _covered(self, signature: Signature, row: Row) -> bool:
-        """Whether a row with unknown values says no more than one that is there."""
+    def _already_possible(self, signature: Signature, row: FactRow) -> bool:
+        """Return whether a row with unknown values is covered by a row that may hold already."""
         return any(
-            all(_as_wide(a, b) for a, b in zip(other, row, strict=True)) for other in self._perhaps.get(signature, ())
+            all(_includes(a, b) for a, b in zip(other, row, strict=True)) for other in self._possible.get(signature, ())
         )
 
-    def rows(self, signature: Signature, fixed: Sequence[Value], possible: bool, now: bool) -> Iterator[Row]:
-        """Yield the rows of a predicate that hold, and, where `possible`, those that may.
+    def rows(
+        self, signature: Signature, fixed: Sequence[Value], possible: bool, confidence_fixed: bool
+    ) -> Iterator[FactRow]:
+        """Yield the rows of a predicate that hold; with `possible`, also those that may hold.
 
-        fixed : the values of settled arguments, None for others; rows that differ in one of them may be left out.
-        now : a confidence is read as it stands.
+        Parameters
+        ----------
+        signature : the predicate.
+        fixed : the values of known arguments, None for the others. Rows that differ in one of them may be left out.
+        possible : whether to yield rows that only may hold.
+        confidence_fixed : whether confidences are read as they are believed now, and not as they may turn out.
+
+        Yields
+        ------
+        The values of all arguments; an `Unknown` where a value is not known.
         """
         stated = list(self._stated(signature, fixed))
         yield from stated
         if not possible:
             return
-        yield from list(self._perhaps.get(signature, ()))
+        yield from list(self._possible.get(signature, ()))
         declared = BELIEF.get(signature)
         if declared is None:
             return
-        if declared.confident and not now:
+        if declared.confident and not confidence_fixed:
             for row in self._stated(signature, [*fixed[:-1], None]):
                 if 0 < row[-1] < 100:
                     yield (*row[:-1], Unknown(0, 100))
-        yield from self._besides(signature, declared, fixed[declared.subject])
+        yield from self._open_rows(signature, declared, fixed[declared.subject])
 
-    def _stated(self, signature: Signature, fixed: Sequence[Value]) -> Iterable[Row]:
+    def _stated(self, signature: Signature, fixed: Sequence[Value]) -> Iterable[FactRow]:
+        """Return the certain rows that agree with the first known argument."""
         rows = self._rows.get(signature, {})
         at = next((number for number, value in enumerate(fixed) if value is not None), None)
         if at is None:
@@ -88,27 +110,27 @@ class Beliefs:
                 index.setdefault(row[at], []).append(row)
         return index.get(fixed[at], [])
 
-    def _besides(self, signature: Signature, declared: Declared, subject: Value) -> Iterator[Row]:
-        """Rows that may hold of what was not seen, and of what nothing is told of."""
+    def _open_rows(self, signature: Signature, declared: BeliefPredicate, subject: Value) -> Iterator[FactRow]:
+        """Yield the rows that may hold for things not seen yet, and for known things without such a fact."""
         if declared.open is Open.NEVER:
             return
-        if not self.seen and (subject is None or str(subject) not in self.names):
+        if not self.everything_seen and (subject is None or str(subject) not in self.known_names):
             yield self._row(declared, Unknown(new=True))
         if declared.open is Open.UNTOLD:
-            for thing in self._things if subject is None else [subject]:
-                known = str(thing) in self.names and str(thing) not in declared.settled
-                if known and not self._stated(signature, [thing] + [None] * (len(declared.slots) - 1)):
+            for thing in self._objects if subject is None else [subject]:
+                known = str(thing) in self.known_names and str(thing) not in declared.settled
+                if known and not self._stated(signature, [thing] + [None] * (len(declared.arguments) - 1)):
                     yield self._row(declared, thing)
 
-    def _row(self, declared: Declared, subject: Value) -> Row:
-        """A row of which only the subject is known."""
-        values: list[Value] = [Unknown(*(slot.limits or ())) for slot in declared.slots]
+    def _row(self, declared: BeliefPredicate, subject: Value) -> FactRow:
+        """Return a row of which only the subject is known."""
+        values: list[Value] = [Unknown(*(slot.limits or ())) for slot in declared.arguments]
         values[declared.subject] = subject
         return tuple(values)
 
 
-def _as_wide(a: Value, b: Value) -> bool:
-    """Whether value `a` may be all that `b` may."""
+def _includes(a: Value, b: Value) -> bool:
+    """Return whether value `a` may be all that `b` may be."""
     if not isinstance(a, Unknown):
         return not isinstance(b, Unknown) and a == b
     if a.anything:

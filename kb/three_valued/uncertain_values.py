@@ -1,7 +1,7 @@
-"""Values that are not known: what could stand in a fact that may yet turn out to hold. Truths are True, False or None.
+"""Values that may be unknown, and their comparison. A truth value is True, False, or None for not known.
 
-A value is an integer, a clingo symbol (a name, a text, a term), or `Unknown`. What is said of values here is exact for
-the first two; of an unknown one it is None, don't know, unless its bounds decide.
+A value is an integer, a clingo symbol (a name, a string, a term) or an `Unknown`. For the first two, comparison is
+exact. With an unknown value it returns None unless the bounds decide.
 """
 
 import operator
@@ -10,10 +10,10 @@ from typing import Any
 
 import clingo
 
-from kb.language.integers import HIGH, LOW
+from kb.language.integers import MAX_INT32, MIN_INT32
 from kb.three_valued.arithmetic import calculate
 
-Truth = bool | None
+TruthValue = bool | None
 Value = Any  # int, clingo.Symbol or Unknown
 ORDERS: Mapping[str, Callable[[Any, Any], bool]] = {
     "<": operator.lt,
@@ -23,7 +23,8 @@ ORDERS: Mapping[str, Callable[[Any, Any], bool]] = {
     "=": operator.eq,
     "!=": operator.ne,
 }
-TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "!=": "!="}
+# The sign for which `b sign a` says the same as `a sign b`.
+MIRRORED_SIGNS = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "!=": "!="}
 
 
 class Unknown:
@@ -31,9 +32,9 @@ class Unknown:
 
     Attributes
     ----------
-    low, high : the bounds of a number; None for what is no number.
-    new : the name of something that was not seen yet, so that it is none of the names known.
-    anything : it may be a number or none.
+    low, high : the bounds of a number; None for a value that is no number.
+    new : whether it is the name of a thing not seen yet, and so differs from all known names.
+    anything : whether it may be a number or something else.
     """
 
     __slots__ = ("anything", "high", "low", "new")
@@ -44,17 +45,24 @@ class Unknown:
         self.low, self.high, self.new, self.anything = low, high, new, anything
 
 
-def symbol(value: Value) -> clingo.Symbol:
-    """Return a known value as clingo holds it, which orders all values: numbers, names, texts, terms."""
+def as_clingo(value: Value) -> clingo.Symbol:
+    """Return a known value as a clingo symbol. clingo orders all symbols: numbers, names, strings, terms."""
     return clingo.Number(value) if isinstance(value, int) else value
 
 
-def compare(sign: str, a: Value, b: Value, known: frozenset[str]) -> Truth:
-    """Return whether `a sign b` holds. known : names of what was seen."""
+def compare(sign: str, a: Value, b: Value, known: frozenset[str]) -> TruthValue:
+    """Return whether `a sign b` holds; None when that is not known.
+
+    Parameters
+    ----------
+    sign : `<`, `<=`, `>`, `>=`, `=` or `!=`.
+    a, b : values.
+    known : the names of all things seen, from which new things differ.
+    """
     if not isinstance(a, Unknown) and not isinstance(b, Unknown):
         if isinstance(a, int) and isinstance(b, int):
             return ORDERS[sign](a, b)
-        return ORDERS[sign](symbol(a), symbol(b))
+        return ORDERS[sign](as_clingo(a), as_clingo(b))
     if a is b:
         return sign in ("=", "<=", ">=")
     if any(isinstance(value, Unknown) and value.anything for value in (a, b)):
@@ -64,13 +72,13 @@ def compare(sign: str, a: Value, b: Value, known: frozenset[str]) -> Truth:
         return _within(sign, one, other)
     if sign in ("=", "!=") and _differ(a, b, known):
         return sign == "!="
-    if (one is None) != (other is None):  # numbers come before all else
+    if (one is None) != (other is None):  # clingo orders numbers before all other terms
         return ORDERS[sign](0, 1) if one is not None else ORDERS[sign](1, 0)
     return None
 
 
 def bounds(value: Value) -> tuple[int, int] | None:
-    """Return between which numbers a value lies; None for what is no number."""
+    """Return the least and the greatest number that a value can be; None when it is no number."""
     if isinstance(value, int):
         return value, value
     if isinstance(value, Unknown) and value.low is not None and value.high is not None:
@@ -78,10 +86,10 @@ def bounds(value: Value) -> tuple[int, int] | None:
     return None
 
 
-def _within(sign: str, a: tuple[int, int], b: tuple[int, int]) -> Truth:
-    """Whether an order holds between numbers of which only the bounds are known."""
+def _within(sign: str, a: tuple[int, int], b: tuple[int, int]) -> TruthValue:
+    """Return whether `a sign b` holds for numbers of which only bounds are known."""
     if sign in (">", ">="):
-        return _within(TURNED[sign], b, a)
+        return _within(MIRRORED_SIGNS[sign], b, a)
     if sign in ("<", "<="):
         order = ORDERS[sign]
         return True if order(a[1], b[0]) else None if order(a[0], b[1]) else False
@@ -90,15 +98,18 @@ def _within(sign: str, a: tuple[int, int], b: tuple[int, int]) -> Truth:
 
 
 def _differ(a: Value, b: Value, known: frozenset[str]) -> bool:
-    """Whether one is a name known and the other something new, or one a number and the other none."""
+    """Return whether two values certainly differ: a known name from a new thing, a number from anything else."""
     if (bounds(a) is None) != (bounds(b) is None):
         return True
     pairs = ((a, b), (b, a))
     return any(isinstance(p, Unknown) and p.new and not isinstance(q, Unknown) and str(q) in known for p, q in pairs)
 
 
-def narrowed(value: Unknown, sign: str, other: Value) -> Value:
-    """Return what an unknown value can only be where `value sign other` holds; itself where that tells nothing."""
+def narrow(value: Unknown, sign: str, other: Value) -> Value:
+    """Return what an unknown value can still be where `value sign other` holds.
+
+    Returns `value` itself when the comparison does not narrow it, and a known value when only one is left.
+    """
     limits, least = bounds(value), bounds(other)
     if sign == "=" and not isinstance(other, Unknown):
         return other
@@ -112,11 +123,25 @@ def narrowed(value: Unknown, sign: str, other: Value) -> Value:
     return low if low == high else Unknown(low, high)
 
 
-def calculated(sign: str, *values: Value) -> Value:
-    """Return the result of an operation on numbers, of which some may be unknown; raises CalculationError."""
+def calculate_uncertain(sign: str, *values: Value) -> Value:
+    """Return the result of an operation on numbers, some of which may be unknown.
+
+    Parameters
+    ----------
+    sign : the operator in ASP syntax.
+    values : one or two integers or `Unknown` numbers.
+
+    Returns
+    -------
+    An integer, or an `Unknown` with bounds; the bounds are those of 32-bit integers for rare operators.
+
+    Raises
+    ------
+    CalculationError : the operands are known and there is no 32-bit result.
+    """
     if not any(isinstance(value, Unknown) for value in values):
         return calculate(sign, *values)
-    ends = [bounds(value) or (LOW, HIGH) for value in values]
+    ends = [bounds(value) or (MIN_INT32, MAX_INT32) for value in values]
     if sign == "+":
         low, high = ends[0][0] + ends[1][0], ends[0][1] + ends[1][1]
     elif sign == "-" and len(ends) == 2:
@@ -127,5 +152,5 @@ def calculated(sign: str, *values: Value) -> Value:
         corners = [p * q for p in ends[0] for q in ends[1]]
         low, high = min(corners), max(corners)
     else:
-        low, high = LOW, HIGH
-    return Unknown(max(low, LOW), min(high, HIGH))
+        low, high = MIN_INT32, MAX_INT32
+    return Unknown(max(low, MIN_INT32), min(high, MAX_INT32))

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
+from geometry.kernels.arrays import XY
 from geometry.manipulation.goals import End
 from kb.body import Grasp, Move, Push, Turn
 from kb.language.terms import Fact
@@ -24,7 +25,7 @@ from planner.decision import Decision, TaskVerdict
 from planner.goals.corner_goal import approach, may_move
 from planner.goals.joint import conflict
 from planner.goals.object_goals import landing
-from planner.goals.origins import Origins, Place
+from planner.goals.origins import Origins
 from planner.goals.placement import Placement, can_leave, in_view, lands_in_one
 from planner.goals.robot_goals import nowhere
 from planner.navigation.subgoals import Subgoal
@@ -44,7 +45,7 @@ class Transporter:
 
     def __init__(
         self,
-        place: Callable[[Fact, Node, Place, Situation], Placement] = landing,
+        place: Callable[[Fact, Node, XY, Situation], Placement] = landing,
         search: Callable[..., Sequence[Subgoal]] = subgoals_towards,
     ) -> None:
         """Make a transporter that remembers nothing.
@@ -62,7 +63,7 @@ class Transporter:
         self._looked_before = 0
         self._has_taken_along = False  # whether an object that shut the robot in was taken along to look
 
-    def origin_of(self, parameter: str, node: Node, situation: Situation) -> Place:
+    def origin_of(self, parameter: str, node: Node, situation: Situation) -> XY:
         """Return where the object that a parameter means lay at first: the middle (x, y), in squares, map frame.
 
         When it is asked for the first time, the present place is noted.

@@ -1,4 +1,4 @@
-"""In a corner: where something that is carried must end, or what must be seen first to tell."""
+"""Placements in a corner of the known floor: where a carried object must end, or what must be seen first to tell."""
 
 import itertools
 import math
@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import End, placed
 from geometry.manipulation.plan_carrying import Between, InCorner, Inside
 from geometry.motion.se2 import Pose, Translate
@@ -16,51 +17,56 @@ from geometry.raster.components import components
 from geometry.raster.geodesic import UNREACHED, reach
 from kb.language.terms import Fact
 from kb.world.model import CLEAR, Node
-from planner.goals.placement import HAIR, Mask, Placement, can_leave, in_view, lands, lies_askew, region_of
-from planner.goals.robot_goals import corner_side, rooms_to_see, unknown_corner
+from planner.goals.placement import NEGLIGIBLE_LENGTH, Placement, can_leave, in_view, lands, lies_askew, region_of
+from planner.goals.robot_goals import corner_side, missing_for_corner, rooms_to_see
 from planner.screen.projection import grown
 from planner.sights.frontiers import Viewpoint, short_of, sight_of
 from planner.sights.viewpoints import TAKE, Approach
 from planner.situation import Situation
 
-IN_SIGHT = 6  # squares from a corner within which it is seen well
-FLUSH = 0.1  # squares between an object and walls that it touches
-LEANING = 1.25  # squares that what lies askew in a corner may reach further from its walls than it is long
-WALL = 1.0  # squares: so deep in the squares in which it was seen a wall may lie
-STAIR = math.sqrt(2)  # squares: as far behind its stairs a wall that lies askew may be
-LEAN = 0.4  # squares by which it goes away from the other wall meanwhile, which would hold it else
-PRESS = 0.25  # squares that a thing is pressed on into a corner: it shows, then, how far in its sides lie
-ABOUT = 0.5  # squares from its walls at which an object is brought to a corner that is settled
-RATHER = 0.4  # that a square is occupied which is rather floor than not
-MOST_FURTHER, BROAD = 2, 3  # squares that a corner may lie further than what surely is floor, and as broad as that is
+CORNER_VIEW_RANGE = 6  # squares from a corner within which it is seen well (tuned on random worlds)
+CONTACT_GAP = 0.1  # squares between an object and walls that it touches, at most (convention)
+ROTATED_ALLOWANCE = 1.25  # squares that a rotated object may reach further from its walls than a straight one (tuned)
+WALL = 1.0  # squares: so deep in the squares in which it was seen a wall may lie (derived: one whole square)
+STAIR_DEPTH = math.sqrt(2)  # squares: so far behind its stairs of squares a slanted wall may be (derived: a diagonal)
+WALL_RELEASE = (
+    0.4  # squares away from one slanted wall while pressed on the other: the first would stop it else (tuned)
+)
+PRESS_DISTANCE = 0.25  # squares that an object is pressed on into a corner; what stops it shows its extent (tuned)
+APPROACH_GAP = 0.5  # squares from its walls at which an object is brought to a corner that is settled (tuned)
+MAX_LIKELY_FREE = 0.4  # a square occupied with at most this probability is rather floor than not (tuned)
+MAX_CORNER_SHIFT, CORNER_SHIFT_WIDTH = (
+    2,
+    3,
+)  # squares that a corner may lie beyond sure floor, over so many squares width
 
 
-def cornered(side: str, node: Node, situation: Situation) -> Placement:
-    """The corner that Utak would go to; how the floor goes on about it is not asked once the object lies in it.
+def corner_placement(side: str, node: Node, situation: Situation) -> Placement:
+    """Return where an object is in the furthest corner towards a side, such as "northeast".
 
-    Whether there is another one in a room that is not seen he looks only then, for mostly there is none; or by the way
-    there with the object in hand.
+    How the floor goes on around the corner does not matter once the object covers it. Whether an unseen room has a
+    corner further on is looked at last, for mostly there is none; or on the way, with the object in hand.
     """
     column, row = situation.corners[side].square
     if not situation.model.mask(node.patch)[row, column]:
-        floor = _floor(node, situation)
-        unknown = unknown_corner(side, situation, floor)
+        floor = _reachable_floor(node, situation)
+        unknown = missing_for_corner(side, situation, floor)
         if unknown is not None:
             near = _near(side, node, situation, floor)
             must_reach = partial(_must_reach, side, node, situation)
-            hoped = partial(_further, side, next(iter(near), ""), situation)
+            hoped = partial(_further_corner, side, next(iter(near), ""), situation)
             return Placement({}, unknown.missing, unknown.viewpoints, near, must_reach=must_reach, hoped=hoped)
-    land = _in_corner(side, node, situation)
-    if not land.holds:
+    found = _in_corner(side, node, situation)
+    if not found.holds:
         held = situation.model.held == node.name
-        return replace(land, by_the_way=partial(_looks_into_rooms, side, situation)) if held else land
-    looks = _looks_into_rooms(side, situation)
-    shut_in = not looks and not can_leave(node, situation)
+        return replace(found, by_the_way=partial(_room_viewpoints, side, situation)) if held else found
+    viewpoints = _room_viewpoints(side, situation)
+    shut_in = not viewpoints and not can_leave(node, situation)
     if shut_in:
-        looks = _looks_into_rooms(side, situation.along_with(node.patch))
-    if not looks:
-        return land
-    return Placement({}, looks[0].what, looks, there=not shut_in, shut_in=shut_in)
+        viewpoints = _room_viewpoints(side, situation.along_with(node.patch))
+    if not viewpoints:
+        return found
+    return Placement({}, viewpoints[0].what, viewpoints, there=not shut_in, shut_in=shut_in)
 
 
 def may_move(goal: Fact, situation: Situation) -> bool:
@@ -70,187 +76,205 @@ def may_move(goal: Fact, situation: Situation) -> bool:
 
 
 def approach(goals: Iterable[Fact], situation: Situation) -> Approach:
-    """How he goes up to what he shall carry to where some goals hold for it."""
+    """Choose how the robot goes up to an object that it shall carry to where some goals hold.
+
+    Parameters
+    ----------
+    goals : Iterable[Fact]
+        The goals for the object.
+    situation : Situation
+
+    Returns
+    -------
+    Approach
+        TAKE; for a goal of a known corner with the direction of its walls.
+    """
     for goal in goals:
         side = corner_side(goal)
         if side in situation.corners:
-            end = _into_corner(side, situation)
+            end = _corner_end(side, situation)
             return TAKE._replace(corner=(end.sx, end.sy))
     return TAKE
 
 
-def _looks_into_rooms(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
-    """Looks into rooms that may go further towards a side, for which it will do to come near.
+def _room_viewpoints(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
+    """Return the viewpoints of unseen rooms that may go further towards a side, with the floor short of them.
 
-    What lies behind their squares is seen from short of them, too.
+    What lies behind their squares is seen from there, too.
     """
     rooms = rooms_to_see(side, situation)
     return tuple(r._replace(squares=np.union1d(r.squares, short_of(situation.cost_maps, r.squares))) for r in rooms)
 
 
 def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
-    """In a corner of the known floor, at the very corner.
+    """Return the placement in a corner of the known floor, at its very point.
 
-    To be within a square of its walls is enough when they are settled; else they may be further away than he believes.
-    Who is not sure of where he and the object are looks at the corner first.
+    When its walls are settled, to be within a square of them is enough; else they may be further away than believed.
+    When the places of the robot and the object are not certain, the corner is looked at first.
     """
-    (column, row), end = situation.corners[side].square, _into_corner(side, situation)
+    (column, row), end = situation.corners[side].square, _corner_end(side, situation)
     model = situation.model
     view = model.view
     around = grown(model.squares([(column + view.west, row + view.south)]), 1)
-    under = model.mask(node.patch)  # no look tells what lies under the thing itself: what lies about that must do
+    under = model.mask(node.patch)  # what lies under the object cannot be seen; the squares around it must do
     if (around & under).any():
         around = grown(around, 1) & ~under
     unclear = around & ~model.told
     shape = in_view(node.polygon, situation)
-    hoped = partial(_further, side, side, situation)
+    hoped = partial(_further_corner, side, side, situation)
     between = _between_walls(side, situation)
     if between is not None and not (unclear & (view.probability < 1 - CLEAR)).any():
-        return _aslant(side, between, shape)
+        return _between_placement(side, between, shape)
     if not unclear.any():
-        return replace(_flat(side, end, node, shape), hoped=hoped)
-    near = replace(end, slack=FLUSH if view.sure else ABOUT)
-    viewpoint = sight_of(situation.cost_maps, unclear, f"where just the {side} corner is is not clear")
+        return replace(_settled_placement(side, end, node, shape), hoped=hoped)
+    near = replace(end, slack=CONTACT_GAP if view.sure else APPROACH_GAP)
+    viewpoint = sight_of(situation.cost_maps, unclear, f"where exactly the {side} corner is is not clear")
     may_go_on = unclear & (view.probability < 1 - CLEAR)
     if len(viewpoint.squares) and (not view.sure or (may_go_on.any() and lands(near, shape))):
         return Placement({}, viewpoint.what, (viewpoint,), there=True)
     return Placement({side: near}, viewpoint.what, (viewpoint,), holds=lands(near, shape), hoped=hoped)
 
 
-def _flat(side: str, end: InCorner, node: Node, shape: Any) -> Placement:
-    """In a corner, and what was turned askew so that it reaches hardly further from the walls than it would straight.
+def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Placement:
+    """Return the placement in a corner with settled walls that lie along rows and columns.
 
-    Where that cannot be it may lie there askew. What covers some squares in part looks larger than it is, on any side
-    by up to one: so it is there when it looks as if it touched the walls, or was seen not to be smaller. One who slips
-    knows only about where it is: he brings it nearer if he can.
+    A rotated object may reach hardly further from the walls than it would straight; where that is not possible, it may
+    end there rotated. An object that covers some squares in part looks larger than it is, on any side by up to one
+    square. So it counts as in the corner when it looks as if it touched the walls, or was seen not to be smaller. An
+    object whose place is inexact is brought nearer if possible.
     """
-    close = replace(end, slack=ABOUT)
+    close = replace(end, slack=APPROACH_GAP)
     if not lies_askew(node):
         if node.inexact:
             return Placement({side: close}, holds=lands(close, shape), loose={side: end})
-        goals = [_pressed(end), replace(close, press=ABOUT), replace(end, slack=FLUSH, press=1.0)]
+        goals = [_pressed(end), replace(close, press=APPROACH_GAP), replace(end, slack=CONTACT_GAP, press=1.0)]
         goal = next((one for one in goals if not lands(one, shape)), goals[-1])
         holds = _surely(end, node, shape) or lands(goals[-1], shape)
         return Placement({side: goal}, holds=holds, presses=_presses(end, node, shape) if holds else {})
     x0, y0, x1, y1 = placed(shape, Pose(0.0, 0.0, -node.turned % 90.0)).bounds
     near, far = sorted((x1 - x0, y1 - y0))
-    flat = replace(close if node.inexact else end, within=(near + LEANING, far + LEANING))
+    flat = replace(close if node.inexact else end, within=(near + ROTATED_ALLOWANCE, far + ROTATED_ALLOWANCE))
     loose = {} if lands(flat, shape) else {side: close}
-    return Placement({side: replace(flat, slack=ABOUT)}, holds=lands(flat, shape), loose=loose)
+    return Placement({side: replace(flat, slack=APPROACH_GAP)}, holds=lands(flat, shape), loose=loose)
 
 
 def _between_walls(side: str, situation: Situation) -> Between | None:
-    """In the furthest corner of the known floor, where that is formed by walls that lie askew to the squares."""
+    """Return the end in the furthest corner, where its walls are slanted to the squares; None where they are not."""
     corner = situation.corners[side]
     return None if corner.walls is None else Between(*corner.point, corner.walls)
 
 
-def _aslant(side: str, end: Between, shape: Any) -> Placement:
-    """Between walls that lie askew to the squares, at any angle: brought near to both, and then pressed on into there.
+def _between_placement(side: str, end: Between, shape: Any) -> Placement:
+    """Return the placement between slanted walls, at any angle: brought near to both, and then pressed against them.
 
-    They are seen as stairs, and lie somewhere behind these: only what is stopped tells where.
+    Slanted walls are seen as stairs of squares and lie somewhere behind these. Only what stops the object tells where.
     """
     one, two = end.gaps(shape)
-    ways = {
-        "into": (max(one, 0.0) + STAIR, max(two, 0.0) + STAIR),
-        "one": (one + STAIR, -LEAN),
-        "two": (-LEAN, two + STAIR),
+    gaps = {
+        "into": (max(one, 0.0) + STAIR_DEPTH, max(two, 0.0) + STAIR_DEPTH),
+        "one": (one + STAIR_DEPTH, -WALL_RELEASE),
+        "two": (-WALL_RELEASE, two + STAIR_DEPTH),
     }
     holds = lands(end, shape)
-    presses = {name: Translate(*end.move(way)) for name, way in ways.items() if holds}
+    presses = {name: Translate(*end.move(gap)) for name, gap in gaps.items() if holds}
     return Placement({side: end}, holds=holds, presses=presses)
 
 
 def _pressed(end: InCorner) -> InCorner:
-    """The same corner, for a thing that is pressed on into it where whole squares leave one free."""
-    return replace(end, slack=end.slack - PRESS, press=PRESS)
+    """Return an end in a corner to which the object is pressed on, where moves by whole squares leave a gap."""
+    return replace(end, slack=end.slack - PRESS_DISTANCE, press=PRESS_DISTANCE)
 
 
 def _presses(end: InCorner, node: Node, shape: Any) -> Mapping[str, Translate]:
-    """Pushes towards the walls of a corner that something may not touch, as far as these may be away.
+    """Return the pushes towards the walls of a corner that an object may not touch, as far as these may be away.
 
-    A wall lies anywhere in the squares in which it was seen, and a side that is not told lies anywhere in its own. What
-    lies right beside these squares is within a square of the wall wherever that is, if its side is told; with a part
-    of a square free in between, by what is seen or by what is not, it may not be.
+    A wall lies anywhere in the squares in which it was seen, and so does a side of the object that is not settled.
+    Right beside the wall's squares, an object with a settled side is within a square of the wall wherever that is.
+    With a part of a square free in between, seen or not, it may not be.
     """
     x, y = (gap + far for gap, far in zip(end.gaps(shape.bounds), _further_in(end, node), strict=True))
     pushes = {"across": (x, Translate(end.sx * (x + WALL), 0.0)), "up": (y, Translate(0.0, end.sy * (y + WALL)))}
-    return {name: push for name, (gap, push) in pushes.items() if gap > FLUSH}
+    return {name: push for name, (gap, push) in pushes.items() if gap > CONTACT_GAP}
 
 
 def _further_in(end: InCorner, node: Node) -> tuple[float, float]:
-    """By how much the sides of a thing towards the walls of a corner may lie further in than is believed."""
+    """Return how much further in than believed the sides towards the walls of a corner may lie, (x, y) in squares."""
     west, east, south, north = node.short
     return east if end.sx > 0 else west, north if end.sy > 0 else south
 
 
 def _surely(end: InCorner, node: Node, shape: Any) -> bool:
-    """Does an object lie in a corner, however far in its sides lie? Where walls lie deeper in their squares than these
-    begin, it may lie in these, too.
+    """Return whether an object is in a corner, however far in its sides lie.
+
+    It may lie up to WALL within the wall's squares, for the wall may lie deeper in them.
     """
     gaps, further = end.gaps(shape.bounds), _further_in(end, node)
-    return all(gap >= -WALL and gap + far <= end.slack + HAIR for gap, far in zip(gaps, further, strict=True))
+    return all(
+        gap >= -WALL and gap + far <= end.slack + NEGLIGIBLE_LENGTH for gap, far in zip(gaps, further, strict=True)
+    )
 
 
-def _into_corner(side: str, situation: Situation) -> InCorner:
-    """In the furthest corner of the known floor."""
+def _corner_end(side: str, situation: Situation) -> InCorner:
+    """Return the end in the furthest corner of the known floor."""
     (x, y), (column, row) = situation.corners[side].point, situation.corners[side].square
     return InCorner(x, y, 1 if x > column else -1, 1 if y > row else -1)
 
 
-def _further(side: str, name: str, situation: Situation) -> Mapping[str, End]:
-    """The corner of what is rather floor than not, by a name, where that goes further than what surely is."""
-    (column, row), end = situation.corners[side].square, _into_corner(side, situation)
+def _further_corner(side: str, name: str, situation: Situation) -> Mapping[str, End]:
+    """Return the corner of likely floor, under a name, where that goes further than the sure floor; else nothing."""
+    (column, row), end = situation.corners[side].square, _corner_end(side, situation)
     view = situation.model.view
-    rather = np.pad(view.seen & (view.probability <= RATHER), MOST_FURTHER)
-    along = [step * np.array([-end.sy, -end.sx]) for step in range(BROAD)]
-    more = []
+    likely = np.pad(view.seen & (view.probability <= MAX_LIKELY_FREE), MAX_CORNER_SHIFT)
+    along = [step * np.array([-end.sy, -end.sx]) for step in range(CORNER_SHIFT_WIDTH)]
+    shifts = []
     for axis in (1, 0):
         out = np.array([end.sy, end.sx]) * (np.arange(2) == axis)
         back = [step * (np.arange(2) != axis) for step in along]
-        there = (all(rather[tuple(np.array([row, column]) + MOST_FURTHER + n * out + b)] for b in back) for n in (1, 2))
-        more.append(sum(itertools.takewhile(bool, there)))
-    if not any(more):
+        at = np.array([row, column]) + MAX_CORNER_SHIFT
+        free = (all(likely[tuple(at + n * out + b)] for b in back) for n in range(1, MAX_CORNER_SHIFT + 1))
+        shifts.append(sum(itertools.takewhile(bool, free)))
+    if not any(shifts):
         return {}
-    return {name: _pressed(replace(end, x=end.x + end.sx * more[0], y=end.y + end.sy * more[1]))}
+    return {name: _pressed(replace(end, x=end.x + end.sx * shifts[0], y=end.y + end.sy * shifts[1]))}
 
 
-def _near(side: str, node: Node, situation: Situation, floor: Mask) -> Mapping[str, End]:
-    """Places from which Utak with the object in hand sees a corner well; none when the object is at one.
+def _near(side: str, node: Node, situation: Situation, floor: Bools) -> Mapping[str, End]:
+    """Return places from which the robot with the object in hand sees a corner well; none when the object is in it.
 
-    Best in the corner of what is seen: he takes it then so that he does not stand in its way there, and when that is
-    the true one it is there already. Else about it. floor : (rows, columns) that he can reach.
+    Best is the corner of what is seen. The robot takes the object so that it does not stand in its way there, and if
+    that is the true corner, the object is there already. Second best is anywhere around it.
+    floor : (rows, columns), the squares that the robot can reach.
     """
-    into, shape = _into_corner(side, situation), in_view(node.polygon, situation)
-    if lands(into, shape):
+    end, shape = _corner_end(side, situation), in_view(node.polygon, situation)
+    if lands(end, shape):
         return {}
     mask = situation.model.space & floor | situation.model.mask(node.patch)
-    about = Inside(region_of(mask & _about(side, IN_SIGHT, situation)))
-    there = about.polygon.is_empty or lands(about, shape)
-    return {f"near_{side}": _pressed(into)} | ({} if there else {f"about_{side}": about})
+    around = Inside(region_of(mask & _around(side, CORNER_VIEW_RANGE, situation)))
+    there = around.polygon.is_empty or lands(around, shape)
+    return {f"near_{side}": _pressed(end)} | ({} if there else {f"about_{side}": around})
 
 
 def _must_reach(side: str, node: Node, situation: Situation) -> Mapping[str, End]:
-    """On squares that were not seen, or on the floor that a thing in a corner would lie on."""
+    """Return the region that an object in a corner must reach: unseen squares, or the floor around the known corner."""
     column, row = situation.corners[side].square
     x0, y0, x1, y1 = node.polygon.bounds
-    about = _about(side, math.ceil(math.hypot(x1 - x0, y1 - y0)) + 1, situation)
-    labels = components(situation.model.space & about).labels
+    around = _around(side, math.ceil(math.hypot(x1 - x0, y1 - y0)) + 1, situation)
+    labels = components(situation.model.space & around).labels
     mask = ~situation.model.view.seen | ((labels == labels[row, column]) & (labels > 0))
     return {side: Inside(region_of(mask))}
 
 
-def _about(side: str, squares: int, situation: Situation) -> Mask:
-    """(rows, columns): within so many rows and columns of a corner."""
+def _around(side: str, squares: int, situation: Situation) -> Bools:
+    """Return the squares within `squares` rows and columns of a corner, (rows, columns)."""
     column, row = situation.corners[side].square
     high, wide = situation.model.view.seen.shape
     rows, columns = np.ogrid[:high, :wide]
-    mask: Mask = (abs(rows - row) <= squares) & (abs(columns - column) <= squares)
+    mask: Bools = (abs(rows - row) <= squares) & (abs(columns - column) <= squares)
     return mask
 
 
-def _floor(node: Node, situation: Situation) -> Mask:
-    """(rows, columns): the squares that Utak can reach; what is to be carried does not shut him in: it goes along."""
+def _reachable_floor(node: Node, situation: Situation) -> Bools:
+    """Return the squares that the robot can reach, (rows, columns), when the object to be carried moves along."""
     cost_maps = situation.cost_maps
-    mask: Mask = reach(cost_maps.free(0) | situation.model.mask(node.patch), *cost_maps.here) != UNREACHED
+    mask: Bools = reach(cost_maps.free(0) | situation.model.mask(node.patch), *cost_maps.here) != UNREACHED
     return mask

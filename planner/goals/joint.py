@@ -1,4 +1,4 @@
-"""Whether several goals can hold for one thing at once, by the regions in which it must lie for each of them."""
+"""Goals that cannot hold at once, by the regions in which an object lies when each of them holds."""
 
 import math
 from collections.abc import Sequence
@@ -13,68 +13,98 @@ from planner.goals.placement import Placement
 from planner.goals.robot_goals import corner_side
 from planner.situation import Situation
 
-ROUNDING = 1e-6  # squares
-AT_CORNER = (1.0, 1.0)  # squares from a corner, east and north, within which Utak is at it
-OPPOSITE = (("northeast", "southwest"), ("northwest", "southeast"))
+REGION_ROUNDING = 1e-6  # squares, or squares of area, that rounding errors of shapely may make (convention)
+CORNER_REACH = (
+    1.0,
+    1.0,
+)  # squares from a corner, east and north, within which the robot is at it (meaning of the goal)
+OPPOSITE_CORNERS = (("northeast", "southwest"), ("northwest", "southeast"))
 
 
-def conflict(lands: Sequence[Placement], shape: Any) -> tuple[int, int] | None:
-    """Return which two of some goals cannot hold at once for a shape, as indices; None when each two may.
+def conflict(placements: Sequence[Placement], shape: Any) -> tuple[int, int] | None:
+    """Find two of some goals that cannot hold at once for one object.
 
-    lands : where each goal holds; one of which it is not known yet may hold anywhere. shape : in the frame of the
-    view's arrays.
+    Parameters
+    ----------
+    placements : Sequence[Placement]
+        Where each goal holds. A goal of which that is not known yet may hold anywhere.
+    shape : shapely geometry
+        The outline of the object, in squares, view frame.
+
+    Returns
+    -------
+    tuple[int, int] | None
+        The indices of the two goals; None when each two of them may hold at once.
     """
-    for (one, a), (other, b) in combinations(enumerate(lands), 2):
-        if all(land.ends and not land.missing for land in (a, b)):
-            pairs = product(*(_places(land) for land in (a, b)))
+    for (one, a), (other, b) in combinations(enumerate(placements), 2):
+        if all(placement.ends and not placement.missing for placement in (a, b)):
+            pairs = product(*(_all_ends(placement) for placement in (a, b)))
             if not any(_may_share(first, second, shape) for first, second in pairs):
                 return one, other
     return None
 
 
 def opposite_corners(goals: Sequence[Fact], situation: Situation) -> str:
-    """Return why Utak cannot be in two opposite corners at once, in words; "" when the task does not ask for that.
+    """Return in words why the robot cannot be at two opposite corners at once; "" when the goals do not ask for that.
 
     However much more floor becomes known, such corners only move further apart.
     """
     wanted = set(map(corner_side, goals))
-    for one, other in OPPOSITE:
+    for one, other in OPPOSITE_CORNERS:
         if {one, other} <= wanted:
             points = (situation.corners[side].point for side in (one, other))
             (x, y), (u, v) = (situation.model.place_to_utak(*point) for point in points)
             along = abs(x - u + y - v) if one == "northeast" else abs(x - u - y + v)
-            if along > 2 * sum(AT_CORNER):
+            if along > 2 * sum(CORNER_REACH):
                 return f"the {one} and the {other} corner are too far apart to be at both at once"
     return ""
 
 
-def _places(land: Placement) -> list[End]:
-    return [*land.ends.values(), *land.loose.values()]
+def _all_ends(placement: Placement) -> list[End]:
+    """List all ends of a placement, the loose ones last."""
+    return [*placement.ends.values(), *placement.loose.values()]
 
 
 def _may_share(one: End, other: End, shape: Any) -> bool:
-    """Return whether there is room for a shape where two goals hold: a necessary condition alone."""
-    room = confines(one, shape).intersection(confines(other, shape))
-    return bool(room.area >= shape.area - ROUNDING)
+    """Return whether the regions of two ends have enough area in common for a shape: a necessary condition only."""
+    room = enclosing_region(one, shape).intersection(enclosing_region(other, shape))
+    return bool(room.area >= shape.area - REGION_ROUNDING)
 
 
-def confines(end: End, shape: Any) -> Any:
-    """Return a region in which a shape lies wholly wherever it meets a goal, however it is turned."""
+def enclosing_region(end: End, shape: Any) -> Any:
+    """Compute a region that holds a shape wholly wherever it meets an end, at any orientation.
+
+    Parameters
+    ----------
+    end : End
+    shape : shapely geometry
+        In squares, in the frame of the end.
+
+    Returns
+    -------
+    shapely geometry
+        In the same frame.
+
+    Raises
+    ------
+    ValueError
+        For a Roomy end, which no goal of a task has.
+    """
     if isinstance(end, Inside):
-        return end.polygon.buffer(ROUNDING)
+        return end.polygon.buffer(REGION_ROUNDING)
     if isinstance(end, At):
-        return placed(shape, end.pose).buffer(ROUNDING)
+        return placed(shape, end.pose).buffer(REGION_ROUNDING)
     if isinstance(end, Roomy):
         raise ValueError("a place on the way is no goal of a task")
     longest = 2 * shapely.minimum_bounding_radius(shape)
     if isinstance(end, Between):
         return end.about(longest + end.slack)
-    return _in_corner(end, longest)
+    return _corner_region(end, longest)
 
 
-def _in_corner(end: InCorner, longest: float) -> Any:
-    """Return the region of a corner for a shape that is at most so long, in squares."""
-    reach = end.slack + end.press + longest + ROUNDING
+def _corner_region(end: InCorner, longest: float) -> Any:
+    """Return the box in a corner that holds any shape of at most `longest` squares that meets the end."""
+    reach = end.slack + end.press + longest + REGION_ROUNDING
     far_x, far_y = end.x - math.copysign(reach, end.sx), end.y - math.copysign(reach, end.sy)
-    near_x, near_y = end.x + math.copysign(ROUNDING, end.sx), end.y + math.copysign(ROUNDING, end.sy)
+    near_x, near_y = end.x + math.copysign(REGION_ROUNDING, end.sx), end.y + math.copysign(REGION_ROUNDING, end.sy)
     return shapely.box(min(far_x, near_x), min(far_y, near_y), max(far_x, near_x), max(far_y, near_y))

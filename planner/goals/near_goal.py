@@ -1,4 +1,4 @@
-"""Near to something, or right at a pose: where something that is carried must end."""
+"""Placements beside another object, at the start, and at a pose."""
 
 import math
 from typing import Any
@@ -12,22 +12,27 @@ from geometry.motion.se2 import Pose
 from kb.language.terms import Fact, Number, Text
 from kb.language.wkt import parse_wkt
 from kb.world.model import Node
-from planner.goals.placement import TURNED, Placement, in_view, region_of
+from planner.goals.placement import ANGLE_TOLERANCE, Placement, in_view, region_of
 from planner.situation import Situation
 
-BESIDE = 1.0  # squares from a thing within which it is reached
-NEAR = 0.7  # squares in each axis within which something surely is that near, across a corner too
-POSED = 0.25  # squares within which a pose is attained
+BESIDE_DISTANCE = 1.0  # squares between two things that are beside each other, at most (the meaning of the goal)
+BESIDE_AXIS_DISTANCE = (
+    0.7  # squares in each axis that are surely less than BESIDE_DISTANCE, across a corner too (derived)
+)
+POSE_TOLERANCE = 0.25  # squares from a pose within which it is attained (the meaning of the goal)
 
 
-def around_start(node: Node, situation: Situation) -> Placement:
-    """At the place where Utak woke: within one square of it."""
+def start_placement(node: Node, situation: Situation) -> Placement:
+    """Return where an object is at the start: within one square of the place where the robot woke."""
     place = in_view(shapely.Point(*situation.model.frame.origin), situation)
     return _touching(in_view(node.polygon, situation), place.buffer(0.5, cap_style="square"), "start")
 
 
-def beside(other: str, node: Node, situation: Situation) -> Placement:
-    """Within one square of another object, on one of its four sides."""
+def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
+    """Return where an object is beside another one: within one square of it.
+
+    other : the parameter of the task that means the other object.
+    """
     target = situation.model.object(situation.binding.get(other, ""))
     if target is None:
         return Placement({}, f"nothing seen so far is {other}")
@@ -36,9 +41,10 @@ def beside(other: str, node: Node, situation: Situation) -> Placement:
 
 
 def _touching(shape: Any, target: Any, name: str) -> Placement:
-    """Within one square of a target: best with the containing rectangles against each other, on one of four sides.
+    """Return where a shape is within one square of a target; both polygons in the view frame.
 
-    Where it cannot be brought to any of these, anywhere near will do; further than by its own length it is nowhere so.
+    Best are the four sides of the target, with the bounding boxes touching. Where none of them is possible, any place
+    near the target will do. No such place is further away than the length of the shape.
     """
     west, south, east, north = shape.bounds
     x0, y0, x1, y1 = target.bounds
@@ -47,19 +53,23 @@ def _touching(shape: Any, target: Any, name: str) -> Placement:
     shifts = {"east": (x1 - west, level[1]), "north": (level[0], y1 - south)}
     shifts |= {"west": (x0 - east, level[1]), "south": (level[0], y0 - north)}
     ends = {f"{name}_{side}": At(Pose(dx, dy, 0.0)) for side, (dx, dy) in shifts.items()}
-    about = target.envelope.buffer(min(east - west, north - south) + NEAR, join_style="mitre")
-    far = Inside(target.buffer(math.hypot(east - west, north - south) + BESIDE))
+    near = target.envelope.buffer(min(east - west, north - south) + BESIDE_AXIS_DISTANCE, join_style="mitre")
+    far = Inside(target.buffer(math.hypot(east - west, north - south) + BESIDE_DISTANCE))
     return Placement(
         ends,
-        holds=shape.distance(target) <= BESIDE,
-        loose={name: Inside(about)},
+        holds=shape.distance(target) <= BESIDE_DISTANCE,
+        loose={name: Inside(near)},
         must_reach=lambda: {name: far},
         some=True,
     )
 
 
-def posed(goal: Fact, node: Node, situation: Situation) -> Placement:
-    """The middle at a point of Utak's frame, turned by so many degrees from how it lay at first."""
+def pose_placement(goal: Fact, node: Node, situation: Situation) -> Placement:
+    """Return where an object is at the pose of a goal.
+
+    goal : pose(x, "POINT (x y)", degrees): where its middle shall be, in squares, in the robot's own frame; and the
+    rotation from its first orientation, in degrees, counter-clockwise positive.
+    """
     place, degrees = goal.args[1:]
     assert isinstance(place, Text)
     assert isinstance(degrees, Number)
@@ -67,9 +77,10 @@ def posed(goal: Fact, node: Node, situation: Situation) -> Placement:
     x, y = situation.model.frame.place_from_utak(point.x, point.y)
     middle = node.polygon.centroid
     left = (degrees.value - node.turned + 180.0) % 360.0 - 180.0
-    holds = math.dist((x, y), (middle.x, middle.y)) <= POSED and abs(left) <= TURNED
+    holds = math.dist((x, y), (middle.x, middle.y)) <= POSE_TOLERANCE and abs(left) <= ANGLE_TOLERANCE
     there = Pose(x - middle.x, y - middle.y, left)
-    lying = placed(in_view(node.polygon, situation), there)
-    west, south, east, north = lying.bounds
-    about = lying.buffer(POSED + math.hypot(east - west, north - south) * math.radians(TURNED), join_style="mitre")
-    return Placement({"pose": At(there)}, holds=holds, must_reach=lambda: {"pose": Inside(about)}, some=True)
+    outline = placed(in_view(node.polygon, situation), there)
+    west, south, east, north = outline.bounds
+    margin = POSE_TOLERANCE + math.hypot(east - west, north - south) * math.radians(ANGLE_TOLERANCE)
+    near = Inside(outline.buffer(margin, join_style="mitre"))
+    return Placement({"pose": At(there)}, holds=holds, must_reach=lambda: {"pose": near}, some=True)

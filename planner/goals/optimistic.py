@@ -1,33 +1,35 @@
-"""Floor that is hoped for: what was never seen, or is not clear, where floor leads to it.
+"""Optimistic planning: floor that is likely there where it was never seen or is not settled.
 
-Who carries things is bold there: to be stopped costs him a command or two, and mostly he is not. What is hoped for may
-lie beyond all that was seen, so that masks of it have a frame of BEYOND squares about the arrays of the view.
+A robot that carries objects takes such a risk: being stopped costs it a command or two, and mostly it is not stopped.
+The floor may go on beyond all that was seen. So masks of it have a margin of BEYOND squares around the view's arrays.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Bools
 from geometry.raster.components import edged
 from planner.situation import Situation
 
-Mask = NDArray[np.bool_]
-BEYOND = 6  # squares that floor is hoped to go on unseen
-BOLD = 2  # level of certainty of squares that are hoped to be free
+BEYOND = 6  # squares that the floor is assumed to go on unseen, and the margin of masks (tuned on random worlds)
+BOLD = 2  # certainty level of the seen squares that are assumed to be free (tuned on random worlds)
 
 
-def framed(mask: Mask) -> Mask:
-    """(rows + 2 BEYOND, columns + 2 BEYOND): a mask of the view with its frame, in which nothing is marked."""
+def framed(mask: Bools) -> Bools:
+    """Return a mask of the view with a margin of BEYOND False squares, (rows + 2 BEYOND, columns + 2 BEYOND)."""
     return np.pad(mask, BEYOND)
 
 
-def spread(mask: Mask, situation: Situation) -> Mask:
-    """A mask of the view with its frame, and the squares never seen to which so many steps over their edges lead."""
+def spread_into_unseen(mask: Bools, situation: Situation) -> Bools:
+    """Add to a mask the unseen squares that BEYOND steps from square to neighbouring square lead to from it.
+
+    mask : (rows, columns) of the view. Returns it with the margin, (rows + 2 BEYOND, columns + 2 BEYOND).
+    """
     unseen, wider = ~framed(situation.model.view.seen), framed(mask)
     for _ in range(BEYOND):
         wider |= edged(wider) & unseen
     return wider
 
 
-def hoped_floor(situation: Situation) -> Mask:
-    """All squares that are hoped to be free, with the frame."""
-    return spread(situation.cost_maps.free(BOLD), situation)
+def hoped_floor(situation: Situation) -> Bools:
+    """Return all squares that are assumed to be free, with the margin, (rows + 2 BEYOND, columns + 2 BEYOND)."""
+    return spread_into_unseen(situation.cost_maps.free(BOLD), situation)

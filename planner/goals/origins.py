@@ -1,44 +1,63 @@
-"""Where things lay when they were first meant, and what is lost of that since.
+"""Origins: where the things of the task were at first, and when that knowledge is lost.
 
-Some goals hold by where something began. Of that place he may be wrong himself, once he was lost; and where something
-is next to depends on the doors of the room where it began. When looks contradict what is believed, one of these may be
-lost from the map: then the room behind it seems to be one with the first, and the next one is another.
+Some goals depend on where something was at first. The robot may be wrong about that place itself, once it was lost.
+What is the next room depends on the doors of the room where the thing was. When observations contradict what is
+believed, a door may disappear from the map. Then two rooms seem to be one, and another room seems to be the next one.
 """
 
 import math
 from typing import NamedTuple
 
+from geometry.kernels.arrays import XY
 from kb.world.model import Node
 from planner.situation import Situation
 
-Place = tuple[float, float]
-SAME = 3.0  # squares that a door may have come to lie elsewhere
+DOOR_TOLERANCE = 3.0  # squares by which the believed place of a door may change while it counts as the same (tuned)
 
 
 class Origin(NamedTuple):
-    """Where the middle of something lay at first, in Utak's own frame.
+    """The place where the middle of a thing was at first.
 
-    name : of its node. moved : has he moved it since? anew : had he been lost before then? doors : the middles of those
-    of its room, in Utak's own frame, as they were believed before it was moved.
+    Attributes
+    ----------
+    place : the point, in squares, in the robot's own frame (east and north of where it woke).
+    name : the name of the node.
+    moved : whether the robot has moved it since.
+    anew : whether the robot had been lost, and had begun its map anew, before the place was noted.
+    doors : the middles of the doors of its room, in the robot's own frame, as believed before it was moved.
     """
 
-    place: Place
+    place: XY
     name: str
     moved: bool = False
     anew: bool = False
-    doors: tuple[Place, ...] = ()
+    doors: tuple[XY, ...] = ()
 
 
 class Origins:
-    """Remembers for each parameter of the task where what it means began."""
+    """Remembers for each parameter of the task where the thing that it means was at first."""
 
     def __init__(self) -> None:
         self._known: dict[str, Origin] = {}
 
-    def at(self, parameter: str, node: Node, situation: Situation) -> Place:
-        """The point of the lattice where the middle of what a parameter means lay at first: noted now, or before.
+    def at(self, parameter: str, node: Node, situation: Situation) -> XY:
+        """Return where the middle of a thing was at first, and note it when the thing is new.
 
-        What he has moved and then lost sight of is the same thing still when he takes up another one for it.
+        A thing that the robot has moved and then lost sight of counts as the same one when the parameter is bound to
+        another node.
+
+        Parameters
+        ----------
+        parameter : str
+            The parameter of the task that means the thing.
+        node : Node
+            The thing now.
+        situation : Situation
+
+        Returns
+        -------
+        XY
+            A point of the map frame, in squares.
         """
         model, known = situation.model, self._known.get(parameter)
         gone = known is not None and known.moved and model.object(known.name) is None
@@ -51,28 +70,28 @@ class Origins:
         return began
 
     def lost(self, parameter: str, node: Node, situation: Situation) -> str:
-        """What is lost, in words, since what a parameter means lay where it was noted; nothing when nothing is.
+        """Return in words why the noted origin of a thing is not reliable any more; "" while it is.
 
-        Who was lost himself may be squares from where he says. A door may be believed no more only where looks
-        contradict what is believed.
+        After the robot was lost, the origin may be squares away from where it believes it. A door of the thing's room
+        counts as lost only where observations contradict what is believed.
         """
         known, model = self._known[parameter], situation.model
         if model.anew and not known.anew:
-            return "he was lost"
+            return "the robot was lost"
         now = [model.place_to_utak(*door.place) for door in situation.rooms.sure]
-        gone = any(all(math.dist(was, door) > SAME for door in now) for was in known.doors)
+        gone = any(all(math.dist(was, door) > DOOR_TOLERANCE for door in now) for was in known.doors)
         return "a door of its room was lost" if gone and node.moved and model.shaken else ""
 
     def left(self, parameter: str, node: Node, situation: Situation) -> bool:
-        """Does what a parameter means lie in another room than where it was noted?"""
+        """Return whether a thing is in another room now than at first."""
         rooms, view = situation.rooms.labels, situation.model.view
         began = situation.model.frame.place_from_utak(*self._known[parameter].place)
         now = node.polygon.centroid.x, node.polygon.centroid.y
         return bool(rooms[view.locate(*began)] != rooms[view.locate(*now)])
 
 
-def _doors_of_its_room(began: Place, situation: Situation) -> tuple[Place, ...]:
-    """The middles of the doors of the room where something lies, in Utak's own frame."""
+def _doors_of_its_room(place: XY, situation: Situation) -> tuple[XY, ...]:
+    """Return the middles of the doors, robot's own frame, of the room that holds a point of the map frame."""
     model, rooms = situation.model, situation.rooms
-    room = int(rooms.labels[model.view.locate(*began)])
+    room = int(rooms.labels[model.view.locate(*place)])
     return tuple(model.place_to_utak(*door.place) for door in rooms.leading(room))

@@ -1,6 +1,6 @@
-"""Where a thing lies, and where it shall: what planning on a screen says of that.
+"""Placements: where an object is, and where a goal holds for it.
 
-Shapes and goals of geometry.manipulation.plan_carrying are in the frame of the view's arrays.
+Shapes and ends (geometry.manipulation.goals) are in the view frame, in squares, as all manipulation planning is.
 """
 
 from collections.abc import Callable, Mapping
@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import At, End, met
 from geometry.motion.se2 import Pose, Translate
 from geometry.raster.rasterize import squares
@@ -21,35 +21,37 @@ from planner.screen.projection import grown, shifted
 from planner.sights.frontiers import Viewpoint
 from planner.situation import Situation
 
-Mask = NDArray[np.bool_]
-Ends = Callable[[], Mapping[str, End]]  # by their names, worked out when asked
-Looks = Callable[[], tuple[Viewpoint, ...]]  # worked out when asked
-HAIR = 0.01  # squares that do not matter
-SURELY = 95  # percent: what is a thing with less may be a piece of wall, and is felt before it is taken
-LIKELY = 20  # percent: with less it is hardly one
-NOOK = 2  # squares about a thing that are no room to go
-TURNED = 2.0  # degrees within which a thing lies as it was meant to
+Ends = Callable[[], Mapping[str, End]]  # ends by name, computed when called
+LazyViewpoints = Callable[[], tuple[Viewpoint, ...]]  # viewpoints, computed when called
+NEGLIGIBLE_LENGTH = 0.01  # squares that do not matter (convention)
+SURELY = 95  # percent: what is an object with less may be a piece of wall, and is felt before it is taken (tuned)
+LIKELY = 20  # percent: what is an object with less hardly is one (tuned on random worlds)
+NOOK_RANGE = 2  # squares around an object within which floor leads nowhere (tuned on random worlds)
+ANGLE_TOLERANCE = 2.0  # degrees within which an object has the orientation that it shall have (meaning of the goal)
 
 
 @dataclass(frozen=True)
 class Placement:
-    """Where a goal holds for an object.
+    """The places where a goal holds for an object, and what must be known first.
 
     Attributes
     ----------
-    ends : target's name -> where the object must lie; empty while that is not known.
-    missing, lookouts : what must be known first, in words, and where just that may be seen (as of a Destination).
-    approach : places near to where it must end, from which it can be told better where that is; the best first.
-    holds : the goal holds as the object lies now. there : it does, but for what must be known first.
-    shut_in : likewise, and he cannot leave the object where it is, for it shuts him in.
-    loose : where it may lie if it cannot be brought to any of the ends.
-    must_reach : what it must come to lie on wherever it must end, while that is not known: squares that were not seen,
-    and those of the one end that may be it. Worked out when asked.
-    presses : pushes, by their names, by which it comes to touch walls that may lie further away than is believed; after
-    them a goal that holds by what is believed holds surely.
-    some : it may end elsewhere, too: that it can be brought to none of the ends proves nothing.
-    hoped : the ends, if the floor goes on as it is hoped to (planner.goals.optimistic); worked out when asked.
-    by_the_way : what must be seen before it holds, where it does not yet: to come back for that takes longer. Likewise.
+    ends : by name, where the object must end; empty while that is not known.
+    missing : in words, what must be known first; "" when nothing is missing.
+    viewpoints : where just that may be seen; when there are none, any place worth a look may show it.
+    approach : by name, places near the end from which the robot sees better where the end is; the best one first.
+    holds : whether the goal holds as the object is now.
+    there : whether the goal holds but for what must be known first.
+    shut_in : as `there`, and the robot cannot leave the object where it is, for it shuts the robot in.
+    loose : by name, where the object may end if none of `ends` can be reached.
+    must_reach : computes, while the end is not known, regions that the object must reach wherever it is: unseen
+        squares, and the squares of the one end that may be it.
+    hoped : computes the ends that follow if the floor goes on as optimistic planning assumes.
+    by_the_way : computes what must be seen before the goal holds and is better seen on the way: coming back takes
+        longer.
+    presses : by name, pushes after which the object touches walls that may be further away than believed. After them a
+        goal that is believed to hold surely holds.
+    some : whether the object may end elsewhere, too. Then it proves nothing that none of `ends` can be reached.
     """
 
     ends: Mapping[str, End]
@@ -62,57 +64,83 @@ class Placement:
     loose: Mapping[str, End] = field(default_factory=dict)
     must_reach: Ends = dict
     hoped: Ends = dict
-    by_the_way: Looks = tuple
+    by_the_way: LazyViewpoints = tuple
     presses: Mapping[str, Translate] = field(default_factory=dict)
     some: bool = False
 
 
 def lands(end: End, shape: Any) -> bool:
-    """Does a shape, in the frame of the view's arrays, lie where a goal holds?"""
+    """Return whether a shape meets an end as it is now; both in the view frame."""
     return met(end, shape, shape)
 
 
 def lands_in_one(ends: Mapping[str, End], shape: Any) -> bool:
-    """Does a shape, in the frame of the view's arrays, lie where one of some goals holds?"""
+    """Return whether a shape meets any of some ends as it is now; all in the view frame."""
     return any(lands(end, shape) for end in ends.values())
 
 
 def lies_askew(node: Node) -> bool:
-    """Was it turned otherwise than by quarter turns?"""
+    """Return whether an object has been turned by more than ANGLE_TOLERANCE from a whole number of quarter turns."""
     over = node.turned % 90.0
-    return min(over, 90.0 - over) > TURNED
+    return min(over, 90.0 - over) > ANGLE_TOLERANCE
 
 
 def in_view(shape: Any, situation: Situation) -> Any:
-    """A shape of the lattice in the frame of the view's arrays."""
+    """Convert a shape (shapely geometry, in squares) from the map frame to the view frame."""
     west, south = situation.model.view.west, situation.model.view.south
     return shapely.transform(shape, lambda points: points - np.array([west, south]))
 
 
-def region_of(mask: Mask) -> Any:
-    """The True squares of a (rows, columns) mask as one geometry."""
+def region_of(mask: Bools) -> Any:
+    """Convert a mask (rows, columns) to one shapely geometry, in squares, in the frame of the array."""
     runs = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     rows, starts = np.nonzero(runs == 1)
     stops = np.nonzero(runs == -1)[1]
     return shapely.union_all(shapely.box(starts, rows, stops, rows + 1))
 
 
-def barred(node: Node, situation: Situation) -> Mask:
-    """(rows, columns): the necks of doors that a thing, or he with it, may not go through; none where it lies on them.
+def barred(node: Node, situation: Situation) -> Bools:
+    """Compute the squares on the necks of doors through which an object may not be carried.
 
-    He holds it wherever it goes through, so a door that is forbidden to either is to both.
+    The robot holds the object wherever that goes, so a door that is forbidden to either is forbidden to both. Squares
+    that the object covers now are left out.
+
+    Parameters
+    ----------
+    node : Node
+        The object.
+    situation : Situation
+
+    Returns
+    -------
+    Bools
+        (rows, columns).
     """
     columns, rows = situation.model.labels.shape[::-1]
     doors = (*situation.forbidden("utak"), *situation.forbidden(node.name))
-    necks = (shapely.LineString([door.a, door.b]).buffer(HAIR) for door in doors)
-    mask: Mask = np.any([squares(neck, columns, rows) for neck in necks] or [np.zeros((rows, columns), bool)], axis=0)
+    necks = (shapely.LineString([door.a, door.b]).buffer(NEGLIGIBLE_LENGTH) for door in doors)
+    none = np.zeros((rows, columns), bool)
+    mask: Bools = np.any([squares(neck, columns, rows) for neck in necks] or [none], axis=0)
     return mask & ~situation.model.mask(node.patch)
 
 
-def hidden_behind(node: Node, side: tuple[int, int], depth: int, model: WorldModel) -> Mask:
-    """(rows, columns): what seems to be wall straight behind a thing, of so many squares, and may be more of it.
+def hidden_behind(node: Node, side: tuple[int, int], depth: int, model: WorldModel) -> Bools:
+    """Compute the squares straight behind an object that seem to be wall and may belong to the object.
 
-    What was moved was seen to end.
+    Parameters
+    ----------
+    node : Node
+        The object. One that was moved has none: it was seen to end.
+    side : tuple[int, int]
+        The direction (columns, rows), one of SIDES.
+    depth : int
+        How far the object may go on, in squares.
+    model : WorldModel
+
+    Returns
+    -------
+    Bools
+        (rows, columns).
     """
     mask = model.mask(node.patch)
     found, last = np.zeros_like(mask), mask
@@ -123,19 +151,36 @@ def hidden_behind(node: Node, side: tuple[int, int], depth: int, model: WorldMod
 
 
 def out_of_wall(node: Node, side: tuple[int, int], depth: int, situation: Situation) -> Pose | None:
-    """Straight away from what it may go on in, by so many squares and one more or as far as that is free, so that it is
-    seen whole; None where it cannot be moved so.
+    """Compute how an object that may go on in a wall is pulled straight out of it, so that it is seen whole.
+
+    Parameters
+    ----------
+    node : Node
+        The object.
+    side : tuple[int, int]
+        The direction (columns, rows) in which it may go on, one of SIDES.
+    depth : int
+        How far, in squares. It is pulled by one square more, or as far as the floor is free.
+    situation : Situation
+
+    Returns
+    -------
+    Pose | None
+        The translation; None when the object cannot be moved at all that way.
     """
     mask, (dx, dy) = situation.model.mask(node.patch), side
     room = np.pad(situation.cost_maps.free(0) | mask, depth + 1)
     rows, columns = np.nonzero(np.pad(mask, depth + 1))
-    out = (step for step in range(1, depth + 2) if not room[rows - step * dy, columns - step * dx].all())
-    far = next(out, depth + 2) - 1
+    blocked = (step for step in range(1, depth + 2) if not room[rows - step * dy, columns - step * dx].all())
+    far = next(blocked, depth + 2) - 1
     return Pose(-float(far * dx), -float(far * dy), 0.0) if far else None
 
 
-def drawn_out(node: Node, needed: Mask, situation: Situation) -> At | None:
-    """Where a thing shall lie first whose squares in what seems to be wall are needed; None for none such."""
+def drawn_out(node: Node, needed: Bools, situation: Situation) -> At | None:
+    """Return the pose to which an object is pulled out of a wall, when squares are needed that it may cover there.
+
+    needed : (rows, columns). Returns None when none of them may belong to the object, or when it cannot be pulled.
+    """
     for depth, side in product(range(DEEPEST, 0, -1), SIDES):
         if (hidden_behind(node, side, depth, situation.model) & needed).any():
             pose = out_of_wall(node, side, depth, situation)
@@ -145,11 +190,11 @@ def drawn_out(node: Node, needed: Mask, situation: Situation) -> At | None:
 
 
 def can_leave(node: Node, situation: Situation) -> bool:
-    """Does Utak, if he has an object in hand, not stand in a nook between that and the walls?"""
+    """Return whether the robot can walk away from an object; False when it holds it and stands in a nook behind it."""
     held = situation.model.held == node.name
     return not held or leads_away(situation.cost_maps.floor, situation.model.mask(node.patch))
 
 
-def leads_away(floor: Mask, thing: Mask) -> bool:
-    """Does floor that he reaches lead further from a thing than a nook beside it? Both (rows, columns)."""
-    return bool((floor & ~grown(thing, NOOK)).any())
+def leads_away(floor: Bools, thing: Bools) -> bool:
+    """Return whether reachable floor leads further than NOOK_RANGE from an object; both masks (rows, columns)."""
+    return bool((floor & ~grown(thing, NOOK_RANGE)).any())

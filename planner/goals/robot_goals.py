@@ -1,4 +1,4 @@
-"""What a goal means on the screen: the squares on which it holds for Utak, or what is missing to tell."""
+"""Destinations: the squares on which a goal holds for the robot, or what is missing to tell."""
 
 import math
 from collections.abc import Sequence
@@ -7,38 +7,50 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import XY, Bools
 from geometry.raster.components import edged
-from kb.language.terms import Fact, Symbol, Term
+from kb.language.terms import Fact, Symbol
 from kb.world.model import WorldModel
 from kb.world.rooms import Rooms
 from planner.screen.projection import Squares, grown
-from planner.sights.frontiers import APART, Viewpoint, frontiers, gaps, jambs, promised, rooms_beyond, short_of
+from planner.sights.frontiers import (
+    APART,
+    Viewpoint,
+    door_jambs,
+    frontiers,
+    likely_gaps,
+    promised,
+    rooms_beyond,
+    short_of,
+)
 from planner.situation import Situation
 
-Mask = NDArray[np.bool_]
-# How much further towards a corner what is not seen may go, in squares east and north added:
-FURTHEST = 45  # at most
-BARE, A_PERCENT = 12, 2  # behind floor that goes on: so many for each percent that it promises more than BARE
-GAP, WIDEST_DOOR = 36, 6  # behind a stretch of floor no wider than a door: at least so many
-WIDELY = 24  # behind floor of another room that goes on more widely: at least so many
-CUT_OFF = 30  # floor that no way leads to yet
-ONWARD = 30  # straight on behind where the floor goes on
-ASIDE = 28  # to either side behind that
-BESIDE_DOOR = 41  # to either side behind what is no wider than a door: over a room, and most of the next
-RAYS = 192  # places along a line of sight at which it may meet the verge
+# How much further towards a corner (east and north added, in squares) unseen floor may go. All were tuned on random
+# worlds (benchmarks.campaign).
+MAX_UNSEEN_REACH = 45  # at most, wherever it goes on
+MIN_CHANCE, REACH_PER_PERCENT = (
+    12,
+    2,
+)  # behind a frontier: so many squares for each percent of its chance over MIN_CHANCE
+NARROW_REACH, MAX_DOOR_SQUARES = 36, 6  # at least so much behind a frontier less than MAX_DOOR_SQUARES wide
+WIDE_REACH = 24  # at least so much behind a wider frontier of another room
+UNREACHED_REACH = 30  # behind floor that no way leads to yet
+ONWARD_REACH = 30  # straight on behind a frontier
+SIDEWARD_REACH = 28  # to either side behind a frontier
+DOOR_SIDEWARD_REACH = 41  # to either side behind a frontier no wider than a door: over a room, and most of the next one
+LINE_SAMPLES = 192  # places along a line of sight at which it may meet the verge (convention)
 
 
 @dataclass(frozen=True)
 class Destination:
-    """Where a goal holds.
+    """The squares on which a goal holds for the robot, and what must be known first.
 
     Attributes
     ----------
-    squares : flat indices, empty while it is not known where.
-    missing : what must be known first, in words; "" when nothing is. Where there are squares, it may hold elsewhere.
-    lookouts : places where just that may be seen; when there are none, any place worth a look is.
+    squares : flat indices on the screen, (n,); empty while it is not known where.
+    missing : in words, what must be known first; "" when nothing is missing. With squares, it may hold elsewhere, too.
+    viewpoints : where just that may be seen; when there are none, any place worth a look may show it.
     """
 
     squares: Squares
@@ -47,45 +59,74 @@ class Destination:
 
 
 def no_way(where: Sequence[Destination]) -> str:
-    """Return why nothing is left when it is known where each of some goals holds, in words."""
+    """Return in words why goals cannot be attained although it is known where each of them holds.
+
+    Parameters
+    ----------
+    where : Sequence[Destination]
+        The destinations of all goals, none of which can be reached.
+
+    Returns
+    -------
+    str
+    """
     both = [set(d.squares.tolist()) for d in where]
     return "no way leads there" if set.intersection(*both) else "there is no place where all of it holds at once"
 
 
 def nowhere(missing: str, viewpoints: tuple[Viewpoint, ...] = ()) -> Destination:
-    """It is not known yet where."""
+    """Return the destination of a goal of which it is not known yet where it holds.
+
+    missing : in words, what must be known first. viewpoints : where that may be seen.
+    """
     return Destination(np.zeros(0, np.int64), missing, viewpoints)
 
 
 def corner_side(goal: Fact) -> str:
-    """Return the side of the corner that a goal is about, such as northeast; "" when it is about none."""
+    """Return the side of the corner that a goal is about, such as "northeast"; "" when it is about no corner."""
     where = goal.args[1] if len(goal.args) > 1 else None
     is_corner = goal.name == "at" and isinstance(where, Symbol) and where.name == "corner"
     return str(where.args[0]) if is_corner and isinstance(where, Symbol) else ""
 
 
 def destination(goal: Fact, situation: Situation) -> Destination:
-    """The squares on which a goal of place (at, in, beside, through with utak) holds."""
+    """Compute the squares on which a goal of place holds for the robot.
+
+    Parameters
+    ----------
+    goal : Fact
+        at, in, beside, through or around with "utak"; or circled, for the squares beside its object.
+    situation : Situation
+
+    Returns
+    -------
+    Destination
+
+    Raises
+    ------
+    ValueError
+        When the goal is none of place.
+    """
     where = goal.args[1]
     if side := corner_side(goal):
-        return corner(side, situation)
+        return corner_destination(side, situation)
     if goal.name == "at" and str(where) == "start":
         return Destination(_within(situation.model, situation.model.frame.origin, 1.0))
     if goal.name in ("at", "beside", "circled"):
-        return beside(str(where), situation)
+        return beside_destination(str(where), situation)
     if goal.name in ("in", "through"):
-        return _room(goal, where, situation)
+        return _room(situation)
     if goal.name == "around":
-        return around_corner(situation)
+        return around_corner_destination(situation)
     raise ValueError(f"not a goal of place: {goal}")
 
 
-def corner(side: str, situation: Situation) -> Destination:
-    """The convex corner of the known floor that lies furthest towards a side of Utak's frame.
+def corner_destination(side: str, situation: Situation) -> Destination:
+    """Return the convex corner of the known floor furthest towards a side of the robot's own frame.
 
-    Where a room is not seen that may go further, it may be another one.
+    Where an unseen room may go further, the corner may be another one: then something is missing.
     """
-    unknown = unknown_corner(side, situation, situation.cost_maps.floor)
+    unknown = missing_for_corner(side, situation, situation.cost_maps.floor)
     if unknown is not None:
         return unknown
     column, row = situation.corners[side].square
@@ -94,11 +135,11 @@ def corner(side: str, situation: Situation) -> Destination:
     return Destination(best, rooms[0].what if rooms else "", rooms)
 
 
-def unknown_corner(side: str, situation: Situation, floor: Mask) -> Destination | None:
-    """What is missing to tell where the corner towards a side is; None when that is known.
+def missing_for_corner(side: str, situation: Situation, floor: Bools) -> Destination | None:
+    """Return what is missing to tell where the corner towards a side is; None when that is known.
 
-    It is not where the floor goes on unseen at its furthest, or is seen beyond walls. floor : (rows, columns) that can
-    be reached.
+    It is not known where the floor goes on unseen at its furthest point, or is seen beyond walls there.
+    floor : (rows, columns), the squares that can be reached.
     """
     model, cost_maps = situation.model, situation.cost_maps
     column, row = situation.corners[side].square
@@ -114,102 +155,119 @@ def unknown_corner(side: str, situation: Situation, floor: Mask) -> Destination 
 
 
 def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
-    """Rooms that are not seen and may go further towards a side than all that is.
+    """Find the unseen rooms that may go further towards a side than all floor that is seen.
 
-    The floor goes on unseen behind what may be a door, or would be one if what may yet be an object is no wall; or
-    behind what is likely a gap; or it is seen where no way leads yet, but one may.
+    The floor may go on unseen behind a door, also behind one that follows if a doubtful wall is an object; or behind a
+    likely gap; or it is seen where no way leads yet. How far it may go is estimated by the constants of this module.
+
+    Parameters
+    ----------
+    side : str
+        A side of the robot's own frame, such as "northeast".
+    situation : Situation
+
+    Returns
+    -------
+    tuple[Viewpoint, ...]
+        Empty when no such room is left.
     """
     cost_maps, model = situation.cost_maps, situation.model
-    divided = [rooms.labels.ravel() for rooms in (situation.rooms, situation.supposed) if rooms.doors]
-    doorways = (situation.rooms.doorways | situation.supposed.doorways).ravel()
+    partitions = [rooms.labels.ravel() for rooms in (situation.rooms, situation.rooms_by_sure_walls) if rooms.doors]
+    doorways = (situation.rooms.doorways | situation.rooms_by_sure_walls.doorways).ravel()
     column, row = situation.corners[side].square
     best = np.array([row * model.labels.shape[1] + column])
-    known = _towards(side, best, model)
+    known = _furthest_towards(side, best, model)
 
-    def short(look: Viewpoint) -> float:
-        return known - _towards(side, look.squares, model)
+    def short(view: Viewpoint) -> float:
+        return known - _furthest_towards(side, view.squares, model)
 
-    def apart(look: Viewpoint) -> bool:
-        return any((labels[look.squares] != labels[best]).any() for labels in divided)
+    def apart(view: Viewpoint) -> bool:
+        return any((labels[view.squares] != labels[best]).any() for labels in partitions)
 
-    def narrow(look: Viewpoint) -> bool:
-        return bool(max(np.ptp(v) for v in np.divmod(look.squares, model.labels.shape[1])) < WIDEST_DOOR)
+    def narrow(view: Viewpoint) -> bool:
+        return bool(max(np.ptp(v) for v in np.divmod(view.squares, model.labels.shape[1])) < MAX_DOOR_SQUARES)
 
-    def reach(look: Viewpoint, least: int, aside: int) -> float:
-        promise = max(A_PERCENT * (look.chance - BARE), least)
-        onward = _onward(side, look.squares, model)
-        sideways = math.sqrt(max(2 - onward**2, 0.0))
-        return min(promise, FURTHEST, ONWARD * max(onward, 0.0) + aside * sideways)
-
-    cut_off = [look for look in rooms_beyond(cost_maps) if short(look) <= CUT_OFF]
-    looks = [look for look in cut_off if cost_maps.nearest(look.squares) is not None]
-    open_ends = [look for look in frontiers(cost_maps, APART) if short(look) <= FURTHEST]
-    likely_ends = [look for look in gaps(cost_maps) if short(look) <= FURTHEST and narrow(look)]
+    unreached = [view for view in rooms_beyond(cost_maps) if short(view) <= UNREACHED_REACH]
+    found = [view for view in unreached if cost_maps.nearest(view.squares) is not None]
+    open_ends = [view for view in frontiers(cost_maps, APART) if short(view) <= MAX_UNSEEN_REACH]
+    likely_ends = [view for view in likely_gaps(cost_maps) if short(view) <= MAX_UNSEEN_REACH and narrow(view)]
     ends = promised(cost_maps, [*open_ends, *likely_ends])
-    for look in ends[: len(open_ends)]:
-        if doorways[look.squares].any():
-            least, aside = FURTHEST, BESIDE_DOOR
-        elif narrow(look):
-            least, aside = GAP, BESIDE_DOOR
-        elif apart(look):
-            least, aside = WIDELY, ASIDE
+    for view in ends[: len(open_ends)]:
+        if doorways[view.squares].any():
+            least, sideward = MAX_UNSEEN_REACH, DOOR_SIDEWARD_REACH
+        elif narrow(view):
+            least, sideward = NARROW_REACH, DOOR_SIDEWARD_REACH
+        elif apart(view):
+            least, sideward = WIDE_REACH, SIDEWARD_REACH
         else:
             continue
-        if short(look) <= reach(look, least, aside):
-            looks.append(look)
-    for look in ends[len(open_ends) :]:
-        near = short_of(cost_maps, look.squares)
-        if len(near) and short(look) <= reach(look, FURTHEST, BESIDE_DOOR):
-            looks.append(look._replace(squares=near))
+        if short(view) <= _unseen_reach(side, view, least, sideward, model):
+            found.append(view)
+    for view in ends[len(open_ends) :]:
+        near = short_of(cost_maps, view.squares)
+        if len(near) and short(view) <= _unseen_reach(side, view, MAX_UNSEEN_REACH, DOOR_SIDEWARD_REACH, model):
+            found.append(view._replace(squares=near))
     what = f"a room is not seen that may go further to the {side}"
-    return tuple(look._replace(what=what) for look in looks)
+    return tuple(view._replace(what=what) for view in found)
+
+
+def _unseen_reach(side: str, view: Viewpoint, least: int, sideward: int, model: WorldModel) -> float:
+    """Estimate how much further towards a corner the floor behind a frontier may go, in squares.
+
+    least : the least reach by the chance of the frontier. sideward : the reach to either side.
+    """
+    promise = max(REACH_PER_PERCENT * (view.chance - MIN_CHANCE), least)
+    onward = _onward(side, view.squares, model)
+    sideways = math.sqrt(max(2 - onward**2, 0.0))
+    return min(promise, MAX_UNSEEN_REACH, ONWARD_REACH * max(onward, 0.0) + sideward * sideways)
 
 
 def _onward(side: str, squares: Squares, model: WorldModel) -> float:
-    """How much further towards a corner, east and north added, a step of one square on from some squares leads.
+    """Compute how much further towards a corner (east and north added) one step into the unseen leads, in squares.
 
-    On is the mean of the directions in which nothing is seen; 1 where they cancel out.
+    The step goes in the mean of the directions in which the squares have unseen neighbours; 1 where they cancel out.
     """
     rows, columns = np.divmod(squares, model.labels.shape[1])
     unseen = np.pad(~model.view.seen, 1, constant_values=True)
     steps = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)])
     x, y = np.array([unseen[rows + 1 + y, columns + 1 + x].sum() for x, y in steps]) @ steps
     far = math.hypot(x, y)
-    return float(_measured(side, *model.frame.to_utak(x / far, y / far))) if far else 1.0
+    return float(_along(side, *model.frame.to_utak(x / far, y / far))) if far else 1.0
 
 
-def _measured(side: str, east: Any, north: Any) -> Any:
-    """How far something lies towards a corner of Utak's frame: east and north added, for northeast."""
+def _along(side: str, east: Any, north: Any) -> Any:
+    """Return how far (east, north) leads towards a corner: for "northeast" east + north, else with signs changed."""
     return (east if "east" in side else -east) + (north if "north" in side else -north)
 
 
-def _towards(side: str, squares: Squares, model: WorldModel) -> float:
-    """How far the furthest of some squares lies towards a corner of Utak's frame: east and north added."""
+def _furthest_towards(side: str, squares: Squares, model: WorldModel) -> float:
+    """Return how far the furthest of some squares lies towards a corner of the robot's own frame, in squares."""
     rows, columns = np.divmod(squares, model.labels.shape[1])
     points = np.stack([columns + model.view.west + 0.5, rows + model.view.south + 0.5])
     east, north = np.column_stack(model.frame.place_to_utak(*points)).T
-    return float(_measured(side, east, north).max())
+    return float(_along(side, east, north).max())
 
 
-def beside(parameter: str, situation: Situation) -> Destination:
-    """The squares from which an object is at most one square away.
+def beside_destination(parameter: str, situation: Situation) -> Destination:
+    """Return the floor that is at most one square away from an object.
 
-    Of those, the ones that share an edge with it, for its outline may end short of the corner of a square; and the
-    ones nearest to its believed outline.
+    Only squares count that share an edge with one of its squares, if there are any: its outline may end short of the
+    corner of a square. Of these only those count that are at most one square from its believed outline, or nearest.
+    parameter : the parameter of the task that means the object.
     """
     node = situation.model.object(situation.binding.get(parameter, ""))
     if node is None:
         return nowhere(f"nothing seen so far is {parameter}")
     mask = situation.model.mask(node.patch)
-    about = grown(mask, 1)
-    near = about & situation.cost_maps.floor
+    around = grown(mask, 1)
+    near = around & situation.cost_maps.floor
     touching = near & edged(mask)
     if touching.any():
         near = touching
     squares = np.flatnonzero(near)
     if not len(squares):
         what = f"no way is seen yet that leads to {parameter}"
-        return nowhere(what, (Viewpoint(np.flatnonzero(about & situation.model.space), what),))
+        return nowhere(what, (Viewpoint(np.flatnonzero(around & situation.model.space), what),))
     if node.polygon is not None:
         rows, columns = np.divmod(squares, near.shape[1])
         view = situation.model.view
@@ -218,20 +276,24 @@ def beside(parameter: str, situation: Situation) -> Destination:
     return Destination(squares)
 
 
-def _room(goal: Fact, where: Term, situation: Situation) -> Destination:
-    beyond, looks = situation.beyond(situation.model.frame.origin)
-    if looks:
-        return nowhere(looks[0].what, looks)
+def _room(situation: Situation) -> Destination:
+    """Return the floor of the rooms next to the one in which the robot woke."""
+    beyond, viewpoints = situation.next_rooms(situation.model.frame.origin)
+    if viewpoints:
+        return nowhere(viewpoints[0].what, viewpoints)
     squares = np.flatnonzero(beyond & situation.cost_maps.floor)
     if len(squares):
         return Destination(squares)
-    what = no_next_room(situation)
+    what = next_room_missing(situation)
     likely = _likely_rooms(situation)
-    return nowhere(what, (*likely, *doorsteps(situation, tried=bool(likely))))
+    return nowhere(what, (*likely, *door_viewpoints(situation, tried=bool(likely))))
 
 
-def no_next_room(situation: Situation) -> str:
-    """Why no next room is known, in words: no door is, and what comes nearest to be one; or none can be reached."""
+def next_room_missing(situation: Situation) -> str:
+    """Return in words why no next room is known: none can be reached, or no neck is a door.
+
+    Then the neck that comes nearest to being a door is named.
+    """
     model, opening = situation.model, situation.rooms.opening
     if situation.rooms.sure:
         return "no next room is seen yet that can be reached"
@@ -247,52 +309,66 @@ def no_next_room(situation: Situation) -> str:
 
 
 def _likely_rooms(situation: Situation) -> list[Viewpoint]:
-    """What lies beyond likely doors, until he has been there: on his way he sees whether they are some."""
+    """List the rooms beyond likely doors, none once the robot looked from one: the way there tests the doors."""
     model = situation.model
-    rooms, beyond = situation.likely_beyond(model.frame.origin)
+    rooms, beyond = situation.likely_next_rooms(model.frame.origin)
     beyond &= situation.cost_maps.floor
     if (beyond & situation.cost_maps.looked_from).any():
         return []
-    found = [np.flatnonzero(beyond & (rooms.labels == n)) for n in numbers(rooms, beyond)]
+    found = [np.flatnonzero(beyond & (rooms.labels == n)) for n in room_numbers(rooms, beyond)]
     return [Viewpoint(squares, "a door seems to lead there") for squares in found]
 
 
-def numbers(rooms: Rooms, mask: Mask) -> list[int]:
-    """The rooms that have squares of a mask."""
+def room_numbers(rooms: Rooms, mask: Bools) -> list[int]:
+    """Return the numbers of the rooms that have squares of a mask, in ascending order."""
     return [int(number) for number in np.unique(rooms.labels[mask])]
 
 
-def doorsteps(situation: Situation, tried: bool = False) -> tuple[Viewpoint, ...]:
-    """Where to look for a door: at what may be one, and for a way to floor that is seen and cannot be reached yet.
+def door_viewpoints(situation: Situation, tried: bool = False) -> tuple[Viewpoint, ...]:
+    """Find where a door may come into sight: at possible doors, and at floor that is seen and cannot be reached yet.
 
-    tried : likely doors are gone through, and not looked at.
+    tried : whether likely doors are left out, because the robot goes through them anyway.
     """
-    doubtful = jambs(situation.cost_maps, [door for door in situation.rooms.doors if not (tried and door.likely)])
-    return (*doubtful, *rooms_beyond(situation.cost_maps))
+    doors = [door for door in situation.rooms.doors if not (tried and door.likely)]
+    return (*door_jambs(situation.cost_maps, doors), *rooms_beyond(situation.cost_maps))
 
 
-def around_corner(situation: Situation) -> Destination:
-    """The squares wholly out of sight of the place where Utak woke: a corner of the verge lies in between."""
+def around_corner_destination(situation: Situation) -> Destination:
+    """Return the floor wholly out of sight of the place where the robot woke: a corner of the verge lies in between."""
     model = situation.model
     squares = np.flatnonzero(out_of_sight(model.verge, model, model.frame.origin) & situation.cost_maps.floor)
     return Destination(squares) if len(squares) else nowhere("no corner is seen yet that hides a place")
 
 
-def out_of_sight(verge: Mask, model: WorldModel, place: tuple[float, float]) -> Mask:
-    """(rows, columns): squares none of whose corners is seen from a point of the lattice past a verge."""
+def out_of_sight(verge: Bools, model: WorldModel, place: XY) -> Bools:
+    """Compute the squares none of whose corners is seen from a point past a verge.
+
+    Parameters
+    ----------
+    verge : Bools
+        (rows, columns), the squares that block the sight.
+    model : WorldModel
+    place : XY
+        A point of the map frame, in squares.
+
+    Returns
+    -------
+    Bools
+        (rows, columns). Lines of sight are sampled at LINE_SAMPLES places.
+    """
     height, width = verge.shape
     x, y = place[0] - model.view.west, place[1] - model.view.south
     corners = np.stack(np.meshgrid(np.arange(width + 1), np.arange(height + 1)), axis=-1).astype(float)
     hidden = np.zeros(corners.shape[:2], np.bool_)
-    for part in (np.arange(RAYS) + 0.5) / RAYS:
+    for part in (np.arange(LINE_SAMPLES) + 0.5) / LINE_SAMPLES:
         columns, rows = np.moveaxis(np.floor((1 - part) * np.array([x, y]) + part * corners).astype(int), -1, 0)
         hidden |= verge[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)]
-    mask: Mask = hidden[:-1, :-1] & hidden[1:, :-1] & hidden[:-1, 1:] & hidden[1:, 1:]
+    mask: Bools = hidden[:-1, :-1] & hidden[1:, :-1] & hidden[:-1, 1:] & hidden[1:, 1:]
     return mask
 
 
-def _within(model: WorldModel, point: tuple[float, float], reach: float) -> Squares:
-    """The squares whose centres are within so many squares of a point, in each axis."""
+def _within(model: WorldModel, point: XY, reach: float) -> Squares:
+    """Return the squares whose centres are less than `reach` squares from a point in each axis, and the point's own."""
     row, column = model.view.locate(*point)
     rows, columns = np.ogrid[: model.labels.shape[0], : model.labels.shape[1]]
     x, y = point[0] - model.view.west, point[1] - model.view.south
@@ -302,6 +378,6 @@ def _within(model: WorldModel, point: tuple[float, float], reach: float) -> Squa
 
 
 def contains(squares: Squares, model: WorldModel) -> bool:
-    """Does Utak stand on one of these squares?"""
+    """Return whether the robot stands on one of some squares (flat indices on the view)."""
     row, column = model.view.locate(*model.place)
     return bool((squares == row * model.labels.shape[1] + column).any())

@@ -1,1 +1,11 @@
-"""."""
+"""Navigation: which subgoal to pursue, and by which route.
+
+Modules, in reading order:
+
+subgoals      Subgoal, choose: what is worth doing now, and the choice among it (planner/asp/aims.lp)
+routes        PlannedRoute: routes by one of three path-finders, and the choice among them (planner/asp/routes.lp)
+encircle      routes that wind once around an object
+sticky_route  StickyRoute: the route under way, kept while it holds
+fewest_moves  FewestMoves: subgoals that one or two straight moves reach
+loop_guard    LoopGuard: loop detection, and the price of subgoals that led in a loop
+"""

@@ -1,34 +1,45 @@
-"""Circling: a closed track that winds once about an object.
+"""Encircling: a closed track that winds once around an object.
 
-The track walked so far, closed by the way that is still to go, must cross a ray from the object once, with sign. So
-what remains is a way to the
-start with a certain crossing number; geometry finds the shortest of each, and the choice between going left and going
-right is made like any other choice among topologically distinct routes.
+The track walked so far, closed by the rest of the way, must cross a ray from the object once, with sign. So what
+remains is a way to the start with a certain crossing number. Geometry finds the shortest way for each sense of
+rotation. The choice between them is made like any other choice among topologically distinct routes.
 """
 
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import XY, Floats, Square
 from geometry.raster.winding import MOST, crossings, winding_way
 from kb.world.model import Node, WorldModel
 from planner.navigation.routes import PlannedRoute
 from planner.screen.projection import UNSEEN, CostMaps
-from planner.screen.sweeps import Square
-
-Place = tuple[float, float]
 
 
-def winding(track: Sequence[Place], node: Node) -> int:
-    """How often a track (points of the lattice), closed by its first point, winds about an object."""
+def winding(track: Sequence[XY], node: Node) -> int:
+    """Compute the winding number of a track around an object, counter-clockwise positive.
+
+    track : points of the map frame, closed by its first point.
+    """
     return crossings(_centred([*track, track[0]]), pivot(node))
 
 
-def ways_round(cost_maps: CostMaps, track: Sequence[Place], node: Node) -> dict[int, PlannedRoute]:
-    """The ways, at the most certain level, that complete one turn about an object and end where the track began.
+def ways_round(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> dict[int, PlannedRoute]:
+    """Find the routes that complete one turn around an object and end where the track began.
 
-    By the sign of the turn: 1 counter-clockwise, -1 clockwise.
+    Parameters
+    ----------
+    cost_maps : CostMaps
+    track : Sequence[XY]
+        Where the robot has been since it began to encircle the object, points of the map frame.
+    node : Node
+        The object.
+
+    Returns
+    -------
+    dict[int, PlannedRoute]
+        The route by the sense of rotation: 1 counter-clockwise, -1 clockwise. All are of the surest certainty level at
+        which there is one; empty when there is none at any level.
     """
     model = cost_maps.model
     x, y = pivot(node)
@@ -37,9 +48,7 @@ def ways_round(cost_maps: CostMaps, track: Sequence[Place], node: Node) -> dict[
     done = crossings(_centred(track), (x, y))
     for level in range(UNSEEN + 1):
         free = cost_maps.free(level) & ~model.mask(node.patch)
-        free[cost_maps.here[1], cost_maps.here[0]] = (
-            True  # a thing seen coarsely may seem to reach as far as his square
-        )
+        free[cost_maps.here[1], cost_maps.here[0]] = True  # an object seen coarsely may seem to cover it
         if not free[goal[1], goal[0]]:
             continue
         found = {}
@@ -47,20 +56,20 @@ def ways_round(cost_maps: CostMaps, track: Sequence[Place], node: Node) -> dict[
             number = turn - done
             squares = winding_way(free, cost_maps.here, goal, about, number) if abs(number) <= MOST else None
             if squares and len(squares) > 1:
-                found[turn] = _way(squares, level)
+                found[turn] = _route(squares, level)
         if found:
             return found
     return {}
 
 
-def _centred(track: Sequence[Place]) -> NDArray[np.float64]:
-    """(n, 2): a track by the centres of its squares, as a way is told: so both count on one side of the ray."""
-    centres: NDArray[np.float64] = np.floor(np.array(track)) + 0.5
+def _centred(track: Sequence[XY]) -> Floats:
+    """Move each point of a track to the centre of its square, (n, 2): routes are made of centres, too."""
+    centres: Floats = np.floor(np.array(track)) + 0.5
     return centres
 
 
-def _way(squares: Sequence[Square], level: int) -> PlannedRoute:
-    """A way as an edge-connected path: a diagonal step is made by the square beside it."""
+def _route(squares: Sequence[Square], level: int) -> PlannedRoute:
+    """Make an edge-connected route of squares connected by edge or corner: diagonal steps get a square between."""
     path = [squares[0]]
     for column, row in squares[1:]:
         if column != path[-1][0] and row != path[-1][1]:
@@ -70,13 +79,14 @@ def _way(squares: Sequence[Square], level: int) -> PlannedRoute:
     return PlannedRoute(tuple(path), length, 0.5, level)
 
 
-def pivot(node: Node) -> Place:
-    """A point within the object: the centre of its square nearest to its middle."""
+def pivot(node: Node) -> XY:
+    """Return a point within the object, map frame: the centre of its square nearest to its middle."""
     x, y = node.patch.centre
     column, row = min(node.patch.squares(), key=lambda s: (round(np.hypot(s[0] + 0.5 - x, s[1] + 0.5 - y), 6), s))
     return column + 0.5, row + 0.5
 
 
-def _square(place: Place, model: WorldModel) -> Square:
+def _square(place: XY, model: WorldModel) -> Square:
+    """Return the square (column, row) of the view that holds a point of the map frame."""
     row, column = model.view.locate(*place)
     return column, row

@@ -1,8 +1,7 @@
-"""Where to look next by the fewest straight moves, for who counts commands and not squares: who carries things.
+"""Routes of the fewest straight moves, for a robot that carries objects and counts commands, not squares of way.
 
-A way along walls bends at every corner of theirs. Often an aim can be met at a square that a single move leads to, or
-by way of one that a second move leads on from, and little is lost by going further; least of all where something comes
-into sight by that.
+A route along walls bends at every corner of theirs. Often one straight move reaches some square of the subgoal, or two
+moves do, and the detour costs little. It costs least where unseen squares come into sight at the turn.
 """
 
 import math
@@ -11,36 +10,41 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Bools, Square
 from geometry.raster.line_of_sight import straight
 from planner.navigation.routes import PlannedRoute
 from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import HURRY, one_move
 from planner.screen.projection import CostMaps, Squares
-from planner.screen.sweeps import Square
+from planner.subgoal_kind import SubgoalKind
 
-MOVE, WAY = 20.0, 0.3  # what a move, and a square of way, cost
-SHOWN = 0.05  # squares of way that it is worth when a square never seen comes into sight where he turns
-MANY_MOVES = 3  # that a way with more bends than one is taken for
-TRIED = 8  # squares of an aim to which two moves are sought
-Mask = NDArray[np.bool_]
+MOVE, WAY = 20.0, 0.3  # the cost of a move, and of each square of its way, in squares of ordinary way (tuned)
+SEEN_SQUARE_VALUE = (
+    0.05  # squares of way that an unseen square in sight from the turn is worth (tuned on random worlds)
+)
+ASSUMED_MOVES = 3  # the number of moves that is assumed for a route of more than two
+MAX_TRIED_SQUARES = 8  # squares of a subgoal to which two moves are sought (tuned: more take time and gain little)
 
 
 class FewestMoves:
-    """What straight moves lead to from where Utak stands, worked out when it is asked for."""
+    """The squares that one or two straight moves reach from where the robot stands; computed at first use."""
 
     def __init__(self, cost_maps: CostMaps) -> None:
         self._cost_maps = cost_maps
-        self._reached: dict[tuple[int, bool], Mask] = {}  # by how far a move leads at most, and whether up to a thing
-        self._by_way: dict[tuple[str, bytes], Square | None] = {}
+        self._reached: dict[tuple[int, bool], Bools] = {}  # by the greatest length, and whether to inspect an object
+        self._turns: dict[tuple[str, bytes], Square | None] = {}  # by the kind and the squares of the subgoal
 
     def priced(self, subgoals: Sequence[Subgoal]) -> list[Subgoal]:
-        """The aims: met at a square that one move leads to, where there is such a one; others dearer."""
+        """Return the subgoals with prices by their number of moves.
+
+        A subgoal that one move reaches keeps only the squares that it reaches.
+        """
         return [self._priced(subgoal) for subgoal in subgoals]
 
     def way(self, subgoal: Subgoal) -> PlannedRoute | None:
-        """The way to an aim that one or two moves lead to, as its first move; None for others.
+        """Return the first move to a subgoal that one or two moves reach, as a route of two squares.
 
-        What clearance it has is not measured: 0.
+        Returns None for all other subgoals. The clearance is not computed: 0.
         """
         here, near = self._cost_maps.here, self._met(subgoal)
         if len(near):
@@ -51,11 +55,11 @@ class FewestMoves:
 
     @property
     def _far(self) -> NDArray[np.int32]:
-        """(squares,): the way to each square of the screen, in fifths of squares; -1 where none surely leads."""
+        """The distance of each square of the screen, (n,), in fifths of squares; -1 where no way is sure."""
         return self._cost_maps.distances[0].ravel()
 
     def _priced(self, subgoal: Subgoal) -> Subgoal:
-        """An aim whose way and price come to what its moves cost."""
+        """Return a subgoal whose price, with its way, comes to the cost of its moves."""
         reached = self._cost_maps.nearest(subgoal.squares) if len(subgoal.squares) else None
         if reached is None:
             return subgoal
@@ -64,46 +68,49 @@ class FewestMoves:
             subgoal, reached, moves = subgoal._replace(squares=near), self._cost_maps.nearest(near) or reached, 1
         else:
             turning = reached.level == 0 and self._turning(subgoal) is not None
-            moves = 2 if turning else MANY_MOVES
+            moves = 2 if turning else ASSUMED_MOVES
         return subgoal._replace(price=subgoal.price + MOVE * moves - (1 - WAY) * reached.cost)
 
     def _met(self, subgoal: Subgoal) -> Squares:
-        """The squares of an aim to which one move leads."""
+        """Return the squares of a subgoal that one move reaches."""
         near: Squares = subgoal.squares[self._first(subgoal.kind).ravel()[subgoal.squares]]
         return near
 
-    def _first(self, kind: str) -> Mask:
-        """(rows, columns): the squares to which one move leads, by the kind of its aim."""
-        key = HURRY.most(kind, self._cost_maps.model), kind == "inspect"
+    def _first(self, kind: str) -> Bools:
+        """Return all squares that one move reaches, (rows, columns), by the kind of the subgoal."""
+        key = HURRY.most(kind, self._cost_maps.model), kind == SubgoalKind.INSPECT
         if key not in self._reached:
             self._reached[key] = one_move(self._cost_maps, kind)
         return self._reached[key]
 
     def _turning(self, subgoal: Subgoal) -> Square | None:
-        """Where the first of two moves to an aim ends, if two will do: on a short way, and where he sees more."""
+        """Return the square where the first of two moves to a subgoal ends; None when two moves do not reach it."""
         key = (subgoal.kind, subgoal.squares.tobytes())
-        if key not in self._by_way:
-            self._by_way[key] = self._found(subgoal)
-        return self._by_way[key]
+        if key not in self._turns:
+            self._turns[key] = self._best_turn(subgoal)
+        return self._turns[key]
 
-    def _found(self, subgoal: Subgoal) -> Square | None:
-        cost_maps, ground = self._cost_maps, HURRY.ground(self._cost_maps, subgoal.kind)
-        sure = subgoal.squares[(self._far[subgoal.squares] >= 0) & ground.ravel()[subgoal.squares]]
+    def _best_turn(self, subgoal: Subgoal) -> Square | None:
+        """Search the turn of least way, less the worth of the unseen squares in sight from it."""
+        cost_maps, passable = self._cost_maps, HURRY.passable(self._cost_maps, subgoal.kind)
+        sure = subgoal.squares[(self._far[subgoal.squares] >= 0) & passable.ravel()[subgoal.squares]]
         nearest = sure[np.argsort(self._far[sure], kind="stable")]
-        some = nearest[np.unique(np.linspace(0, len(nearest) - 1, TRIED).astype(int))] if len(nearest) else nearest
+        if len(nearest):
+            nearest = nearest[np.unique(np.linspace(0, len(nearest) - 1, MAX_TRIED_SQUARES).astype(int))]
         (x, y), best, found = cost_maps.here, np.inf, None
-        first = self._first(subgoal.kind)
-        for end in some.tolist():
+        first, longest = self._first(subgoal.kind), HURRY.longest_by_kind[subgoal.kind]
+        for end in nearest.tolist():
             column, row = self._square(end)
-            rows, columns = np.nonzero(straight(ground, column, row, HURRY.longest[subgoal.kind], first))
+            rows, columns = np.nonzero(straight(passable, column, row, longest, first))
             if len(rows):
                 lengths = np.hypot(rows - y, columns - x) + np.hypot(rows - row, columns - column)
-                lengths = lengths - SHOWN * cost_maps.gain[rows, columns]
+                lengths = lengths - SEEN_SQUARE_VALUE * cost_maps.information_gain[rows, columns]
                 if lengths.min() < best:
                     best, k = lengths.min(), lengths.argmin()
                     found = (int(columns[k]), int(rows[k]))
         return found
 
     def _square(self, flat: int) -> Square:
+        """Return the square (column, row) of a flat index."""
         row, column = divmod(flat, self._cost_maps.safe.shape[1])
         return column, row

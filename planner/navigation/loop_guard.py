@@ -1,7 +1,7 @@
-"""Going round in circles: the same command in the same state of belief leads where it led before.
+"""Loop detection: the same command in the same state of belief leads where it led before.
 
-What a walk was to show it has not shown then, and whatever made it seem worth while will do so again. So the aim that
-leads there gets dearer, until another one is chosen; what is chosen all the same is given up, until more is known.
+Then the walk has not shown what it was made for, and the robot would make it again. So the subgoal that leads there
+becomes dearer, until another one is chosen. A subgoal that is chosen all the same is given up until more is known.
 """
 
 from collections import Counter
@@ -10,63 +10,76 @@ from dataclasses import astuple
 
 import numpy as np
 
+from geometry.kernels.arrays import Longs, Square
 from kb.body import Command
 from kb.mapping.occupancy import OPEN
 from kb.world.model import WorldModel
 from planner.navigation.subgoals import Subgoal
-from planner.screen.sweeps import Square
 
-WEARY = 25.0  # squares that an aim gets dearer each time
-MOST = 4  # times that an aim may lead in circles before it is given up
-DIGITS = 3  # of places and commands: what differs by less is the same
-State = tuple[object, ...]
+LOOP_COST = 25.0  # squares by which each loop makes a subgoal dearer (tuned on random worlds)
+MAX_LOOPS = 4  # loops after which a subgoal is given up (tuned on random worlds)
+STATE_DIGITS = 3  # decimals of places and commands, in squares or degrees; smaller differences count as none
+StateKey = tuple[object, ...]
 
 
 class LoopGuard:
-    """Remembers what was done in which state of belief, and which squares were aimed at in vain."""
+    """Remembers which command was given in which state of belief, and which subgoals led in a loop."""
 
     def __init__(self) -> None:
-        self._done: set[tuple[State, State]] = set()
-        self._vain: Counter[Square] = Counter()  # of the lattice
-        self._known: State = ()  # when they were
+        self._given: set[tuple[StateKey, StateKey]] = set()
+        self._loops: Counter[Square] = Counter()  # by square of a subgoal, map frame
+        self._known: StateKey = ()  # the state of knowledge in which the loops were counted
 
     def noticed(self, model: WorldModel, command: Command) -> bool:
-        """Was this command given before when just as much was known? It is remembered that it is given now."""
+        """Return whether a command was given before at this place with the same knowledge, and remember it."""
         x, y = model.place
-        told = tuple(round(v, DIGITS) if isinstance(v, float) else v for v in astuple(command))
-        key = (round(x, DIGITS), round(y, DIGITS), model.held, _known(model)), (type(command).__name__, *told)
-        again = key in self._done
-        self._done.add(key)
+        values = tuple(round(v, STATE_DIGITS) if isinstance(v, float) else v for v in astuple(command))
+        state = (round(x, STATE_DIGITS), round(y, STATE_DIGITS), model.held, _knowledge(model))
+        key = state, (type(command).__name__, *values)
+        again = key in self._given
+        self._given.add(key)
         return again
 
     def tire(self, squares: frozenset[Square]) -> None:
-        """An aim at these squares of the lattice led in circles."""
-        self._vain.update(squares)
+        """Count one more loop for a subgoal with these squares of the map frame."""
+        self._loops.update(squares)
 
     def priced(self, subgoals: Sequence[Subgoal], model: WorldModel) -> list[Subgoal]:
-        """The aims, dearer by what was aimed at in vain; without those that were so too often."""
-        known = _known(model)
+        """Return the subgoals, dearer by LOOP_COST for each of their loops, without those that reached MAX_LOOPS.
+
+        All loops are forgotten as soon as more is known.
+        """
+        known = _knowledge(model)
         if known != self._known:
             self._known = known
-            self._vain.clear()
-        if not self._vain:
+            self._loops.clear()
+        if not self._loops:
             return list(subgoals)
-        rows, columns = model.labels.shape
-        vain = np.zeros((rows, columns), np.int64)
-        for (x, y), times in self._vain.items():
-            row, column = y - model.view.south, x - model.view.west
-            if 0 <= row < rows and 0 <= column < columns:
-                vain[row, column] = times
+        loops = self._on_view(model)
         found = []
         for subgoal in subgoals:
-            times = int(vain.ravel()[subgoal.squares].max(initial=0))
-            if times < MOST:
-                found.append(subgoal._replace(price=subgoal.price + WEARY * times))
+            times = int(loops.ravel()[subgoal.squares].max(initial=0))
+            if times < MAX_LOOPS:
+                found.append(subgoal._replace(price=subgoal.price + LOOP_COST * times))
         return found
 
+    def _on_view(self, model: WorldModel) -> Longs:
+        """Return the number of loops of each square, (rows, columns)."""
+        rows, columns = model.labels.shape
+        loops = np.zeros((rows, columns), np.int64)
+        for (x, y), times in self._loops.items():
+            row, column = y - model.view.south, x - model.view.west
+            if 0 <= row < rows and 0 <= column < columns:
+                loops[row, column] = times
+        return loops
 
-def _known(model: WorldModel) -> State:
-    """What tells whether anything new is known: how much was seen and is settled, what stopped him, where loads lie."""
+
+def _knowledge(model: WorldModel) -> StateKey:
+    """Return what changes when something new is known.
+
+    That are the numbers of seen squares, of settled squares and of squares that stopped a motion, and the places of the
+    objects that moved or were stuck.
+    """
     settled = int((model.view.state != OPEN).sum())
     things = tuple(
         (node.name, node.stuck, node.patch.west, node.patch.south) for node in model.objects if node.moved or node.stuck

@@ -1,35 +1,39 @@
-"""Ways over a screen, by one of the paper's three path-finders, and the choice among them (planner/asp/routes.lp).
+"""Routes over a screen by one of the paper's three path-finders, and the choice among them (planner/asp/routes.lp).
 
-Geometry finds topologically distinct routes; their lengths, clearances and risks go to the encoding as facts, with
-the doors they lead through.
+Geometry finds topologically distinct routes. Their lengths, clearances and risks become facts, with the doors that they
+lead through.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geometry import Screen
+from geometry.kernels.arrays import XY, Bools, Floats, Square
 from geometry.pathfinders.grid_astar import grid_way
 from geometry.pathfinders.visibility_graph import visibility_way
 from kb.reasoning.solver import solve
 from kb.world.rooms import Door, crosses
-from planner.navigation.subgoals import ASP
-from planner.screen.projection import CostMaps
-from planner.screen.sweeps import Square, squares_along
+from planner.navigation.subgoals import ASP, TENTHS
+from planner.screen.projection import CostMaps, Squares
+from planner.screen.sweeps import squares_along
 
-Mask = NDArray[np.bool_]
-Points = Sequence[tuple[float, float]]
-ROUTES = 4  # topologically distinct routes that are offered for a choice
-SHARED = 0.6  # of a way's squares: then it continues the one before
+MAX_ROUTES = 4  # topologically distinct routes that are offered for a choice (tuned on random worlds)
+MIN_SHARED = (
+    0.6  # a route that has more than this share of its squares in common with the last one continues it (tuned)
+)
 
 
 class PlannedRoute(NamedTuple):
-    """A way that geometry found.
+    """A route that geometry found.
 
-    squares : (column, row), edge-connected and free. length, clearance : in squares.
-    level : of certainty, 0 the surest (planner.screen.projection).
+    Attributes
+    ----------
+    squares : (column, row), edge-connected and free, from the robot's square to the goal.
+    length : in squares.
+    clearance : the least distance from the route to a square that is not free, in squares.
+    level : the certainty level of its squares, 0 the surest (planner.screen.projection).
     """
 
     squares: tuple[Square, ...]
@@ -38,28 +42,28 @@ class PlannedRoute(NamedTuple):
     level: int
 
 
-Line = tuple[list[list[float]], float, float]  # points (x, y), length, clearance
-PathFinder = Callable[[Mask, Square, Square], list[Line]]
+Line = tuple[list[list[float]], float, float]  # points (x, y) in the view frame, length and clearance, all in squares
+PathFinder = Callable[[Bools, Square, Square], list[Line]]  # of free squares (rows, columns), the start and the goal
 
 
-def by_skeleton(free: Mask, here: Square, there: Square) -> list[Line]:
-    """Tight routes, one for each class, from the pathgraph of the skeleton: (points, length, clearance) of each."""
-    routes = Screen(free).routes(_centre(here), _centre(there), k=ROUTES)
+def by_skeleton(free: Bools, start: Square, goal: Square) -> list[Line]:
+    """Find the tight routes of the shortest topological classes, from the pathgraph of the skeleton."""
+    routes = Screen(free).routes(_centre(start), _centre(goal), k=MAX_ROUTES)
     return [(route.points.tolist(), route.length, route.clearance) for route in routes]
 
 
-def by_visibility(free: Mask, here: Square, there: Square) -> list[Line]:
-    """The shortest way along lines of visibility between extreme points of obstacles, as Shakey went."""
-    return _single(free, visibility_way(free, _centre(here), _centre(there)))
+def by_visibility(free: Bools, start: Square, goal: Square) -> list[Line]:
+    """Find the shortest route along lines of visibility between extreme points of obstacles, as Shakey's."""
+    return _single(free, visibility_way(free, _centre(start), _centre(goal)))
 
 
-def by_grid(free: Mask, here: Square, there: Square) -> list[Line]:
-    """The shortest way over the squares and their eight neighbours, by A*."""
-    return _single(free, grid_way(free, _centre(here), _centre(there)))
+def by_grid(free: Bools, start: Square, goal: Square) -> list[Line]:
+    """Find the shortest route over the squares and their eight neighbours, by A*."""
+    return _single(free, grid_way(free, _centre(start), _centre(goal)))
 
 
-def _single(free: Mask, points: NDArray[np.float64] | None) -> list[Line]:
-    """A path-finder's only way, with its length and the clearance of the squares that it touches."""
+def _single(free: Bools, points: Floats | None) -> list[Line]:
+    """Return the only route of a path-finder, with its length and the clearance of the squares that it touches."""
     if points is None:
         return []
     line = points.tolist()
@@ -68,18 +72,34 @@ def _single(free: Mask, points: NDArray[np.float64] | None) -> list[Line]:
     return [(line, length, float(Screen(free).clearance[rows, columns].min()))]
 
 
-FINDERS: Mapping[str, PathFinder] = {"skeleton": by_skeleton, "visibility": by_visibility, "grid": by_grid}
+PATH_FINDERS: Mapping[str, PathFinder] = {"skeleton": by_skeleton, "visibility": by_visibility, "grid": by_grid}
 
 
-def ways(cost_maps: CostMaps, level: int, goals: NDArray[np.int64], finder: str) -> list[PlannedRoute]:
-    """Topologically distinct ways, at a level of certainty, to the nearest square that can be reached of some."""
+def ways(cost_maps: CostMaps, level: int, goals: Squares, finder: str) -> list[PlannedRoute]:
+    """Find topologically distinct routes to the nearest reachable square of `goals`.
+
+    Parameters
+    ----------
+    cost_maps : CostMaps
+    level : int
+        The certainty level of the squares that may be crossed; at least one goal can be reached at it.
+    goals : Squares
+        Flat indices on the screen.
+    finder : str
+        A key of PATH_FINDERS.
+
+    Returns
+    -------
+    list[PlannedRoute]
+        Shortest first; a single route of one square when the robot is there.
+    """
     free, distances = cost_maps.free(level), cost_maps.distances[level].ravel()
     reached = goals[distances[goals] >= 0]
     row, column = divmod(int(reached[np.argmin(distances[reached])]), free.shape[1])
     if (column, row) == cost_maps.here:
         return [PlannedRoute((cost_maps.here,), 0.0, 0.0, level)]
-    found = FINDERS[finder](free, cost_maps.here, (column, row))
-    return [PlannedRoute(tuple(squares_along(free, points)), length, clear, level) for points, length, clear in found]
+    lines = PATH_FINDERS[finder](free, cost_maps.here, (column, row))
+    return [PlannedRoute(tuple(squares_along(free, points)), length, clear, level) for points, length, clear in lines]
 
 
 def choose_way(
@@ -89,27 +109,42 @@ def choose_way(
     doors: Sequence[Door],
     forbidden: frozenset[str],
 ) -> PlannedRoute | None:
-    """The way that kb rules prefer; None when every one of them is forbidden.
+    """Choose one of some routes, by planner/asp/routes.lp.
 
-    before : the squares of the way chosen last time. doors : known doors. forbidden : those that the task forbids.
+    Parameters
+    ----------
+    offered : Sequence[PlannedRoute]
+    cost_maps : CostMaps
+    before : frozenset[Square]
+        The squares (column, row) of the route chosen last time.
+    doors : Sequence[Door]
+        The known doors.
+    forbidden : frozenset[str]
+        The names of the doors that the task forbids.
+
+    Returns
+    -------
+    PlannedRoute | None
+        None when every route leads through a forbidden door.
     """
     facts = [f"not_through({door})" for door in sorted(forbidden)]
-    for number, way in enumerate(offered):
-        columns, rows = np.array(way.squares).T
+    for number, route in enumerate(offered):
+        columns, rows = np.array(route.squares).T
         risk = round(100 * float(cost_maps.model.view.probability[rows[1:], columns[1:]].sum()))
-        facts.append(f"route({number},{round(10 * way.length)},{round(10 * way.clearance)},{risk})")
-        facts += [f"through({number},{door.name})" for door in doors if leads_through(way, door)]
-        if len(before.intersection(way.squares)) > SHARED * len(way.squares):
+        facts.append(f"route({number},{round(TENTHS * route.length)},{round(TENTHS * route.clearance)},{risk})")
+        facts += [f"through({number},{door.name})" for door in doors if leads_through(route, door)]
+        if len(before.intersection(route.squares)) > MIN_SHARED * len(route.squares):
             facts.append(f"last({number})")
     answer = solve([ASP / "routes.lp"], facts)
     return offered[answer[0].arguments[0].number] if answer else None
 
 
-def leads_through(way: PlannedRoute, door: Door) -> bool:
-    """Does a way cross the neck of a door, and not come back?"""
-    points = np.array(way.squares) + 0.5
+def leads_through(route: PlannedRoute, door: Door) -> bool:
+    """Return whether a route crosses the neck of a door an odd number of times, and so ends on its other side."""
+    points = np.array(route.squares) + 0.5
     return bool(crosses(points, door) % 2)
 
 
-def _centre(square: Square) -> tuple[float, float]:
+def _centre(square: Square) -> XY:
+    """Return the centre (x, y) of a square."""
     return square[0] + 0.5, square[1] + 0.5

@@ -1,40 +1,58 @@
-"""The way that he is on, and what he aims at: kept while it holds, on the lattice, however the view grows."""
+"""The sticky route: the route under way and its subgoal, kept while they hold.
+
+Both are kept in the map frame, so that they stay valid when the view grows.
+"""
 
 import numpy as np
 
+from geometry.kernels.arrays import Square
 from kb.world.model import WorldModel
 from planner.navigation.routes import PlannedRoute
 from planner.navigation.subgoals import Subgoal
 from planner.screen.projection import CostMaps, Squares
-from planner.screen.sweeps import Square
 
 
 class StickyRoute:
-    """Remembers the squares of the lattice that were aimed at, and those of the way there."""
+    """Remembers the squares of the present route and of its subgoal, in the map frame."""
 
     def __init__(self) -> None:
-        self._aimed: frozenset[Square] = frozenset()
+        self._subgoal: frozenset[Square] = frozenset()
         self._path: tuple[Square, ...] = ()
-        self._level = 0  # of certainty of the way
+        self._level = 0  # the certainty level of the route
 
-    def keep(self, way: PlannedRoute, aimed: frozenset[Square], model: WorldModel) -> None:
-        """Remember a way, and the squares of the lattice that are aimed at by it."""
+    def keep(self, route: PlannedRoute, subgoal: frozenset[Square], model: WorldModel) -> None:
+        """Remember a route of the present view, and the squares of its subgoal in the map frame."""
         view = model.view
-        self._path = tuple((column + view.west, row + view.south) for column, row in way.squares)
-        self._aimed, self._level = aimed, way.level
+        self._path = tuple((column + view.west, row + view.south) for column, row in route.squares)
+        self._subgoal, self._level = subgoal, route.level
 
     def path(self, model: WorldModel) -> list[Square]:
-        """The squares (column, row) of the way, on the arrays of the view."""
+        """Return the squares (column, row) of the route, on the arrays of the present view."""
         return [(x - model.view.west, y - model.view.south) for x, y in self._path]
 
     def subgoal(self, model: WorldModel) -> frozenset[int]:
-        """The squares aimed at last time, as flat indices of this view."""
+        """Return the squares of the subgoal, as flat indices on the present view."""
         rows, columns = model.labels.shape
-        places = ((y - model.view.south, x - model.view.west) for x, y in self._aimed)
+        places = ((y - model.view.south, x - model.view.west) for x, y in self._subgoal)
         return frozenset(row * columns + column for row, column in places if 0 <= row < rows and 0 <= column < columns)
 
     def rest(self, subgoal: Subgoal, level: int, model: WorldModel, cost_maps: CostMaps) -> PlannedRoute | None:
-        """What is left of the way, when it still leads to an aim over squares believed free."""
+        """Return the rest of the route from the robot's square on, if it still leads to a subgoal over free squares.
+
+        Parameters
+        ----------
+        subgoal : Subgoal
+            The subgoal that is pursued now.
+        level : int
+            The certainty level at which it can be reached; another one than the route's ends the route.
+        model : WorldModel
+        cost_maps : CostMaps
+
+        Returns
+        -------
+        PlannedRoute | None
+            Its clearance is not computed: 0.
+        """
         path = self.path(model)
         if level != self._level or cost_maps.here not in path:
             return None
@@ -47,6 +65,6 @@ class StickyRoute:
 
 
 def lattice_squares(squares: Squares, model: WorldModel) -> frozenset[Square]:
-    """Squares of the lattice, from flat indices of the view."""
+    """Convert flat indices on the view to squares (x, y) of the map frame."""
     rows, columns = np.divmod(squares, model.labels.shape[1])
     return frozenset(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))

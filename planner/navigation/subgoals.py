@@ -1,4 +1,4 @@
-"""What is worth doing now, as facts with a price, and the choice among them (planner/asp/aims.lp)."""
+"""Subgoals: what is worth doing now, as facts with a cost, and the choice among them (planner/asp/aims.lp)."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -6,16 +6,22 @@ from typing import NamedTuple
 
 from kb.reasoning.solver import solve
 from planner.screen.projection import CostMaps, Squares
+from planner.subgoal_kind import SubgoalKind
 
-ASP = Path(__file__).resolve().parent.parent / "asp"
+ASP = Path(__file__).resolve().parent.parent / "asp"  # the folder of the planner's encodings
+TENTHS = 10  # the encodings count lengths and costs in tenths of squares
 
 
 class Subgoal(NamedTuple):
-    """Somewhere to go and why.
+    """Squares to go to, and why.
 
-    kind : attain, inspect, explore, pass or settle (planner/asp/aims.lp).
-    squares : flat indices of the screen, any of which will do. what : the reason in words.
-    chance : percent of belief that it leads to what is looked for. price : squares that it costs besides the way.
+    Attributes
+    ----------
+    kind : a SubgoalKind, or its value.
+    squares : flat indices on the screen, (n,); any of them will do.
+    what : the reason, in words.
+    chance : percent of belief that it leads to what is looked for.
+    price : squares of way that it costs besides the way there.
     """
 
     kind: str
@@ -26,17 +32,28 @@ class Subgoal(NamedTuple):
 
 
 def choose(subgoals: Sequence[Subgoal], cost_maps: CostMaps, last: frozenset[int]) -> Subgoal | None:
-    """The aim to pursue, or None when none can be reached.
+    """Choose the subgoal to pursue, by planner/asp/aims.lp.
 
-    last: the squares (flat indices of this screen) of the aim chosen last time; an aim that shares one with it
-    continues it.
+    Parameters
+    ----------
+    subgoals : Sequence[Subgoal]
+    cost_maps : CostMaps
+    last : frozenset[int]
+        The squares (flat indices on this screen) of the subgoal chosen last time. A subgoal that shares one of them
+        continues it; others cost a switch.
+
+    Returns
+    -------
+    Subgoal | None
+        None when no subgoal can be reached.
     """
     facts = []
     for number, subgoal in enumerate(subgoals):
         reached = cost_maps.nearest(subgoal.squares) if len(subgoal.squares) else None
         if reached is not None:
-            kind = "pass" if reached.level and subgoal.kind == "explore" else subgoal.kind
-            facts.append(f"aim({number},{kind},{round(10 * (reached.cost + subgoal.price))})")
+            assumed = reached.level and subgoal.kind == SubgoalKind.EXPLORE
+            kind = SubgoalKind.PASS if assumed else SubgoalKind(subgoal.kind)
+            facts.append(f"aim({number},{kind},{round(TENTHS * (reached.cost + subgoal.price))})")
             facts.append(f"chance({number},{subgoal.chance})")
             facts += [f"last({number})"] * bool(last and not last.isdisjoint(subgoal.squares.tolist()))
     answer = solve([ASP / "aims.lp"], facts) if facts else None

@@ -1,6 +1,7 @@
-"""From a way to the next command: a straight move, as far as is safe.
+"""From a route to the next command: the longest straight move along it that is safe.
 
-Who just walks wants short ways, and looks about himself often. Who carries things wants few commands.
+A robot that only walks (STROLL) makes short moves, and so looks often. One that carries objects (HURRY) counts
+commands, and makes long moves.
 """
 
 import math
@@ -8,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import XY, Bools, Square
 from geometry.raster.line_of_sight import straight
 from geometry.raster.winding import crossings
 from kb.body import Command, Move
@@ -17,154 +18,215 @@ from kb.localisation.hypotheses.walk_outcomes import on_line
 from kb.perception.frame import turned
 from kb.world.model import WorldModel
 from planner.screen.projection import CostMaps, grown
-from planner.screen.sweeps import Square, clear, clear_line
+from planner.screen.sweeps import line_sweep_is_free, sweep_is_free
+from planner.subgoal_kind import SubgoalKind
 
-NARROW = 6  # squares of a move for which no more room is wanted than the way itself takes, however the lattice lies
-ASKEW = math.radians(5)  # by which the lattice may lie otherwise before he takes care where he halts
-TESTING = ("explore", "inspect", "settle")  # aims that do not mind where in a square he halts
-EDGE = 0.4618  # squares from a centre, not far from the line between two squares
-LOOSE = 0.1  # squares by which he may have woken elsewhere in his square before he tries it
-DIGITS = 12  # of a command
-BETWEEN = 1e-3  # squares from the line between two squares that are on it
-ASIDE = (0.0618, 0.0341)  # squares from a centre, where no turn by whole degrees leads to the line between two squares
+TIGHT_MOVE_LENGTH = 6  # squares up to which a move keeps no clearance, even while the orientation is uncertain (tuned)
+ORIENTATION_TOLERANCE = math.radians(5)  # radians up to which the map frame's orientation counts as settled (tuned)
+OFF_CENTRE_KINDS = (SubgoalKind.EXPLORE, SubgoalKind.INSPECT, SubgoalKind.SETTLE)  # may end off a square's centre
+EDGE_OFFSET = 0.4618  # squares from a centre to a place just inside the edge of the same square (convention)
+LEEWAY_TOLERANCE = 0.1  # squares by which the origin may still lie elsewhere before the robot tests it (tuned)
+COMMAND_DIGITS = 12  # decimals of a command
+GRID_LINE_TOLERANCE = 1e-3  # squares from the line between two squares that count as on it (convention)
+UNAMBIGUOUS_OFFSET = (0.0618, 0.0341)  # squares from a centre, from where no whole-degree turn leads to a grid line
 
 
 def is_open(model: WorldModel) -> bool:
-    """Is it open, by more than a few degrees, how the lattice lies? What is unlikely by all pictures is left out."""
-    return model.likely_spread > ASKEW
+    """Return whether the orientation of the map frame is still uncertain by more than ORIENTATION_TOLERANCE.
+
+    Orientations that are unlikely by all sampled completions of the map do not count.
+    """
+    return model.likely_spread > ORIENTATION_TOLERANCE
 
 
 def is_settled(model: WorldModel) -> bool:
-    """Is it beyond doubt, but for a few degrees, how the lattice lies?"""
-    return model.spread <= ASKEW
+    """Return whether the orientation of the map frame is known within ORIENTATION_TOLERANCE beyond doubt."""
+    return model.spread <= ORIENTATION_TOLERANCE
 
 
 class Pace(NamedTuple):
-    """How far one move leads at most, in rows and columns.
+    """Limits on one straight move.
 
-    longest : by the kind of its aim. unsure : while it is open how the lattice lies, and so where he goes.
-    bold : whether it leads over squares that are only believed floor, right up to what is not settled. A move that is
-    stopped ends right beside what stopped it, and that is mostly where he wants to be.
+    Attributes
+    ----------
+    longest_by_kind : the greatest length by the kind of the subgoal, in squares along rows or columns.
+    longest_uncertain : the greatest length while the orientation is uncertain, and with it where a move leads.
+    bold : whether a move crosses squares that are only believed to be free, right up to what is not settled. A move
+        that is stopped ends beside what stopped it, and that is mostly where the robot wants to be.
     """
 
-    longest: Mapping[str, int]
-    unsure: int
+    longest_by_kind: Mapping[str, int]
+    longest_uncertain: int
     bold: bool
 
     def most(self, kind: str, model: WorldModel) -> int:
-        """Rows and columns of a move now."""
-        return min(self.longest[kind], self.unsure) if is_open(model) else self.longest[kind]
+        """Return the greatest length of a move now, in squares along rows or columns. kind : of the subgoal."""
+        return min(self.longest_by_kind[kind], self.longest_uncertain) if is_open(model) else self.longest_by_kind[kind]
 
-    def ground(self, cost_maps: CostMaps, kind: str) -> NDArray[np.bool_]:
-        """(rows, columns): the squares over which a move leads, by the kind of its aim."""
+    def passable(self, cost_maps: CostMaps, kind: str) -> Bools:
+        """Return the squares that a move may cross, (rows, columns). kind : of the subgoal."""
         if not self.bold:
             return cost_maps.safe
-        return cost_maps.approached if kind == "inspect" else cost_maps.believed
+        return cost_maps.approachable if kind == SubgoalKind.INSPECT else cost_maps.believed
 
 
-STROLL = Pace({"attain": 48, "inspect": 16, "explore": 12, "pass": 8, "settle": 12}, 9, bold=False)
-HURRY = Pace({**STROLL.longest, "inspect": 48, "explore": 48}, 48, bold=True)
+_WALKING_LENGTHS: Mapping[str, int] = {
+    SubgoalKind.ATTAIN: 48,
+    SubgoalKind.INSPECT: 16,
+    SubgoalKind.EXPLORE: 12,
+    SubgoalKind.PASS: 8,
+    SubgoalKind.SETTLE: 12,
+}
+STROLL = Pace(_WALKING_LENGTHS, 9, bold=False)  # the pace of a robot that only walks (lengths tuned on random worlds)
+HURRY = Pace(
+    {**_WALKING_LENGTHS, SubgoalKind.INSPECT: 48, SubgoalKind.EXPLORE: 48}, 48, bold=True
+)  # of one that carries
 
 
 def next_move(
     cost_maps: CostMaps,
     path: Sequence[Square],
     kind: str,
-    about: tuple[float, float] | None = None,
+    about: XY | None = None,
     pace: Pace = STROLL,
 ) -> Move:
-    """The longest straight move along a way that leads over the ground of his pace.
+    """Choose the longest straight move along a path that stays on passable squares.
 
-    While it is open how the lattice lies, the second half of a longer move that is not bold keeps a square clear of all
-    others.
+    While the orientation is uncertain, the second half of a longer move keeps one more square clear around it, unless
+    the pace is bold.
 
-    path : edge-connected squares, the first is Utak's. kind : of the aim.
-    about : a point (of the view's frame) about which the move must wind as the way does, when that matters.
+    Parameters
+    ----------
+    cost_maps : CostMaps
+    path : Sequence[Square]
+        Edge-connected squares (column, row), at least two; the first is the robot's.
+    kind : str
+        The kind of the subgoal (SubgoalKind).
+    about : XY | None
+        A point in the view frame, in squares. The move then passes it on the same side as the path.
+    pace : Pace
+
+    Returns
+    -------
+    Move
+        The command, in the robot's own frame (east, north), in squares.
     """
-    here, most = path[0], pace.most(kind, cost_maps.model)
-    ground, roomy = pace.ground(cost_maps, kind), None if pace.bold else _roomy(cost_maps)
+    here, longest = path[0], pace.most(kind, cost_maps.model)
+    passable, roomy = pace.passable(cost_maps, kind), None if pace.bold else _roomy(cost_maps)
     there = path[1]
     for number in range(len(path) - 1, 1, -1):
         square = path[number]
         far = max(abs(square[0] - here[0]), abs(square[1] - here[1]))
-        free = far <= most and clear(ground, here, square) and _is_roomy(roomy, here, square)
+        free = far <= longest and sweep_is_free(passable, here, square) and _is_roomy(roomy, here, square)
         if free and _same_side(path[: number + 1], about):
             there = square
             break
-    return move_to(cost_maps.model, there, _aside(cost_maps, there, kind if about is None else "attain"))
+    offset = _end_offset(cost_maps, there, kind if about is None else SubgoalKind.ATTAIN)
+    return move_to(cost_maps.model, there, offset)
 
 
-def one_move(cost_maps: CostMaps, kind: str, among: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
-    """(rows, columns): the squares to which one straight move in a hurry leads from where Utak stands.
+def one_move(cost_maps: CostMaps, kind: str, candidates: Bools | None = None) -> Bools:
+    """Compute the squares that one straight move at the pace HURRY reaches from where the robot stands.
 
-    among : the squares that are asked about; None for all.
+    Parameters
+    ----------
+    cost_maps : CostMaps
+    kind : str
+        The kind of the subgoal (SubgoalKind).
+    candidates : Bools | None
+        (rows, columns), the squares to test; None for all.
+
+    Returns
+    -------
+    Bools
+        (rows, columns).
     """
-    return straight(HURRY.ground(cost_maps, kind), *cost_maps.here, HURRY.most(kind, cost_maps.model), among)
+    longest = HURRY.most(kind, cost_maps.model)
+    return straight(HURRY.passable(cost_maps, kind), *cost_maps.here, longest, candidates)
 
 
-def _roomy(cost_maps: CostMaps) -> NDArray[np.bool_] | None:
-    """(rows, columns): the squares that longer moves end over; None when it is settled how the lattice lies."""
+def _roomy(cost_maps: CostMaps) -> Bools | None:
+    """Return the safe squares with safe squares all around; None while the orientation is certain enough."""
     return ~grown(~cost_maps.safe, 1) if is_open(cost_maps.model) else None
 
 
-def _is_roomy(roomy: NDArray[np.bool_] | None, here: Square, there: Square) -> bool:
-    """Does a move, if it is a longer one, keep a square clear of all others in its second half?"""
+def _is_roomy(roomy: Bools | None, here: Square, there: Square) -> bool:
+    """Return whether a move is short, or its second half stays on `roomy` squares (None: all are)."""
     far = max(abs(there[0] - here[0]), abs(there[1] - here[1]))
-    return roomy is None or far <= NARROW or clear(roomy, _halfway(here, there), there)
+    return roomy is None or far <= TIGHT_MOVE_LENGTH or sweep_is_free(roomy, _halfway(here, there), there)
 
 
 def _halfway(here: Square, there: Square) -> Square:
-    """The square halfway to another one."""
+    """Return the square halfway between two squares."""
     return (here[0] + there[0]) // 2, (here[1] + there[1]) // 2
 
 
-def move_to(model: WorldModel, square: Square, aside: tuple[float, float]) -> Move:
-    """The move from where Utak believes himself to a square (column, row) of the view, aside from its centre."""
-    x, y = model.view.west + square[0] + 0.5 + aside[0], model.view.south + square[1] + 0.5 + aside[1]
+def move_to(model: WorldModel, square: Square, offset: tuple[float, float]) -> Move:
+    """Return the move from the robot's believed place to a square (column, row) of the view.
+
+    offset : the end of the move relative to the square's centre, (x, y) in squares.
+    """
+    x, y = model.view.west + square[0] + 0.5 + offset[0], model.view.south + square[1] + 0.5 + offset[1]
     return _straight_to((x, y), model)
 
 
 def move_by(model: WorldModel, dx: float, dy: float) -> Move:
-    """Return the move from where Utak believes himself by so many squares along the axes of the lattice."""
+    """Return the move from the robot's believed place by (dx, dy) squares along the axes of the map frame."""
     return _straight_to((model.place[0] + dx, model.place[1] + dy), model)
 
 
-def _straight_to(place: tuple[float, float], model: WorldModel) -> Move:
-    """The move to a place (of the lattice)."""
+def _straight_to(place: XY, model: WorldModel) -> Move:
+    """Return the move from the robot's believed place to a point of the map frame."""
     here = on_line(model.place)
     east, north = model.frame.to_utak(place[0] - here[0], place[1] - here[1])
-    return Move(round(east, DIGITS) + 0.0, round(north, DIGITS) + 0.0)
+    return Move(round(east, COMMAND_DIGITS) + 0.0, round(north, COMMAND_DIGITS) + 0.0)
 
 
-def _aside(cost_maps: CostMaps, square: Square, kind: str) -> tuple[float, float]:
-    """How far from the centre of a square he halts.
+def _end_offset(cost_maps: CostMaps, square: Square, kind: str) -> tuple[float, float]:
+    """Choose how far from the centre of a square a move into it ends, (x, y) in squares.
 
-    As long as it is open within some degrees how the lattice lies, it is a little beside the centre where some turn by
-    whole degrees would lead from there to the line between two squares: such halts, where it would be chance in which
-    of them he sees himself, could never be explained. After that he halts, where it costs nothing, near to that line:
-    if he woke elsewhere in his square than he thinks, he sees himself in the next one.
+    While the orientation is uncertain, a move whose end some whole-degree turn would put on a grid line ends a little
+    off the centre. On a grid line it would be chance in which square the robot sees itself, which no hypothesis could
+    explain. Later a move ends, where that costs nothing, near the edge of its square: if the origin lies elsewhere
+    within its square than believed, the robot sees itself in the next square then.
     """
     model = cost_maps.model
     if is_open(model):
-        return ASIDE if _may_halt_between(model, square) else (0.0, 0.0)
+        return UNAMBIGUOUS_OFFSET if _may_end_on_grid_line(model, square) else (0.0, 0.0)
     west, south, east, north = model.leeway
-    test = tuple(EDGE if up > LOOSE else -EDGE if -down > LOOSE else 0.0 for down, up in ((west, east), (south, north)))
+    test = tuple(
+        EDGE_OFFSET if up > LEEWAY_TOLERANCE else -EDGE_OFFSET if -down > LEEWAY_TOLERANCE else 0.0
+        for down, up in ((west, east), (south, north))
+    )
     here = model.place_on_view
     there = (square[0] + 0.5 + test[0], square[1] + 0.5 + test[1])
-    if kind not in TESTING or not clear_line(cost_maps.safe, here, there):
+    if kind not in OFF_CENTRE_KINDS or not line_sweep_is_free(cost_maps.safe, here, there):
         return (0.0, 0.0)
     return test[0], test[1]
 
 
-def _may_halt_between(model: WorldModel, square: Square) -> bool:
-    """Might the way to a centre end between two squares, did the lattice lie otherwise by whole degrees?"""
+def _may_end_on_grid_line(model: WorldModel, square: Square) -> bool:
+    """Return whether a move to a square's centre, turned by some whole number of degrees, ends on a grid line."""
     x, y = model.view.west + square[0] + 0.5 - model.place[0], model.view.south + square[1] + 0.5 - model.place[1]
     ends = np.array([turned(x, y, degrees) for degrees in range(90)]) + model.place
-    return bool((np.abs(ends % 1.0 - 0.5) > 0.5 - BETWEEN).any())
+    return bool((np.abs(ends % 1.0 - 0.5) > 0.5 - GRID_LINE_TOLERANCE).any())
 
 
-def halting(command: Command | None, place: tuple[float, float], model: WorldModel) -> Command | None:
-    """A command that halts right at a place (of the lattice), if it is a move into the square of that place."""
+def halting(command: Command | None, place: XY, model: WorldModel) -> Command | None:
+    """Return the command with its end moved to exactly `place`, if it is a move into the square of `place`.
+
+    Parameters
+    ----------
+    command : Command | None
+    place : XY
+        A point of the map frame, in squares.
+    model : WorldModel
+
+    Returns
+    -------
+    Command | None
+        The changed move; any other command, and None, unchanged.
+    """
     if not isinstance(command, Move):
         return command
     dx, dy = model.frame.to_lattice(command.east, command.north)
@@ -173,6 +235,6 @@ def halting(command: Command | None, place: tuple[float, float], model: WorldMod
     return _straight_to(place, model)
 
 
-def _same_side(part: Sequence[Square], about: tuple[float, float] | None) -> bool:
-    """May this part of the way be replaced by a straight line without passing a point on its other side?"""
+def _same_side(part: Sequence[Square], about: XY | None) -> bool:
+    """Return whether a straight line may replace part of a path without passing `about` on its other side."""
     return about is None or crossings(np.array([*part, part[0]]) + 0.5, about) == 0

@@ -1,9 +1,11 @@
-"""Projection of the world model onto the screen, Utak's map-in-the-head: which squares a way may lead over, and how
-sure that is.
+"""Cost maps: the world model projected on the screen, at several certainty levels.
 
-A screen is an array of squares, [row, column], cut to the window that was seen. There are several, from the squares
-that are surely floor to all that
-might be: a way over a less certain one is a way only if what is assumed proves true.
+The screen is the paper's map in the head: an array of squares, [row, column], cut to the window that was seen.
+Certainty level 0 holds the squares that are surely floor. Each further level holds more, up to UNSEEN, which holds all
+that is not excluded. A way over a less certain level leads to its goal only if what is assumed proves true.
+
+Two frames are used throughout the planner. The map frame has whole squares at whole coordinates, and does not change
+when the map grows. The view frame is the frame of the arrays: the map frame moved by (-view.west, -view.south).
 """
 
 from functools import cached_property
@@ -12,51 +14,72 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Bools, Floats
 from geometry.raster.components import edged
 from geometry.raster.geodesic import UNREACHED, reach
 from kb.mapping.occupancy import FREE, OPEN
 from kb.mapping.patch import Patch
 from kb.world.model import SPACE, WorldModel
-from planner.screen.unseen_gain import gain
+from planner.screen.unseen_gain import expected_gain
 
-Mask = NDArray[np.bool_]
-Squares = NDArray[np.int64]  # flat indices
-LEVELS = (SPACE, 0.15, 0.3, 0.45)  # up to which probability of being occupied a square may be crossed
-UNSEEN = len(LEVELS)  # the level at which unseen squares may be crossed too
-PRICE = 6.0  # squares that each level of uncertainty costs
-APPROACHED = 1  # level of certainty of squares beside a thing over which he goes up to it
-TRUSTED = 0.04  # a square that is occupied with at most this probability may be run over
-WALL_LIKE = 0.85  # that a square is occupied which surely belongs to what stands there
-WARY = 0.3  # beside squares that are occupied with at least this probability a move is made only over settled ones
+Mask = Bools  # (rows, columns)
+Squares = NDArray[np.int64]  # flat indices on a screen: row * columns + column
+FIFTHS = 5  # the unit of distances on a screen: so many make one square (geometry.raster.geodesic)
+LEVEL_MAX_PROBABILITY = (SPACE, 0.15, 0.3, 0.45)  # by level: a square occupied with at most this may be crossed (tuned)
+UNSEEN = len(LEVEL_MAX_PROBABILITY)  # the certainty level at which squares that were never seen may be crossed, too
+LEVEL_COST = 6.0  # squares of way that each certainty level costs (tuned on random worlds)
+APPROACH_LEVEL = 1  # certainty level of the squares beside an object over which the robot goes up to it
+MAX_TRUSTED_PROBABILITY = 0.04  # a square occupied with at most this probability may be crossed without a look (tuned)
+SURELY_OCCUPIED = 0.85  # a square occupied with at least this probability surely belongs to what stands there (tuned)
+MIN_DOUBTFUL_PROBABILITY = 0.3  # beside squares occupied with at least this, moves need settled squares (tuned)
 
 
 class Reached(NamedTuple):
-    """level: of certainty, 0 the surest. cost: the way in squares, with a price for each level."""
+    """The cheapest way to some squares.
+
+    Attributes
+    ----------
+    level : the certainty level of the way, 0 the surest.
+    cost : its length in squares, plus LEVEL_COST for each level.
+    """
 
     level: int
     cost: float
 
 
 class CostMaps:
-    """One world model, projected at every level of certainty.
+    """One world model, projected on the screen at every certainty level.
 
-    Arrays are (rows, columns), as those of the model's view. carried : the squares of what goes along with him, and so
-    is not in his way.
+    All arrays are (rows, columns), as those of the model's view.
+
+    Parameters
+    ----------
+    model : WorldModel
+    carried : Bools | None
+        (rows, columns), the squares of an object that moves along with the robot and so is not in its way.
+
+    Attributes
+    ----------
+    model : the world model.
+    here : the square (column, row) of the robot.
     """
 
-    def __init__(self, model: WorldModel, carried: Mask | None = None) -> None:
+    def __init__(self, model: WorldModel, carried: Bools | None = None) -> None:
         self.model = model
         self._carried = carried
         row, column = model.view.locate(*model.place)
         self.here = (column, row)
         self._barred = model.squares(model.barred)
 
-    def free(self, level: int) -> Mask:
-        """Squares that may be crossed at a level of certainty; Utak's own is always one."""
+    def free(self, level: int) -> Bools:
+        """Compute the squares that may be crossed at a certainty level, (rows, columns).
+
+        The robot's own square is always one of them.
+        """
         view = self.model.view
-        mask = view.probability <= LEVELS[min(level, len(LEVELS) - 1)]
-        if level == UNSEEN:  # whatever pictures show: what the counts alone leave open
-            mask |= ~view.seen if view.by_counts is None else ~view.seen | (view.by_counts <= LEVELS[-1])
+        mask = view.probability <= LEVEL_MAX_PROBABILITY[min(level, len(LEVEL_MAX_PROBABILITY) - 1)]
+        if level == UNSEEN:  # the counts alone decide, whatever the sampled completions show
+            mask |= ~view.seen if view.by_counts is None else ~view.seen | (view.by_counts <= LEVEL_MAX_PROBABILITY[-1])
         else:
             mask &= view.seen
         mask &= ~self._barred
@@ -66,70 +89,85 @@ class CostMaps:
         return mask
 
     @cached_property
-    def distances(self) -> "Distances":
-        """For each level, UNSEEN included, the way to every square, in fifths of squares; -1 where none leads."""
-        return Distances(self)
+    def distances(self) -> "DistanceMaps":
+        """The distance of every square from the robot, by certainty level (UNSEEN included)."""
+        return DistanceMaps(self)
 
     def nearest(self, squares: Squares) -> Reached | None:
-        """How the nearest of some squares (flat indices) can be reached: at the most certain level at which any can."""
+        """Find the cheapest way to any of `squares`, at the surest level at which one of them can be reached.
+
+        Returns None when none can be reached at any level.
+        """
         for level in range(UNSEEN + 1):
             far = self.distances[level].ravel()[squares]
             if (far != UNREACHED).any():
-                return Reached(level, float(far[far != UNREACHED].min()) / 5 + PRICE * level)
+                return Reached(level, float(far[far != UNREACHED].min()) / FIFTHS + LEVEL_COST * level)
         return None
 
     @cached_property
-    def floor(self) -> Mask:
-        """The squares that can surely be reached."""
-        mask: Mask = self.distances[0] != UNREACHED
+    def floor(self) -> Bools:
+        """The squares that can surely be reached: those with a way at certainty level 0."""
+        mask: Bools = self.distances[0] != UNREACHED
         return mask
 
     @cached_property
-    def looked_from(self) -> Mask:
-        """The squares from which he looked."""
+    def looked_from(self) -> Bools:
+        """The squares on which an impression was received."""
         return self.model.squares(self.model.looked_from)
 
     @cached_property
-    def safe(self) -> Mask:
-        """Squares over which a move is made without looking first."""
+    def safe(self) -> Bools:
+        """The squares over which a move is made without looking first.
+
+        They are settled as free; or taken for floor, and neither beside a doubtful square nor beside an unseen one.
+        """
         view = self.model.view
-        doubtful = grown(view.seen & (view.state == OPEN) & (view.probability >= WARY), 1) | grown(~view.seen, 1)
-        mask: Mask = (view.state == FREE) | (view.seen & (view.probability <= SPACE) & ~doubtful)
+        doubtful_squares = view.seen & (view.state == OPEN) & (view.probability >= MIN_DOUBTFUL_PROBABILITY)
+        doubtful = grown(doubtful_squares, 1) | grown(~view.seen, 1)
+        mask: Bools = (view.state == FREE) | (view.seen & (view.probability <= SPACE) & ~doubtful)
         mask &= ~self._barred
         mask[self.here[1], self.here[0]] = True
         return mask
 
     @cached_property
-    def believed(self) -> Mask:
-        """Squares over which a move is made by who had rather be stopped than look first: all that are hardly occupied,
-        right up to what is not settled, but for those beside what was never seen.
+    def believed(self) -> Bools:
+        """The squares of bold moves: the safe ones, and all that are hardly occupied and not beside unseen squares.
+
+        For the case that being stopped costs less than looking first.
         """
         view = self.model.view
-        return self.safe | (self.free(0) & (view.probability <= TRUSTED) & ~grown(~view.seen, 1))
+        return self.safe | (self.free(0) & (view.probability <= MAX_TRUSTED_PROBABILITY) & ~grown(~view.seen, 1))
 
     @cached_property
-    def approached(self) -> Mask:
-        """The same for who goes up to a thing: also what may well be floor right beside things, for who is stopped
-        there stands where he wants to be.
+    def approachable(self) -> Bools:
+        """The squares of bold moves up to an object: also those beside objects that are free at APPROACH_LEVEL.
+
+        Where such a square is occupied after all, the object itself stops the robot, right where it wants to be.
         """
         view = self.model.view
-        things = view.seen & (view.probability >= WALL_LIKE) & ~self.model.verge
-        return self.believed | (self.free(APPROACHED) & edged(things))
+        things = view.seen & (view.probability >= SURELY_OCCUPIED) & ~self.model.verge
+        return self.believed | (self.free(APPROACH_LEVEL) & edged(things))
 
     @cached_property
-    def gain(self) -> NDArray[np.float64]:
-        """(rows, columns): how many squares never seen come into sight there, each by what it promises."""
-        return gain(self.model.view)
+    def information_gain(self) -> Floats:
+        """(rows, columns): the weighted number of unseen squares that come into sight from each square."""
+        return expected_gain(self.model.view)
 
-    def far(self, squares: Squares) -> NDArray[np.float64]:
-        """(squares,): the way to each of some squares; as far as they lie where none surely leads."""
-        ways = self.distances[0].ravel()[squares] / 5
+    def far(self, squares: Squares) -> Floats:
+        """Compute the length of the sure way to each of `squares`, in squares, (n,) float64.
+
+        Where no way is sure, the straight distance stands instead.
+        """
+        lengths = self.distances[0].ravel()[squares] / FIFTHS
         rows, columns = np.divmod(squares, self.floor.shape[1])
-        return np.where(ways < 0, np.hypot(columns - self.here[0], rows - self.here[1]), ways)
+        return np.where(lengths < 0, np.hypot(columns - self.here[0], rows - self.here[1]), lengths)
 
 
-class Distances:
-    """The ways to every square of a screen, by level; each is measured when it is first asked for."""
+class DistanceMaps:
+    """The distances of all squares from the robot, by certainty level; each map is computed at its first use.
+
+    `maps[level]` is (rows, columns) int32, in fifths of squares; -1 (UNREACHED) where no way leads.
+    """
 
     def __init__(self, cost_maps: CostMaps) -> None:
         self._cost_maps = cost_maps
@@ -142,7 +180,17 @@ class Distances:
 
 
 def ways_to_objects(cost_maps: CostMaps) -> dict[str, float]:
-    """How far it is to beside each object, in squares, by name; of those alone to which a way is known."""
+    """Compute the cost of the way to each object's vicinity, by the object's name.
+
+    Parameters
+    ----------
+    cost_maps : CostMaps
+
+    Returns
+    -------
+    dict[str, float]
+        Squares of way, plus LEVEL_COST for each certainty level. Objects that cannot be reached are left out.
+    """
     found = {}
     for node in cost_maps.model.objects:
         reached = cost_maps.nearest(_vicinity(cost_maps.model, node.patch))
@@ -152,7 +200,7 @@ def ways_to_objects(cost_maps: CostMaps) -> dict[str, float]:
 
 
 def _vicinity(model: WorldModel, patch: Patch) -> Squares:
-    """The squares of the view (flat indices) of a patch, and those beside it."""
+    """List the squares of a patch and all squares around it that lie within the view."""
     rows, columns = np.nonzero(grown(np.pad(patch.mask, 1), 1))
     rows, columns = rows + patch.south - 1 - model.view.south, columns + patch.west - 1 - model.view.west
     high, wide = model.labels.shape
@@ -161,22 +209,22 @@ def _vicinity(model: WorldModel, patch: Patch) -> Squares:
     return flat
 
 
-def marked(squares: Squares, shape: tuple[int, ...]) -> Mask:
-    """(rows, columns): squares given as flat indices."""
-    mask: Mask = np.zeros(shape, np.bool_)
+def marked(squares: Squares, shape: tuple[int, ...]) -> Bools:
+    """Return the mask of `shape` (rows, columns) that is True on the given flat indices only."""
+    mask: Bools = np.zeros(shape, np.bool_)
     mask.flat[squares] = True
     return mask
 
 
-def shifted(mask: Mask, columns: int, rows: int) -> Mask:
-    """A mask further on by a column, a row, or one of each, or back by them: each 1, 0 or -1."""
+def shifted(mask: Bools, columns: int, rows: int) -> Bools:
+    """Return `mask` moved by (`columns`, `rows`), each 1, 0 or -1; squares that come in from outside are False."""
     high, wide = mask.shape
-    framed = np.pad(mask, 1)
-    return framed[1 - rows : 1 - rows + high, 1 - columns : 1 - columns + wide]
+    padded = np.pad(mask, 1)
+    return padded[1 - rows : 1 - rows + high, 1 - columns : 1 - columns + wide]
 
 
-def grown(mask: Mask, squares: int) -> Mask:
-    """A mask, and all squares within so many rows and columns of it."""
+def grown(mask: Bools, squares: int) -> Bools:
+    """Dilate `mask` with a square: return all squares within `squares` rows and columns of a True one."""
     for axis in (0, 1):
         done = 0
         while done < squares:

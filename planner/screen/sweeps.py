@@ -1,9 +1,8 @@
-"""From a route to straight moves between centres of squares.
+"""The squares that a unit square sweeps on straight lines, and edge-connected paths along polylines.
 
-Utak does not know where in his square he stands. A move from centre to centre is safe wherever that is when every
-square is free that a whole square
-sweeps on the way; so that is what is asked of each move. A route is first followed square by square, then its squares
-are joined by the longest such moves.
+The robot does not know where in its square it stands. A move between the centres of two squares is safe for every
+position within the square if all squares are free that a whole unit square sweeps. So this is what is asked of a move.
+A route becomes a path of edge-connected squares first. Then the longest safe moves join squares of that path.
 """
 
 import math
@@ -13,17 +12,27 @@ from functools import cache
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-Square = tuple[int, int]  # (column, row)
-Point = tuple[float, float]  # (x, y)
-Mask = NDArray[np.bool_]
-TOUCH = 1e-9  # squares
+from geometry.kernels.arrays import XY, Bools, Longs
+from geometry.kernels.arrays import Square as Square
+
+SWEEP_TOLERANCE = 1e-9  # squares; smaller overlaps are rounding errors of floating point (convention)
 
 
 @cache
-def swept(columns: int, rows: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The squares, as (columns, rows) offsets, whose interior a unit square meets on its way by (columns, rows)."""
+def swept_offsets(columns: int, rows: int) -> tuple[Longs, Longs]:
+    """Compute the squares that a unit square sweeps when it moves by (`columns`, `rows`).
+
+    Parameters
+    ----------
+    columns, rows : int
+        The move, in squares; either may be negative.
+
+    Returns
+    -------
+    tuple[Longs, Longs]
+        The columns and the rows of the squares whose interior is met, (n,) each, relative to the start.
+    """
     c, r = np.meshgrid(
         np.arange(min(0, columns), max(0, columns) + 1), np.arange(min(0, rows), max(0, rows) + 1), indexing="xy"
     )
@@ -36,39 +45,58 @@ def swept(columns: int, rows: int) -> tuple[NDArray[np.int64], NDArray[np.int64]
     return c[met], r[met]
 
 
-def clear(free: Mask, a: Square, b: Square) -> bool:
-    """Is every square free that a unit square sweeps from a to b? free: (rows, columns)."""
-    columns, rows = swept(b[0] - a[0], b[1] - a[1])
+def sweep_is_free(free: Bools, a: Square, b: Square) -> bool:
+    """Return whether a unit square that moves from square `a` to square `b` sweeps free squares only.
+
+    free : (rows, columns). a, b : (column, row) in the array.
+    """
+    columns, rows = swept_offsets(b[0] - a[0], b[1] - a[1])
     return bool(free[rows + a[1], columns + a[0]].all())
 
 
-def clear_line(free: Mask, a: Point, b: Point) -> bool:
-    """Is every square free that a unit square sweeps whose middle goes straight from a to b?
+def line_sweep_is_free(free: Bools, a: XY, b: XY) -> bool:
+    """Return whether a unit square sweeps free squares only while its centre moves from point `a` to point `b`.
 
-    free: (rows, columns); a, b: (x, y) in the frame of the array, anywhere within squares. Outside of it nothing is.
+    free : (rows, columns); squares outside of the array count as not free.
+    a, b : (x, y) in squares, in the frame of the array, anywhere within squares.
     """
     reach = [np.arange(math.floor(min(p, q) - 0.5), math.ceil(max(p, q) + 0.5)) for p, q in zip(a, b, strict=True)]
     columns, rows = np.meshgrid(*reach, indexing="xy")
     first, last = np.zeros(columns.shape), np.ones(columns.shape)
     for square, p, q in ((columns, a[0], b[0]), (rows, a[1], b[1])):
-        if abs(q - p) > TOUCH:
+        if abs(q - p) > SWEEP_TOLERANCE:
             ends = np.stack([(square + 0.5 - p + side) / (q - p) for side in (-1, 1)])
             first, last = np.maximum(first, ends.min(0)), np.minimum(last, ends.max(0))
         else:
-            last = np.where(np.abs(square + 0.5 - p) < 1 - TOUCH, last, -1.0)
-    met = first < last - TOUCH
+            last = np.where(np.abs(square + 0.5 - p) < 1 - SWEEP_TOLERANCE, last, -1.0)
+    met = first < last - SWEEP_TOLERANCE
     columns, rows = columns[met], rows[met]
     height, width = free.shape
     inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
     return bool(inside.all() and free[rows, columns].all())
 
 
-def squares_along(free: Mask, points: Sequence[Sequence[float]]) -> list[Square]:
-    """The shortest edge-connected path of free squares that a polyline touches, from its first point to its last.
+def squares_along(free: Bools, points: Sequence[Sequence[float]]) -> list[Square]:
+    """Find the shortest edge-connected path of free squares among those that a polyline touches.
 
-    points: (x, y) in the frame of the array; the ends lie within free squares. Where the line runs between squares,
-    on their edges or corners, those on both sides are touched. Raises ValueError when the touched free squares do
-    not connect the ends.
+    Where the line runs along the edge or through the corner of squares, the squares on both sides are touched.
+
+    Parameters
+    ----------
+    free : Bools
+        (rows, columns).
+    points : Sequence[Sequence[float]]
+        The polyline: points (x, y) in squares, in the frame of the array. Its ends lie within free squares.
+
+    Returns
+    -------
+    list[Square]
+        Squares (column, row), from the square of the first point to the square of the last point.
+
+    Raises
+    ------
+    ValueError
+        When the touched free squares do not connect the two ends.
     """
     start, goal = ((math.floor(x), math.floor(y)) for x, y in (points[0], points[-1]))
     rows, columns = free.shape
@@ -78,14 +106,19 @@ def squares_along(free: Mask, points: Sequence[Sequence[float]]) -> list[Square]
         for column, row in squares_met(a, b)
         if 0 <= row < rows and 0 <= column < columns and free[row, column]
     } | {start, goal}
+    return _shortest_path(touched, start, goal)
+
+
+def _shortest_path(squares: set[Square], start: Square, goal: Square) -> list[Square]:
+    """Search the shortest edge-connected path within `squares`, breadth first; ValueError when there is none."""
     before = {start: start}
-    edge = deque([start])
-    while edge and goal not in before:
-        column, row = edge.popleft()
+    queue = deque([start])
+    while queue and goal not in before:
+        column, row = queue.popleft()
         for square in ((column + 1, row), (column, row + 1), (column - 1, row), (column, row - 1)):
-            if square in touched and square not in before:
+            if square in squares and square not in before:
                 before[square] = (column, row)
-                edge.append(square)
+                queue.append(square)
     if goal not in before:
         raise ValueError(f"the line leaves the free squares between {start} and {goal}")
     path = [goal]
@@ -95,7 +128,7 @@ def squares_along(free: Mask, points: Sequence[Sequence[float]]) -> list[Square]
 
 
 def squares_met(a: Sequence[float], b: Sequence[float]) -> set[Square]:
-    """Return the squares (column, row) that a segment meets, also those whose edge or corner it only touches."""
+    """Compute the squares (column, row) that the segment from `a` to `b` meets, even at an edge or corner only."""
     cuts = {0.0, 1.0}
     for p, q in zip(a, b, strict=True):
         if p != q:
@@ -103,10 +136,10 @@ def squares_met(a: Sequence[float], b: Sequence[float]) -> set[Square]:
             cuts |= {(line - p) / (q - p) for line in range(math.ceil(low), math.floor(high) + 1)}
     ordered = sorted(cuts)
     parts = ordered + [(s + t) / 2 for s, t in pairwise(ordered)]
-    return {square for t in parts for square in _around(*(p + (q - p) * t for p, q in zip(a, b, strict=True)))}
+    return {square for t in parts for square in _touched_by(*(p + (q - p) * t for p, q in zip(a, b, strict=True)))}
 
 
-def _around(x: float, y: float) -> list[Square]:
-    """The square that holds a point; all those that share an edge or corner on which it lies."""
-    columns, rows = ({math.floor(v - TOUCH), math.floor(v + TOUCH)} for v in (x, y))
+def _touched_by(x: float, y: float) -> list[Square]:
+    """List the square that holds a point, or all squares on whose shared edge or corner it lies."""
+    columns, rows = ({math.floor(v - SWEEP_TOLERANCE), math.floor(v + SWEEP_TOLERANCE)} for v in (x, y))
     return [(column, row) for column in columns for row in rows]

@@ -1,44 +1,58 @@
-"""How much that was never seen comes into sight from where."""
+"""Expected information gain: how many squares that were never seen come into sight from each square.
+
+An unseen square counts fully when the nearest seen squares include floor: there the floor likely goes on. It counts
+VERGE_WEIGHT when they are occupied only. The counts within the reach of the eye are added up with a summed-area table
+(Crow 1984).
+"""
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Bools, Floats, Longs
 from kb.mapping.occupancy import MapView
 
-REACH = 14  # squares from the edge of what is seen at which most of it is seen anew
-BARREN = 0.1  # of a square unseen beside the verge, how much less it promises than one beside the floor
-HALF = 0.5
-FLOOR, WALL, NOTHING = 0, 1, 2  # what a square lies beside
-Mask = NDArray[np.bool_]
+VIEW_REACH = (
+    14  # squares, in rows and columns, within which an unseen square comes into sight; just under the retina's 16
+)
+VERGE_WEIGHT = (
+    0.1  # the weight of an unseen square beside the verge, where one beside floor counts 1 (tuned on random worlds)
+)
+OCCUPIED_THRESHOLD = 0.5  # a seen square with at most this probability of being occupied counts as floor here
+BESIDE_FLOOR, BESIDE_WALL, BESIDE_NOTHING = 0, 1, 2  # labels of squares by what is nearest; the least one wins
 
 
-def gain(view: MapView) -> NDArray[np.float64]:
-    """(rows, columns): how many squares never seen come into sight there, each by what it promises."""
-    seen = np.pad(view.seen, REACH)
-    beside_floor = _beside(np.pad(np.where(view.probability <= HALF, FLOOR, WALL), REACH), seen) == FLOOR
-    worth = np.where(seen, 0.0, np.where(beside_floor, 1.0, BARREN))
-    return sums(worth, REACH)
+def expected_gain(view: MapView) -> Floats:
+    """Compute the expected information gain of looking from each square, (rows, columns) float64.
 
-
-def sums(framed: NDArray[np.float64], reach: int) -> NDArray[np.float64]:
-    """(rows, columns): for each square the sum over all within so many rows and columns.
-
-    framed : the values, with as many rows and columns more on each side.
+    The unit is one unseen square that the floor likely goes on into; others count less.
     """
-    sums = np.pad(framed, 1).cumsum(0).cumsum(1)[:-1, :-1]
+    seen = np.pad(view.seen, VIEW_REACH)
+    labels = np.pad(np.where(view.probability <= OCCUPIED_THRESHOLD, BESIDE_FLOOR, BESIDE_WALL), VIEW_REACH)
+    beside_floor = _nearest_label(labels, seen) == BESIDE_FLOOR
+    weight = np.where(seen, 0.0, np.where(beside_floor, 1.0, VERGE_WEIGHT))
+    return window_sums(weight, VIEW_REACH)
+
+
+def window_sums(padded: Floats, reach: int) -> Floats:
+    """Compute for each square the sum of the values within `reach` rows and columns of it.
+
+    padded : (rows + 2 reach, columns + 2 reach), the values with a margin of `reach` on each side.
+    Returns (rows, columns).
+    """
+    table = np.pad(padded, 1).cumsum(0).cumsum(1)[:-1, :-1]
     side = 2 * reach + 1
-    answer: NDArray[np.float64] = sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]
-    return answer
+    sums: Floats = table[side:, side:] - table[:-side, side:] - table[side:, :-side] + table[:-side, :-side]
+    return sums
 
 
-def _beside(labels: NDArray[np.int64], seen: Mask) -> NDArray[np.int8]:
-    """Of each square never seen the least label of the nearest seen ones, as far as REACH rows and columns."""
-    near = np.where(seen, labels, NOTHING).astype(np.int8)
-    for _ in range(REACH):
+def _nearest_label(labels: Longs, seen: Bools) -> NDArray[np.int8]:
+    """Give each unseen square within VIEW_REACH steps the least label of the nearest seen squares, (rows, columns)."""
+    near = np.where(seen, labels, BESIDE_NOTHING).astype(np.int8)
+    for _ in range(VIEW_REACH):
         least = near.copy()
         np.minimum(least[1:], near[:-1], out=least[1:])
         np.minimum(least[:-1], near[1:], out=least[:-1])
         np.minimum(least[:, 1:], near[:, :-1], out=least[:, 1:])
         np.minimum(least[:, :-1], near[:, 1:], out=least[:, :-1])
-        near = np.where(near == NOTHING, least, near)
+        near = np.where(near == BESIDE_NOTHING, least, near)
     return near

@@ -1,1 +1,7 @@
-"""."""
+"""Sights: where something may be seen or felt that is not known yet.
+
+Modules, in reading order:
+
+frontiers   Viewpoint: frontiers, gaps, unsettled boundaries, and the squares from which given squares are seen
+viewpoints  Approach: the squares from which an object is inspected, or taken
+"""

@@ -1,35 +1,48 @@
-"""Going up to what may be a thing: floor from which it is told what it is, or where it can be taken.
+"""Viewpoints for objects: floor from which the robot tells what an object is, or where it can take it.
 
-Who is to take it counts commands. He goes by one straight move where that will do, right up to it, over what may well
-be floor: where that is none he is stopped by the thing itself.
+A robot that wants to take an object counts commands, not squares of way. It goes right up to the object by one straight
+move where that is possible, also over squares that are only likely free: if one is not, the object itself stops it.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Bools, Floats
 from geometry.raster.components import components, edged
 from kb.mapping.occupancy import OPEN
 from kb.world.model import Node
 from planner.screen.moves import one_move
-from planner.screen.projection import WALL_LIKE, CostMaps, Squares, grown, marked, shifted
-from planner.screen.unseen_gain import sums
-from planner.sights.frontiers import ALIKE, APART, CLOSE, FURTHER, Viewpoint, groups, unlooked
+from planner.screen.projection import SURELY_OCCUPIED, CostMaps, Squares, grown, marked, shifted
+from planner.screen.unseen_gain import window_sums
+from planner.sights.frontiers import (
+    APART,
+    CLOSE,
+    EQUAL_VALUE_SHARE,
+    MIDDLE_ZONE_RANGE,
+    Viewpoint,
+    group_by_label,
+    unlooked_floor,
+)
+from planner.subgoal_kind import SubgoalKind
 
-PROMISING = 0.1  # a place at which a thing is this likely is worth a look
-LIKELY = 0.5  # what is looked for as likely as this is gone up to
-SETTING_OUT = 4.0  # squares of way that a look costs besides the way there
-DEAR_LOOK = 12.0  # the same for who does not want to stay, and counts commands rather than squares
-ANEW = 0.03  # what it is worth that a square never seen comes into sight, beside one of the thing that is told
-Mask = NDArray[np.bool_]
+MIN_SIGHTING_PROBABILITY = (
+    0.1  # a place that holds a wanted object with at least this probability is worth a look (tuned)
+)
+MIN_APPROACH_PROBABILITY = 0.5  # with at least this probability the robot goes right up to it (tuned on random worlds)
+RESTART_COST_WALKING = 4.0  # squares of way that setting out anew after a look costs a robot that only walks (tuned)
+RESTART_COST_CARRYING = 12.0  # the same for a robot that carries objects and counts commands (tuned on random worlds)
+UNSEEN_SQUARE_WEIGHT = 0.03  # worth of an unseen square in sight, where a square of the object counts 1 (tuned)
 
 
 class Approach(NamedTuple):
-    """What he goes up to a thing for.
+    """The purpose for which the robot goes up to an object.
 
-    take : to take it; else to be beside it is all that is wanted. corner : east and north, each 1 or -1, where the
-    walls are of the corner that he shall bring it to, if that is what for: between it and them he is in its way.
+    Attributes
+    ----------
+    take : whether to take it; else to be beside it is all that is wanted.
+    corner : the direction (east, north), each 1 or -1, of the corner of walls to which the object shall be brought, if
+        any. On the sides towards these walls the robot would stand in the way.
     """
 
     take: bool
@@ -39,72 +52,119 @@ class Approach(NamedTuple):
 ARRIVE, TAKE = Approach(take=False), Approach(take=True)
 
 
-def sightings(
-    cost_maps: CostMaps, likely: NDArray[np.float64], what: str, to: Approach
-) -> list[tuple[Squares, Viewpoint]]:
-    """Floor close to where something is likely that is looked for: the squares of each such place, and its Viewpoint.
+def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> list[tuple[Squares, Viewpoint]]:
+    """Find the viewpoints for the places that may hold a wanted object which is not settled.
 
-    likely : (rows, columns), how likely each square belongs to such a thing.
+    Parameters
+    ----------
+    cost_maps : CostMaps
+    likely : Floats
+        (rows, columns), the probability that a square belongs to a wanted object.
+    what : str
+        What is not known there, in words.
+    to : Approach
+        What the robot wants there.
+
+    Returns
+    -------
+    list[tuple[Squares, Viewpoint]]
+        For each place its squares (flat indices) and the floor to look from.
     """
     view = cost_maps.model.view
-    spots = groups(components(likely >= PROMISING).labels)
+    spots = group_by_label(components(likely >= MIN_SIGHTING_PROBABILITY).labels)
     found = []
     for spot in spots:
         mask = marked(spot, likely.shape)
         if not (view.state.ravel()[spot] == OPEN).any():
             continue
         chance = float(likely.ravel()[spot].max())
-        near = close(cost_maps, mask, chance, to)
+        near = inspection_squares(cost_maps, mask, chance, to)
         if len(near):
             found.append((spot, Viewpoint(near, what, round(100 * chance))))
     return found
 
 
 def inspection(cost_maps: CostMaps, node: Node, chance: float, to: Approach) -> Viewpoint:
-    """Floor from which an object is seen as well as can be. chance : that it is what is looked for."""
-    squares = close(cost_maps, cost_maps.model.mask(node.patch), chance, to)
+    """Return the floor from which an object is seen better than it was.
+
+    Parameters
+    ----------
+    cost_maps : CostMaps
+    node : Node
+        The object.
+    chance : float
+        The probability that it is the wanted one.
+    to : Approach
+        What the robot wants there.
+
+    Returns
+    -------
+    Viewpoint
+    """
+    squares = inspection_squares(cost_maps, cost_maps.model.mask(node.patch), chance, to)
     return Viewpoint(squares, f"what {node.name} is is not clear")
 
 
-def close(cost_maps: CostMaps, mask: Mask, chance: float, to: Approach) -> Squares:
-    """Floor from which something is seen better than it was.
+def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Approach) -> Squares:
+    """Choose the floor from which something is seen better than it was.
 
-    At first the floor at its sides. What is not to be taken and hardly is what is looked for is looked at from further
-    away first, where most of it is told already. Else he goes where most of it can be told.
+    At first it is looked at from its sides. Something that is not to be taken and is hardly the wanted one is looked
+    at from further away first: most of it is settled from there. After that, the best squares nearby are chosen.
+
+    Parameters
+    ----------
+    cost_maps : CostMaps
+    mask : Bools
+        (rows, columns), the squares that it may cover.
+    chance : float
+        The probability that it is the wanted one.
+    to : Approach
+        What the robot wants there.
+
+    Returns
+    -------
+    Squares
+        Flat indices; empty when the robot looked from everywhere.
     """
     beside = grown(mask, 1)
-    near = _to_take(cost_maps, mask, to) if to.take else np.flatnonzero(cost_maps.floor & edged(mask))
-    if (chance >= LIKELY or to.take) and len(near) and not (beside & cost_maps.looked_from).any():
-        return _telling(cost_maps, near, mask, chance, to) if to.take else near
+    near = _taking_squares(cost_maps, mask, to) if to.take else np.flatnonzero(cost_maps.floor & edged(mask))
+    worth_it = chance >= MIN_APPROACH_PROBABILITY or to.take
+    if worth_it and len(near) and not (beside & cost_maps.looked_from).any():
+        return _most_revealing(cost_maps, near, mask, chance, to) if to.take else near
     if not to.take:
-        far = grown(mask, FURTHER)
+        far = grown(mask, MIDDLE_ZONE_RANGE)
         near = np.flatnonzero(cost_maps.floor & far)
         if len(near) and not (far & cost_maps.looked_from).any():
             return near
-    about = grown(mask, CLOSE)
+    around = grown(mask, CLOSE)
     for apart in (APART, 0):
-        near = np.flatnonzero(unlooked(cost_maps, apart) & about)
+        near = np.flatnonzero(unlooked_floor(cost_maps, apart) & around)
         if len(near):
             break
-    return _telling(cost_maps, near, mask, chance, to)
+    return _most_revealing(cost_maps, near, mask, chance, to)
 
 
-def _to_take(cost_maps: CostMaps, mask: Mask, to: Approach) -> Squares:
-    """Where a thing may be taken: squares at the sides of what surely belongs to it, for it may well be there that he
-    is wanted, or else of all that may; of these those that one move leads to, if there are any.
+def _taking_squares(cost_maps: CostMaps, mask: Bools, to: Approach) -> Squares:
+    """List the squares beside an object from which it may be taken.
+
+    The sides of the squares that surely belong to it come first, else the sides of all that may belong to it. Of these
+    only those count that one move reaches, if there are any.
     """
-    surely = mask & (cost_maps.model.view.probability >= WALL_LIKE)
-    sides = _out_of_its_way(cost_maps, surely, to)
-    for some in (sides, edged(mask)):
-        met = np.flatnonzero(one_move(cost_maps, "inspect", some))
-        near = met if len(met) else np.flatnonzero(cost_maps.floor & some)
+    surely = mask & (cost_maps.model.view.probability >= SURELY_OCCUPIED)
+    sides = _sides_out_of_the_way(cost_maps, surely, to)
+    for candidates in (sides, edged(mask)):
+        met = np.flatnonzero(one_move(cost_maps, SubgoalKind.INSPECT, candidates))
+        near = met if len(met) else np.flatnonzero(cost_maps.floor & candidates)
         if len(near):
             break
     return near
 
 
-def _out_of_its_way(cost_maps: CostMaps, surely: Mask, to: Approach) -> Mask:
-    """The sides of a thing; not those where he would be in its way, if there is floor at others."""
+def _sides_out_of_the_way(cost_maps: CostMaps, surely: Bools, to: Approach) -> Bools:
+    """Return the sides of an object, without those where the robot would be in its way, if others have floor.
+
+    surely : (rows, columns), the squares of the object.
+    """
     sides = edged(surely)
     if to.corner is None:
         return sides
@@ -113,20 +173,20 @@ def _out_of_its_way(cost_maps: CostMaps, surely: Mask, to: Approach) -> Mask:
     return free if (cost_maps.floor & free).any() else sides
 
 
-def _telling(cost_maps: CostMaps, near: Squares, mask: Mask, chance: float, to: Approach) -> Squares:
-    """Of some floor the squares from which most of what is open of a thing is seen exactly, for the way there.
+def _most_revealing(cost_maps: CostMaps, near: Squares, mask: Bools, chance: float, to: Approach) -> Squares:
+    """Choose those of `near` from which most unsettled squares of something are in the fovea for the way there.
 
-    chance : that it is what is looked for, and that who is not beside it must set out once more to be.
+    chance : the probability that it is the wanted one. With it, a robot that is not beside it must set out once more.
     """
     beside = grown(mask, 1)
     open_ = beside & ~cost_maps.model.told
     if len(near) < 2 or not open_.any():
         return near
-    seen = sums(np.pad(open_, CLOSE).astype(np.float64), CLOSE).ravel()[near]
+    seen = window_sums(np.pad(open_, CLOSE).astype(np.float64), CLOSE).ravel()[near]
     if to.take:
-        seen = seen + ANEW * cost_maps.gain.ravel()[near]
-    apart = ~beside.ravel()[near]
-    setting_out = DEAR_LOOK if to.take else SETTING_OUT
-    value = (seen + 1) / (cost_maps.far(near) + setting_out * (1 + chance * apart))
-    best: Squares = near[value >= ALIKE * value.max()]
+        seen = seen + UNSEEN_SQUARE_WEIGHT * cost_maps.information_gain.ravel()[near]
+    away = ~beside.ravel()[near]
+    restart_cost = RESTART_COST_CARRYING if to.take else RESTART_COST_WALKING
+    value = (seen + 1) / (cost_maps.far(near) + restart_cost * (1 + chance * away))
+    best: Squares = near[value >= EQUAL_VALUE_SHARE * value.max()]
     return best

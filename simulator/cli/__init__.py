@@ -1,1 +1,8 @@
-"""."""
+"""The command `utak`.
+
+Modules in reading order:
+
+main      runs a subcommand; errors become messages and exit codes
+parsing   the parser of the command line
+commands  the subcommands, one a module
+"""

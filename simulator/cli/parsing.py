@@ -11,11 +11,11 @@ EXIT_CODES = (
 )
 
 
-def parser() -> argparse.ArgumentParser:
+def build_parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command line."""
     top = argparse.ArgumentParser(
         prog="utak",
-        description="Utak, a robot who sees coarsely, believes with confidence and solves spatial tasks.",
+        description="Utak, a simulated robot that sees coarsely, believes with confidence and solves spatial tasks.",
         epilog=EXIT_CODES,
     )
     parts = top.add_subparsers(title="commands", metavar="COMMAND", required=True)

@@ -1,6 +1,6 @@
-"""Episodes: what happened, as JSON lines. A header, step 0, one line a command, and the result (docs/files.md).
+"""Episodes: the record of a run as JSON lines (docs/files.md): a header, step 0, one line a command, and the result.
 
-Every line is written and flushed before the next command is given, so that a killed run leaves a readable episode.
+Every line is written and flushed before the next command is given. So a killed run leaves a readable episode.
 """
 
 import json
@@ -13,127 +13,159 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO
 
-from kb.language.diagnostics import ENOUGH, BadInputError, CannotOpenError, Problem, Span
+from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, Span
 from kb.language.source_text import read_bytes
 from simulator.episode.output_files import is_episode, keep_first, opened
-from simulator.episode.wellformed import HEADER, RESULT, STEP, Where, column
+from simulator.episode.wellformed import HEADER_CHECK, RESULT_CHECK, STEP_CHECK, KeyPath, column
 
-VERSION = 1
+EPISODE_VERSION = 1
 STANDARD_OUTPUT = "-"
-LARGEST = 500_000_000  # bytes
+MAX_EPISODE_BYTES = 500_000_000  # bytes; a convention
 
-Line = dict[str, Any]
+EpisodeLine = dict[str, Any]
 
 
 @dataclass(frozen=True)
 class Episode:
-    """An episode read back.
+    """An episode that was read.
 
     Attributes
     ----------
     header : the options, the world and the task.
-    steps : step 0 and one entry a command, in order.
-    result : how it ended, or None when the run was cut short.
+    steps : step 0, and one line for each command, in order.
+    result : the end; None when the run was cut short.
     """
 
-    header: Line
-    steps: tuple[Line, ...]
-    result: Line | None
+    header: EpisodeLine
+    steps: tuple[EpisodeLine, ...]
+    result: EpisodeLine | None
 
 
-def encode(line: Line) -> str:
-    """Return one line of an episode, with its line end. Floats are written in full; equal values give equal bytes."""
+def encode(line: EpisodeLine) -> str:
+    """Return one line of an episode as text, with its line end.
+
+    Floats are written in full. Equal values give equal text. Raises ValueError for NaN and infinite numbers.
+    """
     return json.dumps(line, separators=(",", ":"), allow_nan=False) + "\n"
 
 
 def read_episode(path: Path | str) -> Episode:
-    """Read an episode, whole or cut short; raises CannotOpenError, or BadInputError when it is none or is damaged."""
+    """Return an episode, complete or cut short.
+
+    Parameters
+    ----------
+    path : the file.
+
+    Returns
+    -------
+    The episode, with every value checked.
+
+    Raises
+    ------
+    CannotOpenError : the file cannot be read.
+    BadInputError : the file is no episode, or it is damaged.
+    """
     name = str(path)
     lines = complete_lines(path)
     rows = [_decoded(name, number, row) for number, row in enumerate(lines, 1)]
     if not rows or rows[0].get("utak") != "episode":
-        raise _none(name, 1, "this is no episode: the first line is no header")
-    if rows[0].get("version") != VERSION:
-        raise _none(name, 1, f"an episode of version {rows[0].get('version')}; this utak reads version {VERSION}")
+        raise _damaged(name, 1, "this is no episode: the first line is no header")
+    if rows[0].get("version") != EPISODE_VERSION:
+        raise _damaged(
+            name, 1, f"an episode of version {rows[0].get('version')}; this utak reads version {EPISODE_VERSION}"
+        )
     result = rows.pop()["result"] if len(rows) > 1 and "result" in rows[-1] else None
     for number, row in enumerate(rows[1:]):
         if row.get("step") != number:
-            raise _none(name, number + 2, f"step {number} is missing")
+            raise _damaged(name, number + 2, f"step {number} is missing")
     problems: list[Problem] = []
     for number, raw in enumerate(lines):
-        check = HEADER if number == 0 else STEP if number < len(rows) else RESULT
+        check = HEADER_CHECK if number == 0 else STEP_CHECK if number < len(rows) else RESULT_CHECK
         row = rows[number] if number < len(rows) else {"result": result}
-        problems += (_located(name, number + 1, raw, *complaint) for complaint in islice(check(row, ()), ENOUGH))
+        problems += (
+            _located(name, number + 1, raw, *complaint) for complaint in islice(check(row, ()), MAX_PROBLEMS_PER_FILE)
+        )
         if problems:
             raise BadInputError(problems)
     return Episode(rows[0], tuple(rows[1:]), result)
 
 
 def complete_lines(path: Path | str) -> list[bytes]:
-    """Return the lines of an episode that were written to their ends; a last line cut short is left out."""
-    whole = read_bytes(str(path), LARGEST)
-    if len(whole) > LARGEST:
-        raise _none(str(path), 1, f"the file is larger than {LARGEST} bytes")
+    """Return the lines of an episode with their line ends; a last line without a line end is left out.
+
+    Raises CannotOpenError when the file cannot be read, BadInputError when it is too large.
+    """
+    whole = read_bytes(str(path), MAX_EPISODE_BYTES)
+    if len(whole) > MAX_EPISODE_BYTES:
+        raise _damaged(str(path), 1, f"the file is larger than {MAX_EPISODE_BYTES} bytes")
     return [row + b"\n" for row in whole.split(b"\n")[:-1]]
 
 
-class _StrangeError(ValueError):
-    """What no line of an episode has, though Python's reader of JSON takes it."""
+class _InvalidJsonError(ValueError):
+    """A value that Python's JSON reader accepts, but no episode has."""
 
 
-def _decoded(path: str, number: int, row: bytes) -> Line:
+def _decoded(path: str, number: int, row: bytes) -> EpisodeLine:
+    """Return the object in a line; raise BadInputError when there is none."""
     try:
         value = _JSON.decode(row.decode("utf-8"))
     except UnicodeDecodeError as error:
-        raise _none(path, number, "this line is no text: the episode is damaged", error.start + 1) from None
+        raise _damaged(path, number, "this line is no text: the episode is damaged", error.start + 1) from None
     except json.JSONDecodeError as error:
-        raise _none(path, number, f"this line is no JSON: the episode is damaged: {error.msg}", error.colno) from None
+        raise _damaged(
+            path, number, f"this line is no JSON: the episode is damaged: {error.msg}", error.colno
+        ) from None
     except (ValueError, RecursionError) as error:
-        what = str(error) if isinstance(error, _StrangeError) else "a number too long or too many brackets"
-        raise _none(path, number, f"this line is no JSON: the episode is damaged: {what}") from None
+        what = str(error) if isinstance(error, _InvalidJsonError) else "a number too long or too many brackets"
+        raise _damaged(path, number, f"this line is no JSON: the episode is damaged: {what}") from None
     if not isinstance(value, dict):
-        raise _none(path, number, "a line of an episode is a JSON object")
+        raise _damaged(path, number, "a line of an episode is a JSON object")
     return value
 
 
-def _pairs(pairs: list[tuple[str, Any]]) -> Line:
-    """An object, no key of which occurs twice."""
+def _object_without_duplicates(pairs: list[tuple[str, Any]]) -> EpisodeLine:
+    """Return a JSON object; raise _InvalidJsonError when a key occurs twice."""
     found = dict(pairs)
     if len(found) < len(pairs):
         twice = next(key for key, count in Counter(key for key, _ in pairs).items() if count > 1)
-        raise _StrangeError(f"the key {twice[:40]} occurs twice")
+        raise _InvalidJsonError(f"the key {twice[:40]} occurs twice")
     return found
 
 
-def _constant(word: str) -> Any:
-    raise _StrangeError(f"{word} is no number")
+def _refuse_constant(word: str) -> Any:
+    """Raise _InvalidJsonError for NaN and Infinity."""
+    raise _InvalidJsonError(f"{word} is no number")
 
 
-_JSON = json.JSONDecoder(object_pairs_hook=_pairs, parse_constant=_constant)
+_JSON = json.JSONDecoder(object_pairs_hook=_object_without_duplicates, parse_constant=_refuse_constant)
 
 
-def _none(path: str, number: int, what: str, column: int = 1) -> BadInputError:
+def _damaged(path: str, number: int, what: str, column: int = 1) -> BadInputError:
+    """Return the error `what` at a line and a column of an episode."""
     return BadInputError([Problem(path, Span(number, column, column), what)])
 
 
-def _located(path: str, number: int, raw: bytes, where: Where, what: str) -> Problem:
-    """What is wrong with a value of a line, at the key that leads to it."""
+def _located(path: str, number: int, raw: bytes, where: KeyPath, what: str) -> Problem:
+    """Return the problem of a value, placed at the key that leads to it."""
     at = column(raw.decode("utf-8"), where)
     key = ".".join(where)[:80]
     return Problem(path, Span(number, at, at), f"{key}: {what}: the episode is damaged" if key else what)
 
 
 class EpisodeLog:
-    """Writes an episode to a file, a line at a time; nobody else can write to it meanwhile.
+    """Writes an episode to a file, line by line; no other process can write to the file meanwhile.
 
     Parameters
     ----------
-    path : the file; `-` is the standard output; None writes nowhere.
-    resume : go on from what the file holds already. The run is repeated from the start, and every line that the file
-        holds must come out again byte for byte; a last line cut short is dropped.
+    path : the file; `-` for the standard output, None to write nowhere.
+    resume : continue the episode in the file. The run is repeated from the start, and every line in the file must come
+        out
+        again byte for byte; a last line that was cut short is dropped.
     force : overwrite a file that is no episode.
 
-    Raises CannotOpenError: when there is nothing to resume, or as `simulator.episode.output_files.opened` does.
+    Raises
+    ------
+    CannotOpenError : there is nothing to resume, or `simulator.episode.output_files` refuses the file.
     """
 
     def __init__(self, path: Path | str | None, resume: bool = False, force: bool = False) -> None:
@@ -162,17 +194,20 @@ class EpisodeLog:
 
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, at: TracebackType | None) -> None:
         if self._stream is not None:
-            with suppress(OSError):  # what could not be written was reported then
+            with suppress(OSError):  # errors of writing were reported when they occurred
                 self._stream.close()
 
-    def write(self, line: Line) -> None:
-        """Write one line at once; while resuming, check that it is the one recorded (BadInputError when not)."""
+    def write(self, line: EpisodeLine) -> None:
+        """Write one line at once; while resuming, compare it with the recorded line.
+
+        Raises BadInputError when it differs, CannotOpenError when it cannot be written.
+        """
         text = encode(line)
         self._number += 1
         if self._number <= len(self._recorded):
             if text.encode("ascii") != self._recorded[self._number - 1]:
                 what = "the run does not repeat this line: another scenario, other options or another version of utak"
-                raise _none(str(self._path), self._number, what)
+                raise _damaged(str(self._path), self._number, what)
         elif self._stream is not None:
             try:
                 self._stream.write(text.encode("ascii"))

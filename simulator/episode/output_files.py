@@ -1,4 +1,4 @@
-"""Files that are written: nothing of another kind is ever overwritten, and no two write to one at once."""
+"""Files that are written: a file of another kind is never overwritten, and no two processes write to one file."""
 
 import os
 import re
@@ -9,44 +9,52 @@ from pathlib import Path
 from typing import BinaryIO
 
 from kb.language.diagnostics import CannotOpenError
-from kb.language.operating_system import WRITE, lock
+from kb.language.operating_system import WRITE_FLAGS, lock_file
 
-HEAD = 4096  # bytes by which the kind of a file is known
-EPISODE = b'{"utak":"episode"'
+HEAD_BYTES = 4096  # first bytes of a file, from which its kind is told
+EPISODE_START = b'{"utak":"episode"'
 Kind = Callable[[bytes], bool]
 
 
 def is_episode(head: bytes) -> bool:
-    """Return whether a file that begins so is an episode, even one whose first line was cut short."""
-    return bool(re.match(rb'\s*\{\s*"utak"\s*:\s*"episode"', head)) or EPISODE.startswith(head)
+    """Return whether a file with these first bytes is an episode, even when its first line was cut short."""
+    return bool(re.match(rb'\s*\{\s*"utak"\s*:\s*"episode"', head)) or EPISODE_START.startswith(head)
 
 
 def is_rows(head: bytes) -> bool:
-    """Return whether a file that begins so holds JSON objects."""
+    """Return whether a file with these first bytes holds JSON objects."""
     return head.lstrip().startswith(b"{")
 
 
 def is_svg(head: bytes) -> bool:
-    """Return whether a file that begins so is an SVG picture."""
+    """Return whether a file with these first bytes is an SVG picture."""
     return re.match(rb"\s*(<\?xml[^>]*>\s*)?(<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<svg\b", head, re.DOTALL) is not None
 
 
 def opened(path: Path | str, kind: Kind, name: str, force: bool = False) -> BinaryIO:
-    """Open a file to write, at its beginning, with what it holds; a new one is made. It is locked until it is closed.
+    """Return a file for writing, positioned at its start, with its contents kept; a new file is made if needed.
+
+    The file is locked until it is closed. A pipe or a device is returned as it is.
 
     Parameters
     ----------
-    kind : whether a file that begins with these bytes may be overwritten; an empty one always may.
-    name : of the kind, for the message.
-    force : overwrite whatever is there.
+    path : the file.
+    kind : returns whether a file with given first bytes may be overwritten. An empty file always may.
+    name : the name of this kind of file, for the message.
+    force : whether to overwrite a file of any kind.
 
-    Raises CannotOpenError when it cannot be opened, is of another kind, or another process writes to it. What is no
-    regular file, such as a pipe or a device, is opened as it is.
+    Returns
+    -------
+    The binary stream.
+
+    Raises
+    ------
+    CannotOpenError : the file cannot be written, is of another kind, or another process writes to it.
     """
     try:
         if Path(path).exists() and not Path(path).is_file():
             return Path(path).open("wb")
-        stream = os.fdopen(os.open(path, WRITE, 0o666), "r+b")
+        stream = os.fdopen(os.open(path, WRITE_FLAGS, 0o666), "r+b")
     except (OSError, ValueError) as error:
         raise CannotOpenError(str(path), getattr(error, "strerror", None) or str(error)) from None
     problem = _problem(stream, kind, name, force)
@@ -57,12 +65,12 @@ def opened(path: Path | str, kind: Kind, name: str, force: bool = False) -> Bina
 
 
 def _problem(stream: BinaryIO, kind: Kind, name: str, force: bool) -> str:
-    """Why a file that was opened is not to be written; else ''."""
+    """Return the reason why a file must not be written; '' when it may."""
     if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
         return "it is no regular file"
-    if not lock(stream.fileno()):
+    if not lock_file(stream.fileno()):
         return "another process is writing to it"
-    head = stream.read(HEAD)
+    head = stream.read(HEAD_BYTES)
     stream.seek(0)
     if head and not force and not kind(head):
         return f"it is no {name}, and is not overwritten without --force"
@@ -70,14 +78,25 @@ def _problem(stream: BinaryIO, kind: Kind, name: str, force: bool) -> str:
 
 
 def keep_first(stream: BinaryIO, size: int) -> None:
-    """Keep the first bytes of an opened file alone, and go on behind them; nothing is done to what is no file."""
+    """Cut a file after its first `size` bytes and continue there; no effect on a pipe or a device."""
     if stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
         stream.truncate(size)
         stream.seek(size)
 
 
 def write_whole(path: Path | str, text: str, kind: Kind, name: str, force: bool = False) -> None:
-    """Write a file, as `opened` allows it; raises CannotOpenError when it cannot be."""
+    """Write a text as a file, encoded as UTF-8.
+
+    Parameters
+    ----------
+    path : the file.
+    text : the whole new contents.
+    kind, name, force : which files may be overwritten, as for `opened`.
+
+    Raises
+    ------
+    CannotOpenError : the file cannot be written, is of another kind, or another process writes to it.
+    """
     stream = opened(path, kind, name, force)
     try:
         keep_first(stream, 0)
@@ -86,5 +105,5 @@ def write_whole(path: Path | str, text: str, kind: Kind, name: str, force: bool 
     except OSError as error:
         raise CannotOpenError(str(path), f"it cannot be written: {error.strerror}") from None
     finally:
-        with suppress(OSError):  # which was reported then
+        with suppress(OSError):  # reported above
             stream.close()

@@ -1,4 +1,4 @@
-"""What the lines of an episode say: options, world and task in its header, commands and motions in its steps."""
+"""The values in an episode's lines: options, world and task in its header, commands and motions in its steps."""
 
 import hashlib
 from typing import Any
@@ -8,14 +8,14 @@ import shapely
 from geometry.motion.se2 import Motion, Translate
 from kb.body import Command, Grasp, Release, Turn
 from kb.language.source_text import read_source
-from simulator.episode.episode import VERSION, Line
+from simulator.episode.episode import EPISODE_VERSION, EpisodeLine
 from simulator.scenario.scenario import Scenario
 from simulator.scenario.settings import Settings
 from simulator.world.world import Thing, World
 
 
-def action_entry(command: Command | None) -> Line | None:
-    """Return a command as an episode states it, in Utak's frame."""
+def action_entry(command: Command | None) -> EpisodeLine | None:
+    """Return a command as an episode states it, in Utak's frame; None for waking."""
     if command is None:
         return None
     do = type(command).__name__.lower()
@@ -28,8 +28,8 @@ def action_entry(command: Command | None) -> Line | None:
     return {"do": do, "east": command.east, "north": command.north}
 
 
-def motion_entry(motion: Motion | None) -> Line | None:
-    """Return what really happened as an episode states it, in the table's frame."""
+def motion_entry(motion: Motion | None) -> EpisodeLine | None:
+    """Return a true motion as an episode states it, in the table frame; None when nothing moved."""
     if motion is None:
         return None
     if isinstance(motion, Translate):
@@ -37,8 +37,8 @@ def motion_entry(motion: Motion | None) -> Line | None:
     return {"rotate": motion.degrees, "about": list(motion.about)}
 
 
-def header(scenario: Scenario, settings: Settings) -> Line:
-    """Return the first line of an episode: options, world and task, without times or paths."""
+def header(scenario: Scenario, settings: Settings) -> EpisodeLine:
+    """Return the first line of an episode: options, world and task, without times and paths."""
     world, task = scenario.world, scenario.task
     rules = [read_source(path).text for path in settings.kb_files]
     options = {
@@ -49,17 +49,25 @@ def header(scenario: Scenario, settings: Settings) -> Line:
         "pull": settings.pull,
         "kb": [hashlib.sha256(text.encode()).hexdigest() for text in rules],
     }
-    told = {
+    task_entry = {
         "parameters": {name: parameter.kind for name, parameter in task.parameters.items()},
         "claims": [[str(claim.fact), claim.confidence] for claim in task.claims],
         "goals": [str(goal) for goal in task.goals],
         "expect": None if scenario.expectations is None else [str(fact) for fact in scenario.expectations],
     }
-    return {"utak": "episode", "version": VERSION, "options": options, "world": _world_entry(world), "task": told}
+    return {
+        "utak": "episode",
+        "version": EPISODE_VERSION,
+        "options": options,
+        "world": _world_entry(world),
+        "task": task_entry,
+    }
 
 
-def _world_entry(world: World) -> Line:
-    def entry(thing: Thing) -> Line:
+def _world_entry(world: World) -> EpisodeLine:
+    """Return a world as an episode states it."""
+
+    def entry(thing: Thing) -> EpisodeLine:
         return {"colour": thing.colour, "rings": _rings(thing.polygon)}
 
     return {
@@ -72,13 +80,13 @@ def _world_entry(world: World) -> Line:
 
 
 def _rings(polygon: Any) -> list[list[list[float]]]:
-    """The outer ring and the holes of a polygon, each without its repeated last point."""
+    """Return the outer ring and the holes of a polygon, each without its repeated last point."""
     rings = [polygon.exterior, *polygon.interiors]
     return [[[float(x), float(y)] for x, y in ring.coords[:-1]] for ring in rings]
 
 
-def recorded_world(head: Line) -> World:
-    """Return the world that an episode's header records, as far as a picture needs it: Utak stands at (0, 0).
+def recorded_world(head: EpisodeLine) -> World:
+    """Return the world in an episode's header, as far as a picture needs it; Utak is put at (0, 0).
 
     Raises KeyError, TypeError or ValueError when the header is not as `header` makes it.
     """
@@ -89,5 +97,6 @@ def recorded_world(head: Line) -> World:
     return World(int(width), int(height), verge, movable, fixed, (0.0, 0.0), int(entry["heading"]))
 
 
-def _thing(name: str, entry: Line) -> Thing:
+def _thing(name: str, entry: EpisodeLine) -> Thing:
+    """Return a thing in an episode's header."""
     return Thing(name, str(entry["colour"]), shapely.Polygon(entry["rings"][0], entry["rings"][1:]))

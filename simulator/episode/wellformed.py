@@ -1,5 +1,6 @@
-"""Is a line of an episode as simulator.episode.record writes it? A check for each key; docs/files.md has the form
-in words.
+"""The check of episodes: whether every value in a line is as simulator.episode.record writes it (docs/files.md).
+
+A check takes a value and the keys that lead to it, and yields complaints. The functions below return such checks.
 """
 
 import re
@@ -7,74 +8,74 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any
 
 from kb.body import DIRECTIONS
-from kb.language.vocabulary import MOST_SQUARES
+from kb.language.vocabulary import MAX_TABLE_SIDE
 
-Where = tuple[str, ...]  # the keys that lead to a value
-Complaint = tuple[Where, str]
-Check = Callable[[Any, Where], Iterator[Complaint]]
+KeyPath = tuple[str, ...]  # the keys that lead to a value
+LineComplaint = tuple[KeyPath, str]
+ValueCheck = Callable[[Any, KeyPath], Iterator[LineComplaint]]
 
-LONGEST = 100_000  # characters of a text
-FAR = 1e9  # squares or degrees: what a command may ask for
-MARGIN = 1.0  # squares beyond the table
-FACT = re.compile(r"-?_*[a-z][A-Za-z0-9_']*(\([ -~]*\))?\.")
+MAX_TEXT_CHARACTERS = 100_000  # characters of a string; a convention
+MAX_COMMAND_VALUE = 1e9  # squares or degrees in commands and motions, in absolute value; a convention
+TABLE_MARGIN = 1.0  # squares beyond the table in which points may lie; a convention
+FACT_PATTERN = re.compile(r"-?_*[a-z][A-Za-z0-9_']*(\([ -~]*\))?\.")
 
 
-def number(low: float, high: float) -> Check:
-    """A number within bounds."""
+def number(low: float, high: float) -> ValueCheck:
+    """Return the check for a number from `low` to `high`."""
 
-    def check(value: Any, at: Where) -> Iterator[Complaint]:
+    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if isinstance(value, bool) or not isinstance(value, int | float):
             yield at, "a number is wanted"
-        elif not low <= value <= high:  # which no NaN is, and no infinity
+        elif not low <= value <= high:  # false for NaN and infinity, too
             yield at, f"a number from {low:g} to {high:g} is wanted"
 
     return check
 
 
-def whole(low: int, high: int) -> Check:
-    """A whole number within bounds."""
+def whole_number(low: int, high: int) -> ValueCheck:
+    """Return the check for an integer from `low` to `high`."""
 
-    def check(value: Any, at: Where) -> Iterator[Complaint]:
+    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
             yield at, f"a whole number from {low} to {high} is wanted"
 
     return check
 
 
-def text(form: re.Pattern[str] | None = None, name: str = "a text") -> Check:
-    """A text, of a form if one is given."""
+def text(form: re.Pattern[str] | None = None, name: str = "a text") -> ValueCheck:
+    """Return the check for a string; form : a pattern that must match all of it. name : what messages call it."""
 
-    def check(value: Any, at: Where) -> Iterator[Complaint]:
-        if not isinstance(value, str) or len(value) > LONGEST or (form and not form.fullmatch(value)):
+    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
+        if not isinstance(value, str) or len(value) > MAX_TEXT_CHARACTERS or (form and not form.fullmatch(value)):
             yield at, f"{name} is wanted"
 
     return check
 
 
-def one_of(*known: Any) -> Check:
-    """One of some values, of their very types."""
+def one_of(*known: Any) -> ValueCheck:
+    """Return the check for one of some values, of the same type."""
 
-    def check(value: Any, at: Where) -> Iterator[Complaint]:
+    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if not any(type(value) is type(one) and value == one for one in known):
             yield at, f"one of {', '.join(map(str, known))} is wanted"
 
     return check
 
 
-def or_null(inner: Check) -> Check:
-    """Null, or what another check allows."""
+def or_null(inner: ValueCheck) -> ValueCheck:
+    """Return the check for null, or what another check accepts."""
 
-    def check(value: Any, at: Where) -> Iterator[Complaint]:
+    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if value is not None:
             yield from inner(value, at)
 
     return check
 
 
-def list_of(inner: Check, least: int = 0, most: int = 10_000_000) -> Check:
-    """A list of so many values, each as another check allows."""
+def list_of(inner: ValueCheck, least: int = 0, most: int = 10_000_000) -> ValueCheck:
+    """Return the check for a list of `least` to `most` values that another check accepts."""
 
-    def check(value: Any, at: Where) -> Iterator[Complaint]:
+    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if not isinstance(value, list) or not least <= len(value) <= most:
             yield at, f"a list of {least} values is wanted" if least == most else "a list of values is wanted"
             return
@@ -84,10 +85,10 @@ def list_of(inner: Check, least: int = 0, most: int = 10_000_000) -> Check:
     return check
 
 
-def names_to(inner: Check) -> Check:
-    """An object whose keys are names, each value as another check allows."""
+def names_to(inner: ValueCheck) -> ValueCheck:
+    """Return the check for an object with any keys, whose values another check accepts."""
 
-    def check(value: Any, at: Where) -> Iterator[Complaint]:
+    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if not isinstance(value, dict):
             yield at, "an object is wanted"
             return
@@ -97,10 +98,10 @@ def names_to(inner: Check) -> Check:
     return check
 
 
-def keys(checks: Mapping[str, Check], optional: Collection[str] = ()) -> Check:
-    """An object with these keys; others do not matter."""
+def keys(checks: Mapping[str, ValueCheck], optional: Collection[str] = ()) -> ValueCheck:
+    """Return the check for an object with these keys, each with its own check; further keys are accepted."""
 
-    def check(value: Any, at: Where) -> Iterator[Complaint]:
+    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         if not isinstance(value, dict):
             yield at, "an object is wanted"
             return
@@ -113,40 +114,45 @@ def keys(checks: Mapping[str, Check], optional: Collection[str] = ()) -> Check:
     return check
 
 
-def action(value: Any, at: Where) -> Iterator[Complaint]:
-    """A command that was given."""
-    yield from keys({"do": one_of(*ACTIONS)})(value, at)
-    if isinstance(value, dict) and value.get("do") in ACTIONS:
-        yield from keys(ACTIONS[value["do"]])(value, at)
+def action(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
+    """Check a command: yield complaints about it."""
+    yield from keys({"do": one_of(*ACTION_KEYS)})(value, at)
+    if isinstance(value, dict) and value.get("do") in ACTION_KEYS:
+        yield from keys(ACTION_KEYS[value["do"]])(value, at)
 
 
-def motion(value: Any, at: Where) -> Iterator[Complaint]:
-    """What really happened."""
+def motion(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
+    """Check a true motion: yield complaints about it."""
     turned = isinstance(value, dict) and "rotate" in value
-    pair = list_of(number(-FAR, FAR), 2, 2)
-    yield from keys({"rotate": number(-FAR, FAR), "about": pair} if turned else {"translate": pair})(value, at)
+    pair = list_of(number(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE), 2, 2)
+    yield from keys(
+        {"rotate": number(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE), "about": pair} if turned else {"translate": pair}
+    )(value, at)
 
 
-STRAIGHT = {"east": number(-FAR, FAR), "north": number(-FAR, FAR)}
-ACTIONS: dict[str, dict[str, Check]] = {
-    "move": STRAIGHT,
-    "push": STRAIGHT,
-    "turn": {"degrees": number(-FAR, FAR)},
+STRAIGHT_KEYS = {
+    "east": number(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE),
+    "north": number(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE),
+}
+ACTION_KEYS: dict[str, dict[str, ValueCheck]] = {
+    "move": STRAIGHT_KEYS,
+    "push": STRAIGHT_KEYS,
+    "turn": {"degrees": number(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE)},
     "grasp": {"direction": one_of(*DIRECTIONS)},
     "release": {},
 }
-POINT = list_of(number(-MARGIN, MOST_SQUARES + MARGIN), 2, 2)
-RING = list_of(POINT, 3)
-RINGS = list_of(RING, 1)
-THING = keys({"colour": text(), "rings": RINGS})
-HEADER = keys(
+POINT_CHECK = list_of(number(-TABLE_MARGIN, MAX_TABLE_SIDE + TABLE_MARGIN), 2, 2)
+RING_CHECK = list_of(POINT_CHECK, 3)
+RINGS_CHECK = list_of(RING_CHECK, 1)
+THING_CHECK = keys({"colour": text(), "rings": RINGS_CHECK})
+HEADER_CHECK = keys(
     {
         "options": keys(
             {
-                "seed": whole(0, 2**63 - 1),
+                "seed": whole_number(0, 2**63 - 1),
                 "noise": number(0, 1),
                 "paths": one_of("skeleton", "visibility", "grid"),
-                "max_steps": whole(0, 1_000_000),
+                "max_steps": whole_number(0, 1_000_000),
                 "pull": one_of(True, False),
                 "kb": list_of(text()),
             },
@@ -154,11 +160,11 @@ HEADER = keys(
         ),
         "world": keys(
             {
-                "table": list_of(whole(1, MOST_SQUARES), 2, 2),
-                "heading": whole(0, 359),
-                "verge": list_of(RINGS),
-                "fixed": names_to(THING),
-                "movable": names_to(THING),
+                "table": list_of(whole_number(1, MAX_TABLE_SIDE), 2, 2),
+                "heading": whole_number(0, 359),
+                "verge": list_of(RINGS_CHECK),
+                "fixed": names_to(THING_CHECK),
+                "movable": names_to(THING_CHECK),
             }
         ),
         "task": keys(
@@ -171,20 +177,20 @@ HEADER = keys(
         ),
     }
 )
-STEP = keys(
+STEP_CHECK = keys(
     {
         "action": or_null(action),
         "motion": or_null(motion),
-        "utak": POINT,
+        "utak": POINT_CHECK,
         "held": or_null(text()),
-        "objects": names_to(RING),
-        "retina": list_of(whole(0, 7), 160, 160),
+        "objects": names_to(RING_CHECK),
+        "retina": list_of(whole_number(0, 7), 160, 160),
         "touch": list_of(or_null(text()), 8, 8),
-        "belief": keys({"facts": list_of(text(FACT, "a fact"))}),
+        "belief": keys({"facts": list_of(text(FACT_PATTERN, "a fact"))}),
         "why": text(),
     }
 )
-RESULT = keys(
+RESULT_CHECK = keys(
     {
         "result": keys(
             {
@@ -192,15 +198,15 @@ RESULT = keys(
                 "achieved": or_null(one_of(True, False)),
                 "verdict": one_of("done", "impossible", "possible_if", "limit"),
                 "reason": text(),
-                "steps": whole(0, 1_000_000),
+                "steps": whole_number(0, 1_000_000),
             }
         )
     }
 )
 
 
-def column(row: str, where: Where) -> int:
-    """Return the column, from 1, at which a line has the last of some keys, one inside of the other."""
+def column(row: str, where: KeyPath) -> int:
+    """Return the column, from 1, of the last of some nested keys in a line; 1 for no keys."""
     at = 0
     for key in where:
         found = row.find(f'"{key}"', at)

@@ -1,11 +1,11 @@
-"""The one bridge between mind and world: commands go in, impressions come out, and nothing else passes."""
+"""The only bridge between robot and world: commands go in, impressions come out, nothing else passes."""
 
 from kb.body import Command, Grasp, Impression, Move, Push, Release, Turn
 from simulator.world.physics import Tabletop
 
 
 class Embodiment:
-    """Utak's body on a table; satisfies `kb.body.Body`."""
+    """Utak's body on a table; satisfies the protocol `kb.body.Body`."""
 
     def __init__(self, table: Tabletop) -> None:
         self.__table = table
@@ -15,7 +15,7 @@ class Embodiment:
         return Impression(*self.__table.look())
 
     def act(self, command: Command) -> Impression:
-        """Carry out one command and return the impression where Utak comes to a halt."""
+        """Execute one command and return the impression at the place where Utak stops."""
         table = self.__table
         match command:
             case Move(east, north):

@@ -1,4 +1,4 @@
-"""Ctrl-C while a step is under way: the step comes to its end first."""
+"""Ctrl-C during a step: the step is completed first."""
 
 import signal
 import threading
@@ -7,8 +7,13 @@ from contextlib import contextmanager
 from types import FrameType
 
 
-class Pressed:
-    """Whether Ctrl-C was pressed while something was not to be broken off."""
+class InterruptCount:
+    """The number of times that Ctrl-C was pressed in a block; true when it was pressed at all.
+
+    Attributes
+    ----------
+    times : the number.
+    """
 
     times = 0
 
@@ -17,17 +22,21 @@ class Pressed:
 
 
 @contextmanager
-def deferred(tell: Callable[[], object]) -> Iterator[Pressed]:
-    """Keep the first Ctrl-C until the end of the block, where the value that is given tells of it.
+def defer_interrupt(tell: Callable[[], object]) -> Iterator[InterruptCount]:
+    """Hold back the first Ctrl-C until the end of a `with` block.
 
-    The second breaks the block off, by KeyboardInterrupt. Where this is not the main thread, or Ctrl-C is ignored,
-    nothing is kept.
+    The block's value tells afterwards whether Ctrl-C was pressed. The second Ctrl-C raises KeyboardInterrupt in the
+    block. Nothing is held back outside of the main thread, or where Ctrl-C is ignored.
 
     Parameters
     ----------
-    tell : called at the first one.
+    tell : called at the first Ctrl-C.
+
+    Yields
+    ------
+    The count of interrupts.
     """
-    pressed, before = Pressed(), signal.getsignal(signal.SIGINT)
+    pressed, before = InterruptCount(), signal.getsignal(signal.SIGINT)
     if not callable(before) or threading.current_thread() is not threading.main_thread():
         yield pressed
         return

@@ -1,4 +1,4 @@
-"""Where simulator and planner are wired together: the one robot that the command line runs."""
+"""The robot that the command line runs: here simulator and planner are wired together."""
 
 from kb.body import Body
 from kb.task.task import Task
@@ -9,7 +9,7 @@ from simulator.scenario.settings import Settings
 
 
 def make_robot(body: Body, task: Task, settings: Settings) -> RobotProtocol:
-    """Return the robot of `planner.cycle` with a body and a task."""
+    """Return the robot of `planner.cycle` for a body and a task; compile the geometry kernels that it needs first."""
     from planner.cycle import Options
     from planner.cycle import Robot as Mind
 

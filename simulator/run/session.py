@@ -1,4 +1,4 @@
-"""One run: the robot wakes in a scenario and acts until he stops, and the truth is written down as it happens."""
+"""One run: the robot wakes in a scenario and acts until it has a verdict; the truth is recorded as it happens."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -6,49 +6,68 @@ from typing import Any, Protocol
 
 from kb.body import Body, Command, Impression
 from kb.task.task import Task
-from simulator.episode.episode import EpisodeLog, Line
+from simulator.episode.episode import EpisodeLine, EpisodeLog
 from simulator.episode.record import action_entry, header, motion_entry
 from simulator.run.embodiment import Embodiment
 from simulator.scenario.expectation import Snapshot, should_fail, unmet
 from simulator.scenario.scenario import Scenario
 from simulator.scenario.settings import Settings
 from simulator.world.physics import Tabletop
-from simulator.world.world import ring_of
+from simulator.world.world import outer_ring
 
 
 class StepReportProtocol(Protocol):
-    """What the robot says after an impression: the command that led to it (None on waking), his belief, and why."""
+    """The robot's report after an impression."""
 
     @property
-    def command(self) -> Command | None: ...
+    def command(self) -> Command | None:
+        """The command before the impression; None on waking."""
+
     @property
-    def impression(self) -> Impression: ...
+    def impression(self) -> Impression:
+        """What the body returned."""
+
     @property
-    def belief(self) -> dict[str, Any]: ...
+    def belief(self) -> dict[str, Any]:
+        """The world model as JSON values."""
+
     @property
-    def why(self) -> str: ...
+    def why(self) -> str:
+        """The reason for the command."""
 
 
 class VerdictProtocol(Protocol):
-    """How the robot judges the end: whether he believes that the task is done, the kind of verdict, and the reason."""
+    """The robot's verdict at the end."""
 
     @property
-    def believed(self) -> bool: ...
+    def believed(self) -> bool:
+        """Whether the robot believes that the task is done."""
+
     @property
-    def verdict(self) -> str: ...
+    def verdict(self) -> str:
+        """The kind of verdict: done, impossible, possible_if or limit."""
+
     @property
-    def reason(self) -> str: ...
+    def reason(self) -> str:
+        """The reason in words."""
 
 
 class RobotProtocol(Protocol):
-    """The mind: given a body and a task, it wakes and takes one step after the other."""
+    """A robot: given a body and a task, it wakes and then takes one step after the other."""
 
-    def wake(self) -> StepReportProtocol: ...
-    def step(self) -> StepReportProtocol: ...
+    def wake(self) -> StepReportProtocol:
+        """Take the first impression and return the report on it."""
+
+    def step(self) -> StepReportProtocol:
+        """Choose a command, act and return the report; without a command when the run ends."""
+
     @property
-    def finished(self) -> bool: ...
+    def finished(self) -> bool:
+        """Whether the robot has a verdict."""
+
     @property
-    def verdict(self) -> VerdictProtocol: ...
+    def verdict(self) -> VerdictProtocol:
+        """The verdict at the end."""
 
 
 RobotMaker = Callable[[Body, Task, Settings], RobotProtocol]
@@ -56,15 +75,15 @@ RobotMaker = Callable[[Body, Task, Settings], RobotProtocol]
 
 @dataclass(frozen=True)
 class Result:
-    """How a run ended.
+    """The end of a run.
 
     Attributes
     ----------
-    believed : Utak believes that the task is done.
-    achieved : it is, by expect.lp; None when there is no expect.lp.
+    believed : whether Utak believes that the task is done.
+    achieved : whether it is done by expect.lp; None without expect.lp.
     verdict : done, impossible, possible_if or limit.
-    reason : in words.
-    steps : how many commands were given.
+    reason : the reason in words.
+    steps : the number of commands.
     unmet : the expectations that the truth does not meet, as text.
     """
 
@@ -76,40 +95,55 @@ class Result:
     unmet: tuple[str, ...] = field(default=())
 
     @property
-    def line(self) -> Line:
+    def line(self) -> EpisodeLine:
         """The last line of the episode."""
         names = ("believed", "achieved", "verdict", "reason", "steps")
         return {"result": {name: getattr(self, name) for name in names}}
 
 
 class Session:
-    """A run that is driven step by step; `line` is the last line of the episode so far."""
+    """A run that is advanced step by step.
+
+    Parameters
+    ----------
+    scenario : the scenario.
+    settings : the options of the run.
+    make : makes the robot from its body, the task and the settings.
+    log : the episode that is written.
+
+    Attributes
+    ----------
+    line : the last line of the episode so far.
+    """
 
     def __init__(self, scenario: Scenario, settings: Settings, make: RobotMaker, log: EpisodeLog) -> None:
         self.scenario, self.settings = scenario, settings
         self.table = Tabletop(scenario.world, settings.noise, settings.seed)
         self.robot = make(Embodiment(self.table), scenario.task, settings)
-        self.line: Line = {}
+        self.line: EpisodeLine = {}
         self._log = log
         self._track: list[Snapshot] = []
 
-    def wake(self) -> Line:
-        """Write the header, let the robot wake, and write step 0."""
+    def wake(self) -> EpisodeLine:
+        """Write the header, let the robot wake, write step 0 and return that line."""
         self._log.write(header(self.scenario, self.settings))
         return self._record(self.robot.wake())
 
-    def step(self) -> Line:
-        """Let the robot act once, and write what happened. A step without a command is not written."""
+    def step(self) -> EpisodeLine:
+        """Let the robot act once, write what happened, and return the last line.
+
+        A step without a command is not written.
+        """
         report = self.robot.step()
         return self.line if report.command is None else self._record(report)
 
     @property
     def finished(self) -> bool:
-        """Whether the robot has come to a verdict."""
+        """Whether the robot has a verdict."""
         return self.robot.finished
 
     def end(self) -> Result:
-        """Compare the verdict with the truth, and write the result."""
+        """Compare the verdict with the truth, write the result and return it."""
         verdict = self.robot.verdict
         expectations = self.scenario.expectations
         missed = unmet(expectations, self.scenario.world, self._track) if expectations is not None else []
@@ -120,7 +154,10 @@ class Session:
         return result
 
     def run(self, watch: Callable[["Session"], None] = lambda session: None) -> Result:
-        """Wake, act until finished, and end; `watch` is called after every step."""
+        """Run from waking to the end, and return the result.
+
+        watch : called with this session after every step.
+        """
         self.wake()
         watch(self)
         while not self.finished:
@@ -128,7 +165,8 @@ class Session:
             watch(self)
         return self.end()
 
-    def _record(self, report: StepReportProtocol) -> Line:
+    def _record(self, report: StepReportProtocol) -> EpisodeLine:
+        """Write a step and return its line."""
         table, number = self.table, len(self._track)
         self._track.append(Snapshot(number, table.utak, dict(table.polygons)))
         self.line = {
@@ -137,7 +175,7 @@ class Session:
             "motion": motion_entry(table.motion),
             "utak": list(table.utak),
             "held": table.held,
-            "objects": {name: [list(point) for point in ring_of(shape)] for name, shape in table.polygons.items()},
+            "objects": {name: [list(point) for point in outer_ring(shape)] for name, shape in table.polygons.items()},
             "retina": list(report.impression.retina),
             "touch": list(report.impression.touch),
             "belief": report.belief,

@@ -1,4 +1,4 @@
-"""An episode as it can be read step by step: one that runs now, or one that was recorded."""
+"""A run or a recorded episode, read step by step."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -9,7 +9,7 @@ import shapely
 from kb.language.diagnostics import BadInputError, Problem, Span
 from kb.language.reader import parse_facts
 from kb.language.source_text import decode
-from simulator.episode.episode import Episode, EpisodeLog, Line, read_episode
+from simulator.episode.episode import Episode, EpisodeLine, EpisodeLog, read_episode
 from simulator.episode.record import recorded_world
 from simulator.run.robots import make_robot
 from simulator.run.session import Session
@@ -19,45 +19,53 @@ from simulator.scenario.settings import Settings
 
 
 class Story(Protocol):
-    """A sequence of episode lines with a place in it."""
+    """A sequence of episode lines, with a current step."""
 
     @property
-    def line(self) -> Line:
-        """The line of the step at which the story stands."""
+    def line(self) -> EpisodeLine:
+        """The line of the current step."""
 
     @property
-    def result(self) -> Line | None:
-        """How it ended, once it has: `believed`, `achieved`, `verdict`, `reason`, `steps`."""
+    def result(self) -> EpisodeLine | None:
+        """The end, at the last step: `believed`, `achieved`, `verdict`, `reason`, `steps`; else None."""
 
     def advance(self) -> bool:
-        """Go on by one step; False when there is none."""
+        """Go on by one step. Return whether there was one."""
 
     @property
     def facts(self) -> list[str]:
-        """The world model of this step as facts, which are well formed. Raises BadInputError."""
+        """The world model at the current step, as well-formed facts. Raises BadInputError for a damaged episode."""
 
     def picture(self) -> str:
-        """The table at this step."""
+        """Return the true table at the current step as a picture."""
 
 
-class Moment(NamedTuple):
-    """What is known of a run after one of its steps: its line, its end, where things lay and where Utak stood."""
+class RunState(NamedTuple):
+    """The state of a run after a complete step.
 
-    line: Line
-    result: Line | None
+    Attributes
+    ----------
+    line : the line of the step.
+    result : the end, or None.
+    polygons : the outlines of the movable things by name, squares, table frame.
+    utak : Utak's place (x, y), squares, table frame.
+    """
+
+    line: EpisodeLine
+    result: EpisodeLine | None
     polygons: Mapping[str, Any]
     utak: tuple[float, float]
 
 
-class Running:
-    """A run of the robot in a scenario; it wakes at once.
+class LiveStory:
+    """A run of the robot in a scenario; the robot wakes at once.
 
-    A step is whole or did not happen. One that was broken off, at whatever point, leaves a robot and a table that
-    nothing is known of; they are made anew by repeating the run up to the last whole step, which gives the same.
+    A step is either complete or did not happen. After an interrupted step the state of robot and table is unknown; so
+    they are made anew, and the run is repeated up to the last complete step, which gives the same state.
 
     Parameters
     ----------
-    begin : returns a fresh session of the same run.
+    begin : returns a new session of the same run.
     """
 
     def __init__(self, begin: Callable[[], Session]) -> None:
@@ -65,41 +73,41 @@ class Running:
         session = begin()
         session.wake()
         self._world = session.table.world
-        self._moment = _moment(session)
+        self._moment = _run_state(session)
         self._session: Session | None = session
 
     @property
-    def line(self) -> Line:
-        """The line of the last step."""
+    def line(self) -> EpisodeLine:
+        """The line of the last complete step."""
         return self._moment.line
 
     @property
-    def result(self) -> Line | None:
-        """How it ended, once it has."""
+    def result(self) -> EpisodeLine | None:
+        """The end of the run, or None."""
         return self._moment.result
 
     def advance(self) -> bool:
-        """Let the robot act once."""
+        """Let the robot act once. Return whether it did."""
         if self.result is not None:
             return False
         session = self._session or self._repeated()
-        self._session = None  # whatever breaks this off, the session is not gone on with
+        self._session = None  # a session with an interrupted step is not used again
         session.step()
-        self._moment = _moment(session)
+        self._moment = _run_state(session)
         self._session = session
         return True
 
     @property
     def facts(self) -> list[str]:
-        """The world model after the last step."""
+        """The world model after the last step, as facts."""
         return facts_of_line(self.line)
 
     def picture(self) -> str:
-        """The table now."""
+        """Return the true table as a picture."""
         return draw(self._world, self._moment.polygons, self._moment.utak)
 
     def _repeated(self) -> Session:
-        """A session at the last whole step."""
+        """Return a new session at the last complete step."""
         session = self._begin()
         session.wake()
         while session.line["step"] != self.line["step"]:
@@ -107,32 +115,38 @@ class Running:
         return session
 
 
-def _moment(session: Session) -> Moment:
-    """What is known after a step of a session; it is ended when the robot has come to a verdict."""
+def _run_state(session: Session) -> RunState:
+    """Return the state after a step; end the session when the robot has a verdict."""
     result = session.end().line["result"] if session.finished else None
     table = session.table
-    return Moment(session.line, result, dict(table.polygons), table.utak)
+    return RunState(session.line, result, dict(table.polygons), table.utak)
 
 
-class Recorded:
-    """An episode that was written to a file."""
+class RecordedStory:
+    """An episode that was read from a file.
+
+    Parameters
+    ----------
+    name : the name of the file, for messages.
+    episode : the episode.
+    """
 
     def __init__(self, name: str, episode: Episode) -> None:
         self._name, self._episode = name, episode
         self._at = 0
 
     @property
-    def line(self) -> Line:
-        """The line of this step."""
+    def line(self) -> EpisodeLine:
+        """The line of the current step."""
         return self._episode.steps[self._at]
 
     @property
-    def result(self) -> Line | None:
-        """How it ended, at the last step."""
+    def result(self) -> EpisodeLine | None:
+        """The end, at the last step; else None."""
         return self._episode.result if self._at == len(self._episode.steps) - 1 else None
 
     def advance(self) -> bool:
-        """Turn to the next line."""
+        """Go on by one step. Return whether there was one."""
         if self._at == len(self._episode.steps) - 1:
             return False
         self._at += 1
@@ -140,7 +154,7 @@ class Recorded:
 
     @property
     def facts(self) -> list[str]:
-        """The world model of this step, read as the facts of a file are."""
+        """The world model at the current step, as well-formed facts."""
         facts = facts_of_line(self.line)
         try:
             parse_facts(decode(self._name, "\n".join(facts).encode("utf-8")))
@@ -151,7 +165,7 @@ class Recorded:
         return facts
 
     def picture(self) -> str:
-        """The table at this step."""
+        """Return the true table at the current step as a picture."""
         try:
             world = recorded_world(self._episode.header)
             polygons = {name: shapely.Polygon(ring) for name, ring in self.line["objects"].items()}
@@ -163,21 +177,33 @@ class Recorded:
 
 
 def open_story(path: Path | str, settings: Settings) -> Story:
-    """Return the story of a scenario folder, which is run, or of an episode file, which is read; it stands at step 0.
+    """Return the story of a scenario folder, which is run, or of an episode file, at step 0.
 
-    Raises CannotOpenError or BadInputError.
+    Parameters
+    ----------
+    path : a scenario folder or an episode.
+    settings : the options of the run; not used for an episode.
+
+    Returns
+    -------
+    The story.
+
+    Raises
+    ------
+    CannotOpenError : a file cannot be read.
+    BadInputError : a file has errors.
     """
     if Path(path).is_dir():
         scenario = read_scenario(path)
-        return Running(lambda: Session(scenario, settings, make_robot, EpisodeLog(None)))
+        return LiveStory(lambda: Session(scenario, settings, make_robot, EpisodeLog(None)))
     episode = read_episode(path)
     if not episode.steps:
         raise BadInputError([Problem(str(path), Span(1, 1, 1), "the episode ends before its first step")])
-    return Recorded(str(path), episode)
+    return RecordedStory(str(path), episode)
 
 
-def facts_of_line(line: Line) -> list[str]:
-    """Return the world model of a step as facts; empty when the step records none."""
+def facts_of_line(line: EpisodeLine) -> list[str]:
+    """Return the world model in an episode's line as facts; [] when it has none."""
     belief: Any = line.get("belief")
     facts: Any = belief.get("facts") if isinstance(belief, dict) else None
     return [str(fact) for fact in facts] if isinstance(facts, list) else []

@@ -1,4 +1,4 @@
-"""A scenario as a test: run it and compare the end with expect.lp."""
+"""A scenario as a test: a run, and the comparison of its end with expect.lp."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,7 +14,14 @@ from simulator.scenario.settings import Settings
 
 
 class ScenarioTrial(NamedTuple):
-    """How a scenario's test went: whether it passed, what to say of it, and how the run ended."""
+    """The outcome of a scenario's test.
+
+    Attributes
+    ----------
+    passed : whether the test passed.
+    message : the reasons, and the verdict.
+    result : the end of the run.
+    """
 
     passed: bool
     message: str
@@ -22,10 +29,24 @@ class ScenarioTrial(NamedTuple):
 
 
 def run_trial(folder: Path | str, settings: Settings | None = None) -> ScenarioTrial:
-    """Run a scenario and judge it by its expect.lp; raises CannotOpenError or BadInputError.
+    """Run a scenario and judge the end by its expect.lp.
 
-    A scenario that `fails` passes when Utak does not believe that he is done and gives a reason; any other passes when
-    everything expected holds and Utak believes it.
+    A scenario with `fails` passes when Utak does not believe that the task is done, and gives a reason. Any other
+    passes when all expectations are met and Utak believes that the task is done.
+
+    Parameters
+    ----------
+    folder : the scenario.
+    settings : the options of the run; None for the defaults.
+
+    Returns
+    -------
+    The outcome.
+
+    Raises
+    ------
+    CannotOpenError : a file cannot be read.
+    BadInputError : a file has errors, or there is no expect.lp.
     """
     scenario = read_scenario(folder)
     if scenario.expectations is None:
@@ -34,26 +55,37 @@ def run_trial(folder: Path | str, settings: Settings | None = None) -> ScenarioT
     session = Session(scenario, settings or Settings(), make_robot, EpisodeLog(None))
     result = session.run()
     faults = list(_faults(result, should_fail(scenario.expectations)))
-    told = f"{result.verdict} in {result.steps} steps: {result.reason}"
-    return ScenarioTrial(not faults, "; ".join([*faults, told]), result)
+    end = f"{result.verdict} in {result.steps} steps: {result.reason}"
+    return ScenarioTrial(not faults, "; ".join([*faults, end]), result)
 
 
 def _faults(result: Result, to_fail: bool) -> Iterator[str]:
+    """Yield the reasons why the test fails."""
     if to_fail:
         if result.believed:
-            yield "Utak believes that he did what cannot be done"
+            yield "Utak believes that an impossible task is done"
         if not result.reason:
             yield "Utak gives no reason"
         return
     yield from (f"not met: {fact}" for fact in result.unmet)
     if not result.believed:
-        yield "Utak does not believe that he is done"
+        yield "Utak does not believe that the task is done"
 
 
 def scenarios_in(folder: Path | str) -> list[Path]:
-    """Return the scenario folders (those with an expect.lp) in a folder and below it, in the order of their names.
+    """Return the scenarios in a folder and below it: all folders with an expect.lp, in the order of their names.
 
-    The folder itself is returned when it is a scenario. Raises CannotOpenError when there is none.
+    Parameters
+    ----------
+    folder : the folder; a scenario without expect.lp is returned itself.
+
+    Returns
+    -------
+    The folders.
+
+    Raises
+    ------
+    CannotOpenError : there is no such folder, or no scenario in it.
     """
     folder = Path(folder)
     if not folder.is_dir():

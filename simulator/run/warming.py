@@ -1,7 +1,7 @@
-"""The first run of an installation compiles geometry's kernels; here that is said once, and done on both of two cores.
+"""Compilation of geometry's kernels before the first run of an installation: announced, and done in two processes.
 
-Later runs find them in numba's cache. Nothing depends on this: a kernel that is not compiled yet is compiled when it
-is called.
+Later runs find the kernels in numba's cache. Nothing depends on this module: a kernel that is not compiled yet is
+compiled when it is called. A *use* is a function that calls the kernels which one kind of work needs.
 """
 
 import compileall
@@ -16,35 +16,38 @@ from pathlib import Path
 
 import geometry
 from geometry.kernels.jit import tell
-from kb.language.operating_system import end_with_parent, lines_of_parent
+from kb.language.operating_system import end_with_parent, read_lines_from_parent
 from utak_command import beside
 
 PACKAGES = [Path(geometry.__file__).parent.with_name(name) for name in ("geometry", "kb", "planner", "simulator")]
 
 
 def warm(carrying: bool, paths: str = "skeleton") -> None:
-    """Compile the kernels that a robot needs, if they are not in the cache; say so on stderr.
+    """Compile the kernels that a robot needs, unless they are in the cache; announce it on the standard error.
 
-    carrying : whether anything is to be carried. paths : the path-finder, as `--paths` names it.
+    Parameters
+    ----------
+    carrying : whether the task moves objects.
+    paths : the path-finder, as in `--paths`.
     """
     if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
         return
-    missing = cold([search, *([carry] if carrying else []), *([sightlines] if paths == "visibility" else [])])
+    missing = uncompiled([search, *([carry] if carrying else []), *([sightlines] if paths == "visibility" else [])])
     if not missing:
         return
     tell()
-    mine, others = HALVES[carrying] if search in missing else ((), ())
+    mine, others = PROCESS_SPLIT[carrying] if search in missing else ((), ())
     _compile_beside([*mine, *(use for use in missing if use not in (*mine, *others))], others)
 
 
 def warm_all() -> None:
-    """Compile the kernels for everything, in two processes; those that are in the cache are loaded."""
-    mine, others = HALVES[True]
+    """Compile the kernels for all uses in two processes; kernels in the cache are loaded."""
+    mine, others = PROCESS_SPLIT[True]
     _compile_beside((*mine, move), (*others, sightlines, change))
 
 
 def _compile_beside(mine: Sequence[Callable[[], None]], others: Sequence[Callable[[], None]]) -> None:
-    """Compile for some uses here and for others in a process beside this one, which ends when this one does."""
+    """Compile for some uses here, and for others in a second process, which ends when this one ends."""
     if not others:
         compile_for(mine)
         return
@@ -61,21 +64,21 @@ def _compile_beside(mine: Sequence[Callable[[], None]], others: Sequence[Callabl
             raise
 
 
-def cold(uses: Collection[Callable[[], None]]) -> list[Callable[[], None]]:
-    """Return the uses whose kernels are not in the cache of this installation."""
+def uncompiled(uses: Collection[Callable[[], None]]) -> list[Callable[[], None]]:
+    """Return those uses whose kernels are not in the cache of this installation."""
     places = [place for place in _caches() if place.is_dir()]
-    return [use for use in uses if not any(next(place.rglob(f"{INDEX[use]}-*.nbi"), None) for place in places)]
+    return [use for use in uses if not any(next(place.rglob(f"{LONGEST_KERNEL[use]}-*.nbi"), None) for place in places)]
 
 
-def kept() -> int:
-    """Return how many of our kernels are in the cache."""
+def count_cached_kernels() -> int:
+    """Return the number of our kernels in the cache."""
     names = {path.stem for path in Path(geometry.__file__).parent.rglob("*.py")}
     found = {path.name.split("-")[0] for place in _caches() if place.is_dir() for path in place.rglob("*.nbi")}
     return sum(name.split(".")[0] in names for name in found)
 
 
 def _caches() -> list[Path]:
-    """Where numba keeps compiled kernels: the first of these that it can write to."""
+    """Return the folders in which numba may keep compiled kernels; it takes the first that it can write to."""
     given = os.environ.get("NUMBA_CACHE_DIR")
     if given:
         return [Path(given)]
@@ -87,18 +90,18 @@ def _caches() -> list[Path]:
 
 
 def compile_modules() -> None:
-    """Keep the bytecode of our modules beside their kernels.
+    """Write the bytecode of our modules beside their sources.
 
-    Where Python was told to keep none (PYTHONDONTWRITEBYTECODE, as in many containers), a checkout would be compiled
-    again at every start, which takes a third of the time to the first command.
+    With PYTHONDONTWRITEBYTECODE, as in many containers, Python compiles a checkout again at every start. That takes a
+    third of the time to the first command.
     """
     for package in PACKAGES:
         compileall.compile_dir(package, quiet=2)
 
 
 def compile_for(uses: Sequence[Callable[[], None]]) -> None:
-    """Do some things once, for the kernels that they need."""
-    gc.disable()  # a compiler makes millions of objects that live: looking for garbage among them takes a tenth of it
+    """Call each use once, which compiles its kernels."""
+    gc.disable()  # a compiler makes millions of lasting objects; garbage collection would take a tenth of the time
     try:
         for use in uses:
             use()
@@ -107,7 +110,7 @@ def compile_for(uses: Sequence[Callable[[], None]]) -> None:
 
 
 def search() -> None:
-    """Look for ways: half of it all."""
+    """Call the kernels that find routes; about half of all kernels."""
     import numpy as np
 
     from geometry.raster.geodesic import reach
@@ -118,7 +121,7 @@ def search() -> None:
 
 
 def see() -> None:
-    """Find regions and their shapes, and draw pictures."""
+    """Call the kernels that find regions and their shapes, and sample completions."""
     import numpy as np
 
     from geometry.counts.gibbs import DRAWN, Counts, pictures
@@ -134,7 +137,7 @@ def see() -> None:
 
 
 def tell_counts() -> None:
-    """Settle what counts settle."""
+    """Call the kernels that derive squares from counts."""
     import numpy as np
 
     from geometry.counts.contradictions import contradicting
@@ -153,7 +156,7 @@ def tell_counts() -> None:
 
 
 def sightlines() -> None:
-    """Look along straight lines, as `--paths visibility` does."""
+    """Call the kernels that follow lines of sight, as `--paths visibility` does."""
     import numpy as np
 
     from geometry.pathfinders.visibility_graph import visibility_way
@@ -164,7 +167,7 @@ def sightlines() -> None:
 
 
 def change() -> None:
-    """Change a screen, and keep ways away from a place."""
+    """Call the kernels that update a screen after changes, and find several routes."""
     import numpy as np
 
     free = np.ones((9, 12), np.bool_)
@@ -175,7 +178,7 @@ def change() -> None:
 
 
 def move() -> None:
-    """Move a shape past another at any angle."""
+    """Call the kernels that plan a motion of a shape past another at any angle."""
     import shapely
 
     from geometry.cspace.plan_motion import plan_motion
@@ -185,7 +188,7 @@ def move() -> None:
 
 
 def tell_shapes() -> None:
-    """Tell what shape a thing has."""
+    """Call the kernels that fit shape classes to a thing."""
     import numpy as np
 
     from geometry.shapes.fit import fit_shapes
@@ -194,7 +197,7 @@ def tell_shapes() -> None:
 
 
 def survey() -> None:
-    """Make a screen, and find its necks and parts."""
+    """Call the kernels that make a screen and find its passages and parts."""
     import numpy as np
 
     free = np.ones((12, 20), np.bool_)
@@ -204,7 +207,7 @@ def survey() -> None:
 
 
 def walk() -> None:
-    """Run against something, go straight, and go round something."""
+    """Call the kernels that move to the first contact, straight, and around a place."""
     import numpy as np
     import shapely
 
@@ -223,7 +226,7 @@ def walk() -> None:
 
 
 def carry() -> None:
-    """Bring something somewhere, and turn it."""
+    """Call the kernels that plan to carry an object and to turn it."""
     import numpy as np
     import shapely
 
@@ -239,23 +242,25 @@ def carry() -> None:
     plan_carrying(shapely.box(3, 2, 5, 3), free, (1.5, 1.5), Inside(shapely.box(10, 0, 16, 6)))
 
 
-HALVES: dict[bool, tuple[tuple[Callable[[], None], ...], ...]] = {
+# Without and with carrying: the uses that this process compiles, and those that the second process compiles meanwhile.
+PROCESS_SPLIT: dict[bool, tuple[tuple[Callable[[], None], ...], ...]] = {
     False: ((search, walk), (see, survey, tell_shapes)),
     True: ((search, see), (survey, tell_shapes, walk, carry)),
 }
 
 
-INDEX = {search: "router.itineraries", carry: "astar.haul", sightlines: "visibility_graph.line_open"}
-"""A kernel of each use by whose index in numba's cache the use is known to have been compiled: the longest."""
+# The kernel of each use that takes longest to compile, as numba's cache names it. When it is in the cache, the use is
+# taken for compiled.
+LONGEST_KERNEL = {search: "router.itineraries", carry: "astar.haul", sightlines: "visibility_graph.line_open"}
 
 
 def main(names: Sequence[str]) -> None:
-    """Compile for the uses of these names: the work of the other process."""
-    uses = {use.__name__: use for use in (*(use for half in HALVES[True] for use in half), sightlines, change)}
+    """Compile for the uses with these names: the work of the second process."""
+    uses = {use.__name__: use for use in (*(use for half in PROCESS_SPLIT[True] for use in half), sightlines, change)}
     compile_for([uses[name] for name in names])
 
 
 if __name__ == "__main__":
     end_with_parent()
-    threading.Thread(target=next, args=(lines_of_parent(),), daemon=True).start()
+    threading.Thread(target=next, args=(read_lines_from_parent(),), daemon=True).start()
     main(sys.argv[1:])

@@ -1,7 +1,7 @@
-"""world.txt: a world drawn as a picture, one character a square, and the picture of any world.
+"""world.txt: a world drawn as a picture, one character a square; and the picture of any world.
 
-`.` is floor, `b` verge, another lower-case letter an object of that colour, `U` Utak, who faces north. The last line is
-the south. Edge-connected equal letters are one object; objects are named by colour and number: g1, g2, ...
+`.` is floor, `b` verge, another lower-case letter an object of that colour, `U` Utak, which faces north. The last line
+is the south. Edge-connected equal letters are one object. Objects are named by colour and number: g1, g2, ...
 """
 
 import re
@@ -15,36 +15,50 @@ import numpy.typing as npt
 import shapely
 
 from geometry.raster.rasterize import squares
-from kb.language.diagnostics import ENOUGH, BadInputError, Problem, Span
+from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, Span
 from kb.language.source_text import Source, read_source
 from simulator.world.world import VERGE_COLOUR, Thing, World
 
-FLOOR, UTAK = ".", "U"
-MOST_SQUARES = 512  # along either side of a picture; greater tables are for world.lp
-Square = tuple[int, int]
+FLOOR_MARK, UTAK_MARK = ".", "U"  # the characters for floor and for Utak in pictures
+MAX_PICTURE_SIDE = 512  # squares along each side of a picture (docs/files.md); world.lp can state greater tables
+_Square = tuple[int, int]
 
 
 def read_picture(path: Path | str) -> World:
-    """Read a world from its picture; raises CannotOpenError, or BadInputError with every problem.
+    """Return the world that a picture shows.
 
-    Every square of the picture is whole. An object that encloses floor has a hole, so it counts as fixed.
+    An object covers whole squares. An object that encloses floor has a hole, and counts as fixed.
+
+    Parameters
+    ----------
+    path : the file world.txt.
+
+    Returns
+    -------
+    The world.
+
+    Raises
+    ------
+    CannotOpenError : the file cannot be read.
+    BadInputError : the picture has errors; carries all of them.
     """
     source = read_source(path)
     rows = [line.rstrip() for line in source.lines]
     while rows and not rows[-1]:
         rows.pop()
-    problems = list(_bad_rows(source, rows)) or list(islice(_bad_marks(source, rows), ENOUGH))
+    problems = list(_bad_rows(source, rows)) or list(islice(_bad_marks(source, rows), MAX_PROBLEMS_PER_FILE))
     if problems:
         raise BadInputError(problems)
     return _world(rows)
 
 
 def _bad_rows(source: Source, rows: list[str]) -> Iterator[Problem]:
+    """Yield the problems of the picture's size."""
     if not rows:
         yield source.problem(source.start(), "the picture is empty")
         return
-    if len(rows) > MOST_SQUARES or len(rows[0]) > MOST_SQUARES:
-        yield source.problem(source.start(), f"a picture has at most {MOST_SQUARES} squares a side")
+    if len(rows) > MAX_PICTURE_SIDE or len(rows[0]) > MAX_PICTURE_SIDE:
+        yield source.problem(source.start(), f"a picture has at most {MAX_PICTURE_SIDE} squares a side")
     for number, row in enumerate(rows, 1):
         if len(row) != len(rows[0]) or not row:
             what = f"{len(row)} squares in this row, {len(rows[0])} in the first"
@@ -53,29 +67,31 @@ def _bad_rows(source: Source, rows: list[str]) -> Iterator[Problem]:
 
 
 def _bad_marks(source: Source, rows: list[str]) -> Iterator[Problem]:
+    """Yield the problems of single characters."""
     found = []
     for number, row in enumerate(rows, 1):
         for match in re.finditer("[^a-z.]", row):
             span = Span(number, match.start() + 1, match.start() + 1)
-            if match[0] == UTAK:
+            if match[0] == UTAK_MARK:
                 found.append(span)
             else:
-                hint = "U is Utak, . floor, b verge, other small letters objects"
+                hint = "U is Utak, . floor, b verge, other lower-case letters are objects"
                 yield source.problem(span, f"{match[0]!r} is nothing that a picture knows", hint)
     if not found:
-        yield source.problem(source.start(), "the picture has no Utak", "put a U where he stands")
+        yield source.problem(source.start(), "the picture has no Utak", "put a U where Utak wakes")
     for span in found[1:]:
         yield source.problem(span, "a second Utak", f"the first is on line {found[0].line}")
 
 
 def _world(rows: list[str]) -> World:
-    marks = {(i, j): mark for j, row in enumerate(reversed(rows)) for i, mark in enumerate(row) if mark != FLOOR}
-    utak = next(square for square, mark in marks.items() if mark == UTAK)
+    """Return the world of a valid picture; the rows run from north to south."""
+    marks = {(i, j): mark for j, row in enumerate(reversed(rows)) for i, mark in enumerate(row) if mark != FLOOR_MARK}
+    utak = next(square for square, mark in marks.items() if mark == UTAK_MARK)
     things = _things(marks)
     return World(
         width=len(rows[0]),
         height=len(rows),
-        verge=_outline({square for square, mark in marks.items() if mark == VERGE_COLOUR}),
+        verge=_outline_of_squares({square for square, mark in marks.items() if mark == VERGE_COLOUR}),
         movable=tuple(thing for thing in things if not thing.polygon.interiors),
         fixed=tuple(thing for thing in things if thing.polygon.interiors),
         utak=(utak[0] + 0.5, utak[1] + 0.5),
@@ -83,10 +99,10 @@ def _world(rows: list[str]) -> World:
     )
 
 
-def _things(marks: Mapping[Square, str]) -> list[Thing]:
-    """The objects of a picture, in the order of their names."""
-    lettered = {square: mark for square, mark in sorted(marks.items()) if mark not in (UTAK, VERGE_COLOUR)}
-    done: set[Square] = set()
+def _things(marks: Mapping[_Square, str]) -> list[Thing]:
+    """Return the objects of a picture in the order of their names."""
+    lettered = {square: mark for square, mark in sorted(marks.items()) if mark not in (UTAK_MARK, VERGE_COLOUR)}
+    done: set[_Square] = set()
     numbers: dict[str, int] = {}
     things = []
     for first, colour in lettered.items():
@@ -95,36 +111,36 @@ def _things(marks: Mapping[Square, str]) -> list[Thing]:
         part = _connected(first, lettered)
         done |= part
         numbers[colour] = numbers.get(colour, 0) + 1
-        things.append(Thing(f"{colour}{numbers[colour]}", colour, _outline(part)))
+        things.append(Thing(f"{colour}{numbers[colour]}", colour, _outline_of_squares(part)))
     return sorted(things, key=lambda thing: thing.name)
 
 
-def _connected(first: Square, marks: Mapping[Square, str]) -> set[Square]:
-    """The squares of one letter that hang together by edges with the first."""
+def _connected(first: _Square, marks: Mapping[_Square, str]) -> set[_Square]:
+    """Return the squares with the same letter that are edge-connected with the first square."""
     part, waiting = {first}, [first]
     while waiting:
         i, j = waiting.pop()
-        for near in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)):
-            if near not in part and marks.get(near) == marks[first]:
-                part.add(near)
-                waiting.append(near)
+        for neighbour in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)):
+            if neighbour not in part and marks.get(neighbour) == marks[first]:
+                part.add(neighbour)
+                waiting.append(neighbour)
     return part
 
 
-def _outline(part: set[Square]) -> Any:
-    """The outline of squares, holes kept, without corners on straight lines."""
+def _outline_of_squares(part: set[_Square]) -> Any:
+    """Return the outline of a set of squares, with holes, without vertices on straight lines."""
     corners = np.array(sorted(part), dtype=float).reshape(-1, 2)
     whole = shapely.coverage_union_all(shapely.box(*corners.T, *(corners + 1).T))
     parts = [
-        shapely.Polygon(_straight(polygon.exterior), [_straight(hole) for hole in polygon.interiors])
+        shapely.Polygon(_ring_corners(polygon.exterior), [_ring_corners(hole) for hole in polygon.interiors])
         for polygon in shapely.get_parts(shapely.normalize(whole))
         if not polygon.is_empty
     ]
     return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
 
 
-def _straight(ring: Any) -> npt.NDArray[np.float64]:
-    """The points of a ring of unit steps at which it turns."""
+def _ring_corners(ring: Any) -> npt.NDArray[np.float64]:
+    """Return the vertices at which a ring of unit steps turns, (n, 2) float64."""
     points = shapely.get_coordinates(ring)[:-1]
     turns = np.any(points - np.roll(points, 1, axis=0) != np.roll(points, -1, axis=0) - points, axis=1)
     corners: npt.NDArray[np.float64] = points[turns]
@@ -136,17 +152,21 @@ def draw(world: World, polygons: Mapping[str, Any] | None = None, utak: tuple[fl
 
     Parameters
     ----------
-    world : what stands on the table.
-    polygons : where the movable things are now, by name; as in the world by default.
-    utak : where Utak is now, (x, y); as in the world by default.
+    world : the world.
+    polygons : the current outlines of movable things by name; by default those at the start.
+    utak : Utak's current place (x, y), squares, table frame; by default that at the start.
+
+    Returns
+    -------
+    The picture; every line has a line end.
     """
     now = {thing.name: thing.polygon for thing in world.movable} | dict(polygons or {})
-    rows = [[FLOOR] * world.width for _ in range(world.height)]
+    rows = [[FLOOR_MARK] * world.width for _ in range(world.height)]
     layers = [(VERGE_COLOUR, world.verge), *((thing.colour, thing.polygon) for thing in world.fixed)]
     layers += [(thing.colour, now[thing.name]) for thing in world.movable]
     for colour, shape in layers:
         for j, i in zip(*squares(shape, world.width, world.height).nonzero(), strict=True):
             rows[j][i] = colour
     x, y = utak or world.utak
-    rows[min(int(y), world.height - 1)][min(int(x), world.width - 1)] = UTAK
+    rows[min(int(y), world.height - 1)][min(int(x), world.width - 1)] = UTAK_MARK
     return "\n".join("".join(row) for row in reversed(rows)) + "\n"

@@ -1,4 +1,4 @@
-"""A scenario: a folder with the truth (world.lp or world.txt), the task (start.lp, goal.lp) and expect.lp."""
+"""A scenario: a folder with the true world (world.lp or world.txt), the task (start.lp, goal.lp) and expect.lp."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,12 +13,19 @@ from simulator.scenario.picture import read_picture
 from simulator.scenario.worldfile import read_world
 from simulator.world.world import World
 
-T = TypeVar("T")
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True)
 class Scenario:
-    """A world, a task, and what is expected of the end (None without expect.lp)."""
+    """A scenario that was read and checked.
+
+    Attributes
+    ----------
+    world : the true world.
+    task : the task.
+    expectations : the facts of expect.lp; None without that file.
+    """
 
     world: World
     task: Task
@@ -26,24 +33,49 @@ class Scenario:
 
 
 def read_scenario(folder: Path | str) -> Scenario:
-    """Read a scenario folder.
+    """Return the scenario in a folder.
 
-    Raises CannotOpenError when the folder or a file of it cannot be read, BadInputError with the problems of all files.
+    Parameters
+    ----------
+    folder : the folder.
+
+    Returns
+    -------
+    The scenario.
+
+    Raises
+    ------
+    CannotOpenError : the folder or a file in it cannot be read.
+    BadInputError : files have errors; carries those of all files.
     """
     folder = Path(folder)
     _must_be_folder(folder)
     problems: list[Problem] = []
-    world = _collected(problems, lambda: read_any_world(folder))
-    task = _collected(problems, lambda: read_task(folder / "start.lp", folder / "goal.lp"))
+    world = _collect_problems(problems, lambda: read_any_world(folder))
+    task = _collect_problems(problems, lambda: read_task(folder / "start.lp", folder / "goal.lp"))
     expect = folder / "expect.lp"
-    expectations = _collected(problems, lambda: read_expectations(expect, world)) if expect.exists() else None
+    expectations = _collect_problems(problems, lambda: read_expectations(expect, world)) if expect.exists() else None
     if problems or world is None or task is None:
         raise BadInputError(problems)
     return Scenario(world, task, expectations)
 
 
 def read_any_world(folder: Path | str) -> World:
-    """Read the world of a scenario folder, from world.lp or from the picture world.txt."""
+    """Return the world of a scenario folder, from world.lp or from the picture world.txt.
+
+    Parameters
+    ----------
+    folder : the scenario folder.
+
+    Returns
+    -------
+    The world.
+
+    Raises
+    ------
+    CannotOpenError : the folder has no world, or its file cannot be read.
+    BadInputError : the world has errors, or there are two.
+    """
     folder = Path(folder)
     _must_be_folder(folder)
     facts, picture = folder / "world.lp", folder / "world.txt"
@@ -58,6 +90,7 @@ def read_any_world(folder: Path | str) -> World:
 
 
 def _must_be_folder(folder: Path) -> None:
+    """Raise CannotOpenError unless the path is a folder."""
     try:
         if folder.is_dir():
             return
@@ -67,8 +100,8 @@ def _must_be_folder(folder: Path) -> None:
     raise CannotOpenError(str(folder), "a scenario is a folder, this is none" if exists else "no such folder")
 
 
-def _collected(problems: list[Problem], read: Callable[[], T]) -> T | None:
-    """What `read` returns; the problems that it finds are appended instead of raised."""
+def _collect_problems(problems: list[Problem], read: Callable[[], _T]) -> _T | None:
+    """Return what `read` returns; append the problems that it raises to `problems`, and return None then."""
     try:
         return read()
     except BadInputError as bad:

@@ -1,33 +1,34 @@
-"""Scenarios from elsewhere: `--untrusted` reads no file to which a link leads out of the scenario's folder."""
+"""Untrusted scenarios: with `--untrusted`, no file is read through a link that leads out of the scenario's folder."""
 
 import argparse
 from pathlib import Path
 
 from kb.language.diagnostics import CannotOpenError
-from kb.language.source_text import leads_out
+from kb.language.source_text import lies_outside
 
-FILES = ("world.lp", "world.txt", "start.lp", "goal.lp", "expect.lp")
+SCENARIO_FILES = ("world.lp", "world.txt", "start.lp", "goal.lp", "expect.lp")
 
 
-def add_option(part: argparse.ArgumentParser) -> None:
-    """Declare the option."""
+def add_untrusted_option(part: argparse.ArgumentParser) -> None:
+    """Declare the option `--untrusted`."""
     what = "refuse links that lead out of a scenario's folder"
     part.add_argument("--untrusted", action="store_true", help=what)
 
 
 def refuse_links(options: argparse.Namespace, place: Path | str, root: Path | str | None = None) -> None:
-    """Raise CannotOpenError when links are refused and a scenario's file, or its folder, is one that leads out.
+    """Raise CannotOpenError when `--untrusted` is given and a link leads out of the scenario's folder.
 
     Parameters
     ----------
-    place : a scenario's folder, or a file of one.
-    root : the folder in which it was found; None when the user named it.
+    options : the parsed command line.
+    place : a scenario folder, or a file in one.
+    root : the folder in which the scenario was found; None when the user named the scenario itself.
     """
     if not options.untrusted:
         return
     place = Path(place)
-    files = [place / name for name in FILES] if place.is_dir() else [place]
+    files = [place / name for name in SCENARIO_FILES] if place.is_dir() else [place]
     within = [place] if root is not None and place != Path(root) else []
     for path in [*within, *files]:
-        if path.exists() and leads_out(path, root if path in within else None):
+        if path.exists() and lies_outside(path, root if path in within else None):
             raise CannotOpenError(str(path), "it is a link out of its folder, which --untrusted refuses")

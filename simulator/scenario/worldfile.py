@@ -1,4 +1,4 @@
-"""world.lp: the truth of a scenario, read and checked."""
+"""world.lp: the true world of a scenario, read and checked."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
@@ -15,22 +15,38 @@ from kb.language.vocabulary import WORLD, check_facts
 from kb.language.wkt import parse_wkt
 from simulator.world.world import VERGE_COLOUR, Thing, World
 
-COMMON = 1e-9  # squares^2: a smaller common area is mere touching
-SMALLEST = 1e-4  # squares^2: a smaller thing is a slip of the pen
-RESERVED = ("utak", "verge")
-SLIT = 1e-6  # squares: the physics does not tell apart what is closer, so a narrower gap between shapes is no floor
-NEAR = 1e-4  # squares: so far may the floor seem from a point of its rim where the corners of slits are cut off
+MAX_TOUCHING_AREA = 1e-9  # square squares; shapes with a smaller common area only touch (docs/files.md)
+MIN_THING_AREA = 1e-4  # square squares; a smaller thing is taken for a mistake; a convention
+RESERVED_THING_NAMES = ("utak", "verge")
+# Squares; a narrower gap between shapes is no floor, because the physics does not resolve it (docs/files.md).
+MIN_GAP_WIDTH = 1e-6
+# Squares; shrinking and cutting corners moves the edge of the floor by less than this from its true place.
+MAX_DISTANCE_TO_FLOOR = 1e-4
 
 
 class _Stated(NamedTuple):
-    """A fact of the world and the shape it gives."""
+    """A fact of the world and the shape that it states."""
 
     fact: Fact
     shape: Any
 
 
 def read_world(path: Path | str) -> World:
-    """Read a world; raises CannotOpenError, or BadInputError with every problem of form, vocabulary and geometry."""
+    """Return the world that world.lp states.
+
+    Parameters
+    ----------
+    path : the file.
+
+    Returns
+    -------
+    The world.
+
+    Raises
+    ------
+    CannotOpenError : the file cannot be read.
+    BadInputError : syntax, vocabulary or geometry have errors; carries all of them.
+    """
     source = read_source(path)
     facts = parse_facts(source)
     problems = check_facts(source, facts, WORLD) or list(_counts(source, facts))
@@ -40,7 +56,7 @@ def read_world(path: Path | str) -> World:
 
 
 def _counts(source: Source, facts: Sequence[Fact]) -> Iterator[Problem]:
-    """One table, one verge, one Utak."""
+    """Yield a problem unless there are exactly one table, one verge and one Utak."""
     stated = defaultdict(list)
     for fact in facts:
         stated[fact.name].append(fact)
@@ -52,10 +68,10 @@ def _counts(source: Source, facts: Sequence[Fact]) -> Iterator[Problem]:
 
 
 def _world(source: Source, facts: Sequence[Fact]) -> World:
-    """The world that facts of the right vocabulary state, checked."""
-    table, utak = _one(facts, "table"), _one(facts, "utak")
+    """Return the world that facts of valid vocabulary state; raise BadInputError for errors of geometry."""
+    table, utak = _only_fact(facts, "table"), _only_fact(facts, "utak")
     width, height = _number(table, 0), _number(table, 1)
-    verge = _Stated(_one(facts, "verge"), _shape(_one(facts, "verge"), 0))
+    verge = _Stated(_only_fact(facts, "verge"), _shape(_only_fact(facts, "verge"), 0))
     things = [_Stated(fact, _shape(fact, 2)) for fact in facts if fact.name in ("object", "fixed")]
     here = _shape(utak, 0)
     problems = [
@@ -79,24 +95,27 @@ def _world(source: Source, facts: Sequence[Fact]) -> World:
     )
 
 
-def _one(facts: Sequence[Fact], name: str) -> Fact:
+def _only_fact(facts: Sequence[Fact], name: str) -> Fact:
+    """Return the fact of a predicate that occurs once."""
     return next(fact for fact in facts if fact.name == name)
 
 
 def _number(fact: Fact, index: int) -> int:
+    """Return the number in an argument of a fact."""
     term = fact.args[index]
     assert isinstance(term, Number)
     return term.value
 
 
 def _shape(fact: Fact, index: int) -> Any:
+    """Return the shape in an argument of a fact."""
     term = fact.args[index]
     assert isinstance(term, Text)
     return parse_wkt(term.value)
 
 
 def _things(stated: Sequence[_Stated], kind: str) -> list[Thing]:
-    """The things of one kind, in the order of their names."""
+    """Return the things of one kind, "object" or "fixed", in the order of their names."""
     found = [
         Thing(str(one.fact.args[0]), str(one.fact.args[1]), shapely.remove_repeated_points(one.shape))
         for one in stated
@@ -106,10 +125,11 @@ def _things(stated: Sequence[_Stated], kind: str) -> list[Thing]:
 
 
 def _bad_names(source: Source, things: Sequence[_Stated]) -> Iterator[Problem]:
+    """Yield the problems of names and colours."""
     lines: dict[str, int] = {}
     for thing in things:
         name, colour = thing.fact.args[0], thing.fact.args[1]
-        if str(name) in RESERVED:
+        if str(name) in RESERVED_THING_NAMES:
             yield source.problem(name.span, f"{name} is a reserved word and cannot name an object")
         elif str(name) in lines:
             yield source.problem(name.span, f"a second object {name}", f"the first is on line {lines[str(name)]}")
@@ -119,17 +139,19 @@ def _bad_names(source: Source, things: Sequence[_Stated]) -> Iterator[Problem]:
 
 
 def _bad_shapes(source: Source, things: Sequence[_Stated]) -> Iterator[Problem]:
+    """Yield the problems of holes in movable objects and of shapes that are too small."""
     for thing in things:
         span = thing.fact.args[2].span
         if thing.fact.name == "object" and thing.shape.interiors:
             yield source.problem(span, "an object that can be moved has no holes", "write fixed(...), or fill the hole")
-        if thing.shape.area < SMALLEST:
+        if thing.shape.area < MIN_THING_AREA:
             yield source.problem(span, f"a shape of no size: {thing.shape.area:.2g} squares")
 
 
 def _off_the_table(source: Source, stated: Sequence[_Stated], table: Any) -> Iterator[Problem]:
+    """Yield a problem for each shape that reaches beyond the table."""
     for one in stated:
-        if one.shape.difference(table).area > COMMON:
+        if one.shape.difference(table).area > MAX_TOUCHING_AREA:
             name = "the verge" if one.fact.name == "verge" else str(one.fact.args[0])
             x0, y0, x1, y1 = (f"{value:g}" for value in one.shape.bounds)
             yield source.problem(
@@ -138,7 +160,7 @@ def _off_the_table(source: Source, stated: Sequence[_Stated], table: Any) -> Ite
 
 
 def _overlaps(source: Source, verge: _Stated, things: Sequence[_Stated]) -> Iterator[Problem]:
-    """Pairs of shapes with more than a touch in common."""
+    """Yield a problem for each pair of shapes that share more than `MAX_TOUCHING_AREA`."""
     shapely.prepare(verge.shape)
     pairs = [(verge, thing) for thing in things if verge.shape.intersects(thing.shape)]
     tree = shapely.STRtree([thing.shape for thing in things])
@@ -146,20 +168,22 @@ def _overlaps(source: Source, verge: _Stated, things: Sequence[_Stated]) -> Iter
         pairs += [(things[j], thing) for j in sorted(tree.query(thing.shape, "intersects")) if j < i]
     for first, second in pairs:
         common = first.shape.intersection(second.shape).area
-        if common > COMMON:
+        if common > MAX_TOUCHING_AREA:
             name = "the verge" if first is verge else str(first.fact.args[0])
             what = f"{second.fact.args[0]} overlaps {name} by {common:.3g} squares"
             yield source.problem(second.fact.args[2].span, what)
 
 
 def _bad_floor(source: Source, verge: _Stated, width: int, height: int) -> Iterator[Problem]:
-    if verge.shape.area >= width * height - COMMON:
+    """Yield a problem when the verge covers the whole table."""
+    if verge.shape.area >= width * height - MAX_TOUCHING_AREA:
         yield source.problem(verge.fact.args[0].span, "the verge covers the whole table: there is no floor")
 
 
 def _bad_place(
     source: Source, utak: Fact, here: Any, stated: Sequence[_Stated], width: int, height: int
 ) -> Iterator[Problem]:
+    """Yield the problems of Utak's place: off the table, inside a thing, or not on floor."""
     span = utak.args[0].span
     if not (0 <= here.x <= width and 0 <= here.y <= height):
         yield source.problem(span, f"Utak stands off the table, at ({here.x:g}, {here.y:g})")
@@ -174,11 +198,21 @@ def _bad_place(
 
 
 def touches_floor(here: Any, shapes: Sequence[Any], width: int, height: int) -> bool:
-    """Whether a point lies on the floor or on its edge; a gap narrower than SLIT between shapes is none.
+    """Return whether a point lies on the floor or on its edge; gaps narrower than `MIN_GAP_WIDTH` are no floor.
 
-    Only what is within a square of the point counts, so that it costs little on a large table.
+    Only shapes within one square of the point are examined, so that the test is fast on a large table.
+
+    Parameters
+    ----------
+    here : shapely Point, squares, table frame.
+    shapes : the outlines of the verge and of all things.
+    width, height : the size of the table, in squares.
+
+    Returns
+    -------
+    Whether floor is within `MAX_DISTANCE_TO_FLOOR` of the point.
     """
     about = shapely.box(0, 0, width, height).intersection(shapely.box(*here.buffer(1.0).bounds))
     floor = about.difference(shapely.union_all([shape.intersection(about) for shape in shapes]))
-    wide = floor.buffer(-SLIT / 2, join_style="mitre")
-    return not wide.is_empty and bool(wide.distance(here) <= NEAR)
+    wide = floor.buffer(-MIN_GAP_WIDTH / 2, join_style="mitre")
+    return not wide.is_empty and bool(wide.distance(here) <= MAX_DISTANCE_TO_FLOOR)

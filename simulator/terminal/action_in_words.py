@@ -1,10 +1,10 @@
-"""An action of an episode in words."""
+"""An episode's action as text."""
 
 from typing import Any
 
 
 def describe(action: dict[str, Any] | None) -> str:
-    """Return an action of an episode in words, as `move(1.5, -2)`.
+    """Return an action of an episode as text, such as `move(1.5, -2)`; "wake" for None.
 
     >>> describe({"do": "move", "east": 1.5, "north": -2.0})
     'move(1.5, -2)'

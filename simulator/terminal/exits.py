@@ -1,9 +1,9 @@
-"""The exit codes of the `utak` command, and which of several is the worst."""
+"""The exit codes of the `utak` command, and the order of their severity."""
 
 from collections.abc import Iterable
 
-DONE = 0
-NOT_REACHED = 1  # it ran, and the goal is not reached: the verdict says why
+SUCCESS = 0
+NOT_REACHED = 1  # the run ended without reaching the goal; the verdict gives the reason
 USAGE = 2
 BAD_INPUT = 65
 CANNOT_OPEN = 66
@@ -11,11 +11,12 @@ OUR_BUG = 70
 LOST_OUTPUT = 74  # a standard stream cannot be read or written
 LIMIT = 75
 INTERRUPTED = 130
-NO_READER = 141  # whoever read our output went away
+NO_READER = 141  # the reader of the output ended (SIGPIPE)
 
-FROM_THE_WORST = (OUR_BUG, CANNOT_OPEN, BAD_INPUT, LIMIT, NOT_REACHED, DONE)
+# From the most severe code on; docs/files.md.
+SEVERITY_ORDER = (OUR_BUG, CANNOT_OPEN, BAD_INPUT, LIMIT, NOT_REACHED, SUCCESS)
 
 
 def worst(codes: Iterable[int]) -> int:
-    """Return the code that stands for several: a bug before an absent file before bad input before a failure."""
-    return min(codes, key=FROM_THE_WORST.index, default=DONE)
+    """Return the most severe of several codes; `SUCCESS` for none."""
+    return min(codes, key=SEVERITY_ORDER.index, default=SUCCESS)

@@ -1,25 +1,25 @@
-"""Numbers on the command line: plain ASCII digits, within bounds; anything else is wrong usage."""
+"""Numbers on the command line: ASCII digits within bounds; anything else is an error of usage."""
 
 import argparse
 import re
 
-WHOLE = re.compile(r"[-+]?[0-9]{1,19}")
-DECIMAL = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+WHOLE_NUMBER = re.compile(r"[-+]?[0-9]{1,19}")
+DECIMAL_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 
 
-def whole(text: str, low: int, high: int) -> int:
-    """Return the integer that a text says; raises ArgumentTypeError when it is none from `low` to `high`.
+def parse_whole(text: str, low: int, high: int) -> int:
+    """Return the integer that a text denotes; raise ArgumentTypeError unless it is from `low` to `high`.
 
-    >>> whole("12", 0, 99)
+    >>> parse_whole("12", 0, 99)
     12
     """
-    if not WHOLE.fullmatch(text) or not low <= int(text) <= high:
+    if not WHOLE_NUMBER.fullmatch(text) or not low <= int(text) <= high:
         raise argparse.ArgumentTypeError(f"must be a whole number from {low} to {high}, not {text[:40]!r}")
     return int(text)
 
 
-def decimal(text: str, low: float, high: float) -> float:
-    """Return the number that a text says; raises ArgumentTypeError when it is none from `low` to `high`."""
-    if not DECIMAL.fullmatch(text) or not low <= float(text) <= high:
+def parse_decimal(text: str, low: float, high: float) -> float:
+    """Return the number that a text denotes; raise ArgumentTypeError unless it is from `low` to `high`."""
+    if not DECIMAL_NUMBER.fullmatch(text) or not low <= float(text) <= high:
         raise argparse.ArgumentTypeError(f"must be a number from {low:g} to {high:g}, not {text[:40]!r}")
     return float(text)

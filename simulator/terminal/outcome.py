@@ -1,4 +1,4 @@
-"""One of several things to do: what goes wrong in it is told at once, and is no reason to leave out the others."""
+"""One of several things to do: an error is reported at once, and the other things are still done."""
 
 import os
 import sys
@@ -9,13 +9,22 @@ from kb.language.diagnostics import BadInputError, CannotOpenError
 from simulator.terminal import exits
 from simulator.terminal.streams import StreamError
 
-P = ParamSpec("P")
+_Parameters = ParamSpec("_Parameters")
 
 
-def attempt(do: Callable[P, int], *args: P.args, **kwargs: P.kwargs) -> int:
-    """Do something and return its exit code, or that of what went wrong, which is told on the standard error.
+def attempt(do: Callable[_Parameters, int], *args: _Parameters.args, **kwargs: _Parameters.kwargs) -> int:
+    """Call a function and return its exit code; report an error on the standard error and return the code for it.
 
-    A broken stream and Ctrl-C end everything. With UTAK_DEBUG set a bug does, too.
+    A failing output stream and Ctrl-C are raised. With UTAK_DEBUG set, unexpected exceptions are raised, too.
+
+    Parameters
+    ----------
+    do : the function; returns an exit code.
+    args, kwargs : its arguments.
+
+    Returns
+    -------
+    The exit code.
     """
     try:
         return do(*args, **kwargs)
@@ -35,6 +44,6 @@ def attempt(do: Callable[P, int], *args: P.args, **kwargs: P.kwargs) -> int:
 
 
 def bug_message(bug: Exception) -> str:
-    """Return what to say of an exception that nothing here expects."""
+    """Return the message about an unexpected exception."""
     what = f"utak: this is a bug of ours: {type(bug).__name__}: {str(bug)[:500]}\n"
     return what + "Please report it with the command and its files; UTAK_DEBUG=1 shows where."

@@ -1,4 +1,4 @@
-"""The prompt of `utak repl`: one line, one command or question; whatever is typed, the prompt comes back."""
+"""The prompt of `utak repl`: each line is a command or a query; the prompt survives every input."""
 
 import os
 import sys
@@ -9,10 +9,10 @@ from typing import Any
 
 from kb.language.diagnostics import BadInputError, CannotOpenError, did_you_mean
 from kb.reasoning.query import VOCABULARY, QueryEngine, QueryLimitError
-from simulator.run.interrupts import deferred
+from simulator.run.interrupts import defer_interrupt
 from simulator.run.story import Story
 from simulator.terminal.action_in_words import describe
-from simulator.terminal.streams import StreamError, shown
+from simulator.terminal.streams import StreamError, escape_controls
 
 HELP = """\
 ?- QUERY.     ask what Utak believes: ?- object(X), shape(X, square, C).
@@ -25,11 +25,18 @@ quit          leave (so does the end of the input)
 
 In facts, places and lengths are whole hundredths of a square, in the robot's frame: east and north from where it woke,
 north being the way it faced then. Confidences are percent. The robot is called utak in questions, and org in facts."""
-TRUTH = "the true table, which the robot may believe to be otherwise:"
+TRUE_TABLE_NOTICE = "the true table, which the robot may believe to be otherwise:"
 
 
 class Prompt:
-    """Obeys commands about one story."""
+    """Executes commands about one story.
+
+    Parameters
+    ----------
+    story : a run or a recorded episode.
+    engine : answers queries.
+    write : prints a text; by default on the standard output.
+    """
 
     def __init__(self, story: Story, engine: QueryEngine, write: Callable[[str], object] | None = None) -> None:
         self._story, self._engine = story, engine
@@ -38,17 +45,17 @@ class Prompt:
             "?-": self._ask,
             "facts": self._facts,
             "help": lambda rest: self._say(HELP),
-            "run": lambda rest: self._go(None),
-            "show": lambda rest: self._say(f"{TRUTH}\n{self._story.picture()}".rstrip("\n")),
+            "run": lambda rest: self._advance(None),
+            "show": lambda rest: self._say(f"{TRUE_TABLE_NOTICE}\n{self._story.picture()}".rstrip("\n")),
             "step": self._step,
         }
 
     def words(self) -> list[str]:
-        """What can be completed: commands and the names of predicates."""
+        """Return the words that can be completed: commands and names of predicates."""
         return sorted([*self._commands, "quit", *(f"{name}(" for name, _ in VOCABULARY)])
 
     def obey(self, line: str) -> bool:
-        """Do what a line says; False when it says to leave. Nothing that it says raises an exception."""
+        """Execute a line. Return False when it says to quit. Errors are printed, not raised."""
         text = line.strip()
         name, _, rest = ("?-", "", text[2:]) if text.startswith("?-") else text.partition(" ")
         name = name.removesuffix(".")
@@ -72,62 +79,79 @@ class Prompt:
         return True
 
     def _say(self, text: str) -> None:
+        """Print a text."""
         self._write(text)
 
     def _ask(self, rest: str) -> None:
+        """Print the answer to a query."""
         self._say(str(self._engine.ask(self._story.facts, rest)))
 
     def _facts(self, rest: str) -> None:
+        """Print the facts of the world model; with a word, only those that contain it."""
         word = rest.removesuffix(".")
-        facts = [fact for fact in self._story.facts if not word or word in _names(fact)]
+        facts = [fact for fact in self._story.facts if not word or word in _words_of(fact)]
         self._say("\n".join(facts) if facts else "none")
 
     def _step(self, rest: str) -> None:
+        """Advance by a number of steps, 1 by default."""
         count = rest.removesuffix(".") or "1"
         if not (count.isascii() and count.isdigit() and 0 < int(count[:9]) <= 1_000_000):
             self._say(f"step takes a number of steps, not {rest}")
             return
-        self._go(int(count[:9]))
+        self._advance(int(count[:9]))
 
-    def _go(self, count: int | None) -> None:
-        """Go on by some steps, or to the end."""
+    def _advance(self, count: int | None) -> None:
+        """Advance by `count` steps, or to the end for None, and print each step."""
         done = 0
         while done != count:
-            with deferred(self._tell_of_ctrl_c) as pressed:
+            with defer_interrupt(self._announce_interrupt) as pressed:
                 moved = self._story.advance()
             if not moved:
                 break
             done += 1
             line = self._story.line
-            self._say(f"step {line['step']}: {describe(line.get('action'))}: {shown(str(line.get('why', '')), False)}")
+            why = escape_controls(str(line.get("why", "")), False)
+            self._say(f"step {line['step']}: {describe(line.get('action'))}: {why}")
             if pressed:
                 self._say("interrupted")
                 return
         result: Any = self._story.result
         if result is not None:
-            reason = shown(str(result["reason"]), False)
+            reason = escape_controls(str(result["reason"]), False)
             self._say(f"{result['verdict']} after {result['steps']} steps: {reason}")
         elif done == 0:
             self._say("there are no more steps")
 
-    def _tell_of_ctrl_c(self) -> None:
+    def _announce_interrupt(self) -> None:
+        """Print how to stop after the first Ctrl-C."""
         with suppress(RuntimeError):  # something is being printed just now
             self._say("the step comes to its end first; Ctrl-C once more breaks it off, and it did not happen")
 
     def _unknown(self, name: str) -> None:
+        """Print that a command is unknown."""
         hint = did_you_mean(name, self._commands)
         self._say(f"unknown command {name[:40]}; {hint or 'help lists what there is, ?- asks'}")
 
 
-def _names(fact: str) -> set[str]:
-    """The words of a fact."""
+def _words_of(fact: str) -> set[str]:
+    """Return the words of a fact."""
     return set("".join(char if char.isalnum() or char == "_" else " " for char in fact).split())
 
 
 def lines_of(words: Sequence[str]) -> Iterator[str]:
-    """Yield the lines that are typed, with history and completion on a terminal, or that come through a pipe.
+    """Yield the lines of the standard input; on a terminal, with history and completion.
 
-    Raises StreamError when the standard input is closed or cannot be read.
+    Parameters
+    ----------
+    words : the words that can be completed.
+
+    Yields
+    ------
+    One line, with or without its line end.
+
+    Raises
+    ------
+    StreamError : the standard input is closed or cannot be read.
     """
     if sys.stdin is None:
         raise StreamError("the standard input is closed")
@@ -152,7 +176,7 @@ def lines_of(words: Sequence[str]) -> Iterator[str]:
 
 
 def _prepare(words: Sequence[str]) -> None:
-    """History and completion, where Python has readline."""
+    """Set up history and completion, where Python has readline."""
     try:
         import atexit
         import readline
@@ -174,6 +198,7 @@ def _prepare(words: Sequence[str]) -> None:
 
 
 def _write_history(readline: Any, history: Path) -> None:
+    """Write the history file; print a message when that fails."""
     try:
         readline.write_history_file(history)
     except OSError:

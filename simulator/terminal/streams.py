@@ -1,4 +1,4 @@
-"""What is printed: made harmless in one place, whoever prints it, and told of when it could not be written."""
+"""The standard streams: control characters are escaped in all output, and errors of writing are reported."""
 
 import os
 import re
@@ -7,37 +7,51 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
-# Control characters but the line end, marks that turn the direction of text, line separators, undecoded bytes.
-HARMFUL = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ud800-\udfff]")
+# Control characters except the line end, marks that change the direction of text, line separators, undecoded bytes.
+UNSAFE_CHARACTERS = re.compile(
+    "[\x00-\x09\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ud800-\udfff]"
+)
 
 
 class StreamError(Exception):
-    """A standard stream is closed, full or cannot be read; the message names it."""
+    """A standard stream is closed, full or unreadable; the message names it."""
 
 
-def shown(text: str, lines: bool = True) -> str:
-    r"""Return a text with all that a terminal would obey written out, in the form that JSON has for it.
+def escape_controls(text: str, lines: bool = True) -> str:
+    r"""Return a text with all characters that control a terminal written as JSON escapes.
 
     Parameters
     ----------
-    lines : keep line ends. What comes from a file and belongs on one line is shown without them.
+    text : the text.
+    lines : whether to keep line ends. Text from a file that belongs on one line is printed without them.
 
-    >>> shown("red \x1b[31m")
+    Returns
+    -------
+    The text without control characters, direction marks and undecodable bytes.
+
+    Examples
+    --------
+    >>> escape_controls("red \x1b[31m")
     'red \\u001b[31m'
     """
-    clean = HARMFUL.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
+    clean = UNSAFE_CHARACTERS.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
     return clean if lines else clean.replace("\n", "\\n")
 
 
-class Guarded:
-    """A text stream to which nothing harmful is written.
+class GuardedStream:
+    """A text stream that escapes control characters and reports errors of writing.
 
     Parameters
     ----------
-    stream : what is written to; None when the process was started without it.
-    name : as messages call it.
-    vital : whether StreamError is raised when it cannot be written; otherwise `lost` tells, and the work goes on. Who
-        closes a stream that is not vital does not want to hear of it: then nothing is lost.
+    stream : the stream to write to; None when the process was started without it.
+    name : its name in messages.
+    vital : whether an error raises StreamError. Otherwise the error is kept in `lost`, and writing goes on without
+        effect.
+        When the process was started without a stream that is not vital, nothing is reported.
+
+    Attributes
+    ----------
+    lost : the reason why the stream failed; '' while it works.
     """
 
     def __init__(self, stream: Any, name: str, vital: bool) -> None:
@@ -45,16 +59,16 @@ class Guarded:
         self.lost = ""
 
     def __getattr__(self, name: str) -> Any:
-        """Everything but writing is the stream's own."""
+        """Return an attribute of the stream itself."""
         return getattr(self._stream, name)
 
     def isatty(self) -> bool:
-        """Whether somebody looks on."""
+        """Return whether the stream is a terminal."""
         return self._stream is not None and self._stream.isatty()
 
     def write(self, text: str) -> int:
-        """Write a text; characters that the stream's encoding lacks are written out."""
-        clean = shown(text)
+        """Write a text; characters that the stream's encoding lacks are written as escapes."""
+        clean = escape_controls(text)
         encoding = getattr(self._stream, "encoding", None) or "utf-8"
         self._attempt("write", clean.encode(encoding, "backslashreplace").decode(encoding))
         return len(text)
@@ -65,11 +79,12 @@ class Guarded:
             self.write(line)
 
     def flush(self) -> None:
-        """Hand on what was written."""
+        """Flush the stream."""
         if self._stream is not None:
             self._attempt("flush")
 
     def _attempt(self, what: str, *arguments: str) -> None:
+        """Call a method of the stream and handle its errors."""
         if self.lost or (self._stream is None and not self._vital):
             return
         try:
@@ -86,7 +101,7 @@ class Guarded:
                 raise StreamError(f"{self._name} cannot be written: {self.lost}") from None
 
     def _abandon(self, why: str) -> None:
-        """Let what is still to be written go nowhere, so that nothing complains when the process ends."""
+        """Redirect further output to the null device, so that nothing fails when the process ends."""
         self.lost = why
         with suppress(OSError, ValueError, AttributeError):
             nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -95,10 +110,13 @@ class Guarded:
 
 
 @contextmanager
-def guarded() -> Iterator[tuple[Guarded, Guarded]]:
-    """Guard the standard output and the standard error for a while; gives both."""
+def guard_streams() -> Iterator[tuple[GuardedStream, GuardedStream]]:
+    """Guard the standard output and the standard error inside a `with` block; yield both."""
     before = sys.stdout, sys.stderr
-    out, err = Guarded(sys.stdout, "the standard output", True), Guarded(sys.stderr, "the standard error", False)
+    out, err = (
+        GuardedStream(sys.stdout, "the standard output", True),
+        GuardedStream(sys.stderr, "the standard error", False),
+    )
     sys.stdout, sys.stderr = out, err
     try:
         yield out, err
@@ -106,8 +124,8 @@ def guarded() -> Iterator[tuple[Guarded, Guarded]]:
         sys.stdout, sys.stderr = before
 
 
-def fill_gaps() -> None:
-    """Open the standard streams that are closed to nowhere: else the next file opened would get the number of one."""
+def open_missing_streams() -> None:
+    """Open the standard streams that are closed on the null device, so that no other file gets their numbers."""
     with suppress(OSError):
         while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
             pass

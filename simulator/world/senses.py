@@ -1,8 +1,8 @@
-"""What Utak senses: 160 gray levels of his retina and the colours of the 8 squares around him.
+"""What Utak senses: 160 gray levels of the retina, and the colours of the 8 adjacent squares.
 
-The retina covers 32 x 32 squares about Utak's own in three zones: a fovea of 8 x 8 fields of one square, around it 48
-fields of 2 x 2 squares, around those 48 fields of 4 x 4. A field of k x k squares of which n are occupied shows
-floor(7 n / k^2 + 1/2).
+The retina covers 32 x 32 squares around Utak's own in three zones: a fovea of 8 x 8 fields of one square, around it 48
+fields of 2 x 2 squares, around those 48 fields of 4 x 4 squares. A field of k x k squares with n occupied ones has the
+gray level floor(7 n / k^2 + 1/2).
 """
 
 import math
@@ -10,11 +10,11 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from simulator.world.table import Ints, Table
+from simulator.world.table import Indices, Table
 
-REACH = 16  # the retina's offsets run from -16 to 15
-ZONES = ((4, 1), (8, 2), (16, 4))  # each zone's reach in squares, and its fields' side
-NEIGHBOURS = {  # clockwise from north: the adjacent squares as offsets (east, north) in Utak's frame
+VIEW_REACH = 16  # squares; the offsets of the retina's squares run from -16 to 15
+VIEW_ZONES = ((4, 1), (8, 2), (16, 4))  # (reach, side of a field) of each zone, in squares, from the fovea outwards
+NEIGHBOUR_OFFSETS = {  # offsets (east, north) of the adjacent squares in Utak's frame, clockwise from north
     "north": (0, 1),
     "northeast": (1, 1),
     "east": (1, 0),
@@ -27,10 +27,16 @@ NEIGHBOURS = {  # clockwise from north: the adjacent squares as offsets (east, n
 
 
 def retina_fields() -> list[tuple[int, int, int]]:
-    """Return the 160 fields in order: offsets (east, north) of the south-west square, and the side in squares."""
+    """Return the 160 fields of the retina in their order.
+
+    Returns
+    -------
+    For each field: the offsets east and north of its south-west square from Utak's square, and its side, all in
+        squares.
+    """
     fields = []
     inner = 0
-    for reach, side in ZONES:
+    for reach, side in VIEW_ZONES:
         for north in range(reach - side, -reach - 1, -side):
             for east in range(-reach, reach, side):
                 if not (-inner <= east < inner and -inner <= north < inner):
@@ -40,40 +46,51 @@ def retina_fields() -> list[tuple[int, int, int]]:
 
 
 class Senses:
-    """Utak's senses at one heading (degrees, counter-clockwise from the table's north)."""
+    """Utak's senses for one heading.
+
+    Parameters
+    ----------
+    heading : degrees from the table's north, counter-clockwise positive.
+    """
 
     def __init__(self, heading: float) -> None:
         self._cosine, self._sine = math.cos(math.radians(heading)), math.sin(math.radians(heading))
-        east, north = np.meshgrid(np.arange(-REACH, REACH), np.arange(-REACH, REACH))
+        east, north = np.meshgrid(np.arange(-VIEW_REACH, VIEW_REACH), np.arange(-VIEW_REACH, VIEW_REACH))
         self._i = np.rint(east * self._cosine - north * self._sine).astype(np.intp)
         self._j = np.rint(east * self._sine + north * self._cosine).astype(np.intp)
         self._field, self._side = _fields_of_squares()
 
     def retina(self, table: Table, here: tuple[float, float]) -> tuple[int, ...]:
-        """Return the 160 gray levels (0 to 7) seen from (x, y)."""
+        """Return the 160 gray levels, 0 to 7, seen from a point (x, y) of the table."""
         i, j = math.floor(here[0]), math.floor(here[1])
         seen = table.occupied(self._i + i, self._j + j)
-        seen[REACH, REACH] = True  # Utak himself
+        seen[VIEW_REACH, VIEW_REACH] = True  # Utak's own square
         count = np.bincount(self._field, seen.ravel(), len(self._side)).astype(int)
         area = self._side**2
         return tuple(((14 * count + area) // (2 * area)).tolist())
 
     def touch(self, table: Table, here: tuple[float, float]) -> tuple[str | None, ...]:
-        """Return the colours of the 8 adjacent squares, clockwise from Utak's north; None for floor."""
-        return tuple(table.colour(*self.adjacent(here, direction)) for direction in NEIGHBOURS)
+        """Return the colours of the 8 squares adjacent to the point's square; None for floor.
+
+        The order is clockwise from Utak's north.
+        """
+        return tuple(table.colour(*self.adjacent(here, direction)) for direction in NEIGHBOUR_OFFSETS)
 
     def adjacent(self, here: tuple[float, float], direction: str) -> tuple[int, int]:
-        """Return the square (i, j) next to Utak's in one of the eight directions of his frame."""
-        east, north = NEIGHBOURS[direction]
+        """Return the square (i, j) next to that of the point `here`, in a direction of `NEIGHBOUR_OFFSETS`."""
+        east, north = NEIGHBOUR_OFFSETS[direction]
         i = math.floor(here[0]) + round(east * self._cosine - north * self._sine)
         j = math.floor(here[1]) + round(east * self._sine + north * self._cosine)
         return i, j
 
 
-def _fields_of_squares() -> tuple[Ints, npt.NDArray[np.int_]]:
-    """The field under which each of the 32 x 32 squares lies (row by row from the south), and the fields' sides."""
+def _fields_of_squares() -> tuple[Indices, npt.NDArray[np.int_]]:
+    """Return the index of the field of each of the 32 x 32 squares, and the sides of the fields in squares.
+
+    The squares are in rows from the south.
+    """
     fields = retina_fields()
-    owner = np.zeros((2 * REACH, 2 * REACH), dtype=np.intp)
+    owner = np.zeros((2 * VIEW_REACH, 2 * VIEW_REACH), dtype=np.intp)
     for number, (east, north, side) in enumerate(fields):
-        owner[north + REACH : north + REACH + side, east + REACH : east + REACH + side] = number
+        owner[north + VIEW_REACH : north + VIEW_REACH + side, east + VIEW_REACH : east + VIEW_REACH + side] = number
     return owner.ravel(), np.array([side for _, _, side in fields])

@@ -1,6 +1,7 @@
-"""TABLE: the array of squares onto which the things are projected, and what a look takes from it.
+"""TABLE: the array of squares onto which all things are projected.
 
-The verge and fixed things are projected once; a movable thing again when it has moved, on its own few squares.
+The verge and fixed things are projected once. A movable thing is projected again after it has moved, on the squares of
+its containing rectangle only.
 """
 
 import math
@@ -11,28 +12,38 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
+from geometry.kernels.arrays import Bools
 from geometry.raster.rasterize import squares
 from simulator.world.world import VERGE_COLOUR, World
 
-Bools = npt.NDArray[np.bool_]
-Ints = npt.NDArray[np.intp]
+Indices = npt.NDArray[np.intp]  # columns or rows of squares
 
 
 class Projection(NamedTuple):
-    """The squares of one thing: [row, column] True where it covers the square (west + column, south + row)."""
+    """The squares that a thing covers.
+
+    Attributes
+    ----------
+    west, south : column and row of the south-west square of `covered`.
+    covered : (rows, columns) bool; [row, column] is True where the thing covers the square (west + column, south +
+        row).
+    """
 
     west: int
     south: int
     covered: Bools
 
     def covers(self, i: int, j: int) -> bool:
-        """Whether the thing covers the square (i, j)."""
+        """Return whether the thing covers the square (i, j)."""
         rows, columns = self.covered.shape
         row, column = j - self.south, i - self.west
         return 0 <= row < rows and 0 <= column < columns and bool(self.covered[row, column])
 
-    def under(self, i: Ints, j: Ints) -> Bools:
-        """Which of many squares the thing covers; i and j of one shape."""
+    def under(self, i: Indices, j: Indices) -> Bools:
+        """Return which of many squares the thing covers.
+
+        i, j : columns and rows of the squares, arrays of one shape. The result has the same shape.
+        """
         rows, columns = self.covered.shape
         row, column = j - self.south, i - self.west
         inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
@@ -42,7 +53,16 @@ class Projection(NamedTuple):
 
 
 def project(shape: Any) -> Projection:
-    """Return the digital representation of a shape on the squares of its containing rectangle."""
+    """Return the digital representation of a shape.
+
+    Parameters
+    ----------
+    shape : shapely geometry, squares, table frame.
+
+    Returns
+    -------
+    The covered squares within the shape's containing rectangle.
+    """
     if shape.is_empty:
         return Projection(0, 0, np.zeros((0, 0), dtype=bool))
     x0, y0, x1, y1 = shape.bounds
@@ -54,8 +74,8 @@ def project(shape: Any) -> Projection:
 class Table:
     """The TABLE array of a world.
 
-    Of things that share a square the movable come first, then the fixed, each in the order of their names, then the
-    verge: that decides whose colour is felt and what a grasp takes.
+    When several things share a square, movable things come first, then fixed things, each in the order of their names,
+    then the verge. The first one determines the colour that is felt, and what a grasp takes.
     """
 
     def __init__(self, world: World) -> None:
@@ -66,18 +86,21 @@ class Table:
         self._verge = project(world.verge)
 
     def update(self, name: str, polygon: Any) -> None:
-        """Project a movable thing again."""
+        """Project a movable thing again after it has moved."""
         self._movable[name] = project(polygon)
 
-    def occupied(self, i: Ints, j: Ints) -> Bools:
-        """Which of many squares something covers, Utak left out; squares beyond the table are verge."""
+    def occupied(self, i: Indices, j: Indices) -> Bools:
+        """Return which of many squares are occupied by anything but Utak; squares beyond the table are.
+
+        i, j : columns and rows of the squares, arrays of one shape. The result has the same shape.
+        """
         found = (i < 0) | (i >= self.width) | (j < 0) | (j >= self.height)
         for part in self._parts():
             found |= part.under(i, j)
         return found
 
     def colour(self, i: int, j: int) -> str | None:
-        """The colour of what covers a square, or None for floor."""
+        """Return the colour of what covers the square (i, j); None for floor."""
         if not (0 <= i < self.width and 0 <= j < self.height):
             return VERGE_COLOUR
         name = self.movable_at(i, j)
@@ -87,10 +110,11 @@ class Table:
         return next((colour for colour, part in layers if part.covers(i, j)), None)
 
     def movable_at(self, i: int, j: int) -> str | None:
-        """The movable thing that covers a square, the first by name, or None."""
+        """Return the name of the movable thing that covers the square (i, j), the first by name; None without one."""
         return next((name for name, part in self._movable.items() if part.covers(i, j)), None)
 
     def _parts(self) -> Iterable[Projection]:
+        """Yield the projections of the verge and of all things."""
         yield self._verge
         yield from (part for _, part in self._fixed)
         yield from self._movable.values()

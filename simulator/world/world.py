@@ -1,21 +1,21 @@
-"""The truth: what stands on the table and where Utak wakes. Frozen values, table frame, squares."""
+"""The true contents of the table and the place where Utak wakes, as frozen values in squares, table frame."""
 
 from dataclasses import dataclass
 from typing import Any
 
-Ring = tuple[tuple[float, float], ...]
-VERGE_COLOUR = "b"
+RingPoints = tuple[tuple[float, float], ...]  # a closed boundary, (x, y) in squares; the first point is not repeated
+VERGE_COLOUR = "b"  # docs/files.md
 
 
 @dataclass(frozen=True)
 class Thing:
-    """Something that lies on the table.
+    """An object on the table.
 
     Attributes
     ----------
-    name : as in the world file.
+    name : its name in the world file.
     colour : one lower-case letter.
-    polygon : shapely Polygon; without holes when the thing can be moved.
+    polygon : shapely Polygon, squares, table frame; without holes when the thing can be moved.
     """
 
     name: str
@@ -25,15 +25,15 @@ class Thing:
 
 @dataclass(frozen=True)
 class World:
-    """A table with all that is on it.
+    """A table with its contents at the start.
 
     Attributes
     ----------
-    width, height : of the table, in squares.
-    verge : shapely Polygon or MultiPolygon, colour b; it never moves. Beyond the table all is verge.
-    movable, fixed : things by name, in the order of the names.
-    utak : (x, y) where Utak wakes.
-    heading : the direction he faces then, degrees from the table's north, counter-clockwise, 0 to 359.
+    width, height : the size of the table, in squares.
+    verge : shapely Polygon or MultiPolygon, colour b; it never moves. Everything beyond the table is verge, too.
+    movable, fixed : the things, in the order of their names.
+    utak : the point (x, y) where Utak wakes.
+    heading : the direction that Utak faces, in degrees from the table's north, counter-clockwise positive, 0 to 359.
     """
 
     width: int
@@ -45,6 +45,6 @@ class World:
     heading: int
 
 
-def ring_of(polygon: Any) -> Ring:
-    """The outer boundary of a polygon as points, the last one different from the first."""
+def outer_ring(polygon: Any) -> RingPoints:
+    """Return the outer boundary of a polygon as points (x, y); the last point differs from the first."""
     return tuple((float(x), float(y)) for x, y in polygon.exterior.coords[:-1])

@@ -1,4 +1,4 @@
-"""Screens that look like the benchmark maps of Moving AI (Sturtevant 2012) but are none of them, by kind and seed.
+"""Screens that resemble the benchmark maps of Moving AI (Sturtevant 2012) but are none of them, by kind and seed.
 
     python tests/geometry/lookalikes.py FOLDER
 
@@ -16,7 +16,9 @@ KINDS = ("city", "maze", "rooms", "noise", "warehouse", "caves", "plain", "islan
 
 
 def lookalike(kind, size, seed=0, scale=8):
-    """(size, size) bool, True where one may be. ``scale``: width of rooms and corridors; of noise the per cent blocked.
+    """Return a screen (size, size) bool, True where it is free.
+
+    ``scale``: width of rooms and corridors, in squares; of noise the percentage of blocked squares.
 
     >>> lookalike("rooms", 17, scale=7).shape
     (17, 17)
@@ -27,7 +29,7 @@ def lookalike(kind, size, seed=0, scale=8):
 
 
 def city(size, rng, _):
-    """Houses of all sizes in blocks between streets, some turned."""
+    """Return houses of all sizes in blocks between streets, some rotated."""
     free = np.ones((size, size), bool)
     y, x = np.mgrid[:size, :size]
     for _ in range(max(4, size * size // 900)):
@@ -48,7 +50,7 @@ def city(size, rng, _):
 
 
 def maze(size, rng, scale):
-    """A spanning tree of corridors ``scale`` wide."""
+    """Return a spanning tree of corridors ``scale`` squares wide."""
     pitch = scale + 1
     n = max(1, (size - 1) // pitch)
     free = np.zeros((size, size), bool)
@@ -72,7 +74,7 @@ def maze(size, rng, scale):
 
 
 def rooms(size, rng, scale):
-    """Square rooms, a door of one square in most walls."""
+    """Return square rooms with a door of one square in most walls."""
     free = np.ones((size, size), bool)
     pitch = scale + 1
     free[::pitch] = free[:, ::pitch] = False
@@ -86,14 +88,14 @@ def rooms(size, rng, scale):
 
 
 def noise(size, rng, scale):
-    """Blocked squares here and there, ``scale`` per cent."""
+    """Return a floor with ``scale`` per cent of its squares blocked at random."""
     free = rng.random((size, size)) * 100.0 >= scale
     free[0, 0] = True
     return free
 
 
 def warehouse(size, rng, scale):
-    """Rows of shelves, ``scale`` long and two deep, with aisles one or two wide."""
+    """Return rows of shelves, ``scale`` squares long and two deep, with aisles one or two wide."""
     free = np.ones((size, size), bool)
     for i in range(5, size - 4, int(rng.integers(3, 5))):
         for j in range(8, size - scale - 4, scale + 2):
@@ -102,7 +104,7 @@ def warehouse(size, rng, scale):
 
 
 def caves(size, rng, scale):
-    """Winding floors with ragged walls, as of games."""
+    """Return winding floors with ragged walls, as in games."""
     height = smooth(rng.normal(size=(size, size)), scale) * scale
     height += 0.4 * smooth(rng.normal(size=(size, size)), 2) * 2
     free = height > -0.02
@@ -111,14 +113,14 @@ def caves(size, rng, scale):
 
 
 def smooth(field, sigma):
-    """A field blurred by a Gaussian of so many squares, as if it went on on the other side."""
+    """Return a field blurred by a Gaussian of ``sigma`` squares, periodic at its borders."""
     rows, columns = (np.fft.fftfreq(n) for n in field.shape)
     blur = np.exp(-2 * (np.pi * sigma) ** 2 * (rows[:, None] ** 2 + columns**2))
     return np.fft.ifft2(np.fft.fft2(field) * blur).real
 
 
 def plain(size, rng, scale):
-    """Wide open floor with few things on it."""
+    """Return a wide open floor with few things on it."""
     free = np.ones((size, size), bool)
     for _ in range(max(1, size // 32)):
         a, b = rng.integers(0, size, 2)
@@ -128,7 +130,7 @@ def plain(size, rng, scale):
 
 
 def islands(size, rng, scale):
-    """Caves with the small parts filled, and ponds in the large ones: as of strategy games."""
+    """Return caves with the small parts filled and ponds in the large ones, as in strategy games."""
     free = caves(size, rng, 2 * scale)
     parts = components(free).labels
     sizes = np.bincount(parts.ravel())
@@ -143,7 +145,7 @@ def islands(size, rng, scale):
 
 
 def diagonals(size, rng, scale):
-    """Slanting walls of squares that touch at corners alone, with gaps."""
+    """Return slanting walls, with gaps, of squares that touch at corners alone."""
     y, x = np.mgrid[:size, :size]
     free = ((x + y) % (2 * scale) != 0) | (rng.random((size, size)) < 0.1)
     free &= ((x - y) % (3 * scale) != 0) | (rng.random((size, size)) < 0.2)
@@ -186,14 +188,14 @@ SET = (
 
 
 def write_map(path, free):
-    """A .map file: the first row of text is the north edge."""
+    """Write a .map file: the first row of text is the north edge."""
     rows, columns = free.shape
     lines = ["".join(".@"[int(not square)] for square in row) for row in free[::-1]]
     path.write_text("\n".join(["type octile", f"height {rows}", f"width {columns}", "map", *lines]) + "\n")
 
 
 def main(folder):
-    """Write the set."""
+    """Write the set of screens as .map files to a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     for kind, size, scale in SET:
         write_map(folder / f"{kind}-{size}-{scale}.map", lookalike(kind, size, 1, scale))

@@ -1,4 +1,4 @@
-"""Slow and simple answers to compare with. Nothing here uses the code under test."""
+"""Oracles for tests: slow and simple answers to compare with. Nothing here uses the code under test."""
 
 from itertools import product
 
@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 @st.composite
 def screens(draw, most=12, fullest=0.6):
-    """Random screens with at least one free square; sparse, dense, and empty ones."""
+    """Draw random masks (rows, columns) with at least one free square: sparse, dense, and entirely free ones."""
     rows, columns = draw(st.integers(1, most)), draw(st.integers(1, most))
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     free = rng.random((rows, columns)) >= draw(st.sampled_from([0.0, 0.08, 0.25, 0.4, fullest]))
@@ -17,7 +17,7 @@ def screens(draw, most=12, fullest=0.6):
 
 
 def clearance(free):
-    """Distance from each centre to the nearest point of a square that is not free."""
+    """Return the distance, in squares, from each square's centre to the nearest point of one that is not free."""
     padded = np.pad(free, 1)
     blocked = np.argwhere(~padded)
     out = np.zeros(padded.shape)
@@ -28,7 +28,7 @@ def clearance(free):
 
 
 def to_blocked(free):
-    """(rows, columns): how far each square's centre lies from that of the nearest blocked one, or beyond the border."""
+    """Return the distance from each square's centre to that of the nearest blocked one; blocked beyond the border."""
     framed = np.pad(free, 1)
     rows, columns = framed.shape
     across = np.where(framed, np.inf, 0.0)
@@ -41,7 +41,7 @@ def to_blocked(free):
 
 
 def label(mask, corners):
-    """Number of parts connected by edges, or also by corners."""
+    """Return the number of parts of a mask that are connected by edges, or also by corners."""
     steps = [s for s in product((-1, 0, 1), repeat=2) if s != (0, 0) and (corners or 0 in s)]
     left = {(int(i), int(j)) for i, j in np.argwhere(mask)}
     count = 0
@@ -58,13 +58,13 @@ def label(mask, corners):
 
 
 def components_and_holes(free):
-    """Parts of free space (by edges) and bounded parts of the blocked squares (by edges and corners)."""
+    """Return the numbers of free parts (by edges) and of bounded blocked parts (by edges and corners)."""
     padded = np.pad(free, 1)
     return label(padded, corners=False), label(~padded, corners=True) - 1
 
 
 def corners_of(free):
-    """(n, 2) corners (x, y) of the blocked squares and of the screen."""
+    """Return the corners (x, y) of the blocked squares and of the screen: (n, 2)."""
     padded = np.pad(free, 1)
     rows, columns = free.shape
     out = [(x, y) for y in range(rows + 1) for x in range(columns + 1) if not padded[y : y + 2, x : x + 2].all()]
@@ -72,7 +72,7 @@ def corners_of(free):
 
 
 def rubber_band(points, free):
-    """The shortest polyline that a rope through these points shrinks to, corner by corner."""
+    """Return the polyline that a rope through these points shrinks to, corner by corner."""
     line, corners = [tuple(map(float, p)) for p in points], corners_of(free)
     k = 1
     while k < len(line) - 1:
@@ -87,7 +87,7 @@ def rubber_band(points, free):
 
 
 def hull_between(a, v, b, corners, padded):
-    """The corners that a rope from a over v to b catches on when v lets go."""
+    """Return the corners that a rope from a over v to b catches on when it is released at v."""
     turn = cross(a, v, b)
     if abs(turn) < 1e-12:
         return []
@@ -110,7 +110,7 @@ def hull_between(a, v, b, corners, padded):
 
 
 def catches(a, b, c, padded):
-    """Whether a wall stands between a corner and the line from a to b, right at the corner."""
+    """Return whether there is a wall between a corner and the line from a to b, right at the corner."""
     t = np.linspace(0, 1, 203)[1:-1, None]
     towards = np.array(a) + t * (np.array(b) - np.array(a)) - c
     near = c + 1e-4 * towards / np.hypot(*towards.T)[:, None]
@@ -119,12 +119,15 @@ def catches(a, b, c, padded):
 
 
 def along(a, b, c):
+    """Return the dot product of b - a and c - a."""
     return (c[0] - a[0]) * (b[0] - a[0]) + (c[1] - a[1]) * (b[1] - a[1])
 
 
 def cross(a, b, c):
+    """Return the cross product of b - a and c - a, positive if c lies to the left."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 def length(points):
+    """Return the length of a polyline (n, 2)."""
     return float(np.hypot(*np.diff(np.array(points), axis=0).T).sum())

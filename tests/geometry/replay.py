@@ -1,4 +1,4 @@
-"""What a carrying plan says, done again with shapely alone."""
+"""Replay of a carrying plan with shapely alone."""
 
 from collections import deque
 from typing import Any
@@ -9,19 +9,19 @@ import shapely
 from geometry.manipulation.plan_carrying import CarryingPlan
 from geometry.motion.se2 import Rotate
 
-DEEP = 1e-6  # squares: how far anything may go into a wall
-POSES = 65  # looked at in every motion
+MAX_PENETRATION = 1e-6  # squares: how far anything may enter a wall; above the skin of first contact
+POSES_PER_MOTION = 65  # poses checked in every motion; a convention
 
 
 def walls_of(free: np.ndarray) -> Any:
-    """All that is not free, and a rim around it."""
+    """Return the squares that are not free, and a rim around the table, as one geometry."""
     rows, columns = np.nonzero(free)
     floor = shapely.union_all(shapely.box(columns, rows, columns + 1, rows + 1))
     return shapely.box(-20, -20, free.shape[1] + 20, free.shape[0] + 20).difference(floor)
 
 
 def under(shape: Any, size: tuple[int, int]) -> np.ndarray:
-    """The squares that a shape covers."""
+    """Return the squares that a shape covers: (rows, columns) bool for a table of this size."""
     columns, rows = np.meshgrid(np.arange(size[1]), np.arange(size[0]))
     return np.asarray(
         shapely.area(shapely.intersection(shapely.box(columns, rows, columns + 1, rows + 1), shape)) > 1e-9
@@ -29,7 +29,7 @@ def under(shape: Any, size: tuple[int, int]) -> np.ndarray:
 
 
 def reachable(walk: np.ndarray, start: tuple[int, int]) -> np.ndarray:
-    """The squares that can be walked to over edges from a (column, row)."""
+    """Return the squares that can be walked to from a (column, row), over shared edges."""
     seen = np.zeros_like(walk)
     seen[start[1], start[0]] = True
     queue = deque([start])
@@ -45,8 +45,8 @@ def reachable(walk: np.ndarray, start: tuple[int, int]) -> np.ndarray:
 def replay(
     plan: CarryingPlan, shape: Any, free: np.ndarray, utak: tuple[float, float], pull: bool = True, walls: Any = None
 ) -> Any:
-    """Do what a plan says and assert that it can be done; the shape as it ends."""
-    solid = (walls_of(free) if walls is None else walls).buffer(-DEEP, join_style="mitre")
+    """Carry out a plan, asserting that each leg can be done; return the shape as it lies at the end."""
+    solid = (walls_of(free) if walls is None else walls).buffer(-MAX_PENETRATION, join_style="mitre")
     shapely.prepare(solid)
     for n, leg in enumerate(plan.legs):
         if leg.taken:
@@ -64,7 +64,7 @@ def replay(
             elif not pull:
                 middle = shape.centroid
                 assert motion.dx * (middle.x - utak[0]) + motion.dy * (middle.y - utak[1]) > 0
-            swept = [motion.part(t).carry(shape) for t in np.linspace(0, 1, POSES)]
+            swept = [motion.part(t).carry(shape) for t in np.linspace(0, 1, POSES_PER_MOTION)]
             assert not shapely.intersects(solid, swept).any()
             if not isinstance(motion, Rotate):
                 after = (utak[0] + motion.dx, utak[1] + motion.dy)

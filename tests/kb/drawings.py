@@ -1,4 +1,4 @@
-"""World models of drawn worlds: looked at from many places, or seen whole at once."""
+"""World models of drawn worlds: seen from some places, or known completely."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -20,7 +20,7 @@ LARGE_ROOM = ["b" * 44, *["b" + "." * 42 + "b"] * 42, "b" * 44]
 
 
 def drawing(east: int, north: int, wide: int, high: int) -> list[str]:
-    """A room with a thing whose lower left square is (east, north)."""
+    """Return a drawing of the large room with an object of `wide` x `high` squares, (east, north) its southwest one."""
     rows = [list(row) for row in LARGE_ROOM]
     for row in range(north, north + high):
         for column in range(east, east + wide):
@@ -29,7 +29,7 @@ def drawing(east: int, north: int, wide: int, high: int) -> list[str]:
 
 
 def looked(rows: list[str], squares: list[tuple[int, int]]) -> OccupancyMap:
-    """The evidence of looks from some squares; the first one is (0, 0) of the lattice."""
+    """Return the occupancy map of observations from some squares of a drawing; the first one is (0, 0) of the map."""
     occupied, occupancy = world_of(rows), OccupancyMap()
     samples = Frame().samples()
     for number, (x, y) in enumerate(squares):
@@ -41,7 +41,7 @@ def looked(rows: list[str], squares: list[tuple[int, int]]) -> OccupancyMap:
 
 
 def seen_whole(rows: list[str], objects: bool = True) -> WorldModel:
-    """The model of one who has seen all of a drawing, its north row first, and knows it for certain.
+    """Return the world model of a drawing that is known completely and for certain. rows : the north row first.
 
     `.` floor, `b` verge, other letters objects, `?` never seen, `U` Utak, on floor.
     """
@@ -61,14 +61,14 @@ def seen_whole(rows: list[str], objects: bool = True) -> WorldModel:
 
 
 def unclear(model: WorldModel, rows: slice, columns: slice, chance: float) -> WorldModel:
-    """The same, where no count settles some squares of the view. chance : that one is occupied."""
+    """Return a world model in which some squares of the view are open. chance : that each is occupied, 0 to 1."""
     probability, state = model.view.probability.copy(), model.view.state.copy()
     probability[rows, columns], state[rows, columns] = chance, OPEN
     return replace(model, view=model.view._replace(probability=probability, state=state))
 
 
 class Walk(NamedTuple):
-    """What one knows who walked, the last world model, and how each pose was explained."""
+    """The knowledge after a walk, the last world model, and the kind of explanation of each observation."""
 
     knowledge: Knowledge
     model: WorldModel
@@ -76,7 +76,7 @@ class Walk(NamedTuple):
 
 
 def walked(rows: list[str], way: list[tuple[int, int]], colour: str = "b") -> Walk:
-    """One wakes on the U of a drawing, faces north, and goes by these moves (east, north)."""
+    """Return the walk of a robot that wakes on the U of a drawing, faces north, and makes moves (east, north)."""
     occupied, (x, y), knowledge = world_of(rows), utak_in(rows), Knowledge()
     model, accommodated = knowledge.wake(impression(occupied, (x, y), colour=colour))
     poses = [accommodated.explanation.how]

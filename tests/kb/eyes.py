@@ -1,4 +1,4 @@
-"""An eye for tests: the impression of a drawn world, written from DESIGN 4 and not from the code under test."""
+"""Senses for tests: the impression of a drawn world, written from DESIGN section 4 and not from the code under test."""
 
 import math
 from collections.abc import Callable
@@ -14,7 +14,10 @@ AROUND = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))
 
 
 def world_of(rows: list[str]) -> Occupied:
-    """A world from a drawing, its north row first; `.` and `U` are free, beyond the drawing all is occupied."""
+    """Return whether squares of a drawing are occupied, as a function of column and row, row 0 in the south.
+
+    rows : the north row first; `.` and `U` are free. Everything beyond the drawing is occupied.
+    """
     high = len(rows)
 
     def occupied(i: int, j: int) -> bool:
@@ -25,7 +28,7 @@ def world_of(rows: list[str]) -> Occupied:
 
 
 def colours_of(rows: list[str]) -> Colours:
-    """The colours of a drawing: its letters, and that of the verge beyond it."""
+    """Return the colours of a drawing, as a function of column and row: its letters, and `b` beyond it."""
     high = len(rows)
 
     def colour(i: int, j: int) -> str:
@@ -36,18 +39,18 @@ def colours_of(rows: list[str]) -> Colours:
 
 
 def utak_in(rows: list[str]) -> tuple[int, int]:
-    """The square (i, j) of the U in a drawing."""
+    """Return the square (column, row) of the U in a drawing, row 0 in the south."""
     return next((row.index("U"), len(rows) - 1 - n) for n, row in enumerate(rows) if "U" in row)
 
 
 def sampled(east: int, north: int, heading: float) -> tuple[int, int]:
-    """The square under an offset at a heading, relative to Utak's square; halves to even, as Python rounds."""
+    """Return the square under an offset at a heading (degrees), relative to Utak's square; halves round to even."""
     c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
     return round(east * c - north * s), round(east * s + north * c)
 
 
 def retina(occupied: Occupied, square: tuple[int, int], heading: float = 0.0) -> tuple[int, ...]:
-    """The 160 gray levels seen from a square at a heading."""
+    """Return the 160 gray levels seen from a square at a heading in degrees."""
     levels, inner = [], 0
     for reach, side in ZONES:
         for north in range(reach - side, -reach - 1, -side):
@@ -67,7 +70,7 @@ def retina(occupied: Occupied, square: tuple[int, int], heading: float = 0.0) ->
 def impression(
     occupied: Occupied, square: tuple[int, int], heading: float = 0.0, colour: str | Colours = "b"
 ) -> Impression:
-    """What is sensed there, everything being of one colour, or of its own."""
+    """Return the impression at a square. colour : of everything, or a function of column and row."""
     touch = []
     for east, north in AROUND:
         i, j = sampled(east, north, heading)
@@ -78,7 +81,7 @@ def impression(
 
 
 def random_room(rng: np.random.Generator, wide: int, high: int, things: int) -> list[str]:
-    """A walled room with a few rectangles in it, drawn; all of its floor may not be connected."""
+    """Return a drawing of a walled room with some rectangles in it; its floor need not be connected."""
     grid = np.full((high, wide), ".")
     grid[[0, -1], :] = grid[:, [0, -1]] = "b"
     for _ in range(things):

@@ -1,4 +1,4 @@
-"""Lets the tests here import the modules beside them (a package named tests may be installed by others)."""
+"""Makes the modules of this folder importable by its tests (others may have installed a package named tests)."""
 
 import sys
 from pathlib import Path

@@ -1,6 +1,6 @@
-"""A stand-in for the robot in tests: it gives deterministic commands, some sensible and some not, and believes little.
+"""A stand-in for the robot in tests: its commands are deterministic, some of them senseless, and it believes little.
 
-Run as a program it is the `utak` command with this robot in the place of the real one.
+Run as a program, it is the `utak` command with this robot.
 """
 
 import os
@@ -39,7 +39,7 @@ class Verdict:
 
 
 class Robot:
-    """Gives `max_steps` commands (at most 30) drawn from what it has seen so far, then stops."""
+    """A robot that gives `max_steps` commands (at most 30) drawn from what it has seen so far, and then stops."""
 
     def __init__(self, body: Body, task: Task, options: Options) -> None:
         self.body, self.options = body, options
@@ -78,7 +78,7 @@ class Robot:
 
 
 def install() -> None:
-    """Put the stand-in where the command line looks for the robot."""
+    """Let the command line make this robot."""
     module = types.ModuleType("planner.cycle")
     module.Robot, module.Options = Robot, Options  # type: ignore[attr-defined]
     sys.modules["planner.cycle"] = module

@@ -1,1 +1,13 @@
-"""."""
+"""Hypotheses: the values that proposals are made of, and how each is evaluated.
+
+In reading order:
+
+frames  frame hypotheses: orientation and origin of the grid, judged by contradictions of observations
+remap  all observations and held objects in another frame
+map_prior  the description length of the simplest map in a frame
+walk_outcomes  where a walk may have ended; re-estimation of earlier walks
+carry_outcomes  what a push or a turn may have led to
+contacts  contact hypotheses: what may have blocked a held object, and where
+what_if  evaluation of a frame and an outcome against all observations, once objects were moved
+explanation  an explanation of an observation, and the choice by kb/asp/accommodation.lp
+"""

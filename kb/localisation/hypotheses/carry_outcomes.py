@@ -1,7 +1,7 @@
-"""What may have come of a push or a turn with something in hand: where Utak and his load may be now.
+"""Carry outcomes: what a push or a turn may have led to, for Utak and for the object in hand.
 
-It may have gone as predicted, not at all (nothing was in his hand, or it cannot be moved), as far as something stood in
-the way, or a little otherwise. Which of these is believed is for kb/asp/accommodation.lp.
+The motion may have gone as commanded, not at all (the hand was empty, or the object cannot be moved), as far as an
+obstacle, or a little beside. kb/asp/accommodation.lp chooses.
 """
 
 import math
@@ -12,107 +12,143 @@ import numpy as np
 
 from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Motion, Rotate, Translate
+from kb.localisation.hypotheses.frames import Position
+from kb.objects.held_object import Square
 from kb.objects.subcell_extent import SubcellExtent
 
-Place = tuple[float, float]
-STRIDE = 0.25  # squares between places at which a motion may have ended
-AHEAD = 0.5  # squares in front of what was stopped in which something stands
-ASTRAY = 1.0  # squares by which a load may end beside the predicted place
-ASKEW = 6.0  # degrees by which a turn may end beside the predicted one
-STEPS = range(-round(ASTRAY / STRIDE), round(ASTRAY / STRIDE) + 1)
-OFFSETS = sorted((math.hypot(i, j) * STRIDE, i * STRIDE, j * STRIDE) for i in STEPS for j in STEPS if i or j)
+END_SPACING = 0.25  # squares between the tried ends of a motion; a convention
+CONTACT_REACH = 0.5  # squares ahead of a blocked body within which the obstacle stands; tuned on random worlds
+MAX_OBJECT_SLIP = 1.0  # squares by which an object may end beside its predicted place, in each axis; tuned
+MAX_TURN_SLIP = 6.0  # degrees by which a turn may end beside the predicted one; tuned
+TURN_SLIPS_PER_DEGREE = 2  # tried turns for each degree of slip
+_SLIP_STEPS = range(-round(MAX_OBJECT_SLIP / END_SPACING), round(MAX_OBJECT_SLIP / END_SPACING) + 1)
+SLIP_OFFSETS = sorted(
+    (math.hypot(i, j) * END_SPACING, i * END_SPACING, j * END_SPACING)
+    for i in _SLIP_STEPS
+    for j in _SLIP_STEPS
+    if i or j
+)  # (distance, dx, dy) in squares, the nearest first
 
 
-class Outcome(NamedTuple):
-    """What a motion may have led to.
+class CarryOutcome(NamedTuple):
+    """A possible outcome of a motion with an object in hand.
 
-    how : predicted, stuck, blocked, slipped, or smaller: it went as predicted, but the load does not fill its squares;
-    or larger: likewise, but there is more of it than was seen.
-    place : of Utak; polygon : of the load, both on the lattice. degrees : by which the load was turned. distance : from
-    what was predicted, in squares. against : the squares one of which stopped it, if it is open what stands there.
-    insets : of the load, where that is believed otherwise.
+    Attributes
+    ----------
+    how : predicted; stuck (nothing moved); blocked (it ended early); slipped (it ended beside); smaller (as commanded,
+        but the object does not fill its squares); larger (as commanded, but there is more of the object than was seen).
+    place : of Utak after it, map frame.
+    polygon : the outline of the object after it (shapely), map frame.
+    degrees : by which the object was turned, counter-clockwise positive.
+    distance : of the outermost point of the object from where it was predicted, in squares.
+    contact_squares : the squares one of which blocked it; empty where what did is known.
+    insets : the sub-cell extent of the object, where another one is believed than before.
     """
 
     how: str
-    place: Place
+    place: Position
     polygon: Any
     degrees: float
     distance: float
-    against: frozenset[tuple[int, int]] = frozenset()
+    contact_squares: frozenset[Square] = frozenset()
     insets: SubcellExtent | None = None
 
     @property
     def as_commanded(self) -> bool:
-        """Did the motion go as it was commanded?"""
+        """Return whether the motion went as commanded."""
         return self.how in ("predicted", "smaller", "larger")
 
     @property
     def stopped(self) -> bool:
-        """Did the motion end early, or not begin?"""
+        """Return whether the motion ended early, or did not begin."""
         return self.how in ("stuck", "blocked")
 
 
-def predicted(place: Place, polygon: Any, motion: Motion) -> Outcome:
-    """The motion as it was commanded."""
-    return _after("predicted", place, polygon, motion, 0.0)
+def predicted_outcome(place: Position, polygon: Any, motion: Motion) -> CarryOutcome:
+    """Return the outcome of the whole motion as commanded. place, polygon : before it, map frame."""
+    return _outcome("predicted", place, polygon, motion, 0.0)
 
 
-def arrested(place: Place, polygon: Any, motion: Motion, walls: Obstacles) -> Outcome | None:
-    """The motion as far as what is known to stand in the way lets it go; None when nothing does."""
-    fraction = walls.first_contact(ContactBody(polygon, [place]), motion).fraction
-    return part_way(place, polygon, motion, fraction) if fraction < 1.0 else None
+def blocked_by_known(place: Position, polygon: Any, motion: Motion, known: Obstacles) -> CarryOutcome | None:
+    """Return the motion as far as its first contact with known obstacles; None when it meets none.
+
+    place, polygon : before the motion, map frame.
+    """
+    fraction = known.first_contact(ContactBody(polygon, [place]), motion).fraction
+    return partial_outcome(place, polygon, motion, fraction) if fraction < 1.0 else None
 
 
-def part_way(
-    place: Place, polygon: Any, motion: Motion, part: float, against: frozenset[tuple[int, int]] = frozenset()
-) -> Outcome:
-    """A part of a motion, from 0 to 1, after which it was stopped."""
-    distance = length_of(place, polygon, motion) * (1.0 - part)
-    return _after("blocked", place, polygon, motion.part(part), distance)._replace(against=against)
+def partial_outcome(
+    place: Position,
+    polygon: Any,
+    motion: Motion,
+    fraction: float,
+    contact_squares: frozenset[Square] = frozenset(),
+) -> CarryOutcome:
+    """Return the outcome of a motion that was blocked after a fraction of it, 0 to 1.
+
+    place, polygon : before the motion, map frame. contact_squares : the open squares one of which blocked it.
+    """
+    distance = motion_length(place, polygon, motion) * (1.0 - fraction)
+    outcome = _outcome("blocked", place, polygon, motion.part(fraction), distance)
+    return outcome._replace(contact_squares=contact_squares)
 
 
-def ahead(place: Place, polygon: Any, motion: Motion) -> tuple[Place, Any]:
-    """Where Utak and his load would be a little further on the way: what stopped them stands there."""
-    part = min(1.0, AHEAD / max(length_of(place, polygon, motion), AHEAD))
-    outcome = _after("predicted", place, polygon, motion.part(part), 0.0)
+def advance(place: Position, polygon: Any, motion: Motion) -> tuple[Position, Any]:
+    """Return Utak's place and the outline of the object CONTACT_REACH squares further on the motion, map frame.
+
+    An obstacle that blocked the motion at `place` is met there.
+    """
+    length = motion_length(place, polygon, motion)
+    outcome = _outcome(
+        "predicted", place, polygon, motion.part(min(1.0, CONTACT_REACH / max(length, CONTACT_REACH))), 0.0
+    )
     return outcome.place, outcome.polygon
 
 
-def otherwise(place: Place, polygon: Any, motion: Motion) -> Iterator[Outcome]:
-    """All else that may have happened, the likeliest of each kind first."""
-    length = length_of(place, polygon, motion)
-    yield Outcome("stuck", place, polygon, 0.0, length)
-    steps = math.ceil(length / STRIDE)
+def other_outcomes(place: Position, polygon: Any, motion: Motion) -> Iterator[CarryOutcome]:
+    """Yield all outcomes but the commanded one, the likeliest of each kind first: stuck, blocked, slipped.
+
+    place, polygon : before the motion, map frame.
+    """
+    length = motion_length(place, polygon, motion)
+    yield CarryOutcome("stuck", place, polygon, 0.0, length)
+    steps = math.ceil(length / END_SPACING)
     for step in range(steps - 1, 0, -1):
-        yield _after("blocked", place, polygon, motion.part(step / steps), length * (1 - step / steps))
-    for other, distance in _beside(motion, length):
-        yield _after("slipped", place, polygon, other, distance)
+        yield _outcome("blocked", place, polygon, motion.part(step / steps), length * (1 - step / steps))
+    for other, distance in _slipped_motions(motion, length):
+        yield _outcome("slipped", place, polygon, other, distance)
     if isinstance(motion, Rotate):
-        # Where in his square he stands he only assumes, and so what exactly the turn was about.
+        # Where in the square of waking the origin lies is an assumption, and so is the centre of the turn.
         turned = motion.carry(polygon)
-        for distance, dx, dy in OFFSETS:
-            yield Outcome("slipped", place, Translate(dx, dy).carry(turned), motion.degrees, distance)
+        for distance, dx, dy in SLIP_OFFSETS:
+            yield CarryOutcome("slipped", place, Translate(dx, dy).carry(turned), motion.degrees, distance)
 
 
-def _after(how: str, place: Place, polygon: Any, motion: Motion, distance: float) -> Outcome:
-    if isinstance(motion, Translate):
-        place = (place[0] + motion.dx, place[1] + motion.dy)
-    degrees = motion.degrees if isinstance(motion, Rotate) else 0.0
-    return Outcome(how, place, motion.carry(polygon), degrees, distance)
+def motion_length(place: Position, polygon: Any, motion: Motion) -> float:
+    """Return the length of the path of the outermost point of an object on a motion, in squares.
 
-
-def length_of(place: Place, polygon: Any, motion: Motion) -> float:
-    """How far the outermost point of a load goes on a motion, in squares."""
+    place : the centre of a turn, map frame. polygon : before the motion, map frame.
+    """
     if isinstance(motion, Translate):
         return math.hypot(motion.dx, motion.dy)
     corners = np.array(polygon.exterior.coords) - np.array(place)
     return abs(math.radians(motion.degrees)) * float(np.hypot(*corners.T).max())
 
 
-def _beside(motion: Motion, length: float) -> list[tuple[Motion, float]]:
-    """Motions a little other than a motion, by how far they end from it."""
+def _outcome(how: str, place: Position, polygon: Any, motion: Motion, distance: float) -> CarryOutcome:
+    """Return the outcome of a motion that really happened. distance : from the predicted outcome, in squares."""
+    if isinstance(motion, Translate):
+        place = (place[0] + motion.dx, place[1] + motion.dy)
+    degrees = motion.degrees if isinstance(motion, Rotate) else 0.0
+    return CarryOutcome(how, place, motion.carry(polygon), degrees, distance)
+
+
+def _slipped_motions(motion: Motion, length: float) -> list[tuple[Motion, float]]:
+    """Return motions a little beside a motion, each with the distance of its end from the commanded one, in squares."""
     if isinstance(motion, Rotate):
         per_degree = length / max(abs(motion.degrees), 1.0)
-        askew = [sign * step * 0.5 for step in range(1, round(2 * ASKEW) + 1) for sign in (1, -1)]
-        return [(motion._replace(degrees=motion.degrees + d), abs(d) * per_degree) for d in askew]
-    return [(Translate(motion.dx + dx, motion.dy + dy), distance) for distance, dx, dy in OFFSETS]
+        number = round(TURN_SLIPS_PER_DEGREE * MAX_TURN_SLIP)
+        slips = [sign * step / TURN_SLIPS_PER_DEGREE for step in range(1, number + 1) for sign in (1, -1)]
+        return [(motion._replace(degrees=motion.degrees + d), abs(d) * per_degree) for d in slips]
+    return [(Translate(motion.dx + dx, motion.dy + dy), distance) for distance, dx, dy in SLIP_OFFSETS]

@@ -1,4 +1,4 @@
-"""What an impression is explained by: where it was received, on which lattice, and what that means for all else."""
+"""Explanations of an observation: where it was made, in which frame, and what that means for everything else."""
 
 import math
 import statistics
@@ -6,11 +6,8 @@ from collections.abc import Iterable, Sequence
 from enum import StrEnum
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from kb.localisation.hypotheses.carry_outcomes import Outcome
-from kb.localisation.hypotheses.frames import FrameHypothesis, Observation
+from kb.localisation.hypotheses.carry_outcomes import CarryOutcome
+from kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
 from kb.localisation.hypotheses.walk_outcomes import ReestimatedWalk
 from kb.mapping.occupancy import OPEN, OccupancyMap
 from kb.objects.held_object import HeldObject, Square
@@ -18,13 +15,12 @@ from kb.perception.frame import CENTRE, Frame, Samples
 from kb.perception.retina import FIELDS
 from kb.reasoning.solver import KB, solve
 
-NAT = 2  # prices of accommodation.lp that make something less likely by a factor of e
-LEAST_CHANCE = 1e-9
-Place = tuple[float, float]
+PRICE_PER_NAT = 2  # prices of kb/asp/accommodation.lp for a factor of e in probability: the scale of that encoding
+MIN_CHANCE = 1e-9  # probability below which an end of a motion is no less likely, so that its price is finite
 
 
 class CellStatus(StrEnum):
-    """How a cell of the impression is accounted for."""
+    """The status of a field of an impression: predicted, explained by squares that were open, or noise."""
 
     PREDICTED = "predicted"
     EXPLAINED = "explained"
@@ -32,58 +28,76 @@ class CellStatus(StrEnum):
 
 
 class Explanation(NamedTuple):
-    """A pose that may have given rise to the impression. place: a point of that lattice.
+    """An explanation of an observation.
 
-    outcome: what it means for the load in hand; None when nothing was to be moved with him. hypotheses: what is left
-    if the lattice lies otherwise than believed. retold: which looks were received elsewhere than is believed, if any.
-    chance: how likely the motion ended so by what was known before it; None when that was not asked. crooked: by how
-    much the simplest picture of the table costs more than where it is plainest
-    (kb.localisation.hypotheses.map_prior). against: the open
-    squares one of which stopped it. weighed: does crooked tell as well how likely he woke where he did then? larger:
-    the load before the motion, if more of it was there than was seen.
+    Attributes
+    ----------
+    how : its kind, as in kb/asp/accommodation.lp: predicted, blocked, slipped, turned, misled, stuck, smaller, larger;
+        or lost or anew after a new beginning.
+    place : where the observation was made, map frame of `frame`.
+    frame : the frame by this explanation.
+    residual : fields that it leaves unexplained.
+    distance : from the predicted end of the motion, in squares.
+    outcome : of the motion of the object in hand; None when nothing was to be moved.
+    hypotheses : the frame hypotheses that are left, if the frame is another one.
+    reestimated : the earlier motion that ended elsewhere than believed; None when none did.
+    chance : the probability of this end of the motion before the observation; None when it was not asked.
+    prior_cost : by how much the simplest map costs more than by the best explanation, in log odds.
+    contact_squares : the open squares one of which blocked the motion.
+    origin_weighed : whether `prior_cost` contains the log odds against the origin of `frame`.
+    larger : the object before the motion, if more of it was there than was seen.
     """
 
     how: str
-    place: Place
+    place: Position
     frame: Frame
-    misfits: int
+    residual: int
     distance: float
-    outcome: Outcome | None = None
+    outcome: CarryOutcome | None = None
     hypotheses: tuple[FrameHypothesis, ...] = ()
-    retold: ReestimatedWalk | None = None
+    reestimated: ReestimatedWalk | None = None
     chance: float | None = None
-    crooked: float = 0.0
-    against: frozenset[Square] = frozenset()
-    weighed: bool = False
+    prior_cost: float = 0.0
+    contact_squares: frozenset[Square] = frozenset()
+    origin_weighed: bool = False
     larger: HeldObject | None = None
 
     @property
-    def anew(self) -> bool:
-        """Does it say that the lattice lies otherwise, or that looks were received elsewhere, than was believed?"""
+    def remaps(self) -> bool:
+        """Return whether the frame, or where earlier observations were made, is another one than believed."""
         return self.how in ("turned", "misled", "lost", "anew")
 
     @property
-    def met(self) -> bool:
-        """Does it say that an earlier motion was stopped by something that is known by now?"""
-        return self.retold is not None and self.retold.known
+    def met_known(self) -> bool:
+        """Return whether an earlier motion was blocked by something that is known by now."""
+        return self.reestimated is not None and self.reestimated.contact_known
 
     @property
-    def odd(self) -> bool:
-        """Does it say both that the lattice lies askew and that he did not wake amid his square, and weighs neither?"""
-        return self.frame.angle != 0 and self.frame.origin != CENTRE and not self.weighed
+    def is_odd(self) -> bool:
+        """Return whether both the orientation and the origin of the frame are unusual, and neither is weighed."""
+        return self.frame.angle != 0 and self.frame.origin != CENTRE and not self.origin_weighed
 
 
 class Accommodated(NamedTuple):
-    """What one impression led to. cells: a CellStatus for each of the 160 fields."""
+    """The result of localisation for one impression.
+
+    Attributes
+    ----------
+    explanation : the chosen one.
+    cells : how each of the 160 fields is accounted for.
+    """
 
     explanation: Explanation
     cells: tuple[CellStatus, ...]
 
 
-def statuses(
-    occupancy: OccupancyMap, samples: Samples, ranges: NDArray[np.int16], x: int, y: int
+def field_statuses(
+    occupancy: OccupancyMap, samples: Samples, ranges: FieldRanges, x: int, y: int
 ) -> tuple[CellStatus, ...]:
-    """How each field of a look from square (x, y) is accounted for, before it is taken in as evidence."""
+    """Return how each of the 160 fields is accounted for by the map, before the observation is integrated.
+
+    samples : the squares under each field, in the believed frame. (x, y) : the square of the observation, map frame.
+    """
     noise = occupancy.misfits(samples, ranges, x, y)
     row, column = occupancy.index(x, y)
     state = occupancy.state[samples.rows + row, samples.columns + column]
@@ -94,37 +108,38 @@ def statuses(
     )
 
 
-def misled(observation: Observation, told: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
-    """The lattices to believe instead on which one of some motions was stopped, or an earlier one was not.
+def reestimated_explanations(ends: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
+    """Return the explanations by re-estimations of some motions: known contacts first, then the median orientation.
 
-    look : the new one, as predicted. told : of each motion what else may have come of it.
+    ends : the re-estimations of each motion.
     """
-    found = [one for motion in told for one in motion]
+    found = [one for motion in ends for one in motion]
     if not found:
         return []
     left = tuple(dict.fromkeys(one.hypothesis for one in found))
     middle = statistics.median(hypothesis.angle for hypothesis in left)
-    ordered = sorted(found, key=lambda one: (not one.known, abs(one.hypothesis.angle - middle)))
-    return [told_again(one, left) for one in ordered]
+    ordered = sorted(found, key=lambda one: (not one.contact_known, abs(one.hypothesis.angle - middle)))
+    return [reestimated_explanation(one, left) for one in ordered]
 
 
-def told_again(one: ReestimatedWalk, left: tuple[FrameHypothesis, ...]) -> Explanation:
-    """What came of a motion as it was told again. left : how the lattice may lie then."""
-    frame, far = one.hypothesis.frame, math.hypot(*one.correction.shift)
+def reestimated_explanation(one: ReestimatedWalk, left: tuple[FrameHypothesis, ...]) -> Explanation:
+    """Return the explanation by a re-estimated motion. left : the frame hypotheses that are left then."""
+    frame, distance = one.hypothesis.frame, math.hypot(*one.correction.shift)
     place = frame.place_from_utak(*one.newest)
-    return Explanation("misled", place, frame, one.misfits, far, None, left, one)
+    return Explanation("misled", place, frame, one.residual, distance, None, left, one)
 
 
 def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Explanation:
-    """The explanation to believe (kb/asp/accommodation.lp). facts : of what else bears on the choice."""
+    """Return the explanation that kb/asp/accommodation.lp chooses. facts : the other inputs of that encoding."""
     offered = [
-        f"explanation({number},{e.how},{e.misfits},{math.ceil(e.distance)})" for number, e in enumerate(explanations)
+        f"explanation({number},{e.how},{e.residual},{math.ceil(e.distance)})" for number, e in enumerate(explanations)
     ]
-    offered += [f"odd({number})" for number, e in enumerate(explanations) if e.odd]
+    offered += [f"odd({number})" for number, e in enumerate(explanations) if e.is_odd]
     for number, e in enumerate(explanations):
-        offered += [f"crooked({number},{round(NAT * e.crooked)})"] * (e.crooked > 0)
+        offered += [f"crooked({number},{round(PRICE_PER_NAT * e.prior_cost)})"] * (e.prior_cost > 0)
         if e.chance is not None:
-            offered.append(f"unlikely({number},{round(-NAT * math.log(max(e.chance, LEAST_CHANCE)))})")
+            price = round(-PRICE_PER_NAT * math.log(max(e.chance, MIN_CHANCE)))
+            offered.append(f"unlikely({number},{price})")
     answer = solve([KB / "accommodation.lp"], [*offered, *facts])
     if not answer:
         raise AssertionError("accommodation.lp always has an answer")

@@ -1,8 +1,8 @@
-"""How the lattice of the table may lie under Utak, judged by all looks so far.
+"""Frame hypotheses: how the grid of the map may lie in Utak's own frame, judged by all observations so far.
 
-Under a wrong angle two looks, or two fields of one look, claim of one square that it is free and that it is occupied.
-A lattice that leads to such a contradiction is given up. Of those that stand that one is preferred on which the table
-looks plainest (kb.localisation.hypotheses.map_prior).
+In a wrong frame two observations, or two fields of one observation, claim of one square that it is free and that it is
+occupied. A frame with such a contradiction is given up. Of the frames that are left the one with the best map prior is
+preferred (kb.localisation.hypotheses.map_prior).
 """
 
 import math
@@ -15,28 +15,35 @@ from numpy.typing import NDArray
 from geometry.counts.contradictions import contradicting
 from kb.perception.frame import CENTRE, Frame
 
-Box = tuple[float, float, float, float]  # west, south, east, north
-MEMORY = 12  # looks by which angles are judged: those that contradict older looks are gone already
-ANGLES = tuple(sorted(range(-44, 46), key=lambda angle: (abs(angle), angle)))
+Position = tuple[float, float]  # (x, y) or (east, north) in squares; the frame is named where it is used
+OriginBox = tuple[float, float, float, float]  # west, south, east, north, within the square of waking, map frame
+FieldRanges = NDArray[np.int16]  # (160, 2): least and greatest count of occupied squares of each field
+
+MAX_CHECKED_OBSERVATIONS = 12  # observations by which orientations are judged; older contradictions are gone; tuned
+FRAME_ANGLES = tuple(sorted(range(-44, 46), key=lambda angle: (abs(angle), angle)))  # degrees: a quarter turn in all
+PLAUSIBLE_COST = 5.0  # map prior cost up to which an orientation counts as plausible yet, in edges; tuned
+OFF_CENTRE_COST = 2.5  # log odds against having woken elsewhere than in the middle of a square: a convention
+CRAMPED_SIDE = 0.1  # of a square: a side left for the origin below this, divided by the observations, is suspicious
+ORIGIN_GRID = 11  # points along either side of what is left for the origin: 0.1 squares apart at most
 
 
 class FrameHypothesis(NamedTuple):
-    """How the lattice may lie.
+    """A frame hypothesis: an orientation of the grid, and where in its square Utak may have woken.
 
-    Its angle in degrees, and a box (west, south, east, north) within the square, in which Utak woke. dear : by how many
-    edges the simplest picture on it costs more than the simplest on any other; 0 when that was not weighed.
+    Attributes
+    ----------
+    angle : orientation of the grid in Utak's own frame, in degrees, counter-clockwise positive.
+    box : (west, south, east, north) bounds of the origin within the square of waking, map frame, 0 to 1.
+    prior_cost : by how many edges the simplest map costs more than on the best frame; 0 when not weighed.
     """
 
     angle: int
-    box: Box
-    dear: float = 0.0
+    box: OriginBox
+    prior_cost: float = 0.0
 
     @property
     def frame(self) -> Frame:
-        """The lattice, with the middle of the box for the point where he woke.
-
-        The square's centre where that will do.
-        """
+        """Return the frame whose origin is the middle of the square where the box allows it, else that of the box."""
         west, south, east, north = self.box
         if west <= CENTRE[0] <= east and south <= CENTRE[1] <= north:
             return Frame(self.angle)
@@ -44,178 +51,216 @@ class FrameHypothesis(NamedTuple):
 
     @property
     def is_point(self) -> bool:
-        """Does it say exactly where he woke?"""
+        """Return whether it names the exact origin."""
         return self.box[:2] == self.box[2:]
 
     @property
     def is_centred(self) -> bool:
-        """Does it say that he woke right amid his square?"""
+        """Return whether it says that the origin is exactly the middle of the square of waking."""
         return self.box == CENTRE + CENTRE
 
     @property
     def is_plausible(self) -> bool:
-        """Is the table hardly less plain on it than on any other?"""
-        return self.dear <= DOUBTED
+        """Return whether its map prior is hardly worse than the best one."""
+        return self.prior_cost <= PLAUSIBLE_COST
 
     @property
     def area(self) -> float:
-        """Of the box, in squares^2."""
+        """Return the area of the box in squares^2."""
         west, south, east, north = self.box
         return (east - west) * (north - south)
 
-    def holds(self, frame: Frame) -> bool:
-        """Does it say that a lattice may be the true one?"""
+    def contains(self, frame: Frame) -> bool:
+        """Return whether a frame is one of those it allows."""
         west, south, east, north = self.box
         (x, y), point = frame.origin, self.is_point
         within = (x, y) == self.box[:2] if point else west <= x < east and south <= y < north
         return self.angle == frame.angle and within
 
-    def split(self, place: tuple[float, float]) -> "list[FrameHypothesis]":
-        """Cut the box where the square changes on which he stands at a place of his own frame.
+    def split(self, place: Position) -> "list[FrameHypothesis]":
+        """Return the parts of the hypothesis for each of which `place` lies in one square, the centre's part first.
 
-        The part with the centre first.
+        place : a point of Utak's own frame, (east, north) in squares.
         """
         west, south, east, north = self.box
         dx, dy = Frame(self.angle).to_lattice(*place)
-        columns = _cut(west, east, math.ceil(dx) - dx)
-        rows = _cut(south, north, math.ceil(dy) - dy)
+        columns = _split_interval(west, east, math.ceil(dx) - dx)
+        rows = _split_interval(south, north, math.ceil(dy) - dy)
         return [self._replace(box=(w, s, e, n)) for w, e in columns for s, n in rows]
 
 
-def exactly(frame: Frame) -> FrameHypothesis:
-    """That it is just this lattice, and he woke just there."""
+def exact_hypothesis(frame: Frame) -> FrameHypothesis:
+    """Return the hypothesis that the frame is exactly `frame`."""
     return FrameHypothesis(frame.angle, frame.origin + frame.origin)
 
 
-CENTRED = tuple(FrameHypothesis(angle, CENTRE + CENTRE) for angle in ANGLES)
-ANYWHERE = tuple(FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in ANGLES)
-DOUBTED = 5.0  # edges by which the simplest picture may cost more on a lattice that is likely yet
-ELSEWHERE = 2.5  # log odds against having woken elsewhere than amid his square
-ODD = 0.1  # of the side of the square that looks leave of it on average, below which they left suspiciously little
-GRID = 11  # points along either side of what is left of the square in which he woke
+CENTRED_HYPOTHESES = tuple(FrameHypothesis(angle, CENTRE + CENTRE) for angle in FRAME_ANGLES)
+ALL_HYPOTHESES = tuple(FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in FRAME_ANGLES)
 
 
-class PlacedObservation(NamedTuple):
-    """Where a thing lay that Utak has moved, or was to move later, when he looked.
+class ObjectPose(NamedTuple):
+    """The pose of an object that was ever held, at the time of an observation.
 
-    middle : of its outline, in his own frame. degrees : by which it was turned since he first held it. slack : squares
-    by which it may have lain otherwise. taken : the middle of its outline where he first held it, as was believed then.
+    Attributes
+    ----------
+    name : of the object.
+    middle : the centroid of its outline, (east, north) in Utak's own frame.
+    degrees : by which it had been turned since it was first held, counter-clockwise positive.
+    slack : squares by which it may have lain otherwise.
+    taken : the centroid of its outline where it was first held, as believed then, Utak's own frame.
     """
 
     name: str
-    middle: tuple[float, float]
+    middle: Position
     degrees: float
     slack: float
-    taken: tuple[float, float]
+    taken: Position
 
 
 class Observation(NamedTuple):
-    """One impression's count ranges (160, 2), and where it was received: (east, north) of Utak's own frame.
+    """An impression as count ranges, and where it was made.
 
-    moved : where the things lay that he had moved by then.
+    Attributes
+    ----------
+    ranges : (160, 2) int16, least and greatest count of occupied squares of each field.
+    place : where it was made, (east, north) in squares, Utak's own frame.
+    moved : the poses at that time of all objects that had been held by then.
     """
 
-    ranges: NDArray[np.int16]
-    place: tuple[float, float]
-    moved: tuple[PlacedObservation, ...] = ()
+    ranges: FieldRanges
+    place: Position
+    moved: tuple[ObjectPose, ...] = ()
 
 
-class OriginDisc(NamedTuple):
-    """A part of the table, in Utak's own frame, of which looks need not agree, for things were moved there."""
+class UnsettledDisc(NamedTuple):
+    """A part of the table where an object was moved, so that observations need not agree there.
 
-    middle: tuple[float, float]
+    Attributes
+    ----------
+    middle : its centre, (east, north) in squares, Utak's own frame.
+    reach : its radius in squares.
+    """
+
+    middle: Position
     reach: float
 
 
-def contradictions(frame: Frame, observations: Sequence[Observation], unsettled: Sequence[OriginDisc] = ()) -> int:
-    """How many squares and fields contradict each other if the lattice lies like this.
+def count_contradictions(
+    frame: Frame, observations: Sequence[Observation], unsettled: Sequence[UnsettledDisc] = ()
+) -> int:
+    """Return how many squares and fields contradict each other if the true frame is `frame`.
 
-    Squares under fields that are quite full or quite empty are compared with each other, and other fields with them;
-    those on an unsettled part of the table with nothing.
+    Squares under fields that are quite full or quite empty are compared with each other, and other fields with them.
+
+    unsettled : parts of the table that are not compared.
     """
-    return clashing(frame, fallen(frame, observations), stacked(observations), unsettled)
+    squares = observation_squares(frame, observations)
+    return count_contradictions_at(frame, squares, stack_ranges(observations), unsettled)
 
 
-def stacked(observations: Sequence[Observation]) -> NDArray[np.int16]:
-    """(looks, 160, 2): the count ranges of some looks."""
+def stack_ranges(observations: Sequence[Observation]) -> NDArray[np.int16]:
+    """Return the count ranges of some observations, (observations, 160, 2)."""
     return np.stack([observation.ranges for observation in observations])
 
 
-def clashing(
-    frame: Frame, squares: NDArray[np.int64], ranges: NDArray[np.int16], unsettled: Sequence[OriginDisc] = ()
+def count_contradictions_at(
+    frame: Frame, squares: NDArray[np.int64], ranges: NDArray[np.int16], unsettled: Sequence[UnsettledDisc] = ()
 ) -> int:
-    """The same of looks with these count ranges, (looks, 160, 2), that were received on these squares, (looks, 2)."""
+    """Return how many squares and fields contradict each other among observations made on the given squares.
+
+    squares : (observations, 2) of the map frame. ranges : (observations, 160, 2) count ranges.
+    unsettled : parts of the table that are not compared.
+    """
     apart = [(*frame.place_from_utak(*disc.middle), disc.reach) for disc in unsettled]
     discs = np.array(apart, np.float64).reshape(-1, 3)
     return contradicting(*frame.samples(), np.ascontiguousarray(squares), np.ascontiguousarray(ranges), discs)
 
 
-def standing(
-    hypotheses: Iterable[FrameHypothesis], observations: Sequence[Observation], unsettled: Sequence[OriginDisc] = ()
+def prune_hypotheses(
+    hypotheses: Iterable[FrameHypothesis],
+    observations: Sequence[Observation],
+    unsettled: Sequence[UnsettledDisc] = (),
 ) -> tuple[FrameHypothesis, ...]:
-    """What is left of the hypotheses when the last of these looks is taken into account, in order of preference.
+    """Return what the last of the observations leaves of some hypotheses, in their order.
 
-    Hypotheses by which every look fell on the same squares stand or fall together.
+    A hypothesis is split where the last observation would fall on different squares. Hypotheses by which every
+    observation falls on the same squares are kept or given up together.
+
+    observations : all so far, the last one not yet taken into account. unsettled : parts that are not compared.
     """
     judged: dict[tuple[int, bytes], bool] = {}
     left = []
     for part in (part for hypothesis in hypotheses for part in hypothesis.split(observations[-1].place)):
         frame = part.frame
-        key = (part.angle, fallen(frame, observations).tobytes())
+        key = (part.angle, observation_squares(frame, observations).tobytes())
         if key not in judged:
-            judged[key] = not contradictions(frame, observations, unsettled)
+            judged[key] = not count_contradictions(frame, observations, unsettled)
         if judged[key]:
             left.append(part)
     return tuple(left)
 
 
-def search(
+def consistent_hypotheses(
     observations: Sequence[Observation],
-    hypotheses: Iterable[FrameHypothesis] = ANYWHERE,
-    unsettled: Sequence[OriginDisc] = (),
+    hypotheses: Iterable[FrameHypothesis] = ALL_HYPOTHESES,
+    unsettled: Sequence[UnsettledDisc] = (),
 ) -> tuple[FrameHypothesis, ...]:
-    """All that these looks leave of some hypotheses: of all that there are, wherever in his square Utak woke."""
+    """Return what all observations together leave of some hypotheses, in their order.
+
+    unsettled : parts of the table where observations need not agree.
+    """
     left = tuple(hypotheses)
     for number in range(1, len(observations) + 1):
-        left = standing(left, observations[:number], unsettled)
+        left = prune_hypotheses(left, observations[:number], unsettled)
     return left
 
 
-def anywhere(angles: Iterable[int]) -> tuple[FrameHypothesis, ...]:
-    """The hypotheses of some angles, wherever in his square Utak woke."""
+def any_origin(angles: Iterable[int]) -> tuple[FrameHypothesis, ...]:
+    """Return a hypothesis for each orientation in `angles` (degrees) that allows every origin in the square."""
     return tuple(FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in angles)
 
 
-def fallen(frame: Frame, observations: Sequence[Observation]) -> NDArray[np.int64]:
-    """(looks, 2): the squares of the lattice on which looks were received."""
-    return squares_of(frame, np.array([observation.place for observation in observations]).reshape(-1, 2))
+def observation_squares(frame: Frame, observations: Sequence[Observation]) -> NDArray[np.int64]:
+    """Return the squares of the map frame on which observations were made, (observations, 2)."""
+    return place_squares(frame, np.array([observation.place for observation in observations]).reshape(-1, 2))
 
 
-def squares_of(frame: Frame, places: NDArray[np.float64]) -> NDArray[np.int64]:
-    """(n, 2): the squares of the lattice in which places (n, 2) of his own frame lie."""
+def place_squares(frame: Frame, places: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the squares of the map frame that contain places (n, 2) of Utak's own frame, (n, 2)."""
     x, y = frame.places_from_utak(places[:, 0], places[:, 1])
     squares: NDArray[np.int64] = np.floor(np.stack((x, y), 1)).astype(np.int64)
     return squares
 
 
-def within(frame: Frame, observations: Sequence[Observation]) -> Box:
-    """Where Utak may have woken if every look fell on the square that it is believed to have fallen on.
+def origin_box(frame: Frame, observations: Sequence[Observation]) -> OriginBox:
+    """Return the origins for which every observation falls on the square on which it is believed to have fallen.
 
-    Wherever in it that was, all that stands looked the same.
+    For all of these origins everything at rest looked the same.
     """
     away = np.array([frame.to_lattice(*observation.place) for observation in observations]).reshape(-1, 2)
-    corners = fallen(frame, observations)
+    corners = observation_squares(frame, observations)
     west, south = np.maximum((corners - away).max(0), 0.0).tolist()
     east, north = np.minimum((corners + 1 - away).min(0), 1.0).tolist()
     return west, south, east, north
 
 
-def leeway(frame: Frame, observations: Sequence[Observation], hypotheses: Sequence[FrameHypothesis]) -> Box:
-    """How far from where he believes it Utak may have woken: to the west and south (not above 0), east and north.
+def origin_leeway(
+    frame: Frame, observations: Sequence[Observation], hypotheses: Sequence[FrameHypothesis]
+) -> tuple[float, float, float, float]:
+    """Return how far the true origin may lie from the believed one.
 
-    That he woke amid his square he only assumes.
+    Parameters
+    ----------
+    frame : the believed frame.
+    observations : all observations.
+    hypotheses : the frame hypotheses that are left. Those that assume the middle of the square restrict nothing.
+
+    Returns
+    -------
+    tuple of float
+        West and south (not above 0), east and north (not below 0), in squares of the map frame.
     """
-    west, south, east, north = within(frame, observations)
+    west, south, east, north = origin_box(frame, observations)
     boxes = np.array([h.box for h in hypotheses if h.angle == frame.angle and not h.is_centred])
     if len(boxes):
         west, south = max(west, boxes[:, 0].min()), max(south, boxes[:, 1].min())
@@ -224,48 +269,51 @@ def leeway(frame: Frame, observations: Sequence[Observation], hypotheses: Sequen
     return min(west - x, 0.0), min(south - y, 0.0), max(east - x, 0.0), max(north - y, 0.0)
 
 
-def points(frame: Frame, observations: Sequence[Observation]) -> tuple[FrameHypothesis, ...]:
-    """GRID by GRID points at which Utak may have woken if every look fell on the square that it is believed to."""
-    west, south, east, north = within(frame, observations)
-    steps = (np.arange(GRID) + 0.5) / GRID
+def origin_grid(frame: Frame, observations: Sequence[Observation]) -> tuple[FrameHypothesis, ...]:
+    """Return ORIGIN_GRID x ORIGIN_GRID exact origins, evenly spaced in the box that `origin_box` returns."""
+    west, south, east, north = origin_box(frame, observations)
+    steps = (np.arange(ORIGIN_GRID) + 0.5) / ORIGIN_GRID
     places = ((float(west + (east - west) * i), float(south + (north - south) * j)) for i in steps for j in steps)
     return tuple(FrameHypothesis(frame.angle, place + place) for place in places)
 
 
-def cramped(hypotheses: Sequence[FrameHypothesis], observations: int) -> bool:
-    """Is less room left for where he woke than so many looks leave by chance?
+def is_cramped(hypotheses: Sequence[FrameHypothesis], observations: int) -> bool:
+    """Return whether less room is left for the origin than so many observations leave by chance.
 
-    Each look cuts either side of his square in two, anywhere. Then a side of what he truly woke in is shorter than
-    ODD / looks about once in two hundred times: more likely a look was received elsewhere than is believed.
+    Each observation cuts either side of the square of waking in two, anywhere. Then a side of the true part is
+    shorter than CRAMPED_SIDE / observations about once in two hundred times. An observation made elsewhere than
+    believed is likelier.
     """
     if not hypotheses or any(hypothesis.is_centred for hypothesis in hypotheses):
         return False
     west, south, east, north = np.array([hypothesis.box for hypothesis in hypotheses]).T
-    return bool(min((east - west).max(), (north - south).max()) < ODD / max(observations, 1))
+    return bool(min((east - west).max(), (north - south).max()) < CRAMPED_SIDE / max(observations, 1))
 
 
-def cells(where: Sequence[FrameHypothesis]) -> tuple[float, float]:
-    """How wide and how high a cell of a grid is for which each of some of its points stands."""
-    lines = [np.unique(np.round([point.box[axis] for point in where], 9)) for axis in (0, 1)]
+def grid_cell_size(points: Sequence[FrameHypothesis]) -> tuple[float, float]:
+    """Return the width and height, in squares, of the cell for which each of some points of an origin grid stands."""
+    lines = [np.unique(np.round([point.box[axis] for point in points], 9)) for axis in (0, 1)]
     width, height = (float(np.diff(line).min()) if len(line) > 1 else 0.0 for line in lines)
     return width, height
 
 
-def candidates(hypotheses: Sequence[FrameHypothesis], held: Frame) -> list[Frame]:
-    """The lattices to try, the likeliest first: those on which the table is plainest, the one held, one along his own
-    axes, then from the middle outwards.
+def frames_to_try(hypotheses: Sequence[FrameHypothesis], believed: Frame) -> list[Frame]:
+    """Return the frames of some hypotheses, the likeliest first.
 
-    Of one angle that first which leaves the most room for where he woke.
+    The order: the best map prior, the believed frame, Utak's own axes, then orientations from the median outwards.
+    Of one orientation the frame with the most room for the origin comes first.
     """
     angles = sorted({h.angle for h in hypotheses})
     middle = (len(angles) - 1) / 2
     outwards = sorted(angles, key=lambda angle: (angle != 0, abs(angles.index(angle) - middle)))
-    ordered = sorted(hypotheses, key=lambda h: (h.dear, h.frame != held, outwards.index(h.angle), -h.area, h.box))
+    ordered = sorted(
+        hypotheses, key=lambda h: (h.prior_cost, h.frame != believed, outwards.index(h.angle), -h.area, h.box)
+    )
     return list(dict.fromkeys(h.frame for h in ordered))
 
 
-def _cut(low: float, high: float, at: float) -> list[tuple[float, float]]:
-    """An interval cut in two at a point inside it; the part that holds the middle of a square first."""
+def _split_interval(low: float, high: float, at: float) -> list[tuple[float, float]]:
+    """Return an interval cut in two at a point inside it, the part that holds the middle of a square first."""
     if not low < at < high:
         return [(low, high)]
     parts = [(low, at), (at, high)]

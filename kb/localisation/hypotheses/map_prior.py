@@ -1,8 +1,9 @@
-"""How plain the table looks on a lattice: what the simplest picture costs that agrees with all counts.
+"""Map prior: the description length of the simplest map that agrees with all counts, in a frame.
 
-Walls and things have straight sides along the lattice, as a rule. On a lattice that lies otherwise than the table's the
-same counts need crooked sides, and many more of them: in 300 random worlds the first look alone told the angle to
-within two degrees in 98 of 100, long before two looks contradict each other on all other lattices.
+Walls and objects have straight sides along the grid, as a rule. In a wrong frame the same counts need bent sides, and
+many more of them. In 300 random worlds the first observation alone told the orientation to within two degrees in 98 of
+100, long before two observations contradict each other in all other frames. The simplest map is sought by annealed
+Gibbs sampling (Geman and Geman 1984; geometry.counts.gibbs).
 """
 
 import math
@@ -12,58 +13,65 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.counts.gibbs import DRAWN, EDGE, FULL, costs, pictures
-from kb.localisation.hypotheses.frames import ELSEWHERE, FrameHypothesis, Observation, fallen
-from kb.localisation.hypotheses.remap import relaid
+from kb.localisation.hypotheses.frames import OFF_CENTRE_COST, FrameHypothesis, Observation, observation_squares
+from kb.localisation.hypotheses.remap import remap
 from kb.mapping.completions import SEED, CompletionTask, Image, Told, ground_of, scenes
 from kb.mapping.occupancy import OccupancyMap
 from kb.perception.frame import Frame
 
-LESS_LIKELY = 0.8  # by this power of e a picture is the less likely that costs more by 1
-HOT = 0.5  # the inverse temperature at which drawing begins
-FAIR = (4, 60)  # pictures, and sweeps over each, that tell how plain the table looks
-ROUGH = (1, 20)  # those that tell which lattices are worth more
-STRAIGHT = 0.65  # what bends cost beside edges, at most, where all others are rather not tried but those NEAR degrees
-NEAR = 6
-STEP = 2  # degrees between those that are tried first
-SOME, BEHIND = 12, 25.0  # angles about which all others are tried, at most, and log odds by which they may be behind
-NOISE = 0.25  # of what a rough picture costs, that another one may cost less
-ROUNDS = ((12, 20.0, (1, 40)), (6, 12.0, (2, 60)), (3, 8.0, (4, 60)))  # then so many of the best get so many more
-FEW = 8  # lattices that are weighed again with the next look, at most
-AGAIN = 10.0  # log odds against those
-BESIDE = 2  # degrees from the likeliest: such are weighed again, too, for a single look hardly tells them apart
-UNTRIED = 12.0  # log odds against those that are not tried, at least
-CLOSE = 6.0  # log odds against the lattices and the maps of which it is asked once more
-CLOSELY = 2  # times that it is asked so of maps
-ALONG = 4.5  # log odds that the lattice lies along his own axes, beside any other angle
-MOST = 16  # pictures of one effort
+LOG_ODDS_PER_COST = 0.8  # log odds against a map for each unit of its cost; tuned
+START_INVERSE_TEMPERATURE = 0.5  # of the annealing; tuned
+FULL_EFFORT = (4, 60)  # completions, and sweeps over each, that tell the description length of a map; tuned
+ROUGH_EFFORT = (1, 20)  # the same, to tell which frames are worth more; tuned
+MAX_STRAIGHT_BENDS = 0.65  # cost of bends for each unit of cost of edges, below which Utak's own axes fit; tuned
+STRAIGHT_ANGLES = 6  # degrees about Utak's own axes that are tried alone where those fit; tuned
+COARSE_ANGLE_STEP = 2  # degrees between the orientations that are tried first; tuned
+MAX_REFINED_ANGLES = 12  # orientations whose neighbours are tried next; tuned
+MAX_REFINED_ODDS = 25.0  # log odds by which those may be behind the best one; tuned
+ROUGH_COST_NOISE = 0.25  # part of the cost of a rough completion by which another one may cost less; tuned
+REFINEMENT_ROUNDS = ((12, 20.0, (1, 40)), (6, 12.0, (2, 60)), (3, 8.0, (4, 60)))
+# Rounds of (orientations kept, log odds they may be behind, effort that each gets then); tuned.
+MAX_REWEIGHED_FRAMES = 8  # frames that are weighed again with the next observation: bounds its time; tuned
+MAX_REWEIGHED_COST = 10.0  # log odds up to which a frame is weighed again; tuned
+REWEIGHED_ANGLES = 2  # degrees about the best orientation that are weighed again, too: one observation confuses them
+UNTRIED_COST = 12.0  # log odds against frames that are not tried, at least: above all that are weighed again
+CLOSE_ODDS = 6.0  # log odds within which frames or maps are drawn once more; tuned
+MAX_REDRAWS = 2  # times that close maps are drawn once more; tuned
+OBLIQUE_COST = 4.5  # log odds against any one orientation but Utak's own axes; about ln 90, for 90 orientations
+SEEDS_PER_EFFORT = 16  # random seeds reserved for each effort: more than completions in any effort
 Effort = tuple[int, int]
-Drawn = dict[Told, tuple[float, Image]]
-Key = tuple[int, bytes]
+DrawnScenes = dict[Told, tuple[float, Image]]
+SquaresKey = tuple[int, bytes]
 
 
 class MapDescription:
-    """A map, and the simplest picture of it that was drawn so far, scene by scene.
+    """A map, and the simplest completion of it that was drawn so far, scene by scene.
 
-    price : what that picture costs, as log odds against it.
+    Attributes
+    ----------
+    price : the log odds against that completion: its description length.
     """
 
-    def __init__(self, occupancy: OccupancyMap, drawn: Drawn | None = None) -> None:
-        """Drawn : what was drawn of scenes before, of this map or of others; it is added to."""
+    def __init__(self, occupancy: OccupancyMap, drawn: DrawnScenes | None = None) -> None:
+        """Begin with no completion. drawn : completions of scenes of this or other maps; new ones are added to it."""
         self._view = occupancy.view()
         self._ground = ground_of(self._view)
         self._scenes = list(scenes(self._view, self._ground))
         self._least = [np.inf] * len(self._scenes)
         self._image = (self._ground == FULL).astype(np.int8)
-        self._drawn: Drawn = {} if drawn is None else drawn
+        self._drawn: DrawnScenes = {} if drawn is None else drawn
         self._rounds = 0
         self.price = np.inf
 
-    def draw(self, effort: Effort = FAIR) -> float:
-        """Draw so many more pictures, with so many sweeps over each; the price then."""
+    def draw(self, effort: Effort = FULL_EFFORT) -> float:
+        """Draw more completions and return the price of the simplest one so far.
+
+        effort : the number of completions of each scene, and of sweeps over each.
+        """
         for number, scene in enumerate(self._scenes):
             key = (*scene.told(self._view), *effort, self._rounds)
             if key not in self._drawn:
-                self._drawn[key] = _simplest(scene, effort, SEED + MOST * self._rounds)
+                self._drawn[key] = _simplest(scene, effort, SEED + SEEDS_PER_EFFORT * self._rounds)
             least, image = self._drawn[key]
             if least < self._least[number]:
                 self._least[number] = least
@@ -74,159 +82,204 @@ class MapDescription:
         return self.price
 
     def cost(self, edge: float) -> float:
-        """What the simplest picture costs, as log odds against it. edge : what an edge costs."""
-        return LESS_LIKELY * float(costs(self._image[None], self._ground, self._view.counts, edge)[0])
+        """Return the log odds against the simplest completion. edge : the cost of an edge."""
+        return LOG_ODDS_PER_COST * float(costs(self._image[None], self._ground, self._view.counts, edge)[0])
 
     @property
-    def bends(self) -> float:
-        """What corners and wrong counts cost beside the edges."""
+    def bend_ratio(self) -> float:
+        """Return the cost of corners and wrong counts, divided by the cost of edges."""
         bends = self.cost(0.0)
-        return bends / max(self.price - bends, LESS_LIKELY)
+        return bends / max(self.price - bends, LOG_ODDS_PER_COST)
 
 
 def _simplest(scene: CompletionTask, effort: Effort, seed: int) -> tuple[float, Image]:
-    """What the simplest of some pictures of a scene costs, and the picture."""
+    """Return the cost of the simplest of some completions of a scene, and the completion."""
     number, sweeps = effort
-    images = pictures(scene.ground, scene.counts, np.repeat(scene.first[None], number, axis=0), sweeps, HOT, seed)
+    first = np.repeat(scene.first[None], number, axis=0)
+    images = pictures(scene.ground, scene.counts, first, sweeps, START_INVERSE_TEMPERATURE, seed)
     prices = costs(images, scene.ground, scene.counts)
     return float(prices.min()), images[prices.argmin()]
 
 
-class FrameTrial(MapDescription):
-    """The same of some looks on a lattice, which lies askew less likely than along his own axes."""
+class FrameTrial:
+    """The map of some observations in a frame, with the prior of its orientation.
+
+    Attributes
+    ----------
+    description : the map.
+    """
 
     def __init__(self, frame: Frame, observations: Sequence[Observation]) -> None:
-        super().__init__(relaid(frame, frame, observations, ()).occupancy)
-        self._askew = ALONG * (frame.angle != 0)
+        """Begin with no completion."""
+        self.description = MapDescription(remap(frame, frame, observations, ()).occupancy)
+        self._oblique = OBLIQUE_COST * (frame.angle != 0)
+
+    def draw(self, effort: Effort = FULL_EFFORT) -> float:
+        """Draw more completions and return the price of the simplest one so far."""
+        return self.description.draw(effort)
 
     @property
     def odds(self) -> float:
-        """Log odds against the lattice."""
-        return self.price + self._askew
+        """Return the log odds against the frame, by its map and its orientation."""
+        return self.description.price + self._oblique
 
 
-def plainness(sketches: Sequence[tuple[MapDescription, float]]) -> list[float]:
-    """What the simplest picture of each map costs beside that of the plainest one, as log odds.
+def relative_costs(maps: Sequence[tuple[MapDescription, float]]) -> list[float]:
+    """Return by how much each map costs more than the best one, in log odds.
 
-    Edges are not counted, for maps may differ in size. sketches : each with the log odds against its map by all else;
-    most effort is spent on those that may be the likeliest.
+    Edges are not counted, for the maps may differ in size. More completions are drawn of the maps that may be best.
+
+    maps : each with the log odds against it by everything else.
     """
-    for sketch, _ in sketches:
-        sketch.draw()
-    for _ in range(CLOSELY):
-        odds = [sketch.cost(0.0) + against for sketch, against in sketches]
-        close = [n for n, one in enumerate(odds) if one <= min(odds) + CLOSE]
+    for description, _ in maps:
+        description.draw()
+    for _ in range(MAX_REDRAWS):
+        odds = [description.cost(0.0) + against for description, against in maps]
+        close = [n for n, one in enumerate(odds) if one <= min(odds) + CLOSE_ODDS]
         for n in close if len(close) > 1 else ():
-            sketches[n][0].draw()
-    prices = [sketch.cost(0.0) for sketch, _ in sketches]
+            maps[n][0].draw()
+    prices = [description.cost(0.0) for description, _ in maps]
     return [price - min(prices) for price in prices]
 
 
-class Alike(NamedTuple):
-    """Hypotheses of one angle by which the looks fell on the same squares beside each other, so that the table is one.
+class AlikeHypotheses(NamedTuple):
+    """Hypotheses of one orientation with the same map: their observations fell on the same squares.
 
-    against : log odds against having woken in that part of his square.
+    Attributes
+    ----------
+    frame : the likeliest of their frames.
+    prior_cost : the least of their prior costs before.
+    against : log odds against having woken in that part of the square.
     """
 
     frame: Frame
-    dear: float
+    prior_cost: float
     against: float
 
 
-def weighed(hypotheses: Sequence[FrameHypothesis], observations: Sequence[Observation]) -> tuple[FrameHypothesis, ...]:
-    """The same hypotheses, each with how much less likely it is than the one on which the table looks plainest.
+def weigh_hypotheses(
+    hypotheses: Sequence[FrameHypothesis], observations: Sequence[Observation]
+) -> tuple[FrameHypothesis, ...]:
+    """Return the same hypotheses, each with its prior cost relative to the best one.
 
-    Of those weighed before the likely ones alone are weighed again, with the new look, and the angles beside them.
+    Of hypotheses weighed before, only the likely ones and the orientations beside the best one are weighed again.
+
+    observations : those by which they are weighed, the new one last.
     """
-    keys = [_key(hypothesis, observations) for hypothesis in hypotheses]
-    same: dict[Key, list[FrameHypothesis]] = {}
+    keys = [_squares_key(hypothesis, observations) for hypothesis in hypotheses]
+    same: dict[SquaresKey, list[FrameHypothesis]] = {}
     for hypothesis, key in zip(hypotheses, keys, strict=True):
         same.setdefault(key, []).append(hypothesis)
     alike = {key: _alike(own) for key, own in same.items()}
-    least = min((one.dear for one in alike.values()), default=0.0)
+    least = min((one.prior_cost for one in alike.values()), default=0.0)
     likely = _likely(alike, least)
     if len(likely) < 2:
-        return tuple(h._replace(dear=h.dear - least) for h in hypotheses)
-    if least < UNTRIED and any(one.dear for one in alike.values()):
-        trials = {key: _drawn(alike[key], observations) for key in likely[:FEW]}
+        return tuple(h._replace(prior_cost=h.prior_cost - least) for h in hypotheses)
+    if least < UNTRIED_COST and any(one.prior_cost for one in alike.values()):
+        trials = {key: _trial(alike[key], observations) for key in likely[:MAX_REWEIGHED_FRAMES]}
     else:  # for the first time, or all that were likely are given up
-        trials = _first_tried(alike, observations)
+        trials = _first_trials(alike, observations)
+    odds = _odds(trials, alike)
+    best = min(odds.values())
+    cost = {key: max(one.prior_cost - least, UNTRIED_COST) for key, one in alike.items()}
+    cost |= {key: odd - best for key, odd in odds.items()}
+    return tuple(h._replace(prior_cost=cost[key]) for h, key in zip(hypotheses, keys, strict=True))
+
+
+def _odds(
+    trials: Mapping[SquaresKey, FrameTrial], alike: Mapping[SquaresKey, AlikeHypotheses]
+) -> dict[SquaresKey, float]:
+    """Return the log odds against each trial, after those close to the best one were drawn once more."""
     odds = {key: trial.odds + alike[key].against for key, trial in trials.items()}
     best = min(odds.values())
-    close = [key for key in odds if odds[key] <= best + CLOSE]
+    close = [key for key in odds if odds[key] <= best + CLOSE_ODDS]
     for key in close if len(close) > 1 else ():
         trials[key].draw()
         odds[key] = trials[key].odds + alike[key].against
-    best = min(odds.values())
-    dear = {key: max(one.dear - least, UNTRIED) for key, one in alike.items()}
-    dear |= {key: odd - best for key, odd in odds.items()}
-    return tuple(h._replace(dear=dear[key]) for h, key in zip(hypotheses, keys, strict=True))
+    return odds
 
 
-def _key(hypothesis: FrameHypothesis, observations: Sequence[Observation]) -> Key:
-    """The angle, and on which squares the looks fell beside the last one."""
-    squares = fallen(hypothesis.frame, observations)
+def _squares_key(hypothesis: FrameHypothesis, observations: Sequence[Observation]) -> SquaresKey:
+    """Return the orientation, and the squares of the observations relative to the last one."""
+    squares = observation_squares(hypothesis.frame, observations)
     return hypothesis.angle, (squares - squares[-1]).tobytes()
 
 
-def _alike(same: Sequence[FrameHypothesis]) -> Alike:
+def _alike(same: Sequence[FrameHypothesis]) -> AlikeHypotheses:
+    """Return hypotheses of the same map as one."""
     likeliest = max(same, key=lambda one: (one.is_centred, one.area))
     area = sum(one.area for one in same)
-    against = 0.0 if likeliest.is_centred or not area else ELSEWHERE - math.log(area)
-    return Alike(likeliest.frame, min(one.dear for one in same), against)
+    against = 0.0 if likeliest.is_centred or not area else OFF_CENTRE_COST - math.log(area)
+    return AlikeHypotheses(likeliest.frame, min(one.prior_cost for one in same), against)
 
 
-def _likely(alike: Mapping[Key, Alike], least: float) -> list[Key]:
-    """Those that are worth weighing, the likeliest first."""
-    best = [angle for (angle, _), one in alike.items() if one.dear == least]
+def _likely(alike: Mapping[SquaresKey, AlikeHypotheses], least: float) -> list[SquaresKey]:
+    """Return those that are worth weighing again, the likeliest first. least : the least prior cost."""
+    best = [angle for (angle, _), one in alike.items() if one.prior_cost == least]
     near = (
         key
         for key, one in alike.items()
-        if one.dear <= least + AGAIN or any(abs(key[0] - angle) <= BESIDE for angle in best)
+        if one.prior_cost <= least + MAX_REWEIGHED_COST
+        or any(abs(key[0] - angle) <= REWEIGHED_ANGLES for angle in best)
     )
-    return sorted(near, key=lambda key: (alike[key].dear, alike[key].against, key))
+    return sorted(near, key=lambda key: (alike[key].prior_cost, alike[key].against, key))
 
 
-def _first_tried(alike: Mapping[Key, Alike], observations: Sequence[Observation]) -> dict[Key, FrameTrial]:
-    """Trials of those that may be the best: of each angle the likeliest part of his square, of the best ones others."""
-    parts: dict[int, list[Key]] = {}
+def _first_trials(
+    alike: Mapping[SquaresKey, AlikeHypotheses], observations: Sequence[Observation]
+) -> dict[SquaresKey, FrameTrial]:
+    """Return trials of the frames that may be the best: the likeliest origin of each orientation, then others."""
+    parts: dict[int, list[SquaresKey]] = {}
     for key in sorted(alike, key=lambda key: (alike[key].against, key)):
         parts.setdefault(key[0], []).append(key)
-    trials = _competing({angle: alike[own[0]].frame for angle, own in parts.items()}, observations)
+    trials = _Competition({angle: alike[own[0]].frame for angle, own in parts.items()}, observations).run()
     leading = sorted(trials, key=lambda angle: trials[angle].odds)
-    others = [key for angle in leading for key in parts[angle][1:]][:FEW]
+    others = [key for angle in leading for key in parts[angle][1:]][:MAX_REWEIGHED_FRAMES]
     return {parts[angle][0]: trial for angle, trial in trials.items()} | {
-        key: _drawn(alike[key], observations) for key in others
+        key: _trial(alike[key], observations) for key in others
     }
 
 
-def _drawn(one: Alike, observations: Sequence[Observation]) -> FrameTrial:
+def _trial(one: AlikeHypotheses, observations: Sequence[Observation]) -> FrameTrial:
+    """Return the trial of a frame, with completions drawn."""
     trial = FrameTrial(one.frame, observations)
     trial.draw()
     return trial
 
 
-def _competing(frames: dict[int, Frame], observations: Sequence[Observation]) -> dict[int, FrameTrial]:
-    """Trials of those lattices that may be the best, by angle: most effort is spent on the likeliest."""
-    trials: dict[int, FrameTrial] = {}
+class _Competition:
+    """Trials of one frame of each orientation; the more effort is spent on a frame the likelier it is."""
 
-    def enter(angles: Iterable[int]) -> None:
+    def __init__(self, frames: Mapping[int, Frame], observations: Sequence[Observation]) -> None:
+        """Begin with no trial. frames : by orientation in degrees."""
+        self._frames, self._observations = frames, observations
+        self._trials: dict[int, FrameTrial] = {}
+
+    def run(self) -> dict[int, FrameTrial]:
+        """Return the trials of the frames that may be the best, by orientation."""
+        trials = self._trials
+        self._enter([0])
+        if 0 in trials and trials[0].draw() and trials[0].description.bend_ratio < MAX_STRAIGHT_BENDS:
+            self._frames = {angle: frame for angle, frame in self._frames.items() if abs(angle) <= STRAIGHT_ANGLES}
+        self._enter([angle for angle in self._frames if angle % COARSE_ANGLE_STEP == 0] or self._frames)
+        refined = self._leading(MAX_REFINED_ANGLES, MAX_REFINED_ODDS)
+        self._enter(angle + step for angle in refined for step in range(1 - COARSE_ANGLE_STEP, COARSE_ANGLE_STEP))
+        for most, behind, effort in REFINEMENT_ROUNDS:
+            for angle in dict.fromkeys([*self._leading(most, behind), *([0] if 0 in trials else [])]):
+                trials[angle].draw(effort)
+        return trials
+
+    def _enter(self, angles: Iterable[int]) -> None:
+        """Try some orientations roughly, those that were not tried yet."""
         for angle in angles:
-            if angle in frames and angle not in trials:
-                trials[angle] = FrameTrial(frames[angle], observations)
-                trials[angle].draw(ROUGH)
+            if angle in self._frames and angle not in self._trials:
+                self._trials[angle] = FrameTrial(self._frames[angle], self._observations)
+                self._trials[angle].draw(ROUGH_EFFORT)
 
-    def leading(most: int, behind: float) -> list[int]:
+    def _leading(self, most: int, behind: float) -> list[int]:
+        """Return the best orientations: `most` at most, and not further than `behind` log odds behind the best one."""
+        trials = self._trials
         ordered = sorted(trials, key=lambda angle: trials[angle].odds)[:most]
         best = trials[ordered[0]]
-        return [angle for angle in ordered if trials[angle].odds <= best.odds + max(behind, NOISE * best.price)]
-
-    enter([0])
-    if 0 in trials and trials[0].draw() and trials[0].bends < STRAIGHT:
-        frames = {angle: frame for angle, frame in frames.items() if abs(angle) <= NEAR}
-    enter([angle for angle in frames if angle % STEP == 0] or frames)
-    enter(angle + step for angle in leading(SOME, BEHIND) for step in range(1 - STEP, STEP))
-    for most, behind, effort in ROUNDS:
-        for angle in dict.fromkeys([*leading(most, behind), *([0] if 0 in trials else [])]):
-            trials[angle].draw(effort)
-    return trials
+        limit = best.odds + max(behind, ROUGH_COST_NOISE * best.description.price)
+        return [angle for angle in ordered if trials[angle].odds <= limit]

@@ -1,8 +1,8 @@
-"""Laying all that was seen, and all that was carried, on another lattice.
+"""Remapping: all observations and all held objects in another frame.
 
-In Utak's own frame his commands are exact: where he halted, and how a thing in his hand went with him, do not depend on
-how the squares lie. What does is where a thing lay when he first took it, for that was seen in squares. So when the
-lattice turns out to lie otherwise, things are laid anew where he took them, and carried from there as they were.
+In Utak's own frame commands are exact: where a motion ended, and how a held object moved with it, do not depend on the
+grid. Where an object lay when it was first held does, for that was seen in squares. So for another frame an object is
+fitted anew where it was first held, and moved from there as before.
 """
 
 import math
@@ -17,74 +17,86 @@ import shapely
 from geometry.motion.se2 import Rotate, Translate
 from geometry.raster.components import components, edged
 from geometry.shapes.fit import fit_shapes
-from kb.localisation.hypotheses.frames import Observation, PlacedObservation, fallen
+from kb.localisation.hypotheses.frames import ObjectPose, Observation, Position, observation_squares
 from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
 from kb.mapping.patch import Patch, covered
 from kb.objects.held_object import HeldObject, discounted, is_whole, whole
 from kb.objects.subcell_extent import SubcellExtent
 from kb.perception.frame import Frame
 
-ASKEW = 8.0  # degrees from one lattice to another from where on an outline that was measured on the one is not right
-UNTOLD = 0.25  # of the squares of a thing, so many may be open when it is measured anew
-REACH = 6  # squares that a thing may reach further than it was believed to
-EVERY = 16  # looks after which what they say is kept, to go on from there
-STEPS = sorted(((x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)), key=lambda step: (math.hypot(*step), step))
+MAX_FRAME_SKEW = 8.0  # degrees between two frames up to which an outline measured in one serves in the other; tuned
+MAX_OPEN_SHARE = 0.25  # open squares of an outline, as a share of its full ones, up to which it is fitted anew; tuned
+OUTLINE_MARGIN = 6  # squares by which an outline fitted anew may reach beyond the old one; tuned
+REPLAY_INTERVAL = 16  # observations after which a replay is kept, to go on from there: time against memory; tuned
+CORNER_STEPS = sorted(((x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)), key=lambda step: (math.hypot(*step), step))
 
 
 class RemappedMap(NamedTuple):
-    """What all looks say on a lattice.
+    """The occupancy map and the held objects in a frame, by all observations.
 
-    loads : as they lie after the last look, by name. misfits : fields that contradict it. cut : were looks left out,
-    as the first of them were contradicted? Then the loads are left out, too, and misfits may be too few, though not 0.
+    Attributes
+    ----------
+    occupancy : the map.
+    loads : all held objects as they lie after the last observation, by name, map frame.
+    residual : fields that contradict the frame, over all observations.
+    incomplete : whether the replay stopped at the first contradiction. Then `loads` is empty and `residual` is a
+        lower bound above 0.
     """
 
     occupancy: OccupancyMap
     loads: Mapping[str, HeldObject]
-    misfits: int
-    cut: bool = False
+    residual: int
+    incomplete: bool = False
 
 
-def laid(load: HeldObject, frame: Frame) -> PlacedObservation:
-    """Where a load lies, told in Utak's own frame."""
-    return PlacedObservation(
-        load.name, _middle(load.polygon, frame), load.turned, load.slack, _middle(load.first, frame)
-    )
+def object_pose(load: HeldObject, frame: Frame) -> ObjectPose:
+    """Return where an object lies, in Utak's own frame. frame : the map frame of `load`."""
+    return ObjectPose(load.name, _centroid(load.polygon, frame), load.turned, load.slack, _centroid(load.first, frame))
 
 
 class Replay:
-    """Looks laid on a lattice one after the other, as far as some of them.
+    """Observations integrated one after the other into a new map, in a frame.
 
-    new, old : that lattice, and the one on which the loads lie. number : how many looks are taken in.
+    Attributes
+    ----------
+    new : the frame of the new map.
+    old : the frame in which the held objects are given.
+    number : how many observations are integrated.
     """
 
     def __init__(self, new: Frame, old: Frame) -> None:
         self.new, self.old, self.number = new, old, 0
-        self._occupancy, self._misfits = OccupancyMap(), 0
-        self._taken: dict[str, HeldObject] = {}  # as they lay when they were first held, on the new lattice
+        self._occupancy, self._residual = OccupancyMap(), 0
+        self._taken: dict[str, HeldObject] = {}  # as they lay when they were first held, in the new frame
 
     def copy(self) -> "Replay":
-        """The same, to go on with."""
+        """Return an independent copy, to go on with."""
         other = copy(self)
         other._occupancy, other._taken = self._occupancy.copy(), dict(self._taken)
         return other
 
-    def go_on(
-        self, observations: Sequence[Observation], loads: Mapping[str, HeldObject], to: int, whether: bool = False
+    def advance(
+        self,
+        observations: Sequence[Observation],
+        loads: Mapping[str, HeldObject],
+        stop: int,
+        only_whether: bool = False,
     ) -> "Replay":
-        """Take in the looks before that number; what was taken in already must be the first of them.
+        """Integrate the observations before number `stop` that are not integrated yet, and return the replay.
 
-        whether : it is asked only whether anything contradicts: then no looks are taken in after the first that do.
+        observations : all; those integrated already must be the first of them. loads : all held objects, old frame.
+        only_whether : stop after the first observation that contradicts the frame.
         """
-        for number in range(self.number, to):
-            if whether and self._misfits:
+        for number in range(self.number, stop):
+            if only_whether and self._residual:
                 break
             self._take([load for load in loads.values() if load.since == number], number)
             observation = observations[number]
-            moved = [(self._taken[was.name], was) for was in observation.moved if was.name in self._taken]
-            there = [_carried(taken, loads[was.name], was, self.new) for taken, was in moved]
+            moved = [(self._taken[pose.name], pose) for pose in observation.moved if pose.name in self._taken]
+            there = [_moved_to(taken, loads[pose.name], pose, self.new) for taken, pose in moved]
             x, y = (math.floor(v) for v in self.new.place_from_utak(*observation.place))
             freed = discounted(self.new.samples(), observation.ranges, x, y, there)
-            self._misfits += self._occupancy.clashes(*freed, x, y)
+            self._residual += self._occupancy.clashes(*freed, x, y)
             self._occupancy.observe(*freed, x, y, number)
             if number == 0:
                 self._occupancy.stand(x, y, 0)
@@ -93,53 +105,64 @@ class Replay:
 
     @property
     def contradicted(self) -> bool:
-        """Does anything contradict the lattice, of the looks that were taken in?"""
-        return self._misfits > 0
+        """Return whether any integrated observation contradicts the frame."""
+        return self._residual > 0
 
-    def end(
-        self, observations: Sequence[Observation], loads: Mapping[str, HeldObject], whether: bool = False
+    def finish(
+        self, observations: Sequence[Observation], loads: Mapping[str, HeldObject], only_whether: bool = False
     ) -> RemappedMap:
-        """What all looks say in the end. It cannot be gone on with. whether : as for `go_on`."""
-        self.go_on(observations, loads, len(observations), whether)
-        if whether and self._misfits:
-            return RemappedMap(self._occupancy, {}, self._misfits, cut=True)
+        """Integrate the rest of the observations and return the map. The replay cannot go on afterwards.
+
+        Parameters as for `advance`.
+        """
+        self.advance(observations, loads, len(observations), only_whether)
+        if only_whether and self._residual:
+            return RemappedMap(self._occupancy, {}, self._residual, incomplete=True)
         self._take([load for load in loads.values() if load.since >= len(observations)], len(observations))
-        now = {name: _carried(self._taken[name], load, laid(load, self.old), self.new) for name, load in loads.items()}
-        return RemappedMap(self._occupancy, now, self._misfits)
+        now = {
+            name: _moved_to(self._taken[name], load, object_pose(load, self.old), self.new)
+            for name, load in loads.items()
+        }
+        return RemappedMap(self._occupancy, now, self._residual)
 
     def _take(self, taken: Iterable[HeldObject], number: int) -> None:
-        """Take out of the map what was first held before look `number`."""
+        """Declare floor where objects lay that were first held just before observation `number`."""
         for load in taken:
-            lay = self._taken[load.name] = _taken(load, self.new, self.old, self._occupancy)
+            lay = self._taken[load.name] = _first_held(load, self.new, self.old, self._occupancy)
             patch = lay.possible
             self._occupancy.make_room(patch.west, patch.south)
             squares = self._occupancy.squares(patch.west, patch.south, patch.mask)
             self._occupancy.declare(squares, FREE, number - 1)
 
 
-def relaid(
+def remap(
     new: Frame,
     old: Frame,
     observations: Sequence[Observation],
     loads: Iterable[HeldObject],
     begun: Replay | None = None,
-    whether: bool = False,
+    only_whether: bool = False,
 ) -> RemappedMap:
-    """All that was seen, and where the loads are, if the lattice lies otherwise.
+    """Return the map and the held objects in another frame.
 
-    old : the lattice on which the loads lie. begun : the first of the looks, taken in already, with loads taken as
-    these were. whether : it is asked only whether anything contradicts; if so, what is told is cut.
+    Parameters
+    ----------
+    new : the frame to map in.
+    old : the frame in which the held objects are given.
+    observations : all observations, with their places in Utak's own frame.
+    loads : all objects that were ever held, old frame.
+    begun : a replay of the first of the observations, with the same objects; it is copied.
+    only_whether : ask only whether anything contradicts the frame; the result is incomplete if something does.
     """
     replay = Replay(new, old) if begun is None else begun.copy()
-    return replay.end(observations, {load.name: load for load in loads}, whether)
+    return replay.finish(observations, {load.name: load for load in loads}, only_whether)
 
 
 class RemapCache:
-    """What all looks say on any lattice.
+    """The maps of all frames that were asked for.
 
-    Lattices on which every look falls on the same squares are told the same: all is laid on the first of them that is
-    asked for, and on the others things are only shifted.
-    lattice, evidence, loads : as they are believed.
+    Frames in which every observation falls on the same squares have the same map. It is replayed for the first of them
+    only; for the others just the objects are shifted.
     """
 
     def __init__(
@@ -149,73 +172,75 @@ class RemapCache:
         observations: Sequence[Observation],
         loads: Mapping[str, HeldObject],
     ) -> None:
+        """Begin with the map of the believed frame. loads : all held objects in that frame, by name."""
         self._frame, self._observations, self._loads = frame, observations, loads
         believed = RemappedMap(occupancy, loads, 0)
-        self._known: dict[tuple[int, bytes], tuple[Frame | None, RemappedMap]] = {self._fallen(frame): (None, believed)}
-        self._on: dict[Frame, RemappedMap] = {}
+        self._known: dict[tuple[int, bytes], tuple[Frame | None, RemappedMap]] = {self._key(frame): (None, believed)}
+        self._by_frame: dict[Frame, RemappedMap] = {}
 
-    def on(self, frame: Frame, whether: bool = False) -> RemappedMap:
-        """What they say on a lattice. whether : as for `relaid`."""
-        if frame not in self._on or (self._on[frame].cut and not whether):
-            self._on[frame] = self._laid(frame, whether)
-        return self._on[frame]
+    def remapped(self, frame: Frame, only_whether: bool = False) -> RemappedMap:
+        """Return the map and the held objects in a frame. only_whether : as for `remap`."""
+        if frame not in self._by_frame or (self._by_frame[frame].incomplete and not only_whether):
+            self._by_frame[frame] = self._found(frame, only_whether)
+        return self._by_frame[frame]
 
-    def _laid(self, frame: Frame, whether: bool) -> RemappedMap:
-        fallen_ = self._fallen(frame)
-        if fallen_ not in self._known or (self._known[fallen_][1].cut and not whether):
-            found = relaid(frame, self._frame, self._observations, self._loads.values(), whether=whether)
-            self._known[fallen_] = frame, found
-        first, under = self._known[fallen_]
-        if frame == first or under.cut:
+    def _found(self, frame: Frame, only_whether: bool) -> RemappedMap:
+        """Return the map of a frame, replayed or shifted from a frame with the same squares."""
+        key = self._key(frame)
+        if key not in self._known or (self._known[key][1].incomplete and not only_whether):
+            found = remap(frame, self._frame, self._observations, self._loads.values(), only_whether=only_whether)
+            self._known[key] = frame, found
+        first, under = self._known[key]
+        if frame == first or under.incomplete:
             return under
-        loads = {name: shifted(load, frame, first or self._frame) for name, load in under.loads.items()}
+        loads = {name: shift_object(load, frame, first or self._frame) for name, load in under.loads.items()}
         return under._replace(loads=loads)
 
-    def _fallen(self, frame: Frame) -> tuple[int, bytes]:
-        return frame.angle, fallen(frame, self._observations).tobytes()
+    def _key(self, frame: Frame) -> tuple[int, bytes]:
+        """Return what frames of the same map share: the orientation, and the squares of all observations."""
+        return frame.angle, observation_squares(frame, self._observations).tobytes()
 
 
-class Prefixes:
-    """The first looks laid on a lattice, each taken in once, of however many of them that is asked.
-
-    loads : as they lie on that lattice.
-    """
+class ReplayPrefixes:
+    """Replays of the first observations in one frame, for any number of them; each observation is integrated once."""
 
     def __init__(self, frame: Frame, observations: Sequence[Observation], loads: Mapping[str, HeldObject]) -> None:
+        """Begin with no observation. loads : all held objects in that frame, by name."""
         self._observations, self._loads = observations, loads
         self._known = {0: Replay(frame, frame)}
 
-    def of(self, number: int) -> Replay:
-        """The first `number` looks, to be copied."""
+    def first(self, number: int) -> Replay:
+        """Return the replay of the first `number` observations. Copy it before going on with it."""
         if number not in self._known:
-            near = max(n for n in self._known if n < number)
-            replay = self._known[near].copy()
-            for stop in (*range(near + 1 + EVERY - (near + 1) % EVERY, number, EVERY), number):
-                self._known[stop] = replay.go_on(self._observations, self._loads, stop).copy()
+            nearest = max(n for n in self._known if n < number)
+            replay = self._known[nearest].copy()
+            begin = nearest + 1 + REPLAY_INTERVAL - (nearest + 1) % REPLAY_INTERVAL
+            for stop in (*range(begin, number, REPLAY_INTERVAL), number):
+                self._known[stop] = replay.advance(self._observations, self._loads, stop).copy()
         return self._known[number]
 
 
-def shifted(load: HeldObject, new: Frame, old: Frame) -> HeldObject:
-    """Where a load is if Utak woke elsewhere in his square, and every look fell on the squares that it is believed to.
+def shift_object(load: HeldObject, new: Frame, old: Frame) -> HeldObject:
+    """Return a held object for another origin of the frame with which every observation falls on the same squares.
 
-    Then it was taken where it was believed to lie, but every turn since was about another point.
+    The object was first held where it was believed to lie, but every turn since was about another point.
     """
-    return _carried(load, load, laid(load, old), new)
+    return _moved_to(load, load, object_pose(load, old), new)
 
 
-def lain(load: HeldObject, was: PlacedObservation, frame: Frame) -> HeldObject:
-    """A load where it lay at some time, on the lattice that is believed."""
-    return _carried(load, load, was, frame)
+def object_at(load: HeldObject, pose: ObjectPose, frame: Frame) -> HeldObject:
+    """Return a held object where it lay at another time, map frame. frame : the believed one."""
+    return _moved_to(load, load, pose, frame)
 
 
-def _taken(load: HeldObject, new: Frame, old: Frame, occupancy: OccupancyMap) -> HeldObject:
-    """A load as it lay when it was first held, on the new lattice, of which so much was seen then."""
+def _first_held(load: HeldObject, new: Frame, old: Frame, occupancy: OccupancyMap) -> HeldObject:
+    """Return an object as it lay when it was first held, in the new frame. occupancy : the map at that time."""
     skew = new.angle - old.angle
     askew = 90 * round(skew / 90) - skew
-    middle = new.place_from_utak(*_middle(load.first, old))
-    first, skewed = _put(load.first, skew, middle), load.skewed or abs(askew) > ASKEW
+    middle = new.place_from_utak(*_centroid(load.first, old))
+    first, skewed = _placed(load.first, skew, middle), load.skewed or abs(askew) > MAX_FRAME_SKEW
     straight = is_whole(load.first)
-    seen = None if straight and abs(askew) <= ASKEW else _outline(covered(first), occupancy)
+    seen = None if straight and abs(askew) <= MAX_FRAME_SKEW else _fitted_outline(covered(first), occupancy)
     if seen is not None:
         first, skewed = seen, False
     elif straight:
@@ -226,32 +251,33 @@ def _taken(load: HeldObject, new: Frame, old: Frame, occupancy: OccupancyMap) ->
 
 
 def _straightened(polygon: Any, occupancy: OccupancyMap) -> Any:
-    """A thing with sides along the lattice, on corners of it: where what was seen speaks least against that."""
+    """Return an outline with its corners on grid corners, shifted to where the map contradicts it least."""
     x0, y0 = polygon.bounds[:2]
     nearest = Translate(round(x0) - x0, round(y0) - y0).carry(polygon)
-    lying = [whole(shapely.transform(nearest, lambda points, s=step: points + np.array(s))) for step in STEPS]
-    return min(lying, key=lambda other: _unlike(other, occupancy))
+    lying = [whole(shapely.transform(nearest, lambda points, s=step: points + np.array(s))) for step in CORNER_STEPS]
+    return min(lying, key=lambda other: _count_disagreements(other, occupancy))
 
 
-def _outline(patch: Patch, occupancy: OccupancyMap) -> Any:
-    """The outline of what was seen where a thing is said to lie, if nearly all of it was told by then; None else."""
-    own = np.pad(patch.mask, REACH)
-    state = occupancy.window(patch.west - REACH, patch.south - REACH, own.shape)
+def _fitted_outline(patch: Patch, occupancy: OccupancyMap) -> Any:
+    """Return the outline fitted to what was seen about a patch; None when too much of it is open."""
+    own = np.pad(patch.mask, OUTLINE_MARGIN)
+    state = occupancy.window(patch.west - OUTLINE_MARGIN, patch.south - OUTLINE_MARGIN, own.shape)
     labels = components(state != FREE).labels
     met = np.bincount(labels[own & (labels > 0)], minlength=1)
     part = labels == met.argmax()
     full, possible = part & (state == FULL), part & (state == OPEN)
     inside = part[1:-1, 1:-1].sum() == part.sum()
-    if not met.any() or not inside or possible.sum() > UNTOLD * full.sum():
+    if not met.any() or not inside or possible.sum() > MAX_OPEN_SHARE * full.sum():
         return None
     best = fit_shapes(full, possible)[0]
     if best.misfit:
         return None
-    return shapely.transform(best.polygon, lambda points: points + np.array([patch.west - REACH, patch.south - REACH]))
+    corner = np.array([patch.west - OUTLINE_MARGIN, patch.south - OUTLINE_MARGIN])
+    return shapely.transform(best.polygon, lambda points: points + corner)
 
 
-def _unlike(polygon: Any, occupancy: OccupancyMap) -> int:
-    """How many squares speak against a thing where it is said to lie: free ones under it, occupied ones beside it."""
+def _count_disagreements(polygon: Any, occupancy: OccupancyMap) -> int:
+    """Return how many squares disagree with an outline: free ones under it, occupied ones right beside it."""
     patch = covered(polygon)
     own = np.pad(patch.mask, 1)
     about = edged(own)
@@ -259,23 +285,23 @@ def _unlike(polygon: Any, occupancy: OccupancyMap) -> int:
     return int(((state == FREE) & own).sum() + ((state == FULL) & about & ~own).sum())
 
 
-def _carried(taken: HeldObject, load: HeldObject, was: PlacedObservation, new: Frame) -> HeldObject:
-    """A load where it lay at some time, carried there from where it was taken. taken : on the new lattice."""
-    began = np.array([_middle(taken.first, new)]) - was.taken
-    aside = Rotate(was.degrees, (0.0, 0.0)).points(began)[0]
-    middle = new.place_from_utak(was.middle[0] + float(aside[0]), was.middle[1] + float(aside[1]))
-    lying = load.lying(_put(taken.first, was.degrees, middle), was.slack)
+def _moved_to(taken: HeldObject, load: HeldObject, pose: ObjectPose, new: Frame) -> HeldObject:
+    """Return an object at a pose. taken : as it lay when it was first held, new frame. load : what is known of it."""
+    began = np.array([_centroid(taken.first, new)]) - pose.taken
+    aside = Rotate(pose.degrees, (0.0, 0.0)).points(began)[0]
+    middle = new.place_from_utak(pose.middle[0] + float(aside[0]), pose.middle[1] + float(aside[1]))
+    lying = load.lying(_placed(taken.first, pose.degrees, middle), pose.slack)
     return replace(lying, first=taken.first, skewed=taken.skewed, insets=taken.insets)
 
 
-def _put(polygon: Any, degrees: float, middle: tuple[float, float]) -> Any:
-    """A polygon turned by so many degrees, its middle brought to a point."""
+def _placed(polygon: Any, degrees: float, middle: Position) -> Any:
+    """Return a polygon turned by `degrees`, with its centroid at `middle`."""
     centre = polygon.centroid
     turned = Rotate(degrees, (centre.x, centre.y)).carry(polygon)
     return Translate(middle[0] - centre.x, middle[1] - centre.y).carry(turned)
 
 
-def _middle(polygon: Any, frame: Frame) -> tuple[float, float]:
-    """The middle of a polygon of the lattice, in Utak's own frame."""
+def _centroid(polygon: Any, frame: Frame) -> Position:
+    """Return the centroid of a polygon of the map frame, in Utak's own frame."""
     centre = polygon.centroid
     return frame.place_to_utak(centre.x, centre.y)

@@ -1,9 +1,9 @@
-"""Where a motion may have ended that did not end where it should.
+"""Walk outcomes: where a straight motion may have ended otherwise than commanded.
 
-Utak is a point, so what stands on the lattice stops him on a line between two squares. On the lattice that he believes
-in he rarely runs against anything, for he moves over squares that he believes free; while he believes in a wrong one
-he does, and then neither of the two is explained without the other. What the first look afterwards leaves open a later
-one may tell: so motions are remembered, and told again when looks contradict each other.
+Utak is a point, so a contact stops it on a grid line. In the believed frame contacts are rare, for motions lead over
+squares that are believed free. In a wrong frame they are common, and neither the contact nor the frame is explained
+without the other. What the first observation after a motion leaves open a later one may tell. So motions are
+remembered, and re-estimated when observations contradict each other.
 """
 
 import itertools
@@ -17,154 +17,184 @@ from numpy.typing import NDArray
 
 from geometry.motion.se2 import Translate
 from kb.localisation.hypotheses.frames import (
-    MEMORY,
+    MAX_CHECKED_OBSERVATIONS,
     FrameHypothesis,
+    ObjectPose,
     Observation,
-    OriginDisc,
-    PlacedObservation,
-    clashing,
-    fallen,
-    squares_of,
-    stacked,
+    Position,
+    UnsettledDisc,
+    count_contradictions_at,
+    observation_squares,
+    place_squares,
+    stack_ranges,
 )
-from kb.localisation.hypotheses.remap import Prefixes, RemappedMap, Replay, relaid
+from kb.localisation.hypotheses.remap import RemappedMap, Replay, ReplayPrefixes, remap
 from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
 from kb.objects.held_object import HeldObject, Square
 from kb.perception.frame import Frame
 
-Place = tuple[float, float]
-MOST = 90  # hypotheses on which a motion is told again: as many as there are angles
-FEW = 3  # looks, about, that are compared before all: mostly these contradict each other already
-NEAR = 2  # squares about the predicted place in which Utak is looked for first
-HAIR = 1e-6  # squares from a line between two squares to what counts as beside it
+MAX_REESTIMATED_HYPOTHESES = 90  # hypotheses in which one motion is re-estimated: as many as there are orientations
+QUICK_CHECK_OBSERVATIONS = 3  # observations, about, that are compared before all: most contradictions show there
+MAX_WALK_SLIP = 2  # squares from the predicted end within which a slipped walk is looked for; tuned
+LINE_DISTANCE = 1e-6  # squares from a grid line to a place right beside it; the physics stops motions within 1e-6
 
 
 class Crossing(NamedTuple):
-    """Where a motion crosses a line between two squares, and the square that it enters there.
+    """A crossing of a grid line by a motion, and the square that is entered there, map frame.
 
-    before, after : a hair this side of the line and beyond it. Who is stopped there looks from either square: from the
-    one further north and east on the table, and how the table is turned he does not know.
+    A motion that is blocked there ends on the line, and the observation is made from the square further north and east
+    on the table. How the table is turned is unknown, so it may be either side.
+
+    Attributes
+    ----------
+    before : the place LINE_DISTANCE this side of the line.
+    after : the place LINE_DISTANCE beyond it.
+    entered : the square beyond.
     """
 
-    before: Place
-    after: Place
-    entered: tuple[int, int]
+    before: Position
+    after: Position
+    entered: Square
 
 
 class MotionHypothesis(NamedTuple):
-    """A straight motion as it was commanded.
+    """A straight motion as it was commanded, and where else it may have ended.
 
-    number : of the look that followed. shift : east and north, of Utak's own frame. hypotheses : how the lattice might
-    lie before that look. stopped : is it believed to have been stopped? load : the name of what was in hand, if any.
-    doubts : where else it may have ended by the look after it, in his own frame, each with how likely that is.
+    Attributes
+    ----------
+    number : of the observation after it.
+    shift : the commanded motion, (east, north) in squares, Utak's own frame.
+    hypotheses : the frame hypotheses before that observation.
+    blocked : whether it is believed to have been blocked.
+    load : the name of the object in hand; None when there was none.
+    alternative_ends : other ends that agree with that observation, Utak's own frame, each with its probability.
     """
 
     number: int
-    shift: Place
+    shift: Position
     hypotheses: tuple[FrameHypothesis, ...]
-    stopped: bool = False
+    blocked: bool = False
     load: str | None = None
-    doubts: tuple[tuple[Place, float], ...] = ()
+    alternative_ends: tuple[tuple[Position, float], ...] = ()
 
-    def likely(self, least: float) -> list[Place]:
-        """Where else it ended with a greater chance than that, by the look after it."""
-        return [there for there, chance in self.doubts if chance > least]
+    def likely_ends(self, min_chance: float) -> list[Position]:
+        """Return the other ends of a probability above `min_chance`, Utak's own frame."""
+        return [there for there, chance in self.alternative_ends if chance > min_chance]
 
-    def doubt(self, place: Place) -> float | None:
-        """How likely it ended at a place, of his own frame, by the look after it; None when that was not thought of."""
-        near = (chance for there, chance in self.doubts if math.dist(there, place) < 4 * HAIR)
+    def chance_of_end(self, place: Position) -> float | None:
+        """Return the probability of an end at `place`, Utak's own frame; None when it is no known other end."""
+        near = (chance for there, chance in self.alternative_ends if math.dist(there, place) < 4 * LINE_DISTANCE)
         return max(near, default=None)
 
 
 class WalkCorrection(NamedTuple):
-    """That all looks from one on were received elsewhere than is believed, and what lay elsewhere by that.
+    """A shift of all observations from one on, and of the objects that were seen or moved from there.
 
-    since : the number of that look. shift : east and north of where it is believed to have been received, in Utak's own
-    frame. seen : the names of things that were first held since, each with how far it lies, and lay when it was first
-    held, from where it is believed to. hauled : the name of the thing that he had in hand on the motion before.
+    Attributes
+    ----------
+    since : the number of the first observation that is shifted.
+    shift : from the believed place to the corrected one, (east, north) in squares, Utak's own frame.
+    seen : objects that were first held since, by name, each with the shift of where it lies and lay, same frame.
+    hauled : the name of the object in hand on the motion that is corrected; None when there was none.
     """
 
     since: int
-    shift: Place
-    seen: tuple[tuple[str, Place], ...] = ()
+    shift: Position
+    seen: tuple[tuple[str, Position], ...] = ()
     hauled: str | None = None
 
-    def place(self, place: Place) -> Place:
-        """A place of his own frame where he is believed to have been since."""
-        return plus(place, self.shift)
+    def place(self, place: Position) -> Position:
+        """Return a place since the motion as corrected, Utak's own frame."""
+        return add(place, self.shift)
 
     def observations(self, observations: Sequence[Observation]) -> list[Observation]:
-        """All looks, where they were received."""
+        """Return all observations, with corrected places."""
         since = [
-            observation._replace(place=self.place(observation.place), moved=tuple(map(self._lain, observation.moved)))
+            observation._replace(place=self.place(observation.place), moved=tuple(map(self._pose, observation.moved)))
             for observation in observations[self.since :]
         ]
         return [*observations[: self.since], *since]
 
     def loads(self, loads: Mapping[str, HeldObject], frame: Frame) -> dict[str, HeldObject]:
-        """What was moved, where it lies and lay. lattice : on which it is believed to."""
+        """Return all held objects where they lie and lay as corrected. frame : the map frame of `loads`."""
         return {name: self._load(load, frame) for name, load in loads.items()}
 
-    def _lain(self, was: PlacedObservation) -> PlacedObservation:
-        aside = self._aside(was.name)
-        if was.name != self.hauled:
-            was = was._replace(taken=plus(was.taken, aside))
-        return was._replace(middle=plus(was.middle, aside))
+    def _pose(self, pose: ObjectPose) -> ObjectPose:
+        """Return the corrected pose of an object at an observation since the motion."""
+        aside = self._aside(pose.name)
+        if pose.name != self.hauled:
+            pose = pose._replace(taken=add(pose.taken, aside))
+        return pose._replace(middle=add(pose.middle, aside))
 
     def _load(self, load: HeldObject, frame: Frame) -> HeldObject:
+        """Return an object where it lies as corrected."""
         aside = Translate(*frame.to_lattice(*self._aside(load.name)))
         if not any(aside):
             return load
         first = load.first if load.name == self.hauled else aside.carry(load.first)
         return replace(load.lying(aside.carry(load.polygon), load.slack), first=first)
 
-    def _aside(self, name: str) -> Place:
-        """How far a thing lies from where it is believed to, in his own frame."""
+    def _aside(self, name: str) -> Position:
+        """Return the shift of an object, Utak's own frame."""
         return self.shift if name == self.hauled else dict(self.seen).get(name, (0.0, 0.0))
 
 
 class ReestimatedWalk(NamedTuple):
-    """That the lattice lies as a hypothesis says, and a motion had been stopped where it is not believed to have been.
+    """A re-estimated motion: a frame, and the correction of an earlier motion with which observations agree.
 
-    correction : of the looks since. known : does something stand there that stopped him? misfits : fields that
-    contradict it, of all looks. newest : where the newest look was received then, in his own frame.
+    Attributes
+    ----------
+    hypothesis : of the frame.
+    correction : of all observations since that motion.
+    contact_known : whether something known stands where the motion was blocked then.
+    residual : fields that contradict it, over all observations.
+    newest : where the newest observation was made then, Utak's own frame.
     """
 
     hypothesis: FrameHypothesis
     correction: WalkCorrection
-    known: bool
-    misfits: int
-    newest: Place = (0.0, 0.0)
+    contact_known: bool
+    residual: int
+    newest: Position = (0.0, 0.0)
 
 
-def ends(start: Place, shift: Place) -> tuple[Place, ...]:
-    """Places at which a motion may have been stopped, the last first: beside lines between squares; where it began."""
-    lines = reversed(crossings(start, shift))
+# -- places at and beside grid lines ---------------------------------------------------------------
+
+
+def blocked_ends(start: Position, shift: Position) -> tuple[Position, ...]:
+    """Return where a motion may have been blocked, map frame: both sides of each grid line, the last first.
+
+    The start is the last of them. There are none for a motion of length 0.
+    """
+    lines = reversed(line_crossings(start, shift))
     found = [place for crossing in lines for place in (crossing.after, crossing.before)]
     return (*found, start) if any(shift) else ()
 
 
-def around(place: Place) -> tuple[Place, ...]:
-    """The places within NEAR squares of a place, by distance; the place itself is not among them."""
-    reach = range(-NEAR, NEAR + 1)
+def slipped_ends(place: Position) -> tuple[Position, ...]:
+    """Return the places whole squares away from `place`, up to MAX_WALK_SLIP in each axis, the nearest first."""
+    reach = range(-MAX_WALK_SLIP, MAX_WALK_SLIP + 1)
     offsets = sorted((i * i + j * j, i, j) for i in reach for j in reach if i or j)
     return tuple((place[0] + i, place[1] + j) for _, i, j in offsets)
 
 
-def crossings(start: Place, shift: Place) -> tuple[Crossing, ...]:
-    """Where a motion crosses the lines between squares, in this order.
+def line_crossings(start: Position, shift: Position) -> tuple[Crossing, ...]:
+    """Return where a motion crosses grid lines, in order, map frame.
 
-    Through a corner of squares it enters those beside it first, one after the other, and then the one beyond.
+    Through a corner of squares the motion enters the two squares beside it first, one after the other, and then the one
+    beyond.
     """
     found: list[tuple[float, int, Crossing]] = []
-    signs = [math.copysign(HAIR, v) for v in shift]
+    signs = [math.copysign(LINE_DISTANCE, v) for v in shift]
     for axis in (0, 1):
         low, high = sorted((start[axis], start[axis] + shift[axis]))
         for line in range(math.floor(low) + 1, math.ceil(high)):
             part = (line - start[axis]) / shift[axis]
             across = start[1 - axis] + shift[1 - axis] * part
             other, when = round(across), round(part, 9)
-            if shift[1 - axis] and abs(across - other) < HAIR:  # at a corner: still this side of the other line
+            if (
+                shift[1 - axis] and abs(across - other) < LINE_DISTANCE
+            ):  # at a corner: still this side of the other line
                 across = other - signs[1 - axis]
                 if axis == 1:
                     found.append((when, 2, _crossing(line, other + signs[0], axis, signs[1])))
@@ -172,203 +202,243 @@ def crossings(start: Place, shift: Place) -> tuple[Crossing, ...]:
     return tuple(crossing for *_, crossing in sorted(found))
 
 
-def on_line(place: Place) -> Place:
-    """Where he stands who looks from beside a line: on it, for something stopped him there."""
-    x, y = (float(round(v)) if abs(v - round(v)) <= 2 * HAIR else v for v in place)
+def on_line(place: Position) -> Position:
+    """Return `place` with each coordinate within 2e-6 squares of a grid line moved onto it, map frame.
+
+    A contact stopped the motion there, so the robot is on the line.
+    """
+    x, y = (float(round(v)) if abs(v - round(v)) <= 2 * LINE_DISTANCE else v for v in place)
     return x, y
 
 
-def amid(place: Place) -> Place:
-    """The place itself, but right amid a square where it is not a hair from that: there he came from a line."""
-    x, y = (math.floor(v) + 0.5 if abs(v - math.floor(v) - 0.5) <= 2 * HAIR else v for v in place)
+def snap_to_middle(place: Position) -> Position:
+    """Return `place` with each coordinate within 2e-6 squares of the middle of a square moved onto it, map frame.
+
+    Motions from beside a grid line to the middle of a square end that near to it.
+    """
+    x, y = (math.floor(v) + 0.5 if abs(v - math.floor(v) - 0.5) <= 2 * LINE_DISTANCE else v for v in place)
     return x, y
 
 
-def views(place: Place) -> tuple[Place, ...]:
-    """The places from which he may look who stands somewhere: either side of a line, all four squares of a corner."""
-    columns, rows = ((v,) if abs(v - round(v)) > 2 * HAIR else (round(v) - HAIR, round(v) + HAIR) for v in place)
+def observation_places(place: Position) -> tuple[Position, ...]:
+    """Return the places from which the observation at `place` may be made, one for each square that it touches.
+
+    Within 2e-6 squares of a grid line those are both sides of the line, at a grid corner all four squares; else it is
+    `place` alone. Map frame.
+    """
+    columns, rows = (
+        (v,) if abs(v - round(v)) > 2 * LINE_DISTANCE else (round(v) - LINE_DISTANCE, round(v) + LINE_DISTANCE)
+        for v in place
+    )
     return tuple((x, y) for x in columns for y in rows)
 
 
-def _seen_from(place: Place, frame: Frame) -> list[Place]:
-    """The places of his own frame from which he may look who stands at one of them."""
-    return [frame.place_to_utak(*view) for view in views(frame.place_from_utak(*place))]
-
-
-def _crossing(line: int, across: float, axis: int, hair: float) -> Crossing:
-    """Where a motion crosses a line of one axis, at a place along it. hair : a little further on its way."""
-    before, after = ((at, across) if axis == 0 else (across, at) for at in (line - hair, line + hair))
-    return Crossing(before, after, (math.floor(after[0]), math.floor(after[1])))
-
-
-def next_square(place: Place, towards: Place) -> tuple[int, int]:
-    """The square that a motion towards a point was about to enter when it was stopped."""
+def entered_square(place: Position, towards: Position) -> Square:
+    """Return the square that a motion from `place` towards a point was about to enter, map frame."""
     away = math.dist(place, towards) or 1.0
     ahead = [a + (b - a) / away for a, b in zip(place, towards, strict=True)]
     return math.floor(ahead[0]), math.floor(ahead[1])
 
 
-def retold(
+def add(place: Position, shift: Position) -> Position:
+    """Return the sum of a place and a shift of the same frame."""
+    return place[0] + shift[0], place[1] + shift[1]
+
+
+def _own_observation_places(place: Position, frame: Frame) -> list[Position]:
+    """Return `observation_places` for a place of Utak's own frame, in that frame."""
+    return [frame.place_to_utak(*view) for view in observation_places(frame.place_from_utak(*place))]
+
+
+def _crossing(line: int, across: float, axis: int, onward: float) -> Crossing:
+    """Return the crossing of a line of one axis, at a place along it. onward : LINE_DISTANCE with the motion's sign."""
+    before, after = ((at, across) if axis == 0 else (across, at) for at in (line - onward, line + onward))
+    return Crossing(before, after, (math.floor(after[0]), math.floor(after[1])))
+
+
+# -- re-estimation of walks ------------------------------------------------------------------------
+
+
+def reestimate_walk(
     motion: MotionHypothesis,
-    held: Frame,
+    believed: Frame,
     observations: Sequence[Observation],
-    laid: Callable[[Frame], Prefixes] | None = None,
+    prefixes: Callable[[Frame], ReplayPrefixes] | None = None,
 ) -> Iterator[ReestimatedWalk]:
-    """What else may have come of a motion, and how the lattice lies then, so that no look contradicts another.
+    """Yield other ends of a motion, each with the frame in which no observation contradicts another.
 
-    held : the lattice that is believed. looks : all, where they are believed to have been received, the newest where it
-    was commanded. laid : the first of them on a lattice. What is believed already is not among it, nor that the newest
-    motion was stopped by what is not known, on the lattice held.
+    Until it was blocked the motion entered no occupied square, and it was blocked before no free one. Where a contact
+    with something known is possible, contacts with open squares are left out. Not yielded: what is believed already,
+    and a contact of the newest motion with something unknown in the believed frame.
 
-    Until he was stopped he came over no square that is occupied, and into none that is free; rather before one that is
-    occupied than before one of which it is open.
+    Parameters
+    ----------
+    motion : a motion with an empty hand, with the frame hypotheses to try.
+    believed : the believed frame.
+    observations : all, at their believed places; the newest where it was commanded.
+    prefixes : returns the replays of the first observations in a frame; made anew for each frame when None.
     """
     newest = motion.number == len(observations) - 1
-    for hypothesis in _likeliest(motion.hypotheses):
-        begun = Prefixes(hypothesis.frame, observations, {}) if laid is None else laid(hypothesis.frame)
-        found = list(_otherwise(motion, hypothesis, observations, begun))
-        surest = any(one.known for one in found)
-        if surest or not (newest and hypothesis.frame == held):
-            yield from (one for one in found if one.known == surest)
+    for hypothesis in _likeliest_hypotheses(motion.hypotheses):
+        frame = hypothesis.frame
+        begun = ReplayPrefixes(frame, observations, {}) if prefixes is None else prefixes(frame)
+        found = list(_other_ends(motion, hypothesis, observations, begun))
+        surest = any(one.contact_known for one in found)
+        if surest or not (newest and hypothesis.frame == believed):
+            yield from (one for one in found if one.contact_known == surest)
 
 
-def _likeliest(hypotheses: tuple[FrameHypothesis, ...]) -> tuple[FrameHypothesis, ...]:
-    """Of hypotheses the MOST that are the least dear, in their order."""
-    if len(hypotheses) <= MOST:
+def _likeliest_hypotheses(hypotheses: tuple[FrameHypothesis, ...]) -> tuple[FrameHypothesis, ...]:
+    """Return the MAX_REESTIMATED_HYPOTHESES of the least prior cost, in their order."""
+    if len(hypotheses) <= MAX_REESTIMATED_HYPOTHESES:
         return hypotheses
-    likely = sorted(range(len(hypotheses)), key=lambda number: hypotheses[number].dear)[:MOST]
-    return tuple(hypotheses[number] for number in sorted(likely))
+    numbers = sorted(range(len(hypotheses)), key=lambda number: hypotheses[number].prior_cost)
+    return tuple(hypotheses[number] for number in sorted(numbers[:MAX_REESTIMATED_HYPOTHESES]))
 
 
-def _otherwise(
-    motion: MotionHypothesis, hypothesis: FrameHypothesis, observations: Sequence[Observation], begun: Prefixes
+def _other_ends(
+    motion: MotionHypothesis,
+    hypothesis: FrameHypothesis,
+    observations: Sequence[Observation],
+    begun: ReplayPrefixes,
 ) -> Iterator[ReestimatedWalk]:
-    """What else may have come of one motion on one lattice."""
+    """Yield the other ends of one motion in one frame. begun : the replays of the first observations in that frame."""
     frame, number = hypothesis.frame, motion.number
-    believed, walk = observations[number].place, Walk(motion, frame, observations)
+    believed, walk = observations[number].place, WalkInFrame(motion, frame, observations)
     judged: dict[bytes, RemappedMap | None] = {}
-    ranges, places = stacked(observations), np.array([observation.place for observation in observations])
+    ranges, places = stack_ranges(observations), np.array([observation.place for observation in observations])
     for end in walk.ends:
         shift = end.place[0] - believed[0], end.place[1] - believed[1]
-        if math.hypot(*shift) < HAIR:  # as is believed
+        if math.hypot(*shift) < LINE_DISTANCE:  # as believed
             continue
         correction = WalkCorrection(number, shift)
         newest = correction.place(observations[-1].place)
         there = places.copy()
         there[number:] += shift
-        for place in _seen_from(newest, frame) if number < len(observations) - 1 else [newest]:
+        for place in _own_observation_places(newest, frame) if number < len(observations) - 1 else [newest]:
             there[-1] = place
-            squares = squares_of(frame, there)
+            squares = place_squares(frame, there)
             key = squares.tobytes()
             if key not in judged:
                 judged[key] = None
-                if _agree(frame, squares, ranges):
+                if _are_consistent(frame, squares, ranges):
                     *before, last = correction.observations(observations)
-                    judged[key] = relaid(frame, frame, [*before, last._replace(place=place)], (), begun.of(number))
+                    judged[key] = remap(frame, frame, [*before, last._replace(place=place)], (), begun.first(number))
             under = judged[key]
-            if under is not None and (ahead := walk.ahead(end, under.occupancy)) != FREE:
-                yield ReestimatedWalk(hypothesis, correction, ahead == FULL, under.misfits, place)
+            if under is not None and (ahead := walk.state_ahead(end, under.occupancy)) != FREE:
+                yield ReestimatedWalk(hypothesis, correction, ahead == FULL, under.residual, place)
 
 
-def retold_both(
+def reestimate_two_walks(
     motion: MotionHypothesis, newest: MotionHypothesis, hypothesis: FrameHypothesis, observations: Sequence[Observation]
 ) -> Iterator[ReestimatedWalk]:
-    """That both an earlier motion and the newest were stopped by what is known, so that no look contradicts another.
+    """Yield ends of an earlier motion and of the newest one, both blocked by something known, without contradictions.
 
-    looks : as for `retold`. Who goes on against what stopped him does not move at all.
+    A motion that goes on against what blocked the one before it does not move at all.
+
+    hypothesis : of the frame. observations : as for `reestimate_walk`.
     """
     frame, before, believed = hypothesis.frame, observations[:-1], observations[motion.number].place
-    walk = Walk(motion, frame, observations)
+    walk = WalkInFrame(motion, frame, observations)
     against = sum(a * b for a, b in zip(motion.shift, newest.shift, strict=True)) > 0
     for end in walk.ends[:-1]:
         correction = WalkCorrection(motion.number, (end.place[0] - believed[0], end.place[1] - believed[1]))
         there = correction.observations(before)
-        so_far = agreed(frame, there, recent=MEMORY, whether=False)
-        if so_far is None or walk.ahead(end, so_far.occupancy) == FREE:
+        so_far = remap_if_consistent(frame, there, recent=MAX_CHECKED_OBSERVATIONS, only_whether=False)
+        if so_far is None or walk.state_ahead(end, so_far.occupancy) == FREE:
             continue
-        onward = Walk(newest, frame, [*there, observations[-1]])
-        still = [End(there[-1].place, 0)] * (against and motion.number == newest.number - 1)
+        onward = WalkInFrame(newest, frame, [*there, observations[-1]])
+        still = [WalkEnd(there[-1].place, 0)] * (against and motion.number == newest.number - 1)
         for halt in (*still, *onward.ends[:-1]):
-            under = agreed(frame, [*there, observations[-1]._replace(place=halt.place)])
-            if under is None or under.misfits or walk.ahead(end, under.occupancy) != FULL:
+            under = remap_if_consistent(frame, [*there, observations[-1]._replace(place=halt.place)])
+            if under is None or under.residual or walk.state_ahead(end, under.occupancy) != FULL:
                 continue
-            if halt in still or onward.ahead(halt, under.occupancy) == FULL:
+            if halt in still or onward.state_ahead(halt, under.occupancy) == FULL:
                 yield ReestimatedWalk(hypothesis, correction, True, 0, halt.place)
 
 
-def agreed(
+def remap_if_consistent(
     frame: Frame,
     observations: Sequence[Observation],
     loads: Iterable[HeldObject] = (),
-    unsettled: Sequence[OriginDisc] = (),
-    recent: int = MEMORY + 1,
+    unsettled: Sequence[UnsettledDisc] = (),
+    recent: int = MAX_CHECKED_OBSERVATIONS + 1,
     begun: Replay | None = None,
-    whether: bool = True,
+    only_whether: bool = True,
 ) -> RemappedMap | None:
-    """What all looks say on the lattice on which the loads lie; None when two of the last contradict each other.
+    """Return the map of all observations in a frame; None when two of the last observations contradict each other.
 
-    unsettled : where looks need not agree. recent : how many of them are compared. begun : the first, taken in already.
-    whether : as for kb.localisation.hypotheses.remap.relaid.
+    loads : all held objects, in that frame. unsettled : where observations need not agree. recent : how many of the
+    last observations are compared. begun, only_whether : as for kb.localisation.hypotheses.remap.remap.
     """
-    if not _agree(frame, fallen(frame, observations), stacked(observations), unsettled, recent):
+    squares = observation_squares(frame, observations)
+    if not _are_consistent(frame, squares, stack_ranges(observations), unsettled, recent):
         return None
-    return relaid(frame, frame, observations, loads, begun, whether)
+    return remap(frame, frame, observations, loads, begun, only_whether)
 
 
-def _agree(
+def _are_consistent(
     frame: Frame,
     squares: NDArray[np.int64],
     ranges: NDArray[np.int16],
-    unsettled: Sequence[OriginDisc] = (),
-    recent: int = MEMORY + 1,
+    unsettled: Sequence[UnsettledDisc] = (),
+    recent: int = MAX_CHECKED_OBSERVATIONS + 1,
 ) -> bool:
-    """Does none of the last looks contradict another? squares, ranges : of all looks, as for
-    kb.localisation.hypotheses.frames.clashing.
-    """
+    """Return whether none of the last observations contradicts another; parameters as of `count_contradictions_at`."""
     squares, ranges = squares[-recent:], ranges[-recent:]
-    apart = len(squares) // FEW
-    if apart > 1 and clashing(frame, squares[::-apart], ranges[::-apart], unsettled):  # the newest one among them
+    apart = len(squares) // QUICK_CHECK_OBSERVATIONS
+    if apart > 1 and count_contradictions_at(frame, squares[::-apart], ranges[::-apart], unsettled):  # with the newest
         return False
-    return not clashing(frame, squares, ranges, unsettled)
+    return not count_contradictions_at(frame, squares, ranges, unsettled)
 
 
-class End(NamedTuple):
-    """Where a motion may have ended: a place of Utak's own frame, and how much of the motion was gone."""
+class WalkEnd(NamedTuple):
+    """A possible end of a motion.
 
-    place: Place
-    gone: float
+    Attributes
+    ----------
+    place : Utak's own frame.
+    progress : how far the motion had come: the number of grid lines crossed before it, or, with an object in hand, the
+        part of the motion, 0 to 1.
+    """
+
+    place: Position
+    progress: float
 
 
-class Walk:
-    """A motion without anything in hand, on a lattice. looks : all, where they are believed to have been received.
+class WalkInFrame:
+    """A motion with an empty hand, in a frame.
 
-    ends : where he may have been stopped, in the order of the way, and its end; gone counts the crossings before it.
+    Attributes
+    ----------
+    ends : where it may have been blocked, in the order of the way, and last its commanded end.
     """
 
     def __init__(self, motion: MotionHypothesis, frame: Frame, observations: Sequence[Observation]) -> None:
+        """Find the ends of a motion. observations : all, at their believed places."""
         x, y = observations[motion.number - 1].place
-        self._met = met = crossings(frame.place_from_utak(x, y), frame.to_lattice(*motion.shift))
-        halts = [End(frame.place_to_utak(*place), at) for at in range(len(met)) for place in views(met[at].before)]
-        self.ends = (*halts, End((x + motion.shift[0], y + motion.shift[1]), len(met)))
+        self._met = met = line_crossings(frame.place_from_utak(x, y), frame.to_lattice(*motion.shift))
+        halts = [
+            WalkEnd(frame.place_to_utak(*place), at)
+            for at in range(len(met))
+            for place in observation_places(met[at].before)
+        ]
+        self.ends = (*halts, WalkEnd((x + motion.shift[0], y + motion.shift[1]), len(met)))
 
-    def ahead(self, end: End, occupancy: OccupancyMap, things: Set[Square] = frozenset()) -> int:
-        """What stands where he would have been stopped; FREE, too, where something would have stopped him before.
+    def state_ahead(self, end: WalkEnd, occupancy: OccupancyMap, things: Set[Square] = frozenset()) -> int:
+        """Return the state of the square that blocked the motion at `end`; FREE if one before it was occupied.
 
-        things : squares on which something stood then that was moved since.
+        things : squares that were occupied then by objects moved since.
         """
-        at = int(end.gone)
+        at = int(end.progress)
         entered = [crossing.entered for crossing in self._met[: at + 1]]
-        states = (FULL if square in things else _state(occupancy, square) for square in entered)
+        states = (FULL if square in things else _square_state(occupancy, square) for square in entered)
         if FULL in itertools.islice(states, at):
             return FREE
         return next(states, OPEN)
 
 
-def plus(place: Place, shift: Place) -> Place:
-    """A place so much further east and north."""
-    return place[0] + shift[0], place[1] + shift[1]
-
-
-def _state(occupancy: OccupancyMap, square: tuple[int, int]) -> int:
+def _square_state(occupancy: OccupancyMap, square: Square) -> int:
+    """Return the state of a square of the map."""
     row, column = occupancy.index(*square)
     return int(occupancy.state[row, column])

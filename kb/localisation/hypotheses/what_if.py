@@ -1,8 +1,8 @@
-"""Supposing that the lattice lies otherwise, when a look contradicts what is believed and things have been moved.
+"""What-if evaluation: what contradicts another frame, once objects have been moved.
 
-Then looks do not agree where things came from and went to. So each lattice that may be is held against all looks, with
-the things laid on it anew. Which are tried is for kb.localisation.propose.frame and
-kb.localisation.propose.origin_from_turns.
+Observations do not agree where objects came from and went to. So each frame in question is compared with all
+observations, with the objects remapped to it. kb.localisation.propose.frame and
+kb.localisation.propose.origin_from_turns say which frames are evaluated.
 """
 
 import math
@@ -13,52 +13,79 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from geometry.motion.se2 import Motion, Rotate, Translate
 from kb.body import Command, Move, Push, Turn
-from kb.localisation.hypotheses.carry_outcomes import STRIDE, Outcome, arrested, otherwise, predicted
+from kb.localisation.hypotheses.carry_outcomes import (
+    END_SPACING,
+    CarryOutcome,
+    blocked_by_known,
+    other_outcomes,
+    predicted_outcome,
+)
 from kb.localisation.hypotheses.contacts import Obstructions
-from kb.localisation.hypotheses.frames import FrameHypothesis, Observation, OriginDisc, cells, search
-from kb.localisation.hypotheses.remap import Prefixes, RemapCache, RemappedMap
+from kb.localisation.hypotheses.frames import (
+    FieldRanges,
+    FrameHypothesis,
+    Observation,
+    Position,
+    UnsettledDisc,
+    consistent_hypotheses,
+    grid_cell_size,
+)
+from kb.localisation.hypotheses.remap import RemapCache, RemappedMap, ReplayPrefixes
 from kb.mapping.completions import Completions
 from kb.mapping.occupancy import OccupancyMap
 from kb.objects.held_object import HeldObject, discounted
 from kb.perception.frame import Frame
 
-Place = tuple[float, float]
-Ranges = NDArray[np.int16]
-RECENT = 24  # looks by which lattices are judged
-BESIDE = 1.5  # squares about a thing that was moved in which looks need not agree
+MAX_JUDGING_OBSERVATIONS = 24  # last observations by which frames are judged once objects were moved; tuned
+UNSETTLED_MARGIN = 1.5  # squares around a moved object within which observations need not agree; tuned
 
 
 class WhatIf(NamedTuple):
-    """A lattice that may be the true one.
+    """The evaluation of a frame that may be the true one.
 
-    hypotheses : all that are left then. place : where Utak is on it. outcome : what came of the motion of the thing in
-    hand. misfits : fields that contradict it, of all looks. searched : were hypotheses taken up that had been given up?
+    Attributes
+    ----------
+    frame : the frame.
+    hypotheses : all frame hypotheses that are left then.
+    place : of Utak now, map frame of `frame`.
+    outcome : of the motion of the object in hand; None when none was moved.
+    residual : fields that contradict it, over all observations.
+    searched : whether hypotheses were taken up again that had been given up.
     """
 
     frame: Frame
     hypotheses: tuple[FrameHypothesis, ...]
-    place: Place
-    outcome: Outcome | None
-    misfits: int
+    place: Position
+    outcome: CarryOutcome | None
+    residual: int
     searched: bool
 
 
 @dataclass(frozen=True)
 class Surprise:
-    """A look, after a command, that contradicts what was believed before.
+    """An observation that contradicts what is believed, with what was believed before it.
 
-    place : of Utak before it, on the lattice. held : the name of the load in his hand. hypotheses : what was left.
-    pictures : of the map before it; None where none were drawn.
+    Attributes
+    ----------
+    command : the command before the observation.
+    ranges : (160, 2) count ranges of its fields.
+    frame : the believed frame.
+    place : of Utak before the command, map frame.
+    occupancy : the believed map.
+    observations : all earlier ones.
+    loads : all objects that were ever held, before the command, by name, map frame.
+    held : the name of the object in hand; None when there is none.
+    hypotheses : the frame hypotheses that are left.
+    pictures : completions of the believed map; None when none were drawn.
     """
 
     command: Command
-    ranges: Ranges
+    ranges: FieldRanges
     frame: Frame
-    place: Place
+    place: Position
     occupancy: OccupancyMap
     observations: Sequence[Observation]
     loads: Mapping[str, HeldObject]
@@ -69,175 +96,192 @@ class Surprise:
     # -- what is known of it ---------------------------------------------------------------------
 
     @property
-    def moving(self) -> tuple[str, Push | Turn] | None:
-        """The name of the thing that was to be moved, and by which command; None when none was."""
+    def carried(self) -> tuple[str, Push | Turn] | None:
+        """Return the name of the object that was to be moved, and the command; None when none was."""
         if self.held is not None and isinstance(self.command, Push | Turn):
             return self.held, self.command
         return None
 
     @property
     def degrees(self) -> float:
-        """By which what is in his hand was to be turned."""
+        """Return the commanded rotation of the held object, in degrees, counter-clockwise positive."""
         return self.command.degrees if isinstance(self.command, Turn) and self.held is not None else 0.0
 
     @property
-    def turned(self) -> bool:
-        """Has anything been turned, so that it tells where in his square he stands?"""
+    def any_turned(self) -> bool:
+        """Return whether any object was ever turned, so that it tells where the origin of the frame lies."""
         return self.degrees != 0.0 or any(load.turned % 360 for load in self.loads.values())
 
     @property
-    def own(self) -> Place:
-        """Where the command leads, in his own frame."""
+    def commanded_place(self) -> Position:
+        """Return where the command leads, Utak's own frame."""
         east, north = self.frame.place_to_utak(*self.place)
         if isinstance(self.command, Move if self.held is None else Push):
             return east + self.command.east, north + self.command.north
         return east, north
 
     @cached_property
-    def before(self) -> tuple[FrameHypothesis, ...]:
-        """The hypotheses that stood before the command."""
-        return search(self.observations[-RECENT:], self.hypotheses, self.unsettled)
+    def hypotheses_before(self) -> tuple[FrameHypothesis, ...]:
+        """Return the frame hypotheses with which all observations before the command agree."""
+        return consistent_hypotheses(
+            self.observations[-MAX_JUDGING_OBSERVATIONS:], self.hypotheses, self.unsettled_discs
+        )
 
     @cached_property
-    def recent(self) -> list[Observation]:
-        """The looks by which lattices are judged, the new one last."""
-        return [*self.observations[-RECENT:], Observation(self.ranges, self.own)]
+    def judging_observations(self) -> list[Observation]:
+        """Return the observations by which frames are judged, the new one last, where it was commanded."""
+        newest = Observation(self.ranges, self.commanded_place)
+        return [*self.observations[-MAX_JUDGING_OBSERVATIONS:], newest]
 
     @cached_property
-    def unsettled(self) -> list[OriginDisc]:
-        """Where things were moved, wherever they lay meanwhile."""
+    def unsettled_discs(self) -> list[UnsettledDisc]:
+        """Return the parts of the table where any object lay at any time, Utak's own frame, sorted."""
         discs = set()
         for load in self.loads.values():
             lying = [load.polygon, load.first]
-            if self.moving is not None and load.name == self.moving[0]:
-                lying.append(as_motion(self.moving[1], self.frame, self.place).carry(load.polygon))
+            if self.carried is not None and load.name == self.carried[0]:
+                lying.append(command_motion(self.carried[1], self.frame, self.place).carry(load.polygon))
             middles = [self.frame.place_to_utak(lain.centroid.x, lain.centroid.y) for lain in lying]
             middles += [
-                was.middle for observation in self.observations for was in observation.moved if was.name == load.name
+                pose.middle for observation in self.observations for pose in observation.moved if pose.name == load.name
             ]
             corners = shapely.get_coordinates(load.polygon) - shapely.get_coordinates(load.polygon.centroid)
-            reach = float(np.hypot(*corners.T).max()) + BESIDE
-            discs |= {OriginDisc(middle, reach) for middle in middles}
+            reach = float(np.hypot(*corners.T).max()) + UNSETTLED_MARGIN
+            discs |= {UnsettledDisc(middle, reach) for middle in middles}
         return sorted(discs)
 
     @cached_property
-    def prefixes(self) -> Prefixes:
-        """The first of the looks, on the lattice that is believed."""
-        return Prefixes(self.frame, self.observations, self.loads)
+    def prefixes(self) -> ReplayPrefixes:
+        """Return the replays of the first observations in the believed frame."""
+        return ReplayPrefixes(self.frame, self.observations, self.loads)
 
-    # -- trying a lattice ------------------------------------------------------------------------
+    # -- evaluation of a frame -------------------------------------------------------------------
 
-    def tried(
+    def evaluate_frame(
         self,
         frame: Frame,
         hypotheses: tuple[FrameHypothesis, ...],
         searched: bool = False,
         cut_short: bool = False,
-        far: float = 0.0,
-        whether: bool = False,
+        origin_error: float = 0.0,
+        only_whether: bool = False,
     ) -> WhatIf:
-        """What contradicts a lattice.
+        """Return what contradicts a frame, with the outcome of the motion that fits it best.
 
-        cut_short : the motion may have ended early, for whatever reason. far : squares from where he woke, at most.
-        whether : as for `judged`.
+        hypotheses, searched : for the result. cut_short : whether the motion may have ended early without a known
+        reason. origin_error : squares by which the origin of the frame may be wrong. only_whether : as for
+        `evaluate_outcome`.
         """
-        if whether and (refused := self.refused(frame, hypotheses)) is not None:
-            return refused._replace(searched=searched)
-        if self.moving is None:  # it went as said
-            place = frame.place_from_utak(*self.own)
-            misfits = self._misfits(frame, self.laid(frame).loads.values(), place, far, whether)
-            return WhatIf(frame, hypotheses, place, None, misfits, searched)
+        if only_whether and (refuted := self.refuted(frame, hypotheses)) is not None:
+            return refuted._replace(searched=searched)
+        if self.carried is None:  # it went as commanded
+            place = frame.place_from_utak(*self.commanded_place)
+            loads = self.remapped(frame).loads.values()
+            residual = self._residual(frame, loads, place, origin_error, only_whether)
+            return WhatIf(frame, hypotheses, place, None, residual, searched)
         tried = []
         for outcome in self._outcomes(frame, cut_short):
-            slack = STRIDE / 2 if cut_short and outcome.how != "predicted" else 0.0
-            tried.append(self.judged(frame, hypotheses, outcome, slack, far, searched, whether))
-            if not tried[-1].misfits:
+            slack = END_SPACING / 2 if cut_short and outcome.how != "predicted" else 0.0
+            judged = self.evaluate_outcome(frame, hypotheses, outcome, slack, origin_error, searched, only_whether)
+            tried.append(judged)
+            if not judged.residual:
                 break
-        return min(tried, key=lambda one: one.misfits)
+        return min(tried, key=lambda one: one.residual)
 
-    def refused(self, frame: Frame, hypotheses: tuple[FrameHypothesis, ...]) -> WhatIf | None:
-        """That earlier looks contradict a lattice, whatever came of the motion; None when none does."""
-        misfits = self.laid(frame, whether=True).misfits
-        place = frame.place_from_utak(*self.own)
-        return WhatIf(frame, hypotheses, place, None, misfits, False) if misfits else None
+    def refuted(self, frame: Frame, hypotheses: tuple[FrameHypothesis, ...]) -> WhatIf | None:
+        """Return the evaluation of a frame that earlier observations contradict; None when none does."""
+        residual = self.remapped(frame, only_whether=True).residual
+        place = frame.place_from_utak(*self.commanded_place)
+        return WhatIf(frame, hypotheses, place, None, residual, False) if residual else None
 
-    def judged(
+    def evaluate_outcome(
         self,
         frame: Frame,
         hypotheses: tuple[FrameHypothesis, ...],
-        outcome: Outcome,
+        outcome: CarryOutcome,
         slack: float = 0.0,
-        far: float = 0.0,
+        origin_error: float = 0.0,
         searched: bool = False,
-        whether: bool = False,
+        only_whether: bool = False,
     ) -> WhatIf:
-        """What contradicts a lattice, and an outcome of the motion of what was in his hand.
+        """Return what contradicts a frame together with an outcome of the motion of the object in hand.
 
-        slack : squares by which it may have ended elsewhere. far : squares from where he woke, at most. whether : it is
-        asked only whether anything contradicts; misfits may then be too few, though not 0.
+        hypotheses, searched : for the result. slack : squares by which the object may have ended elsewhere.
+        origin_error : squares by which the origin of the frame may be wrong. only_whether : ask only whether anything
+        contradicts them; then the residual may be too small, though not 0.
         """
-        assert self.moving is not None
-        held, loads = self.moving[0], self.laid(frame).loads
+        assert self.carried is not None
+        held, loads = self.carried[0], self.remapped(frame).loads
         slack, commanded = max(loads[held].slack, slack), outcome.as_commanded
         moved = loads[held].moved(outcome.polygon, slack, outcome.degrees, commanded)
-        misfits = self._misfits(frame, {**loads, held: moved}.values(), outcome.place, far, whether)
-        return WhatIf(frame, hypotheses, outcome.place, outcome, misfits, searched)
+        after = {**loads, held: moved}.values()
+        residual = self._residual(frame, after, outcome.place, origin_error, only_whether)
+        return WhatIf(frame, hypotheses, outcome.place, outcome, residual, searched)
 
-    def _misfits(
-        self, frame: Frame, loads: Iterable[HeldObject], place: Place, far: float, whether: bool = False
+    def _residual(
+        self,
+        frame: Frame,
+        loads: Iterable[HeldObject],
+        place: Position,
+        origin_error: float,
+        only_whether: bool = False,
     ) -> int:
-        """How many fields contradict a lattice, of this look, with the loads where they lie then, and of all others."""
-        under = self.laid(frame)
-        if whether and under.misfits:
-            return under.misfits
-        lying = [load.woken(far) if far else load for load in loads]
-        return under.misfits + clashes(frame, under.occupancy, lying, place, self.ranges, whether)
+        """Return how many fields contradict a frame, over all observations; `loads` after the newest one."""
+        under = self.remapped(frame)
+        if only_whether and under.residual:
+            return under.residual
+        lying = [load.woken(origin_error) if origin_error else load for load in loads]
+        return under.residual + count_clashes(frame, under.occupancy, lying, place, self.ranges, only_whether)
 
-    def begun(self, frame: Frame) -> tuple[Place, Any, Motion]:
-        """Where he stood before the motion, and what was in his hand, if the lattice lies so; and the motion."""
-        assert self.moving is not None
-        held, command = self.moving
+    def motion_in(self, frame: Frame) -> tuple[Position, Any, Motion]:
+        """Return Utak's place and the outline of the object before the motion, and the motion, all in a frame."""
+        assert self.carried is not None
+        held, command = self.carried
         place = frame.place_from_utak(*self.frame.place_to_utak(*self.place))
-        return place, self.laid(frame).loads[held].polygon, as_motion(command, frame, place)
+        return place, self.remapped(frame).loads[held].polygon, command_motion(command, frame, place)
 
-    def laid(self, frame: Frame, whether: bool = False) -> RemappedMap:
-        """What all looks say on a lattice. whether : as for kb.localisation.hypotheses.remap.relaid."""
-        return self._layings.on(frame, whether)
+    def remapped(self, frame: Frame, only_whether: bool = False) -> RemappedMap:
+        """Return the map of all earlier observations in a frame; kept for each frame.
+
+        only_whether : as for kb.localisation.hypotheses.remap.remap.
+        """
+        return self._maps.remapped(frame, only_whether)
 
     @cached_property
-    def _layings(self) -> RemapCache:
+    def _maps(self) -> RemapCache:
+        """Return the maps of all frames that were asked for."""
         return RemapCache(self.frame, self.occupancy, self.observations, self.loads)
 
-    def _outcomes(self, frame: Frame, cut_short: bool) -> Iterator[Outcome]:
-        """The motion, as far as what is known to stand in the way lets it go; and as it was commanded."""
-        place, polygon, motion = self.begun(frame)
+    def _outcomes(self, frame: Frame, cut_short: bool) -> Iterator[CarryOutcome]:
+        """Yield the motion as far as known obstacles let it go, and as commanded; or, cut short, all early ends."""
+        place, polygon, motion = self.motion_in(frame)
         if cut_short:
-            yield from (outcome for outcome in otherwise(place, polygon, motion) if outcome.how in ("stuck", "blocked"))
+            yield from (outcome for outcome in other_outcomes(place, polygon, motion) if outcome.stopped)
             return
-        occupancy = self.laid(frame).occupancy
+        occupancy = self.remapped(frame).occupancy
         same = occupancy is self.occupancy
-        hindrances = self.hindrances if same else Obstructions(occupancy, place, polygon, motion)
-        stopped = arrested(place, polygon, motion, hindrances.walls)
-        if stopped is not None:
-            yield stopped
-        yield predicted(place, polygon, motion)
+        obstructions = self.obstructions if same else Obstructions(occupancy, place, polygon, motion)
+        blocked = blocked_by_known(place, polygon, motion, obstructions.known)
+        if blocked is not None:
+            yield blocked
+        yield predicted_outcome(place, polygon, motion)
 
     @cached_property
-    def hindrances(self) -> Obstructions:
-        """What stands, or may stand, about the motion on the lattice that is believed."""
-        return Obstructions(self.occupancy, *self.begun(self.frame), self.pictures)
+    def obstructions(self) -> Obstructions:
+        """Return the obstacles, known and possible, about the motion of the object in hand, believed frame."""
+        return Obstructions(self.occupancy, *self.motion_in(self.frame), self.pictures)
 
     # -- after it ---------------------------------------------------------------------------------
 
-    def lying(self, outcome: Outcome) -> list[HeldObject]:
-        """All loads where they lie on the lattice that is believed, if the motion of the one in hand came out so."""
+    def objects_after(self, outcome: CarryOutcome) -> list[HeldObject]:
+        """Return all held objects after an outcome of the motion of the one in hand, believed frame."""
         return [
             load.moved(outcome.polygon, load.slack, commanded=outcome.as_commanded) if name == self.held else load
             for name, load in self.loads.items()
         ]
 
-    def looked(self, loads: Sequence[HeldObject], place: Place) -> OccupancyMap:
-        """What is settled together with the look, if it was received at a place, with the loads where they lie."""
+    def map_after(self, loads: Sequence[HeldObject], place: Position) -> OccupancyMap:
+        """Return a copy of the map with the observation integrated at `place`, the objects lying as in `loads`."""
         x, y = (math.floor(v) for v in place)
         samples, counts = discounted(self.frame.samples(), self.ranges, x, y, loads)
         occupancy = self.occupancy.copy()
@@ -245,48 +289,59 @@ class Surprise:
         return occupancy
 
 
-def agreeing(
+def agreeing_hypotheses(
     hypotheses: Sequence[FrameHypothesis],
     frame: Frame,
-    place: Place,
+    place: Position,
     occupancy: OccupancyMap,
     observations: Sequence[Observation],
     loads: Mapping[str, HeldObject],
-    ranges: Ranges,
+    ranges: FieldRanges,
 ) -> tuple[FrameHypothesis, ...]:
-    """Of points at which he may have woken those that agree with a look at what he turned; all when none does.
+    """Return those exact origins that agree with an observation of turned objects; all when none does.
 
-    lattice, place, evidence, loads : as they are believed, the motion before the look included.
+    Parameters
+    ----------
+    hypotheses : points of one origin grid.
+    frame, place, occupancy, observations, loads : as believed, with the motion before the observation applied.
+    ranges : (160, 2) count ranges of the observation.
     """
-    own, far = frame.place_to_utak(*place), math.hypot(*cells(hypotheses)) / 2
-    agree, layings = [], RemapCache(frame, occupancy, observations, loads)
+    own, error = frame.place_to_utak(*place), math.hypot(*grid_cell_size(hypotheses)) / 2
+    agree, maps = [], RemapCache(frame, occupancy, observations, loads)
     for hypothesis in hypotheses:
         other = hypothesis.frame
-        under = layings.on(other)
-        lying = [load.woken(far) for load in under.loads.values()]
-        if not clashes(other, under.occupancy, lying, other.place_from_utak(*own), ranges):
+        under = maps.remapped(other)
+        lying = [load.woken(error) for load in under.loads.values()]
+        if not count_clashes(other, under.occupancy, lying, other.place_from_utak(*own), ranges):
             agree.append(hypothesis)
     return tuple(agree or hypotheses)
 
 
-def as_motion(command: Push | Turn, frame: Frame, place: Place) -> Motion:
-    """A command as a motion on the lattice. place : of Utak, when he gives it."""
+def command_motion(command: Push | Turn, frame: Frame, place: Position) -> Motion:
+    """Return a command as a motion of the map frame. place : of Utak when the command is given, map frame."""
     if isinstance(command, Turn):
         return Rotate(command.degrees, place)
     return Translate(*frame.to_lattice(command.east, command.north))
 
 
-def clashes(
+def count_clashes(
     frame: Frame,
     occupancy: OccupancyMap,
     loads: Iterable[HeldObject],
-    place: Place,
-    ranges: Ranges,
-    whether: bool = False,
+    place: Position,
+    ranges: FieldRanges,
+    only_whether: bool = False,
 ) -> int:
-    """How many fields cannot be right if a look was received at a place, with the loads where they lie.
+    """Return how many fields of an observation contradict the map and the held objects.
 
-    whether : it is asked only whether there are any; too few may be told then, though not 0.
+    Parameters
+    ----------
+    frame : of the map.
+    occupancy : the map.
+    loads : all held objects where they lie, map frame.
+    place : where the observation was made, map frame.
+    ranges : (160, 2) count ranges of the observation.
+    only_whether : ask only whether there are any; then the number may be too small, though not 0.
     """
     x, y = math.floor(place[0]), math.floor(place[1])
-    return occupancy.clashes(*discounted(frame.samples(), ranges, x, y, loads), x, y, whether)
+    return occupancy.clashes(*discounted(frame.samples(), ranges, x, y, loads), x, y, only_whether)

@@ -1,1 +1,13 @@
-"""."""
+"""Proposals: explanations of an observation, one kind a module.
+
+In the order in which they are asked for:
+
+blocked  the newest motion was blocked: every possible end, with its chance
+contradicted_motion  a carrying motion was blocked, where the observation contradicts only what it itself settles
+larger_object  a held object goes on in what seemed to be wall
+frame  another frame, once objects were moved
+origin_from_turns  another origin, as turned objects tell it
+earlier_motion  an earlier motion ended elsewhere, once objects were moved
+origin  a walk was blocked, and the origin lies elsewhere
+held_object_state  the state of a held object after the chosen outcome
+"""

@@ -1,10 +1,9 @@
-"""Where a motion came to a halt, of all places where something may have stopped it: by what was known before, and by
-how plain the table looks.
+"""Proposals that the newest motion was blocked: every place where something may have stopped it, with its chance.
 
-He moves, and pushes things, up to what may be a wall. The look after it often agrees with several halts: a square
-further, and the wall stands a square further, too; and who is stopped right on a line may see what he would see from
-beyond it. Each halt is as likely as what would have stopped him there was before. Where he stands there is floor, and
-where he was stopped there is none ahead; and walls that were seen twice are straight.
+Utak moves, and pushes objects, up to what may be a wall. The observation after it often agrees with several ends: one
+square further on, with the wall one square further on, too; and a robot stopped on a grid line may see what it would
+see from beyond the line. Each end has the chance of its contact before the observation. The place of the robot is floor
+then, and something stands ahead of it. Walls that were seen twice are straight, so the map prior weighs the ends.
 """
 
 import math
@@ -12,119 +11,130 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple, TypeVar
 
 from geometry.motion.se2 import Motion, Translate
-from kb.localisation.hypotheses.carry_outcomes import Outcome, part_way, predicted
-from kb.localisation.hypotheses.contacts import ContactHypothesis
+from kb.localisation.hypotheses.carry_outcomes import CarryOutcome, partial_outcome, predicted_outcome
+from kb.localisation.hypotheses.contacts import NO_SQUARES, ContactHypothesis
 from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.map_prior import Drawn, MapDescription, plainness
-from kb.localisation.hypotheses.walk_outcomes import crossings, views
-from kb.localisation.hypotheses.what_if import Place, Surprise, clashes
+from kb.localisation.hypotheses.frames import Position
+from kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, relative_costs
+from kb.localisation.hypotheses.walk_outcomes import line_crossings, observation_places
+from kb.localisation.hypotheses.what_if import Surprise, count_clashes
 from kb.mapping.obstacle_chance import ObstacleChance
 from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
 from kb.objects.held_object import HeldObject, Square
 
-RISK = 0.02  # how likely a motion may be stopped before it is asked where
-UNLIKELY = 1e-4  # how likely a halt is at least that is thought of
-MOST = 24  # such halts
+NEGLIGIBLE_CONTACT_CHANCE = 0.02  # probability of any contact up to which none is considered; tuned
+MIN_END_CHANCE = 1e-4  # probability above which an end of a motion is considered; tuned
+MAX_ENDS = 24  # ends that are considered: bounds the time of one explanation; tuned
 
 
-T = TypeVar("T", "BlockedMotion", ContactHypothesis)
+EndOrContact = TypeVar("EndOrContact", "BlockedMotion", ContactHypothesis)
 
 
 class BlockedMotion(NamedTuple):
-    """An end of a motion: the place that Utak looks from then, and how likely it was before the look.
+    """A possible end of a motion.
 
-    how : predicted, if it is that of the whole motion; else blocked. against : the open squares one of which would have
-    stopped it there; none where it is known what did, or nothing. outcome : of a motion with something in hand.
+    Attributes
+    ----------
+    how : predicted for the end of the whole motion, else blocked.
+    place : from which the observation is made then, map frame.
+    chance : its probability before the observation.
+    contact_squares : the open squares one of which blocked it; empty where something known did, or nothing.
+    outcome : of the motion of the object in hand; None when there is none.
     """
 
     how: str
-    place: Place
+    place: Position
     chance: float
-    against: frozenset[Square] = frozenset()
-    outcome: Outcome | None = None
+    contact_squares: frozenset[Square] = NO_SQUARES
+    outcome: CarryOutcome | None = None
 
 
-def halts(surprise: Surprise, load: HeldObject | None, motion: Motion) -> list[BlockedMotion]:
-    """The whole of a straight motion, first, and where else it may have ended; none when there is nothing to ask.
+def possible_ends(surprise: Surprise, load: HeldObject | None, motion: Motion) -> list[BlockedMotion]:
+    """Return the possible ends of a straight motion: its whole way first, then contacts, the likeliest first.
 
-    That is so when it hardly came upon anything and ended amid a square. Who ends on a line between squares may look
-    from either side of it. load : what was in hand. motion : on the lattice.
+    None are returned for a turn, or when the motion hardly met anything and ends inside a square. At a grid line each
+    end is returned once for each side, for the observation may be made from either.
+
+    load : the object in hand; None for a walk. motion : map frame.
     """
     if not isinstance(motion, Translate):
         return []
-    stops = _of_a_walk(surprise, motion) if load is None else _of_a_push(surprise, load, motion)
+    contacts = _walk_contacts(surprise, motion) if load is None else _push_contacts(surprise, load, motion)
     x, y = surprise.place
-    end = None if load is None else predicted(surprise.place, load.polygon, motion)
-    whole = _seen(
-        BlockedMotion("predicted", (x + motion.dx, y + motion.dy), 1.0 - sum(s.chance for s in stops), outcome=end)
-    )
-    if len(whole) == 1 and whole[0].chance >= 1.0 - RISK:
+    end = None if load is None else predicted_outcome(surprise.place, load.polygon, motion)
+    chance = 1.0 - sum(contact.chance for contact in contacts)
+    whole = _both_sides(BlockedMotion("predicted", (x + motion.dx, y + motion.dy), chance, outcome=end))
+    if len(whole) == 1 and whole[0].chance >= 1.0 - NEGLIGIBLE_CONTACT_CHANCE:
         return []
-    return [*whole, *likeliest(stops)]
+    return [*whole, *likeliest_ends(contacts)]
 
 
-def likeliest(stops: Iterable[T]) -> list[T]:
-    """Those halts, or stops, that are thought of, by how likely they are."""
-    return sorted((stop for stop in stops if stop.chance > UNLIKELY), key=lambda stop: -stop.chance)[:MOST]
+def likeliest_ends(ends: Iterable[EndOrContact]) -> list[EndOrContact]:
+    """Return the MAX_ENDS likeliest ends, or contacts, above MIN_END_CHANCE, the likeliest first."""
+    return sorted((end for end in ends if end.chance > MIN_END_CHANCE), key=lambda end: -end.chance)[:MAX_ENDS]
 
 
-def _seen(halt: BlockedMotion) -> list[BlockedMotion]:
-    """The same from each of the places from which he may look there."""
-    found = views(halt.place)
-    ends = (halt.outcome and halt.outcome._replace(place=view) for view in found)
+def _both_sides(end: BlockedMotion) -> list[BlockedMotion]:
+    """Return an end once for each place from which the observation may be made there, its chance divided evenly."""
+    found = observation_places(end.place)
+    outcomes = (end.outcome and end.outcome._replace(place=view) for view in found)
     return [
-        halt._replace(place=view, chance=halt.chance / len(found), outcome=end)
-        for view, end in zip(found, ends, strict=True)
+        end._replace(place=view, chance=end.chance / len(found), outcome=outcome)
+        for view, outcome in zip(found, outcomes, strict=True)
     ]
 
 
-def _of_a_walk(surprise: Surprise, motion: Translate) -> list[BlockedMotion]:
-    way, occupancy = crossings(surprise.place, (motion.dx, motion.dy)), surprise.occupancy
+def _walk_contacts(surprise: Surprise, motion: Translate) -> list[BlockedMotion]:
+    """Return the ends of a walk at each grid line that it crosses, once for each side of the line."""
+    way, occupancy = line_crossings(surprise.place, (motion.dx, motion.dy)), surprise.occupancy
     chances = ObstacleChance(occupancy, surprise.pictures).met([[crossing.entered] for crossing in way])
     found = []
     for crossing, chance in zip(way, chances, strict=True):
         open_ = occupancy.state[occupancy.index(*crossing.entered)] == OPEN
-        against = frozenset([crossing.entered]) if open_ else frozenset[Square]()
-        found += [BlockedMotion("blocked", view, chance / 2, against) for view in (crossing.after, crossing.before)]
+        squares = frozenset([crossing.entered]) if open_ else NO_SQUARES
+        found += [BlockedMotion("blocked", view, chance / 2, squares) for view in (crossing.after, crossing.before)]
     return found
 
 
-def _of_a_push(surprise: Surprise, load: HeldObject, motion: Translate) -> list[BlockedMotion]:
+def _push_contacts(surprise: Surprise, load: HeldObject, motion: Translate) -> list[BlockedMotion]:
+    """Return the ends of a push at each contact of Utak or of the object."""
     place, polygon = surprise.place, load.polygon
     found = []
-    for stop in surprise.hindrances.stops(place, polygon, motion):
-        end = part_way(place, polygon, motion, stop.part, stop.against)
-        found += _seen(BlockedMotion("blocked", end.place, stop.chance, stop.against, end))
+    for contact in surprise.obstructions.contacts(place, polygon, motion):
+        end = partial_outcome(place, polygon, motion, contact.fraction, contact.squares)
+        found += _both_sides(BlockedMotion("blocked", end.place, contact.chance, contact.squares, end))
     return found
 
 
-def borne_out(surprise: Surprise, explanations: Iterable[Explanation]) -> list[Explanation]:
-    """Those explanations of a look that bear it out, each with how plain the table looks then.
+def consistent_explanations(surprise: Surprise, explanations: Iterable[Explanation]) -> list[Explanation]:
+    """Return those explanations with which the observation agrees, each with its cost by the map prior.
 
-    By none of them anything that was settled before is otherwise.
+    explanations : none of them contradicts what was settled before the observation.
     """
     found: list[tuple[MapDescription, Explanation]] = []
-    drawn: Drawn = {}
+    drawn: DrawnScenes = {}
     for one in explanations:
-        loads = list(surprise.loads.values()) if one.outcome is None else surprise.lying(one.outcome)
-        after = surprise.looked(loads, one.place)
-        if _can_stand(after, one) and not clashes(surprise.frame, after, loads, one.place, surprise.ranges):
+        loads = list(surprise.loads.values()) if one.outcome is None else surprise.objects_after(one.outcome)
+        after = surprise.map_after(loads, one.place)
+        if _settle_contact(after, one) and not count_clashes(surprise.frame, after, loads, one.place, surprise.ranges):
             found.append((MapDescription(after, drawn), one))
-    prices = plainness([(sketch, -math.log(max(one.chance or 0.0, UNLIKELY))) for sketch, one in found])
-    return [one._replace(crooked=price) for price, (_, one) in zip(prices, found, strict=True)]
+    chances = (max(one.chance or 0.0, MIN_END_CHANCE) for _, one in found)
+    costs = relative_costs([(description, -math.log(p)) for (description, _), p in zip(found, chances, strict=True)])
+    return [one._replace(prior_cost=cost) for cost, (_, one) in zip(costs, found, strict=True)]
 
 
-def _can_stand(occupancy: OccupancyMap, explanation: Explanation) -> bool:
-    """Whether something can stand against which he was stopped, and he himself where he is: so it is settled then.
+def _settle_contact(occupancy: OccupancyMap, explanation: Explanation) -> bool:
+    """Settle the square of Utak in a map after an explanation, and return whether the contact is possible there.
 
-    Who looks from beyond the line on which he was stopped looks from the square of what stopped him. Who just came to a
-    line, or was stopped by what is known, may look from any square beside it.
+    A contact is impossible where all its squares are free, or where Utak would be in an occupied square. An observation
+    from beyond the line of contact is made from the obstacle's square. At the commanded end on a line, or at a known
+    obstacle, the observation may be made from any square beside it, so nothing is settled.
     """
-    against, (x, y) = explanation.against, explanation.place
+    against, (x, y) = explanation.contact_squares, explanation.place
     own = (math.floor(x), math.floor(y))
     if against and all(occupancy.state[occupancy.index(*square)] == FREE for square in against):
         return False
-    if not against and (explanation.how != "predicted" or len(views(explanation.place)) > 1):
+    if not against and (explanation.how != "predicted" or len(observation_places(explanation.place)) > 1):
         return True
     here = occupancy.index(*own)
     state = FULL if own in against else FREE
@@ -133,6 +143,6 @@ def _can_stand(occupancy: OccupancyMap, explanation: Explanation) -> bool:
     return bool(occupancy.state[here] == state)
 
 
-def whole_first(explanations: Sequence[Explanation]) -> bool:
-    """Is that the motion went its whole way among them?"""
+def has_whole_way(explanations: Sequence[Explanation]) -> bool:
+    """Return whether one of the explanations is that the motion went its whole way."""
     return any(explanation.how == "predicted" for explanation in explanations)

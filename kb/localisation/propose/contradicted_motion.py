@@ -1,7 +1,7 @@
-"""Looks that belie a motion: that fit where it should have led, but contradict what they settle themselves.
+"""Proposals that a motion of a held object was blocked, where the observation only contradicts what it itself settles.
 
-A look far from all that is known hardly contradicts any of it, wherever it was received. But what it tells of the
-squares that it shares with earlier looks must hold together: where it does not, he was stopped on the way.
+An observation far from everything known hardly contradicts any of it, wherever it was made. But what it says of the
+squares that it shares with earlier observations must be consistent. Where it is not, the motion was blocked.
 """
 
 import math
@@ -10,81 +10,85 @@ from dataclasses import replace
 from typing import Any
 
 from geometry.motion.se2 import Motion, Rotate
-from kb.localisation.hypotheses.carry_outcomes import STRIDE, Outcome, otherwise, predicted
-from kb.localisation.hypotheses.what_if import Place, Surprise, clashes
+from kb.localisation.hypotheses.carry_outcomes import END_SPACING, CarryOutcome, other_outcomes, predicted_outcome
+from kb.localisation.hypotheses.frames import Position
+from kb.localisation.hypotheses.what_if import Surprise, count_clashes
 from kb.mapping.occupancy import FULL
 from kb.mapping.patch import covered
 from kb.objects.held_object import WHOLE, HeldObject
 
-CROWDED = 4  # squares that seem to stand right about a thing since it was turned, of which nothing told
-BESIDE = 1.0  # squares about a thing
+MIN_CROWDED_SQUARES = 4  # newly occupied squares right beside a turned object from which its turn is doubted; tuned
+CROWDED_DISTANCE = 1.0  # squares around an object in which those are counted: its neighbours
 
 
-def overlooked(surprise: Surprise, load: HeldObject, motion: Motion) -> Outcome | None:
-    """Where the motion of a load in hand was stopped, if the look after it belies the whole of it; None else.
+def overlooked_contact(surprise: Surprise, load: HeldObject, motion: Motion) -> CarryOutcome | None:
+    """Return where the motion of an object was blocked, if the observation contradicts the whole motion; else None.
 
-    Nothing settled before disagrees with the whole motion.
+    load : the object in hand. motion : as commanded, map frame; nothing settled before contradicts the whole of it.
     """
-    if belied(surprise, predicted(surprise.place, load.polygon, motion)):
-        return likeliest_stop(surprise, load, motion)
-    return rather_short(surprise, load, motion) if isinstance(motion, Rotate) else None
+    if is_contradicted(surprise, predicted_outcome(surprise.place, load.polygon, motion)):
+        return likeliest_contact(surprise, load, motion)
+    return shortened_turn(surprise, load, motion) if isinstance(motion, Rotate) else None
 
 
-def belied(surprise: Surprise, outcome: Outcome) -> bool:
-    """Does a look contradict what it settles together with all before it, if what is in hand came to lie so?
+def is_contradicted(surprise: Surprise, outcome: CarryOutcome) -> bool:
+    """Return whether the observation contradicts what it settles together with all earlier ones after an outcome.
 
-    outcome : of the command that the look followed, with which nothing settled before it disagrees.
+    outcome : of the motion of the object in hand; nothing settled before contradicts it.
     """
-    loads = surprise.lying(outcome)
-    occupancy = surprise.looked(loads, outcome.place)
-    return clashes(surprise.frame, occupancy, loads, outcome.place, surprise.ranges) > 0
+    loads = surprise.objects_after(outcome)
+    occupancy = surprise.map_after(loads, outcome.place)
+    return count_clashes(surprise.frame, occupancy, loads, outcome.place, surprise.ranges) > 0
 
 
-def likeliest_stop(surprise: Surprise, load: HeldObject, motion: Motion) -> Outcome | None:
-    """Where the motion of a load in hand was likeliest stopped so that the look contradicts nothing, if anywhere."""
-    for end in surprise.hindrances.ends(surprise.place, load.polygon, motion):
-        there = surprise.lying(end)
-        fits = not clashes(surprise.frame, surprise.occupancy, there, end.place, surprise.ranges)
-        if fits and not belied(surprise, end):
+def likeliest_contact(surprise: Surprise, load: HeldObject, motion: Motion) -> CarryOutcome | None:
+    """Return the outcome of the likeliest contact that nothing contradicts; None when there is none."""
+    for end in surprise.obstructions.outcomes(surprise.place, load.polygon, motion):
+        there = surprise.objects_after(end)
+        fits = not count_clashes(surprise.frame, surprise.occupancy, there, end.place, surprise.ranges)
+        if fits and not is_contradicted(surprise, end):
             return end
     return None
 
 
-def rather_short(surprise: Surprise, load: HeldObject, motion: Rotate) -> Outcome | None:
-    """Where a turn rather ended short, if that explains what seems to stand right about the thing since it was turned.
+def shortened_turn(surprise: Surprise, load: HeldObject, motion: Rotate) -> CarryOutcome | None:
+    """Return where a turn ended short, if that explains what seems to stand right beside the object now; else None.
 
-    No look contradicts the whole turn. But where the thing lay before, nothing can have come to stand meanwhile. Of
-    ends that explain as much the middle one is told.
+    No observation contradicts the whole turn. But nothing can have come to stand where the object lay before. Of ends
+    that explain as much the one in the middle is returned.
     """
     place, polygon = surprise.place, load.polygon
     others = [other for other in surprise.loads.values() if other.name != load.name]
     whole = _turned(load, motion.carry(polygon), load.slack, motion.degrees)
-    seem = _crowded(surprise, whole, others, place)
-    if seem < CROWDED:
+    crowded = _count_crowded(surprise, whole, others, place)
+    if crowded < MIN_CROWDED_SQUARES:
         return None
-    ends = [*surprise.hindrances.ends(place, polygon, motion)]
-    ends += [end for end in otherwise(place, polygon, motion) if end.how == "blocked"]
-    stand: list[tuple[int, float, Outcome]] = []
+    ends = [*surprise.obstructions.outcomes(place, polygon, motion)]
+    ends += [end for end in other_outcomes(place, polygon, motion) if end.how == "blocked"]
+    possible: list[tuple[int, float, CarryOutcome]] = []
     for end in ends:
-        there = _turned(load, end.polygon, STRIDE, end.degrees)
-        if not clashes(surprise.frame, surprise.occupancy, [*others, there], place, surprise.ranges):
-            stand.append((_crowded(surprise, there, others, place), end.degrees, end))
-    fewest = min((many for many, *_ in stand), default=seem)
-    fitting = sorted((one for one in stand if one[0] == fewest), key=lambda one: one[1])
-    return fitting[len(fitting) // 2][2] if 2 * fewest < seem else None
+        there = _turned(load, end.polygon, END_SPACING, end.degrees)
+        if not count_clashes(surprise.frame, surprise.occupancy, [*others, there], place, surprise.ranges):
+            possible.append((_count_crowded(surprise, there, others, place), end.degrees, end))
+    fewest = min((many for many, *_ in possible), default=crowded)
+    fitting = sorted((one for one in possible if one[0] == fewest), key=lambda one: one[1])
+    return fitting[len(fitting) // 2][2] if 2 * fewest < crowded else None
 
 
 def _turned(load: HeldObject, polygon: Any, slack: float, degrees: float) -> HeldObject:
-    """A thing after a turn. It is the less astray the less it is turned in all, wherever in his square Utak stands."""
+    """Return an object after a turn. The less it is turned in all, the less it is astray by a wrong origin."""
     moved = load.moved(polygon, slack, degrees)
     before, after = (abs(math.sin(math.radians(one.turned / 2))) for one in (load, moved))
-    whole = before < WHOLE  # turned not at all, or all the way round: by how much it may then be astray is not told
+    whole = before < WHOLE  # not turned at all, or all the way round: then how far it is astray is unknown
     return moved if whole else replace(moved, astray=load.astray * after / before)
 
 
-def _crowded(surprise: Surprise, load: HeldObject, others: Sequence[HeldObject], place: Place) -> int:
-    """How many squares right about a thing are occupied of which no look told before, if it came to lie so."""
-    before, after = surprise.occupancy, surprise.looked([*others, load], place)
-    about = covered(load.polygon.buffer(BESIDE, join_style="mitre")).squares()
+def _count_crowded(surprise: Surprise, load: HeldObject, others: Sequence[HeldObject], place: Position) -> int:
+    """Return how many squares right beside an object are occupied by the newest observation alone.
+
+    load : the object where it lies now. others : all other held objects. place : of Utak now, map frame.
+    """
+    before, after = surprise.occupancy, surprise.map_after([*others, load], place)
+    about = covered(load.polygon.buffer(CROWDED_DISTANCE, join_style="mitre")).squares()
     new = [square for square in about if before.state[before.index(*square)] != FULL]
     return sum(after.state[after.index(*square)] == FULL for square in new)

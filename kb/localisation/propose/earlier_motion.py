@@ -1,7 +1,7 @@
-"""Motions told again once things have been moved: an earlier one ended elsewhere than believed, so a look contradicts.
+"""Proposals that an earlier motion ended elsewhere than believed, once objects have been moved (smoothing).
 
-All that was seen since, and every thing that was first held since, lies where it would then. The motion after which the
-look came is told again with it, for what stopped the one may have stopped the other, seen where it is.
+Everything seen since then, and every object first held since then, lies elsewhere, too. The newest motion is evaluated
+again with the correction, for what blocked the one may have blocked the other, seen where it really is.
 """
 
 import itertools
@@ -12,20 +12,27 @@ from typing import NamedTuple
 
 from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Translate
-from kb.localisation.hypotheses.contacts import TOGETHER, Obstructions, box_of
-from kb.localisation.hypotheses.frames import Observation, anywhere, candidates, exactly, fallen, search
-from kb.localisation.hypotheses.remap import RemappedMap, lain, relaid
+from kb.localisation.hypotheses.contacts import SAME_CONTACT_FRACTION, Obstructions, square_polygon
+from kb.localisation.hypotheses.frames import (
+    Observation,
+    Position,
+    any_origin,
+    consistent_hypotheses,
+    exact_hypothesis,
+    frames_to_try,
+    observation_squares,
+)
+from kb.localisation.hypotheses.remap import RemappedMap, object_at, remap
 from kb.localisation.hypotheses.walk_outcomes import (
-    HAIR,
-    End,
+    LINE_DISTANCE,
     MotionHypothesis,
-    Place,
     ReestimatedWalk,
-    Walk,
     WalkCorrection,
-    agreed,
-    plus,
-    views,
+    WalkEnd,
+    WalkInFrame,
+    add,
+    observation_places,
+    remap_if_consistent,
 )
 from kb.localisation.hypotheses.what_if import Surprise, WhatIf
 from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
@@ -33,172 +40,188 @@ from kb.mapping.patch import covered
 from kb.objects.held_object import HeldObject, Square, is_whole
 from kb.perception.frame import Frame
 
-LAST = 4  # motions that are told again together with where he woke
-FEW = 3  # lattices on which each is tried
+MAX_MOTIONS_WITH_ORIGIN = 4  # last motions that are re-estimated together with the origin: bounds the time; tuned
+MAX_FRAMES_PER_END = 3  # frames that are evaluated for each end of those: bounds the time; tuned
 
 
 class ReestimatedMotion(NamedTuple):
-    """What may have come of an earlier motion, and what is to be believed then of all else."""
+    """A re-estimated earlier motion, and the evaluation of everything else with it.
 
-    retold: ReestimatedWalk
-    supposed: WhatIf
+    Attributes
+    ----------
+    walk : the correction of the earlier motion.
+    what_if : the evaluation of the newest observation with it.
+    """
+
+    walk: ReestimatedWalk
+    what_if: WhatIf
 
 
 class CarriedMotion:
-    """A straight motion with a thing in hand, on the lattice that is believed.
+    """An earlier straight motion with an object in hand, in the believed frame.
 
-    ends : where it may have been stopped, the likeliest first by what was seen before, and its end.
+    Attributes
+    ----------
+    ends : where it may have been blocked, the likeliest first by what was known before it, and its commanded end.
     """
 
     def __init__(self, motion: MotionHypothesis, surprise: Surprise) -> None:
+        """Find the ends of a motion with an object in hand."""
         assert motion.load is not None
         frame, observations, loads = surprise.frame, surprise.observations[: motion.number], surprise.loads
-        was = next(was for was in observations[-1].moved if was.name == motion.load)
+        pose = next(pose for pose in observations[-1].moved if pose.name == motion.load)
         self._place = frame.place_from_utak(*observations[-1].place)
-        self._polygon = lain(loads[motion.load], was, frame).polygon
+        self._polygon = object_at(loads[motion.load], pose, frame).polygon
         self._motion = Translate(*frame.to_lattice(*motion.shift))
-        before = relaid(frame, frame, observations, loads.values(), surprise.prefixes.of(motion.number)).occupancy
-        stops = self._hindrances(before).stops(self._place, self._polygon, self._motion)
-        parts = dict.fromkeys((*(stop.part for stop in sorted(stops, key=lambda stop: -stop.chance)), 1.0))
-        halts = [(part, view) for part in parts for view in views(self._after(part))]
-        self.ends = tuple(End(frame.place_to_utak(*view), part) for part, view in halts)
+        before = remap(frame, frame, observations, loads.values(), surprise.prefixes.first(motion.number)).occupancy
+        contacts = self._obstructions(before).contacts(self._place, self._polygon, self._motion)
+        likely = (contact.fraction for contact in sorted(contacts, key=lambda contact: -contact.chance))
+        fractions = dict.fromkeys((*likely, 1.0))
+        halts = [(part, view) for part in fractions for view in observation_places(self._place_after(part))]
+        self.ends = tuple(WalkEnd(frame.place_to_utak(*view), part) for part, view in halts)
 
-    def _after(self, part: float) -> Place:
-        """Where Utak is after a part of the motion."""
-        return self._place[0] + part * self._motion.dx, self._place[1] + part * self._motion.dy
+    def _place_after(self, fraction: float) -> Position:
+        """Return Utak's place after a fraction of the motion, map frame."""
+        return self._place[0] + fraction * self._motion.dx, self._place[1] + fraction * self._motion.dy
 
-    def ahead(self, end: End, occupancy: OccupancyMap, things: Set[Square]) -> int:
-        """What stands where it would have been stopped; FREE, too, where something would have stopped it before.
+    def state_ahead(self, end: WalkEnd, occupancy: OccupancyMap, things: Set[Square]) -> int:
+        """Return the state of what blocked the motion at `end`; FREE if something known would have blocked it before.
 
-        things : squares on which something stood then that was moved since.
+        things : squares that were occupied then by objects moved since.
         """
-        body, hindrances = ContactBody(self._polygon, [self._place]), self._hindrances(occupancy)
-        known = hindrances.walls.first_contact(body, self._motion).fraction
+        body, obstructions = ContactBody(self._polygon, [self._place]), self._obstructions(occupancy)
+        known = obstructions.known.first_contact(body, self._motion).fraction
         if things:
-            stood = Obstacles([box_of(square) for square in things])
+            stood = Obstacles([square_polygon(square) for square in things])
             known = min(known, stood.first_contact(body, self._motion).fraction)
-        if known < end.gone - TOGETHER:
+        if known < end.progress - SAME_CONTACT_FRACTION:
             return FREE
-        if known < 1.0 and known < end.gone + TOGETHER:
+        if known < 1.0 and known < end.progress + SAME_CONTACT_FRACTION:
             return FULL
-        stops = hindrances.stops(self._place, self._polygon, self._motion)
-        return OPEN if end.gone == 1.0 or any(abs(stop.part - end.gone) < TOGETHER for stop in stops) else FREE
+        contacts = obstructions.contacts(self._place, self._polygon, self._motion)
+        met = (abs(contact.fraction - end.progress) < SAME_CONTACT_FRACTION for contact in contacts)
+        return OPEN if end.progress == 1.0 or any(met) else FREE
 
-    def _hindrances(self, occupancy: OccupancyMap) -> Obstructions:
+    def _obstructions(self, occupancy: OccupancyMap) -> Obstructions:
+        """Return the obstacles about the motion in a map."""
         return Obstructions(occupancy, self._place, self._polygon, self._motion)
 
 
-def recalled(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
-    """All that may have come of earlier motions by which nothing is contradicted any more, on the lattice believed.
+def reestimate_motions(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
+    """Return all other ends of earlier motions with which no observation is contradicted, in the believed frame.
 
-    Those come first by which something known stopped him.
+    Contacts with something known come first, then the newest motions.
     """
-    told = [motion for motion in reversed(motions) if _held_then(motion, surprise)]
-    found = [one for motion in told for one in _otherwise(surprise, motion)]
-    return sorted(found, key=lambda one: not one.retold.known)
+    tried = [motion for motion in reversed(motions) if _has_known_pose(motion, surprise)]
+    found = [one for motion in tried for one in _other_ends(surprise, motion)]
+    return sorted(found, key=lambda one: not one.walk.contact_known)
 
 
-def recalled_elsewhere(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
-    """The same of the last motion of a thing that explains all, if he woke elsewhere in his square besides.
+def reestimate_with_origin(surprise: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
+    """Return other ends, with another origin of the frame, of the newest carrying motion that explains everything so.
 
-    Neither is told without the other: where a thing was stopped depends on where it lay, which is known in squares;
-    from where he looked then does on where he woke.
+    Neither is explained without the other: where an object was blocked depends on where it lay, which is known in
+    squares; where the observations since were made depends on the origin.
     """
-    told = (motion for motion in reversed(motions) if motion.load is not None and _held_then(motion, surprise))
-    found = ([*_elsewhere(surprise, motion)] for motion in itertools.islice(told, LAST))
-    return sorted(next(filter(None, found), []), key=lambda one: not one.retold.known)
+    tried = (motion for motion in reversed(motions) if motion.load is not None and _has_known_pose(motion, surprise))
+    found = ([*_ends_with_origin(surprise, motion)] for motion in itertools.islice(tried, MAX_MOTIONS_WITH_ORIGIN))
+    return sorted(next(filter(None, found), []), key=lambda one: not one.walk.contact_known)
 
 
-def _held_then(motion: MotionHypothesis, surprise: Surprise) -> bool:
-    """Is it told where the thing lay that was in hand on a motion, if one was?"""
+def _has_known_pose(motion: MotionHypothesis, surprise: Surprise) -> bool:
+    """Return whether the pose of the object in hand before a motion is known, if there was one."""
     before = surprise.observations[motion.number - 1].moved
-    return motion.load is None or any(was.name == motion.load for was in before)
+    return motion.load is None or any(pose.name == motion.load for pose in before)
 
 
-def _otherwise(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
-    """What else may have come of one motion."""
+def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
+    """Yield other ends of one motion in the believed frame."""
     observations, frame = surprise.observations, surprise.frame
-    believed, first = observations[motion.number].place, surprise.prefixes.of(motion.number)
+    believed, first = observations[motion.number].place, surprise.prefixes.first(motion.number)
     if first.contradicted:  # whatever came of the motion
         return
-    way = Walk(motion, frame, observations) if motion.load is None else CarriedMotion(motion, surprise)
-    judged: dict[Place, RemappedMap | None] = {}  # by the shift
+    way = WalkInFrame(motion, frame, observations) if motion.load is None else CarriedMotion(motion, surprise)
+    judged: dict[Position, RemappedMap | None] = {}  # by the shift
     for end in way.ends:
         shift = end.place[0] - believed[0], end.place[1] - believed[1]
-        if math.hypot(*shift) < HAIR:  # as is believed
+        if math.hypot(*shift) < LINE_DISTANCE:  # as believed
             continue
-        anew, correction = _corrected(surprise, motion, end)
+        corrected, correction = _corrected(surprise, motion, end)
         if shift not in judged:
-            judged[shift] = agreed(frame, anew.observations, anew.loads.values(), anew.unsettled, begun=first)
+            judged[shift] = remap_if_consistent(
+                frame, corrected.observations, corrected.loads.values(), corrected.unsettled_discs, begun=first
+            )
         under = judged[shift]
-        if under is None or under.misfits:
+        if under is None or under.residual:
             continue
-        ahead = way.ahead(end, under.occupancy, _stood(under, anew.observations, motion, frame))
+        ahead = way.state_ahead(end, under.occupancy, _moved_since(under, corrected.observations, motion, frame))
         if ahead == FREE:
             continue
-        supposed = replace(anew, occupancy=under.occupancy, loads=under.loads).tried(
-            frame, surprise.hypotheses, whether=True
-        )
-        if not supposed.misfits:
-            yield ReestimatedMotion(ReestimatedWalk(exactly(frame), correction, ahead == FULL, 0), supposed)
+        supposed = replace(corrected, occupancy=under.occupancy, loads=under.loads)
+        what_if = supposed.evaluate_frame(frame, surprise.hypotheses, only_whether=True)
+        if not what_if.residual:
+            walk = ReestimatedWalk(exact_hypothesis(frame), correction, ahead == FULL, 0)
+            yield ReestimatedMotion(walk, what_if)
 
 
-def _elsewhere(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
-    """What else may have come of one motion of a thing, if he woke elsewhere in his square."""
-    anywhere_in_it = anywhere((surprise.frame.angle,))
+def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
+    """Yield other ends of one motion of an object, each with another origin of the frame."""
+    origins = any_origin((surprise.frame.angle,))
     for end in CarriedMotion(motion, surprise).ends:
-        anew, correction = _corrected(surprise, motion, end)
-        left = search(anew.recent, anywhere_in_it, anew.unsettled)
+        corrected, correction = _corrected(surprise, motion, end)
+        left = consistent_hypotheses(corrected.judging_observations, origins, corrected.unsettled_discs)
         if not left:
             continue
-        first = surprise.prefixes.of(motion.number)
-        under = relaid(surprise.frame, surprise.frame, anew.observations, anew.loads.values(), first)
-        anew = replace(anew, occupancy=under.occupancy, loads=under.loads)
-        for frame in candidates(left, surprise.frame)[:FEW]:
-            supposed = anew.tried(frame, left, whether=True)
-            if supposed.misfits:
+        first = surprise.prefixes.first(motion.number)
+        under = remap(surprise.frame, surprise.frame, corrected.observations, corrected.loads.values(), first)
+        corrected = replace(corrected, occupancy=under.occupancy, loads=under.loads)
+        for frame in frames_to_try(left, surprise.frame)[:MAX_FRAMES_PER_END]:
+            what_if = corrected.evaluate_frame(frame, left, only_whether=True)
+            if what_if.residual:
                 continue
-            under = anew.laid(frame)
-            there = replace(anew, frame=frame, occupancy=under.occupancy, loads=under.loads)
-            way = CarriedMotion(motion, there)
-            ahead = way.ahead(end, under.occupancy, _stood(under, anew.observations, motion, frame))
+            under = corrected.remapped(frame)
+            there = replace(corrected, frame=frame, occupancy=under.occupancy, loads=under.loads)
+            things = _moved_since(under, corrected.observations, motion, frame)
+            ahead = CarriedMotion(motion, there).state_ahead(end, under.occupancy, things)
             if ahead != FREE:
-                yield ReestimatedMotion(ReestimatedWalk(exactly(frame), correction, ahead == FULL, 0), supposed)
+                walk = ReestimatedWalk(exact_hypothesis(frame), correction, ahead == FULL, 0)
+                yield ReestimatedMotion(walk, what_if)
 
 
-def _corrected(surprise: Surprise, motion: MotionHypothesis, end: End) -> tuple[Surprise, WalkCorrection]:
-    """A surprise as it is if an earlier motion ended elsewhere, and what is corrected by that."""
+def _corrected(surprise: Surprise, motion: MotionHypothesis, end: WalkEnd) -> tuple[Surprise, WalkCorrection]:
+    """Return a surprise as it is if an earlier motion ended at `end`, and the correction."""
     frame, believed = surprise.frame, surprise.observations[motion.number].place
     shift = end.place[0] - believed[0], end.place[1] - believed[1]
     since = [load for load in surprise.loads.values() if load.since > motion.number]
-    seen = tuple((load.name, _aside(load, shift, surprise)) for load in since)
+    seen = tuple((load.name, _object_shift(load, shift, surprise)) for load in since)
     correction = WalkCorrection(motion.number, shift, seen, motion.load)
     there, loads = correction.observations(surprise.observations), correction.loads(surprise.loads, frame)
     place = frame.place_from_utak(*correction.place(frame.place_to_utak(*surprise.place)))
     return replace(surprise, place=place, observations=there, loads=loads), correction
 
 
-def _aside(load: HeldObject, shift: Place, surprise: Surprise) -> Place:
-    """How far a thing lies from where it was seen to, if Utak stood aside: so many squares when its sides lie on lines.
+def _object_shift(load: HeldObject, shift: Position, surprise: Surprise) -> Position:
+    """Return the shift of an object when the observation that showed it was made `shift` away, Utak's own frame.
 
-    For the eye tells squares, wherever in his own he stands.
+    An object with sides on grid lines is shifted by whole squares, for the retina tells squares, wherever in a square
+    the observation is made.
     """
     if not is_whole(load.first):
         return shift
     frame, observation = surprise.frame, surprise.observations[load.since - 1]
-    elsewhere = observation._replace(place=plus(observation.place, shift))
-    (west, south), (east, north) = fallen(frame, [observation, elsewhere])
+    elsewhere = observation._replace(place=add(observation.place, shift))
+    (west, south), (east, north) = observation_squares(frame, [observation, elsewhere])
     return frame.to_utak(float(east - west), float(north - south))
 
 
-def _stood(
+def _moved_since(
     under: RemappedMap, observations: Sequence[Observation], motion: MotionHypothesis, frame: Frame
 ) -> frozenset[Square]:
-    """The squares on which things stood when a motion was made that he has moved since, or before."""
-    before = {was.name: was for was in observations[motion.number - 1].moved}
+    """Return the squares that objects covered when a motion was made, the object in hand left out, map frame."""
+    before = {pose.name: pose for pose in observations[motion.number - 1].moved}
     squares: frozenset[Square] = frozenset()
     for load in under.loads.values():
         if load.name != motion.load:
-            lying = lain(load, before[load.name], frame).polygon if load.name in before else load.first
+            lying = object_at(load, before[load.name], frame).polygon if load.name in before else load.first
             squares |= covered(lying).squares()
     return squares

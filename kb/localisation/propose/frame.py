@@ -1,163 +1,182 @@
-"""Which lattice to believe instead, when a look contradicts what is believed and things have been moved.
+"""Proposals of another frame, when an observation contradicts what is believed after objects have been moved.
 
-What was left is tried first, then what had been given up; that a motion was stopped by what is not known comes last.
+Hypotheses that are left are tried first, then those that were given up. That the motion was blocked by something
+unknown comes last.
 """
 
 import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from kb.localisation.hypotheses.carry_outcomes import part_way
+from kb.localisation.hypotheses.carry_outcomes import partial_outcome
 from kb.localisation.hypotheses.contacts import Obstructions
-from kb.localisation.hypotheses.frames import ELSEWHERE, FrameHypothesis, anywhere, candidates, exactly, search
-from kb.localisation.hypotheses.walk_outcomes import views
+from kb.localisation.hypotheses.frames import (
+    OFF_CENTRE_COST,
+    FrameHypothesis,
+    any_origin,
+    consistent_hypotheses,
+    exact_hypothesis,
+    frames_to_try,
+)
+from kb.localisation.hypotheses.walk_outcomes import observation_places
 from kb.localisation.hypotheses.what_if import Surprise, WhatIf
-from kb.localisation.propose.blocked import likeliest
-from kb.localisation.propose.origin import frames, odds_against
-from kb.localisation.propose.origin_from_turns import pivoted
+from kb.localisation.propose.blocked import likeliest_ends
+from kb.localisation.propose.origin import frames_of_coarse_origins, origin_cost
+from kb.localisation.propose.origin_from_turns import origin_from_turn
 from kb.objects.held_object import Square
 from kb.perception.frame import CENTRE, Frame
 
-ABOUT = 2  # degrees by which the lattice may lie otherwise than any that was left
-WIDEST = 8  # degrees between those that were left, for more to be thought of
-FEW = 12  # lattices on which all is laid anew, at most
-LEAST = 4  # at least
-MOST_REPLAYS = 200  # looks that are taken in anew for that
-BEST = 3  # of those, on which the motion may have been stopped by what was not known
-SLIVER = 0.02  # squares^2: where there is no more room for where he woke, he was rather stopped
+SEARCHED_ANGLE_MARGIN = 2  # degrees around the hypotheses left in which orientations are taken up again; tuned
+MAX_SEARCHED_SPAN = 8  # degrees between the hypotheses left up to which all of them are searched around; tuned
+MAX_EVALUATED_FRAMES = 12  # frames in which everything is remapped, at most: bounds the time; tuned
+MIN_EVALUATED_FRAMES = 4  # the same, at least, however many observations there are; tuned
+MAX_REMAPPED_OBSERVATIONS = 200  # observations replayed in all for that: bounds the time; tuned
+MAX_BLOCKED_FRAMES = 3  # of those, the best ones in which the motion may have been blocked by something unknown; tuned
+MIN_ORIGIN_AREA = 0.02  # squares^2 of origins left below which a blocked motion is likelier; tuned
 
 
-def explained(surprise: Surprise, anew: bool, simple: bool) -> WhatIf | None:
-    """The lattice that explains a look best; None when none is left.
+def best_frame(surprise: Surprise, reconsider: bool, simple: bool) -> WhatIf | None:
+    """Return the evaluation of the frame that explains an observation best; None when no frame is left.
 
-    anew : may hypotheses that were given up before be taken up again? simple : is it explained if the motion ended
-    early, the lattice being as believed?
+    reconsider : whether hypotheses that were given up may be taken up again. simple : whether a motion that ended early
+    explains the observation in the believed frame.
     """
-    if surprise.turned:
-        found = _otherwise_turned(surprise) or pivoted(surprise, simple)
+    if surprise.any_turned:
+        found = _other_orientation(surprise) or origin_from_turn(surprise, simple)
         if found is not None:
             return found
-    return _laid_otherwise(surprise, anew)
+    return _least_residual(surprise, reconsider)
 
 
-def _otherwise_turned(surprise: Surprise) -> WhatIf | None:
-    """A lattice turned otherwise than believed that was never given up, and on which nothing contradicts.
+def _other_orientation(surprise: Surprise) -> WhatIf | None:
+    """Return a frame of another orientation that was never given up and nothing contradicts; None if there is none.
 
-    That he woke amid his square is assumed as long as that explains all.
+    Its origin is taken to be the middle of the square.
     """
     angle = surprise.frame.angle
     others = [other for other in surprise.hypotheses if other.is_centred and other.angle != angle]
-    left = search(surprise.recent, others, surprise.unsettled)
-    tried = (surprise.tried(frame, left, whether=True) for frame in candidates(left, surprise.frame)[:FEW])
-    return next((one for one in tried if not one.misfits), None)
+    left = consistent_hypotheses(surprise.judging_observations, others, surprise.unsettled_discs)
+    frames = frames_to_try(left, surprise.frame)[:MAX_EVALUATED_FRAMES]
+    tried = (surprise.evaluate_frame(frame, left, only_whether=True) for frame in frames)
+    return next((one for one in tried if not one.residual), None)
 
 
-def _laid_otherwise(surprise: Surprise, anew: bool) -> WhatIf | None:
-    """The lattice on which, when all is laid on it, the fewest fields contradict."""
+def _least_residual(surprise: Surprise, reconsider: bool) -> WhatIf | None:
+    """Return the evaluation of the least residual; None when no frame is left."""
     found: list[WhatIf] = []
-    few = max(LEAST, min(FEW, MOST_REPLAYS // (len(surprise.observations) + 1)))
-    for hypotheses, searched in _by_turns(surprise, anew):
-        if searched and sum(hypothesis.area for hypothesis in hypotheses) < SLIVER:
-            short = _cut_short(surprise, few)
+    affordable = MAX_REMAPPED_OBSERVATIONS // (len(surprise.observations) + 1)
+    few = max(MIN_EVALUATED_FRAMES, min(MAX_EVALUATED_FRAMES, affordable))
+    for hypotheses, searched in _batches(surprise, reconsider):
+        if searched and sum(hypothesis.area for hypothesis in hypotheses) < MIN_ORIGIN_AREA:
+            short = _blocked_motion(surprise, few)
             if short is not None:
                 return short
-        for frame in candidates(hypotheses, surprise.frame)[:few]:
-            found.append(surprise.tried(frame, hypotheses, searched))
-            if not found[-1].misfits:
+        for frame in frames_to_try(hypotheses, surprise.frame)[:few]:
+            found.append(surprise.evaluate_frame(frame, hypotheses, searched))
+            if not found[-1].residual:
                 return found[-1]
-    if found or surprise.moving is None:
-        found.sort(key=lambda one: one.misfits)
-        others = [one for one in found if one.frame != surprise.frame][:BEST]
-        found += [surprise.tried(one.frame, one.hypotheses, one.searched, cut_short=True) for one in others]
-    else:  # on none of them the motion went on to its end
-        for frame in candidates(surprise.before, surprise.frame)[:few]:
-            found += [surprise.tried(frame, surprise.before, cut_short=cut_short) for cut_short in (False, True)]
-    return min(found, key=lambda one: one.misfits, default=None)
+    if found or surprise.carried is None:
+        found.sort(key=lambda one: one.residual)
+        others = [one for one in found if one.frame != surprise.frame][:MAX_BLOCKED_FRAMES]
+        found += [surprise.evaluate_frame(one.frame, one.hypotheses, one.searched, cut_short=True) for one in others]
+    else:  # in none of them the motion went on to its end
+        before = surprise.hypotheses_before
+        for frame in frames_to_try(before, surprise.frame)[:few]:
+            found += [surprise.evaluate_frame(frame, before, cut_short=cut_short) for cut_short in (False, True)]
+    return min(found, key=lambda one: one.residual, default=None)
 
 
-def _by_turns(surprise: Surprise, anew: bool) -> Iterator[tuple[tuple[FrameHypothesis, ...], bool]]:
-    """Hypotheses to try one after the other, the likeliest first, each time with whether they had been given up.
+def _batches(surprise: Surprise, reconsider: bool) -> Iterator[tuple[tuple[FrameHypothesis, ...], bool]]:
+    """Yield hypotheses to evaluate, the likeliest first, each time with whether they had been given up.
 
-    That he woke elsewhere in his square is thought of before angles at which the table looks less plain.
+    Another origin is tried before orientations of a worse map prior.
     """
-    left = search(surprise.recent, surprise.hypotheses, surprise.unsettled)
-    plainest = tuple(hypothesis for hypothesis in left if hypothesis.dear <= ELSEWHERE)
+    recent, unsettled = surprise.judging_observations, surprise.unsettled_discs
+    left = consistent_hypotheses(recent, surprise.hypotheses, unsettled)
+    plainest = tuple(hypothesis for hypothesis in left if hypothesis.prior_cost <= OFF_CENTRE_COST)
     yield plainest, False
     if len(plainest) < len(left):
-        if anew:
-            yield search(surprise.recent, anywhere((surprise.frame.angle,)), surprise.unsettled), True
-        yield tuple(hypothesis for hypothesis in left if hypothesis.dear > ELSEWHERE), False
-    if anew:
-        yield _searched(surprise), True
+        if reconsider:
+            yield consistent_hypotheses(recent, any_origin((surprise.frame.angle,)), unsettled), True
+        yield tuple(hypothesis for hypothesis in left if hypothesis.prior_cost > OFF_CENTRE_COST), False
+    if reconsider:
+        yield _reconsidered(surprise), True
 
 
-def _searched(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
-    """All that may be, of angles near to those that were left."""
+def _reconsidered(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
+    """Return all hypotheses that observations leave, of orientations near to those that are left."""
     angles = [surprise.frame.angle, *(h.angle for h in surprise.hypotheses)]
-    if max(angles) - min(angles) > WIDEST:
+    if max(angles) - min(angles) > MAX_SEARCHED_SPAN:
         angles = [surprise.frame.angle]
-    about = anywhere(range(min(angles) - ABOUT, max(angles) + ABOUT + 1))
-    return search(surprise.recent, about, surprise.unsettled)
+    about = any_origin(range(min(angles) - SEARCHED_ANGLE_MARGIN, max(angles) + SEARCHED_ANGLE_MARGIN + 1))
+    return consistent_hypotheses(surprise.judging_observations, about, surprise.unsettled_discs)
 
 
-def _cut_short(surprise: Surprise, few: int) -> WhatIf | None:
-    """A lattice that stood before the thing in hand was moved, on which that was stopped, and nothing contradicts.
+def _blocked_motion(surprise: Surprise, few: int) -> WhatIf | None:
+    """Return a frame that was left before the motion, in which the motion was blocked and nothing contradicts.
 
-    Rather where something is known that stopped it; of angles that do as well, the middle one.
+    A contact with something known is preferred; among orientations that do as well, the middle one is returned. None
+    when there is none. few : frames to evaluate, at most.
     """
-    if surprise.moving is None:
+    if surprise.carried is None:
         return None
-    frames = candidates(surprise.before, surprise.frame)[:few]
+    before = surprise.hypotheses_before
+    frames = frames_to_try(before, surprise.frame)[:few]
     for cut_short in (False, True):
-        tried = [surprise.tried(frame, surprise.before, cut_short=cut_short, whether=True) for frame in frames]
-        fitting = sorted((one for one in tried if not one.misfits), key=lambda one: one.frame.angle)
+        tried = [surprise.evaluate_frame(frame, before, cut_short=cut_short, only_whether=True) for frame in frames]
+        fitting = sorted((one for one in tried if not one.residual), key=lambda one: one.frame.angle)
         if fitting:
             return fitting[(len(fitting) - 1) // 2]
     return None
 
 
-class HaltedElsewhere(NamedTuple):
-    """That a push was stopped, and he woke elsewhere in his square. chance : how likely the push was stopped so.
+class BlockedPushWithOrigin(NamedTuple):
+    """A blocked push together with another origin of the frame.
 
-    against : log odds against it, by the part of his square in which he woke then.
+    Attributes
+    ----------
+    what_if : its evaluation.
+    chance : the probability that the push was blocked so.
+    against : log odds against the part of the square in which the origin lies then.
     """
 
-    supposed: WhatIf
+    what_if: WhatIf
     chance: float
     against: float
 
 
-def halted_elsewhere(surprise: Surprise) -> list[HaltedElsewhere]:
-    """How a push may have been stopped by which nothing contradicts, if he woke elsewhere, of a grid of places.
+def blocked_pushes_with_origin(surprise: Surprise) -> list[BlockedPushWithOrigin]:
+    """Return how a push may have been blocked, with another origin on a coarse grid, so that nothing contradicts it.
 
-    Where he himself runs against something depends on where he woke. Once a thing was turned that tells where he woke.
+    Where Utak itself meets something depends on the origin. Not asked once an object was turned: that tells the origin.
     """
     alike: dict[tuple[int, int, frozenset[Square]], list[tuple[WhatIf, float]]] = {}
-    for frame in frames(surprise.frame) if surprise.moving is not None and not surprise.turned else ():
-        for supposed, chance in _halts(surprise, frame):
-            assert supposed.outcome is not None
-            x, y = supposed.place
-            key = math.floor(x), math.floor(y), supposed.outcome.against
-            alike.setdefault(key, []).append((supposed, chance))
+    asked = surprise.carried is not None and not surprise.any_turned
+    for frame in frames_of_coarse_origins(surprise.frame) if asked else ():
+        for what_if, chance in _blocked_pushes(surprise, frame):
+            assert what_if.outcome is not None
+            x, y = what_if.place
+            key = math.floor(x), math.floor(y), what_if.outcome.contact_squares
+            alike.setdefault(key, []).append((what_if, chance))
     found = []
     for same in alike.values():
-        supposed, chance = min(same, key=lambda one: math.dist(one[0].frame.origin, CENTRE))
+        what_if, chance = min(same, key=lambda one: math.dist(one[0].frame.origin, CENTRE))
         left = tuple(dict.fromkeys(hypothesis for one, _ in same for hypothesis in one.hypotheses))
-        against = odds_against(surprise.frame, len(left))
-        found.append(HaltedElsewhere(supposed._replace(hypotheses=left), chance, against))
+        against = origin_cost(surprise.frame, len(left))
+        found.append(BlockedPushWithOrigin(what_if._replace(hypotheses=left), chance, against))
     return found
 
 
-def _halts(surprise: Surprise, frame: Frame) -> Iterator[tuple[WhatIf, float]]:
-    """How a push may have been stopped on a lattice on which nothing contradicts then, with how likely that was."""
-    under = surprise.laid(frame, whether=True)
-    if under.misfits:
+def _blocked_pushes(surprise: Surprise, frame: Frame) -> Iterator[tuple[WhatIf, float]]:
+    """Yield how a push may have been blocked in a frame so that nothing contradicts it, each with its probability."""
+    under = surprise.remapped(frame, only_whether=True)
+    if under.residual:
         return
-    place, polygon, motion = surprise.begun(frame)
-    held, hindrances = (exactly(frame),), Obstructions(under.occupancy, place, polygon, motion)
-    for stop in likeliest(hindrances.stops(place, polygon, motion)):
-        end = part_way(place, polygon, motion, stop.part, stop.against)
-        for view in views(end.place):
-            supposed = surprise.judged(frame, held, end._replace(place=view), whether=True)
-            if not supposed.misfits:
-                yield supposed, stop.chance
+    place, polygon, motion = surprise.motion_in(frame)
+    left, obstructions = (exact_hypothesis(frame),), Obstructions(under.occupancy, place, polygon, motion)
+    for contact in likeliest_ends(obstructions.contacts(place, polygon, motion)):
+        end = partial_outcome(place, polygon, motion, contact.fraction, contact.squares)
+        for view in observation_places(end.place):
+            what_if = surprise.evaluate_outcome(frame, left, end._replace(place=view), only_whether=True)
+            if not what_if.residual:
+                yield what_if, contact.chance

@@ -1,7 +1,7 @@
-"""What a motion left of what is believed of a thing in hand: where it lies, and against what when it was stopped.
+"""State of a held object after a motion: where it lies, and against what when it was blocked.
 
-Who slips believes a thing a little beside where it is. Stopped where there seemed to be room, something known
-stands in its way all the same: so it lies where it touches that, as near as may be to where it was believed to lie.
+After slips an object lies a little beside its believed place. If it was blocked where there seemed to be room,
+something known blocked it all the same. So it lies where it touches that, as near as possible to its believed place.
 """
 
 import math
@@ -11,62 +11,68 @@ from typing import Any
 
 from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Motion, Translate
-from kb.localisation.hypotheses.carry_outcomes import Outcome
+from kb.localisation.hypotheses.carry_outcomes import CarryOutcome
 from kb.objects.held_object import HeldObject, slack_of
 
-OFTEN = 2  # times that a thing did not move for no reason, before it rather lies elsewhere
-NOWHERE = 0.2  # squares: what was stopped sooner than this did not move
-FURTHEST = 0.8  # squares beside where it is believed to lie in which something stands that stopped it
-STEP = 0.1  # squares between the places that are tried
-TOUCHING = 0.02  # squares from what stopped it
+MIN_THWARTED_MOTIONS = 2  # motions without effect or reason from which the place of an object is inexact; tuned
+MIN_MOVED_DISTANCE = 0.2  # squares: an object blocked before this did not move; tuned
+MAX_LEANING_DISTANCE = 0.8  # squares from its believed place within which an object may touch what blocked it; tuned
+LEANING_STEP = 0.1  # squares between the tried places
+TOUCHING_DISTANCE = 0.02  # squares from an obstacle within which an object touches it; tuned
 
 
-def after(load: HeldObject, outcome: Outcome | None, misfits: int, suspected: bool = False) -> HeldObject:
-    """A thing after a motion with it in hand.
+def object_after(load: HeldObject, outcome: CarryOutcome | None, residual: int, suspected: bool = False) -> HeldObject:
+    """Return an object in hand after a motion.
 
-    misfits : fields that the motion, as it is believed, leaves as noise. suspected : is there something that may have
-    stopped it?
+    load : before the motion. outcome : the chosen one. residual : fields that it leaves unexplained. suspected :
+    whether an open square is suspected to have blocked the motion.
     """
-    load = replace(load, unexplained=max(load.unexplained, misfits))
+    load = replace(load, unexplained=max(load.unexplained, residual))
     if outcome is None or outcome.how == "stuck" or outcome.polygon.equals(load.polygon):
         thwarted = load.thwarted + (load.proven and not suspected)
-        return replace(load.resisted(), thwarted=thwarted, inexact=load.inexact or thwarted >= OFTEN)
+        inexact = load.inexact or thwarted >= MIN_THWARTED_MOTIONS
+        return replace(load.resisted(), thwarted=thwarted, inexact=inexact)
     if outcome.insets is not None:
         load = load.inset(outcome.insets) or load
     slack = load.slack if outcome.as_commanded else max(load.slack, slack_of(outcome.polygon))
     moved = load.moved(outcome.polygon, slack, outcome.degrees, outcome.as_commanded)
-    moved = replace(moved, empty=moved.empty | outcome.against)
-    nowhere = outcome.how == "blocked" and load.polygon.hausdorff_distance(outcome.polygon) < NOWHERE
-    return replace(moved, stuck=load.stuck + 1) if nowhere else moved
+    moved = replace(moved, empty=moved.empty | outcome.contact_squares)
+    unmoved = outcome.how == "blocked" and load.polygon.hausdorff_distance(outcome.polygon) < MIN_MOVED_DISTANCE
+    return replace(moved, stuck=load.stuck + 1) if unmoved else moved
 
 
-def leaning(load: HeldObject, motion: Motion, walls: Obstacles, clashes: Callable[[HeldObject], int]) -> HeldObject:
-    """A thing that was stopped on a straight motion, where it touches what is known to stand in its way.
+def lean_on_obstacle(
+    load: HeldObject, motion: Motion, known: Obstacles, count_clashes: Callable[[HeldObject], int]
+) -> HeldObject:
+    """Return an object that a straight motion left blocked, at the nearest place where it touches a known obstacle.
 
-    clashes : how much of what is seen contradicts where it lies. It stays where it is when that is so of every place
-    near, or when it touches something already.
+    It stays where it is when it touches something there, or when every touching place contradicts more of what is seen.
+
+    load : after the motion. motion : as commanded, map frame. known : the obstacles. count_clashes : returns how many
+    fields contradict an object where it lies.
     """
     if not isinstance(motion, Translate):
         return load
-    most = clashes(load)
-    for far, there in sorted(_touching(load.polygon, motion, walls), key=lambda place: place[0]):
-        if far <= TOUCHING:
+    most = count_clashes(load)
+    for far, there in sorted(_touching_places(load.polygon, motion, known), key=lambda place: place[0]):
+        if far <= TOUCHING_DISTANCE:
             return load
         lying = load.lying(there, load.slack)
-        if clashes(lying) <= most:
+        if count_clashes(lying) <= most:
             return lying
     return load
 
 
-def _touching(polygon: Any, motion: Translate, walls: Obstacles) -> Iterator[tuple[float, Any]]:
-    """How far away, and where, a thing touches what stops it on a motion, for ways to either side of it."""
+def _touching_places(polygon: Any, motion: Translate, known: Obstacles) -> Iterator[tuple[float, Any]]:
+    """Yield outlines that touch an obstacle on the motion or beside it, each with its distance in squares."""
     if not any(motion):
         return
-    onward = motion.steered(2 * FURTHEST, 0.0)
-    for step in range(-round(FURTHEST / STEP), round(FURTHEST / STEP) + 1):
-        aside = step * STEP
-        back = motion.steered(-FURTHEST, aside).carry(polygon)
-        part = walls.first_contact(ContactBody(back), onward).fraction
-        far = math.hypot(aside, (2 * part - 1) * FURTHEST)
-        if 0 < part < 1 and far <= FURTHEST:
-            yield far, onward.part(part).carry(back)
+    onward = motion.steered(2 * MAX_LEANING_DISTANCE, 0.0)
+    number = round(MAX_LEANING_DISTANCE / LEANING_STEP)
+    for step in range(-number, number + 1):
+        aside = step * LEANING_STEP
+        back = motion.steered(-MAX_LEANING_DISTANCE, aside).carry(polygon)
+        fraction = known.first_contact(ContactBody(back), onward).fraction
+        far = math.hypot(aside, (2 * fraction - 1) * MAX_LEANING_DISTANCE)
+        if 0 < fraction < 1 and far <= MAX_LEANING_DISTANCE:
+            yield far, onward.part(fraction).carry(back)

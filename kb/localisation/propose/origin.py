@@ -1,7 +1,7 @@
-"""That a walk was stopped, and that he woke elsewhere in his square: neither is told without the other.
+"""Proposals that a walk was blocked and the origin of the frame lies elsewhere: neither is explained without the other.
 
-Who was stopped stands on a line between two squares, wherever he woke; but how far he came, and so where all lies that
-he looks at later, depends on where in his square he began.
+A contact stops a walk on a grid line, wherever the origin lies. But how far the walk came, and so where everything
+lies that is seen later, depends on the origin.
 """
 
 import math
@@ -9,67 +9,72 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
-from kb.localisation.hypotheses.explanation import Explanation, told_again
-from kb.localisation.hypotheses.frames import ELSEWHERE, Observation, exactly, fallen
-from kb.localisation.hypotheses.map_prior import Drawn, MapDescription, plainness
-from kb.localisation.hypotheses.remap import Prefixes, relaid
-from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis, ReestimatedWalk, retold
+from kb.localisation.hypotheses.explanation import Explanation, reestimated_explanation
+from kb.localisation.hypotheses.frames import OFF_CENTRE_COST, Observation, exact_hypothesis, observation_squares
+from kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, relative_costs
+from kb.localisation.hypotheses.remap import ReplayPrefixes, remap
+from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis, ReestimatedWalk, reestimate_walk
 from kb.perception.frame import CENTRE, Frame
 
-LAST = 3  # motions one of which may have been stopped where nobody thought so
-GRID = 7  # points along either side of the square in which he woke
-PLACES = tuple(((i + 0.5) / GRID, (j + 0.5) / GRID) for i in range(GRID) for j in range(GRID))
+MAX_WALKS_WITH_ORIGIN = 3  # last walks that are re-estimated together with the origin: bounds the time; tuned
+COARSE_GRID = 7  # origins along either side of the square of waking: bounds the time; tuned
+COARSE_ORIGINS = tuple(
+    ((i + 0.5) / COARSE_GRID, (j + 0.5) / COARSE_GRID) for i in range(COARSE_GRID) for j in range(COARSE_GRID)
+)
 
 
-def frames(held: Frame) -> list[Frame]:
-    """The lattices that are turned like the one held, if he woke at one of PLACES."""
-    return [replace(held, origin=place) for place in PLACES]
+def frames_of_coarse_origins(believed: Frame) -> list[Frame]:
+    """Return the frames of the believed orientation with each of the COARSE_ORIGINS."""
+    return [replace(believed, origin=place) for place in COARSE_ORIGINS]
 
 
-def odds_against(held: Frame, places: int) -> float:
-    """Log odds against having woken at one of so many of PLACES, rather than where he is believed to."""
-    return ELSEWHERE * (held.origin == CENTRE) - math.log(places / len(PLACES))
+def origin_cost(believed: Frame, number: int) -> float:
+    """Return the log odds against an origin at one of `number` of the COARSE_ORIGINS, rather than the believed one."""
+    return OFF_CENTRE_COST * (believed.origin == CENTRE) - math.log(number / len(COARSE_ORIGINS))
 
 
-def misplaced(
-    motions: Sequence[MotionHypothesis], held: Frame, observations: Sequence[Observation]
+def blocked_walks_with_origin(
+    motions: Sequence[MotionHypothesis], believed: Frame, observations: Sequence[Observation]
 ) -> list[Explanation]:
-    """That one of the last motions was stopped, and he woke elsewhere, by which no look contradicts another.
+    """Return explanations that one of the last walks was blocked, with another origin, without any contradiction.
 
-    Those that say the same of every look are told as one, each with what speaks against it: how plain the table looks
-    then, and how small the part of the square is in which he woke. held : the lattice that is believed. looks : all,
-    where they are believed to have been received, the newest where it was commanded.
+    Those by which all observations are made on the same squares are one explanation. Its prior cost is the map prior
+    plus the log odds against the part of the square in which the origin lies then.
+
+    motions : the last walks, oldest first. believed : the believed frame. observations : all, at their believed places;
+    the newest where it was commanded.
     """
-    places = tuple(exactly(frame) for frame in frames(held))
+    origins = tuple(exact_hypothesis(frame) for frame in frames_of_coarse_origins(believed))
     alike: dict[tuple[int, bytes], list[ReestimatedWalk]] = {}
-    begun = cache(lambda frame: Prefixes(frame, observations, {}))
-    for motion in motions[-LAST:]:
-        for told in retold(motion._replace(hypotheses=places), held, observations, begun):
-            if not told.misfits:
-                key = motion.number, fallen(told.hypothesis.frame, _received(told, observations)).tobytes()
-                alike.setdefault(key, []).append(told)
-    drawn, against = Drawn(), [odds_against(held, len(told)) for told in alike.values()]
-    sketches = [_sketch(told[0], observations, drawn) for told in alike.values()]
-    prices = plainness([*zip(sketches, against, strict=True)])
+    prefixes = cache(lambda frame: ReplayPrefixes(frame, observations, {}))
+    for motion in motions[-MAX_WALKS_WITH_ORIGIN:]:
+        for walk in reestimate_walk(motion._replace(hypotheses=origins), believed, observations, prefixes):
+            if not walk.residual:
+                squares = observation_squares(walk.hypothesis.frame, _corrected(walk, observations))
+                alike.setdefault((motion.number, squares.tobytes()), []).append(walk)
+    drawn, against = DrawnScenes(), [origin_cost(believed, len(walks)) for walks in alike.values()]
+    maps = [_description(walks[0], observations, drawn) for walks in alike.values()]
+    costs = relative_costs([*zip(maps, against, strict=True)])
     found = map(_explanation, alike.values())
     return [
-        one._replace(crooked=price + odds, weighed=True)
-        for one, price, odds in zip(found, prices, against, strict=True)
+        one._replace(prior_cost=cost + odds, origin_weighed=True)
+        for one, cost, odds in zip(found, costs, against, strict=True)
     ]
 
 
-def _received(told: ReestimatedWalk, observations: Sequence[Observation]) -> list[Observation]:
-    """All looks where they were received then."""
-    *before, newest = told.correction.observations(observations)
-    return [*before, newest._replace(place=told.newest)]
+def _corrected(walk: ReestimatedWalk, observations: Sequence[Observation]) -> list[Observation]:
+    """Return all observations where they were made by a re-estimated walk."""
+    *before, newest = walk.correction.observations(observations)
+    return [*before, newest._replace(place=walk.newest)]
 
 
-def _sketch(told: ReestimatedWalk, observations: Sequence[Observation], drawn: Drawn) -> MapDescription:
-    frame = told.hypothesis.frame
-    return MapDescription(relaid(frame, frame, _received(told, observations), ()).occupancy, drawn)
+def _description(walk: ReestimatedWalk, observations: Sequence[Observation], drawn: DrawnScenes) -> MapDescription:
+    """Return the map by a re-estimated walk. drawn : completions of scenes drawn so far."""
+    frame = walk.hypothesis.frame
+    return MapDescription(remap(frame, frame, _corrected(walk, observations), ()).occupancy, drawn)
 
 
 def _explanation(alike: Sequence[ReestimatedWalk]) -> Explanation:
-    """What says the same, as one explanation: by the likeliest of them."""
-    told = min(alike, key=lambda one: (not one.known, math.dist(one.hypothesis.frame.origin, CENTRE)))
-    return told_again(told, tuple(one.hypothesis for one in alike))
+    """Return walks of the same squares as one explanation: that of a known contact, then of the most central origin."""
+    walk = min(alike, key=lambda one: (not one.contact_known, math.dist(one.hypothesis.frame.origin, CENTRE)))
+    return reestimated_explanation(walk, tuple(one.hypothesis for one in alike))

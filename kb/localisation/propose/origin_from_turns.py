@@ -1,7 +1,8 @@
-"""Where in his square Utak woke, told by what he turned.
+"""Origin estimation: where in the square of waking the origin of the frame lies, as turned objects tell it.
 
-A turn goes about him, so it leaves a thing elsewhere when he stands elsewhere in his square than he thinks. A turn that
-was stopped tells of two things at once, of how far it went and of what it was about: both are sought together.
+A turn goes about Utak, so it leaves an object elsewhere when Utak is elsewhere in the square than believed. A turn that
+was blocked tells two things at once, how far it went and what it was about. Both are sought together, by subdivision of
+the cells of a grid over the turn and the square.
 """
 
 import itertools
@@ -13,147 +14,168 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
-from kb.localisation.hypotheses.carry_outcomes import length_of, part_way
-from kb.localisation.hypotheses.contacts import near
-from kb.localisation.hypotheses.frames import Box, FrameHypothesis, cells, exactly, points
-from kb.localisation.hypotheses.what_if import Place, Surprise, WhatIf
+from kb.localisation.hypotheses.carry_outcomes import motion_length, partial_outcome
+from kb.localisation.hypotheses.contacts import likeliest_contact_near
+from kb.localisation.hypotheses.frames import (
+    FrameHypothesis,
+    OriginBox,
+    Position,
+    exact_hypothesis,
+    grid_cell_size,
+    origin_grid,
+)
+from kb.localisation.hypotheses.what_if import Surprise, WhatIf
 from kb.perception.frame import Frame
 
-COARSE = 0.5  # squares that a thing goes in parts of a turn that are tried first
-CUTS = 4  # parts of either side of his square that are tried first
-EIGHTS = (2, 2, 2)  # into which a part is cut
-MOST_PARTS = 2048
-# Parts that are held against a look in one go. It bounds the work of a command by a count: each costs one comparison
-# of a look with the map. Nothing is given up where there are more: the larger parts stay, which are less exact.
-FINER = 2  # times that parts are cut in half
-UNLIKELIER = 10  # times that what may have stopped a thing is less likely than what is likeliest, at most
-Span = tuple[float, float]
+COARSE_ARC = 0.5  # squares that the outermost point of an object goes in one coarse cell of a turn; tuned
+COARSE_CUTS = 4  # coarse cells along either side of the square; tuned
+SUBDIVISION = (2, 2, 2)  # parts into which a cell is cut: of the turn, west to east, south to north
+MAX_CELLS = 2048
+# Cells that are compared with an observation in one go. It bounds the work of a command by a count: each costs one
+# comparison of an observation with the map. Nothing is given up where there are more: the larger cells stay, which are
+# less exact.
+MAX_SUBDIVISIONS = 2  # times that cells are cut; tuned
+MAX_CHANCE_RATIO = 10  # of the likeliest contact to one that is kept; tuned
+Interval = tuple[float, float]
 
 
-class Part(NamedTuple):
-    """A part of a turn, from 0 to 1, and of his square, from west to east and from south to north."""
+class TurnOriginCell(NamedTuple):
+    """A cell of a grid over the ends of a turn and the origins of a frame.
 
-    turn: Span
-    columns: Span
-    rows: Span
+    Attributes
+    ----------
+    turn : fractions of the turn, 0 to 1.
+    columns : west and east bound of the origin in the square of waking.
+    rows : its south and north bound.
+    """
+
+    turn: Interval
+    columns: Interval
+    rows: Interval
 
     @property
-    def origin(self) -> Place:
-        """The middle of that part of his square."""
+    def origin(self) -> Position:
+        """Return the origin in the middle of the cell."""
         return sum(self.columns) / 2, sum(self.rows) / 2
 
     @property
-    def far(self) -> float:
-        """Squares from there to its corners."""
+    def radius(self) -> float:
+        """Return the greatest distance of an origin of the cell from its middle, in squares."""
         (west, east), (south, north) = self.columns, self.rows
         return math.hypot(east - west, north - south) / 2
 
-    def cut(self, *times: int) -> "list[Part]":
-        """It, each side cut so many times: of the turn, and of his square."""
+    def cut(self, *times: int) -> "list[TurnOriginCell]":
+        """Return the parts of the cell, its sides cut into so many: of the turn, west to east, south to north."""
         sides = [np.linspace(*side, n + 1).tolist() for side, n in zip(self, times, strict=True)]
-        return [Part(*spans) for spans in itertools.product(*map(itertools.pairwise, sides))]
+        return [TurnOriginCell(*spans) for spans in itertools.product(*map(itertools.pairwise, sides))]
 
 
-def pivoted(surprise: Surprise, simple: bool) -> WhatIf | None:
-    """The point of his square at which he woke, and what came of a turn, so that nothing contradicts; None if none.
+def origin_from_turn(surprise: Surprise, simple: bool) -> WhatIf | None:
+    """Return the origin, with the outcome of a turn, so that nothing contradicts them; None when there is none.
 
-    The lattice is turned as it is believed to be. A turn went to its end, or as far as what is known to stand in its
-    way let it go; else it ended anywhere. What is left are all points that do. simple : is the look explained if the
-    motion ended early, the lattice being as believed?
+    The orientation is the believed one. The turn went to its end, or as far as known obstacles let it go; else it may
+    have ended anywhere. The hypotheses left are all origins that do.
+
+    simple : whether a motion that ended early explains the observation in the believed frame.
     """
-    where = _points(surprise)
-    far = math.hypot(*cells(where)) / 2
-    tried = (surprise.tried(point.frame, (point,), far=far, whether=True) for point in where)
-    fitting = [one for one in tried if not one.misfits]
+    points = _origins_left(surprise)
+    error = math.hypot(*grid_cell_size(points)) / 2
+    tried = (surprise.evaluate_frame(point.frame, (point,), origin_error=error, only_whether=True) for point in points)
+    fitting = [one for one in tried if not one.residual]
     if not fitting and not (simple and len(surprise.hypotheses) == 1):
-        fitting = _halted(surprise, _room(where))
+        fitting = _blocked_turns(surprise, _bounds(points))
     return _middle(fitting) if fitting else None
 
 
-def _points(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
-    """The points that are left; if there is but one, all of them that looks leave."""
+def _origins_left(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
+    """Return the exact origins that are left; if fewer than two are, a grid of all that observations leave."""
     given = tuple(h for h in surprise.hypotheses if h.angle == surprise.frame.angle and h.is_point)
-    return given if len(given) > 1 else points(surprise.frame, surprise.observations)
+    return given if len(given) > 1 else origin_grid(surprise.frame, surprise.observations)
 
 
-def _halted(surprise: Surprise, room: Box) -> list[WhatIf]:
-    """What fits, if a turn of what is in his hand ended early; nothing, if there was none.
+def _blocked_turns(surprise: Surprise, bounds: OriginBox) -> list[WhatIf]:
+    """Return what fits if a turn of the held object ended early; nothing if there was no turn.
 
-    Parts of his square, and of the turn, are cut smaller as long as nothing contradicts them, and they are not too
-    many; larger ones leave more room for where the thing lies.
+    Cells are cut as long as nothing contradicts them and they are not too many. Larger cells leave more room for where
+    the object lies.
+
+    bounds : of the origins.
     """
     if surprise.degrees == 0.0:
         return []
-    place, polygon, motion = surprise.begun(surprise.frame)
-    length, (west, south, east, north) = length_of(place, polygon, motion), room
-    parts = Part((0.0, 1.0), (west, east), (south, north)).cut(math.ceil(length / COARSE), CUTS, CUTS)
-    for number in range(FINER + 1):
-        if number and len(parts) * math.prod(EIGHTS) > MOST_PARTS:
+    place, polygon, motion = surprise.motion_in(surprise.frame)
+    length, (west, south, east, north) = motion_length(place, polygon, motion), bounds
+    coarse = TurnOriginCell((0.0, 1.0), (west, east), (south, north))
+    cells = coarse.cut(math.ceil(length / COARSE_ARC), COARSE_CUTS, COARSE_CUTS)
+    for number in range(MAX_SUBDIVISIONS + 1):
+        if number and len(cells) * math.prod(SUBDIVISION) > MAX_CELLS:
             break
         if number:
-            parts = [cut for part in parts for cut in part.cut(*EIGHTS)]
-        tried = [(part, _ended(surprise, part, length)) for part in parts]
-        fitting = [(part, one) for part, one in tried if not one.misfits]
-        parts = [part for part, _ in fitting]
-    return _stoppable(surprise, fitting, length)
+            cells = [part for cell in cells for part in cell.cut(*SUBDIVISION)]
+        tried = [(cell, _evaluate_cell(surprise, cell, length)) for cell in cells]
+        fitting = [(cell, one) for cell, one in tried if not one.residual]
+        cells = [cell for cell, _ in fitting]
+    return _at_contacts(surprise, fitting, length)
 
 
-def _ended(surprise: Surprise, part: Part, length: float) -> WhatIf:
-    """What contradicts that he woke in a part of his square, and that a turn ended in a part of it."""
-    frame = Frame(surprise.frame.angle, part.origin)
-    refused = surprise.refused(frame, (exactly(frame),))
-    if refused is not None:
-        return refused
-    place, polygon, motion = surprise.begun(frame)
-    outcome = part_way(place, polygon, motion, sum(part.turn) / 2)
-    return surprise.judged(frame, (exactly(frame),), outcome, _slack(part, length), part.far, whether=True)
+def _evaluate_cell(surprise: Surprise, cell: TurnOriginCell, length: float) -> WhatIf:
+    """Return what contradicts an origin and an end of the turn in a cell. length : of the turn, in squares."""
+    frame = Frame(surprise.frame.angle, cell.origin)
+    left = (exact_hypothesis(frame),)
+    refuted = surprise.refuted(frame, left)
+    if refuted is not None:
+        return refuted
+    place, polygon, motion = surprise.motion_in(frame)
+    outcome = partial_outcome(place, polygon, motion, sum(cell.turn) / 2)
+    return surprise.evaluate_outcome(frame, left, outcome, _cell_slack(cell, length), cell.radius, only_whether=True)
 
 
-def _stoppable(surprise: Surprise, fitting: Sequence[tuple[Part, WhatIf]], length: float) -> list[WhatIf]:
-    """Of turns that ended early those that something stopped about there, the likelier, ended where it did.
+def _at_contacts(surprise: Surprise, fitting: Sequence[tuple[TurnOriginCell, WhatIf]], length: float) -> list[WhatIf]:
+    """Return those turns that ended near a likely contact, ended at the contact; all when none has one.
 
-    All, when nothing is known that may have stopped any.
+    fitting : the cells that nothing contradicts. length : of the turn, in squares.
     """
-    stopped, stops = [], cache(lambda frame: surprise.hindrances.stops(*surprise.begun(frame)))
-    for part, one in fitting:
-        place, polygon, motion = surprise.begun(one.frame)
-        stop = near(stops(one.frame), place, polygon, motion, sum(part.turn) / 2)
-        if stop is not None:
-            there = part_way(place, polygon, motion, stop.part, stop.against)
-            judged = surprise.judged(one.frame, one.hypotheses, there, _slack(part, length), part.far, whether=True)
-            if not judged.misfits:
-                stopped.append((stop.chance, judged))
+    contacts = cache(lambda frame: surprise.obstructions.contacts(*surprise.motion_in(frame)))
+    stopped = []
+    for cell, one in fitting:
+        place, polygon, motion = surprise.motion_in(one.frame)
+        contact = likeliest_contact_near(contacts(one.frame), place, polygon, motion, sum(cell.turn) / 2)
+        if contact is not None:
+            there = partial_outcome(place, polygon, motion, contact.fraction, contact.squares)
+            judged = surprise.evaluate_outcome(
+                one.frame, one.hypotheses, there, _cell_slack(cell, length), cell.radius, only_whether=True
+            )
+            if not judged.residual:
+                stopped.append((contact.chance, judged))
     best = max((chance for chance, _ in stopped), default=0.0)
-    return [one for chance, one in stopped if chance >= best / UNLIKELIER] or [one for _, one in fitting]
+    likely = [one for chance, one in stopped if chance >= best / MAX_CHANCE_RATIO]
+    return likely or [one for _, one in fitting]
 
 
-def _slack(part: Part, length: float) -> float:
-    """Squares by which a thing may lie otherwise than in the middle of a part of a turn. length : of all of it."""
-    begin, end = part.turn
+def _cell_slack(cell: TurnOriginCell, length: float) -> float:
+    """Return how far an object may lie from where the middle of a cell leaves it, in squares. length : of the turn."""
+    begin, end = cell.turn
     return length * (end - begin) / 2
 
 
-def _room(where: Sequence[FrameHypothesis]) -> Box:
-    """The box about some points of a grid at which he may have woken, each of which stands for a cell of it."""
-    corners, half = np.array([point.box for point in where]), np.array(cells(where)) / 2
+def _bounds(points: Sequence[FrameHypothesis]) -> OriginBox:
+    """Return the bounds of the cells for which some points of an origin grid stand."""
+    corners, half = np.array([point.box for point in points]), np.array(grid_cell_size(points)) / 2
     west, south = np.maximum(corners[:, :2].min(0) - half, 0.0).tolist()
     east, north = np.minimum(corners[:, 2:].max(0) + half, 1.0).tolist()
     return west, south, east, north
 
 
 def _middle(fitting: Sequence[WhatIf]) -> WhatIf:
-    """Of what fits that where Utak woke amid where he may have, and the thing in hand lies amid where it may.
-
-    All points are left.
-    """
-    fits = np.array([[one.frame.origin, *_corners(one)] for one in fitting])
+    """Return the one whose origin and object lie nearest to the mean of all; the hypotheses of all are left."""
+    fits = np.array([[one.frame.origin, *_object_corners(one)] for one in fitting])
     nearest = int(np.linalg.norm(fits - fits.mean(0), axis=2).max(1).argmin())
     left = dict.fromkeys(hypothesis for one in fitting for hypothesis in one.hypotheses)
     return fitting[nearest]._replace(hypotheses=tuple(left))
 
 
-def _corners(one: WhatIf) -> list[Place]:
-    """The corners of the thing in hand, if there is one."""
+def _object_corners(one: WhatIf) -> list[Position]:
+    """Return the corners of the object in hand, map frame; none when there is none."""
     if one.outcome is None:
         return []
     return [(float(x), float(y)) for x, y in shapely.get_coordinates(one.outcome.polygon)]

@@ -1,4 +1,4 @@
-"""`utak check`: are the files of a scenario as they must be?"""
+"""`utak check`: check the files of scenarios."""
 
 import argparse
 import sys
@@ -8,10 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, Span
-from simulator.scenario.untrusted import add_option, refuse_links
+from simulator.scenario.untrusted import add_untrusted_option, refuse_links
 from simulator.terminal import exits
 
-TOLD = {exits.DONE: "ok", exits.BAD_INPUT: "bad", exits.CANNOT_OPEN: "cannot be opened", exits.OUR_BUG: "a bug of ours"}
+OUTCOME_WORDS = {
+    exits.SUCCESS: "ok",
+    exits.BAD_INPUT: "bad",
+    exits.CANNOT_OPEN: "cannot be opened",
+    exits.OUR_BUG: "a bug of ours",
+}
 
 
 def add(parts: Any) -> None:
@@ -19,27 +24,30 @@ def add(parts: Any) -> None:
     part = parts.add_parser("check", help="check scenarios or single files of them")
     what = "a scenario, a folder of them, a file of one, or a file of rules for --kb"
     part.add_argument("paths", nargs="+", metavar="FILE|FOLDER", help=what)
-    add_option(part)
+    add_untrusted_option(part)
     part.set_defaults(execute=execute)
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Check every path, whatever is wrong with another; the exit code is that of the worst."""
+    """Check every path, whatever is wrong with the others; return the most severe exit code."""
     from simulator.terminal.outcome import attempt
 
     codes = []
     for root, path in [(Path(given), part) for given in options.paths for part in _parts(Path(given))]:
         codes.append(attempt(_check, path, root, options))
-        if codes[-1] == exits.DONE:
+        if codes[-1] == exits.SUCCESS:
             print(f"{path}: ok")
     if len(codes) > 1:
         counts = Counter(codes)
-        print(", ".join(f"{counts[code]} {told}" for code, told in TOLD.items() if counts[code]), file=sys.stderr)
+        print(
+            ", ".join(f"{counts[code]} {words}" for code, words in OUTCOME_WORDS.items() if counts[code]),
+            file=sys.stderr,
+        )
     return exits.worst(codes)
 
 
 def _parts(path: Path) -> list[Path]:
-    """The scenarios in a folder that is none itself; else the path alone."""
+    """Return the scenarios in a folder that is no scenario itself; else a list of the path alone."""
     names = ("world.lp", "world.txt", "start.lp", "goal.lp")
     if not path.is_dir() or any((path / name).exists() for name in names):
         return [path]
@@ -47,13 +55,13 @@ def _parts(path: Path) -> list[Path]:
 
 
 def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
-    """Check a scenario folder or one file; what a file must hold is known by its name."""
+    """Check a scenario folder or one file; the file's name tells what it must hold."""
     from simulator.scenario.scenario import read_scenario
 
     refuse_links(options, path, root)
     if path.is_dir():
         read_scenario(path)
-        return exits.DONE
+        return exits.SUCCESS
     check = _checks().get(path.name)
     if check is None:
         if not path.exists():
@@ -65,18 +73,18 @@ def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
             hint = f"a scenario's files are {', '.join(sorted(_checks()))}; files of rules end in .lp"
             raise BadInputError([Problem(str(path), Span(1, 1, 1), what, hint=hint)])
     check(path)
-    return exits.DONE
+    return exits.SUCCESS
 
 
 def _rules(path: Path) -> None:
-    """Check a file of rules by itself, as --kb takes it."""
+    """Check a file of rules, as for --kb."""
     from kb.reasoning.user_rules import checked_rules
 
     checked_rules([path])
 
 
 def _checks() -> dict[str, Callable[[Path], Any]]:
-    """How each file of a scenario is checked."""
+    """Return the check for each file of a scenario, by name."""
     from kb.task.task import read_start, read_task
     from simulator.scenario.expectation import read_expectations
     from simulator.scenario.picture import read_picture

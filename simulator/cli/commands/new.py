@@ -1,4 +1,4 @@
-"""`utak new`: a small scenario to start from."""
+"""`utak new`: write a small scenario to start from."""
 
 import argparse
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import Any
 from kb.language.diagnostics import CannotOpenError
 from simulator.terminal import exits
 
-FILES = {
+NEW_SCENARIO_FILES = {
     "world.txt": """\
 bbbbbbbbbbbbbbbbbbbbbbbb
 b......................b
@@ -27,16 +27,16 @@ b......................b
 bbbbbbbbbbbbbbbbbbbbbbbb
 """,
     "start.lp": """\
-% What Utak is told of the things that the task speaks of.
+% The objects that the task mentions, and what is claimed about them.
 object(x).
 shape(x, square).
 """,
     "goal.lp": """\
-% What shall hold in the end.
+% What shall hold at the end.
 at(utak, x).
 """,
     "expect.lp": """\
-% What a test checks, in the table's own squares: x to the east, y to the north, (0, 0) in the southwest.
+% What a test checks, in squares of the table: x to the east, y to the north, (0, 0) in the southwest.
 near(utak, "POLYGON ((4 6, 7 6, 7 9, 4 9, 4 6))", 2).
 """,
 }
@@ -50,16 +50,16 @@ def add(parts: Any) -> None:
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Write the scenario; nothing that is there already is overwritten."""
+    """Write the scenario; existing files are not overwritten."""
     folder = Path(options.folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         if any(folder.iterdir()):
             raise CannotOpenError(str(folder), "it is there already, and not empty")
-        for name, text in FILES.items():
+        for name, text in NEW_SCENARIO_FILES.items():
             with (folder / name).open("x") as stream:
                 stream.write(text)
     except (OSError, ValueError) as error:
         raise CannotOpenError(str(folder), getattr(error, "strerror", None) or str(error)) from None
-    print(f"{folder}: {', '.join(FILES)}")
-    return exits.DONE
+    print(f"{folder}: {', '.join(NEW_SCENARIO_FILES)}")
+    return exits.SUCCESS

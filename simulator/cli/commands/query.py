@@ -1,4 +1,4 @@
-"""`utak query`: ask what Utak believes, at a step of a run or of an episode."""
+"""`utak query`: ask what Utak believes at a step of a run or of an episode."""
 
 import argparse
 import sys
@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 from simulator.cli.commands.run import add_settings, settings_of
 from simulator.scenario.untrusted import refuse_links
 from simulator.terminal import exits
-from simulator.terminal.numbers import whole
+from simulator.terminal.numbers import parse_whole
 from simulator.terminal.printing import as_json
 
 if TYPE_CHECKING:
     from simulator.run.story import Story
 
-MOST = 1_000_000  # rows
+MAX_LIMIT_ROWS = 1_000_000  # the greatest --limit, in rows; a convention
 
 
 def add(parts: Any) -> None:
@@ -29,8 +29,8 @@ def add(parts: Any) -> None:
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Go to the step, ask, and print the answer."""
-    from kb.reasoning.query import MOST_ROWS, QueryEngine, QueryLimitError
+    """Go to the step, answer the query and print the answer."""
+    from kb.reasoning.query import MAX_ANSWER_ROWS, QueryEngine, QueryLimitError
     from simulator.run.story import open_story
 
     refuse_links(options, options.story)
@@ -39,24 +39,25 @@ def execute(options: argparse.Namespace) -> int:
     step = story.line["step"]
     try:
         with QueryEngine(rules=options.kb) as engine:
-            answer = engine.ask(story.facts, options.query, options.limit or MOST_ROWS)
+            answer = engine.ask(story.facts, options.query, options.limit or MAX_ANSWER_ROWS)
     except QueryLimitError as limit:
         print(f"utak: {limit}", file=sys.stderr)
         return exits.LIMIT
     if options.json:
-        told = {"step": step, "answer": answer.kind, "variables": list(answer.variables)}
-        print(as_json({**told, "rows": [list(row) for row in answer.rows], "more": answer.more}))
+        entry = {"step": step, "answer": answer.kind, "variables": list(answer.variables)}
+        print(as_json({**entry, "rows": [list(row) for row in answer.rows], "more": answer.more}))
     else:
         print(answer)
-    return exits.DONE
+    return exits.SUCCESS
 
 
 def _limit(text: str) -> int:
-    return whole(text, 1, MOST)
+    """Return the number of rows for `--limit`."""
+    return parse_whole(text, 1, MAX_LIMIT_ROWS)
 
 
 def _go_to(story: "Story", name: str, step: int | None) -> None:
-    """Advance to a step, or to the end."""
+    """Advance to a step, or to the end for None; raise BadInputError when there is no such step."""
     from kb.language.diagnostics import BadInputError, Problem, Span
 
     while story.line["step"] != step and story.advance():
@@ -67,4 +68,5 @@ def _go_to(story: "Story", name: str, step: int | None) -> None:
 
 
 def _step(text: str) -> int:
-    return whole(text, 0, 1_000_000)
+    """Return the step for `--at`."""
+    return parse_whole(text, 0, 1_000_000)

@@ -17,7 +17,7 @@ def add(parts: Any) -> None:
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Read commands until they end."""
+    """Execute lines of the standard input until it ends or `quit`."""
     from kb.reasoning.query import QueryEngine
     from simulator.run.story import open_story
     from simulator.terminal.prompt import Prompt, lines_of
@@ -29,4 +29,4 @@ def execute(options: argparse.Namespace) -> int:
         for line in lines_of(prompt.words()):
             if not prompt.obey(line):
                 break
-    return exits.DONE
+    return exits.SUCCESS

@@ -1,4 +1,4 @@
-"""`utak routes`: topologically distinct ways between two points of a map or of a scenario's table."""
+"""`utak routes`: topologically distinct routes between two points of a map or of a scenario's table."""
 
 import argparse
 import sys
@@ -6,19 +6,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kb.language.diagnostics import BadInputError, Problem, Span
-from simulator.scenario.untrusted import add_option, refuse_links
+from simulator.scenario.untrusted import add_untrusted_option, refuse_links
 from simulator.terminal import exits
-from simulator.terminal.numbers import decimal, whole
+from simulator.terminal.numbers import parse_decimal, parse_whole
 from simulator.terminal.printing import as_json
 
 if TYPE_CHECKING:
     from geometry.kernels.arrays import Bools
     from geometry.routes.route import Route
 
-LARGEST = 200_000_000  # bytes of a map
-MOST = 1000
-FURTHEST = 1e6  # squares: no point lies further out
-CONVENTION = (
+MAX_MAP_BYTES = 200_000_000  # bytes of a map file; a convention
+MAX_ROUTES = 1000  # the greatest -k; a convention
+MAX_POINT_COORDINATE = 1e6  # squares; the greatest absolute value in --from and --to; a convention
+ORIGIN_HELP = (
     "Points are in squares, with fractions. With --origin bottom, the default, (0, 0) is the south-west corner, x goes "
     "east and y north, as in scenarios. With --origin top, (0, 0) is the north-west corner, x goes east and y SOUTH, "
     "as in .scen files of the Moving AI benchmarks; a line of those names squares by whole numbers, and the middle of "
@@ -32,7 +32,7 @@ def add(parts: Any) -> None:
         "routes",
         help="find distinct ways on a Moving AI map or a scenario's table",
         description="Find topologically distinct ways between two points of a map or of a scenario's table.",
-        epilog=CONVENTION,
+        epilog=ORIGIN_HELP,
     )
     part.add_argument("map", metavar="MAP|SCENARIO", help="a .map file, or a scenario folder")
     part.add_argument("--from", dest="start", type=_point, required=True, metavar="X,Y", help="where the ways begin")
@@ -43,19 +43,19 @@ def add(parts: Any) -> None:
     part.add_argument("-k", type=_count, default=3, metavar="N", help="how many ways at most (default 3)")
     part.add_argument("--json", action="store_true", help="print one JSON object")
     part.add_argument("--svg", metavar="FILE", help="draw squares, skeleton, pathgraph and ways")
-    add_option(part)
+    add_untrusted_option(part)
     part.add_argument("--force", action="store_true", help="let --svg overwrite a file that is no picture")
     part.set_defaults(execute=execute)
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Find the ways, and print them."""
+    """Find the routes and print them."""
     from geometry.screen import Screen
 
     refuse_links(options, options.map)
-    free = _free(options.map)
+    free = _free_squares(options.map)
     top = len(free) if options.origin == "top" else None
-    start, goal = (_turned(point, top) for point in (options.start, options.goal))
+    start, goal = (_mirrored(point, top) for point in (options.start, options.goal))
     try:
         screen = Screen(free)
         routes = screen.routes(start, goal, k=options.k)
@@ -66,22 +66,22 @@ def execute(options: argparse.Namespace) -> int:
         from geometry.io.svg import draw, place
         from simulator.episode.output_files import is_svg, write_whole
 
-        picture = draw(screen, routes, ends=(start, goal), words=lambda point: place(_turned(point, top)))
+        picture = draw(screen, routes, ends=(start, goal), words=lambda point: place(_mirrored(point, top)))
         write_whole(options.svg, picture, is_svg, "SVG picture", options.force)
     _print(routes, options.json, top)
-    return exits.DONE if routes else exits.NOT_REACHED
+    return exits.SUCCESS if routes else exits.NOT_REACHED
 
 
-def _free(name: str) -> "Bools":
-    """Where one may be: on a map as it says, in a scenario wherever nothing stands."""
+def _free_squares(name: str) -> "Bools":
+    """Return the free squares: those of a map, or those of a scenario's table where nothing stands."""
     from geometry.io.movingai import MapError, parse_map
     from kb.language.source_text import read_bytes
 
     if Path(name).is_dir():
-        return _free_of_scenario(name)
-    raw = read_bytes(name, LARGEST)
-    if len(raw) > LARGEST:
-        raise BadInputError([Problem(name, Span(1, 1, 1), f"the map is larger than {LARGEST} bytes")])
+        return _free_squares_of_scenario(name)
+    raw = read_bytes(name, MAX_MAP_BYTES)
+    if len(raw) > MAX_MAP_BYTES:
+        raise BadInputError([Problem(name, Span(1, 1, 1), f"the map is larger than {MAX_MAP_BYTES} bytes")])
     try:
         return parse_map(raw)
     except MapError as error:
@@ -89,7 +89,8 @@ def _free(name: str) -> "Bools":
         raise BadInputError([Problem(name, Span(error.line, error.column, error.end), error.what, line)]) from None
 
 
-def _free_of_scenario(name: str) -> "Bools":
+def _free_squares_of_scenario(name: str) -> "Bools":
+    """Return the squares of a scenario's table that nothing covers."""
     from geometry.raster.rasterize import squares
     from simulator.scenario.scenario import read_any_world
 
@@ -100,12 +101,16 @@ def _free_of_scenario(name: str) -> "Bools":
     return ~blocked
 
 
-def _turned(point: tuple[float, float], top: int | None) -> tuple[float, float]:
-    """A point counted from the bottom as one from the top, or the other way round. top : rows; None for as it is."""
+def _mirrored(point: tuple[float, float], top: int | None) -> tuple[float, float]:
+    """Return a point with y counted from the other end.
+
+    top : the number of rows; None to return the point as it is.
+    """
     return point if top is None else (point[0], top - point[1])
 
 
 def _print(routes: "list[Route]", json: bool, top: int | None) -> None:
+    """Print the routes as JSON or as text."""
     if json:
         print(as_json({"routes": [_entry(route, top) for route in routes]}))
         return
@@ -117,10 +122,12 @@ def _print(routes: "list[Route]", json: bool, top: int | None) -> None:
 
 
 def _points(route: "Route", top: int | None) -> list[list[float]]:
-    return [list(_turned((x, y), top)) for x, y in route.points.tolist()]
+    """Return the points of a route as lists."""
+    return [list(_mirrored((x, y), top)) for x, y in route.points.tolist()]
 
 
 def _entry(route: "Route", top: int | None) -> dict[str, Any]:
+    """Return a route as JSON values."""
     return {
         "length": float(route.length),
         "clearance": float(route.clearance),
@@ -130,12 +137,14 @@ def _entry(route: "Route", top: int | None) -> dict[str, Any]:
 
 
 def _point(text: str) -> tuple[float, float]:
+    """Return the point for `--from` and `--to`."""
     parts = text.split(",")
     if len(parts) != 2:
         raise argparse.ArgumentTypeError(f"{text!r} is no point: write X,Y")
-    x, y = (decimal(part, -FURTHEST, FURTHEST) for part in parts)
+    x, y = (parse_decimal(part, -MAX_POINT_COORDINATE, MAX_POINT_COORDINATE) for part in parts)
     return x, y
 
 
 def _count(text: str) -> int:
-    return whole(text, 1, MOST)
+    """Return the number for `-k`."""
+    return parse_whole(text, 1, MAX_ROUTES)

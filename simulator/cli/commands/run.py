@@ -1,21 +1,21 @@
-"""`utak run`: the robot wakes in a scenario and does his task."""
+"""`utak run`: run the robot on a scenario."""
 
 import argparse
 import sys
 from typing import TYPE_CHECKING, Any, TextIO
 
-from simulator.scenario.untrusted import add_option, refuse_links
+from simulator.scenario.untrusted import add_untrusted_option, refuse_links
 from simulator.terminal import exits
 from simulator.terminal.action_in_words import describe
-from simulator.terminal.numbers import decimal, whole
+from simulator.terminal.numbers import parse_decimal, parse_whole
 from simulator.terminal.printing import as_json
-from simulator.terminal.streams import shown
+from simulator.terminal.streams import escape_controls
 
 if TYPE_CHECKING:
     from simulator.run.session import Result, Session
     from simulator.scenario.settings import Settings
 
-PATHS = ("skeleton", "visibility", "grid")
+PATH_FINDERS = ("skeleton", "visibility", "grid")
 
 
 def add(parts: Any) -> None:
@@ -38,20 +38,20 @@ def add(parts: Any) -> None:
 
 
 def add_settings(part: argparse.ArgumentParser) -> None:
-    """Declare the options that decide what happens in a run."""
+    """Declare the options that determine a run."""
     part.add_argument("--seed", type=_seed, metavar="N", help="seed of all randomness (default 0)")
     part.add_argument("--noise", type=_noise, metavar="S", help="how much motions are disturbed, 0 to 1 (default 0)")
-    part.add_argument("--paths", choices=PATHS, help="how ways are found (default skeleton)")
+    part.add_argument("--paths", choices=PATH_FINDERS, help="how ways are found (default skeleton)")
     part.add_argument(
         "--no-pull", dest="pull", action="store_false", default=None, help="push what is held, never pull"
     )
     part.add_argument("--max-steps", type=_steps, metavar="N", help="give up after so many commands (default 200)")
     part.add_argument("--kb", action="append", metavar="FILE", default=[], help="a file of rules to add; repeatable")
-    add_option(part)
+    add_untrusted_option(part)
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Run, and print the result."""
+    """Run the robot and print the result."""
     from simulator.episode.episode import STANDARD_OUTPUT, EpisodeLog
     from simulator.run.robots import make_robot
     from simulator.run.session import Session
@@ -62,16 +62,16 @@ def execute(options: argparse.Namespace) -> int:
         return exits.USAGE
     refuse_links(options, options.scenario)
     scenario = read_scenario(options.scenario)
-    settings = settings_of(options, _recorded(options))
+    settings = settings_of(options, _recorded_options(options))
     with EpisodeLog(options.log, options.resume, options.force) as log:
         session = Session(scenario, settings, make_robot, log)
-        result = session.run(_watcher(options.watch))
+        result = session.run(_progress_printer(options.watch))
     _print(result, options.json, sys.stderr if options.log == STANDARD_OUTPUT else sys.stdout)
     return exit_code(result)
 
 
 def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = None) -> "Settings":
-    """Return the settings that the command line gives; those of a recorded episode hold where it is silent."""
+    """Return the settings of the command line; where it is silent, those of a recorded episode."""
     from dataclasses import replace
 
     from simulator.scenario.settings import Settings, kb_files_named
@@ -83,14 +83,14 @@ def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = N
 
 
 def exit_code(result: "Result") -> int:
-    """Return the exit code that a result deserves."""
+    """Return the exit code for a result."""
     if result.believed:
-        return exits.NOT_REACHED if result.achieved is False else exits.DONE
+        return exits.NOT_REACHED if result.achieved is False else exits.SUCCESS
     return exits.LIMIT if result.verdict == "limit" else exits.NOT_REACHED
 
 
-def _recorded(options: argparse.Namespace) -> dict[str, Any] | None:
-    """The options that an episode to be resumed was run with; None when there is nothing to resume."""
+def _recorded_options(options: argparse.Namespace) -> dict[str, Any] | None:
+    """Return the options of the episode that is to be resumed; None when there is none."""
     from pathlib import Path
 
     from simulator.episode.episode import complete_lines, read_episode
@@ -102,17 +102,20 @@ def _recorded(options: argparse.Namespace) -> dict[str, Any] | None:
 
 
 def _print(result: "Result", json: bool, stream: TextIO) -> None:
+    """Print the result."""
     if json:
         print(as_json({**result.line["result"], "unmet": list(result.unmet)}), file=stream)
         return
     truth = {None: "", True: ", achieved", False: ", not achieved"}[result.achieved]
-    print(f"{result.verdict} in {result.steps} steps{truth}: {shown(result.reason, lines=False)}", file=stream)
+    print(
+        f"{result.verdict} in {result.steps} steps{truth}: {escape_controls(result.reason, lines=False)}", file=stream
+    )
     for expected in result.unmet:
         print(f"not met: {expected}", file=sys.stderr)
 
 
-def _watcher(watch: bool) -> Any:
-    """What is shown after every step: nothing, a line on a terminal, or the table drawn."""
+def _progress_printer(watch: bool) -> Any:
+    """Return the function that prints after each step: nothing, one line on a terminal, or the table as a picture."""
     if not watch and not sys.stderr.isatty():
         return lambda session: None
 
@@ -123,19 +126,22 @@ def _watcher(watch: bool) -> Any:
         if watch:
             print("the true table, which the robot may believe to be otherwise:", file=sys.stderr)
             print(draw(table.world, table.polygons, table.utak), file=sys.stderr, end="")
-        why = shown(line["why"], lines=False)
+        why = escape_controls(line["why"], lines=False)
         print(f"step {line['step']}: {describe(line['action'])}: {why}", file=sys.stderr)
 
     return tell
 
 
 def _seed(text: str) -> int:
-    return whole(text, 0, 2**63 - 1)
+    """Return the number for `--seed`."""
+    return parse_whole(text, 0, 2**63 - 1)
 
 
 def _steps(text: str) -> int:
-    return whole(text, 0, 1_000_000)
+    """Return the number for `--max-steps`."""
+    return parse_whole(text, 0, 1_000_000)
 
 
 def _noise(text: str) -> float:
-    return decimal(text, 0, 1)
+    """Return the number for `--noise`."""
+    return parse_decimal(text, 0, 1)

@@ -1,11 +1,11 @@
-"""`utak show`: a scenario's world as a picture."""
+"""`utak show`: print a scenario's world as a picture."""
 
 import argparse
 import sys
 from pathlib import Path
 from typing import Any
 
-from simulator.scenario.untrusted import add_option, refuse_links
+from simulator.scenario.untrusted import add_untrusted_option, refuse_links
 from simulator.terminal import exits
 
 
@@ -13,12 +13,12 @@ def add(parts: Any) -> None:
     """Declare the subcommand."""
     part = parts.add_parser("show", help="print a scenario's world as a picture (the form of world.txt)")
     part.add_argument("scenario", metavar="SCENARIO", help="a scenario folder")
-    add_option(part)
+    add_untrusted_option(part)
     part.set_defaults(execute=execute)
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Print the world; what a picture cannot say goes to stderr."""
+    """Print the world; what a picture cannot show goes to the standard error."""
     from simulator.scenario.picture import draw
     from simulator.scenario.scenario import read_any_world
 
@@ -27,4 +27,4 @@ def execute(options: argparse.Namespace) -> int:
     sys.stdout.write(draw(world))
     if world.heading:
         print(f"Utak faces {world.heading} degrees from the table's north", file=sys.stderr)
-    return exits.DONE
+    return exits.SUCCESS

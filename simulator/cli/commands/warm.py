@@ -1,4 +1,4 @@
-"""`utak warm`: compile the geometry kernels now, so that no run has to wait for them."""
+"""`utak warm`: compile the geometry kernels, so that no run has to wait for them."""
 
 import argparse
 from typing import Any
@@ -13,16 +13,16 @@ def add(parts: Any) -> None:
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Compile for everything, and say how many kernels there are."""
+    """Compile all kernels and print their number."""
     from geometry.kernels.jit import ready
-    from simulator.run.warming import kept, warm_all
+    from simulator.run.warming import count_cached_kernels, warm_all
 
     warm_all()
-    count, kept_here = ready()
+    count, cache_is_writable = ready()
     if not count:
         print("nothing to compile: NUMBA_DISABLE_JIT is set")
-    elif kept_here:
-        print(f"{kept()} kernels are compiled, and kept for the next runs")
+    elif cache_is_writable:
+        print(f"{count_cached_kernels()} kernels are compiled, and kept for the next runs")
     else:
         print(f"{count} kernels are compiled, but not kept: set NUMBA_CACHE_DIR to a folder that can be written")
-    return exits.DONE
+    return exits.SUCCESS

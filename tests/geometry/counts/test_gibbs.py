@@ -7,17 +7,17 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from geometry.counts.gibbs import (
-    AROUND,
-    COLD,
     CORNER,
+    COUNT_ERROR_COST,
     DRAWN,
     EDGE,
+    FINAL_INVERSE_TEMPERATURE,
     FREE,
     FULL,
+    NEIGHBOURS,
     UNSEEN,
-    WRONG,
     Counts,
-    _prices,
+    _flip_costs,
     costs,
     pictures,
 )
@@ -80,7 +80,7 @@ def test_a_wall_that_lies_a_square_off_is_moved_as_a_whole() -> None:
     ground[:, [0, -1]] = ground[[0, -1]] = UNSEEN
     beside = np.roll(truth, 1, axis=1)
     counts = together(counted(truth, 4, 1), counted(truth, 4, 3))
-    drawn = pictures(ground, counts, np.repeat(beside[None], 6, 0), 4, COLD)
+    drawn = pictures(ground, counts, np.repeat(beside[None], 6, 0), 4, FINAL_INVERSE_TEMPERATURE)
     shown = ground == DRAWN
     assert (drawn[:, shown] == truth[shown]).mean() > 0.97
 
@@ -112,8 +112,8 @@ def test_the_price_of_a_change_is_the_difference_of_two_pictures(image: np.ndarr
     for point in range(4):
         row, column = 2 - point // 2, 2 - point % 2
         shown |= int((ground[row : row + 2, column : column + 2] != UNSEEN).all()) << point
-    near = sum(int(image[2 + rows, 2 + across]) << n for n, (rows, across) in enumerate(AROUND))
-    price = _prices()[(shown << 9) + (near << 1) + int(image[2, 2])]
+    near = sum(int(image[2 + rows, 2 + across]) << n for n, (rows, across) in enumerate(NEIGHBOURS))
+    price = _flip_costs()[(shown << 9) + (near << 1) + int(image[2, 2])]
     assert price == pytest.approx(cost(changed, ground) - cost(image, ground), abs=1e-5)
 
 
@@ -131,7 +131,7 @@ def test_a_picture_costs_its_outline_and_what_counts_say_against_it(
     where = counts.where.reshape(-1, 9)
     for image, found in zip(images, costs(images, ground, counts, edge), strict=True):
         off = abs(image.ravel()[where].sum(1, dtype=int) - truth.ravel()[where].sum(1, dtype=int)).sum()
-        assert found == pytest.approx(cost(image, ground, edge) + WRONG * off)
+        assert found == pytest.approx(cost(image, ground, edge) + COUNT_ERROR_COST * off)
 
 
 def test_the_same_arguments_give_the_same_pictures() -> None:

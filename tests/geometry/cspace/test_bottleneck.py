@@ -1,4 +1,4 @@
-"""The neck that stops a body."""
+"""The bottleneck that stops a body, and the width that is missing."""
 
 import math
 
@@ -9,7 +9,13 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from shapely import affinity, box
 
-from geometry.cspace.bottleneck import NEARLY, Bottleneck, helps, missing_width, neck_near
+from geometry.cspace.bottleneck import (
+    LONG_SEARCH_PRECISION,
+    Bottleneck,
+    find_bottleneck,
+    missing_width,
+    widening_suffices,
+)
 from geometry.cspace.plan_motion import plan_motion
 from geometry.manipulation.goals import Inside
 from geometry.motion.obstacle_field import ObstacleField
@@ -19,17 +25,17 @@ ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
 BRICK = box(0, 0, 6, 4)
 
 
-@pytest.mark.parametrize("came_to", [(12.0, 20.0), (12.0, 40.0), (20.0, 48.0)])
-def test_where_there_is_room_all_round_nothing_stopped_it(came_to: tuple[float, float]) -> None:
+@pytest.mark.parametrize("reached", [(12.0, 20.0), (12.0, 40.0), (20.0, 48.0)])
+def test_a_body_with_room_all_round_was_not_stopped_there(reached: tuple[float, float]) -> None:
     rooms = shapely.union_all([box(2, 2, 25, 52), box(27, 2, 48, 52), box(25, 47, 27, 50)])
-    floor = ObstacleField(box(-2, -2, 52, 56).difference(rooms), (-2.0, -2.0, 52.0, 56.0))
-    rows, columns = floor.raster.shape
-    across = floor.frame[0] + (np.arange(columns) + 0.5) * floor.frame[2]
-    goals = np.broadcast_to(across > 35.0, (rows, columns)) & (floor.raster > 0.0)
-    neck = neck_near(floor, goals, np.array([(12.0, 20.0), came_to]), 6.0)
-    assert neck is not None
-    assert neck.width == pytest.approx(3.0, abs=0.01)
-    assert math.dist(neck.place, (26.0, 48.5)) < 1.5
+    field = ObstacleField(box(-2, -2, 52, 56).difference(rooms), (-2.0, -2.0, 52.0, 56.0))
+    rows, columns = field.raster.shape
+    across = field.frame[0] + (np.arange(columns) + 0.5) * field.frame[2]
+    goals = np.broadcast_to(across > 35.0, (rows, columns)) & (field.raster > 0.0)
+    bottleneck = find_bottleneck(field, goals, np.array([(12.0, 20.0), reached]), 6.0)
+    assert bottleneck is not None
+    assert bottleneck.width == pytest.approx(3.0, abs=0.01)
+    assert math.dist(bottleneck.place, (26.0, 48.5)) < 1.5
 
 
 sides = st.integers(14, 60)
@@ -56,7 +62,7 @@ def test_the_passage_between_two_rooms_is_the_door(
     thick: float,
     quarters: int,
 ) -> None:
-    """However large the rooms, however coarse their raster, and wherever it stands before it."""
+    """Rooms of many sizes, rasters coarse for them, and starts anywhere in the room."""
     west, east, tall, high = rooms
     south = where[0] * (min(tall, high) - gap)
     door = box(west, south, west + thick, south + gap)
@@ -76,20 +82,22 @@ def test_the_passage_between_two_rooms_is_the_door(
 
 
 @pytest.mark.parametrize("lacking", [0.4, 1.3, 2.6])
-def test_what_a_few_cells_do_not_decide_is_asked_at_length(lacking: float) -> None:
-    solid, gap, radius = box(0, 0, 30, 10).union(box(0, 12, 30, 22)), 2.0, 3.0
-    neck = Bottleneck((15.0, 11.0), ((15.0, 10.0), (15.0, 12.0)), gap)
-    asked = []
+def test_what_a_few_cells_do_not_decide_is_asked_with_all_cells(lacking: float) -> None:
+    obstacles, gap, radius = box(0, 0, 30, 10).union(box(0, 12, 30, 22)), 2.0, 3.0
+    bottleneck = Bottleneck((15.0, 11.0), ((15.0, 10.0), (15.0, 12.0)), gap)
+    all_cells_asked = []
 
-    def answer(walls: shapely.Geometry, at_length: bool) -> str:
-        asked.append(at_length)
+    def status_with(walls: shapely.Geometry, all_cells: bool) -> str:
+        all_cells_asked.append(all_cells)
         opened = (
             shapely.LineString([(15.0, -9.0), (15.0, 31.0)]).intersection(box(0, 0, 30, 22).difference(walls)).length
         )
-        return "limit" if not at_length else "found" if opened >= gap + lacking else "impossible"
+        return "limit" if not all_cells else "found" if opened >= gap + lacking else "impossible"
 
-    assert helps(solid, neck, radius, answer)
-    assert asked == [False, True]
-    assert missing_width(solid, neck, radius, answer) == pytest.approx(lacking, abs=NEARLY / 2)
-    assert not asked[-1]  # what is not decided then is what is sought
-    assert not helps(solid, neck, radius, lambda walls, at_length: "limit")
+    assert widening_suffices(obstacles, bottleneck, radius, status_with)
+    assert all_cells_asked == [False, True]
+    assert missing_width(obstacles, bottleneck, radius, status_with) == pytest.approx(
+        lacking, abs=LONG_SEARCH_PRECISION / 2
+    )
+    assert not all_cells_asked[-1]  # near the end of the bisection, undecided means found
+    assert not widening_suffices(obstacles, bottleneck, radius, lambda walls, all_cells: "limit")

@@ -1,4 +1,4 @@
-"""Planned motions: certified again with shapely when found, and the closed-form thresholds on both sides."""
+"""Planned motions: certified again with shapely when found; closed-form thresholds tested on both sides."""
 
 import math
 
@@ -16,13 +16,13 @@ BRICK = box(-3, -1, 3, 1)
 
 
 def two_rooms(door: float, thick: float = 1.0) -> shapely.Polygon:
-    """Two rooms of 12 x 12 in a row, a door in the middle of the wall between them."""
+    """Return the walls of two rooms of 12 x 12 in a row with a door in the middle of the wall between them."""
     rooms = box(0, 0, 12, 12).union(box(12 + thick, 0, 24 + thick, 12))
     return box(-1, -1, 25 + thick, 13).difference(rooms.union(box(12, 6 - door / 2, 12 + thick, 6 + door / 2)))
 
 
 def check(plan: MotionPlan, shape: shapely.Geometry, walls: shapely.Geometry, start: Pose, goal: Pose | None) -> None:
-    """The motions lead from start to goal and no pose of 257 a motion overlaps a wall."""
+    """Assert that the motions lead from start to goal and none of 257 poses a motion overlaps a wall."""
     assert plan.status == "found"
     solid = walls.buffer(-1e-6, join_style="mitre")
     shapely.prepare(solid)
@@ -47,11 +47,14 @@ def test_a_narrower_door_is_proved_impossible(door: float) -> None:
 
 
 def corner(length: float) -> tuple[shapely.Geometry, shapely.Geometry]:
-    """A brick 1.6 wide and so long, as a part of the longest that turns the corner of a corridor 4 wide."""
-    floor = box(0, 0, 20, 4).union(box(16, 0, 20, 20))
+    """Return a brick 1.6 wide and a corner of a corridor 4 wide.
+
+    `length` is a part of the length of the longest brick that turns the corner.
+    """
+    field = box(0, 0, 20, 4).union(box(16, 0, 20, 20))
     longest = 2 * (math.sqrt(2) * 4 - 1.6)
     half = length * longest / 2
-    return box(-half, -0.8, half, 0.8), box(-1, -1, 21, 21).difference(floor)
+    return box(-half, -0.8, half, 0.8), box(-1, -1, 21, 21).difference(field)
 
 
 @pytest.mark.parametrize("part", [0.9, 0.97, 0.99])
@@ -62,13 +65,13 @@ def test_a_brick_turns_a_corner(part: float) -> None:
 
 
 @pytest.mark.parametrize("part", [1.005, 1.03])
-def test_a_longer_brick_is_proved_not_to(part: float) -> None:
+def test_a_longer_brick_is_proved_not_to_turn_the_corner(part: float) -> None:
     brick, walls = corner(part)
     assert plan_motion(brick, walls, Pose(5, 2, 0), Pose(18, 15, 90)).status == "impossible"
 
 
 def sofa(size: float, steps: int = 32) -> shapely.Polygon:
-    """Hammersley's sofa for a corridor 1 wide, shrunk: it turns the corner at size 1 and at nothing above."""
+    """Return Hammersley's sofa for a corridor 1 wide, scaled: it turns the corner up to size 1 and not above."""
     r = 2 / math.pi
     a = np.linspace(0, math.pi / 2, steps)
     right = np.column_stack([r + np.sin(a), np.cos(a)])[::-1]
@@ -80,9 +83,9 @@ def sofa(size: float, steps: int = 32) -> shapely.Polygon:
 
 
 @pytest.mark.parametrize(("size", "status"), [(0.97, "found"), (0.99, "found"), (1.01, "impossible")])
-def test_the_sofa(size: float, status: str) -> None:
-    floor = box(-6, 0, 1, 1).union(box(0, -6, 1, 1))
-    walls = box(-7, -7, 2, 2).difference(floor)
+def test_a_sofa_turns_the_corner_up_to_its_closed_form_size(size: float, status: str) -> None:
+    field = box(-6, 0, 1, 1).union(box(0, -6, 1, 1))
+    walls = box(-7, -7, 2, 2).difference(field)
     start, goal = Pose(-4, 0, 0), Pose(0, -4, -90)
     plan = plan_motion(sofa(size), walls, start, goal, resolution=5e-4)
     assert plan.status == status
@@ -96,8 +99,8 @@ def test_a_start_that_touches_walls() -> None:
     check(plan_motion(BRICK, walls, start, goal), BRICK, walls, start, goal)
 
 
-def test_an_exact_fit_is_never_called_impossible() -> None:
-    """Flush on both sides in a slot no cell has room for the body: the limit of the method, and said to be."""
+def test_an_exact_fit_is_answered_with_limit_not_impossible() -> None:
+    """Flush on both sides in a slot, no cell has room for the body: the method reports its limit."""
     slot = box(0, 0, 20, 12).difference(box(1, 1, 13, 11)).difference(box(13, 5, 19, 7))
     assert plan_motion(BRICK, slot, Pose(16, 6, 0), Pose(5, 5, 90), cells=3000).status == "limit"
     roomy = box(0, 0, 20, 12).difference(box(1, 1, 13, 11)).difference(box(13, 4.95, 19, 7))
@@ -106,7 +109,7 @@ def test_an_exact_fit_is_never_called_impossible() -> None:
 
 
 @pytest.mark.parametrize("door", [4.0, 6.0])
-def test_a_flush_way_is_left_for_a_roomy_one(door: float) -> None:
+def test_a_flush_passage_is_left_for_a_roomy_one(door: float) -> None:
     """An L of 6 x 6 fits a door of 6 flush, and its arms, 2 wide, one of 4: it turns instead, and soon."""
     ell = affinity.translate(shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)]), -2.2, -2.2)
     walls, start = two_rooms(door), Pose(5.2, 5.2, 0)
@@ -115,7 +118,7 @@ def test_a_flush_way_is_left_for_a_roomy_one(door: float) -> None:
         check(plan, ell, walls, start, goal if isinstance(goal, Pose) else None)
 
 
-def test_an_overlap_at_either_end_is_told() -> None:
+def test_an_overlap_at_either_end_is_the_reason() -> None:
     walls = two_rooms(3.0)
     assert plan_motion(BRICK, walls, Pose(12, 2), Pose(5, 5)).reason == "start"
     assert plan_motion(BRICK, walls, Pose(5, 5), Pose(12, 2)).reason == "goal"
@@ -132,7 +135,7 @@ def test_a_region_as_goal() -> None:
 
 
 def test_points_move_with_the_body() -> None:
-    """A brick through a door of 2.4: with Utak at its end it passes, with Utak beside it he would hit the wall."""
+    """A brick passes a door of 2.4 with Utak at its end; with Utak at its side, Utak would hit the wall."""
     walls, start, goal = two_rooms(2.4), Pose(5, 6, 0), Pose(19, 6, 0)
     at_end = plan_motion(BRICK, walls, start, goal, points=[(-3.5, 0.0)])
     check(at_end, BRICK, walls, start, goal)
@@ -145,15 +148,15 @@ def test_points_move_with_the_body() -> None:
     assert beside.status == "impossible"
 
 
-def test_a_floor_is_prepared_once() -> None:
+def test_an_obstacle_field_serves_several_plans() -> None:
     walls = two_rooms(3.0)
-    floor = ObstacleField(walls, (0, 0, 25, 12))
-    plans = [plan_motion(BRICK, floor, Pose(5, 6, 90), Pose(19, 7, degrees)) for degrees in (0, 90, 200)]
+    field = ObstacleField(walls, (0, 0, 25, 12))
+    plans = [plan_motion(BRICK, field, Pose(5, 6, 90), Pose(19, 7, degrees)) for degrees in (0, 90, 200)]
     assert [plan.status for plan in plans] == ["found"] * 3
     assert plans[0] == plan_motion(BRICK, walls, Pose(5, 6, 90), Pose(19, 7, 0), bounds=(0, 0, 25, 12))
 
 
-def test_the_reference_point_keeps_its_bounds() -> None:
+def test_the_reference_point_stays_within_its_bounds() -> None:
     walls, start, goal = two_rooms(3.0), Pose(5, 6, 90), Pose(19, 7, 30)
     bounds = (2, 2, 22, 8)
     plan = plan_motion(affinity.translate(BRICK, 1, 0), walls, start, goal, bounds=bounds)
@@ -165,7 +168,7 @@ def test_the_reference_point_keeps_its_bounds() -> None:
     assert plan_motion(BRICK, walls, start, goal, bounds=(2, 2, 10, 8)).reason == "goal"
 
 
-def test_the_length_is_that_of_the_reference_points_way() -> None:
+def test_the_length_is_that_of_the_path_of_the_reference_point() -> None:
     plan = plan_motion(BRICK, two_rooms(3.0), Pose(5, 6, 90), Pose(19, 7, 30))
     samples = []
     for motion, pose in zip(plan.motions, plan.poses, strict=False):
@@ -182,7 +185,7 @@ def test_bad_numbers_are_refused(wrong: float) -> None:
 
 
 @pytest.mark.parametrize(("door", "missing"), [(1.7, 0.3), (1.95, 0.05)])
-def test_the_passage_and_what_it_lacks_are_told(door: float, missing: float) -> None:
+def test_the_passage_and_its_missing_width_are_found(door: float, missing: float) -> None:
     plan = plan_motion(BRICK, two_rooms(door), Pose(5, 6, 90), Pose(19, 7, 30))
     assert plan.passage is not None
     assert plan.passage.width == pytest.approx(door, abs=0.01)
@@ -212,7 +215,7 @@ def test_a_slit_that_falls_between_the_pixels_of_a_large_floor_is_the_passage(bo
 
 
 def test_moving_the_sides_of_a_door_opens_no_wall_behind_which_there_is_room() -> None:
-    """The body's reference point is beside it: were the outer walls opened, it could pass outside, within bounds."""
+    """The reference point lies beside the body: if the outer walls opened, it could pass outside, within bounds."""
     chest = box(-3.4, -1.4, -0.6, 1.4)
     rooms = shapely.union_all([box(0, 0, 12, 10), box(14, 0, 26, 10), box(12, 5.38, 14, 6.62)])
     walls = box(-1, -1, 27, 11).difference(rooms)
@@ -220,21 +223,21 @@ def test_moving_the_sides_of_a_door_opens_no_wall_behind_which_there_is_room() -
     assert (plan.status, plan.missing) == ("impossible", pytest.approx(1.56, abs=0.05))
 
 
-def test_what_is_found_has_no_missing_width() -> None:
+def test_a_plan_that_is_found_has_no_missing_width() -> None:
     plan = plan_motion(BRICK, two_rooms(3.0), Pose(5, 6, 90), Pose(19, 7, 30))
     assert plan.passage is None and not plan.opens
     assert math.isnan(plan.missing)
 
 
 def slotted(door: float) -> list[shapely.Geometry]:
-    """A room of 20 x 20 with a wall across, and a door in it."""
+    """Return the walls of a room of 20 x 20 with a wall across that has a door."""
     room = shapely.box(0, 0, 20, 20).difference(shapely.box(1, 1, 19, 19))
     return [room, shapely.box(10, 1, 11, 10 - door / 2), shapely.box(10, 10 + door / 2, 11, 19)]
 
 
 @pytest.mark.parametrize("size", [1e-3, 1e-4, 1e-5])
 @pytest.mark.parametrize(("times", "status"), [(0.0, "impossible"), (0.9, "impossible"), (1.5, "found"), (40, "found")])
-def test_a_body_however_small_is_decided_where_its_discs_decide(size: float, times: float, status: str) -> None:
+def test_a_very_small_body_is_decided_by_its_discs(size: float, times: float, status: str) -> None:
     body = shapely.box(-size / 2, -size / 2, size / 2, size / 2)
     plan = plan_motion(body, slotted(times * size), Pose(3, 3, 0), Pose(17, 3, 90), cells=4000)
     assert plan.status == status

@@ -15,11 +15,13 @@ from geometry.kernels.jit import compiled
 
 @compiled
 def double(x: int) -> int:
+    """Return twice a number."""
     return 2 * x
 
 
 @compiled
 def total(values: np.ndarray) -> int:
+    """Return the sum of the doubled values."""
     out = 0
     for i in range(values.shape[0]):
         out += double(values[i])
@@ -31,7 +33,7 @@ def test_a_kernel_calls_another() -> None:
     assert total(np.array([1, 2, 3], dtype=np.int32)) == 12
 
 
-def test_kernels_do_not_import_scipy_but_leave_it_to_others() -> None:
+def test_kernels_do_not_import_scipy_but_other_code_can() -> None:
     pytest.importorskip("scipy")
     code = """
 import sys, numba, numpy
@@ -52,35 +54,36 @@ def test_importing_geometry_loads_neither_numba_nor_networkx() -> None:
     assert found.stdout.strip() == "[]"
 
 
-def test_routes_are_rehearsed_with_the_types_they_are_played_with() -> None:
+def test_kernels_of_routes_are_compiled_in_advance_for_the_types_of_screens() -> None:
     code = (
-        "import numpy as np; from geometry import Screen, questions, ways; questions.rehearse(); "
+        "import numpy as np; from geometry import Screen; from geometry.homotopy import landmarks; "
+        "from geometry.pathfinders import polyanya; from geometry.routes import queries, router; queries.rehearse(); "
         "screen = Screen(np.ones((4, 4), bool)); print(len(screen.routes((0.5, 0.5), (3.5, 3.5), k=4)), "
         "screen.shortest((0.5, 0.5), (3.5, 3.5)) is not None); "
-        "kernels = questions.itineraries, questions.shortest_line, ways.measure_ways; "
-        "machines = [kernel.machine() if hasattr(kernel, 'machine') else kernel for kernel in kernels]; "
-        "print(*(len(getattr(machine, 'overloads', [None])) for machine in machines))"
+        "kernels = router.itineraries, polyanya.shortest_line, landmarks.measure_ways; "
+        "dispatchers = [kernel.dispatcher() if hasattr(kernel, 'dispatcher') else kernel for kernel in kernels]; "
+        "print(*(len(getattr(dispatcher, 'overloads', [None])) for dispatcher in dispatchers))"
     )  # in a process of its own, where no other screen has had other types
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout.split() == ["1", "True", "1", "1", "1"]
 
 
-def test_whole_numbers_of_all_widths_share_one_copy() -> None:
+def test_integers_of_all_widths_share_one_compiled_copy() -> None:
     assert [double(np.int32(3)), double(np.uint8(4)), double(5)] == [6, 8, 10]
-    assert len(getattr(double.machine() if hasattr(double, "machine") else double, "overloads", [None])) == 1
+    assert len(getattr(double.dispatcher() if hasattr(double, "dispatcher") else double, "overloads", [None])) == 1
 
 
-def test_compiling_is_told_of_and_loading_is_not(tmp_path):
+def test_compiling_prints_a_notice_and_loading_does_not(tmp_path):
     code = (
-        "import numpy as np; from geometry import compiled; compiled.PATIENCE = 0.0; "
+        "import numpy as np; from geometry.kernels import jit; jit.NOTICE_DELAY = 0.0; "
         "from geometry.homotopy.funnel import measure_line; measure_line(np.zeros((2, 2)), 2)"
     )
-    told = []
+    noticed = []
     for _ in range(2):
         cache = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
         found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=cache)
-        told.append("compiling" in found.stderr)
-    assert told == [os.environ.get("NUMBA_DISABLE_JIT", "0") == "0", False]
+        noticed.append("compiling" in found.stderr)
+    assert noticed == [os.environ.get("NUMBA_DISABLE_JIT", "0") == "0", False]
 
 
 def test_kernels_also_run_uncompiled() -> None:
@@ -95,22 +98,24 @@ def test_kernels_also_run_uncompiled() -> None:
 
 
 MAKERS = {"empty", "zeros", "ones", "full", "arange", "array", "copy", "concatenate", "where", "unique", "append"}
-NUMBERS = {"None", "int", "float", "bool", "np.uint8", "tuple", "Anchor", "Block", "Found", "Met"}
+NUMBERS = {"None", "int", "float", "bool", "np.uint8", "tuple", "Anchor", "Block", "FirstContactHit", "SkinHit"}
 
 
 def kernels(path, decorator):
-    """All kernels of a module so decorated, by name."""
+    """Return all kernels of a module with a decorator, by name."""
     functions = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.FunctionDef)]
     return {f.name: f for f in functions if decorator in [getattr(d, "id", "") for d in f.decorator_list]}
 
 
-@pytest.mark.parametrize("path", sorted(Path(geometry.__file__).parent.glob("*.py")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted(Path(geometry.__file__).parent.rglob("*.py")), ids=lambda path: path.stem)
 def test_bare_kernels_make_and_return_no_arrays(path):
-    """numba would neither free them nor keep them alive."""
+    """Numba would neither free them nor keep them alive."""
     bare, counting = kernels(path, "bare"), set(kernels(path, "compiled"))
     for name, function in bare.items():
-        told = ast.walk(function.returns) if function.returns else ()  # of what has no types only the body tells
-        returned = {ast.unparse(n) for n in told if isinstance(n, ast.Name | ast.Attribute)}
+        annotations = (
+            ast.walk(function.returns) if function.returns else ()
+        )  # without annotations only the body is checked
+        returned = {ast.unparse(n) for n in annotations if isinstance(n, ast.Name | ast.Attribute)}
         assert returned - {"np"} <= NUMBERS, name
         for node in ast.walk(function):
             assert not isinstance(node, ast.List | ast.ListComp), name

@@ -1,4 +1,4 @@
-"""First contact against slow sweeps with shapely, and the cases where touching is allowed."""
+"""First contact against slow sweeps with shapely, and cases where touching is allowed."""
 
 import math
 import os
@@ -15,7 +15,7 @@ from shapely import affinity, box
 from geometry.motion.first_contact import Contact, ContactBody, Obstacles
 from geometry.motion.se2 import Motion, Pose, Rotate, Translate
 
-DEPTH = 1e-6  # squares: deeper than this is penetration
+MAX_PENETRATION = 1e-6  # squares: an overlap deeper than this is penetration
 ELL = shapely.Polygon([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)])
 SHAPES = [
     box(0, 0, 2, 2),
@@ -44,20 +44,25 @@ motions = pushes | turns
 
 
 def overlap(a: shapely.Geometry, b: shapely.Geometry) -> float:
-    return a.buffer(-DEPTH, join_style="mitre").intersection(b).area if a.intersects(b) else 0.0
+    """Return the area in which two shapes overlap more deeply than touching allows."""
+    return a.buffer(-MAX_PENETRATION, join_style="mitre").intersection(b).area if a.intersects(b) else 0.0
 
 
 def apart(a: shapely.Geometry, b: shapely.Geometry) -> bool:
+    """Return whether the interiors of two shapes do not meet in an area."""
     return a.relate(b)[0] != "2"
 
 
 def swept(shape: shapely.Geometry, motion: Motion, steps: int = 40) -> list:
+    """Return the shape at equal steps of a motion."""
     return [motion.part(t).carry(shape) for t in np.linspace(0, 1, steps)]
 
 
 @settings(max_examples=250, deadline=None)
 @given(shapes, st.lists(shapes, min_size=1, max_size=3), st.lists(motions, min_size=1, max_size=3))
-def test_it_goes_as_far_as_a_sweep_and_no_further(body: shapely.Geometry, still: list, way: list) -> None:
+def test_a_motion_goes_as_far_as_a_sweep_with_shapely_and_no_further(
+    body: shapely.Geometry, still: list, way: list
+) -> None:
     assume(all(apart(body, obstacle) for obstacle in still))
     obstacles = Obstacles(still)
     for motion in way:
@@ -70,7 +75,7 @@ def test_it_goes_as_far_as_a_sweep_and_no_further(body: shapely.Geometry, still:
 
 
 def check_stopped(body: shapely.Geometry, motion: Motion, contact: Contact, still: list) -> None:
-    """It touches what it says, where it says, and going on would go in."""
+    """Assert that the body touches the obstacle at the place named, and that going on would enter one."""
     assert contact.obstacle is not None
     assert contact.place is not None
     assert contact.normal is not None
@@ -92,7 +97,7 @@ def test_a_point_stops_where_its_line_enters(point: tuple, still: list, push: Tr
     contact = Obstacles(still).first_contact(ContactBody(points=[point]), push)
     end = (point[0] + push.dx * contact.fraction, point[1] + push.dy * contact.fraction)
     for obstacle in still:
-        assert shapely.LineString([point, end]).intersection(obstacle.buffer(-DEPTH)).length == 0.0
+        assert shapely.LineString([point, end]).intersection(obstacle.buffer(-MAX_PENETRATION)).length == 0.0
     if contact.fraction < 1.0:
         step = 1e-3 / math.hypot(*push)
         ahead = shapely.Point(end[0] + push.dx * step, end[1] + push.dy * step)
@@ -139,7 +144,7 @@ def test_utak_on_the_floor(motion: Motion, fraction: float) -> None:
     assert ROOM.first_contact(ContactBody(points=[(0, 0)]), motion).fraction == pytest.approx(fraction, abs=1e-12)
 
 
-def test_no_point_slips_into_a_seam() -> None:
+def test_no_point_slips_into_a_seam_of_two_obstacles() -> None:
     """A box flush against a slanted wall: Utak slides down the wall and stops at the box."""
     turn = Rotate(31.7, (3.3, -2.1))
     wall, chest = turn.carry(box(-20, -2, 20, 0)), turn.carry(box(5, 0, 7, 2))
@@ -157,7 +162,7 @@ def test_a_turn_that_begins_along_an_edge_is_stopped_by_that_edge(first: int) ->
     assert contact == Contact(0.0, (1.0, 1.0), 1 - first, (0.0, 1.0))
 
 
-def test_a_corridor_as_wide_as_the_body_lets_it_pass_and_no_wider_body() -> None:
+def test_a_corridor_as_wide_as_the_body_lets_pass_that_body_and_no_wider_one() -> None:
     corridor = Obstacles([box(-9, -2, 9, 0), box(-9, 2, 9, 4)])
     assert corridor.first_contact(ContactBody(box(-12, 0, -10, 2)), Translate(30, 0)).fraction == 1.0
     assert corridor.first_contact(ContactBody(box(-12, 0, -10, 2.001)), Translate(30, 0)).fraction < 0.1
@@ -174,7 +179,7 @@ def test_body_and_utak_move_as_one() -> None:
     [Translate(math.nan, 0), Translate(0, math.inf), Rotate(math.nan, (0, 0)), Rotate(90, (0, math.nan))],
     ids=str,
 )
-def test_a_motion_of_no_length_that_is_a_number_is_an_error(motion: Motion) -> None:
+def test_a_motion_that_is_not_finite_is_an_error(motion: Motion) -> None:
     with pytest.raises(ValueError, match="must be finite"):
         ROOM.first_contact(ContactBody(box(0, 0, 2, 2)), motion)
     with pytest.raises(ValueError, match="must be finite"):
@@ -184,7 +189,7 @@ def test_a_motion_of_no_length_that_is_a_number_is_an_error(motion: Motion) -> N
             ROOM.turns(ContactBody(box(0, 0, 2, 2)), np.array([motion.degrees]), np.array([motion.about]))
 
 
-def test_many_at_once_are_the_same_as_one_by_one() -> None:
+def test_many_motions_at_once_give_the_same_as_one_by_one() -> None:
     body = ContactBody(box(0, 0.5, 2, 2))
     vectors = np.array([[20.0, 0.0], [0.0, -3.0], [1.0, 1.0]])
     singly = [ROOM.first_contact(body, Translate(*v)).fraction for v in vectors.tolist()]
@@ -199,8 +204,8 @@ def test_a_body_after_a_motion_is_the_moved_shape() -> None:
     np.testing.assert_allclose(ContactBody(ELL).after(motion).edges, ContactBody(motion.carry(ELL)).edges, atol=1e-12)
 
 
-def test_a_thousand_jostles_stay_outside() -> None:
-    """Rounding does not add up, and a body in a corner is never jammed."""
+def test_five_hundred_random_motions_stay_within_the_room() -> None:
+    """Rounding does not accumulate, and a body in a corner is never jammed."""
     rng = np.random.default_rng(5)
     den = Obstacles([box(-5, -5, 10, 10).difference(box(0, 0, 5, 5))])
     body = box(1, 1, 4, 3)
@@ -223,8 +228,8 @@ def test_a_motion_and_its_reverse_cancel(x: float, y: float, degrees: float, abo
         assert back == pytest.approx(pose, abs=1e-9)
 
 
-def test_the_same_without_numba() -> None:
-    """The kernels are plain Python too."""
+def test_first_contact_is_the_same_without_numba() -> None:
+    """The kernels also run as plain Python."""
     code = (
         "from shapely import box; from geometry.motion.first_contact import *; from geometry.motion.se2 import *;"
         "o = Obstacles([box(5, 0, 6, 9)]); b = ContactBody(box(0, 0, 1, 4));"
@@ -237,14 +242,14 @@ def test_the_same_without_numba() -> None:
     assert runs[0].stdout == runs[1].stdout != ""
 
 
-def test_importing_contact_leaves_numba_alone() -> None:
+def test_importing_first_contact_does_not_import_numba() -> None:
     code = "import sys, geometry.motion.first_contact; sys.exit('numba' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
 
 
 @pytest.mark.parametrize("motion", [Translate(0, -5), Rotate(2, (50, 0))], ids=["push", "turn"])
 @pytest.mark.parametrize("bump_on", ["body", "obstacle"])
-def test_a_contour_told_by_points_however_near_is_met_where_it_is(bump_on: str, motion: Motion) -> None:
+def test_a_contour_of_points_very_near_each_other_is_met_where_it_is(bump_on: str, motion: Motion) -> None:
     """An arc of 1e-3 squares in 20,000 points on a straight side: each step is shorter than any corner."""
     radius = 1e-3 / math.pi
     arc = [(radius * math.cos(t), radius * math.sin(t)) for t in np.linspace(0, math.pi, 20_000)]

@@ -1,4 +1,4 @@
-"""Shapes and numbers that make no sense, or only just: a clear error, or the answer of what they mean."""
+"""Shapes and numbers that are invalid or barely valid: a clear error, or the answer for what they mean."""
 
 import math
 from typing import Any
@@ -31,41 +31,43 @@ with np.errstate(invalid="ignore"):
 BOWTIE = [(14, 1), (24, 11), (24, 1), (14, 11)]
 
 
-def moved(shape: Any = BRICK, walls: Any = WALLS, start: Pose = START, goal: Any = GOAL, **more: Any) -> MotionPlan:
-    """A plan of the brick through the door, but for what is given."""
+def move_brick(
+    shape: Any = BRICK, walls: Any = WALLS, start: Pose = START, goal: Any = GOAL, **more: Any
+) -> MotionPlan:
+    """Plan the motion of the brick through the door, with the arguments given instead of the usual ones."""
     return plan_motion(shape, walls, start, goal, **more)
 
 
-def carried(shape: Any = LOAD, free: Any = FREE, utak: Any = (2.5, 2.5), goal: Any = NEXT, **more: Any) -> Any:
-    """A plan of carrying the brick into the next room, but for what is given."""
+def carry_brick(shape: Any = LOAD, free: Any = FREE, utak: Any = (2.5, 2.5), goal: Any = NEXT, **more: Any) -> Any:
+    """Plan carrying the brick into the next room, with the arguments given instead of the usual ones."""
     return plan_carrying(shape, free, utak, goal, **more)
 
 
 @pytest.mark.parametrize("points", SAME.values(), ids=SAME)
-def test_a_ring_told_otherwise_is_the_same_body(points: list[tuple[float, float]]) -> None:
+def test_another_description_of_a_ring_is_the_same_body(points: list[tuple[float, float]]) -> None:
     shape = Polygon(points)
     assert sound(shape, "it").equals(BRICK)
-    assert [m.pose(START) for m in moved(shape).motions[:1]] == [m.pose(START) for m in moved().motions[:1]]
+    assert [m.pose(START) for m in move_brick(shape).motions[:1]] == [m.pose(START) for m in move_brick().motions[:1]]
     there = shapely.affinity.translate(shape, 6, 5)
-    assert (carried(there).status, carried(there).commands) == ("found", carried().commands)
+    assert (carry_brick(there).status, carry_brick(there).commands) == ("found", carry_brick().commands)
 
 
 def test_rings_that_cross_are_read_even_odd() -> None:
     assert sound(Polygon(BOWTIE), "it").area == pytest.approx(50)
-    assert moved(goal=Inside(Polygon(BOWTIE))).status == "found"
-    assert moved(walls=[WALLS, Polygon([(16, 1), (18, 3), (18, 1), (16, 3)])]).status == "found"
-    assert moved(shapely.affinity.translate(Polygon(BOWTIE), -19, -6), start=Pose(6, 6)).status == "impossible"
+    assert move_brick(goal=Inside(Polygon(BOWTIE))).status == "found"
+    assert move_brick(walls=[WALLS, Polygon([(16, 1), (18, 3), (18, 1), (16, 3)])]).status == "found"
+    assert move_brick(shapely.affinity.translate(Polygon(BOWTIE), -19, -6), start=Pose(6, 6)).status == "impossible"
 
 
 @pytest.mark.parametrize("shape", [BROKEN, ENDLESS, box(0, 0, 1e12, 1)])
-def test_coordinates_that_are_no_numbers_or_far_off_are_refused(shape: Polygon) -> None:
+def test_coordinates_that_are_not_finite_or_too_large_are_refused(shape: Polygon) -> None:
     tries: list[Any] = [
-        lambda: moved(shape),
-        lambda: moved(walls=shape),
-        lambda: moved(goal=Inside(shape)),
-        lambda: carried(shape),
-        lambda: carried(goal=Inside(shape)),
-        lambda: carried(walls=shape),
+        lambda: move_brick(shape),
+        lambda: move_brick(walls=shape),
+        lambda: move_brick(goal=Inside(shape)),
+        lambda: carry_brick(shape),
+        lambda: carry_brick(goal=Inside(shape)),
+        lambda: carry_brick(walls=shape),
     ]
     for fails in tries:
         with pytest.raises(ValueError, match="must be finite"):
@@ -73,17 +75,17 @@ def test_coordinates_that_are_no_numbers_or_far_off_are_refused(shape: Polygon) 
 
 
 @pytest.mark.parametrize("wrong", [math.nan, math.inf, 1e12])
-def test_numbers_that_make_no_sense_are_refused(wrong: float) -> None:
+def test_numbers_that_are_not_finite_or_too_large_are_refused(wrong: float) -> None:
     tries: list[Any] = [
-        lambda: moved(start=Pose(wrong, 6)),
-        lambda: moved(goal=Pose(6, wrong)),
-        lambda: moved(points=[(wrong, 0)]),
-        lambda: moved(pivot=(wrong, 0)),
-        lambda: carried(utak=(wrong, 1)),
-        lambda: carried(avoid=[(wrong, 0)]),
-        lambda: carried(goal=At(Pose(wrong, 0))),
-        lambda: carried(goal=At(Pose(0, 0, wrong))),
-        lambda: carried(goal=InCorner(wrong, 13, 1, 1)),
+        lambda: move_brick(start=Pose(wrong, 6)),
+        lambda: move_brick(goal=Pose(6, wrong)),
+        lambda: move_brick(points=[(wrong, 0)]),
+        lambda: move_brick(pivot=(wrong, 0)),
+        lambda: carry_brick(utak=(wrong, 1)),
+        lambda: carry_brick(avoid=[(wrong, 0)]),
+        lambda: carry_brick(goal=At(Pose(wrong, 0))),
+        lambda: carry_brick(goal=At(Pose(0, 0, wrong))),
+        lambda: carry_brick(goal=InCorner(wrong, 13, 1, 1)),
     ]
     for fails in tries:
         with pytest.raises(ValueError, match="finite"):
@@ -107,9 +109,9 @@ def test_numbers_that_make_no_sense_are_refused(wrong: float) -> None:
         ({"shape": shapely.LineString([(0, 0), (1, 1)])}, "area"),
     ],
 )
-def test_a_motion_that_makes_no_sense_is_refused(what: dict[str, Any], match: str) -> None:
+def test_invalid_arguments_of_plan_motion_are_refused(what: dict[str, Any], match: str) -> None:
     with pytest.raises(ValueError, match=match):
-        moved(**what)
+        move_brick(**what)
 
 
 @pytest.mark.parametrize(
@@ -128,43 +130,43 @@ def test_a_motion_that_makes_no_sense_is_refused(what: dict[str, Any], match: st
         ({"goal": InCorner(26, 13, 1, 1, -1.0)}, "corner"),
     ],
 )
-def test_carrying_that_makes_no_sense_is_refused(what: dict[str, Any], match: str) -> None:
+def test_invalid_arguments_of_plan_carrying_are_refused(what: dict[str, Any], match: str) -> None:
     with pytest.raises(ValueError, match=match):
-        carried(**what)
+        carry_brick(**what)
 
 
 @pytest.mark.parametrize(
     "region", [Polygon(), Polygon([(14, 1), (20, 1), (17, 1)]), shapely.LineString([(14, 1), (20, 1)])]
 )
-def test_nothing_can_be_within_a_region_without_an_area(region: Any) -> None:
-    assert moved(goal=Inside(region)).status == "impossible"
-    assert carried(goal=Inside(region)).status == "impossible"
-    assert moved(goal=Inside([])).status == "impossible"
+def test_no_body_can_be_within_a_region_without_area(region: Any) -> None:
+    assert move_brick(goal=Inside(region)).status == "impossible"
+    assert carry_brick(goal=Inside(region)).status == "impossible"
+    assert move_brick(goal=Inside([])).status == "impossible"
 
 
-def test_who_is_there_already_need_not_move() -> None:
-    assert (moved(goal=START).status, moved(goal=START).motions) == ("found", ())
-    assert moved(goal=Pose(5, 6, 450)).motions == ()
-    assert carried(goal=At(Pose(0, 0, 360))).legs == ()
-    assert moved(start=Pose(12, 9), goal=Pose(12, 9)).reason == "start"
+def test_a_body_at_its_goal_need_not_move() -> None:
+    assert (move_brick(goal=START).status, move_brick(goal=START).motions) == ("found", ())
+    assert move_brick(goal=Pose(5, 6, 450)).motions == ()
+    assert carry_brick(goal=At(Pose(0, 0, 360))).legs == ()
+    assert move_brick(start=Pose(12, 9), goal=Pose(12, 9)).reason == "start"
 
 
 def test_a_start_or_goal_in_a_wall_is_named() -> None:
-    assert moved(start=Pose(12, 9)).reason == "start"
-    assert moved(goal=Pose(12, 9)).reason == "goal"
-    assert moved(start=Pose(-50, 9), bounds=(0, 0, 25, 12)).reason == "start"
-    assert carried(box(11, 4, 15, 6)).reason == "start"
-    assert carried(box(-1e6, -1e6, 1e6, 1e6)).reason == "start"
-    assert carried(box(1e6, 1e6, 1e6 + 4, 1e6 + 2)).reason == "start"
-    assert carried(goal=At(Pose(1e6, 0))).reason == "goal"
+    assert move_brick(start=Pose(12, 9)).reason == "start"
+    assert move_brick(goal=Pose(12, 9)).reason == "goal"
+    assert move_brick(start=Pose(-50, 9), bounds=(0, 0, 25, 12)).reason == "start"
+    assert carry_brick(box(11, 4, 15, 6)).reason == "start"
+    assert carry_brick(box(-1e6, -1e6, 1e6, 1e6)).reason == "start"
+    assert carry_brick(box(1e6, 1e6, 1e6 + 4, 1e6 + 2)).reason == "start"
+    assert carry_brick(goal=At(Pose(1e6, 0))).reason == "goal"
 
 
-def test_far_from_the_origin_the_same_is_found() -> None:
+def test_far_from_the_origin_the_same_plan_is_found() -> None:
     far = 1e6
     walls = shapely.affinity.translate(WALLS, far, far)
-    plan = moved(walls=walls, start=Pose(5 + far, 6 + far, 90), goal=Pose(19 + far, 7 + far, 30))
-    assert (plan.status, len(plan.motions)) == ("found", len(moved().motions))
+    plan = move_brick(walls=walls, start=Pose(5 + far, 6 + far, 90), goal=Pose(19 + far, 7 + far, 30))
+    assert (plan.status, len(plan.motions)) == ("found", len(move_brick().motions))
 
 
 def test_a_margin_wider_than_the_floor_is_kept_where_that_is_possible() -> None:
-    assert carried(margin=1e9).status == "found"
+    assert carry_brick(margin=1e9).status == "found"

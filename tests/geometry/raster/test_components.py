@@ -1,4 +1,4 @@
-"""Connected components of a raster against flooding."""
+"""Connected components of a raster against flood filling."""
 
 import numpy as np
 from hypothesis import given, settings
@@ -8,7 +8,7 @@ from geometry.raster.components import boxes, components
 
 
 def flood(mask: np.ndarray) -> np.ndarray:
-    """Labels in raster order, square by square."""
+    """Return labels in raster order, found by flood filling."""
     labels, count = np.zeros(mask.shape, int), 0
     for start in np.argwhere(mask).tolist():
         if labels[tuple(start)]:
@@ -30,7 +30,7 @@ def flood(mask: np.ndarray) -> np.ndarray:
 
 @settings(max_examples=300, deadline=None)
 @given(st.integers(1, 14), st.integers(1, 14), st.integers(0, 2**32 - 1), st.floats(0, 1))
-def test_labels_are_those_of_flooding(rows: int, columns: int, seed: int, density: float) -> None:
+def test_labels_equal_those_of_flood_filling(rows: int, columns: int, seed: int, density: float) -> None:
     mask = np.random.default_rng(seed).random((rows, columns)) < density
     found = components(mask)
     want = flood(mask)
@@ -40,7 +40,7 @@ def test_labels_are_those_of_flooding(rows: int, columns: int, seed: int, densit
 
 @settings(max_examples=100, deadline=None)
 @given(st.integers(1, 14), st.integers(1, 14), st.integers(0, 2**32 - 1), st.floats(0, 1))
-def test_boxes_hold_just_their_parts(rows: int, columns: int, seed: int, density: float) -> None:
+def test_bounding_rectangles_fit_their_components(rows: int, columns: int, seed: int, density: float) -> None:
     found = components(np.random.default_rng(seed).random((rows, columns)) < density)
     for label, box in enumerate(boxes(found.labels, found.number).tolist()):
         places = np.argwhere(found.labels == label)
@@ -48,11 +48,11 @@ def test_boxes_hold_just_their_parts(rows: int, columns: int, seed: int, density
             assert box == [*places.min(0).tolist(), *places.max(0).tolist()]
 
 
-def test_a_label_without_squares_has_no_box() -> None:
+def test_a_label_without_squares_has_no_rectangle() -> None:
     assert boxes(np.ones((2, 3), np.int32), 2).tolist() == [[2, 3, -1, -1], [0, 0, 1, 2], [2, 3, -1, -1]]
 
 
-def test_a_comb_and_a_spiral_are_one_part() -> None:
+def test_a_comb_and_a_spiral_are_one_component_each() -> None:
     comb = np.zeros((9, 41), bool)
     comb[:, ::2] = comb[4] = True
     assert components(comb).number == 1
@@ -63,7 +63,7 @@ def test_a_comb_and_a_spiral_are_one_part() -> None:
     assert components(spiral == ".").number == 1
 
 
-def test_a_view_of_a_larger_array_will_do() -> None:
+def test_views_of_larger_arrays_are_accepted() -> None:
     mask = np.zeros((8, 8), bool)
     mask[::2] = True
     assert components(mask[:, ::3]).number == 4

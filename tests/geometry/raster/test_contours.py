@@ -1,4 +1,4 @@
-"""Outlines against the squares that they enclose."""
+"""Boundary rings against the squares that they enclose."""
 
 import numpy as np
 import shapely
@@ -10,14 +10,14 @@ from geometry.raster.contours import outline
 
 
 def area(ring: tuple[tuple[int, int], ...]) -> float:
-    """Signed area, positive when counter-clockwise."""
+    """Return the signed area of a ring, positive if it runs counter-clockwise."""
     x, y = np.array(ring, float).T
     return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2)
 
 
 @settings(max_examples=200, deadline=None)
 @given(st.integers(1, 9), st.integers(1, 9), st.integers(0, 2**32 - 1), st.floats(0.1, 1))
-def test_an_outline_encloses_its_squares(rows: int, columns: int, seed: int, density: float) -> None:
+def test_rings_enclose_exactly_their_squares(rows: int, columns: int, seed: int, density: float) -> None:
     mask = np.random.default_rng(seed).random((rows, columns)) < density
     rings = outline(mask)
     assert sum(area(ring) for ring in rings) == mask.sum()
@@ -34,7 +34,7 @@ def test_an_outline_encloses_its_squares(rows: int, columns: int, seed: int, den
 
 @settings(max_examples=200, deadline=None)
 @given(st.integers(1, 9), st.integers(1, 9), st.integers(0, 2**32 - 1), st.floats(0.1, 1))
-def test_each_part_has_one_outer_ring(rows: int, columns: int, seed: int, density: float) -> None:
+def test_each_component_has_one_outer_ring(rows: int, columns: int, seed: int, density: float) -> None:
     mask = np.random.default_rng(seed).random((rows, columns)) < density
     assert sum(area(ring) > 0 for ring in outline(mask)) == components(mask).number
 
@@ -52,5 +52,5 @@ def test_rings_turn_at_every_corner(rows: int, columns: int, seed: int) -> None:
         assert ((steps[:-1] * steps[1:]).sum(1) == 0).all()
 
 
-def test_nothing_has_no_outline() -> None:
+def test_an_empty_mask_has_no_rings() -> None:
     assert outline(np.zeros((3, 3), bool)) == []

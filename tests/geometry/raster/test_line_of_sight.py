@@ -1,4 +1,4 @@
-"""Straight moves of a whole square over a raster, against an exact sweep of shapely."""
+"""Straight moves of a unit square over a raster, against an exact sweep with shapely."""
 
 import numpy as np
 import pytest
@@ -12,12 +12,12 @@ SQUARE = ((0, 0), (1, 0), (1, 1), (0, 1))
 
 
 def swept(here: tuple[int, int], there: tuple[int, int]) -> shapely.Geometry:
-    """All that a unit square covers on its way from one square (column, row) to another."""
+    """Return the region that a unit square sweeps on its way from one square (column, row) to another."""
     return shapely.MultiPoint([(x + a, y + b) for x, y in (here, there) for a, b in SQUARE]).convex_hull
 
 
 def raster(rows: int, columns: int, seed: int) -> tuple[np.ndarray, tuple[int, int]]:
-    """Squares mostly free, and one of them (column, row), that is free."""
+    """Return a mask of mostly free squares, and a free square (column, row) of it."""
     rng = np.random.default_rng(seed)
     free = rng.random((rows, columns)) < rng.uniform(0.7, 1.0)
     here = int(rng.integers(columns)), int(rng.integers(rows))
@@ -39,14 +39,14 @@ def test_a_move_leads_where_all_that_it_sweeps_is_free(rows: int, columns: int, 
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(2, 20), st.integers(2, 20), st.integers(0, 2**32 - 1))
-def test_a_move_leads_back(rows: int, columns: int, seed: int) -> None:
+def test_a_move_can_be_reversed(rows: int, columns: int, seed: int) -> None:
     free, here = raster(rows, columns, seed)
     for row, column in np.argwhere(straight(free, *here, 99)).tolist():
         assert straight(free, column, row, 99)[here[1], here[0]]
 
 
 @given(st.integers(1, 20), st.integers(1, 20), st.integers(0, 2**32 - 1))
-def test_only_what_is_asked_about_is_told(rows: int, columns: int, seed: int) -> None:
+def test_only_the_squares_asked_about_are_marked(rows: int, columns: int, seed: int) -> None:
     free, here = raster(rows, columns, seed)
     among = np.random.default_rng(seed + 1).random(free.shape) < 0.5
     assert np.array_equal(straight(free, *here, 9, among), straight(free, *here, 9) & among)

@@ -9,7 +9,7 @@ from benchmarks.engine.exact import Exact, clearances
 from benchmarks.floors import CHECKS, disagreements
 from geometry import Route, Screen
 from geometry.pathfinders.visibility_graph import visibility_way
-from geometry.routes.lifting import lift
+from geometry.routes.lifting import lift_to_skeleton
 from geometry.routes.tighten import word_of_crossings
 
 SEED = 20  # other floors than those of the campaign
@@ -160,5 +160,5 @@ def test_a_class_is_lifted_to_the_way_by_which_it_was_found(number: int, radius:
     start, goal = (tuple((squares[n][::-1] + 0.5).tolist()) for n in rng.integers(0, len(squares), 2))
     for route in screen.routes(start, goal, k=1, radius=radius):
         layer = screen._ask(radius).layer
-        found, _ = lift(layer, (*start, *goal), word_of_crossings(layer.runs, (*start, *goal), route.signature))
+        found, _ = lift_to_skeleton(layer, (*start, *goal), word_of_crossings(layer.runs, (*start, *goal), route.signature))
         assert (0.5 * found.lowest**0.5, found.chains) == (route.clearance, route.chains)

@@ -11,26 +11,26 @@ from shapely import affinity
 
 from geometry.raster.rasterize import squares
 from geometry.shapes import misfit
-from geometry.shapes.candidates import settled_best
-from geometry.shapes.shape_likelihood import SIZES, room_for
+from geometry.shapes.candidates import best_turned_shape
+from geometry.shapes.shape_likelihood import SIZE_RANGE, parameter_volume
 
 PAD = 2
 Draw = Callable[[np.random.Generator], shapely.Polygon]
 
 
 def square(rng: np.random.Generator) -> shapely.Polygon:
-    return shapely.box(0, 0, *([rng.uniform(2, 2 + SIZES)] * 2))
+    return shapely.box(0, 0, *([rng.uniform(2, 2 + SIZE_RANGE)] * 2))
 
 
 def brick(rng: np.random.Generator) -> shapely.Polygon:
     while True:
-        wide, high = rng.uniform(2, 2 + SIZES, 2)
-        if max(wide, high) >= misfit.OBLONG * min(wide, high):
+        wide, high = rng.uniform(2, 2 + SIZE_RANGE, 2)
+        if max(wide, high) >= misfit.MIN_BRICK_RATIO * min(wide, high):
             return shapely.box(0, 0, wide, high)
 
 
 def disc(rng: np.random.Generator) -> shapely.Polygon:
-    return shapely.Point(0, 0).buffer(rng.uniform(1, 1 + SIZES / 2), quad_segs=32)
+    return shapely.Point(0, 0).buffer(rng.uniform(1, 1 + SIZE_RANGE / 2), quad_segs=32)
 
 
 def image_of(shape: shapely.Polygon) -> np.ndarray:
@@ -43,7 +43,7 @@ def image_of(shape: shapely.Polygon) -> np.ndarray:
 
 @pytest.mark.parametrize(
     ("kind", "draw"),
-    [(misfit.SQUARE, square), (misfit.BRICK, brick), (misfit.DISC, disc)],
+    [(misfit.SQUARE_CLASS, square), (misfit.BRICK_CLASS, brick), (misfit.DISC_CLASS, disc)],
     ids=["square", "brick", "disc"],
 )
 def test_an_image_is_as_likely_as_it_is_frequent(kind: int, draw: Draw) -> None:
@@ -57,10 +57,10 @@ def test_an_image_is_as_likely_as_it_is_frequent(kind: int, draw: Draw) -> None:
     apart = []
     for (shape, told), count in seen.most_common(12):
         image = np.frombuffer(told, np.int8).reshape(shape)
-        laid, wrong = settled_best(kind, image)
+        laid, wrong = best_turned_shape(kind, image)
         if wrong:
             continue
-        apart.append(room_for(kind, laid, image, 0).log_likelihood - math.log(count / number))
+        apart.append(parameter_volume(kind, laid, image, 0).log_likelihood - math.log(count / number))
     assert len(apart) >= 8
     assert abs(np.median(apart)) < 0.7
     assert np.abs(apart).max() < 2.0
@@ -73,10 +73,10 @@ def test_the_middle_of_what_agrees_is_told() -> None:
         angle, x, y, side = rng.uniform(0, math.pi / 2), *(15 + rng.random(2)), rng.uniform(4, 6)
         turned = affinity.rotate(shapely.box(-side / 2, -side / 2, side / 2, side / 2), angle, use_radians=True)
         image = squares(affinity.translate(turned, x, y), 30, 30).astype(np.int8)
-        laid, wrong = settled_best(misfit.SQUARE, image)
+        laid, wrong = best_turned_shape(misfit.SQUARE_CLASS, image)
         if wrong == 0:
-            mean = room_for(misfit.SQUARE, laid, image, 0).mean
-            assert misfit.misfit(misfit.SQUARE, mean, image, math.inf) == 0
+            mean = parameter_volume(misfit.SQUARE_CLASS, laid, image, 0).mean
+            assert misfit.count_wrong_squares(misfit.SQUARE_CLASS, mean, image, math.inf) == 0
             settled.append(abs(laid[3] - side))
             amid.append(abs(mean[3] - side))
     assert len(amid) >= 25
@@ -85,7 +85,7 @@ def test_the_middle_of_what_agrees_is_told() -> None:
 
 def test_what_is_unknown_leaves_more_room() -> None:
     image = np.pad(np.ones((4, 4), np.int8), PAD)
-    laid, _ = settled_best(misfit.DISC, image)
-    known = room_for(misfit.DISC, laid, image, 0).log_likelihood
-    image[PAD:-PAD, -PAD - 1] = misfit.UNKNOWN
-    assert room_for(misfit.DISC, laid, image, 0).log_likelihood > known
+    laid, _ = best_turned_shape(misfit.DISC_CLASS, image)
+    known = parameter_volume(misfit.DISC_CLASS, laid, image, 0).log_likelihood
+    image[PAD:-PAD, -PAD - 1] = misfit.IMAGE_UNKNOWN
+    assert parameter_volume(misfit.DISC_CLASS, laid, image, 0).log_likelihood > known

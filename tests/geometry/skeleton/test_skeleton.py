@@ -116,7 +116,7 @@ def test_saddles_are_where_several_groups_of_higher_neighbours_touch_by_edges():
 
 @settings(deadline=None)
 @given(oracles.screens())
-def test_chains_are_unbroken_and_their_necks_are_their_narrowest_places(free):
+def test_chains_are_unbroken_and_their_clearance_is_that_of_their_narrowest_place(free):
     screen = Screen(free)
     graph = screen.pathgraph
     for a, b, edge in graph.edges(data=True):
@@ -125,7 +125,7 @@ def test_chains_are_unbroken_and_their_necks_are_their_narrowest_places(free):
         ends = {tuple(points[0]), tuple(points[-1])}
         assert ends == {(graph.nodes[n]["x"], graph.nodes[n]["y"]) for n in (a, b)}
         along = [screen.clearance[int(y), int(x)] for x, y in points]
-        assert edge["clearance"] == min(along) == screen.clearance[int(edge["neck"][1]), int(edge["neck"][0])]
+        assert edge["clearance"] == min(along)
 
 
 @pytest.mark.parametrize(

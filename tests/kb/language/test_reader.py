@@ -1,4 +1,4 @@
-"""Our reader of fact files: what it takes, and where it says that something is wrong."""
+"""The reader of fact files: accepted texts, and the place and message of every error."""
 
 import os
 import time
@@ -12,11 +12,13 @@ from kb.language.diagnostics import BadInputError, CannotOpenError
 from kb.language.reader import facts_of, read_facts
 from kb.language.terms import Number, Symbol, Text
 
-GIVEN_UP = 60.0  # seconds of the processor: far beyond what reading takes, far below what it took if it were quadratic
+GIVEN_UP = (
+    60.0  # seconds of processor time: many times what linear reading takes, far less than quadratic reading would take
+)
 
 
 def problems(text: str) -> list[str]:
-    """The problems of a text, each as line:col-col: what."""
+    """Return the problems of a text, each as `line:col-col: what`."""
     with pytest.raises(BadInputError) as caught:
         facts_of(text)
     return [f"{p.span.line}:{p.span.start}-{p.span.end}: {p.what}" for p in caught.value.problems]
@@ -45,7 +47,7 @@ def test_spans_count_from_one_in_characters() -> None:
     assert fact.args[0].span == (2, 11, 11)
 
 
-def test_terms_are_equal_wherever_they_stand() -> None:
+def test_the_place_of_a_term_does_not_count_for_equality() -> None:
     one, other = facts_of("p(x,1).\n   p( x, 1 ).")
     assert one == other
     assert hash(one) == hash(other)
@@ -87,7 +89,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("text", REFUSED)
-def test_what_is_no_fact_is_refused_where_it_stands(text: str) -> None:
+def test_an_invalid_fact_is_refused_at_its_place(text: str) -> None:
     assert problems(text)[0].startswith(REFUSED[text])
 
 
@@ -123,7 +125,7 @@ def test_at_most_twenty_problems_are_shown() -> None:
 
 
 @pytest.mark.parametrize("text", ["p(X).\n", "(", "\u00e9", "p(", '"', "a.", '"a\\\\"', "%*", "\n", "p(x,"])
-def test_big_files_are_soon_done_with(text: str) -> None:
+def test_the_time_to_read_grows_linearly(text: str) -> None:
     start = time.process_time()
     with pytest.raises(BadInputError) as caught:
         facts_of(text * (1_000_000 // len(text)) + "X")
@@ -131,7 +133,7 @@ def test_big_files_are_soon_done_with(text: str) -> None:
     assert time.process_time() - start < GIVEN_UP
 
 
-def test_a_long_string_is_soon_read() -> None:
+def test_a_long_string_is_read_fast() -> None:
     start = time.process_time()
     (fact,) = facts_of('p("' + "1 2, " * 200_000 + '\\n").')
     assert isinstance(fact.args[0], Text)
@@ -139,14 +141,14 @@ def test_a_long_string_is_soon_read() -> None:
     assert time.process_time() - start < GIVEN_UP
 
 
-def test_utf16_is_named(tmp_path: Path) -> None:
+def test_a_utf16_file_is_refused_with_the_encoding_named(tmp_path: Path) -> None:
     path = tmp_path / "start.lp"
     path.write_bytes("object(x).".encode("utf-16"))
     with pytest.raises(BadInputError, match="begins with UTF-16"):
         read_facts(path)
 
 
-def test_what_cannot_be_opened(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_opened_is_refused(tmp_path: Path) -> None:
     fifo = tmp_path / "fifo.lp"
     os.mkfifo(fifo)
     for path, why in [(fifo, "no regular file"), (tmp_path, "directory"), (tmp_path / "none.lp", "No such file")]:
@@ -173,7 +175,7 @@ terms = st.recursive(
 
 
 @given(st.lists(st.builds(lambda n, a: f"{n}({','.join(a)})", names, st.lists(terms, min_size=1, max_size=3))))
-def test_what_is_written_is_read_back(facts: list[str]) -> None:
+def test_written_facts_are_read_back_equal(facts: list[str]) -> None:
     text = "\n".join(f"{fact}." for fact in facts)
     assert [str(fact) for fact in facts_of(text)] == facts
 

@@ -1,4 +1,4 @@
-"""Shapes as text: the same as shapely reads, and the character at which a text goes wrong."""
+"""Shapes as text: the same geometry as shapely reads, and the character at which an invalid text goes wrong."""
 
 import pytest
 import shapely
@@ -57,12 +57,12 @@ BAD = {
 
 
 @pytest.mark.parametrize("text", GOOD)
-def test_good_text_means_what_shapely_reads(text: str) -> None:
+def test_valid_text_gives_the_shape_that_shapely_reads(text: str) -> None:
     assert parse_wkt(text).equals_exact(shapely.from_wkt(text), 0)
 
 
 @pytest.mark.parametrize("text", BAD)
-def test_bad_text_is_refused_where_it_goes_wrong(text: str) -> None:
+def test_invalid_text_is_refused_at_its_first_wrong_character(text: str) -> None:
     with pytest.raises(WktError) as caught:
         parse_wkt(text)
     at, what = BAD[text]
@@ -92,8 +92,8 @@ words = st.sampled_from([*PIECES.split("|"), "inf", "0 0", "4 0", "4 4", "0 4", 
         )
     )
 )
-def test_what_is_accepted_is_what_shapely_reads(text: str) -> None:
-    """Whoever reads more kindly than the standard's readers reads something else than was written."""
+def test_every_accepted_text_is_read_alike_by_shapely(text: str) -> None:
+    """A reader that accepts more than the standard reads something else than the user wrote."""
     try:
         shape = parse_wkt(text)
     except WktError:

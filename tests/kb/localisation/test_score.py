@@ -1,4 +1,4 @@
-"""What else than what is believed is thought of when a look is explained."""
+"""Proposals of earlier motions: which of them are re-estimated when an observation is explained."""
 
 from collections.abc import Sequence
 from typing import cast
@@ -6,15 +6,16 @@ from typing import cast
 import numpy as np
 import pytest
 
-from kb.localisation.accommodation import Memory
 from kb.localisation.hypotheses.explanation import Explanation
-from kb.localisation.hypotheses.frames import CENTRED, Observation
+from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
 from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis, ReestimatedWalk, WalkCorrection
 from kb.localisation.hypotheses.what_if import Surprise, WhatIf
 from kb.localisation.propose.earlier_motion import ReestimatedMotion
+from kb.localisation.score import EARLIER_MOTION_PROPOSERS, SearchBudget, propose_earlier_motions
+from kb.localisation.state import TrackerState
 from kb.perception.frame import CENTRE, Frame
 
-HELD = CENTRED[0]
+HELD = CENTRED_HYPOTHESES[0]
 STUCK = Explanation("stuck", CENTRE, Frame(), 0, 0.5)
 NO_SURPRISE = cast(Surprise, None)
 
@@ -22,32 +23,36 @@ NO_SURPRISE = cast(Surprise, None)
 @pytest.mark.parametrize(
     ("likely", "simple", "asked"),
     [
-        (0.3, STUCK, [1]),  # the push before may well have ended there
+        (0.3, STUCK, [1]),  # the push before was in doubt
         (0.01, STUCK, []),
-        (0.3, STUCK._replace(how="blocked", chance=0.5), None),  # how likely that is is known
-        (0.3, STUCK._replace(how="slipped"), [1, 2]),  # nothing simple explains it: all is thought of
-        (0.3, STUCK._replace(misfits=3), [1, 2]),
+        (0.3, STUCK._replace(how="blocked", chance=0.5), None),  # the chance of the simple explanation is known
+        (0.3, STUCK._replace(how="slipped"), [1, 2]),  # nothing simple explains it: all are re-estimated
+        (0.3, STUCK._replace(residual=3), [1, 2]),
     ],
 )
-def test_what_likely_was_otherwise_is_thought_of_where_something_odd_explains_a_look(
-    likely: float, simple: Explanation, asked: list[int] | None, monkeypatch: pytest.MonkeyPatch
+def test_only_doubtful_motions_are_reestimated_where_something_simple_explains_an_observation(
+    likely: float, simple: Explanation, asked: list[int] | None
 ) -> None:
-    memory = Memory(observations=[Observation(np.zeros((160, 2), np.int16), (float(n), 0.0)) for n in range(3)])
+    observations = tuple(Observation(np.zeros((160, 2), np.int16), (float(n), 0.0)) for n in range(3))
     doubts = (((0.75, 0.5), likely), ((0.0, 0.0), 0.001))
-    memory.moved = (MotionHypothesis(1, (1.0, 0.0), (HELD,), doubts=doubts), MotionHypothesis(2, (1.0, 0.0), (HELD,)))
+    moved = (
+        MotionHypothesis(1, (1.0, 0.0), (HELD,), alternative_ends=doubts),
+        MotionHypothesis(2, (1.0, 0.0), (HELD,)),
+    )
     told = ReestimatedMotion(
         ReestimatedWalk(HELD, WalkCorrection(1, (-0.25, 0.5)), True, 0),
         WhatIf(Frame(), (HELD,), CENTRE, None, 0, False),
     )
     calls: list[list[int]] = []
 
-    def recalled(_: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
+    def reestimate(_: Surprise, motions: Sequence[MotionHypothesis]) -> list[ReestimatedMotion]:
         calls.append([motion.number for motion in motions])
         return [told] * bool(motions)
 
-    monkeypatch.setattr("kb.localisation.score.recalled", recalled)
-    found = memory._recalled(NO_SURPRISE, [simple])
+    state, budget = TrackerState(observations=observations, motions=moved), SearchBudget(0)
+    proposers = EARLIER_MOTION_PROPOSERS._replace(in_frame=reestimate)
+    found = propose_earlier_motions(state, NO_SURPRISE, [simple], budget, proposers)
     assert calls == ([] if asked is None else [asked])
     assert len(found) == bool(asked)
     for one in found:
-        assert (one.how, one.chance, one.retold) == ("misled", likely, told.retold)
+        assert (one.how, one.chance, one.reestimated) == ("misled", likely, told.walk)

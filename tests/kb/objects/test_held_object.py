@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
 from geometry.motion.se2 import Rotate, Translate
-from kb.localisation.hypotheses.carry_outcomes import otherwise, predicted
+from kb.localisation.hypotheses.carry_outcomes import other_outcomes, predicted_outcome
 from kb.mapping.occupancy import OccupancyMap
 from kb.mapping.patch import covered
 from kb.objects.held_object import HeldObject, discounted, slack_of, whole
@@ -94,8 +94,8 @@ def test_a_load_that_lies_askew_leaves_its_rim_open_until_it_is_seen() -> None:
 
 def test_a_motion_may_go_as_told_or_not_at_all_or_end_early() -> None:
     place, motion = (5.5, 0.5), Translate(3.0, 0.0)
-    assert predicted(place, BRICK, motion).polygon.equals(translate(BRICK, 3, 0))
-    outcomes = list(otherwise(place, BRICK, motion))
+    assert predicted_outcome(place, BRICK, motion).polygon.equals(translate(BRICK, 3, 0))
+    outcomes = list(other_outcomes(place, BRICK, motion))
     stuck = [o for o in outcomes if o.how == "stuck"]
     assert [o.place for o in stuck] == [place]
     assert stuck[0].polygon.equals(BRICK)
@@ -109,7 +109,7 @@ def test_a_motion_may_go_as_told_or_not_at_all_or_end_early() -> None:
 def test_a_turn_leaves_utak_and_may_have_been_about_another_point_of_his_square() -> None:
     place, motion = (5.5, 0.5), Rotate(90.0, (5.5, 0.5))
     true = rotate(BRICK, 90, origin=(5.25, 0.75))
-    outcomes = [predicted(place, BRICK, motion), *otherwise(place, BRICK, motion)]
+    outcomes = [predicted_outcome(place, BRICK, motion), *other_outcomes(place, BRICK, motion)]
     assert {outcome.place for outcome in outcomes} == {place}
     assert min(outcome.polygon.symmetric_difference(true).area for outcome in outcomes) < 0.2
 

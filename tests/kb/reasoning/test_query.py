@@ -1,4 +1,4 @@
-"""Questions to the world model: bindings, yes, no, don't know; and a worker that no query can hang or kill for good."""
+"""Queries to the world model: bindings, yes, no, don't know; and a worker that survives every query."""
 
 import operator
 import time
@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.language.diagnostics import BadInputError
-from kb.reasoning.query import Answer, QueryEngine, QueryLimitError
+from kb.reasoning.query import QueryAnswer, QueryEngine, QueryLimitError
 
 FACTS = [
     "node(o1).",
@@ -53,20 +53,20 @@ ANSWERS = {
 
 
 @pytest.mark.parametrize("query", ANSWERS)
-def test_one_word_answers(engine: QueryEngine, query: str) -> None:
+def test_queries_without_variables_have_the_answer_yes_no_or_dont_know(engine: QueryEngine, query: str) -> None:
     assert engine.ask(FACTS, query).kind == ANSWERS[query]
 
 
 UNSEEN = {
-    "shape(X, disc, C)": "don't know",  # it may be where nothing was seen
+    "shape(X, disc, C)": "don't know",  # a disc may stand in an unseen part
     "object(o9)": "don't know",
-    "in(o2, r1)": "no",  # o2 was seen, and not there
+    "in(o2, r1)": "no",  # o2 was seen, in another room
     "shape(o1, square, 100)": "yes",
 }
 
 
 @pytest.mark.parametrize("query", UNSEEN)
-def test_what_is_unseen_leaves_doubts(engine: QueryEngine, query: str) -> None:
+def test_unseen_parts_give_the_answer_dont_know(engine: QueryEngine, query: str) -> None:
     assert engine.ask([*FACTS, "unseen(r1,40)."], query).kind == UNSEEN[query]
     assert engine.ask([*FACTS, "unseen(r1,0)."], query).kind != "don't know"
 
@@ -85,7 +85,7 @@ CALLED = {
 
 
 @pytest.mark.parametrize("query", CALLED)
-def test_the_robot_is_called_utak_where_no_kind_stands(engine: QueryEngine, query: str) -> None:
+def test_utak_in_queries_means_org_except_as_a_kind(engine: QueryEngine, query: str) -> None:
     assert engine.ask(UTAK, query).rows == CALLED[query]
 
 
@@ -97,7 +97,7 @@ MISCALLED = {
 
 
 @pytest.mark.parametrize("query", MISCALLED)
-def test_errors_stand_where_the_user_wrote_them(engine: QueryEngine, query: str) -> None:
+def test_arithmetic_errors_have_their_place_in_the_query(engine: QueryEngine, query: str) -> None:
     with pytest.raises(BadInputError) as caught:
         engine.ask(UTAK, query)
     assert str(caught.value).startswith(MISCALLED[query]) and f"\n  {query}\n" in str(caught.value)
@@ -167,7 +167,7 @@ NUMBERS = {
 
 
 @pytest.mark.parametrize("query", NUMBERS)
-def test_numbers_are_those_of_arithmetic(engine: QueryEngine, query: str) -> None:
+def test_arithmetic_is_exact(engine: QueryEngine, query: str) -> None:
     answer = engine.ask(FACTS, query)
     assert [row[answer.variables.index("X")] for row in answer.rows] == [NUMBERS[query]]
 
@@ -192,7 +192,7 @@ def test_every_result_is_exact_or_refused(engine: QueryEngine, a: int, p: str, b
 
 
 @pytest.mark.parametrize("query", BAD)
-def test_what_is_no_query_is_refused(engine: QueryEngine, query: str) -> None:
+def test_invalid_queries_are_refused(engine: QueryEngine, query: str) -> None:
     with pytest.raises(BadInputError) as caught:
         engine.ask(FACTS, query)
     assert BAD[query] in str(caught.value)
@@ -211,7 +211,7 @@ def test_a_runaway_query_is_given_up(engine: QueryEngine, query: str) -> None:
     with pytest.raises(QueryLimitError):
         engine.ask(FACTS, query)
     assert time.monotonic() - start < 5
-    assert engine.ask(FACTS, "node(o1)") == Answer("yes")
+    assert engine.ask(FACTS, "node(o1)") == QueryAnswer("yes")
 
 
 def test_a_worker_that_dies_is_replaced(engine: QueryEngine) -> None:
@@ -223,7 +223,7 @@ def test_a_worker_that_dies_is_replaced(engine: QueryEngine) -> None:
     assert engine.ask(FACTS, "node(o1)").kind == "yes"
 
 
-def test_facts_that_are_none_are_refused(engine: QueryEngine) -> None:
+def test_invalid_facts_are_refused(engine: QueryEngine) -> None:
     with pytest.raises(BadInputError):
         engine.ask(["node(X) :- kind(X,object,C)."], "node(X)")
 

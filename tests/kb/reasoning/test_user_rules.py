@@ -1,4 +1,4 @@
-"""A user's own rules: they count, and whatever is wrong with them is an error of their file and nothing worse."""
+"""Users' rules: their effect, and that every error in them is reported as an error of their file."""
 
 import random
 import time
@@ -12,7 +12,7 @@ from kb.language.diagnostics import BadInputError
 from kb.reasoning import user_rules
 from kb.reasoning.interfaces import REACHED
 from kb.reasoning.query import QueryEngine
-from kb.reasoning.rulebook import UNREACHED
+from kb.reasoning.rulebook import INTERNAL_PREDICATES
 from kb.reasoning.solver import KB, solve
 from kb.reasoning.user_rules import checked_rules, read_rules
 from tests.encoding_cases import ENCODINGS, case_file
@@ -40,7 +40,7 @@ def complaint(tmp_path: Path, *rules: str) -> str:
 
 
 def refusal(tmp_path: Path, *rules: str) -> str:
-    """What is said of files of rules before anything is run."""
+    """Return the message about files of rules that are refused before solving."""
     with pytest.raises(BadInputError) as caught:
         checked_rules(written(tmp_path, *rules))
     return str(caught.value)
@@ -50,7 +50,7 @@ def test_rules_are_added_to_ours(tmp_path: Path) -> None:
     assert answered(tmp_path, "kind(a, verge, 7).") == ["kind(a,floor,100)", "kind(a,verge,7)"]
 
 
-def test_predicates_of_ones_own_are_between(tmp_path: Path) -> None:
+def test_own_predicates_connect_rules(tmp_path: Path) -> None:
     rules = (
         "pair((1,(2,3))). strange(R) :- region(R, zero, _), not even(R). even(b).",
         "kind(R, verge, 7) :- strange(R).\n#show.",
@@ -58,7 +58,7 @@ def test_predicates_of_ones_own_are_between(tmp_path: Path) -> None:
     assert answered(tmp_path, *rules) == ["kind(a,floor,100)", "kind(a,verge,7)"]
 
 
-def test_constants_are_those_of_their_file(tmp_path: Path) -> None:
+def test_constants_hold_in_their_file_only(tmp_path: Path) -> None:
     rules = ("#const zero = 7. kind(a, verge, zero).", "kind(R, verge, 9) :- region(R, zero, _).")
     assert answered(tmp_path, *rules) == ["kind(a,floor,100)", "kind(a,verge,7)", "kind(a,verge,9)"]
 
@@ -72,17 +72,17 @@ CONTRADICTIONS = {
 
 
 @pytest.mark.parametrize("rules", CONTRADICTIONS)
-def test_a_rule_that_contradicts_is_refused_where_it_stands(tmp_path: Path, rules: str) -> None:
+def test_a_contradicting_rule_is_refused_at_its_place(tmp_path: Path, rules: str) -> None:
     assert CONTRADICTIONS[rules] in complaint(tmp_path, rules)
 
 
-def test_a_rule_that_contradicts_whatever_is_given_is_refused_at_once(tmp_path: Path) -> None:
+def test_a_rule_that_contradicts_itself_is_refused_when_read(tmp_path: Path) -> None:
     for rules in (":- #true.", "a :- not a.", "n(1..3). :- n(3)."):
         assert "leaves no answer, whatever is given" in refusal(tmp_path, rules)
 
 
 def test_a_search_that_is_cut_off_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(user_rules, "CONFLICTS", 50)
+    monkeypatch.setattr(user_rules, "MAX_CONFLICTS", 50)
     birds = "bird(1..9). hole(1..8). :- sits(B,H), sits(C,H), B < C. "
     for rules in (
         "1 { sits(B,H) : hole(H) } 1 :- bird(B).",  # there is no answer, but that is hard to prove
@@ -132,7 +132,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("rules", WRONG)
-def test_what_is_wrong_is_said_before_anything_is_run(tmp_path: Path, rules: str) -> None:
+def test_invalid_rules_are_refused_before_solving(tmp_path: Path, rules: str) -> None:
     said = refusal(tmp_path, rules)
     assert WRONG[rules] in said
     assert said.startswith(f"{tmp_path}/rules0.lp:")
@@ -150,26 +150,26 @@ DERIVED = {
 
 
 @pytest.mark.parametrize("rules", DERIVED)
-def test_what_rules_derive_is_held_against_the_vocabulary(tmp_path: Path, rules: str) -> None:
+def test_derived_atoms_are_checked_against_the_vocabulary(tmp_path: Path, rules: str) -> None:
     checked_rules(written(tmp_path, rules))
     said = complaint(tmp_path, rules)
     assert DERIVED[rules] in said
     assert said.startswith(f"{tmp_path}/rules0.lp:1:")
 
 
-def test_the_rule_is_named_that_derives_it(tmp_path: Path) -> None:
+def test_the_error_names_the_rule_that_derives_an_invalid_atom(tmp_path: Path) -> None:
     rules = "kind(R,object,7) :- region(R,zero,_).\nkind(R,verge,C) :- region(R,zero,D), C = D+1."
     assert "rules0.lp:2:1-1: error: these rules derive kind(a,verge,101)" in complaint(tmp_path, rules)
 
 
-def test_a_rule_counts_where_all_of_it_is_known(tmp_path: Path) -> None:
+def test_a_rule_reaches_the_encodings_that_know_all_its_predicates(tmp_path: Path) -> None:
     rules = read_rules(
         written(tmp_path, "p(X) :- kind(X, verge, _). q(X) :- p(X), not r(X). r(o9). s :- neck(_,W,_,_,_).")
     )
-    assert [len(rules.counting(name)) for name in ("interpretation", "shapes", "rooms", "belief")] == [3, 1, 2, 3]
+    assert [len(rules.rules_reaching(name)) for name in ("interpretation", "shapes", "rooms", "belief")] == [3, 1, 2, 3]
 
 
-def test_ones_own_predicates_can_be_asked_for(tmp_path: Path) -> None:
+def test_queries_can_use_own_predicates(tmp_path: Path) -> None:
     rules = (
         "wide(X) :- rect(X, W, _, E, _), E-W > 500.\nsmall(X) :- object(X), not wide(X).\n"
         "near(X, Y) :- adjacent(X, Y). near(X, Z) :- near(X, Y), adjacent(Y, Z).\nsquare(X, C) :- shape(X, square, C)."
@@ -194,7 +194,7 @@ def test_ones_own_predicates_can_be_asked_for(tmp_path: Path) -> None:
             ask("tiny(X)", 0)
 
 
-def test_what_goes_wrong_in_a_rule_while_asked_is_told_there(tmp_path: Path) -> None:
+def test_an_error_of_a_rule_during_a_query_has_its_place(tmp_path: Path) -> None:
     paths = [str(path) for path in written(tmp_path, "% one\np(X*X*X) :- offset(_, X, _).")]
     with QueryEngine(rules=paths) as engine, pytest.raises(BadInputError) as caught:
         engine.ask(["offset(o1,5000,0)."], "p(X)")
@@ -202,7 +202,7 @@ def test_what_goes_wrong_in_a_rule_while_asked_is_told_there(tmp_path: Path) -> 
 
 
 def test_a_runaway_rule_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(user_rules, "SECONDS", 0.5)
+    monkeypatch.setattr(user_rules, "MAX_RULE_SECONDS", 0.5)
     before = time.monotonic()
     for find in (complaint, refusal):
         said = find(tmp_path, "n(0). n(X+1) :- n(X), X < 2000000000.")
@@ -212,18 +212,18 @@ def test_a_runaway_rule_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 
 @pytest.mark.parametrize("char", ["\u00df", "\u201c", "\ufeff", "\u00a0"])
-def test_what_is_not_ascii_is_refused_before_clingo_sees_it(tmp_path: Path, char: str) -> None:
+def test_text_that_is_not_ascii_never_reaches_clingo(tmp_path: Path, char: str) -> None:
     assert "rules0.lp:1:" in complaint(tmp_path, f"{char}kind(a, verge, 7).")
 
 
-def test_an_error_is_told_where_it_is(tmp_path: Path) -> None:
+def test_every_error_has_its_place(tmp_path: Path) -> None:
     said = complaint(tmp_path, "% fine\nkind(a, verge, 7).\n", "kind(a, verge, 7).\nkind(b, verge, 7.\n")
     assert "rules1.lp:2:" in said
     assert "kind(b, verge, 7." in said
 
 
-def test_the_table_of_interfaces_is_that_of_the_encodings() -> None:
-    """Each documented predicate of an encoding is in the tables, and nothing else is."""
+def test_the_interface_tables_agree_with_the_encodings() -> None:
+    """Every documented predicate of an encoding is in the tables, and nothing else is."""
     import importlib.util
 
     script = Path(__file__).resolve().parents[3] / "docs" / "build_vocabulary.py"
@@ -240,12 +240,12 @@ def test_the_table_of_interfaces_is_that_of_the_encodings() -> None:
         elif path.stem != "belief":
             for signature in interface:
                 unreached.setdefault(signature, set()).add(path.stem)
-    assert {signature: set(names) for signature, names in UNREACHED.items()} == unreached
+    assert {signature: set(names) for signature, names in INTERNAL_PREDICATES.items()} == unreached
 
 
 @pytest.mark.parametrize("name", REACHED)
-def test_rules_that_say_nothing_new_change_no_answer(tmp_path: Path, name: str) -> None:
-    """With a rule that only reads, in another process, every case is answered as without it."""
+def test_rules_that_derive_nothing_change_no_answer(tmp_path: Path, name: str) -> None:
+    """With a rule that only reads, solved in another process, every case has the same answer as without it."""
     paths = written(tmp_path, "seen(1) :- #true.")
     facts = [
         fact.strip()
@@ -267,7 +267,7 @@ kind(R,verge,C) region(R,zero,C) kind(R,object,_) p(X) q(R) shape(o1,square,C) d
 
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 10**9).map(random.Random))
-def test_any_rule_file_is_taken_or_refused_where_it_goes_wrong(
+def test_any_rule_file_is_accepted_or_refused_with_a_place(
     tmp_path_factory: pytest.TempPathFactory, draw: random.Random
 ) -> None:
     text = " ".join(draw.choice(PIECES.split(" ")) for _ in range(draw.randint(1, 14)))

@@ -1,4 +1,4 @@
-"""Parameters of the task and things of the world model: laws over random claims and nodes."""
+"""Binding of the task's parameters to objects of the world model: laws over random claims and nodes."""
 
 from dataclasses import replace
 
@@ -23,10 +23,13 @@ def symbol(name: str, *args: str) -> Symbol:
 
 
 def task(claims: dict[str, list[tuple[str, str, int]]], named: str | None = None) -> Task:
-    """Object parameters, each with its claims (property, value, confidence). named : those of goals; None for all."""
+    """Return a task with object parameters.
+
+    claims : of each parameter its claims (property, value, confidence). named : the parameters of goals; None for all.
+    """
     parameters = {x: Parameter(x, "object", NOWHERE) for x in claims}
-    told = tuple(Claim(symbol(p, x, v), c) for x, said in claims.items() for p, v, c in said)
-    return Task(parameters, told, tuple(symbol("at", "utak", x) for x in (claims if named is None else named)))
+    claims_made = tuple(Claim(symbol(p, x, v), c) for x, said in claims.items() for p, v, c in said)
+    return Task(parameters, claims_made, tuple(symbol("at", "utak", x) for x in (claims if named is None else named)))
 
 
 def node(name: str, shape: dict[str, int], colour: str | None = None, open_: int = 0, confidence: int = 95) -> Node:
@@ -75,7 +78,7 @@ def test_laws_of_binding(wanted: Task, things: tuple[Node, ...], data: st.DataOb
 
 @settings(max_examples=60, deadline=None)
 @given(tasks, tasks, nodes, st.data())
-def test_what_no_goal_names_takes_nothing_away(
+def test_parameters_without_a_goal_take_no_object_from_others(
     wanted: Task, more: Task, things: tuple[Node, ...], data: st.DataObject
 ) -> None:
     model = replace(MODEL, objects=things)
@@ -116,23 +119,21 @@ def test_a_colour_claim_counts() -> None:
     ("moved", "better", "chosen"), [(True, 0, "o1"), (True, 15, "o1"), (True, 31, "o2"), (False, 0, "o2")]
 )
 @pytest.mark.parametrize("alike", [50, 60, 62, 68])
-def test_what_was_moved_to_be_brought_somewhere_is_gone_on_with(
-    alike: int, moved: bool, better: int, chosen: str
-) -> None:
+def test_an_object_moved_for_a_goal_stays_bound(alike: int, moved: bool, better: int, chosen: str) -> None:
     things = (replace(node("o1", {"square": alike}), moved=moved), node("o2", {"square": alike + better}))
     wanted, far = task({"x": [("shape", "square", 100)]}), {"o1": 30.0, "o2": 1.0}
     found = reconcile(wanted, replace(MODEL, objects=things), far, {"x": "o1"}, carried=["x"])
     assert found.binding == {"x": chosen}
 
 
-def test_a_thing_whose_colour_is_not_felt_yet_is_doubtful() -> None:
+def test_an_object_of_unknown_colour_is_doubtful() -> None:
     claims = {"x": [("shape", "square", 100), ("colour", "h", 100)]}
     found = reconcile(task(claims), replace(MODEL, objects=(node("o1", {"square": 95}),)), {}, {})
     assert found.hypothesised == ("x",)
     assert found.doubtful == (("x", "o1"),)
 
 
-def test_two_parameters_share_two_things_out() -> None:
+def test_two_parameters_get_different_objects() -> None:
     things = (node("o1", {"square": 95, "brick": 70}), node("o2", {"square": 95}))
     claims = {"x": [("shape", "square", 100)], "y": [("shape", "brick", 100)]}
     found = reconcile(task(claims), replace(MODEL, objects=things), {"o1": 1, "o2": 9}, {})

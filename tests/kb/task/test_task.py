@@ -26,15 +26,15 @@ def refused(folder: Path, start: str, goal: str) -> str:
 
 def test_a_task_is_parameters_claims_and_goals(tmp_path: Path) -> None:
     start = "object(x). door(d). room(r). shape(x, brick). confidence(colour(x, g), 80). shape(x, rectangle)."
-    told = task(tmp_path, start, "first(through(x, d)). then(in(utak, r)). not_through(utak, d).")
-    assert {name: p.kind for name, p in told.parameters.items()} == {"x": "object", "d": "door", "r": "room"}
-    assert [(str(c.fact), c.confidence) for c in told.claims] == [
+    found = task(tmp_path, start, "first(through(x, d)). then(in(utak, r)). not_through(utak, d).")
+    assert {name: p.kind for name, p in found.parameters.items()} == {"x": "object", "d": "door", "r": "room"}
+    assert [(str(c.fact), c.confidence) for c in found.claims] == [
         ("shape(x,brick)", 100),
         ("colour(x,g)", 80),
         ("shape(x,rectangle)", 100),
     ]
-    assert told.claims_of("x") == told.claims
-    assert [str(g) for g in told.goals] == ["first(through(x,d))", "then(in(utak,r))", "not_through(utak,d)"]
+    assert found.claims_of("x") == found.claims
+    assert [str(g) for g in found.goals] == ["first(through(x,d))", "then(in(utak,r))", "not_through(utak,d)"]
 
 
 START = "object(x). object(y). door(d). room(r).\n"
@@ -58,15 +58,15 @@ def test_every_goal_of_the_design_is_read(goal: str, tmp_path: Path) -> None:
     assert len(task(tmp_path, START, goal).goals) == 1
 
 
-def test_a_step_may_come_again(tmp_path: Path) -> None:
-    told = task(tmp_path, "", "first(at(utak, start)). then(at(utak, corner(northeast))). then(at(utak, start)).")
-    assert [str(g) for g in told.goals][0::2] == ["first(at(utak,start))", "then(at(utak,start))"]
+def test_a_step_may_be_repeated(tmp_path: Path) -> None:
+    found = task(tmp_path, "", "first(at(utak, start)). then(at(utak, corner(northeast))). then(at(utak, start)).")
+    assert [str(g) for g in found.goals][0::2] == ["first(at(utak,start))", "then(at(utak,start))"]
     again = "first(at(utak, start)). then(at(utak, corner(northeast))). then(at(utak, start)). then(at(utak, start))."
     assert len(task(tmp_path, "", again).goals) == 4
 
 
 def test_goals_name_parameters(tmp_path: Path) -> None:
-    assert task(tmp_path, START, "first(at(utak, x)). then(through(y, d)).").named == {"x", "y", "d"}
+    assert task(tmp_path, START, "first(at(utak, x)). then(through(y, d)).").goal_parameters == {"x", "y", "d"}
 
 
 BAD = {
@@ -109,11 +109,11 @@ BAD = {
 
 
 @pytest.mark.parametrize(("start", "goal"), BAD)
-def test_what_is_wrong_with_a_task_is_said(start: str, goal: str, tmp_path: Path) -> None:
+def test_errors_of_a_task_are_reported(start: str, goal: str, tmp_path: Path) -> None:
     assert BAD[start, goal] in refused(tmp_path, start, goal)
 
 
-def test_the_problems_of_both_files_come_together(tmp_path: Path) -> None:
+def test_the_problems_of_both_files_are_reported_together(tmp_path: Path) -> None:
     text = refused(tmp_path, "objekt(x).", "att(utak, start).")
     assert "start.lp:1:1-9: error: unknown predicate objekt/1" in text
     assert "goal.lp:1:1-16: error: unknown predicate att/2" in text
@@ -121,7 +121,7 @@ def test_the_problems_of_both_files_come_together(tmp_path: Path) -> None:
 
 @settings(deadline=None)
 @given(st.from_regex(r"\A(_{0,2}[a-z][A-Za-z0-9_']{0,4}|not)\Z"))
-def test_what_names_a_parameter_is_a_name_to_clingo(name: str) -> None:
+def test_clingo_accepts_every_parameter_name(name: str) -> None:
     try:
         facts_of(f"object({name}).")
     except BadInputError:

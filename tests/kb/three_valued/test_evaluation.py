@@ -1,4 +1,4 @@
-"""Three-valued answers: the same as clingo's where all is known, and what is certain stays so when more is known."""
+"""Three-valued answers: equal to clingo's with complete knowledge, and never revised when more is known."""
 
 import random
 import re
@@ -22,17 +22,17 @@ def engine() -> Iterator[QueryEngine]:
 
 
 def by_clingo(facts: list[str], query: str, variables: tuple[str, ...]) -> set[tuple[object, ...]]:
-    """The rows of a query in the world of these facts alone."""
+    """Return the rows of a query when only these facts hold."""
     control = clingo.Control(["--warn=none"])
     head = f"q__({','.join(variables)})" if variables else "q__"
     rules = "object(N) :- kind(N, object, _)."
     control.add("base", [], "\n".join([*(f"{fact}." for fact in facts), rules, f"{head} :- {query}."]))
     control.ground([("base", [])])
     found = control.symbolic_atoms.by_signature("q__", len(variables))
-    return {tuple(plain(term) for term in atom.symbol.arguments) for atom in found}
+    return {tuple(from_clingo(term) for term in atom.symbol.arguments) for atom in found}
 
 
-def plain(term: clingo.Symbol) -> object:
+def from_clingo(term: clingo.Symbol) -> object:
     return term.number if term.type == clingo.SymbolType.Number else str(term)
 
 
@@ -131,7 +131,7 @@ def condition(draw: random.Random) -> str:
 
 
 def known(draw: random.Random, facts: list[str], plain_only: bool = False) -> str:
-    """A random query that clingo takes without a word (all of its variables are bound, and numbers are numbers)."""
+    """Return a random query that clingo accepts: all variables are bound, and arithmetic has numbers only."""
     while True:
         text, messages = query(draw, plain_only), []
         control = clingo.Control(logger=lambda _code, message, said=messages: said.append(message))
@@ -149,7 +149,7 @@ seeds = st.integers(0, 10**9).map(random.Random)
 
 @settings(max_examples=80, deadline=None)
 @given(seeds)
-def test_where_all_is_known_answers_are_those_of_clingo(engine: QueryEngine, draw: random.Random) -> None:
+def test_with_complete_knowledge_answers_agree_with_clingo(engine: QueryEngine, draw: random.Random) -> None:
     facts = world(draw, (0, 100))
     facts += [f"colour({t},g,100)" for t in THINGS if f"node({t})" in facts and f"colour({t}" not in str(facts)]
     facts += [f"shape({t},brick,100)" for t in THINGS if f"node({t})" in facts and f"shape({t}" not in str(facts)]
@@ -161,7 +161,10 @@ def test_where_all_is_known_answers_are_those_of_clingo(engine: QueryEngine, dra
 
 
 def more_known(draw: random.Random, facts: list[str], turn_out: bool) -> list[str]:
-    """What may be believed once the unseen is seen. turn_out : confidences between 0 and 100 may change, too."""
+    """Return facts that may be believed once unseen parts are seen.
+
+    turn_out : whether confidences between 0 and 100 may change, too.
+    """
     later = []
     for fact in facts:
         head, _, last = fact.removesuffix(")").rpartition(",")
@@ -175,14 +178,14 @@ def more_known(draw: random.Random, facts: list[str], turn_out: bool) -> list[st
             later += thing_facts(draw, thing, (1, 60, 99, 100))
     for thing in THINGS:
         if f"node({thing})" in facts:
-            told = [f for f in thing_facts(draw, thing, (60, 100)) if f.startswith(("shape(", "colour("))]
-            later += [f for f in told if not any(g.startswith(f"{f.split('(')[0]}({thing},") for g in facts)]
+            stated = [f for f in thing_facts(draw, thing, (60, 100)) if f.startswith(("shape(", "colour("))]
+            later += [f for f in stated if not any(g.startswith(f"{f.split('(')[0]}({thing},") for g in facts)]
     return later
 
 
 @settings(max_examples=80, deadline=None)
 @given(seeds)
-def test_what_is_certain_stays_so_when_more_is_known(engine: QueryEngine, draw: random.Random) -> None:
+def test_certain_answers_stay_certain_when_more_is_known(engine: QueryEngine, draw: random.Random) -> None:
     facts = world(draw, (0, 2, 60, 99, 100))
     text = known(draw, facts)
     found = engine.ask([*(f"{fact}." for fact in facts), "unseen(r1,9)."], text)
@@ -196,7 +199,7 @@ def test_what_is_certain_stays_so_when_more_is_known(engine: QueryEngine, draw: 
 
 @settings(max_examples=80, deadline=None)
 @given(seeds)
-def test_no_stays_no_however_confidences_turn_out(engine: QueryEngine, draw: random.Random) -> None:
+def test_the_answer_no_stays_for_all_later_confidences(engine: QueryEngine, draw: random.Random) -> None:
     facts = world(draw, (0, 2, 60, 99, 100))
     text = known(draw, facts, plain_only=True)
     found = engine.ask([*(f"{fact}." for fact in facts), "unseen(r1,9)."], text)

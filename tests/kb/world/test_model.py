@@ -150,15 +150,16 @@ def test_a_square_seen_from_beside_is_believed() -> None:
 
 def test_a_load_that_reaches_into_his_own_square_leaves_it_open() -> None:
     walk = walked(ROOM, [(0, 2), (-2, 2), (3, 0), (-3, -4)], colour="g")
-    (x, y), memory = utak_in(ROOM), walk.knowledge.memory
+    x, y = utak_in(ROOM)
     seen = impression(world_of(ROOM), (x - 2, y), colour="g")
     here = walk.model.view.locate(*walk.model.place)
     assert walk.model.view.state[here] == FREE
     taken, _ = walk.knowledge.perceive(Grasp("north"), seen)
     assert taken.view.by_counts is not None
     assert (taken.view.by_counts[taken.mask(taken.objects[0].patch)] == 1).all()
+    memory = walk.knowledge.memory
     load = memory.loads[memory.held or ""]
-    memory.loads[load.name] = replace(load, polygon=load.polygon.union(shapely.box(-1.6, 0.9, -1.4, 1.0)))
+    walk.knowledge.tracker.update_object(replace(load, polygon=load.polygon.union(shapely.box(-1.6, 0.9, -1.4, 1.0))))
     model, _ = walk.knowledge.perceive(Release(), seen)
     assert model.view.state[here] == OPEN
     assert model.floor[here]
@@ -199,14 +200,14 @@ def test_what_he_feels_is_in_his_hand_when_he_grasps_there() -> None:
         seen = replace(impression(world_of(ROOM), (x - 2, y), colour="g"), touch=(felt, *[None] * 7))
         knowledge.perceive(Move(0.0, 0.0), seen)
         memory = knowledge.memory
-        memory.frame = Frame(angle, memory.frame.origin)
+        knowledge.tracker.state = replace(memory, frame=Frame(angle, memory.frame.origin))
         thing, (i, j) = walk.model.objects[0], memory.square
         polygon = shapely.box(i + aside, j + 1, i + aside + 3, j + 4)
         knowledge.objects = (replace(thing, polygon=polygon, patch=covered(polygon), colour="g"),)
         for column in (i - 1, i, i + 1):
             memory.occupancy.state[memory.occupancy.index(column, j + 1)] = FULL if wall else OPEN
         knowledge._grasp("north")
-        return memory.held
+        return knowledge.memory.held
 
     name = walked(ROOM, [(0, 2), (-2, 2), (3, 0), (-3, -4)], colour="g").model.objects[0].name
     assert grasped(0, None) == name

@@ -1,6 +1,7 @@
 """A robot that finds nothing to do, and whose beliefs were contradicted, forgets them and begins anew."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import cast
 
 import shapely
@@ -52,10 +53,10 @@ def at_a_loss(slipped: bool) -> tuple[Robot, Undecided]:
     undecided = Undecided()
     robot = Robot(Handed(EMPTY), SQUARE, Options(), cast(Decider, undecided))
     robot.wake()
-    robot.knowledge.memory.slipped = slipped
+    robot.knowledge.tracker.state = replace(robot.knowledge.memory, slipped=slipped)
     if slipped:
         thing = shapely.box(4, 2, 8, 4)
-        robot.knowledge.memory.grasp(HeldObject("o1", thing, thing))
+        robot.knowledge.tracker.grasp(HeldObject("o1", thing, thing))
     robot.step()
     return robot, undecided
 
@@ -69,7 +70,7 @@ def test_a_robot_that_gives_up_with_contradicted_beliefs_begins_anew_once() -> N
     assert undecided.asked == [False, True]
     assert robot.model.anew and not robot.model.shaken and not robot.model.object("o1")
     assert robot.finished and robot.verdict.verdict == "limit"
-    robot.knowledge.memory.slipped = True
+    robot.knowledge.tracker.state = replace(robot.knowledge.memory, slipped=True)
     robot.decision, robot.finished = Decision(Move(0.0, 0.0), "the robot looks"), False
     robot.step()
     assert robot.finished and undecided.asked == [False, True, True]

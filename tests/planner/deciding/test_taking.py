@@ -206,7 +206,7 @@ def test_after_a_restart_an_object_is_not_said_to_be_in_the_next_room(lost: bool
     after = situation_of(replace(situation.model, anew=lost), situation.binding)
     decision = transporter.towards(stage.goals[0], stage, after, NOTHING_DOUBTFUL, tools_with())
     if lost:
-        assert decision is not None and decision.verdict == TaskVerdict.LIMIT and "was lost" in decision.why
+        assert decision is not None and decision.verdict == TaskVerdict.LIMIT and "the robot was lost" in decision.why
     else:
         assert decision is None
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from geometry.manipulation.goals import At, End, InCorner, Inside, met, placed
 from geometry.motion.se2 import Pose
-from planner.goals.joint import confines, conflict, opposite_corners
+from planner.goals.joint import conflict, enclosing_region, opposite_corners
 from planner.goals.placement import Placement
 from tests.kb.drawings import seen_whole
 from tests.planner.goals.test_object_goals import facts_of
@@ -49,7 +49,7 @@ def test_what_meets_a_goal_lies_within_its_region(end: End, dx: float, dy: float
     pose = end.pose if isinstance(end, At) else Pose(dx, dy, degrees)
     lying = placed(THING, pose)
     if met(end, THING, lying):
-        assert confines(end, THING).buffer(1e-5).covers(lying)
+        assert enclosing_region(end, THING).buffer(1e-5).covers(lying)
 
 
 def test_opposite_corners_are_apart_whatever_else_there_is() -> None:

@@ -12,7 +12,7 @@ from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import Inside
 from kb.world.model import Node, WorldModel
 from planner.carrying.manipulation_oracle import ManipulationOracle, ManipulationPlan, Request
-from planner.goals.optimistic import BEYOND, hoped_floor, spread
+from planner.goals.optimistic import BEYOND, hoped_floor, spread_into_unseen
 from planner.screen.projection import UNSEEN, marked
 from planner.situation import Situation
 from tests.kb.drawings import seen_whole, unclear
@@ -53,7 +53,7 @@ def test_only_what_was_never_seen_is_hoped_for_and_not_too_far(row: int, column:
     situation = situation_of(seen_whole(HALF_SEEN))
     shape = situation.model.view.seen.shape
     mask = marked(np.array([row * shape[1] + column]), shape)
-    wider = spread(mask, situation)
+    wider = spread_into_unseen(mask, situation)
     assert wider.shape == tuple(size + 2 * BEYOND for size in mask.shape)
     inside = wider[BEYOND:-BEYOND, BEYOND:-BEYOND]
     assert not (inside & situation.model.view.seen & ~mask).any()

@@ -89,7 +89,7 @@ def test_where_a_thing_began_is_remembered_though_its_name_is_not() -> None:
     assert began("o4", 12, False, ("o3",)) == pytest.approx(13.0)
 
 
-@pytest.mark.parametrize(("before", "lost"), [(False, "he was lost"), (True, "")])
+@pytest.mark.parametrize(("before", "lost"), [(False, "the robot was lost"), (True, "")])
 def test_who_was_lost_does_not_know_where_a_thing_began_that_he_took_before(before: bool, lost: str) -> None:
     beginnings, model = Origins(), situation_of(seen_whole(BESIDE_A_THING)).model
     (node,) = model.objects

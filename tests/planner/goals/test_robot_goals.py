@@ -2,7 +2,7 @@
 
 import pytest
 
-from planner.goals.robot_goals import BESIDE_DOOR, FURTHEST, ONWARD, rooms_to_see
+from planner.goals.robot_goals import DOOR_SIDEWARD_REACH, MAX_UNSEEN_REACH, ONWARD_REACH, rooms_to_see
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
 
@@ -25,13 +25,13 @@ def test_a_room_behind_a_door_that_leads_away_from_a_corner_may_go_further_to_it
     wide: int, high: int
 ) -> None:
     short = wide - DOOR - 3 + high + 1  # from the door's near end to the corner, east and north added
-    assert looks(wide, high, north=False) == (short <= BESIDE_DOOR)
+    assert looks(wide, high, north=False) == (short <= DOOR_SIDEWARD_REACH)
 
 
 @pytest.mark.parametrize("wide", [16, 30, 48, 52, 53, 60])
 def test_a_room_behind_a_door_that_leads_towards_a_corner_may_go_further(wide: int) -> None:
     short = wide - DOOR - 3 - 2
-    assert looks(wide, 12, north=True) == (short <= min(FURTHEST, ONWARD + BESIDE_DOOR))
+    assert looks(wide, 12, north=True) == (short <= min(MAX_UNSEEN_REACH, ONWARD_REACH + DOOR_SIDEWARD_REACH))
 
 
 @pytest.mark.parametrize("north", [True, False])

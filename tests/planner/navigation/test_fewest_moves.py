@@ -11,12 +11,12 @@ from kb.language.terms import Symbol
 from kb.task.task import Task
 from kb.world.rooms import rooms_of
 from planner.deciding.decider import Decider
-from planner.navigation.fewest_moves import MANY_MOVES, MOVE, WAY, FewestMoves
+from planner.navigation.fewest_moves import ASSUMED_MOVES, MOVE, WAY, FewestMoves
 from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import one_move
 from planner.screen.projection import CostMaps
-from planner.screen.sweeps import clear
-from planner.screen.unseen_gain import REACH
+from planner.screen.sweeps import sweep_is_free
+from planner.screen.unseen_gain import VIEW_REACH
 from planner.sights.frontiers import best_views
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
@@ -78,7 +78,7 @@ def test_a_move_is_saved_by_a_long_detour() -> None:
     assert priced.squares.tolist() == [far]
 
 
-@pytest.mark.parametrize(("square", "moves"), [((29, 15), 1), ((33, 9), 2), ((3, 2), MANY_MOVES)])
+@pytest.mark.parametrize(("square", "moves"), [((29, 15), 1), ((33, 9), 2), ((3, 2), ASSUMED_MOVES)])
 def test_an_aim_costs_what_its_moves_cost_and_a_share_of_its_way(
     cost_maps: CostMaps, square: tuple[int, int], moves: int
 ) -> None:
@@ -93,8 +93,8 @@ def test_the_first_of_two_moves_ends_where_the_second_can_begin(cost_maps: CostM
     assert way is not None
     (_, via) = way.squares
     end = (33, len(WALLS) - 1 - 9)
-    assert clear(cost_maps.safe, cost_maps.here, via)
-    assert clear(cost_maps.safe, via, end)
+    assert sweep_is_free(cost_maps.safe, cost_maps.here, via)
+    assert sweep_is_free(cost_maps.safe, via, end)
     assert FewestMoves(cost_maps).way(subgoal((3, 2))) is None
 
 
@@ -127,7 +127,7 @@ def test_the_best_view_is_had_where_most_comes_into_sight_for_its_way() -> None:
     (look,) = best_views(cost_maps, met, MOVE, WAY)
     columns = look.squares % met.shape[1]
     assert met.ravel()[look.squares].all()
-    assert columns.min() > 40 - REACH  # from further west hardly anything new is seen
+    assert columns.min() > 40 - VIEW_REACH  # from further west hardly anything new is seen
     assert (columns < 39).any()  # and it need not be right beside what was not
     west = met & (np.arange(met.shape[1]) < columns.min())
     (nearer,) = best_views(cost_maps, west, MOVE, WAY)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from kb.body import Move, Push, Release
-from planner.navigation.loop_guard import WEARY, LoopGuard
+from planner.navigation.loop_guard import LOOP_COST, LoopGuard
 from planner.navigation.subgoals import Subgoal
 from tests.kb.drawings import seen_whole
 from tests.planner.screen.test_projection import HALL
@@ -42,7 +42,7 @@ def test_an_aim_in_vain_gets_dearer_and_is_given_up() -> None:
     assert circles.priced([there, other], MODEL) == [there, other]
     circles.tire(frozenset({(2, 0)}))
     dearer, same = circles.priced([there, other], MODEL)
-    assert (dearer.price, same.price) == (WEARY, 0.0)
+    assert (dearer.price, same.price) == (LOOP_COST, 0.0)
     for _ in range(9):
         circles.tire(frozenset({(2, 0), (900, 900)}))
     assert circles.priced([there, other], MODEL) == [other]

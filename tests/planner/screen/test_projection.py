@@ -14,9 +14,9 @@ from kb.world.model import WorldModel
 from planner.navigation.encircle import pivot, ways_round, winding
 from planner.navigation.routes import choose_way, ways
 from planner.navigation.subgoals import Subgoal, choose
-from planner.screen.moves import HURRY, LOOSE, NARROW, STROLL, Pace, next_move, one_move
-from planner.screen.projection import TRUSTED, UNSEEN, WARY, CostMaps, grown
-from planner.screen.sweeps import clear_line, swept
+from planner.screen.moves import HURRY, LEEWAY_TOLERANCE, STROLL, TIGHT_MOVE_LENGTH, Pace, next_move, one_move
+from planner.screen.projection import MAX_TRUSTED_PROBABILITY, MIN_DOUBTFUL_PROBABILITY, UNSEEN, CostMaps, grown
+from planner.screen.sweeps import line_sweep_is_free, swept_offsets
 from planner.sights import frontiers
 from tests.kb.drawings import seen_whole, walked
 from tests.kb.eyes import random_room
@@ -93,7 +93,7 @@ def flat(model: WorldModel, x: int, y: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("pace", [STROLL, HURRY])
-@pytest.mark.parametrize("kind", sorted(STROLL.longest))
+@pytest.mark.parametrize("kind", sorted(STROLL.longest_by_kind))
 def test_a_move_sweeps_safe_squares_alone(kind: str, pace: Pace) -> None:
     model = seen_whole(HALL)
     cost_maps = CostMaps(model)
@@ -102,8 +102,8 @@ def test_a_move_sweeps_safe_squares_alone(kind: str, pace: Pace) -> None:
             move = next_move(cost_maps, way.squares, kind, pace=pace)
             east, north = round(move.east), round(move.north)
             assert (east, north) == (move.east, move.north)
-            assert max(abs(east), abs(north)) <= pace.longest[kind]
-            c, r = swept(east, north)
+            assert max(abs(east), abs(north)) <= pace.longest_by_kind[kind]
+            c, r = swept_offsets(east, north)
             assert cost_maps.safe[r + cost_maps.here[1], c + cost_maps.here[0]].all()
 
 
@@ -120,7 +120,7 @@ def test_longer_moves_than_a_step_are_safe_in_random_models(seed: int) -> None:
                 continue
             move = next_move(cost_maps, way.squares, "attain")
             if max(abs(move.east), abs(move.north)) > 1:
-                c, r = swept(round(move.east), round(move.north))
+                c, r = swept_offsets(round(move.east), round(move.north))
                 assert cost_maps.safe[r + cost_maps.here[1], c + cost_maps.here[0]].all()
 
 
@@ -287,12 +287,14 @@ def test_he_halts_near_the_edge_of_a_square_while_he_may_have_woken_elsewhere(le
             aside = gone - round(gone)
             assert math.floor(gone + 0.5) == round(gone)  # in the square that he goes to
             assert -0.5 < aside < 0.5
-            assert aside == 0 or (aside > 0.4 and forth > LOOSE) or (aside < -0.4 and -back > LOOSE)
-        assert (round(move.east), round(move.north)) == (move.east, move.north) or max(leeway) > LOOSE
+            assert (
+                aside == 0 or (aside > 0.4 and forth > LEEWAY_TOLERANCE) or (aside < -0.4 and -back > LEEWAY_TOLERANCE)
+            )
+        assert (round(move.east), round(move.north)) == (move.east, move.north) or max(leeway) > LEEWAY_TOLERANCE
     assert any(
         next_move(cost_maps, ways(cost_maps, 0, flat(model, *goal), "skeleton")[0].squares, "explore").east % 1
         for goal in ((4, 3), (-3, -2), (5, -4))
-    ) == (max(leeway) > LOOSE)
+    ) == (max(leeway) > LEEWAY_TOLERANCE)
 
 
 def test_while_it_is_open_how_the_lattice_lies_no_turn_leads_to_the_line_between_two_squares() -> None:
@@ -327,10 +329,10 @@ def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear_unless_th
             move = next_move(cost_maps, way.squares, "explore", pace=pace)
             far = max(abs(move.east), abs(move.north))
             longest = max(longest, far)
-            assert far < pace.unsure + 0.5
+            assert far < pace.longest_uncertain + 0.5
             column, row = cost_maps.here[0] + round(move.east), cost_maps.here[1] + round(move.north)
-            near.append(far > NARROW + 0.5 and not clear_of[row, column])
-    assert longest > NARROW + 0.5
+            near.append(far > TIGHT_MOVE_LENGTH + 0.5 and not clear_of[row, column])
+    assert longest > TIGHT_MOVE_LENGTH + 0.5
     assert any(near) == pace.bold
 
 
@@ -341,25 +343,25 @@ def test_the_bold_go_right_up_to_what_is_not_settled_but_not_to_what_was_never_s
     view = cost_maps.model.view
     more = cost_maps.believed & ~cost_maps.safe
     assert (cost_maps.believed & cost_maps.safe == cost_maps.safe).all()
-    hardly = cost_maps.free(0) & (view.probability <= TRUSTED)
+    hardly = cost_maps.free(0) & (view.probability <= MAX_TRUSTED_PROBABILITY)
     assert (more == hardly & ~cost_maps.safe & ~grown(~view.seen, 1)).all()
-    beside_doubt = grown(view.seen & (view.state == OPEN) & (view.probability >= WARY), 1)
+    beside_doubt = grown(view.seen & (view.state == OPEN) & (view.probability >= MIN_DOUBTFUL_PROBABILITY), 1)
     assert not (more & ~beside_doubt).any()
 
 
 @pytest.mark.parametrize("spread", [0.0, math.pi])
 def test_who_hurries_is_bold_and_who_strolls_is_not(spread: float) -> None:
     cost_maps = CostMaps(replace(random_walk(3), likely_spread=spread))
-    for kind in STROLL.longest:
+    for kind in STROLL.longest_by_kind:
         assert (
-            HURRY.ground(cost_maps, kind) == (cost_maps.approached if kind == "inspect" else cost_maps.believed)
+            HURRY.passable(cost_maps, kind) == (cost_maps.approachable if kind == "inspect" else cost_maps.believed)
         ).all()
-        assert (STROLL.ground(cost_maps, kind) == cost_maps.safe).all()
+        assert (STROLL.passable(cost_maps, kind) == cost_maps.safe).all()
     assert (cost_maps.believed != cost_maps.safe).any()
 
 
 @pytest.mark.parametrize("spread", [0.0, math.pi])
-@pytest.mark.parametrize("kind", sorted(STROLL.longest))
+@pytest.mark.parametrize("kind", sorted(STROLL.longest_by_kind))
 def test_one_move_leads_just_where_the_next_move_may_end(kind: str, spread: float) -> None:
     cost_maps = CostMaps(replace(seen_whole(HALL), likely_spread=spread))
     reached = one_move(cost_maps, kind)
@@ -385,4 +387,4 @@ def test_he_does_not_halt_near_an_edge_where_what_lies_beyond_it_may_stop_him() 
             if len(way.squares) > 1:
                 move = next_move(cost_maps, way.squares, "explore")
                 here = (cost_maps.here[0] + 0.5, cost_maps.here[1] + 0.5)
-                assert clear_line(cost_maps.safe, here, (here[0] + move.east, here[1] + move.north))
+                assert line_sweep_is_free(cost_maps.safe, here, (here[0] + move.east, here[1] + move.north))

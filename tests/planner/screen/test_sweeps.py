@@ -8,7 +8,7 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from planner.screen.sweeps import clear, clear_line, squares_along, swept
+from planner.screen.sweeps import line_sweep_is_free, squares_along, sweep_is_free, swept_offsets
 
 whole = st.integers(-9, 9)
 
@@ -22,7 +22,7 @@ def sweep(columns: int, rows: int) -> shapely.Geometry:
 @settings(max_examples=200, deadline=None)
 @given(whole, whole)
 def test_swept_squares_are_those_whose_interior_is_met(columns: int, rows: int) -> None:
-    c, r = swept(columns, rows)
+    c, r = swept_offsets(columns, rows)
     found = set(zip(c.tolist(), r.tolist(), strict=True))
     covered = sweep(columns, rows)
     for i in range(-11, 12):
@@ -39,8 +39,8 @@ def test_clear_is_an_exact_sweep(rows: int, columns: int, seed: int) -> None:
     a, b = ((int(rng.integers(columns)), int(rng.integers(rows))) for _ in range(2))
     covered = shapely.transform(sweep(b[0] - a[0], b[1] - a[1]), lambda p: p + np.array(a))
     blocked = shapely.union_all([shapely.box(x, y, x + 1, y + 1) for y, x in np.argwhere(~free).tolist()])
-    assert clear(free, a, b) == (shapely.area(shapely.intersection(covered, blocked)) < 1e-9)
-    assert clear(free, a, b) == clear(free, b, a)
+    assert sweep_is_free(free, a, b) == (shapely.area(shapely.intersection(covered, blocked)) < 1e-9)
+    assert sweep_is_free(free, a, b) == sweep_is_free(free, b, a)
 
 
 @settings(max_examples=200, deadline=None)
@@ -58,7 +58,7 @@ def test_a_line_is_clear_when_a_unit_square_sweeps_free_squares_alone(
     blocked = shapely.transform(shapely.union_all(walls), lambda p: p - 2)
     overlap = float(shapely.area(shapely.intersection(covered, blocked)))
     assume(not 0.0 < overlap < 1e-9)  # they hardly meet: shapely rounds
-    assert clear_line(free, a, b) == (overlap == 0.0)
+    assert line_sweep_is_free(free, a, b) == (overlap == 0.0)
 
 
 @settings(max_examples=150, deadline=None)

@@ -13,9 +13,9 @@ from planner.goals.corner_goal import approach
 from planner.navigation.fewest_moves import FewestMoves
 from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import HURRY, one_move
-from planner.screen.projection import LEVELS, WALL_LIKE, CostMaps, grown
-from planner.sights.frontiers import CLOSE, FURTHER
-from planner.sights.viewpoints import ARRIVE, LIKELY, TAKE, Approach, close
+from planner.screen.projection import LEVEL_MAX_PROBABILITY, SURELY_OCCUPIED, CostMaps, grown
+from planner.sights.frontiers import CLOSE, MIDDLE_ZONE_RANGE
+from planner.sights.viewpoints import ARRIVE, MIN_APPROACH_PROBABILITY, TAKE, Approach, inspection_squares
 from tests.kb.drawings import drawing, seen_whole
 from tests.planner.situations import situation_of
 
@@ -37,20 +37,20 @@ def room(looked_from: frozenset[tuple[int, int]] = frozenset()) -> tuple[CostMap
 
 def test_what_is_hardly_what_is_looked_for_is_seen_from_afar_first() -> None:
     cost_maps, mask = room()
-    away = distance_from(close(cost_maps, mask, 0.2, ARRIVE), mask)
-    assert away.max() == FURTHER > CLOSE
-    assert distance_from(close(cost_maps, mask, 0.2, TAKE), mask).max() <= CLOSE
+    away = distance_from(inspection_squares(cost_maps, mask, 0.2, ARRIVE), mask)
+    assert away.max() == MIDDLE_ZONE_RANGE > CLOSE
+    assert distance_from(inspection_squares(cost_maps, mask, 0.2, TAKE), mask).max() <= CLOSE
     row, column = np.argwhere(mask).min(0)
     view = cost_maps.model.view
-    cost_maps, mask = room(frozenset({(int(column) + view.west - FURTHER, int(row) + view.south)}))
-    away = distance_from(close(cost_maps, mask, 0.2, ARRIVE), mask)
+    cost_maps, mask = room(frozenset({(int(column) + view.west - MIDDLE_ZONE_RANGE, int(row) + view.south)}))
+    away = distance_from(inspection_squares(cost_maps, mask, 0.2, ARRIVE), mask)
     assert away.max() == CLOSE
 
 
 @pytest.mark.parametrize("to", [ARRIVE, TAKE])
 def test_what_is_likely_looked_for_is_gone_up_to(to: Approach) -> None:
     cost_maps, mask = room()
-    squares = close(cost_maps, mask, 0.8, to)
+    squares = inspection_squares(cost_maps, mask, 0.8, to)
     assert (distance_from(squares, mask) == 1).all()
     assert edged(mask).ravel()[squares].all()
 
@@ -62,10 +62,10 @@ def test_what_he_shall_take_is_gone_up_to_where_it_surely_is() -> None:
     view = cost_maps.model.view
     doubtful = np.where(rim, 0.5, view.probability).astype(np.float32)
     cost_maps = CostMaps(replace(cost_maps.model, view=view._replace(probability=doubtful)))
-    squares = close(cost_maps, mask, 0.8, TAKE)
+    squares = inspection_squares(cost_maps, mask, 0.8, TAKE)
     assert edged(mask & ~rim).ravel()[squares].all()
     only = CostMaps(replace(cost_maps.model, view=view._replace(probability=np.where(mask, 0.5, doubtful))))
-    assert edged(mask).ravel()[close(only, mask, 0.8, TAKE)].all()
+    assert edged(mask).ravel()[inspection_squares(only, mask, 0.8, TAKE)].all()
 
 
 def looking(cost_maps: CostMaps, squares: np.ndarray, probability: float, state: int) -> CostMaps:
@@ -100,7 +100,7 @@ def sides(mask: np.ndarray) -> dict[str, np.ndarray]:
 )
 def test_he_does_not_stand_between_a_thing_and_the_corner_it_is_for(corner: tuple[int, int], wanted: set[str]) -> None:
     cost_maps, mask = room()
-    squares = close(cost_maps, mask, 1.0, TAKE._replace(corner=corner))
+    squares = inspection_squares(cost_maps, mask, 1.0, TAKE._replace(corner=corner))
     by_side = sides(mask)
     assert len(squares)
     assert np.logical_or.reduce([by_side[name] for name in wanted]).ravel()[squares].all()
@@ -110,7 +110,7 @@ def test_he_stands_in_its_way_where_no_other_side_is_floor() -> None:
     cost_maps, mask = room()
     by_side = sides(mask)
     cost_maps = looking(cost_maps, by_side["west"] | by_side["south"], 1.0, FULL)
-    squares = close(cost_maps, mask, 1.0, TAKE._replace(corner=(1, 1)))
+    squares = inspection_squares(cost_maps, mask, 1.0, TAKE._replace(corner=(1, 1)))
     assert len(squares)
     assert (by_side["east"] | by_side["north"]).ravel()[squares].all()
 
@@ -121,19 +121,19 @@ def test_of_the_sides_of_a_thing_one_is_taken_that_a_straight_move_leads_to() ->
     at_sides = np.flatnonzero(edged(mask) & cost_maps.floor)
     assert met[at_sides].any()
     assert not met[at_sides].all()
-    assert met[close(cost_maps, mask, LIKELY, TAKE)].all()
-    all_round = close(cost_maps, mask, LIKELY, ARRIVE)
+    assert met[inspection_squares(cost_maps, mask, MIN_APPROACH_PROBABILITY, TAKE)].all()
+    all_round = inspection_squares(cost_maps, mask, MIN_APPROACH_PROBABILITY, ARRIVE)
     assert sorted(all_round.tolist()) == at_sides.tolist()
 
 
 def test_who_goes_up_to_a_thing_goes_over_what_may_well_be_floor_beside_it() -> None:
     cost_maps, mask = room()
     ring = grown(mask, 1) & ~mask
-    cost_maps = looking(cost_maps, ring, LEVELS[1], OPEN)
+    cost_maps = looking(cost_maps, ring, LEVEL_MAX_PROBABILITY[1], OPEN)
     assert not cost_maps.believed[ring].any()
-    assert (HURRY.ground(cost_maps, "inspect") == cost_maps.approached).all()
-    assert (cost_maps.approached & ~cost_maps.believed == edged(mask) & ring).all()
-    squares = close(cost_maps, mask, 1.0, TAKE)
+    assert (HURRY.passable(cost_maps, "inspect") == cost_maps.approachable).all()
+    assert (cost_maps.approachable & ~cost_maps.believed == edged(mask) & ring).all()
+    squares = inspection_squares(cost_maps, mask, 1.0, TAKE)
     assert edged(mask).ravel()[squares].all()
     fewest, subgoal = FewestMoves(cost_maps), Subgoal("inspect", squares, "a thing")
     way, dear = fewest.way(subgoal), fewest.priced([subgoal])[0]
@@ -142,16 +142,16 @@ def test_who_goes_up_to_a_thing_goes_over_what_may_well_be_floor_beside_it() -> 
     assert len(dear.squares)
     assert not fewest.way(subgoal._replace(kind="explore"))
     assert dear.price < fewest.priced([subgoal._replace(kind="explore")])[0].price
-    assert not looking(cost_maps, ring, LEVELS[2], OPEN).approached[ring].any()
+    assert not looking(cost_maps, ring, LEVEL_MAX_PROBABILITY[2], OPEN).approachable[ring].any()
 
 
 def test_nothing_is_gone_up_to_so_beside_the_verge() -> None:
     cost_maps, _ = room()
-    verge = cost_maps.model.verge & (cost_maps.model.view.probability >= WALL_LIKE)
+    verge = cost_maps.model.verge & (cost_maps.model.view.probability >= SURELY_OCCUPIED)
     assert (edged(verge) & cost_maps.believed).any()
     beside = edged(verge) & ~verge
-    cost_maps = looking(cost_maps, beside, LEVELS[1], OPEN)
-    assert not cost_maps.approached[beside].any()
+    cost_maps = looking(cost_maps, beside, LEVEL_MAX_PROBABILITY[1], OPEN)
+    assert not cost_maps.approachable[beside].any()
 
 
 def test_how_far_a_square_is_no_way_leads_to_is_told_as_it_lies() -> None:

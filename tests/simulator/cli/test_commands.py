@@ -1,4 +1,4 @@
-"""The subcommands that ask, test and begin: query, repl, test, new, and scenarios as pytest tests."""
+"""The subcommands query, repl, test and new, and scenarios as pytest tests."""
 
 import io
 import json
@@ -18,14 +18,14 @@ ROOT = Path(__file__).resolve().parents[3]
 
 @pytest.fixture
 def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A scenario, and the scripted robot to run on it."""
+    """Return a scenario that the scripted robot will run."""
     monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
     scripted_robot.install()
     return write_scene(tmp_path / "scene", 1)
 
 
 def repl(monkeypatch: pytest.MonkeyPatch, text: str, *arguments: str) -> int:
-    """`utak repl` with piped input."""
+    """Return what `utak repl` prints for piped input."""
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(text.encode())))
     return main(["repl", *arguments])
 
@@ -43,7 +43,7 @@ def test_query_asks_a_run_at_a_step(scene: Path, capsys: pytest.CaptureFixture[s
     }
 
 
-def test_rows_that_are_left_out_are_told_of(
+def test_rows_beyond_the_limit_are_announced(
     scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     asking = ["query", str(scene), "unseen(R, N), X = 1..12000", "--at", "0"]
@@ -60,7 +60,7 @@ def test_rows_that_are_left_out_are_told_of(
     assert capsys.readouterr().out.endswith("\n... and more than these 10000 rows\n")
 
 
-def test_the_robot_may_be_called_utak(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_queries_may_call_the_robot_utak(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     facts = ["node(org).", "offset(org,100,200).", "node(o1)."]
     monkeypatch.setattr("simulator.run.story.facts_of_line", lambda line: facts)
     scene = ROOT / "examples" / "go_northeast"
@@ -74,7 +74,7 @@ def test_the_robot_may_be_called_utak(monkeypatch: pytest.MonkeyPatch, capsys: p
         assert capsys.readouterr().out == said
 
 
-def test_a_picture_of_the_truth_says_that_it_is(
+def test_a_picture_of_the_truth_is_labelled_so(
     scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert repl(monkeypatch, "show\nhelp\n", str(scene)) == 0
@@ -101,7 +101,7 @@ def test_query_asks_an_episode(scene: Path, tmp_path: Path, capsys: pytest.Captu
     assert "did you mean node?" in err
 
 
-def test_the_prompt_obeys_and_never_breaks(
+def test_the_prompt_survives_every_line(
     scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     text = (
@@ -152,7 +152,7 @@ def test_the_prompt_reads_an_episode_cut_short(
 
 
 class DoneRobot(scripted_robot.Robot):
-    """Stands still and believes that he is done."""
+    """A robot that stands still and believes that the task is done."""
 
     @property
     def finished(self) -> bool:
@@ -175,15 +175,15 @@ def test_test_runs_scenarios(scene: Path, monkeypatch: pytest.MonkeyPatch, capsy
     good = expecting(shutil.copytree(scene, scene.parent / "good"), "within(0).")
     assert main(["test", str(scene.parent)]) == 1
     seen = capsys.readouterr()
-    assert f"FAILED {good}: not met: within(0); Utak does not believe that he is done; limit in 30" in seen.out
+    assert f"FAILED {good}: not met: within(0); Utak does not believe that the task is done; limit in 30" in seen.out
     assert "1 of 2 passed" in seen.err
     monkeypatch.setattr(sys.modules["planner.cycle"], "Robot", DoneRobot)
     assert main(["test", str(good)]) == 0
     assert main(["test", str(scene)]) == 1
-    assert "Utak believes that he did what cannot be done" in capsys.readouterr().out
+    assert "Utak believes that an impossible task is done" in capsys.readouterr().out
 
 
-def test_test_says_what_is_wrong(scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_test_names_the_reasons(scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     expecting(scene, "unmoved(o77).")
     assert main(["test", str(scene)]) == 65
     (scene / "expect.lp").unlink()
@@ -195,7 +195,7 @@ def test_test_says_what_is_wrong(scene: Path, tmp_path: Path, capsys: pytest.Cap
     assert "a test needs expect.lp" in err
 
 
-def test_new_begins_a_good_scenario(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_new_writes_a_valid_scenario(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = tmp_path / "deep" / "mine"
     assert main(["new", str(folder)]) == 0
     assert main(["check", str(folder)]) == 0
@@ -210,7 +210,7 @@ def test_scenarios_are_pytest_tests(scene: Path) -> None:
     root = scene.parent
     shutil.copy(ROOT / "examples" / "conftest.py", root / "conftest.py")
     with (root / "conftest.py").open("a") as stream:
-        stream.write(f"\nimport sys\nsys.path.insert(0, {str(Path(__file__).parent)!r})\n")
+        stream.write(f"\nimport sys\nsys.path.insert(0, {str(Path(__file__).parents[1])!r})\n")
         stream.write("import scripted_robot\nscripted_robot.install()\n")
     expecting(scene, "fails.")
     expecting(shutil.copytree(scene, root / "bad"), "within(0).")
@@ -224,7 +224,7 @@ def test_scenarios_are_pytest_tests(scene: Path) -> None:
     assert "expect.lp:1:8-8: error: a number of steps must be an integer, not x" in done.stdout
 
 
-def test_routes_go_both_ways_round(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_routes_pass_an_object_on_both_sides(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "s").mkdir()
     (tmp_path / "s" / "world.txt").write_text("......\n..gg..\n.U....\n")
     ends = [str(tmp_path / "s"), "--from", "0.5,1.5", "--to", "5.5,1.5"]

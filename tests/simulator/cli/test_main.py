@@ -1,4 +1,4 @@
-"""The command line: exit codes, streams, and what goes wrong."""
+"""The command line: exit codes, streams and errors."""
 
 import json
 import os
@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[3]
 
 @pytest.fixture
 def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A scenario, and the scripted robot to run on it."""
+    """Return a scenario that the scripted robot will run."""
     monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
     scripted_robot.install()
     return write_scene(tmp_path / "scene", 1)
@@ -86,7 +86,7 @@ def test_check_knows_files_by_their_names(scene: Path, capsys: pytest.CaptureFix
     assert main(["check", str(scene / "goal.txt")]) == 66
 
 
-def test_our_bug_is_no_traceback(
+def test_a_bug_gives_a_message_and_no_traceback(
     scene: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(scripted_robot.Robot, "step", lambda self: 1 // 0)
@@ -107,7 +107,7 @@ def test_interrupted(scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytes
     assert main(["run", str(scene)]) == 130
 
 
-def test_show_goes_quietly_when_its_reader_does(scene: Path) -> None:
+def test_show_ends_quietly_when_its_reader_ends(scene: Path) -> None:
     command = f"{sys.executable} -m simulator.cli show {scene} | true"
     done = subprocess.run(["bash", "-c", command], cwd=ROOT, capture_output=True, check=False)
     assert b"Traceback" not in done.stderr

@@ -1,4 +1,4 @@
-"""What other operating systems lack is done without, or told of: the modules that they have not are hidden here."""
+"""Work without the features that other operating systems lack; their modules are hidden here."""
 
 import subprocess
 import sys
@@ -36,7 +36,7 @@ MORE = {"windows": "", "macos": NO_LIMITS}
 
 
 def hidden(system: str, code: str, *arguments: str) -> "subprocess.CompletedProcess[str]":
-    """Run Python code where the modules and names that a system has not are hidden."""
+    """Run Python code with the modules and names hidden that a system lacks."""
     modules, names = SYSTEMS[system]
     before = HIDDEN.format(modules=modules, names=names, root=str(ROOT), more=MORE[system])
     command = [sys.executable, "-c", before + code, *arguments]
@@ -48,7 +48,7 @@ from tests_of import scripted_robot
 scripted_robot.install()
 from simulator.cli.main import main
 sys.exit(main(sys.argv[1:]))
-""".replace("from tests_of import", f"sys.path.insert(0, {str(Path(__file__).parent)!r}); import")
+""".replace("from tests_of import", f"sys.path.insert(0, {str(Path(__file__).parents[1])!r}); import")
 
 
 @pytest.mark.parametrize("system", SYSTEMS)
@@ -84,21 +84,21 @@ def test_a_worker_answers_without_limits(system: str) -> None:
         assert worker.wait(5) == 0
 
 
-def test_what_is_missing_is_said() -> None:
-    code = "from kb.language.operating_system import lacking; print(*lacking(), sep='\\n')"
+def test_missing_features_are_listed() -> None:
+    code = "from kb.language.operating_system import missing_features; print(*missing_features(), sep='\\n')"
     assert "memory of a question is not limited" in hidden("windows", code).stdout
     assert "not locked" in hidden("windows", code).stdout
     assert hidden("macos", code).stdout.strip() == ""
 
 
 def test_nothing_is_missing_here() -> None:
-    assert operating_system.lacking() == []
+    assert operating_system.missing_features() == []
 
 
-def test_nobody_else_asks_for_what_some_systems_lack() -> None:
+def test_only_one_module_uses_features_that_some_systems_lack() -> None:
     for package in ("kb", "planner", "simulator", "geometry"):
         for path in sorted((ROOT / package).rglob("*.py")):
-            if path.name == "machine.py":
+            if path.name == "operating_system.py":
                 continue
             text = path.read_text()
             for name in ("import resource", "import fcntl", "import select", "O_NONBLOCK", "O_CLOEXEC", "SIGALRM"):

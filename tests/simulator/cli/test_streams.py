@@ -1,4 +1,4 @@
-"""Broken streams, strange locales and texts that a terminal would obey: one line, the right code, nothing obeyed."""
+"""Broken streams, strange locales and control characters: one line of message, the right code, safe output."""
 
 import json
 import os
@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from random_scenes import write_scene
 
 from simulator.cli.main import main
-from simulator.terminal.streams import Guarded, StreamError, shown
+from simulator.terminal.streams import GuardedStream, StreamError, escape_controls
 
 ROOT = Path(__file__).resolve().parents[3]
 HOSTILE = "\x1b[2J\x1b]0;owned\x07\r\x9b31m\u202egnp.exe\u2066\x7f\b\u2028"
@@ -23,7 +23,7 @@ OBEYED = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\u202
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with an umlaut in which are a scenario, a bad one and an episode."""
+    """Return a folder with an umlaut in its name, a scenario, a bad scenario and an episode."""
     place = tmp_path_factory.mktemp("m\u00f6bel")
     write_scene(place / "scene", 1)
     write_scene(place / "bad", 1)
@@ -36,7 +36,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def utak(
     arguments: str, place: Path, redirect: str = "", *, stdin: str = "", **environment: str
 ) -> "subprocess.CompletedProcess[bytes]":
-    """`utak` with the scripted robot, its streams redirected by the shell."""
+    """Run `utak` with the scripted robot and its streams redirected by the shell."""
     command = f"{sys.executable} {scripted_robot.__file__} {arguments} {redirect}"
     env = os.environ | {"PYTHONPATH": str(ROOT)} | environment
     return subprocess.run(["bash", "-c", command], cwd=place, env=env, input=stdin.encode(), capture_output=True)
@@ -52,7 +52,7 @@ CASES = [
     ("check bad", "2>/dev/full", 65),
     ("check bad", "2>&-", 65),
     ("run scene --watch --max-steps 2", "2>/dev/full", 75),
-    ("show scene", "2>/dev/full", 74),  # it could not say which way the robot faces
+    ("show scene", "2>/dev/full", 74),  # the message about the heading was lost
     ("check scene", "2>/dev/full", 0),
     ("show scene", "2>&- <&-", 0),
     ("repl ep.jsonl", "<&-", 74),
@@ -62,7 +62,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("command", "redirect", "code"), CASES)
-def test_a_broken_stream_is_told_in_a_line(command: str, redirect: str, code: int, folder: Path) -> None:
+def test_a_broken_stream_gives_a_message_of_one_line(command: str, redirect: str, code: int, folder: Path) -> None:
     done = utak(command, folder, redirect, stdin="help\n")
     said = done.stderr.decode()
     assert done.returncode == code, said
@@ -79,7 +79,7 @@ def test_no_file_takes_the_place_of_a_closed_stream(folder: Path) -> None:
     assert all(json.loads(line) for line in (folder / "other.jsonl").read_text().splitlines())
 
 
-def test_a_reader_that_goes_away_ends_it_quietly(folder: Path) -> None:
+def test_a_command_ends_quietly_when_its_reader_ends(folder: Path) -> None:
     done = utak("repl ep.jsonl", folder, "| true; exit ${PIPESTATUS[0]}", stdin="help\nfacts\nshow\n" * 9000)
     assert done.returncode in (0, 141)
     assert done.stderr == b""
@@ -100,27 +100,27 @@ def test_an_umlaut_in_a_name_is_no_bug(command: str, code: int, environment: dic
 
 
 @given(st.text())
-def test_what_is_shown_is_never_obeyed_and_stays_json(text: str) -> None:
-    assert not OBEYED.search(shown(text))
-    assert shown(json.dumps(text)) == json.dumps(text).replace("\x7f", "\\u007f")
-    assert json.loads(shown(json.dumps(text))) == text
-    assert "\n" not in shown(text, lines=False)
+def test_escaped_text_has_no_control_characters_and_stays_json(text: str) -> None:
+    assert not OBEYED.search(escape_controls(text))
+    assert escape_controls(json.dumps(text)) == json.dumps(text).replace("\x7f", "\\u007f")
+    assert json.loads(escape_controls(json.dumps(text))) == text
+    assert "\n" not in escape_controls(text, lines=False)
 
 
-def test_a_closed_stream_that_matters_is_an_error_and_another_a_note() -> None:
+def test_a_closed_vital_stream_raises_and_another_is_noted() -> None:
     with pytest.raises(StreamError, match="standard output cannot be written: it is closed"):
-        Guarded(None, "the standard output", True).write("x")
-    note = Guarded(None, "the standard error", False)
+        GuardedStream(None, "the standard output", True).write("x")
+    note = GuardedStream(None, "the standard error", False)
     note.write("x")
     assert note.lost == ""
     with Path("/dev/full").open("w", buffering=1) as full:
-        note = Guarded(full, "the standard error", False)
+        note = GuardedStream(full, "the standard error", False)
         note.write("x\n")
     assert note.lost == "No space left on device"
 
 
 def hostile_episode(folder: Path) -> Path:
-    """An episode whose every text would be obeyed."""
+    """Return an episode with control characters in every text."""
     rows = [json.loads(line) for line in (folder / "ep.jsonl").read_text().splitlines()]
     for row in rows[1:-1]:
         row["why"] = HOSTILE + "\ndone after 3 steps: spoofed"
@@ -130,7 +130,7 @@ def hostile_episode(folder: Path) -> Path:
     return path
 
 
-def test_nothing_of_an_episode_is_obeyed(folder: Path) -> None:
+def test_control_characters_in_an_episode_are_escaped(folder: Path) -> None:
     done = utak(f"repl {hostile_episode(folder)}", folder, stdin=f"step\nrun\nshow\nfacts\n{HOSTILE}\n?- {HOSTILE}\n")
     text = done.stdout.decode()
     assert done.returncode == 0
@@ -139,7 +139,7 @@ def test_nothing_of_an_episode_is_obeyed(folder: Path) -> None:
     assert not [line for line in text.splitlines() if line.startswith("done after")]
 
 
-def test_nothing_on_the_command_line_is_obeyed(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_control_characters_on_the_command_line_are_escaped(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     (tmp_path / "goal.lp").write_bytes(HOSTILE.encode())
     for command in (["fly" + HOSTILE], ["show", HOSTILE], ["check", str(tmp_path)], ["run", "x", "--seed", HOSTILE]):
         assert main(command) in (2, 65, 66)

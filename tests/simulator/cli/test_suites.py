@@ -1,4 +1,4 @@
-"""Many scenarios at once, and scenarios from elsewhere: one that is wrong is told and the rest goes on."""
+"""Many scenarios at once, and scenarios from elsewhere: a bad one is reported and the others are still run."""
 
 import os
 import re
@@ -10,7 +10,7 @@ import pytest
 import scripted_robot
 from random_scenes import write_scene
 
-from kb.language.source_text import leads_out, read_source
+from kb.language.source_text import lies_outside, read_source
 from simulator.cli.main import main
 from simulator.terminal import exits
 
@@ -19,7 +19,7 @@ SECRET = "root_x17(toor_x18).\nand nonsense_x19 :- so(0n_x20.\n"
 
 @pytest.fixture
 def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A scenario that passes its test, and the scripted robot to run on it."""
+    """Return a scenario that passes its test with the scripted robot."""
     monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
     scripted_robot.install()
     folder = write_scene(tmp_path / "suite" / "good", 1)
@@ -28,7 +28,7 @@ def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def suite(scene: Path) -> Path:
-    """A folder with the good scenario and three that are not."""
+    """Return a folder with the valid scenario and three invalid ones."""
     root = scene.parent
     (shutil.copytree(scene, root / "a_failed") / "expect.lp").write_text("within(0).")
     (shutil.copytree(scene, root / "b_bad") / "expect.lp").write_text("within(x).")
@@ -36,7 +36,7 @@ def suite(scene: Path) -> Path:
     return root
 
 
-def test_a_test_goes_on_whatever_is_wrong_with_one(
+def test_tests_continue_after_a_bad_scenario(
     scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     root = suite(scene)
@@ -60,7 +60,7 @@ def test_a_test_goes_on_whatever_is_wrong_with_one(
     assert "a bug of ours: ZeroDivisionError" in seen.err
 
 
-def test_a_check_goes_on_whatever_is_wrong_with_one(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_checks_continue_after_a_bad_scenario(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
     root = suite(scene)
     assert main(["check", str(root), str(root / "nowhere")]) == 66
     seen = capsys.readouterr()
@@ -70,7 +70,7 @@ def test_a_check_goes_on_whatever_is_wrong_with_one(scene: Path, capsys: pytest.
     assert main(["check", str(root / "good"), str(root / "b_bad")]) == 65
 
 
-def test_the_worst_code_stands_for_all() -> None:
+def test_the_exit_code_is_the_most_severe_one() -> None:
     assert exits.worst([]) == 0
     assert exits.worst([0, 1, 0]) == 1
     assert exits.worst([1, 65, 0]) == 65
@@ -88,7 +88,7 @@ def test_an_empty_expectation_is_refused(text: str, scene: Path, capsys: pytest.
 
 @pytest.mark.parametrize("name", ["start.lp", "goal.lp", "expect.lp", "world.lp", "world.txt"])
 @pytest.mark.parametrize("command", ["run", "test", "check", "show", "query", "repl", "routes"])
-def test_nothing_of_a_file_behind_a_link_is_shown(
+def test_messages_hide_the_text_of_a_file_behind_a_link(
     name: str, command: str, scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "secret").write_text(SECRET)
@@ -107,7 +107,7 @@ def test_nothing_of_a_file_behind_a_link_is_shown(
     assert "a link out of its folder" in capsys.readouterr().err
 
 
-def test_links_that_stay_inside_are_read_as_ever(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_links_inside_the_folder_are_read(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (scene / "goal.lp").rename(scene / "real.lp")
     (scene / "goal.lp").symlink_to("real.lp")
     other = scene.parent.parent / "other"
@@ -122,14 +122,14 @@ def test_links_that_stay_inside_are_read_as_ever(scene: Path, capsys: pytest.Cap
 def test_a_linked_folder_in_a_suite_is_refused_too(scene: Path, tmp_path: Path) -> None:
     shutil.copytree(scene, tmp_path / "elsewhere")
     (scene.parent / "linked").symlink_to(tmp_path / "elsewhere")
-    assert not leads_out(scene, scene.parent)
-    assert leads_out(scene.parent / "linked", scene.parent)
-    assert leads_out(scene.parent / "linked" / "goal.lp", scene.parent)
-    assert not leads_out(scene.parent / "linked" / "goal.lp")
+    assert not lies_outside(scene, scene.parent)
+    assert lies_outside(scene.parent / "linked", scene.parent)
+    assert lies_outside(scene.parent / "linked" / "goal.lp", scene.parent)
+    assert not lies_outside(scene.parent / "linked" / "goal.lp")
     assert main(["check", str(scene.parent / "linked"), "--untrusted"]) == 0  # the user names it
 
 
-def test_rules_behind_a_link_are_not_shown(tmp_path: Path) -> None:
+def test_messages_hide_the_text_of_rules_behind_a_link(tmp_path: Path) -> None:
     (tmp_path / "far").mkdir()
     (tmp_path / "far" / "rules.lp").write_text("fine(1).\nsecret_x17(1\n")
     (tmp_path / "here").mkdir()

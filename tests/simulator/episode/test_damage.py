@@ -1,4 +1,4 @@
-"""Episodes and scenarios of others, damaged in every way: told with file, line and column, never a bug, never much."""
+"""Damaged episodes and scenarios: reported with file, line and column, never as a bug, never at great length."""
 
 import copy
 import io
@@ -20,7 +20,7 @@ from random_scenes import write_scene
 from kb.language.diagnostics import BadInputError, CannotOpenError
 from simulator.cli.main import main
 from simulator.episode.episode import read_episode
-from simulator.run.story import Recorded
+from simulator.run.story import RecordedStory
 from simulator.scenario.scenario import read_scenario
 from simulator.terminal.action_in_words import describe
 
@@ -29,7 +29,7 @@ PLACE = re.compile(r"ep\.jsonl:\d+:\d+-\d+: error: ")
 
 @pytest.fixture(scope="module")
 def lines(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
-    """The lines of a short episode."""
+    """Return the lines of a short episode."""
     place = tmp_path_factory.mktemp("whole")
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
@@ -40,7 +40,7 @@ def lines(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
 
 def looked_through(path: Path) -> None:
     """Read an episode and do with every step what the prompt does."""
-    story = Recorded(str(path), read_episode(path))
+    story = RecordedStory(str(path), read_episode(path))
     while True:
         assert isinstance(story.facts, list)
         assert story.picture()
@@ -51,7 +51,7 @@ def looked_through(path: Path) -> None:
 
 
 def changed(lines: list[dict[str, Any]], number: int, *path: Any, to: Any) -> str:
-    """The episode with one value changed; `...` takes it away."""
+    """Return the episode with one value changed; `...` removes it."""
     rows = copy.deepcopy(lines)
     at: Any = rows[number]
     for key in path[:-1]:
@@ -113,7 +113,7 @@ DAMAGE: dict[str, Callable[[list[dict[str, Any]]], str]] = {
 
 
 @pytest.mark.parametrize("name", DAMAGE)
-def test_damage_is_told_where_it_is(name: str, lines: list[dict[str, Any]], tmp_path: Path) -> None:
+def test_damage_is_reported_at_its_place(name: str, lines: list[dict[str, Any]], tmp_path: Path) -> None:
     path = tmp_path / "ep.jsonl"
     path.write_text(DAMAGE[name](lines))
     with pytest.raises(BadInputError, match=PLACE):
@@ -130,7 +130,7 @@ BYTES = {
 
 
 @pytest.mark.parametrize("name", BYTES)
-def test_what_is_no_text_is_told(name: str, tmp_path: Path) -> None:
+def test_bytes_that_are_no_text_are_reported(name: str, tmp_path: Path) -> None:
     path = tmp_path / "ep.jsonl"
     path.write_bytes(BYTES[name])
     with pytest.raises(BadInputError, match=PLACE):
@@ -150,7 +150,7 @@ def test_the_column_is_that_of_the_key(lines: list[dict[str, Any]], tmp_path: Pa
 @pytest.mark.parametrize(
     "name", ["a table of 100,000 squares", "belief in a list", "a seed of text", "facts with a variable"]
 )
-def test_every_command_says_it_with_its_code(
+def test_every_command_reports_damage_with_its_exit_code(
     name: str,
     lines: list[dict[str, Any]],
     tmp_path: Path,
@@ -161,7 +161,7 @@ def test_every_command_says_it_with_its_code(
     path.write_text(DAMAGE[name](lines))
     assert main(["query", str(path), "node(X)", "--at", "1"]) == 65
     scene = str(write_scene(tmp_path / "s", 1))
-    if name != "facts with a variable":  # which only a question looks at
+    if name != "facts with a variable":  # read only by queries
         assert main(["run", scene, "--log", str(path), "--resume"]) == 65
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"show\nstep\nfacts\n?- node(X).\nshow\n")))
     code = main(["repl", str(path)])
@@ -178,16 +178,14 @@ VALUES = st.one_of(
 
 
 def places(value: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
-    """The paths to all values inside of a value."""
+    """Yield the paths to all values inside a value."""
     inner = value.items() if isinstance(value, dict) else enumerate(value[:3]) if isinstance(value, list) else ()
     return [at, *(path for key, one in inner for path in places(one, (*at, key)))]
 
 
 @settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
-def test_whatever_is_changed_an_episode_is_read_or_refused(
-    data: st.DataObject, lines: list[dict[str, Any]], tmp_path: Path
-) -> None:
+def test_a_changed_episode_is_read_or_refused(data: st.DataObject, lines: list[dict[str, Any]], tmp_path: Path) -> None:
     number = data.draw(st.sampled_from([0, 0, 1, 2, len(lines) - 1]))
     path = data.draw(st.sampled_from([where for where in places(lines[number]) if where]))
     text = changed(lines, number, *path, to=data.draw(VALUES | st.just(...)))
@@ -204,7 +202,7 @@ def test_whatever_is_changed_an_episode_is_read_or_refused(
 
 @settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
-def test_whatever_is_changed_a_scenario_is_read_or_refused(data: st.DataObject, tmp_path: Path) -> None:
+def test_a_changed_scenario_is_read_or_refused(data: st.DataObject, tmp_path: Path) -> None:
     shutil.rmtree(tmp_path / "s", ignore_errors=True)
     folder = write_scene(tmp_path / "s", data.draw(st.integers(1, 4)))
     (folder / "start.lp").write_text("object(x). door(d).\nshape(x, square). confidence(colour(x, g), 60).\n")
@@ -227,7 +225,7 @@ def test_whatever_is_changed_a_scenario_is_read_or_refused(data: st.DataObject, 
 
 
 def test_a_table_is_bounded_in_worlds_and_episodes(lines: list[dict[str, Any]], tmp_path: Path) -> None:
-    """100,000 squares a side would take 10 GB."""
+    """A table of 100,000 squares a side would take 10 GB."""
     folder = write_scene(tmp_path / "s", 1)
     (folder / "world.lp").write_text((folder / "world.lp").read_text().replace("table(", "table(100000, 100000). %"))
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

@@ -1,4 +1,4 @@
-"""Episodes: the same seed gives the same bytes, a killed run can be read and resumed, and the judge finds nothing."""
+"""Episodes: the same seed gives the same bytes, a killed run can be read and resumed, the judge finds no violation."""
 
 import importlib.util
 import json
@@ -27,20 +27,20 @@ JUDGE = Path(os.environ.get("UTAK_JUDGE", ROOT.parent / "shared" / "judge" / "ju
 
 @pytest.fixture(autouse=True)
 def scripted(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Every run in this module is the scripted robot's."""
+    """Let the scripted robot do every run in this module."""
     monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
     scripted_robot.install()
     yield
 
 
 def process(*arguments: str, **environment: str) -> "subprocess.Popen[bytes]":
-    """`utak` with the scripted robot, in a process of its own."""
+    """Run `utak` with the scripted robot in a process of its own."""
     command = [sys.executable, scripted_robot.__file__, *arguments]
     environment = os.environ | {"PYTHONPATH": str(ROOT)} | environment
     return subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.DEVNULL)
 
 
-def test_an_episode_says_what_happened(tmp_path: Path) -> None:
+def test_an_episode_records_what_happened(tmp_path: Path) -> None:
     folder, path = write_scene(tmp_path / "s", 3), tmp_path / "ep.jsonl"
     assert main(["run", str(folder), "--log", str(path), "--seed", "5", "--noise", "0.1", "--max-steps", "7"]) == 75
     episode = read_episode(path)
@@ -113,7 +113,7 @@ def test_resuming_something_else_is_refused(tmp_path: Path, capsys: pytest.Captu
     assert path.read_text() == "my diary\n"
 
 
-def test_what_is_no_episode_is_refused(tmp_path: Path) -> None:
+def test_other_files_are_refused_as_episodes(tmp_path: Path) -> None:
     path = tmp_path / "ep.jsonl"
     head = encode({"utak": "episode", "version": 1})
     for text, what in {
@@ -134,7 +134,7 @@ def test_what_is_no_episode_is_refused(tmp_path: Path) -> None:
 
 
 def load_judge() -> Any:
-    """The independent judge as a module."""
+    """Return the independent judge as a module."""
     spec = importlib.util.spec_from_file_location("judge", JUDGE)
     assert spec is not None
     assert spec.loader is not None
@@ -144,7 +144,7 @@ def load_judge() -> Any:
 
 
 def judged(tmp_path: Path, seed: int, noise: float) -> tuple[list[str], bool]:
-    """What the judge finds in a run on a random scene, and whether something was carried."""
+    """Return what the judge finds in a run on a random scene, and whether something was carried."""
     folder, path, judge = write_scene(tmp_path / f"s{seed}", seed), tmp_path / "ep.jsonl", load_judge()
     main(["run", str(folder), "--log", str(path), "--seed", str(seed), "--noise", str(noise)])
     rows = [json.loads(row) for row in path.read_text().splitlines()]

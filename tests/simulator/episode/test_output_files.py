@@ -1,4 +1,4 @@
-"""Files that are written: nothing of another kind is overwritten, and no two runs write to one."""
+"""Files that are written: no file of another kind is overwritten, and no two runs write to one file."""
 
 import json
 import os
@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[3]
 
 @pytest.fixture
 def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A scenario, and the scripted robot to run on it."""
+    """Return a scenario that the scripted robot will run."""
     monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
     scripted_robot.install()
     return write_scene(tmp_path / "scene", 1)
@@ -79,7 +79,7 @@ def test_two_processes_cannot_write_to_one_log(scene: Path, tmp_path: Path) -> N
     assert read_episode(tmp_path / "ep.jsonl").result is not None
 
 
-def test_what_is_not_there_cannot_be_gone_on_with(scene: Path, tmp_path: Path) -> None:
+def test_a_missing_episode_cannot_be_resumed(scene: Path, tmp_path: Path) -> None:
     path = tmp_path / "absent.jsonl"
     assert main(["run", str(scene), "--log", str(path), "--resume"]) == 66
     assert not path.exists()
@@ -99,7 +99,7 @@ def test_a_dash_is_the_standard_output(
     assert main(["run", str(scene), "--log", "-", "--resume"]) == 2
 
 
-def test_what_is_no_file_is_written_as_it_is(scene: Path) -> None:
+def test_a_pipe_or_device_is_written_directly(scene: Path) -> None:
     assert main(["run", str(scene), "--log", os.devnull]) == 75
 
 
@@ -121,7 +121,7 @@ def test_a_picture_overwrites_nothing_but_a_picture(tmp_path: Path) -> None:
     assert is_svg((tmp_path / "notes").read_bytes())
 
 
-def test_what_cannot_be_written_is_told(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_written_is_reported(tmp_path: Path) -> None:
     for path in (tmp_path, tmp_path / "no" / "file", "/dev/full"):
         with pytest.raises(CannotOpenError):
             write_whole(path, "x" * 9, is_svg, "picture")

@@ -1,4 +1,4 @@
-"""Ctrl-C at any moment: a step is whole or did not happen, and nothing but a message comes of it."""
+"""Ctrl-C at any moment: a step is complete or did not happen, and the only effect is a message."""
 
 import os
 import random
@@ -18,7 +18,7 @@ from random_scenes import write_scene
 
 from kb.reasoning.query import QueryEngine
 from simulator.cli.commands.new import FILES
-from simulator.run.interrupts import deferred
+from simulator.run.interrupts import defer_interrupt
 from simulator.run.story import Story, open_story
 from simulator.scenario.settings import Settings
 from simulator.terminal.prompt import Prompt
@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parents[3]
 
 @pytest.fixture(autouse=True)
 def ctrl_c_interrupts() -> Iterator[None]:
-    """Ctrl-C interrupts, also where the tests run in the background of a shell that shields them from it."""
+    """Let Ctrl-C interrupt, also where a shell runs the tests in the background and ignores it."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -36,13 +36,13 @@ def ctrl_c_interrupts() -> Iterator[None]:
 
 @pytest.fixture
 def scripted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every run is the scripted robot's."""
+    """Let the scripted robot do every run."""
     monkeypatch.setitem(sys.modules, "planner.cycle", sys.modules.get("planner.cycle"))
     scripted_robot.install()
 
 
 def finished(story: Story) -> list[Any]:
-    """Every line of a story to its end, with its pictures, and its result."""
+    """Return every line of a story with its picture, and its result."""
     lines = [(story.line, story.picture())]
     while story.advance():
         lines.append((story.line, story.picture()))
@@ -51,7 +51,7 @@ def finished(story: Story) -> list[Any]:
 
 @contextmanager
 def interrupted_at(event: int) -> Iterator[None]:
-    """Raise KeyboardInterrupt at the so manieth line or return of our code that is executed in the block."""
+    """Raise KeyboardInterrupt at the given line or return, counted in our code that the block executes."""
     left = event
 
     def trace(frame: FrameType, kind: str, _: Any) -> Any:
@@ -71,7 +71,7 @@ def interrupted_at(event: int) -> Iterator[None]:
         sys.settrace(before)
 
 
-def test_a_step_that_is_broken_off_anywhere_did_not_happen(tmp_path: Path, scripted: None) -> None:
+def test_a_step_interrupted_anywhere_did_not_happen(tmp_path: Path, scripted: None) -> None:
     folder, settings = write_scene(tmp_path / "s", 4), Settings(noise=0.05, max_steps=8)
     whole = finished(open_story(folder, settings))
     draw = random.Random(1)
@@ -92,7 +92,7 @@ def test_a_step_that_is_broken_off_anywhere_did_not_happen(tmp_path: Path, scrip
         assert [*seen, story.result] == whole
 
 
-def test_the_robot_itself_goes_on_as_if_nothing_had_been(tmp_path: Path) -> None:
+def test_the_robot_continues_unchanged_after_an_interrupted_step(tmp_path: Path) -> None:
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)
     whole = finished(open_story(tmp_path, Settings()))
@@ -107,7 +107,7 @@ def test_the_robot_itself_goes_on_as_if_nothing_had_been(tmp_path: Path) -> None
             try:
                 signal.setitimer(signal.ITIMER_REAL, draw.uniform(0.01, 0.3))
                 story.advance()
-            except Exception as other:  # some libraries call it by another name
+            except Exception as other:  # some libraries raise another exception instead
                 assert isinstance(other, RuntimeError | ImportError), other
             except KeyboardInterrupt:
                 pass
@@ -119,23 +119,25 @@ def test_the_robot_itself_goes_on_as_if_nothing_had_been(tmp_path: Path) -> None
     assert finished(story)[-2:] == whole[-2:]
 
 
-def test_the_first_keeps_the_step_and_the_second_breaks_it_off() -> None:
-    told: list[str] = []
-    with deferred(lambda: told.append("once")) as pressed:
+def test_the_first_ctrl_c_completes_the_step_and_the_second_interrupts_it() -> None:
+    announced: list[str] = []
+    with defer_interrupt(lambda: announced.append("once")) as pressed:
         signal.raise_signal(signal.SIGINT)
-        assert told == ["once"]
+        assert announced == ["once"]
     assert pressed
-    with pytest.raises(KeyboardInterrupt), deferred(lambda: None):
+    with pytest.raises(KeyboardInterrupt), defer_interrupt(lambda: None):
         signal.raise_signal(signal.SIGINT)
         signal.raise_signal(signal.SIGINT)
-    with deferred(lambda: None) as pressed:
+    with defer_interrupt(lambda: None) as pressed:
         pass
     assert not pressed
     with pytest.raises(KeyboardInterrupt):
         signal.raise_signal(signal.SIGINT)
 
 
-def test_the_prompt_stops_after_a_whole_step(tmp_path: Path, scripted: None, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_prompt_stops_after_a_complete_step(
+    tmp_path: Path, scripted: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
     story = open_story(write_scene(tmp_path / "s", 4), Settings())
     step = scripted_robot.Robot.step
 
@@ -153,7 +155,7 @@ def test_the_prompt_stops_after_a_whole_step(tmp_path: Path, scripted: None, mon
     assert story.line["step"] == 4
 
 
-def test_an_answer_that_nobody_waited_for_is_not_given_to_the_next_question() -> None:
+def test_a_late_answer_is_not_given_to_the_next_query() -> None:
     def interrupt(number: int, frame: FrameType | None) -> None:
         raise KeyboardInterrupt
 
@@ -170,7 +172,7 @@ def test_an_answer_that_nobody_waited_for_is_not_given_to_the_next_question() ->
 
 
 def press_after(seconds: float, command: list[str], **options: Any) -> tuple[int, str]:
-    """The exit code and the messages of a command that gets SIGINT after a while."""
+    """Return the exit code and the messages of a command that gets SIGINT after a while."""
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options) as run:
         time.sleep(seconds)
         run.send_signal(signal.SIGINT)
@@ -178,8 +180,8 @@ def press_after(seconds: float, command: list[str], **options: Any) -> tuple[int
     return run.returncode, said
 
 
-def test_ctrl_c_soon_after_the_start_is_no_traceback(tmp_path: Path) -> None:
-    """From the first line of ours on; what Python says before that is not ours."""
+def test_ctrl_c_soon_after_the_start_gives_no_traceback(tmp_path: Path) -> None:
+    """The test begins with the first line of our code; earlier output is Python's."""
     folder = write_scene(tmp_path / "s", 1)
     code = (
         f"import sys, os; sys.argv = ['utak', 'run', sys.argv[1]]; sys.path.insert(0, {str(ROOT)!r}); "

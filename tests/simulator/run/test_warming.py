@@ -1,4 +1,4 @@
-"""What is compiled before the first run, where it is kept, and what is said of it."""
+"""Compilation before the first run: what is compiled, where it is cached, and what is announced."""
 
 import os
 import pty
@@ -26,7 +26,7 @@ def test_two_processes_share_the_work() -> None:
     assert set(walking) <= set(carrying)
 
 
-def test_the_other_process_does_what_it_is_told(monkeypatch) -> None:
+def test_the_second_process_compiles_its_uses(monkeypatch) -> None:
     done = []
     monkeypatch.setattr(warming, "compile_for", done.extend)
     for halves in warming.HALVES.values():
@@ -35,19 +35,19 @@ def test_the_other_process_does_what_it_is_told(monkeypatch) -> None:
         assert sorted(done, key=repr) == sorted(halves[1], key=repr)
 
 
-def test_the_first_run_says_what_it_does(monkeypatch) -> None:
-    told, done = [], []
-    monkeypatch.setattr(warming, "cold", list)
+def test_the_first_run_announces_the_compilation(monkeypatch) -> None:
+    announced, done = [], []
+    monkeypatch.setattr(warming, "uncompiled", list)
     monkeypatch.setattr(warming, "beside", lambda *_: [sys.executable, "-I", "-c", ""])
-    monkeypatch.setattr(warming, "tell", lambda: told.append(True))
+    monkeypatch.setattr(warming, "tell", lambda: announced.append(True))
     monkeypatch.setattr(warming, "compile_for", done.extend)
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
     warming.warm(carrying=False)
-    assert told
+    assert announced
     assert done == list(warming.HALVES[False][0])
-    monkeypatch.setattr(warming, "cold", lambda uses: [])
+    monkeypatch.setattr(warming, "uncompiled", lambda uses: [])
     warming.warm(carrying=True)
-    assert len(told) == 1
+    assert len(announced) == 1
 
 
 def test_bytecode_is_kept_where_python_keeps_none(monkeypatch, tmp_path) -> None:
@@ -55,42 +55,42 @@ def test_bytecode_is_kept_where_python_keeps_none(monkeypatch, tmp_path) -> None
     (tmp_path / "part" / "module.py").write_text("ANSWER = 42\n")
     (tmp_path / "broken.py").write_text("ANSWER =\n")
     monkeypatch.setattr(warming, "PACKAGES", [tmp_path, tmp_path / "absent"])
-    monkeypatch.setattr(warming, "cold", list)
+    monkeypatch.setattr(warming, "uncompiled", list)
     monkeypatch.setattr(warming, "beside", lambda *_: [sys.executable, "-I", "-c", ""])
     monkeypatch.setattr(warming, "tell", lambda: None)
     monkeypatch.setattr(warming, "compile_for", lambda _: None)
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
-    for told, kept in ((False, 0), (True, 1)):
-        monkeypatch.setattr(sys, "dont_write_bytecode", told)
+    for no_bytecode, cached in ((False, 0), (True, 1)):
+        monkeypatch.setattr(sys, "dont_write_bytecode", no_bytecode)
         warming.warm(carrying=False)
-        assert len(list(tmp_path.rglob("module.*.pyc"))) == kept
+        assert len(list(tmp_path.rglob("module.*.pyc"))) == cached
 
 
 def test_every_package_of_the_robot_is_among_those_whose_bytecode_is_kept() -> None:
     assert all((package / "__init__.py").is_file() for package in warming.PACKAGES)
 
 
-def test_what_is_missing_is_known_use_by_use(monkeypatch, tmp_path) -> None:
+def test_uncompiled_uses_are_found_one_by_one(monkeypatch, tmp_path) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     uses = list(warming.INDEX)
-    assert warming.cold(uses) == uses
+    assert warming.uncompiled(uses) == uses
     (tmp_path / "geometry_1234").mkdir()
     (tmp_path / "geometry_1234" / "router.itineraries-17.py311.nbi").touch()
-    assert warming.cold(uses) == [warming.carry, warming.sightlines]
+    assert warming.uncompiled(uses) == [warming.carry, warming.sightlines]
     (tmp_path / "geometry_1234" / "astar.haul-20.py311.nbi").touch()
     (tmp_path / "other.function-1.py311.nbi").touch()
-    assert warming.cold([warming.search, warming.carry]) == []
-    assert warming.kept() == 2
+    assert warming.uncompiled([warming.search, warming.carry]) == []
+    assert warming.count_cached_kernels() == 2
 
 
-def test_only_what_is_missing_is_compiled(monkeypatch) -> None:
+def test_only_uncompiled_uses_are_compiled(monkeypatch) -> None:
     done = []
     monkeypatch.setattr(warming, "tell", lambda: None)
     monkeypatch.setattr(warming, "compile_for", done.extend)
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
     for use, asked in ((warming.carry, (True, "skeleton")), (warming.sightlines, (False, "visibility"))):
         done.clear()
-        monkeypatch.setattr(warming, "cold", lambda uses, use=use: [use])
+        monkeypatch.setattr(warming, "uncompiled", lambda uses, use=use: [use])
         warming.warm(*asked)
         assert done == [use]
 
@@ -106,7 +106,7 @@ print(*jit.ready())
 
 
 def compiling(**environment: str) -> "subprocess.CompletedProcess[str]":
-    """A process that compiles a kernel."""
+    """Start a process that compiles a kernel."""
     settings = {**os.environ, **environment}
     settings.pop("NUMBA_CACHE_DIR", None)
     return subprocess.run([sys.executable, "-c", CODE], capture_output=True, text=True, check=True, env=settings)
@@ -124,16 +124,16 @@ def test_kernels_are_kept_in_the_users_cache_where_the_installation_cannot_be_wr
 
 
 @pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
-def test_where_nothing_can_be_kept_it_is_said() -> None:
+def test_a_message_says_when_no_cache_can_be_written() -> None:
     done = compiling(NUMBA_CACHE_LOCATOR_CLASSES="IPythonCacheLocator")
     assert "they cannot be kept for the next run: set NUMBA_CACHE_DIR" in done.stderr
     assert done.stdout.split()[1] == "False"
 
 
 @pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
-def test_a_terminal_is_told_how_far_it_is(tmp_path) -> None:
+def test_a_terminal_shows_the_progress(tmp_path) -> None:
     ours, theirs = pty.openpty()
-    with suppress(OSError):  # where pseudo-terminals end by an error
+    with suppress(OSError):  # on systems where reading a closed pseudo-terminal fails
         environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
         subprocess.run(
             [sys.executable, "-c", CODE], stdout=subprocess.DEVNULL, stderr=theirs, check=True, env=environment

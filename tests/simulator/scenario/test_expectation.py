@@ -1,4 +1,4 @@
-"""expect.lp: each expectation when it is met and when it is not."""
+"""expect.lp: every expectation, met and not met."""
 
 import math
 from pathlib import Path
@@ -17,14 +17,14 @@ WORLD = World(12, 12, shapely.MultiPolygon(), (Thing("t1", "g", T1),), (PILLAR,)
 
 
 def track(*places: tuple[float, float], pushed: float = 0.0) -> list[Snapshot]:
-    """Utak's way; at its end t1 has been pushed east."""
+    """Return a track of Utak, at the end of which t1 has been pushed east."""
     steps = [Snapshot(number, place, {"t1": T1}) for number, place in enumerate(places)]
     end = translate(T1, pushed) if pushed else T1
     return [*steps[:-1], steps[-1]._replace(polygons={"t1": end})]
 
 
 def way_round(turns: float) -> list[Snapshot]:
-    """A way about t1 in small steps."""
+    """Return a track around t1 in small steps."""
     angles = [turns * 2 * math.pi * n / 24 for n in range(25)]
     return track(*((5 + 3 * math.cos(a), 5 + 3 * math.sin(a)) for a in angles))
 
@@ -73,7 +73,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("text", BAD)
-def test_what_is_wrong_with_expectations_is_said(text: str, tmp_path: Path) -> None:
+def test_errors_of_expectations_are_reported(text: str, tmp_path: Path) -> None:
     (tmp_path / "expect.lp").write_text(text)
     with pytest.raises(BadInputError) as caught:
         read_expectations(tmp_path / "expect.lp", WORLD)

@@ -1,4 +1,4 @@
-"""world.lp and world.txt: what they mean, and what is refused."""
+"""world.lp and world.txt: the worlds that they state, and the errors that are refused."""
 
 import random
 import tempfile
@@ -29,7 +29,7 @@ def world(folder: Path, *facts: str) -> World:
     return read_world(folder / "world.lp")
 
 
-def test_a_world_is_what_its_facts_say(tmp_path: Path) -> None:
+def test_a_world_has_the_contents_of_its_facts(tmp_path: Path) -> None:
     got = world(tmp_path, TABLE, VERGE, UTAK, box("t2", 4, 4), box("t1", 6, 4), box("p", 7, 1, "fixed", "h"))
     assert (got.width, got.height, got.utak, got.heading) == (10, 8, (2.5, 2.5), 270)
     assert [thing.name for thing in got.movable] == ["t1", "t2"]
@@ -75,7 +75,7 @@ squares = st.lists(st.integers(0, 5), min_size=36, max_size=36)
 
 @settings(deadline=None, max_examples=60)
 @given(squares, st.integers(0, 12), st.integers(0, 12))
-def test_on_half_squares_utak_stands_where_a_square_of_floor_is(kinds: list[int], x: int, y: int) -> None:
+def test_on_half_squares_utak_needs_a_square_of_floor(kinds: list[int], x: int, y: int) -> None:
     free = {(n % 6, n // 6) for n, kind in enumerate(kinds) if kind}
     shapes = [shapely.box(i, j, i + 1, j + 1) for i in range(6) for j in range(6) if (i, j) not in free]
     near = {(i, j) for i in ((x - 1) // 2, x // 2) for j in ((y - 1) // 2, y // 2)}
@@ -116,7 +116,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("case", BAD)
-def test_what_is_wrong_with_a_world_is_said(case: str, tmp_path: Path) -> None:
+def test_errors_of_a_world_are_reported(case: str, tmp_path: Path) -> None:
     facts, what = BAD[case]
     with pytest.raises(BadInputError) as caught:
         world(tmp_path, *facts)
@@ -150,7 +150,7 @@ def test_a_picture_is_a_world(tmp_path: Path) -> None:
     assert len(got.movable[0].polygon.exterior.coords) == 5
 
 
-def test_what_is_drawn_is_read_back(tmp_path: Path) -> None:
+def test_a_drawn_world_is_read_back_equal(tmp_path: Path) -> None:
     assert draw(picture(tmp_path, PICTURE)) == PICTURE
 
 
@@ -161,7 +161,7 @@ rows = st.integers(1, 7).flatmap(
 
 @settings(deadline=None)
 @given(rows, st.randoms(use_true_random=False))
-def test_any_picture_is_drawn_as_it_was_read(rows: list[str], draw_from: random.Random) -> None:
+def test_a_picture_is_drawn_as_it_was_read(rows: list[str], draw_from: random.Random) -> None:
     j, i = draw_from.randrange(len(rows)), draw_from.randrange(len(rows[0]))
     rows[j] = rows[j][:i] + "U" + rows[j][i + 1 :]
     text = "".join(f"{row}\n" for row in rows)
@@ -188,7 +188,7 @@ BAD_PICTURES = {
 
 
 @pytest.mark.parametrize("text", BAD_PICTURES)
-def test_what_is_wrong_with_a_picture_is_said(text: str, tmp_path: Path) -> None:
+def test_errors_of_a_picture_are_reported(text: str, tmp_path: Path) -> None:
     with pytest.raises(BadInputError) as caught:
         picture(tmp_path, text)
     assert BAD_PICTURES[text] in str(caught.value)

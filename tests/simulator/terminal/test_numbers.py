@@ -1,4 +1,4 @@
-"""Every integer is checked wherever text enters, and everything that is printed as JSON is read by a strict parser."""
+"""Integers are checked wherever text enters, and all JSON that is printed is read by a strict parser."""
 
 import argparse
 import json
@@ -109,8 +109,8 @@ def strictly(text: str) -> object:
 
 
 def printing_commands() -> set[str]:
-    """The subcommands that have --json."""
-    (parts,) = (a for a in parsing.parser()._actions if isinstance(a, argparse._SubParsersAction))
+    """Return the subcommands that have --json."""
+    (parts,) = (a for a in parsing.build_parser()._actions if isinstance(a, argparse._SubParsersAction))
     return {name for name, part in parts.choices.items() if "--json" in part._option_string_actions}
 
 
@@ -149,6 +149,6 @@ def test_json_is_strict(
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), {"a": [1.0, -float("inf")]}])
-def test_what_json_has_not_is_never_printed(value: object) -> None:
+def test_numbers_that_json_lacks_are_never_printed(value: object) -> None:
     with pytest.raises(ValueError, match="not JSON compliant"):
         as_json(value)

@@ -1,4 +1,4 @@
-"""The physics: each command alone, and laws that hold whatever is commanded."""
+"""The physics: each command by itself, and laws that hold for all commands."""
 
 import math
 from typing import Any
@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from geometry.motion.se2 import Rotate, Translate
 from simulator.world.physics import Tabletop
-from simulator.world.world import Thing, World, ring_of
+from simulator.world.world import Thing, World, outer_ring
 
 VERGE = shapely.box(0, 0, 20, 18).difference(shapely.box(2, 2, 18, 16))
 DEEP = 1e-6
@@ -66,7 +66,7 @@ def test_grasp_push_turn_release() -> None:
     assert world.utak == (9.5, 9.5)
 
 
-def test_what_cannot_act_changes_nothing() -> None:
+def test_a_command_that_cannot_act_changes_nothing() -> None:
     world = table(box("a", 9, 8), box("z", 8, 9), fixed=(box("p", 7, 8),))
     before = (world.utak, dict(world.polygons))
     for command in [
@@ -93,7 +93,7 @@ def test_a_pushed_thing_does_not_push_others() -> None:
     assert world.polygons["c"].bounds == (13, 8, 14, 9)
 
 
-def test_utak_too_is_stopped_when_he_pulls() -> None:
+def test_an_object_behind_utak_stops_a_pull() -> None:
     world = table(box("a", 9, 8), box("c", 5, 8))
     world.grasp("east")
     world.push(-50, 0)
@@ -109,7 +109,7 @@ def test_a_turn_stops_at_the_first_contact_and_never_jumps() -> None:
     assert world.polygons["a"].intersection(world.world.fixed[0].polygon).area < DEEP
 
 
-def test_who_lets_go_between_a_wall_and_a_thing_walks_through_neither() -> None:
+def test_after_a_release_between_wall_and_object_both_block() -> None:
     world = table(box("a", 8.5, 8))
     world.grasp("east")
     world.push(-50, 0)
@@ -156,14 +156,14 @@ THINGS = (
 
 
 def depth(world: Tabletop) -> float:
-    """The greatest area that two things on the table have in common."""
+    """Return the greatest area that two things on the table have in common."""
     shapes = [VERGE, *world.polygons.values(), *(t.polygon for t in world.world.fixed)]
     return max(a.intersection(b).area for n, a in enumerate(shapes) for b in shapes[:n])
 
 
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 359), st.lists(command, max_size=12), st.sampled_from([0.0, 0.05]))
-def test_nothing_ever_goes_into_anything(heading: int, commands: list[Any], noise: float) -> None:
+def test_things_never_overlap_after_motions(heading: int, commands: list[Any], noise: float) -> None:
     world = table(*THINGS, heading=heading, fixed=(box("p", 4, 12, 3, 1),), noise=noise)
     sizes = {name: (p.area, p.length) for name, p in world.polygons.items()}
     for name, *values in commands:
@@ -205,7 +205,7 @@ def test_same_seed_same_world(commands: list[Any], seed: int) -> None:
     for world in worlds:
         for name, *values in commands:
             getattr(world, name)(*values)
-    first, second = ((w.utak, w.held, {n: ring_of(p) for n, p in w.polygons.items()}) for w in worlds)
+    first, second = ((w.utak, w.held, {n: outer_ring(p) for n, p in w.polygons.items()}) for w in worlds)
     assert first == second
 
 

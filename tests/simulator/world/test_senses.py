@@ -1,4 +1,4 @@
-"""Retina and touch against a plain reading of their definition."""
+"""Retina and touch, compared with a literal implementation of their definition."""
 
 import math
 from fractions import Fraction
@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate
 
 from simulator.world.physics import Tabletop
-from simulator.world.senses import NEIGHBOURS, Senses, retina_fields
+from simulator.world.senses import NEIGHBOUR_OFFSETS, Senses, retina_fields
 from simulator.world.table import Table
 from simulator.world.world import Thing, World
 
@@ -31,7 +31,7 @@ def test_the_fields_tile_the_retina() -> None:
 
 
 def slow_impression(world: World) -> tuple[list[int], list[str | None]]:
-    """The impression by definition, square by square and with exact fractions."""
+    """Return the impression by definition, square by square and with exact fractions."""
     shapes = [(t.polygon, t.colour) for t in world.movable] + [(world.verge, "b")]
     cosine, sine = math.cos(math.radians(world.heading)), math.sin(math.radians(world.heading))
 
@@ -48,7 +48,7 @@ def slow_impression(world: World) -> tuple[list[int], list[str | None]]:
         offsets = [(east + i, north + j) for i in range(side) for j in range(side)]
         count = sum(offset == (0, 0) or seen(*offset) is not None for offset in offsets)
         levels.append(math.floor(Fraction(7 * count, side * side) + Fraction(1, 2)))
-    return levels, [seen(*offset) for offset in NEIGHBOURS.values()]
+    return levels, [seen(*offset) for offset in NEIGHBOUR_OFFSETS.values()]
 
 
 @settings(max_examples=12, deadline=None)

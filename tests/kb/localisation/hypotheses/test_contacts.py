@@ -1,4 +1,4 @@
-"""What may have stopped a thing is met where shapely says, in the order in which it is met."""
+"""Contacts are where shapely says, in the order of the way."""
 
 import itertools
 
@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
 from geometry.motion.se2 import Motion, Rotate, Translate
-from kb.localisation.hypotheses.contacts import Obstructions, near
+from kb.localisation.hypotheses.contacts import Obstructions, likeliest_contact_near
 from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
 
 ELL = shapely.Polygon([(1, 0), (6, 0), (6, 2), (3, 2), (3, 5), (1, 5)])
@@ -19,8 +19,8 @@ STEPS = 400
 Square = tuple[int, int]
 
 
-def evidence_of(open_: dict[Square, float], full: list[Square]) -> OccupancyMap:
-    """A map on which all is free but some squares, of which it is open (with their log odds) or known."""
+def map_with(open_: dict[Square, float], full: list[Square]) -> OccupancyMap:
+    """Return a map on which all is free but some open squares (with their log odds) and some occupied ones."""
     occupancy = OccupancyMap()
     occupancy.state[:] = FREE
     for square, odds in open_.items():
@@ -31,8 +31,8 @@ def evidence_of(open_: dict[Square, float], full: list[Square]) -> OccupancyMap:
     return occupancy
 
 
-def met_by_steps(square: Square, motion: Motion) -> float:
-    """The part of a motion after which the thing goes into a square: by trying, shapely alone."""
+def contact_by_steps(square: Square, motion: Motion) -> float:
+    """Return the fraction of a motion after which the object enters a square, by trying with shapely alone."""
     box = shapely.box(square[0], square[1], square[0] + 1, square[1] + 1)
     for step in range(1, STEPS + 1):
         part = motion.part(step / STEPS)
@@ -47,7 +47,7 @@ def met_by_steps(square: Square, motion: Motion) -> float:
 
 
 def apart(square: Square) -> bool:
-    """Does a square not lie under the thing or Utak?"""
+    """Return whether a square lies neither under the object nor under Utak."""
     box = shapely.box(square[0], square[1], square[0] + 1, square[1] + 1)
     return not box.relate_pattern(ELL, "T********") and square != (0, 1)
 
@@ -61,57 +61,57 @@ MOTIONS = st.one_of(
 
 @settings(max_examples=60, deadline=None)
 @given(MOTIONS, st.dictionaries(SQUARES, st.floats(-4, 4), max_size=6), st.lists(SQUARES, max_size=2))
-def test_a_motion_may_end_where_it_meets_what_is_not_free(
+def test_a_motion_may_end_at_every_square_that_is_not_free(
     motion: Motion, open_: dict[Square, float], full: list[Square]
 ) -> None:
     open_ = {square: odds for square, odds in open_.items() if square not in full}
-    stops = Obstructions(evidence_of(open_, full), UTAK, ELL, motion).stops(UTAK, ELL, motion)
-    end = min((met_by_steps(square, motion) for square in full), default=1.0)
+    stops = Obstructions(map_with(open_, full), UTAK, ELL, motion).contacts(UTAK, ELL, motion)
+    end = min((contact_by_steps(square, motion) for square in full), default=1.0)
     for stop in stops:
-        for square in stop.against:
-            assert stop.part == pytest.approx(met_by_steps(square, motion), abs=1.5 / STEPS)
-    before = {square for square in open_ if met_by_steps(square, motion) < end - 2 / STEPS}
-    assert {square for stop in stops for square in stop.against} <= set(open_)
-    assert len(before) >= len({stop.part for stop in stops if stop.part < end - 2 / STEPS}) >= bool(before)
-    assert [stop.part for stop in stops] == sorted(stop.part for stop in stops)
-    assert all(0.0 <= stop.part < 1.0 and 0.0 < stop.chance <= 1.0 for stop in stops)
+        for square in stop.squares:
+            assert stop.fraction == pytest.approx(contact_by_steps(square, motion), abs=1.5 / STEPS)
+    before = {square for square in open_ if contact_by_steps(square, motion) < end - 2 / STEPS}
+    assert {square for stop in stops for square in stop.squares} <= set(open_)
+    assert len(before) >= len({stop.fraction for stop in stops if stop.fraction < end - 2 / STEPS}) >= bool(before)
+    assert [stop.fraction for stop in stops] == sorted(stop.fraction for stop in stops)
+    assert all(0.0 <= stop.fraction < 1.0 and 0.0 < stop.chance <= 1.0 for stop in stops)
     total, gone_on = sum(stop.chance for stop in stops), 1.0
     for square in open_:
-        if met_by_steps(square, motion) < end:
+        if contact_by_steps(square, motion) < end:
             gone_on /= 1.0 + np.exp(open_[square])
     assert total <= 1.0 + 1e-9
     if end < 1.0:
         assert total == pytest.approx(1.0)
-    elif not any(abs(met_by_steps(square, motion) - 1.0) < 2 / STEPS for square in open_):
+    elif not any(abs(contact_by_steps(square, motion) - 1.0) < 2 / STEPS for square in open_):
         assert total == pytest.approx(1.0 - gone_on, abs=1e-6)
 
 
-def test_the_likelier_square_comes_first() -> None:
+def test_the_likelier_contact_comes_first() -> None:
     squares = {(8, 0): -2.0, (9, 1): 2.0}
     motion = Translate(6.0, 0.0)
-    hindrances = Obstructions(evidence_of(squares, []), UTAK, ELL, motion)
-    first, second = hindrances.ends(UTAK, ELL, motion)
-    assert (first.against, second.against) == (frozenset({(9, 1)}), frozenset({(8, 0)}))
+    obstructions = Obstructions(map_with(squares, []), UTAK, ELL, motion)
+    first, second = obstructions.outcomes(UTAK, ELL, motion)
+    assert (first.contact_squares, second.contact_squares) == (frozenset({(9, 1)}), frozenset({(8, 0)}))
     assert first.polygon.bounds[2] == pytest.approx(9.0)
     assert second.polygon.bounds[2] == pytest.approx(8.0)
     assert first.distance == pytest.approx(3.0)
     assert {one.how for one in (first, second)} == {"blocked"}
 
 
-def test_what_stops_nearby_is_known_by_the_place() -> None:
+def test_the_contact_near_an_end_is_found() -> None:
     motion = Translate(6.0, 0.0)
-    hindrances = Obstructions(evidence_of({(8, 0): -2.0, (9, 1): 2.0}, []), UTAK, ELL, motion)
+    obstructions = Obstructions(map_with({(8, 0): -2.0, (9, 1): 2.0}, []), UTAK, ELL, motion)
     for part, square in ((2 / 6, (8, 0)), (2.2 / 6, (8, 0)), (2.8 / 6, (9, 1))):
-        stop = near(hindrances.stops(UTAK, ELL, motion), UTAK, ELL, motion, part)
+        stop = likeliest_contact_near(obstructions.contacts(UTAK, ELL, motion), UTAK, ELL, motion, part)
         assert stop is not None
-        assert stop.against == {square}
-    assert near(hindrances.stops(UTAK, ELL, motion), UTAK, ELL, motion, 2.5 / 6) is None
-    assert Obstructions(evidence_of({}, []), UTAK, ELL, motion).stops(UTAK, ELL, motion) == []
+        assert stop.squares == {square}
+    assert likeliest_contact_near(obstructions.contacts(UTAK, ELL, motion), UTAK, ELL, motion, 2.5 / 6) is None
+    assert Obstructions(map_with({}, []), UTAK, ELL, motion).contacts(UTAK, ELL, motion) == []
 
 
-def test_squares_that_are_met_at_once_are_told_together() -> None:
+def test_squares_met_at_once_are_one_contact() -> None:
     flush = {(8, y): 0.0 for y in (0, 1)} | {(8, 5): 0.0}
     motion = Translate(3.0, 0.0)
-    stops = Obstructions(evidence_of(flush, []), UTAK, ELL, motion).stops(UTAK, ELL, motion)
-    assert [(stop.against, stop.chance) for stop in stops] == [(frozenset({(8, 0), (8, 1)}), pytest.approx(0.75))]
-    assert all(a.part < b.part for a, b in itertools.pairwise(stops))
+    stops = Obstructions(map_with(flush, []), UTAK, ELL, motion).contacts(UTAK, ELL, motion)
+    assert [(stop.squares, stop.chance) for stop in stops] == [(frozenset({(8, 0), (8, 1)}), pytest.approx(0.75))]
+    assert all(a.fraction < b.fraction for a, b in itertools.pairwise(stops))

@@ -1,4 +1,4 @@
-"""The true lattice is never given up while moves are exact; wrong ones are."""
+"""The true frame is never given up while motions are exact; wrong ones are."""
 
 import math
 
@@ -8,21 +8,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.localisation.hypotheses.frames import (
-    ANGLES,
-    CENTRED,
-    GRID,
+    CENTRED_HYPOTHESES,
+    FRAME_ANGLES,
+    ORIGIN_GRID,
     FrameHypothesis,
     Observation,
-    OriginDisc,
-    anywhere,
-    candidates,
-    cells,
-    contradictions,
-    cramped,
-    points,
-    search,
-    standing,
-    within,
+    UnsettledDisc,
+    any_origin,
+    consistent_hypotheses,
+    count_contradictions,
+    frames_to_try,
+    grid_cell_size,
+    is_cramped,
+    origin_box,
+    origin_grid,
+    prune_hypotheses,
 )
 from kb.perception.frame import CENTRE, Frame, turned
 from kb.perception.retina import count_ranges
@@ -32,29 +32,29 @@ Point = tuple[float, float]
 
 
 def angle_of(heading: int) -> int:
-    """The angle of the lattice for one who faces this way on the table: what is left after quarter turns."""
+    """Return the orientation of the grid for a heading on the table: what quarter turns leave, in degrees."""
     return (heading + 44) % 90 - 44
 
 
-def looks_of(rows: list[str], heading: int, points: list[Point]) -> list[Observation]:
-    """The looks of one who wakes at the first point (table frame) and goes exactly to the others."""
+def observations_of(rows: list[str], heading: int, places: list[Point]) -> list[Observation]:
+    """Return the observations from exact points of the table frame; Utak wakes at the first one."""
     occupied = world_of(rows)
     observations = []
-    for x, y in points:
+    for x, y in places:
         seen = retina(occupied, (math.floor(x), math.floor(y)), heading)
-        observations.append(Observation(count_ranges(seen), turned(x - points[0][0], y - points[0][1], -heading)))
+        observations.append(Observation(count_ranges(seen), turned(x - places[0][0], y - places[0][1], -heading)))
     return observations
 
 
 def origin(heading: int, point: Point) -> Point:
-    """Where in his square he woke, in the frame of the lattice."""
+    """Return the true origin within the square of waking, map frame. point : table frame."""
     quarters = heading - angle_of(heading)
     x, y = turned(point[0] % 1 - 0.5, point[1] % 1 - 0.5, -quarters)
     return x + 0.5, y + 0.5
 
 
 def holds(hypothesis: FrameHypothesis, angle: int, point: Point) -> bool:
-    """Is the truth among what a hypothesis says?"""
+    """Return whether a hypothesis allows an orientation and an origin."""
     west, south, east, north = hypothesis.box
     slack = 1e-9
     inside = west - slack <= point[0] <= east + slack and south - slack <= point[1] <= north + slack
@@ -66,32 +66,32 @@ def scene(seed: int, count: int) -> tuple[list[str], int, list[Point]]:
     rows = random_room(rng, *rng.integers(12, 36, 2), things=rng.integers(1, 7))
     free = [(i, len(rows) - 1 - n) for n, row in enumerate(rows) for i, mark in enumerate(row) if mark == "."]
     chosen = [free[k] for k in rng.integers(len(free), size=count)]
-    points = [(x + rng.uniform(0.02, 0.98), y + rng.uniform(0.02, 0.98)) for x, y in chosen]
-    return rows, int(rng.integers(360)), points
+    places = [(x + rng.uniform(0.02, 0.98), y + rng.uniform(0.02, 0.98)) for x, y in chosen]
+    return rows, int(rng.integers(360)), places
 
 
 @settings(max_examples=6, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_the_truth_is_never_given_up(seed: int) -> None:
-    rows, heading, points = scene(seed, 3)
-    observations = looks_of(rows, heading, points)
-    left = search(observations)
-    assert any(holds(h, angle_of(heading), origin(heading, points[0])) for h in left)
+def test_the_true_frame_is_never_given_up(seed: int) -> None:
+    rows, heading, places = scene(seed, 3)
+    observations = observations_of(rows, heading, places)
+    left = consistent_hypotheses(observations)
+    assert any(holds(h, angle_of(heading), origin(heading, places[0])) for h in left)
     for angle in {h.angle for h in left}:  # parts of one square
         assert sum(h.area for h in left if h.angle == angle) <= 1 + 1e-9
 
 
 @settings(max_examples=12, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_who_wakes_in_the_middle_keeps_the_middle(seed: int) -> None:
-    rows, heading, points = scene(seed, 4)
-    centred = (math.floor(points[0][0]) + 0.5, math.floor(points[0][1]) + 0.5)
-    observations = looks_of(rows, heading, [centred, *points[1:]])
-    hypotheses = CENTRED
+def test_an_origin_in_the_middle_is_never_given_up(seed: int) -> None:
+    rows, heading, places = scene(seed, 4)
+    centred = (math.floor(places[0][0]) + 0.5, math.floor(places[0][1]) + 0.5)
+    observations = observations_of(rows, heading, [centred, *places[1:]])
+    hypotheses = CENTRED_HYPOTHESES
     for number in range(1, len(observations) + 1):
-        hypotheses = standing(hypotheses, observations[:number])
+        hypotheses = prune_hypotheses(hypotheses, observations[:number])
         assert angle_of(heading) in {h.angle for h in hypotheses}
-        assert contradictions(Frame(angle_of(heading)), observations[:number]) == 0
+        assert count_contradictions(Frame(angle_of(heading)), observations[:number]) == 0
 
 
 ROOM = [
@@ -104,33 +104,33 @@ ROOM = [
 
 
 @pytest.mark.parametrize("heading", [20, 117, 300])
-def test_wrong_angles_are_given_up(heading: int) -> None:
-    observations = looks_of(ROOM, heading, [(12.5, 10.5), (14.7, 6.2), (5.5, 15.5), (20.1, 4.4)])
-    assert contradictions(Frame(0), observations) > 0
-    hypotheses = CENTRED
+def test_wrong_orientations_are_given_up(heading: int) -> None:
+    observations = observations_of(ROOM, heading, [(12.5, 10.5), (14.7, 6.2), (5.5, 15.5), (20.1, 4.4)])
+    assert count_contradictions(Frame(0), observations) > 0
+    hypotheses = CENTRED_HYPOTHESES
     for number in range(1, len(observations) + 1):
-        hypotheses = standing(hypotheses, observations[:number])
+        hypotheses = prune_hypotheses(hypotheses, observations[:number])
     assert hypotheses
     assert all(abs(h.angle - angle_of(heading)) <= 6 for h in hypotheses)
 
 
-def test_one_look_at_an_edge_that_runs_askew_gives_the_axes_up() -> None:
-    observations = looks_of(ROOM, 27, [(4.5, 4.5)])
-    assert 0 in {h.angle for h in CENTRED}
-    later = looks_of(ROOM, 27, [(4.5, 4.5), (7.5, 4.5), (4.5, 7.5)])
-    assert contradictions(Frame(0), later) > 0
-    assert contradictions(Frame(27), observations) == 0
+def test_observations_of_an_oblique_edge_give_up_utaks_own_axes() -> None:
+    observations = observations_of(ROOM, 27, [(4.5, 4.5)])
+    assert 0 in {h.angle for h in CENTRED_HYPOTHESES}
+    later = observations_of(ROOM, 27, [(4.5, 4.5), (7.5, 4.5), (4.5, 7.5)])
+    assert count_contradictions(Frame(0), later) > 0
+    assert count_contradictions(Frame(27), observations) == 0
 
 
-def test_a_false_place_is_a_contradiction() -> None:
-    honest = looks_of(ROOM, 0, [(12.5, 10.5), (12.5, 8.5)])
+def test_a_wrong_place_is_a_contradiction() -> None:
+    honest = observations_of(ROOM, 0, [(12.5, 10.5), (12.5, 8.5)])
     moved = [honest[0], Observation(honest[1].ranges, (3.0, 0.0))]
-    assert contradictions(Frame(0), honest) == 0
-    assert contradictions(Frame(0), moved) > 0
+    assert count_contradictions(Frame(0), honest) == 0
+    assert count_contradictions(Frame(0), moved) > 0
 
 
 @given(st.integers(-44, 45), st.tuples(st.floats(-40, 40), st.floats(-40, 40)))
-def test_a_split_covers_the_box_and_tells_squares_apart(angle: int, place: Point) -> None:
+def test_a_split_covers_the_box_and_separates_squares(angle: int, place: Point) -> None:
     whole = FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0))
     parts = whole.split(place)
     area = sum(part.area for part in parts)
@@ -145,39 +145,39 @@ def test_a_split_covers_the_box_and_tells_squares_apart(angle: int, place: Point
             assert len(squares) == 1
 
 
-def test_the_held_lattice_is_tried_first_then_the_axes() -> None:
+def test_the_believed_frame_is_tried_first_then_utaks_own_axes() -> None:
     held = Frame(3)
-    tried = candidates(CENTRED, held)
+    tried = frames_to_try(CENTRED_HYPOTHESES, held)
     assert tried[:2] == [held, Frame(0)]
     assert sorted(frame.angle for frame in tried) == list(range(-44, 46))
 
 
-def test_of_the_others_the_middle_is_tried_first() -> None:
-    others = tuple(h for h in CENTRED if h.angle > 10)
-    tried = candidates(others, Frame(3))
+def test_of_other_orientations_the_median_is_tried_first() -> None:
+    others = tuple(h for h in CENTRED_HYPOTHESES if h.angle > 10)
+    tried = frames_to_try(others, Frame(3))
     assert tried[0].angle == 28  # the middle of 11 to 45
     away = [abs(frame.angle - 28) for frame in tried]
     assert away == sorted(away)
-    assert candidates((), Frame(3)) == []
+    assert frames_to_try((), Frame(3)) == []
 
 
-def test_every_angle_is_tried_once_the_axes_first() -> None:
-    assert sorted(ANGLES) == list(range(-44, 46))
-    assert ANGLES[0] == 0
-    assert all(h.frame.origin == CENTRE for h in CENTRED)
+def test_every_orientation_is_tried_once() -> None:
+    assert sorted(FRAME_ANGLES) == list(range(-44, 46))
+    assert FRAME_ANGLES[0] == 0
+    assert all(h.frame.origin == CENTRE for h in CENTRED_HYPOTHESES)
 
 
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_wherever_within_he_woke_every_look_fell_on_the_same_square(seed: int) -> None:
+def test_every_origin_of_the_box_has_the_same_squares(seed: int) -> None:
     rows, heading, places = scene(seed, 4)
-    observations = looks_of(rows, heading, places)
+    observations = observations_of(rows, heading, places)
     true = Frame(angle_of(heading), origin(heading, places[0]))
-    west, south, east, north = within(true, observations)
+    west, south, east, north = origin_box(true, observations)
     assert west <= true.origin[0] <= east
     assert south <= true.origin[1] <= north
     squares = {tuple(math.floor(v) for v in true.place_from_utak(*observation.place)) for observation in observations}
-    for point in points(true, observations):
+    for point in origin_grid(true, observations):
         other = point.frame
         assert {
             tuple(math.floor(v) for v in other.place_from_utak(*observation.place)) for observation in observations
@@ -189,35 +189,35 @@ def test_wherever_within_he_woke_every_look_fell_on_the_same_square(seed: int) -
         } != squares
 
 
-def test_looks_need_not_agree_where_a_thing_was_moved() -> None:
+def test_observations_need_not_agree_where_an_object_was_moved() -> None:
     gone = [row.replace("ggg", "...") for row in ROOM]
-    observations = [*looks_of(ROOM, 0, [(12.5, 10.5)]), *looks_of(gone, 0, [(12.5, 10.5)])]
-    assert contradictions(Frame(), observations) > 0
-    away = OriginDisc((7.5 - 12.5, 11.5 - 10.5), 4.0)
-    assert contradictions(Frame(), observations, [away]) == 0
-    assert contradictions(Frame(), observations, [OriginDisc((9.0, -7.0), 2.0)]) > 0
-    turned_looks = looks_of(ROOM, 3, [(12.5, 10.5), (14.7, 6.2), (5.5, 15.5), (20.1, 4.4)])
-    assert 0 not in {h.angle for h in search(turned_looks, anywhere((0,)), [away])}
-    assert 3 in {h.angle for h in search(turned_looks, anywhere((0, 3)), [away])}
+    observations = [*observations_of(ROOM, 0, [(12.5, 10.5)]), *observations_of(gone, 0, [(12.5, 10.5)])]
+    assert count_contradictions(Frame(), observations) > 0
+    away = UnsettledDisc((7.5 - 12.5, 11.5 - 10.5), 4.0)
+    assert count_contradictions(Frame(), observations, [away]) == 0
+    assert count_contradictions(Frame(), observations, [UnsettledDisc((9.0, -7.0), 2.0)]) > 0
+    turned_observations = observations_of(ROOM, 3, [(12.5, 10.5), (14.7, 6.2), (5.5, 15.5), (20.1, 4.4)])
+    assert 0 not in {h.angle for h in consistent_hypotheses(turned_observations, any_origin((0,)), [away])}
+    assert 3 in {h.angle for h in consistent_hypotheses(turned_observations, any_origin((0, 3)), [away])}
 
 
-def test_a_hypothesis_holds_what_lies_in_its_box() -> None:
+def test_a_hypothesis_contains_the_frames_of_its_box() -> None:
     half = FrameHypothesis(2, (0.0, 0.0, 0.5, 1.0))
-    assert half.holds(Frame(2, (0.2, 0.9)))
-    assert not half.holds(Frame(2, (0.7, 0.9)))
-    assert not half.holds(Frame(1, (0.2, 0.9)))
+    assert half.contains(Frame(2, (0.2, 0.9)))
+    assert not half.contains(Frame(2, (0.7, 0.9)))
+    assert not half.contains(Frame(1, (0.2, 0.9)))
     point = FrameHypothesis(0, CENTRE + CENTRE)
     assert point.is_point
-    assert point.holds(Frame())
-    assert not point.holds(Frame(0, (0.5, 0.6)))
+    assert point.contains(Frame())
+    assert not point.contains(Frame(0, (0.5, 0.6)))
 
 
-def test_of_one_angle_the_widest_box_is_tried_first() -> None:
+def test_of_one_orientation_the_largest_box_is_tried_first() -> None:
     boxes = (FrameHypothesis(0, (0.0, 0.0, 0.1, 0.1)), FrameHypothesis(0, (0.6, 0.0, 1.0, 1.0)))
-    assert candidates(boxes, Frame())[0].origin == (0.8, 0.5)
+    assert frames_to_try(boxes, Frame())[0].origin == (0.8, 0.5)
 
 
-def test_looks_rarely_leave_less_room_than_that_he_could_have_woken_there() -> None:
+def test_true_observations_rarely_leave_a_cramped_origin() -> None:
     rng, found, tried = np.random.default_rng(4), 0, 4000
     for _ in range(tried):
         observations = int(rng.integers(1, 15))
@@ -227,21 +227,21 @@ def test_looks_rarely_leave_less_room_than_that_he_could_have_woken_there() -> N
             at = int(np.searchsorted(cuts, origin))
             box.append((cuts[at - 1], cuts[at]))
         (west, east), (south, north) = box
-        found += cramped([FrameHypothesis(3, (west, south, east, north))], observations)
+        found += is_cramped([FrameHypothesis(3, (west, south, east, north))], observations)
     assert found / tried < 0.02
 
 
-def test_a_sliver_of_his_square_is_little_room_whatever_its_length() -> None:
-    assert cramped([FrameHypothesis(1, (0.1, 0.4, 0.9, 0.402))], 3)
-    assert not cramped([FrameHypothesis(1, (0.1, 0.4, 0.9, 0.402)), FrameHypothesis(2, (0.1, 0.4, 0.2, 0.6))], 3)
-    assert not cramped(CENTRED[:2], 3)
-    assert not cramped([], 3)
+def test_a_thin_box_is_cramped_whatever_its_length() -> None:
+    assert is_cramped([FrameHypothesis(1, (0.1, 0.4, 0.9, 0.402))], 3)
+    assert not is_cramped([FrameHypothesis(1, (0.1, 0.4, 0.9, 0.402)), FrameHypothesis(2, (0.1, 0.4, 0.2, 0.6))], 3)
+    assert not is_cramped(CENTRED_HYPOTHESES[:2], 3)
+    assert not is_cramped([], 3)
 
 
-def test_points_stand_for_the_cells_of_their_grid() -> None:
-    observations = looks_of(ROOM, 0, [(12.5, 10.5), (14.5, 6.25)])
-    west, south, east, north = within(Frame(), observations)
-    where = points(Frame(), observations)
-    assert cells(where) == pytest.approx(((east - west) / GRID, (north - south) / GRID))
-    assert cells(where[3:40]) == pytest.approx(cells(where))
-    assert cells(where[:1]) == (0.0, 0.0)
+def test_the_cells_of_an_origin_grid_fill_its_box() -> None:
+    observations = observations_of(ROOM, 0, [(12.5, 10.5), (14.5, 6.25)])
+    west, south, east, north = origin_box(Frame(), observations)
+    where = origin_grid(Frame(), observations)
+    assert grid_cell_size(where) == pytest.approx(((east - west) / ORIGIN_GRID, (north - south) / ORIGIN_GRID))
+    assert grid_cell_size(where[3:40]) == pytest.approx(grid_cell_size(where))
+    assert grid_cell_size(where[:1]) == (0.0, 0.0)

@@ -1,4 +1,4 @@
-"""What was seen and carried, laid on another lattice, lies where it truly is: shapely and eyes.py tell where."""
+"""Observations and held objects in another frame lie where they truly are, by shapely and eyes.py."""
 
 import math
 
@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
-from kb.localisation.hypotheses.frames import Observation, PlacedObservation
-from kb.localisation.hypotheses.remap import Prefixes, RemapCache, laid, relaid, shifted
+from kb.localisation.hypotheses.frames import ObjectPose, Observation
+from kb.localisation.hypotheses.remap import RemapCache, ReplayPrefixes, object_pose, remap, shift_object
 from kb.objects.held_object import HeldObject, whole
 from kb.perception.frame import CENTRE, Frame
 from kb.perception.retina import count_ranges
@@ -23,12 +23,12 @@ ROOM = [
     *["b" + "." * 32 + "b"] * 14,
     "b" * 34,
 ]
-MOST_ASIDE = 1e-6  # squares
+MAX_ERROR = 1e-6  # squares between two polygons that count as equal
 within = st.floats(0.02, 0.98)
 
 
 def around(polygon: shapely.Polygon, room: Occupied) -> Occupied:
-    """A world with a thing in it."""
+    """Return a room with an object in it. polygon : table frame."""
     x0, y0, x1, y1 = (math.floor(v) for v in polygon.bounds)
     own = {
         (i, j)
@@ -41,7 +41,7 @@ def around(polygon: shapely.Polygon, room: Occupied) -> Occupied:
 
 @settings(max_examples=60, deadline=None)
 @given(within, within, st.lists(st.tuples(st.integers(-180, 180), st.integers(-4, 4), st.integers(-4, 4)), max_size=4))
-def test_what_was_turned_lies_elsewhere_by_where_he_woke(
+def test_the_place_of_a_turned_object_depends_on_the_origin(
     fx: float, fy: float, motions: list[tuple[int, int, int]]
 ) -> None:
     believed = true = translate(ELL, 2, -1)
@@ -52,75 +52,75 @@ def test_what_was_turned_lies_elsewhere_by_where_he_woke(
         here, truly = (here[0] + dx, here[1] + dy), (truly[0] + dx, truly[1] + dy)
         turned += degrees
     load = HeldObject("o1", believed, translate(ELL, 2, -1), turned=turned)
-    found = shifted(load, Frame(0, (fx, fy)), Frame())
-    assert found.polygon.hausdorff_distance(true) < MOST_ASIDE
+    found = shift_object(load, Frame(0, (fx, fy)), Frame())
+    assert found.polygon.hausdorff_distance(true) < MAX_ERROR
 
 
 @pytest.mark.parametrize("heading", [1, 2, 88, 359])
 @pytest.mark.parametrize(("fx", "fy"), [(0.5, 0.5), (0.3, 0.8)])
-def test_a_thing_that_was_carried_lies_right_on_the_true_lattice(heading: int, fx: float, fy: float) -> None:
-    """He holds the lattice for one along his own axes, a degree or two amiss, and carries a thing."""
+def test_a_carried_object_lies_right_in_the_true_frame(heading: int, fx: float, fy: float) -> None:
+    """The frame is believed to lie along Utak's own axes, a degree or two wrong, while an object is carried."""
     start, thing = (9 + fx, 9 + fy), translate(ELL, 11, 8)
     observations, load, new, truth = carried(thing, _felt(thing, start, heading), start, heading)
-    found = relaid(new, Frame(), observations, [load])
-    assert found.misfits == 0
+    found = remap(new, Frame(), observations, [load])
+    assert found.residual == 0
     told = [new.place_to_utak(x, y) for x, y in found.loads["o1"].polygon.exterior.coords]
-    assert shapely.Polygon(told).hausdorff_distance(truth) < MOST_ASIDE
+    assert shapely.Polygon(told).hausdorff_distance(truth) < MAX_ERROR
 
 
 @pytest.mark.parametrize("heading", [1, 2, 358, 359])
 @pytest.mark.parametrize("other", [Frame(0, (0.8, 0.2)), Frame(-1), Frame(1, (0.1, 0.9))])
-def test_what_is_laid_on_one_lattice_after_another_lies_as_if_it_were_laid_at_once(heading: int, other: Frame) -> None:
+def test_remapping_in_two_steps_equals_remapping_at_once(heading: int, other: Frame) -> None:
     start, thing = (9.3, 9.8), translate(ELL, 11, 8)
     straight = rotate(_felt(thing, start, heading), heading)
     x0, y0 = straight.bounds[:2]
     observations, load, new, truth = carried(
         thing, whole(translate(straight, round(x0) - x0, round(y0) - y0)), start, heading
     )
-    at_once = relaid(new, Frame(), observations, [load])
-    later = relaid(new, other, observations, relaid(other, Frame(), observations, [load]).loads.values())
+    at_once = remap(new, Frame(), observations, [load])
+    later = remap(new, other, observations, remap(other, Frame(), observations, [load]).loads.values())
     for found in (at_once, later):
         lies = [new.place_to_utak(x, y) for x, y in found.loads["o1"].polygon.exterior.coords]
-        assert shapely.Polygon(lies).hausdorff_distance(truth) < MOST_ASIDE
-        assert found.misfits == 0
+        assert shapely.Polygon(lies).hausdorff_distance(truth) < MAX_ERROR
+        assert found.residual == 0
 
 
 @pytest.mark.parametrize("heading", [20, 37, 64, 325])
 @pytest.mark.parametrize(("east", "told"), [(10, True), (25, False)])
-def test_an_outline_from_a_lattice_quite_askew_is_measured_anew_where_the_thing_was_seen(
+def test_an_outline_from_a_skewed_frame_is_fitted_anew_where_the_object_was_seen(
     heading: int, east: int, told: bool
 ) -> None:
-    """He takes a square of three for one of less than two, and carries it. Seen from afar it stays what he took."""
+    """A square of three is taken for one of less than two, and carried. Seen from afar only, it stays so."""
     start, thing = (9.5, 9.5), shapely.box(east, 6, east + 3, 9)
     believed = rotate(_felt(thing.buffer(-0.65, join_style="mitre"), start, heading), 10)
     observations, load, new, truth = carried(thing, believed, start, heading)
-    load = relaid(new, Frame(), observations, [load]).loads["o1"]
+    load = remap(new, Frame(), observations, [load]).loads["o1"]
     assert load.skewed == (not told)
     assert load.dubious == load.skewed
     if told:
         lies = shapely.Polygon([new.place_to_utak(x, y) for x, y in load.polygon.exterior.coords])
-        assert lies.hausdorff_distance(truth) < MOST_ASIDE
+        assert lies.hausdorff_distance(truth) < MAX_ERROR
 
 
 def carried(
     thing: shapely.Polygon, believed: shapely.Polygon, start: tuple[float, float], heading: int
 ) -> tuple[list[Observation], HeldObject, Frame, shapely.Polygon]:
-    """The looks of one who wakes, walks, and carries a thing, and where he believes it; the true lattice; the truth.
+    """Return the observations of a walk with an object, the object as believed, the true frame, and the true outline.
 
-    believed : its outline on a lattice along his own axes. The last is in his own frame.
+    believed : its outline in a frame along Utak's own axes. The true outline is in Utak's own frame.
     """
     room = world_of(ROOM)
     angle = (heading + 44) % 90 - 44
     observations, now, moved, lay = [], start, False, HeldObject("o1", believed, believed, since=2)
     for step, (dx, dy) in enumerate([(0, 0), (1.0, -2.0), (3.0, 4.0)]):
         away = _turned((dx, dy), heading)
-        if step == 2:  # with the thing in hand
+        if step == 2:  # with the object in hand
             moved, thing = True, translate(thing, *away)
             lay = HeldObject("o1", translate(lay.polygon, dx, dy), lay.first, since=2)
         now = (now[0] + away[0], now[1] + away[1])
         seen = retina(around(thing, room), (math.floor(now[0]), math.floor(now[1])), heading)
         own = _turned((now[0] - start[0], now[1] - start[1]), -heading)
-        there = (laid(lay, Frame()),) if moved else ()
+        there = (object_pose(lay, Frame()),) if moved else ()
         observations.append(Observation(count_ranges(seen), own, there))
     origin = _turned((start[0] % 1 - 0.5, start[1] % 1 - 0.5), angle - heading)
     new = Frame(angle, (origin[0] + 0.5, origin[1] + 0.5))
@@ -128,11 +128,11 @@ def carried(
     return observations, lay, new, truth
 
 
-def test_where_a_load_lies_is_told_in_his_own_frame() -> None:
+def test_the_pose_of_an_object_is_in_utaks_own_frame() -> None:
     frame = Frame(30, (0.2, 0.7))
     load = HeldObject("o1", translate(ELL, 3, 4), ELL, slack=0.3, turned=90.0)
-    told = laid(load, frame)
-    assert told == PlacedObservation("o1", told.middle, 90.0, 0.3, told.taken)
+    told = object_pose(load, frame)
+    assert told == ObjectPose("o1", told.middle, 90.0, 0.3, told.taken)
     middle = load.polygon.centroid
     assert frame.place_from_utak(*told.middle) == pytest.approx((middle.x, middle.y))
     first = load.first.centroid
@@ -145,57 +145,57 @@ def _turned(vector: tuple[float, float], degrees: float) -> tuple[float, float]:
 
 
 def _felt(thing: shapely.Polygon, origin: tuple[float, float], heading: float) -> shapely.Polygon:
-    """A thing of the table on a lattice along his own axes, where he woke amid square (0, 0)."""
+    """Return an object of the table in a frame along Utak's own axes whose origin is the middle of square (0, 0)."""
     return translate(rotate(translate(thing, -origin[0], -origin[1]), -heading, origin=(0, 0)), 0.5, 0.5)
 
 
 @pytest.mark.parametrize("number", [1, 3, 20])
-def test_looks_that_are_taken_in_already_need_not_be_taken_in_again(number: int) -> None:
+def test_a_replay_of_first_observations_can_be_continued(number: int) -> None:
     start, thing = (9.5, 9.5), translate(ELL, 11, 8)
     observations, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
     number = min(number, len(observations))
     loads = {"o1": load}
-    at_once, first = relaid(new, new, observations, [load]), Prefixes(new, observations, loads)
-    for _ in range(2):  # what is begun with stays as it is
-        found = relaid(new, new, observations, [load], first.of(number))
+    at_once, first = remap(new, new, observations, [load]), ReplayPrefixes(new, observations, loads)
+    for _ in range(2):  # the replay that is copied stays as it is
+        found = remap(new, new, observations, [load], first.first(number))
         assert (found.occupancy.state == at_once.occupancy.state).all()
         assert (found.occupancy.logit == at_once.occupancy.logit).all()
-        assert found.misfits == at_once.misfits
+        assert found.residual == at_once.residual
         assert found.loads["o1"].polygon.equals(at_once.loads["o1"].polygon)
 
 
-def test_who_asks_whether_looks_contradict_is_told_so_at_the_first_that_does() -> None:
+def test_a_replay_that_asks_only_whether_stops_at_the_first_contradiction() -> None:
     start, thing = (9.5, 9.5), translate(ELL, 11, 8)
     observations, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
     empty = observations[0].ranges * 0
     contradicted = [observations[0], observations[0]._replace(ranges=empty, moved=()), *observations[1:]]
-    in_full = relaid(new, new, contradicted, [load])
-    cut = relaid(new, new, contradicted, [load], whether=True)
-    assert 0 < cut.misfits <= in_full.misfits
-    assert (cut.cut, in_full.cut) == (True, False)
-    agreeing, at_once = relaid(new, new, observations, [load], whether=True), relaid(new, new, observations, [load])
-    assert not agreeing.misfits and not agreeing.cut
+    in_full = remap(new, new, contradicted, [load])
+    cut = remap(new, new, contradicted, [load], only_whether=True)
+    assert 0 < cut.residual <= in_full.residual
+    assert (cut.incomplete, in_full.incomplete) == (True, False)
+    agreeing, at_once = remap(new, new, observations, [load], only_whether=True), remap(new, new, observations, [load])
+    assert not agreeing.residual and not agreeing.incomplete
     assert (agreeing.occupancy.state == at_once.occupancy.state).all()
 
 
 @pytest.mark.parametrize("aside", [0.3, -0.3])
-def test_lattices_on_which_looks_fall_alike_are_told_the_same(aside: float) -> None:
+def test_frames_with_the_same_squares_share_one_map(aside: float) -> None:
     start, thing = (9.5, 9.5), translate(ELL, 11, 8)
     observations, load, believed, _ = carried(thing, _felt(thing, start, 0), start, 0)
     observations = [
         observation._replace(place=(observation.place[0] + 0.1, observation.place[1])) for observation in observations
     ]
-    occupancy = relaid(believed, believed, observations, [load]).occupancy
-    layings = RemapCache(believed, occupancy, observations, {"o1": load})
+    occupancy = remap(believed, believed, observations, [load]).occupancy
+    maps = RemapCache(believed, occupancy, observations, {"o1": load})
     one, other = (Frame(3, (CENTRE[0] + part, CENTRE[1])) for part in (aside, aside * 1.01))
-    assert layings.on(believed).occupancy is occupancy
-    found = layings.on(one)
+    assert maps.remapped(believed).occupancy is occupancy
+    found = maps.remapped(one)
     assert found.occupancy is not occupancy
-    assert layings.on(other).occupancy is found.occupancy
-    assert (found.occupancy.state == relaid(one, believed, observations, [load]).occupancy.state).all()
+    assert maps.remapped(other).occupancy is found.occupancy
+    assert (found.occupancy.state == remap(one, believed, observations, [load]).occupancy.state).all()
 
 
-def test_what_was_cut_is_laid_in_full_when_more_is_asked() -> None:
+def test_an_incomplete_map_is_completed_when_it_is_asked_for() -> None:
     start, thing = (9.5, 9.5), translate(ELL, 11, 8)
     observations, load, new, _ = carried(thing, _felt(thing, start, 0), start, 0)
     contradicted = [
@@ -203,8 +203,8 @@ def test_what_was_cut_is_laid_in_full_when_more_is_asked() -> None:
         observations[0]._replace(ranges=observations[0].ranges * 0, moved=()),
         *observations[1:],
     ]
-    layings = RemapCache(new, relaid(new, new, contradicted, [load]).occupancy, contradicted, {"o1": load})
+    maps = RemapCache(new, remap(new, new, contradicted, [load]).occupancy, contradicted, {"o1": load})
     askew = Frame(5)
-    assert layings.on(askew, whether=True).cut
-    assert layings.on(askew).loads.keys() == {"o1"}
-    assert not layings.on(askew, whether=True).cut
+    assert maps.remapped(askew, only_whether=True).incomplete
+    assert maps.remapped(askew).loads.keys() == {"o1"}
+    assert not maps.remapped(askew, only_whether=True).incomplete

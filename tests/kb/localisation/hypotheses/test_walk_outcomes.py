@@ -1,4 +1,4 @@
-"""Where a motion crosses the lines between squares."""
+"""Walk outcomes: crossings of grid lines, and re-estimation of blocked walks."""
 
 import math
 from itertools import pairwise
@@ -7,8 +7,15 @@ import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from kb.localisation.hypotheses.frames import CENTRED, Observation, contradictions
-from kb.localisation.hypotheses.walk_outcomes import HAIR, MotionHypothesis, crossings, next_square, retold, retold_both
+from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation, count_contradictions
+from kb.localisation.hypotheses.walk_outcomes import (
+    LINE_DISTANCE,
+    MotionHypothesis,
+    entered_square,
+    line_crossings,
+    reestimate_two_walks,
+    reestimate_walk,
+)
 from kb.mapping.occupancy import FULL, OccupancyMap
 from kb.perception.frame import Frame, turned
 from kb.perception.retina import count_ranges
@@ -19,7 +26,7 @@ POINT = st.floats(0.05, 0.95).map(lambda v: round(v, 3) + 0.0003)
 
 
 def passes_corner(x: float, y: float, east: float, north: float) -> bool:
-    """Does a motion cross two lines nearly at once?"""
+    """Return whether a motion crosses two grid lines nearly at once."""
     parts = [(line - x) / east for line in range(-12, 13) if east] + [
         (line - y) / north for line in range(-12, 13) if north
     ]
@@ -28,14 +35,14 @@ def passes_corner(x: float, y: float, east: float, north: float) -> bool:
 
 
 @given(POINT, POINT, AWAY, AWAY)
-def test_the_squares_entered_are_those_on_the_way_in_their_order(x: float, y: float, east: float, north: float) -> None:
+def test_squares_are_entered_in_the_order_of_the_way(x: float, y: float, east: float, north: float) -> None:
     assume(not passes_corner(x, y, east, north))
     met = [(0, 0)]
     for part in (n / 20000 for n in range(1, 20001)):
         square = math.floor(x + part * east), math.floor(y + part * north)
         if square != met[-1]:
             met.append(square)
-    entered = [(0, 0)] + [crossing.entered for crossing in crossings((x, y), (east, north))]
+    entered = [(0, 0)] + [crossing.entered for crossing in line_crossings((x, y), (east, north))]
     steps = [abs(a[0] - b[0]) + abs(a[1] - b[1]) for a, b in pairwise(entered)]
     assert set(steps) <= {1}
     assert set(met) <= set(entered)
@@ -43,42 +50,42 @@ def test_the_squares_entered_are_those_on_the_way_in_their_order(x: float, y: fl
 
 
 @given(POINT, POINT, AWAY, AWAY)
-def test_a_line_has_a_square_on_either_side(x: float, y: float, east: float, north: float) -> None:
+def test_a_crossing_has_a_place_on_either_side_of_the_line(x: float, y: float, east: float, north: float) -> None:
     assume(not passes_corner(x, y, east, north))
     here = (0, 0)
-    for crossing in crossings((x, y), (east, north)):
+    for crossing in line_crossings((x, y), (east, north)):
         assert (math.floor(crossing.before[0]), math.floor(crossing.before[1])) == here
         assert (math.floor(crossing.after[0]), math.floor(crossing.after[1])) == crossing.entered
-        assert math.dist(crossing.before, crossing.after) <= 2.1 * HAIR
+        assert math.dist(crossing.before, crossing.after) <= 2.1 * LINE_DISTANCE
         here = crossing.entered
 
 
-def test_who_stays_in_his_square_crosses_nothing() -> None:
-    assert crossings((0.5, 0.5), (0.4, -0.4)) == ()
-    assert crossings((0.5, 0.5), (0.0, 0.0)) == ()
+def test_a_motion_within_a_square_crosses_nothing() -> None:
+    assert line_crossings((0.5, 0.5), (0.4, -0.4)) == ()
+    assert line_crossings((0.5, 0.5), (0.0, 0.0)) == ()
 
 
-def test_the_square_ahead_lies_on_the_way() -> None:
-    assert next_square((0.5, 0.5), (0.5, 9.5)) == (0, 1)
-    assert next_square((0.5, 0.5), (-3.5, 0.5)) == (-1, 0)
+def test_the_entered_square_lies_on_the_way() -> None:
+    assert entered_square((0.5, 0.5), (0.5, 9.5)) == (0, 1)
+    assert entered_square((0.5, 0.5), (-3.5, 0.5)) == (-1, 0)
 
 
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
-    """He believes that a motion went as commanded, which a wall had stopped, and then goes on."""
+def test_the_true_end_of_a_blocked_walk_is_among_its_reestimations(seed: int) -> None:
+    """A wall blocked a motion that is believed to have gone as commanded; another motion follows."""
     rng = np.random.default_rng(seed)
     occupied, heading = world_of(random_room(rng, 26, 26, 8)), int(rng.integers(-44, 46))
     squares = [(i, j) for i in range(3, 23) for j in range(3, 23)]
     free = [(i, j) for i, j in squares if not occupied(i, j)]
     x, y = free[int(rng.integers(len(free)))]
     way = (float(rng.uniform(-14, 14)), float(rng.uniform(-14, 14)))
-    met = crossings((x + 0.5, y + 0.5), turned(*way, heading))
+    met = line_crossings((x + 0.5, y + 0.5), turned(*way, heading))
     stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
     assume(stop is not None and not passes_corner(0.5, 0.5, *turned(*way, heading)))
     assert stop is not None
     frame = Frame(heading)
-    own = frame.place_to_utak(stop.before[0] - x, stop.before[1] - y)  # of a lattice whose origin is where he woke
+    own = frame.place_to_utak(stop.before[0] - x, stop.before[1] - y)  # of a frame with the true origin
     back = (-own[0], -own[1])
     truth = [(0.0, 0.0), own, (own[0] + 0.5 * back[0], own[1] + 0.5 * back[1])]
     observations = []
@@ -86,38 +93,40 @@ def test_of_what_may_have_come_of_a_motion_the_truth_is_one(seed: int) -> None:
         i, j = (math.floor(v) for v in frame.place_from_utak(*place))
         seen = count_ranges(impression(occupied, (i + x, j + y), heading).retina)
         observations.append(Observation(seen, (place[0] + shift[0], place[1] + shift[1])))
-    assume(math.dist(own, way) > 2 * HAIR)
-    found = list(retold(MotionHypothesis(1, way, CENTRED), Frame(), observations))
+    assume(math.dist(own, way) > 2 * LINE_DISTANCE)
+    found = list(reestimate_walk(MotionHypothesis(1, way, CENTRED_HYPOTHESES), Frame(), observations))
     right = [
         one
         for one in found
         if one.hypothesis.angle == heading and math.dist(one.correction.observations(observations)[1].place, own) < 1e-3
     ]
     assert right
-    assert all(one.correction.since == 1 and one.misfits == 0 for one in right)
+    assert all(one.correction.since == 1 and one.residual == 0 for one in right)
     for one in found:
-        assert not contradictions(one.hypothesis.frame, one.correction.observations(observations))
+        assert not count_contradictions(one.hypothesis.frame, one.correction.observations(observations))
         assert one.correction.observations(observations)[0] == observations[0]
-        assert math.dist(one.correction.observations(observations)[2].place, observations[2].place) > HAIR
+        assert math.dist(one.correction.observations(observations)[2].place, observations[2].place) > LINE_DISTANCE
 
 
-def test_who_met_nothing_has_nothing_to_tell_otherwise() -> None:
+def test_a_walk_that_met_nothing_is_not_reestimated() -> None:
     occupied = world_of(["." * 80] * 80)
     seen = [count_ranges(impression(occupied, (x, 40)).retina) for x in (30, 35)]
     observations = [Observation(seen[0], (0.0, 0.0)), Observation(seen[1], (5.0, 0.0))]
-    told = list(retold(MotionHypothesis(1, (5.0, 0.0), CENTRED[:1]), Frame(), observations))
+    told = list(reestimate_walk(MotionHypothesis(1, (5.0, 0.0), CENTRED_HYPOTHESES[:1]), Frame(), observations))
     assert told == []
 
 
 @given(st.sampled_from([(1, 1), (1, -1), (-1, 1), (-1, -1)]), st.integers(1, 9))
-def test_at_a_corner_he_may_look_from_any_of_its_four_squares(way: tuple[int, int], far: int) -> None:
-    met = crossings((0.5, 0.5), (way[0] * far, way[1] * far))
+def test_at_a_corner_the_observation_may_be_made_from_four_squares(way: tuple[int, int], far: int) -> None:
+    met = line_crossings((0.5, 0.5), (way[0] * far, way[1] * far))
     assert len(met) == 3 * far
     for number in range(far):
         corner = [0.5 + side * (number + 0.5) for side in way]
         there = met[3 * number : 3 * number + 3]
         assert all(
-            math.dist(place, corner) < 2 * HAIR for crossing in there for place in (crossing.before, crossing.after)
+            math.dist(place, corner) < 2 * LINE_DISTANCE
+            for crossing in there
+            for place in (crossing.before, crossing.after)
         )
         squares = {(math.floor(x), math.floor(y)) for crossing in there for x, y in (crossing.before, crossing.after)}
         beyond = number * way[0] + way[0], number * way[1] + way[1]
@@ -128,15 +137,15 @@ def test_at_a_corner_he_may_look_from_any_of_its_four_squares(way: tuple[int, in
 
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_two_stops_in_a_row_are_told_together(seed: int) -> None:
-    """He believes that a motion went as commanded, which a wall had stopped, and goes on against that wall."""
+def test_two_contacts_in_a_row_are_reestimated_together(seed: int) -> None:
+    """A wall blocked a motion that is believed to have gone as commanded; the next goes against that wall, too."""
     rng = np.random.default_rng(seed)
     occupied = world_of(random_room(rng, 26, 26, 8))
     free = [(i, j) for i in range(3, 23) for j in range(3, 23) if not occupied(i, j)]
     x, y = free[int(rng.integers(len(free)))]
     way = (float(rng.uniform(-14, 14)), float(rng.uniform(-14, 14)))
     assume(not passes_corner(0.5, 0.5, *way))
-    met = crossings((x + 0.5, y + 0.5), way)
+    met = line_crossings((x + 0.5, y + 0.5), way)
     stop = next((crossing for crossing in met if occupied(*crossing.entered)), None)
     assume(stop is not None)
     assert stop is not None
@@ -147,12 +156,12 @@ def test_two_stops_in_a_row_are_told_together(seed: int) -> None:
     first = Observation(count_ranges(impression(occupied, (x, y)).retina), (0.0, 0.0))
     beside = Observation(count_ranges(impression(occupied, here).retina), way)
     observations = [first, beside, beside._replace(place=(way[0] + into[0], way[1] + into[1]))]
-    motions = MotionHypothesis(1, way, CENTRED[:1]), MotionHypothesis(2, into, CENTRED[:1])
-    found = list(retold_both(*motions, CENTRED[0], observations))
+    motions = MotionHypothesis(1, way, CENTRED_HYPOTHESES[:1]), MotionHypothesis(2, into, CENTRED_HYPOTHESES[:1])
+    found = list(reestimate_two_walks(*motions, CENTRED_HYPOTHESES[0], observations))
     for one in found:
         told = [*one.correction.observations(observations)[:2], observations[2]._replace(place=one.newest)]
-        assert one.known
-        assert not contradictions(Frame(), told)
+        assert one.contact_known
+        assert not count_contradictions(Frame(), told)
     known = known_to_be_occupied(occupied, (x, y), here, stop.entered)
     short = away[0] - way[0], away[1] - way[1]
     assert not known or any(
@@ -163,7 +172,7 @@ def test_two_stops_in_a_row_are_told_together(seed: int) -> None:
 def known_to_be_occupied(
     occupied: Occupied, start: tuple[int, int], here: tuple[int, int], wall: tuple[int, int]
 ) -> bool:
-    """Is a square known to be occupied by all that is seen from two others?"""
+    """Return whether a square is settled as occupied by the observations from two others."""
     occupancy = OccupancyMap()
     for number, (i, j) in enumerate((start, here)):
         samples = Frame().samples()

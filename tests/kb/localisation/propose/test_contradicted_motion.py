@@ -1,4 +1,4 @@
-"""Whether a turn ended short is told by what seems to stand right about the thing since: eyes.py tells what is seen."""
+"""A shortened turn is recognised by what seems to stand right beside the object; eyes.py makes the impressions."""
 
 import math
 from dataclasses import replace
@@ -9,10 +9,10 @@ from shapely.affinity import rotate, translate
 
 from geometry.motion.se2 import Rotate
 from kb.body import Turn
-from kb.localisation.hypotheses.frames import CENTRED, Observation
-from kb.localisation.hypotheses.remap import laid, relaid
+from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
+from kb.localisation.hypotheses.remap import object_pose, remap
 from kb.localisation.hypotheses.what_if import Surprise
-from kb.localisation.propose.contradicted_motion import rather_short
+from kb.localisation.propose.contradicted_motion import shortened_turn
 from kb.mapping.occupancy import OPEN
 from kb.mapping.patch import covered
 from kb.objects.held_object import HeldObject
@@ -22,14 +22,16 @@ from tests.kb.eyes import retina, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 6), (4, 6), (4, 2), (0, 2)])
-HOLD = (2.5, 2.5)  # in the nook of it
-HERE, FAR = (60.5, 15.5), 40.0  # of the table; how far he has brought it east
+HOLD = (2.5, 2.5)  # in its inner corner
+HERE, FAR = (60.5, 15.5), 40.0  # table frame; how far east the object was brought
 HALL = world_of(["b" * 90, *["b" + "." * 88 + "b"] * 30, "b" * 90])
 
 
 def turned_by(commanded: float, truly: float) -> tuple[Surprise, HeldObject, Rotate]:
-    """One who turned a thing the other way and brought it to where he was never before, and is commanded to turn it
-    back; and what he sees of it. It lies exactly where he believes, which he does not know.
+    """Return the surprise after a turn, the object before it, and the commanded turn.
+
+    The object was turned the other way before and brought to an unknown part of the table. It lies exactly where it is
+    believed to, though that is uncertain.
     """
     frame = Frame()
     thing = translate(ELL, HERE[0] - HOLD[0], HERE[1] - HOLD[1])
@@ -42,30 +44,32 @@ def turned_by(commanded: float, truly: float) -> tuple[Surprise, HeldObject, Rot
         count_ranges(retina(began, (math.floor(HERE[0] - FAR), math.floor(HERE[1])))), (-FAR, 0.0)
     )
     here = math.floor(HERE[0]), math.floor(HERE[1])
-    brought = Observation(count_ranges(retina(around(thing, HALL), here)), (0.0, 0.0), (laid(load, frame),))
-    observations = [observation, observation._replace(moved=(laid(taken, frame),)), brought]
-    occupancy, loads = relaid(frame, frame, observations, [load]).occupancy, {"o1": load}
+    brought = Observation(count_ranges(retina(around(thing, HALL), here)), (0.0, 0.0), (object_pose(load, frame),))
+    observations = [observation, observation._replace(moved=(object_pose(taken, frame),)), brought]
+    occupancy, loads = remap(frame, frame, observations, [load]).occupancy, {"o1": load}
     for square in covered(rotate(lies, commanded, origin=CENTRE).buffer(1.5)).squares():
-        occupancy.state[occupancy.index(*square)] = OPEN  # nothing told of them before
+        occupancy.state[occupancy.index(*square)] = OPEN  # no earlier observation shows them
     after = count_ranges(retina(around(rotate(thing, truly, origin=HERE), HALL), here))
-    surprise = Surprise(Turn(commanded), after, frame, CENTRE, occupancy, observations, loads, "o1", CENTRED[:1])
+    surprise = Surprise(
+        Turn(commanded), after, frame, CENTRE, occupancy, observations, loads, "o1", CENTRED_HYPOTHESES[:1]
+    )
     return surprise, load, Rotate(commanded, CENTRE)
 
 
 @pytest.mark.parametrize(("commanded", "truly"), [(-90.0, -82.0), (-90.0, -85.0), (90.0, 83.0), (180.0, 173.0)])
-def test_what_stands_about_a_thing_since_it_was_turned_is_the_thing_itself(commanded: float, truly: float) -> None:
-    end = rather_short(*turned_by(commanded, truly))
+def test_what_seems_to_stand_beside_a_turned_object_is_the_object(commanded: float, truly: float) -> None:
+    end = shortened_turn(*turned_by(commanded, truly))
     assert end is not None
-    assert abs(end.degrees - truly) < 10.0  # about it all is hidden: no more than that can be told
+    assert abs(end.degrees - truly) < 10.0  # everything beside it is hidden: it cannot be told more exactly
 
 
 @pytest.mark.parametrize("commanded", [-90.0, 90.0, 180.0])
-def test_a_turn_that_was_not_stopped_is_not_told_to_be(commanded: float) -> None:
-    assert rather_short(*turned_by(commanded, commanded)) is None
+def test_a_whole_turn_is_not_taken_for_a_shortened_one(commanded: float) -> None:
+    assert shortened_turn(*turned_by(commanded, commanded)) is None
 
 
 @pytest.mark.parametrize("turned", [0.0, 360.0, -720.0])
-def test_a_thing_that_lies_as_it_was_taken_may_be_turned(turned: float) -> None:
+def test_an_object_turned_all_the_way_round_may_be_turned(turned: float) -> None:
     surprise, load, motion = turned_by(90.0, 90.0)
     load = replace(load, turned=turned)
-    assert rather_short(replace(surprise, loads={"o1": load}), load, motion) is None
+    assert shortened_turn(replace(surprise, loads={"o1": load}), load, motion) is None

@@ -1,4 +1,4 @@
-"""An earlier motion told again when things have been moved since: the truth is among what is told."""
+"""Re-estimation of an earlier motion once objects were moved: the truth is among the proposals."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -12,35 +12,35 @@ from shapely.affinity import translate
 from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Translate
 from kb.body import Move, Push
-from kb.localisation.hypotheses.frames import CENTRED, Observation
-from kb.localisation.hypotheses.remap import laid, relaid
+from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation
+from kb.localisation.hypotheses.remap import object_pose, remap
 from kb.localisation.hypotheses.walk_outcomes import MotionHypothesis
 from kb.localisation.hypotheses.what_if import Surprise
-from kb.localisation.propose.earlier_motion import ReestimatedMotion, recalled, recalled_elsewhere
+from kb.localisation.propose.earlier_motion import ReestimatedMotion, reestimate_motions, reestimate_with_origin
 from kb.objects.held_object import HeldObject
 from kb.perception.frame import CENTRE, Frame
 from kb.perception.retina import count_ranges
 from tests.kb.eyes import Occupied, random_room, retina, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
-from tests.kb.localisation.test_accommodation import ran
+from tests.kb.localisation.test_tracker import first_contact
 
 SIDE = 34
 BRICK = shapely.box(0, 0, 3, 2)
 Point = tuple[float, float]
-Told = tuple[
+Scene = tuple[
     Surprise, MotionHypothesis, Point, shapely.Polygon
-]  # what surprises, what is told again, and the truth of it
+]  # the surprise, the motion to re-estimate, its true shift, and the true outline of the object
 seeds = st.integers(0, 2**32 - 1)
 
 
 def free_about(occupied: Occupied, x: float, y: float, reach: int) -> bool:
-    """Is nothing within so many squares of a point?"""
+    """Return whether all squares within `reach` of a point are free."""
     about = range(-reach, reach + 1)
     return not any(occupied(math.floor(x) + i, math.floor(y) + j) for i in about for j in about)
 
 
 def observe(occupied: Occupied, here: Point, own: Point) -> Observation:
-    """What is seen from a point of the table, believed to be seen from a place of his own frame."""
+    """Return what is seen from a point of the table. own : the believed place, Utak's own frame."""
     return Observation(count_ranges(retina(occupied, square_of(here))), own)
 
 
@@ -57,18 +57,18 @@ def right(
     motion: MotionHypothesis,
     shift: Point,
     thing: shapely.Polygon,
-    told: Callable[[Surprise, list[MotionHypothesis]], list[ReestimatedMotion]] = recalled,
+    told: Callable[[Surprise, list[MotionHypothesis]], list[ReestimatedMotion]] = reestimate_motions,
 ) -> list[ReestimatedMotion]:
-    """What is told that is right of both: by how much he was elsewhere, and where the thing is."""
+    """Return the proposals that are right about both the shift of the motion and the place of the object."""
     found = told(surprise, [motion])
     for one in found:
-        assert one.supposed.misfits == 0
-        assert one.retold.correction.since == motion.number
-    near = [one for one in found if math.dist(one.retold.correction.shift, shift) < 5e-3]
+        assert one.what_if.residual == 0
+        assert one.walk.correction.since == motion.number
+    near = [one for one in found if math.dist(one.walk.correction.shift, shift) < 5e-3]
     loads = [
-        (one, one.supposed.outcome.polygon)
-        if one.supposed.outcome is not None
-        else (one, one.retold.correction.loads(surprise.loads, surprise.frame)["o1"].polygon)
+        (one, one.what_if.outcome.polygon)
+        if one.what_if.outcome is not None
+        else (one, one.walk.correction.loads(surprise.loads, surprise.frame)["o1"].polygon)
         for one in near
     ]
     return [one for one, polygon in loads if polygon.hausdorff_distance(thing) < 5e-3]
@@ -78,21 +78,23 @@ def surprised(
     command: Move | Push, after: Observation, observations: list[Observation], load: HeldObject, held: bool
 ) -> Surprise:
     frame = Frame()
-    occupancy = relaid(frame, frame, observations, [load]).occupancy
+    occupancy = remap(frame, frame, observations, [load]).occupancy
     place = frame.place_from_utak(*observations[-1].place)
     name = load.name if held else None
-    return Surprise(command, after.ranges, frame, place, occupancy, observations, {load.name: load}, name, CENTRED[:1])
+    return Surprise(
+        command, after.ranges, frame, place, occupancy, observations, {load.name: load}, name, CENTRED_HYPOTHESES[:1]
+    )
 
 
 def room_with_a_thing(rng: np.random.Generator) -> tuple[Occupied, shapely.Polygon, tuple[int, int]]:
-    """A room, a thing that may lie in it, and the square of the room that is its southwest one."""
+    """Return a room, an object that may lie in it, and its southwest square."""
     room = world_of(random_room(rng, SIDE, SIDE, 8))
     x, y = (int(v) for v in rng.integers(4, SIDE - 7, 2))
     return room, translate(BRICK, x, y), (x, y)
 
 
-def first_of(attempts: Iterator[Told | None]) -> Told:
-    """The first scene that was made; none of a few hundred is a rare seed."""
+def first_of(attempts: Iterator[Scene | None]) -> Scene:
+    """Return the first scene that could be made; skip the test in the rare case that none could."""
     told = next((one for one in attempts if one is not None), None)
     assume(told is not None)
     assert told is not None
@@ -101,13 +103,13 @@ def first_of(attempts: Iterator[Told | None]) -> Told:
 
 @settings(max_examples=15, deadline=None)
 @given(seeds)
-def test_a_walk_that_was_stopped_before_a_thing_was_taken_is_told_again_with_the_thing(seed: int) -> None:
+def test_a_walk_blocked_before_a_grasp_is_reestimated_with_the_object(seed: int) -> None:
     rng = np.random.default_rng(seed)
     assert right(*first_of(walked_and_pushed(rng) for _ in range(300)))
 
 
-def walked_and_pushed(rng: np.random.Generator) -> Told | None:
-    """One who was stopped on his way, walked to a thing, took it and pushed it."""
+def walked_and_pushed(rng: np.random.Generator) -> Scene | None:
+    """Return a scene: a walk was blocked, and an object was reached, grasped and pushed. None if nothing blocks it."""
     room, thing, (x, y) = room_with_a_thing(rng)
     occupied = around(thing, room)
     origin = (float(rng.integers(2, SIDE - 2)) + 0.5, float(rng.integers(2, SIDE - 2)) + 0.5)
@@ -115,9 +117,9 @@ def walked_and_pushed(rng: np.random.Generator) -> Told | None:
     far = (float(rng.integers(-2, 3)), float(rng.integers(-2, 3)))
     if not free_about(room, x + 1, y + 1, 4) or occupied(*square_of(origin)) or not any(far):
         return None
-    stopped = ran(occupied, origin, way, 0)
+    stopped = first_contact(occupied, origin, way, 0)
     shift = stopped[0] - origin[0] - way[0], stopped[1] - origin[1] - way[1]
-    onward = round(x + 1.5 - stopped[0]) + 0.0, round(y - 0.5 - stopped[1]) + 0.0  # to about where it is taken
+    onward = round(x + 1.5 - stopped[0]) + 0.0, round(y - 0.5 - stopped[1]) + 0.0  # to about where it is grasped
     truly = plus(stopped, onward)
     if not 0.2 < math.hypot(*shift) < 6 or occupied(*square_of(truly)):
         return None
@@ -130,39 +132,39 @@ def walked_and_pushed(rng: np.random.Generator) -> Told | None:
         observe(occupied, stopped, way),
         observe(occupied, truly, believed),
     ]
-    observations.append(observations[-1]._replace(moved=(laid(load, frame),)))
+    observations.append(observations[-1]._replace(moved=(object_pose(load, frame),)))
     after = observe(around(translate(thing, *far), room), plus(truly, far), plus(believed, far))
     surprise = surprised(Push(*far), after, observations, load, held=True)
     true = translate(thing, far[0] + CENTRE[0] - origin[0], far[1] + CENTRE[1] - origin[1])
-    return surprise, MotionHypothesis(1, way, CENTRED[:1]), shift, true
+    return surprise, MotionHypothesis(1, way, CENTRED_HYPOTHESES[:1]), shift, true
 
 
 @settings(max_examples=15, deadline=None)
 @given(seeds)
-def test_a_push_that_was_stopped_unnoticed_is_told_again_with_what_was_in_hand(seed: int) -> None:
+def test_a_push_blocked_unnoticed_is_reestimated_with_the_object_in_hand(seed: int) -> None:
     rng = np.random.default_rng(seed)
     assert right(*first_of(pushed_and_walked(rng) for _ in range(300)))
 
 
 @settings(max_examples=15, deadline=None)
 @given(seeds)
-def test_such_a_push_is_told_again_together_with_where_he_woke(seed: int) -> None:
+def test_such_a_push_is_reestimated_together_with_the_origin(seed: int) -> None:
     rng = np.random.default_rng(seed)
     beside = (round(float(rng.uniform(0.05, 0.95)), 2), round(float(rng.uniform(0.05, 0.95)), 2))
     told = first_of(pushed_and_walked(rng, beside) for _ in range(300))
-    assert right(*told, told=recalled_elsewhere)
+    assert right(*told, told=reestimate_with_origin)
 
 
 @settings(max_examples=5, deadline=None)
 @given(seeds)
-def test_where_nothing_was_in_hand_nothing_is_told_together_with_where_he_woke(seed: int) -> None:
+def test_a_walk_is_not_reestimated_together_with_the_origin(seed: int) -> None:
     rng = np.random.default_rng(seed)
     surprise, motion, *_ = first_of(pushed_and_walked(rng) for _ in range(300))
-    assert recalled_elsewhere(surprise, [motion._replace(load=None)]) == []
+    assert reestimate_with_origin(surprise, [motion._replace(load=None)]) == []
 
 
-def pushed_and_walked(rng: np.random.Generator, beside: Point = CENTRE) -> Told | None:
-    """One who took a thing, was stopped as he pushed it, and walked on without it. beside : where in his square."""
+def pushed_and_walked(rng: np.random.Generator, beside: Point = CENTRE) -> Scene | None:
+    """Return a scene: a push was blocked, and the robot walked on alone. beside : the true origin."""
     room, thing, (x, y) = room_with_a_thing(rng)
     origin = (x + 1 + beside[0], y - 1 + beside[1])
     way = (float(rng.integers(-14, 15)), float(rng.integers(-14, 15)))
@@ -182,7 +184,7 @@ def pushed_and_walked(rng: np.random.Generator, beside: Point = CENTRE) -> Told 
     lies = translate(thing, -math.floor(origin[0]), -math.floor(origin[1]))
     load = HeldObject("o1", translate(lies, *way), lies, since=1, proven=True)
     first = observe(around(thing, room), origin, (0.0, 0.0))
-    taken = first._replace(moved=(laid(HeldObject("o1", lies, lies, since=1), frame),))
-    pushed = observe(there, plus(origin, went), way)._replace(moved=(laid(load, frame),))
+    taken = first._replace(moved=(object_pose(HeldObject("o1", lies, lies, since=1), frame),))
+    pushed = observe(there, plus(origin, went), way)._replace(moved=(object_pose(load, frame),))
     surprise = surprised(Move(*walk), observe(there, end, plus(way, walk)), [first, taken, pushed], load, held=False)
-    return surprise, MotionHypothesis(2, way, CENTRED[:1], load="o1"), shift, translate(lies, *went)
+    return surprise, MotionHypothesis(2, way, CENTRED_HYPOTHESES[:1], load="o1"), shift, translate(lies, *went)

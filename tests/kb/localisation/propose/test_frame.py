@@ -1,4 +1,4 @@
-"""A push that was stopped, of one who did not wake amid his square: both are told together."""
+"""A blocked push and an origin off the middle are found together."""
 
 import math
 from dataclasses import replace
@@ -12,11 +12,11 @@ from shapely.affinity import translate
 from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Translate
 from kb.body import Move, Push, Turn
-from kb.localisation.hypotheses.frames import ELSEWHERE
-from kb.localisation.hypotheses.remap import laid
+from kb.localisation.hypotheses.frames import OFF_CENTRE_COST
+from kb.localisation.hypotheses.remap import object_pose
 from kb.localisation.hypotheses.what_if import Surprise
-from kb.localisation.propose.frame import halted_elsewhere
-from kb.localisation.propose.origin import PLACES
+from kb.localisation.propose.frame import blocked_pushes_with_origin
+from kb.localisation.propose.origin import COARSE_ORIGINS
 from kb.objects.held_object import HeldObject
 from kb.perception.frame import CENTRE, Frame
 from tests.kb.localisation.hypotheses.test_remap import around
@@ -33,10 +33,10 @@ from tests.kb.localisation.propose.test_earlier_motion import (
 Point = tuple[float, float]
 
 
-def stopped_himself(rng: np.random.Generator, beside: Point) -> tuple[Surprise, Point, shapely.Polygon] | None:
-    """One who took a thing, and ran against something himself as he pushed it; where he is then, and the thing.
+def blocked_push_of_utak(rng: np.random.Generator, beside: Point) -> tuple[Surprise, Point, shapely.Polygon] | None:
+    """Return the surprise after a contact of Utak in a push, the true place and outline then; None if there is no contact.
 
-    beside : where in his square he woke.
+    beside : the true origin.
     """
     room, thing, (x, y) = room_with_a_thing(rng)
     origin = (x + 1 + beside[0], y - 1 + beside[1])
@@ -51,36 +51,36 @@ def stopped_himself(rng: np.random.Generator, beside: Point) -> tuple[Surprise, 
     lies = translate(thing, -math.floor(origin[0]), -math.floor(origin[1]))
     load = HeldObject("o1", lies, lies, since=1, proven=True)
     first = observe(around(thing, room), origin, (0.0, 0.0))
-    observations = [first, first._replace(moved=(laid(load, Frame()),))]
+    observations = [first, first._replace(moved=(object_pose(load, Frame()),))]
     after = observe(around(translate(thing, *went), room), plus(origin, went), way)
     there = plus(beside, went)
     return surprised(Push(*way), after, observations, load, held=True), there, translate(lies, *went)
 
 
 @settings(max_examples=15, deadline=None)
-@given(st.integers(0, 2**32 - 1), st.sampled_from(PLACES))
-def test_where_he_himself_ran_against_something_is_told_with_where_he_woke(seed: int, beside: Point) -> None:
+@given(st.integers(0, 2**32 - 1), st.sampled_from(COARSE_ORIGINS))
+def test_a_contact_of_utak_in_a_push_is_found_with_the_origin(seed: int, beside: Point) -> None:
     rng = np.random.default_rng(seed)
-    made = (stopped_himself(rng, beside) for _ in range(2000))
+    made = (blocked_push_of_utak(rng, beside) for _ in range(2000))
     surprise, there, thing = next(one for one in made if one is not None)
-    found = halted_elsewhere(surprise)
+    found = blocked_pushes_with_origin(surprise)
     near = []
     for one in found:
-        outcome, origin = one.supposed.outcome, one.supposed.frame.origin
+        outcome, origin = one.what_if.outcome, one.what_if.frame.origin
         assert outcome is not None and outcome.how == "blocked"
-        assert one.supposed.misfits == 0 and 0 < one.chance <= 1
-        assert len(one.supposed.hypotheses) <= len(PLACES) and origin in PLACES
-        assert math.isclose(one.against, ELSEWHERE - math.log(len(one.supposed.hypotheses) / len(PLACES)))
-        if math.dist(one.supposed.place, there) < 1 and outcome.polygon.hausdorff_distance(thing) < 1:
-            near += [hypothesis.box[:2] for hypothesis in one.supposed.hypotheses]
+        assert one.what_if.residual == 0 and 0 < one.chance <= 1
+        assert len(one.what_if.hypotheses) <= len(COARSE_ORIGINS) and origin in COARSE_ORIGINS
+        assert math.isclose(one.against, OFF_CENTRE_COST - math.log(len(one.what_if.hypotheses) / len(COARSE_ORIGINS)))
+        if math.dist(one.what_if.place, there) < 1 and outcome.polygon.hausdorff_distance(thing) < 1:
+            near += [hypothesis.box[:2] for hypothesis in one.what_if.hypotheses]
     assert beside in near, (seed, beside, square_of(there))
 
 
-def test_what_is_turned_or_not_in_hand_is_not_told_so() -> None:
+def test_turned_objects_and_empty_hands_are_not_asked() -> None:
     rng = np.random.default_rng(1)
-    surprise, *_ = next(one for one in (stopped_himself(rng, CENTRE) for _ in range(2000)) if one is not None)
-    assert halted_elsewhere(surprise)
+    surprise, *_ = next(one for one in (blocked_push_of_utak(rng, CENTRE) for _ in range(2000)) if one is not None)
+    assert blocked_pushes_with_origin(surprise)
     for command in (Turn(30.0), Move(1.0, 0.0)):
         held = surprise.held if isinstance(command, Turn) else None
         other = replace(surprise, command=command, held=held)
-        assert halted_elsewhere(other) == []
+        assert blocked_pushes_with_origin(other) == []

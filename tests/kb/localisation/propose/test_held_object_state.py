@@ -1,4 +1,4 @@
-"""Where a thing lies that was stopped though there seemed to be room: it touches what stopped it, says shapely."""
+"""An object blocked where there seemed to be room touches what blocked it, by shapely."""
 
 import math
 from dataclasses import replace
@@ -11,8 +11,8 @@ from shapely.affinity import rotate, translate
 
 from geometry.motion.first_contact import Obstacles
 from geometry.motion.se2 import Rotate, Translate
-from kb.localisation.hypotheses.carry_outcomes import predicted
-from kb.localisation.propose.held_object_state import FURTHEST, after, leaning
+from kb.localisation.hypotheses.carry_outcomes import predicted_outcome
+from kb.localisation.propose.held_object_state import MAX_LEANING_DISTANCE, lean_on_obstacle, object_after
 from kb.objects.held_object import SLIGHT, HeldObject
 
 JAMBS = [shapely.box(-6, 4, 0, 6), shapely.box(6, 4, 12, 6)]
@@ -25,19 +25,19 @@ def load(polygon: shapely.Polygon) -> HeldObject:
     return HeldObject("o1", polygon, polygon, SLIGHT, proven=True, inexact=True)
 
 
-def anywhere(_: HeldObject) -> int:
+def no_clash(_: HeldObject) -> int:
     return 0
 
 
 @given(st.floats(-0.5, 0.5), st.floats(-0.4, 0.4), st.floats(-20, 20))
 @settings(max_examples=60, deadline=None)
-def test_it_touches_what_stopped_it_and_lies_no_further_off_than_it_must(x: float, y: float, degrees: float) -> None:
+def test_a_blocked_object_touches_the_obstacle_at_the_nearest_place(x: float, y: float, degrees: float) -> None:
     square = rotate(shapely.box(-2, -2, 2, 2), degrees)
     square = translate(square, 0.3 - square.bounds[2], 4 - square.bounds[3])
     believed = translate(square, x, y)
-    found = leaning(load(believed), NORTH, WALLS, anywhere)
+    found = lean_on_obstacle(load(believed), NORTH, WALLS, no_clash)
     moved = math.dist(believed.centroid.coords[0], found.polygon.centroid.coords[0])
-    assert moved <= FURTHEST + 1e-9
+    assert moved <= MAX_LEANING_DISTANCE + 1e-9
     if found.polygon.equals(believed):
         return
     assert found.polygon.intersection(BOTH).area < 1e-6
@@ -45,38 +45,38 @@ def test_it_touches_what_stopped_it_and_lies_no_further_off_than_it_must(x: floa
     assert found.slack >= SLIGHT
 
 
-def test_the_side_of_a_door_that_is_nearer_stopped_it() -> None:
+def test_the_nearer_side_of_a_door_blocked_it() -> None:
     believed = shapely.box(0.1, -0.5, 4.1, 3.5)
-    found = leaning(load(believed), NORTH, WALLS, anywhere).polygon
+    found = lean_on_obstacle(load(believed), NORTH, WALLS, no_clash).polygon
     assert found.bounds[0] < 0
     assert found.bounds[3] == pytest.approx(4)
-    far = leaning(load(shapely.box(1.0, 0.0, 5.0, 4.0)), NORTH, WALLS, anywhere)
-    assert far.polygon.bounds == (1.0, 0.0, 5.0, 4.0)  # nothing near can have stopped it
+    far = lean_on_obstacle(load(shapely.box(1.0, 0.0, 5.0, 4.0)), NORTH, WALLS, no_clash)
+    assert far.polygon.bounds == (1.0, 0.0, 5.0, 4.0)  # nothing near can have blocked it
 
 
-def test_what_does_not_agree_with_what_is_seen_is_not_believed() -> None:
+def test_a_place_that_contradicts_the_observation_is_not_believed() -> None:
     believed = load(shapely.box(0.1, 0.0, 4.1, 4.0))
-    assert leaning(believed, NORTH, WALLS, lambda lying: lying is not believed) is believed
-    right = leaning(believed, NORTH, WALLS, lambda lying: lying.polygon.bounds[0] <= 0.0)
+    assert lean_on_obstacle(believed, NORTH, WALLS, lambda lying: lying is not believed) is believed
+    right = lean_on_obstacle(believed, NORTH, WALLS, lambda lying: lying.polygon.bounds[0] <= 0.0)
     assert right is believed  # the other jamb is too far away
-    assert leaning(believed, Rotate(30.0, (0.0, 0.0)), WALLS, anywhere) is believed
+    assert lean_on_obstacle(believed, Rotate(30.0, (0.0, 0.0)), WALLS, no_clash) is believed
 
 
-def test_what_is_moved_by_one_who_slips_never_lies_exactly_on_squares() -> None:
+def test_after_slips_an_object_never_lies_exactly_on_squares() -> None:
     exact = replace(load(shapely.box(0, -4, 4, 0)), inexact=False, slack=0.0)
     for thing in (exact, replace(exact, inexact=True)):
-        moved = after(thing, predicted((0.5, -4.5), thing.polygon, Translate(0.0, 2.0)), 0)
+        moved = object_after(thing, predicted_outcome((0.5, -4.5), thing.polygon, Translate(0.0, 2.0)), 0)
         assert moved.polygon.bounds == (0, -2, 4, 2)
         assert moved.slack == (SLIGHT if thing.inexact else 0.0)
 
 
-def test_what_is_stopped_again_and_again_for_no_reason_lies_elsewhere() -> None:
+def test_an_object_thwarted_again_for_no_reason_is_inexact() -> None:
     thing = replace(load(shapely.box(0, -4, 4, 0)), inexact=False, slack=0.0)
-    once = after(thing, None, 0)
+    once = object_after(thing, None, 0)
     assert (once.stuck, once.inexact) == (1, False)
-    assert after(once, None, 0).inexact
-    assert not after(once, None, 0, suspected=True).inexact
-    moved = after(once, predicted((0.5, -4.5), thing.polygon, Translate(0.0, 2.0)), 0)
-    assert after(moved, None, 0).inexact
-    unproven = after(after(replace(thing, proven=False), None, 0), None, 0)
+    assert object_after(once, None, 0).inexact
+    assert not object_after(once, None, 0, suspected=True).inexact
+    moved = object_after(once, predicted_outcome((0.5, -4.5), thing.polygon, Translate(0.0, 2.0)), 0)
+    assert object_after(moved, None, 0).inexact
+    unproven = object_after(object_after(replace(thing, proven=False), None, 0), None, 0)
     assert (unproven.stuck, unproven.inexact) == (2, False)  # the hand may be empty

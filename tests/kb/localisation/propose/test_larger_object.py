@@ -1,4 +1,4 @@
-"""A thing that is drawn out of what seemed to be wall shows how far it went on: eyes.py tells what is seen."""
+"""An object drawn out of what seemed to be wall shows how far it went on; eyes.py makes the impressions."""
 
 import pytest
 import shapely
@@ -6,76 +6,77 @@ from shapely.affinity import translate
 
 from kb.body import Move, Push
 from kb.knowledge import Knowledge
-from kb.localisation.accommodation import Memory
+from kb.localisation.tracker import Tracker
 from kb.mapping.occupancy import FREE, FULL
 from kb.objects.held_object import HeldObject
 from tests.kb.eyes import Occupied, impression, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
 
-HERE = (17, 12)  # of the table: (0, 0) of the lattice
+HERE = (17, 12)  # table frame: (0, 0) of the map frame
 DOOR = ["b" + "." * 19 + "..." + "." * 17 + "b"] * 5
 NO_DOOR = ["b" + "." * 19 + "bbb" + "." * 17 + "b"] * 5
 
 
 def hall(middle: list[str]) -> Occupied:
-    """Two rooms, and between them a wall of three squares; five rows of it from the tenth on are given."""
+    """Return two rooms and a wall of three squares between them. middle : five rows of it, from the tenth on."""
     wall = "b" + "." * 19 + "bbb" + "." * 17 + "b"
     return world_of(["b" * 40, *[wall] * 10, *middle, *[wall] * 9, "b" * 40])
 
 
-def drawn(room: Occupied, deep: int, by: float) -> tuple[Memory, str]:
-    """What one believes who felt two columns of a thing right before a wall, takes it and draws it back to the west.
+def drawn(room: Occupied, deep: int, by: float) -> tuple[Tracker, str]:
+    """Return the tracker, and the kind of its explanation, after an object before a wall was drawn back to the west.
 
-    room : without it. deep : squares that it goes on in the wall. And how he explains what he sees then.
+    Two columns of the object stick out of the wall. room : without it. deep : squares that it goes on in the wall.
+    by : squares that it is drawn.
     """
     thing = shapely.box(18, 10, 20 + deep, 15)
-    memory = Memory()
-    memory.wake(impression(around(thing, room), HERE))
-    memory.accommodate(Move(0.0, 1.0), impression(around(thing, room), (HERE[0], HERE[1] + 1)))
-    memory.accommodate(Move(0.0, -1.0), impression(around(thing, room), HERE))
+    tracker = Tracker()
+    tracker.wake(impression(around(thing, room), HERE))
+    tracker.accommodate(Move(0.0, 1.0), impression(around(thing, room), (HERE[0], HERE[1] + 1)))
+    tracker.accommodate(Move(0.0, -1.0), impression(around(thing, room), HERE))
     felt = translate(shapely.box(18, 10, 20, 15), -HERE[0], -HERE[1])
-    memory.grasp(HeldObject("o1", felt, felt))
+    tracker.grasp(HeldObject("o1", felt, felt))
     after = around(translate(thing, -by), room)
-    found = memory.accommodate(Push(-by, 0.0), impression(after, (round(HERE[0] - by), HERE[1])))
-    return memory, found.explanation.how
+    found = tracker.accommodate(Push(-by, 0.0), impression(after, (round(HERE[0] - by), HERE[1])))
+    return tracker, found.explanation.how
 
 
 @pytest.mark.parametrize("deep", [1, 2, 3])
 @pytest.mark.parametrize("by", [2.0, 4.0])
-def test_what_is_drawn_out_of_a_door_is_as_large_as_it_is(deep: int, by: float) -> None:
-    memory, how = drawn(hall(DOOR), deep, by)
+def test_an_object_drawn_out_of_a_door_shows_its_true_size(deep: int, by: float) -> None:
+    tracker, how = drawn(hall(DOOR), deep, by)
     assert how == "larger"
-    load, occupancy = memory.loads["o1"], memory.occupancy
+    load, occupancy = tracker.state.loads["o1"], tracker.state.occupancy
     first = translate(shapely.box(18, 10, 20 + deep, 15), -HERE[0], -HERE[1])
     assert load.first.equals(first)
     assert load.polygon.equals(translate(first, -by))
     assert load.proven
-    assert memory.place == pytest.approx((0.5 - by, 0.5))
+    assert tracker.state.place == pytest.approx((0.5 - by, 0.5))
     assert {occupancy.state[occupancy.index(3, y)] for y in range(-2, 3)} == {FREE}
 
 
 @pytest.mark.parametrize("by", [2.0, 4.0])
-def test_what_stood_before_a_wall_is_no_larger_than_it_seemed(by: float) -> None:
-    memory, how = drawn(hall(NO_DOOR), 0, by)
+def test_an_object_before_a_wall_is_no_larger_than_it_seemed(by: float) -> None:
+    tracker, how = drawn(hall(NO_DOOR), 0, by)
     assert how == "predicted"
-    assert memory.loads["o1"].polygon.equals(translate(shapely.box(18, 10, 20, 15), -HERE[0] - by, -HERE[1]))
-    assert memory.occupancy.state[memory.occupancy.index(3, 0)] == FULL
+    assert tracker.state.loads["o1"].polygon.equals(translate(shapely.box(18, 10, 20, 15), -HERE[0] - by, -HERE[1]))
+    assert tracker.state.occupancy.state[tracker.state.occupancy.index(3, 0)] == FULL
 
 
-def test_what_was_moved_before_is_no_larger_than_it_seemed() -> None:
-    memory, _ = drawn(hall(DOOR), 1, 2.0)
+def test_an_object_that_was_moved_before_is_no_larger_than_it_seemed() -> None:
+    tracker, _ = drawn(hall(DOOR), 1, 2.0)
     again = around(shapely.box(14, 10, 17, 15), hall(DOOR))
-    assert memory.accommodate(Push(-2.0, 0.0), impression(again, (13, 12))).explanation.how == "predicted"
+    assert tracker.accommodate(Push(-2.0, 0.0), impression(again, (13, 12))).explanation.how == "predicted"
 
 
-def test_its_shape_is_told_anew() -> None:
-    """A brick that stuck out of a door as a square."""
+def test_the_shape_class_of_a_larger_object_is_measured_anew() -> None:
+    """A brick looks like a square while it sticks out of a door."""
     knowledge, wide = Knowledge(), shapely.box(15, 10, 22, 15)
     before, after = around(wide, hall(DOOR)), around(translate(wide, -3.0), hall(DOOR))
     here = (14, 12)
     knowledge.wake(impression(before, here, colour="g"))
     felt = translate(shapely.box(15, 10, 20, 15), -here[0], -here[1])
-    knowledge.memory.grasp(HeldObject("o1", felt, felt, shape={"square": 62, "brick": 30}))
+    knowledge.tracker.grasp(HeldObject("o1", felt, felt, shape={"square": 62, "brick": 30}))
     model, accommodated = knowledge.perceive(Push(-3.0, 0.0), impression(after, (11, 12), colour="g"))
     assert accommodated.explanation.how == "larger"
     node = model.object("o1")

@@ -1,4 +1,4 @@
-"""`utak routes`: from which corner points count, and a picture that can be read."""
+"""`utak routes`: the origin of points, and pictures of routes."""
 
 import json
 import re
@@ -25,7 +25,7 @@ version 1
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A map that is not the same upside down, and problems on it."""
+    """Return a folder with a map that differs from its mirror image, and with problems on it."""
     (tmp_path / "m.map").write_text(MAP)
     (tmp_path / "m.map.scen").write_text(TRIPS)
     return tmp_path
@@ -37,7 +37,7 @@ def routes(folder: Path, capsys: pytest.CaptureFixture[str], *more: str) -> tupl
     return code, json.loads(out)["routes"] if out else []
 
 
-def test_a_line_of_a_scen_file_means_what_the_benchmark_means(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_origin_top_reads_points_as_scen_files_do(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     trips = read_trips(folder / "m.map.scen")
     lines = [line.split() for line in TRIPS.splitlines()[1:]]
     assert len(trips) == len(lines) == 4
@@ -49,22 +49,22 @@ def test_a_line_of_a_scen_file_means_what_the_benchmark_means(folder: Path, caps
         _, [bottom] = routes(folder, capsys, "--from", f"{ax},{ay}", "--to", f"{bx},{by}")
         assert top["length"] == bottom["length"]
         octile, length = float(words[8]), float(str(top["length"]))
-        assert length <= octile + 1e-6  # the benchmark's ways turn by 45 degrees, and keep away from corners
-        if octile < 6.0 or octile > 6.5:  # the other trips are straight, where both are the same
+        assert length <= octile + 1e-6  # the benchmark's routes turn by 45 degrees only, and keep away from corners
+        if octile < 6.0 or octile > 6.5:  # the other routes are straight lines, equal in both
             assert length == pytest.approx(octile, abs=1e-6)
         points = np.array(top["points"])
         assert points[[0, -1]].tolist() == [[a, b], [c, d]]
         assert np.allclose(points[:, 1] + np.array(bottom["points"])[:, 1], 5.0)
 
 
-def test_the_help_says_from_where_points_count(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_help_explains_the_origin_of_points(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["routes", "--help"]) == 0
     said = " ".join(capsys.readouterr().out.split())
     for words in ("south-west corner, x goes east and y north", "x goes east and y SOUTH", ".scen"):
         assert words in said
 
 
-def test_a_picture_says_what_it_shows(folder: Path) -> None:
+def test_a_picture_has_a_legend(folder: Path) -> None:
     path = folder / "out.svg"
     ends = ["--origin", "top", "--from", "2.5,2.5", "--to", "6.5,3.5"]
     assert main(["routes", str(folder / "m.map"), "-k", "3", *ends, "--svg", str(path)]) == 0

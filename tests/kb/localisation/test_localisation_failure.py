@@ -1,6 +1,7 @@
-"""Who is lost: he notices that nothing agrees with what he believes, forgets it, and knows where he is soon after."""
+"""Localisation failure: it is recognised, the map is given up, and the place is soon known again."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,10 +9,10 @@ import shapely
 
 from kb.body import Impression, Move, Release, Turn
 from kb.knowledge import Knowledge
-from kb.localisation.accommodation import Memory
-from kb.localisation.holding import ASTRAY, LOST
 from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.frames import FrameHypothesis
+from kb.localisation.state import MAX_RESIDUAL, MAX_RESIDUAL_AFTER_MOVING, TrackerState
+from kb.localisation.tracker import Tracker
 from kb.mapping.occupancy import FULL, OPEN
 from kb.mapping.patch import Patch
 from kb.objects.held_object import HeldObject
@@ -21,13 +22,13 @@ from kb.world.model import Names
 from planner.deciding.decider import Decider
 from tests.kb.drawings import walked
 from tests.kb.eyes import impression, random_room, utak_in, world_of
-from tests.kb.localisation.test_accommodation import ROOM
+from tests.kb.localisation.test_tracker import ROOM
 
 Point = tuple[float, float]
 
 
 class Stroll:
-    """One who walks over free squares of a random room."""
+    """A robot that walks over free squares of a random room."""
 
     def __init__(self, seed: int) -> None:
         self.rng = np.random.default_rng(seed)
@@ -39,11 +40,11 @@ class Stroll:
         self.hows = [self.knowledge.wake(self.sees())[1].explanation.how]
 
     def sees(self) -> Impression:
-        """What he senses there."""
+        """Return the impression at the present place."""
         return impression(self.occupied, (math.floor(self.place[0]), math.floor(self.place[1])), self.heading)
 
     def go(self) -> None:
-        """Four to six squares, over free ones."""
+        """Walk four to six squares over free ones, and perceive."""
         while True:
             far, angle = self.rng.uniform(4, 6), self.rng.uniform(0, 2 * math.pi)
             way = far * math.cos(angle), far * math.sin(angle)
@@ -54,14 +55,14 @@ class Stroll:
         self.place = self.place[0] + east, self.place[1] + north
         self.hows.append(self.knowledge.perceive(Move(*way), self.sees())[1].explanation.how)
 
-    def carried_off(self) -> None:
-        """Somebody puts him down at least twelve squares away, and does not tell him."""
+    def kidnap(self) -> None:
+        """Put the robot down at least twelve squares away, without a command."""
         away = [place for place in self.free if math.dist(place, self.place) >= 12]
         self.place = away[int(self.rng.integers(len(away)))]
 
     @property
     def wrong(self) -> float:
-        """The part of what he takes for settled that is otherwise."""
+        """Return the part of the settled squares that are settled wrongly, 0 to 1."""
         occupancy, (x, y) = self.knowledge.memory.occupancy, self.knowledge.memory.square
         i, j = math.floor(self.place[0]) - x, math.floor(self.place[1]) - y
         rows, columns = np.nonzero(occupancy.state != OPEN)
@@ -70,27 +71,27 @@ class Stroll:
         return float((there != (occupancy.state[rows, columns] == FULL)).mean())
 
 
-def strolled(seed: int) -> Stroll:
-    """Four moves, then he is carried off, and eight moves more."""
+def kidnapped(seed: int) -> Stroll:
+    """Return a walk of four moves, a kidnapping, and eight moves more."""
     stroll = Stroll(seed)
     for _ in range(4):
         stroll.go()
     assert "lost" not in stroll.hows
-    stroll.carried_off()
+    stroll.kidnap()
     for _ in range(8):
         stroll.go()
     return stroll
 
 
-def test_who_is_carried_off_notices_and_soon_knows_the_room_again() -> None:
+def test_a_kidnapped_robot_recognises_the_failure_and_maps_the_room_again() -> None:
     for seed in range(3):
-        stroll = strolled(seed)
+        stroll = kidnapped(seed)
         assert "lost" in stroll.hows[5:8], seed
         assert stroll.wrong == 0.0, seed
         assert len(stroll.knowledge.memory.track) == len(stroll.hows)
 
 
-def test_a_look_that_agrees_with_nothing_contradicts_what_is_believed() -> None:
+def test_an_observation_that_agrees_with_nothing_contradicts_the_model() -> None:
     knowledge = walked(ROOM, [(2, 0), (0, 3)]).knowledge
     x, y = utak_in(ROOM)
     model, _ = knowledge.perceive(Release(), impression(world_of(ROOM), (x + 2, y + 3)))
@@ -100,46 +101,46 @@ def test_a_look_that_agrees_with_nothing_contradicts_what_is_believed() -> None:
     assert model.contradicted
 
 
-def test_who_cannot_forget_believes_in_a_room_that_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Memory, "lost", False)
-    assert all(strolled(seed).wrong > 0.01 for seed in range(3))
+def test_without_a_new_beginning_the_map_stays_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(TrackerState, "lost", False)
+    assert all(kidnapped(seed).wrong > 0.01 for seed in range(3))
 
 
 def lost_in(rows: list[str]) -> Knowledge:
-    """One who has walked a little, and whose last looks fitted badly."""
+    """Return the knowledge of a robot that walked a little, and whose last observations left large residuals."""
     knowledge = walked(rows, [(2, 0), (0, 3)]).knowledge
-    knowledge.memory.unfit = (LOST, LOST)
+    knowledge.tracker.state = replace(knowledge.memory, residuals=(MAX_RESIDUAL, MAX_RESIDUAL))
     assert knowledge.memory.lost
     return knowledge
 
 
-def test_misfits_of_a_single_look_are_no_reason_to_forget() -> None:
-    memory = Memory(unfit=(0, 0, 0, 3 * LOST))
-    assert not memory.lost
-    assert not Memory(unfit=(1, 1, 1, 1)).lost
-    assert Memory(unfit=(0, 1, 0, LOST)).lost
+def test_the_residual_of_one_observation_alone_is_no_failure() -> None:
+    state = TrackerState(residuals=(0, 0, 0, 3 * MAX_RESIDUAL))
+    assert not state.lost
+    assert not TrackerState(residuals=(1, 1, 1, 1)).lost
+    assert TrackerState(residuals=(0, 1, 0, MAX_RESIDUAL)).lost
 
 
-def test_who_has_moved_a_thing_forgets_less_readily() -> None:
+def test_moved_objects_raise_the_residual_of_a_failure() -> None:
     thing = shapely.box(4, 2, 8, 4)
     held, moved = HeldObject("o1", thing, thing), HeldObject("o1", thing, thing).moved(thing, 0.0)
-    assert Memory(unfit=(1, LOST), loads={"o1": held}).lost
-    assert not Memory(unfit=(1, LOST), loads={"o1": moved}).lost
-    assert Memory(unfit=(1, ASTRAY), loads={"o1": moved}).lost
+    assert TrackerState(residuals=(1, MAX_RESIDUAL), loads={"o1": held}).lost
+    assert not TrackerState(residuals=(1, MAX_RESIDUAL), loads={"o1": moved}).lost
+    assert TrackerState(residuals=(1, MAX_RESIDUAL_AFTER_MOVING), loads={"o1": moved}).lost
 
 
-def test_what_he_holds_he_lets_go_before_he_forgets() -> None:
+def test_a_held_object_is_released_before_the_map_is_given_up() -> None:
     knowledge = lost_in(ROOM)
     x, y = utak_in(ROOM)
     thing = shapely.box(4, 2, 8, 4)
-    knowledge.memory.grasp(HeldObject("o1", thing, thing))
+    knowledge.tracker.grasp(HeldObject("o1", thing, thing))
     sees = impression(world_of(ROOM), (x + 2, y + 3))
     model, accommodated = knowledge.perceive(Turn(5.0), sees)
     assert model.lost
     assert not model.anew
     decision = Decider(Task({}, (), ())).decide(model, knowledge.memory.track)
     assert isinstance(decision.command, Release)
-    knowledge.memory.unfit = (LOST, LOST)
+    knowledge.tracker.state = replace(knowledge.memory, residuals=(MAX_RESIDUAL, MAX_RESIDUAL))
     model, accommodated = knowledge.perceive(Release(), sees)
     assert accommodated.explanation.how == "lost"
     assert model.anew
@@ -147,23 +148,25 @@ def test_what_he_holds_he_lets_go_before_he_forgets() -> None:
     assert not knowledge.memory.loads
 
 
-def test_on_another_lattice_what_never_moved_stands_where_it_is_seen() -> None:
-    thing = shapely.box(-6, 5, -3, 8)  # there is nothing
+def test_in_another_frame_an_object_that_never_moved_is_forgotten() -> None:
+    thing = shapely.box(-6, 5, -3, 8)  # nothing is there
     for moved, held in ((False, False), (True, False), (False, True)):
-        memory = walked(ROOM, [(2, 0), (0, 3)]).knowledge.memory
-        before = memory.occupancy.state.copy()
-        memory.grasp(HeldObject("o1", thing, thing, proven=moved))
-        memory.held = "o1" if held else None
-        memory._lie(Explanation("predicted", memory.place, memory.frame, 0, 0.0))
-        assert list(memory.loads) == ["o1"]
-        other = Frame(origin=(0.4, 0.6))  # on which he saw the same
-        memory._lie(Explanation("turned", memory.place, other, 0, 0.0, None, (FrameHypothesis(0, other.origin * 2),)))
-        assert memory.frame == other
-        assert list(memory.loads) == ["o1"] * (moved or held)
-        assert (memory.occupancy.state == before).all() == (not moved and not held)
+        tracker = walked(ROOM, [(2, 0), (0, 3)]).knowledge.tracker
+        before = tracker.state.occupancy.state.copy()
+        tracker.grasp(HeldObject("o1", thing, thing, proven=moved))
+        tracker.state = replace(tracker.state, held="o1" if held else None)
+        tracker._apply(Explanation("predicted", tracker.state.place, tracker.state.frame, 0, 0.0))
+        assert list(tracker.state.loads) == ["o1"]
+        other = Frame(origin=(0.4, 0.6))  # with the same observations
+        tracker._apply(
+            Explanation("turned", tracker.state.place, other, 0, 0.0, None, (FrameHypothesis(0, other.origin * 2),))
+        )
+        assert tracker.state.frame == other
+        assert list(tracker.state.loads) == ["o1"] * (moved or held)
+        assert (tracker.state.occupancy.state == before).all() == (not moved and not held)
 
 
-def test_who_forgot_knows_about_where_he_came_from() -> None:
+def test_a_new_beginning_keeps_the_track() -> None:
     knowledge = lost_in(ROOM)
     x, y = utak_in(ROOM)
     before = knowledge.memory.place
@@ -173,23 +176,23 @@ def test_who_forgot_knows_about_where_he_came_from() -> None:
     assert len(knowledge.memory.hypotheses) > 40
     assert model.place == pytest.approx((before[0] + 1, before[1]))
     assert knowledge.memory.track[:3] == [(0.5, 0.5), (2.5, 0.5), (2.5, 3.5)]
-    row, column = model.view.locate(0.5, 0.5)  # where he woke is on his map, whether he sees it or not
+    row, column = model.view.locate(0.5, 0.5)  # the place of waking is on the map, seen or not
     assert min(row, column) >= 24
     assert row + 24 < model.labels.shape[0]
     assert column + 24 < model.labels.shape[1]
 
 
-def test_one_look_tells_how_the_lattice_lies_whatever_he_believed() -> None:
+def test_one_observation_tells_the_orientation_whatever_was_believed() -> None:
     off = []
     for seed in range(20):
         stroll = Stroll(seed)
-        memory = Memory(frame=Frame((stroll.heading + 60) % 90 - 44)).anew()
-        memory.wake(stroll.sees())
-        off.append(abs((memory.frame.angle - stroll.heading + 45) % 90 - 45))
+        tracker = Tracker(TrackerState(frame=Frame((stroll.heading + 60) % 90 - 44))).anew()
+        tracker.wake(stroll.sees())
+        off.append(abs((tracker.state.frame.angle - stroll.heading + 45) % 90 - 45))
     assert sum(angle <= 2 for angle in off) >= 18
 
 
-def test_names_are_not_given_again() -> None:
+def test_names_of_objects_are_not_given_again() -> None:
     names, patch = Names(), Patch(0, 0, np.ones((2, 2), np.bool_))
     assert names.assign([patch]) == names.assign([patch]) == ["o1"]
     names.forget()

@@ -1,0 +1,225 @@
+"""The pathgraph in arrays: places and clearances of nodes, ends, lengths and points of edges, and who is adjacent.
+
+The contracted skeleton (graph.py) knows the cells of nodes and the lowest cell of each chain. One pass over it walks
+every chain again and writes the places of its cells straight into one block of points.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from geometry.kernels.arrays import Floats, Ints, SquaredDistances
+from geometry.kernels.jit import bare
+from geometry.skeleton.graph import SkeletonGraph
+from geometry.skeleton.skeleton import LINKS, Flags, Heights, States
+
+
+class PathgraphArrays(NamedTuple):
+    """A pathgraph of n nodes and m edges whose chains have p points in all, as numpy arrays.
+
+    Nodes are the junctions and ends of the skeleton, edges the chains between them. Lengths, clearances and
+    coordinates are in squares; points are (x, y) in the frame of the screen, where the square in column i and row j
+    has its centre at (i + 0.5, j + 0.5). Nodes come in ascending order of (y, x), edges in ascending order of their
+    first node. The arrays of a ``Screen`` are read-only.
+
+    Attributes
+    ----------
+    nodes : (n, 2) float64
+        Place (x, y) of each node.
+    node_clearances : (n,) float64
+        Distance from each node to the nearest square that is not free.
+    edges : (m, 2) int32
+        Numbers of the first and the last node of each edge: rows of ``nodes``. Parallel edges occur, and loops, whose
+        first node is also the last.
+    lengths : (m,) float64
+        Length of the polyline through the points of each edge: a whole number, because it leads from square to square
+        over their sides.
+    edge_clearances : (m,) float64
+        Least clearance of the points of each edge.
+    points : (p, 2) float64
+        Centres (x, y) of the squares of all edges, one edge after the other, each from its first node to its last, both
+        included.
+    offsets : (m + 1,) int32
+        Rows of ``points``: those of edge e are ``points[offsets[e]:offsets[e + 1]]``.
+    narrowest : (m,) int32
+        Row of ``points`` at which each edge has its least clearance.
+    adjacency_offsets : (n + 1,) int32
+        Adjacency in compressed sparse rows: the edges at node v are
+        ``incident_edges[adjacency_offsets[v]:adjacency_offsets[v + 1]]``.
+    incident_edges : (2 m,) int32
+        Numbers of the edges at each node, ascending; a loop is listed twice.
+    neighbours : (2 m,) int32
+        The node at the other end of each of ``incident_edges``.
+
+    Examples
+    --------
+    A floor around one blocked square has one node, and one edge that leads around the square back to it:
+
+    >>> import numpy as np
+    >>> from geometry import Screen
+    >>> free = np.ones((3, 3), dtype=bool)
+    >>> free[1, 1] = False
+    >>> graph = Screen(free).pathgraph_arrays
+    >>> graph.nodes.tolist(), graph.edges.tolist(), graph.lengths.tolist(), graph.edge_clearances.tolist()
+    ([[0.5, 0.5]], [[0, 0]], [8.0], [0.5])
+    >>> graph.points_of(0).tolist()[:4]
+    [[0.5, 0.5], [1.5, 0.5], [2.5, 0.5], [2.5, 1.5]]
+
+    Degrees of all nodes, and edges with room for a body of radius 0.6, without a loop:
+
+    >>> np.diff(graph.adjacency_offsets).tolist()
+    [2]
+    >>> np.flatnonzero(graph.edge_clearances >= 0.6).tolist()
+    []
+    """
+
+    nodes: Floats
+    node_clearances: Floats
+    edges: Ints
+    lengths: Floats
+    edge_clearances: Floats
+    points: Floats
+    offsets: Ints
+    narrowest: Ints
+    adjacency_offsets: Ints
+    incident_edges: Ints
+    neighbours: Ints
+
+    def points_of(self, edge: int) -> Floats:
+        """Return the points of an edge as a view.
+
+        Parameters
+        ----------
+        edge : int
+            Number of the edge, from 0 on.
+
+        Returns
+        -------
+        (k, 2) float64
+            Centres (x, y) of its squares in squares, from its first node to its last, both included.
+        """
+        return self.points[self.offsets[edge] : self.offsets[edge + 1]]
+
+
+def pathgraph_arrays(square: SquaredDistances, state: States, bones: SkeletonGraph) -> PathgraphArrays:
+    """Return the pathgraph of a skeleton as new arrays, which share no memory with the arguments.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int16 or int32
+        Squared clearances in half squares, with a blocked frame.
+    state : (rows + 2, columns + 2) uint8
+        Links and flags of the skeleton (see skeleton.py).
+    bones : SkeletonGraph
+        The nodes and chains of ``state``.
+    """
+    n, m = len(bones.node), len(bones.steps)
+    offsets = np.zeros(m + 1, np.int32)
+    np.cumsum(bones.steps + 1, out=offsets[1:])
+    graph = PathgraphArrays(
+        nodes=np.empty((n, 2)),
+        node_clearances=np.empty(n),
+        edges=np.empty((m, 2), np.int32),
+        lengths=np.empty(m),
+        edge_clearances=np.empty(m),
+        points=np.empty((offsets.item(m), 2)),
+        offsets=offsets,
+        narrowest=np.empty(m, np.int32),
+        adjacency_offsets=np.zeros(n + 2, np.int32),
+        incident_edges=np.empty(2 * m, np.int32),
+        neighbours=np.empty(2 * m, np.int32),
+    )
+    arrays: Any = graph
+    fill(square.reshape(-1), state.reshape(-1), state.shape[1], *bones, *arrays)
+    return graph._replace(adjacency_offsets=graph.adjacency_offsets[:-1])
+
+
+@bare
+def fill(
+    heights: Heights,
+    states: Flags,
+    width: int,
+    node: Ints,
+    port: Ints,
+    lowest: Ints,
+    steps: Ints,
+    nodes: Floats,
+    node_clearances: Floats,
+    edges: Ints,
+    lengths: Floats,
+    edge_clearances: Floats,
+    points: Floats,
+    offsets: Ints,
+    narrowest: Ints,
+    adjacency_offsets: Ints,
+    incident_edges: Ints,
+    neighbours: Ints,
+) -> None:
+    """Fill the arrays of a ``PathgraphArrays`` (all but ``offsets``) from those of a ``SkeletonGraph``.
+
+    ``adjacency_offsets`` has one element more than at last, and is 0.
+    """
+    fill_nodes(heights, width, node, nodes, node_clearances)
+    for edge in range(port.shape[0]):
+        edges[edge, 0], edges[edge, 1], lengths[edge] = port[edge, 0] >> 2, port[edge, 1] >> 2, steps[edge]
+        edge_clearances[edge] = 0.5 * np.sqrt(float(heights[lowest[edge]]))
+    fill_points(states, width, node, port, lowest, nodes, offsets, points, narrowest)
+    fill_adjacency(edges, adjacency_offsets, incident_edges, neighbours)
+
+
+@bare
+def fill_nodes(heights: Heights, width: int, node: Ints, nodes: Floats, clearances: Floats) -> None:
+    """Fill places (n, 2) and clearances (n,) of nodes, whose padded cells ascend."""
+    row, first = 0, 0
+    for k in range(node.shape[0]):
+        cell = int(node[k])
+        while cell >= first + width:
+            first += width
+            row += 1
+        nodes[k, 0], nodes[k, 1] = cell - first - 0.5, row - 0.5
+        clearances[k] = 0.5 * np.sqrt(float(heights[cell]))
+
+
+@bare
+def fill_points(
+    states: Flags,
+    width: int,
+    node: Ints,
+    port: Ints,
+    lowest: Ints,
+    nodes: Floats,
+    offsets: Ints,
+    points: Floats,
+    narrowest: Ints,
+) -> None:
+    """Walk every chain from its first end and fill ``points`` and ``narrowest``."""
+    for edge in range(port.shape[0]):
+        first, low = port[edge, 0] >> 2, int(lowest[edge])
+        cell, way, x, y = int(node[first]), 1 << (port[edge, 0] & 3), nodes[first, 0], nodes[first, 1]
+        begin, end = int(offsets[edge]), int(offsets[edge + 1])
+        points[begin, 0], points[begin, 1] = x, y
+        found = begin if cell == low else -1
+        for k in range(begin + 1, end):
+            east, north = (way & 1) - (way >> 2 & 1), (way >> 1 & 1) - (way >> 3)
+            cell += east + north * width
+            x += east
+            y += north
+            points[k, 0], points[k, 1] = x, y
+            found = k if cell == low and found < 0 else found
+            way = int(states[cell]) & LINKS ^ (way >> 2 | (way & 3) << 2)
+        narrowest[edge] = found
+
+
+@bare
+def fill_adjacency(edges: Ints, offsets: Ints, incident: Ints, neighbours: Ints) -> None:
+    """Sort the ends of edges by node. ``offsets`` has two elements more than there are nodes, and is 0 at first."""
+    for edge in range(edges.shape[0]):
+        for side in range(2):
+            offsets[edges[edge, side] + 2] += 1
+    for k in range(2, offsets.shape[0]):
+        offsets[k] += offsets[k - 1]
+    for edge in range(edges.shape[0]):
+        for side in range(2):
+            k = offsets[edges[edge, side] + 1]
+            incident[k], neighbours[k] = edge, edges[edge, 1 - side]
+            offsets[edges[edge, side] + 1] = k + 1

@@ -1,0 +1,214 @@
+"""State of the localisation tracker: pose, frame hypotheses, occupancy map and held objects, as one frozen value.
+
+Whatever proposes or scores explanations reads this value. kb.localisation.tracker alone makes the next one.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from kb.body import Command
+from kb.localisation.hypotheses.frames import (
+    CENTRED_HYPOTHESES,
+    FieldRanges,
+    FrameHypothesis,
+    Observation,
+    Position,
+    origin_leeway,
+)
+from kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis
+from kb.localisation.hypotheses.what_if import Surprise
+from kb.mapping.completions import Completions
+from kb.mapping.occupancy import FREE, OPEN, OccupancyMap
+from kb.objects.held_object import HeldObject, Square
+from kb.perception.frame import CENTRE, Frame
+
+MAX_RESIDUAL = 8  # residual fields of the last observations together from which localisation has failed; tuned
+MAX_RESIDUAL_AFTER_MOVING = 24  # the same once an object was moved, for it may lie elsewhere than believed; tuned
+LIKELY_END_CHANCE = 0.05  # probability above which an alternative end of an earlier motion counts as likely; tuned
+
+
+@dataclass(frozen=True)
+class TrackerState:
+    """Everything the localisation tracker believes after an observation.
+
+    Attributes
+    ----------
+    occupancy : the occupancy map, map frame. The tracker updates it in place; everybody else only reads it.
+    frame : the believed frame: orientation of the map in Utak's own frame, and the point of the square of waking.
+    place : where Utak is: (x, y) in squares, map frame.
+    observations : all observations since the tracker began; each keeps its place in Utak's own frame.
+    hypotheses : the frame hypotheses that are left.
+    confirmations : number of observations in a row that confirmed the believed frame.
+    blocked_squares : squares that stopped Utak himself when a motion was about to enter them, map frame.
+    suspected_squares : open squares one of which probably stopped a held object, map frame.
+    search_count : how often all frames were searched, successfully or not. It limits further searches.
+    slipped : whether any motion ended beside its predicted end.
+    motions : the last straight motions, oldest first. Each may have ended otherwise than believed.
+    loads : all objects that were ever held, by name.
+    held : the name of the object in the hand; None when the hand is empty.
+    residuals : residual of each of the last observations, oldest first.
+    been : places of the observations before the tracker began anew, Utak's own frame.
+    completions : the newest completions of the map in this frame; None when none were drawn.
+    """
+
+    occupancy: OccupancyMap = field(default_factory=OccupancyMap)
+    frame: Frame = field(default_factory=Frame)
+    place: Position = CENTRE
+    observations: tuple[Observation, ...] = ()
+    hypotheses: tuple[FrameHypothesis, ...] = CENTRED_HYPOTHESES
+    confirmations: int = 0
+    blocked_squares: frozenset[Square] = frozenset()
+    suspected_squares: frozenset[Square] = frozenset()
+    search_count: int = 0
+    slipped: bool = False
+    motions: tuple[MotionHypothesis, ...] = ()
+    loads: Mapping[str, HeldObject] = field(default_factory=dict)
+    held: str | None = None
+    residuals: tuple[int, ...] = ()
+    been: tuple[Position, ...] = ()
+    completions: Completions | None = None
+
+    def surprise(self, command: Command, ranges: FieldRanges) -> Surprise:
+        """Return an observation that contradicts this state, with what of the state it is judged by.
+
+        command : the command before the observation. ranges : (160, 2) least and greatest counts of its fields.
+        """
+        return Surprise(
+            command,
+            ranges,
+            self.frame,
+            self.place,
+            self.occupancy,
+            self.observations,
+            self.loads,
+            self.held,
+            self.hypotheses,
+            self.completions,
+        )
+
+    # -- pose and track --------------------------------------------------------------------------
+
+    @property
+    def square(self) -> Square:
+        """Return the square of the map frame in which Utak is."""
+        return math.floor(self.place[0]), math.floor(self.place[1])
+
+    @property
+    def track(self) -> list[Position]:
+        """Return all places of observations, oldest first, those before a new beginning included; map frame."""
+        return [
+            self.frame.place_from_utak(*place)
+            for place in (*self.been, *(observation.place for observation in self.observations))
+        ]
+
+    @property
+    def looked_from(self) -> frozenset[Square]:
+        """Return the squares of the map frame from which the observations of the present map were made."""
+        return frozenset((math.floor(x), math.floor(y)) for x, y in self.track[len(self.been) :])
+
+    @property
+    def leeway(self) -> tuple[float, float, float, float]:
+        """Return how far the true origin of the frame may lie from the believed one.
+
+        In squares of the map frame: to the west and south (not above 0), then east and north (not below 0).
+        """
+        return origin_leeway(self.frame, self.observations, self.hypotheses)
+
+    @property
+    def off_middle(self) -> bool:
+        """Return whether the believed origin of the frame is not the middle of the square of waking."""
+        return self.frame.origin != CENTRE
+
+    @property
+    def beside_line(self) -> bool:
+        """Return whether a contact at a grid line has fixed the origin in one axis, but for the width of a contact."""
+        return min(map(abs, self.leeway)) <= 2 * LINE_DISTANCE
+
+    # -- certainty -------------------------------------------------------------------------------
+
+    @property
+    def lost(self) -> bool:
+        """Return whether localisation has failed: observation after observation contradicts what is believed."""
+        moved = any(load.proven for load in self.loads.values())
+        limit = MAX_RESIDUAL_AFTER_MOVING if moved else MAX_RESIDUAL
+        return sum(self.residuals) >= limit and sum(residual > 0 for residual in self.residuals) > 1
+
+    @property
+    def spread(self) -> float:
+        """Return the greatest difference between the believed orientation and one that is left, in radians."""
+        return self._spread(self.hypotheses)
+
+    @property
+    def likely_spread(self) -> float:
+        """Return the same of the orientations whose map prior is hardly worse than the best one, in radians."""
+        return self._spread(other for other in self.hypotheses if other.is_plausible)
+
+    def _spread(self, hypotheses: Iterable[FrameHypothesis]) -> float:
+        """Return the greatest difference in orientation from the believed frame, in radians; 0 for no hypotheses."""
+        return math.radians(max((abs(other.angle - self.frame.angle) for other in hypotheses), default=0))
+
+    @property
+    def sure(self) -> bool:
+        """Return whether what the counts settle is beyond doubt.
+
+        It is not after observations contradicted each other or a motion slipped, while one of the last motions may
+        have ended in another square, or while several frame hypotheses are left that differ from Utak's own axes.
+        """
+        along = self.frame.angle == 0 and all(other.is_centred for other in self.hypotheses)
+        settled = not (self.shaken or any(map(self._elsewhere_likely, self.motions)))
+        return settled and (along or len(self.hypotheses) == 1)
+
+    @property
+    def shaken(self) -> bool:
+        """Return whether observations contradicted each other, or a motion ended beside its predicted end."""
+        return self.slipped or self.occupancy.overruled > 0
+
+    def _elsewhere_likely(self, motion: MotionHypothesis) -> bool:
+        """Return whether a motion may well have ended in another square than believed, by the observation after it."""
+        if motion.number >= len(self.observations):
+            return False
+        places = [self.observations[motion.number].place, *motion.likely_ends(LIKELY_END_CHANCE)]
+        squares = {(math.floor(x), math.floor(y)) for x, y in (self.frame.place_from_utak(*own) for own in places)}
+        return len(squares) > 1
+
+    # -- obstacles that contacts showed ----------------------------------------------------------
+
+    @property
+    def closed(self) -> frozenset[Square]:
+        """Return the squares of the map frame that are occupied, or probably are, because they stopped a motion.
+
+        A square seen to be free is left out when motions slip, or when all eight squares around it are free, too:
+        then the contact, or its place, was believed wrongly.
+        """
+        blocked = self.blocked_squares
+        certain = set() if self.slipped else {square for square in blocked if not self._free_around(*square)}
+        doubted = (blocked | self.suspected_squares) - certain
+        return frozenset((*certain, *(s for s in doubted if self.occupancy.state[self.occupancy.index(*s)] == OPEN)))
+
+    def _free_around(self, x: int, y: int) -> bool:
+        """Return whether a square of the map and its eight neighbours are settled as free."""
+        row, column = self.occupancy.index(x, y)
+        around = self.occupancy.state[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
+        return bool((around == FREE).all())
+
+    # -- motions that may be re-estimated --------------------------------------------------------
+
+    @property
+    def reestimable(self) -> tuple[MotionHypothesis, ...]:
+        """Return the last straight motions that can be re-estimated: with an empty hand, or with a known object."""
+        return tuple(motion for motion in self.motions if motion.load is None or motion.load in self.loads)
+
+    @property
+    def earlier(self) -> tuple[MotionHypothesis, ...]:
+        """Return those of them whose observation has been integrated already."""
+        return tuple(motion for motion in self.reestimable if motion.number < len(self.observations))
+
+    @property
+    def doubtful(self) -> tuple[MotionHypothesis, ...]:
+        """Return those earlier motions that may well have ended elsewhere than believed."""
+        return tuple(motion for motion in self.earlier if motion.likely_ends(LIKELY_END_CHANCE))
+
+    def others(self, load: HeldObject) -> list[HeldObject]:
+        """Return all objects that were ever held but one."""
+        return [other for other in self.loads.values() if other.name != load.name]

@@ -1,0 +1,290 @@
+"""The localisation tracker: it explains every new observation, and is the only writer of pose, frame and map.
+
+The pose is predicted from the command. When the observation cannot have been made there, explanations are proposed
+(the motion was blocked or slipped, the frame lies otherwise, an earlier motion ended elsewhere), scored, and one is
+chosen by kb/asp/accommodation.lp. The chosen explanation is applied, and the observation is integrated into the
+occupancy map. Each of its 160 fields counts as predicted, as explained (it shows squares that were open), or as noise.
+"""
+
+import math
+from dataclasses import dataclass, field, replace
+
+from kb.body import Command, Impression, Move, Push, Release, Turn
+from kb.localisation.after_carry import (
+    agreeing_origins,
+    contact_suspects,
+    explain_carry,
+    moved_object,
+    objects_astray,
+    refined_extent,
+)
+from kb.localisation.after_walk import DeadReckoning, explain_walk
+from kb.localisation.hypotheses.explanation import Accommodated, Explanation, field_statuses
+from kb.localisation.hypotheses.frames import ALL_HYPOTHESES, FieldRanges, Observation, Position
+from kb.localisation.hypotheses.remap import RemapCache, RemappedMap, object_pose, remap
+from kb.localisation.hypotheses.walk_outcomes import (
+    MotionHypothesis,
+    blocked_ends,
+    entered_square,
+    observation_places,
+    snap_to_middle,
+)
+from kb.localisation.hypotheses.what_if import command_motion
+from kb.localisation.score import Judgement
+from kb.localisation.state import TrackerState
+from kb.mapping.completions import Completions
+from kb.mapping.occupancy import FREE, FULL, OccupancyMap
+from kb.objects.held_object import ROUNDING, HeldObject, borne_out, discounted
+from kb.perception.retina import count_ranges
+
+MAX_MOTIONS = 12  # last straight motions that are kept for re-estimation: bounds its time; tuned on random worlds
+RESIDUAL_WINDOW = 4  # last observations by whose residuals a localisation failure is recognised; tuned likewise
+
+
+@dataclass
+class Tracker:
+    """The one owner of the localisation state.
+
+    Attributes
+    ----------
+    state : what is believed after the newest observation. It is replaced, never changed, but for its occupancy map,
+        which the tracker updates in place.
+    """
+
+    state: TrackerState = field(default_factory=TrackerState)
+
+    # -- what others call ------------------------------------------------------------------------
+
+    def anew(self) -> "Tracker":
+        """Return a tracker that begins anew at the believed place, with an empty map and all frame hypotheses.
+
+        Called after a localisation failure. The track is kept, so that the robot knows about where it came from.
+        """
+        state = self.state
+        been = (*state.been, *(observation.place for observation in state.observations[:-1]))
+        return Tracker(TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been))
+
+    def wake(self, impression: Impression) -> Accommodated:
+        """Explain and integrate the first impression.
+
+        Parameters
+        ----------
+        impression : what the senses return on waking.
+
+        Returns
+        -------
+        Accommodated
+            The chosen explanation, and how each of the 160 fields is accounted for.
+        """
+        return self._after_walk(count_ranges(impression.retina), DeadReckoning(self.state.place, ()), None)
+
+    def accommodate(self, command: Command, impression: Impression) -> Accommodated:
+        """Explain and integrate the impression that followed a command.
+
+        Parameters
+        ----------
+        command : the command, in Utak's own frame.
+        impression : what the senses returned after it.
+
+        Returns
+        -------
+        Accommodated
+            The chosen explanation, and how each of the 160 fields is accounted for.
+        """
+        ranges, state = count_ranges(impression.retina), self.state
+        if state.held is not None and isinstance(command, Push | Turn):
+            return self._after_carry(ranges, state.held, command)
+        if isinstance(command, Release):
+            self.state = state = replace(state, held=None)
+        shift = (0.0, 0.0)
+        if isinstance(command, Move) and state.held is None:
+            shift = state.frame.to_lattice(command.east, command.north)
+        x, y = state.place
+        return self._after_walk(
+            ranges, DeadReckoning((x + shift[0], y + shift[1]), blocked_ends((x, y), shift)), command
+        )
+
+    def grasp(self, load: HeldObject) -> None:
+        """Believe that an object is in the hand.
+
+        The squares of an object that was never held before become floor in the occupancy map.
+
+        Parameters
+        ----------
+        load : the object, where it is believed to lie. What is known of an object held before is kept.
+        """
+        loads = self.state.loads
+        if load.name not in loads:
+            self._declare_floor(load)
+            loads = {**loads, load.name: replace(load, since=len(self.state.observations))}
+        self.state = replace(self.state, loads=loads, held=load.name)
+
+    def update_object(self, load: HeldObject) -> None:
+        """Replace what is known of an object that was held before by `load`, which bears the same name."""
+        self.state = replace(self.state, loads={**self.state.loads, load.name: load})
+
+    def keep_completions(self, completions: Completions | None) -> None:
+        """Keep the newest completions of the map; the chance of a contact is estimated by them."""
+        self.state = replace(self.state, completions=completions)
+
+    # -- after a walk, on waking, after a release ------------------------------------------------
+
+    def _after_walk(self, ranges: FieldRanges, walk: DeadReckoning, command: Command | None) -> Accommodated:
+        """Explain and integrate an observation after a walk, or after a command that leaves everything in place."""
+        if walk.blocked and isinstance(command, Move):
+            self._remember(command)
+        judged = explain_walk(self.state, ranges, walk, command)
+        explanation = judged.explanation
+        self._learn(judged)
+        self._apply(explanation)
+        self._count_confirmations(explanation)
+        self._note_motion(explanation)
+        if explanation.how == "blocked" or explanation.place == self.state.place != walk.predicted:
+            squares = explanation.contact_squares or {entered_square(explanation.place, walk.predicted)}
+            self.state = replace(self.state, blocked_squares=self.state.blocked_squares | squares)
+        return self._integrate(explanation, ranges)
+
+    def _count_confirmations(self, explanation: Explanation) -> None:
+        """Count an observation that was predicted in favour of the frame, and reset the count after a surprise."""
+        number = self.state.confirmations
+        number = number + 1 if explanation.how == "predicted" else number * (explanation.chance is not None)
+        self.state = replace(self.state, confirmations=number)
+
+    def _note_motion(self, explanation: Explanation) -> None:
+        """Note that motions slip, or which of the last motions was blocked, if an explanation says so."""
+        state = self.state
+        if explanation.how == "slipped":
+            self.state = replace(state, slipped=True, motions=())
+        elif explanation.how in ("blocked", "misled"):
+            walk = explanation.reestimated
+            since = len(state.observations) if walk is None else walk.correction.since
+            motions = tuple(m._replace(blocked=True) if m.number == since else m for m in state.motions)
+            self.state = replace(state, motions=motions)
+
+    # -- after a push or a turn ------------------------------------------------------------------
+
+    def _after_carry(self, ranges: FieldRanges, name: str, command: Push | Turn) -> Accommodated:
+        """Explain and integrate an observation after a push or a turn of the held object `name`."""
+        state, motion = self.state, command_motion(command, self.state.frame, self.state.place)
+        load = state.loads[name]
+        if isinstance(command, Turn) and state.beside_line:
+            load = replace(load, astray=max(load.astray, ROUNDING))
+            self.update_object(load)
+        judged = explain_carry(self.state, self.state.surprise(command, ranges), load, motion)
+        if isinstance(command, Push):
+            self._remember(command, name)
+        self._learn(judged)
+        self._apply(judged.explanation)
+        self._move_object(name, judged.explanation, command, ranges)
+        return self._integrate(judged.explanation, ranges)
+
+    def _move_object(self, name: str, chosen: Explanation, command: Push | Turn, ranges: FieldRanges) -> None:
+        """Move the held object as the chosen explanation says, and refine what is known of its outline."""
+        if chosen.larger is not None:
+            self._declare_floor(chosen.larger)
+            self.update_object(chosen.larger)
+        self.state = replace(self.state, slipped=self.state.slipped or chosen.how == "slipped")
+        load, motion = self.state.loads[name], command_motion(command, self.state.frame, self.state.place)
+        suspected = contact_suspects(self.state, load, chosen, motion)
+        self.update_object(moved_object(self.state, load, chosen, motion, ranges, suspected))
+        self.state = replace(self.state, suspected_squares=self.state.suspected_squares | suspected, place=chosen.place)
+        if chosen.outcome is not None and chosen.outcome.as_commanded:
+            refined = refined_extent(self.state, self.state.loads[name], ranges, self.state.place)
+            if refined is not None:
+                self.update_object(refined)
+        self.state = replace(self.state, hypotheses=agreeing_origins(self.state, ranges))
+        self.state = replace(self.state, loads=objects_astray(self.state))
+
+    # -- the one place where an explanation is applied -------------------------------------------
+
+    def _apply(self, chosen: Explanation) -> None:
+        """Believe what an explanation says of the frame and of earlier motions.
+
+        If either is new, all observations and held objects are mapped anew.
+        """
+        state, loads = self.state, self.state.loads
+        if chosen.remaps:
+            state = replace(state, hypotheses=chosen.hypotheses, confirmations=0)
+            loads = borne_out(loads, state.held)
+        if chosen.reestimated is not None:
+            correction = chosen.reestimated.correction
+            own = state.frame.place_to_utak(*state.place)
+            observations = tuple(correction.observations(state.observations))
+            loads = correction.loads(loads, state.frame)
+            place = state.frame.place_from_utak(*correction.place(own))
+            state = replace(state, place=place, observations=observations)
+        elif chosen.frame == state.frame:
+            self.state = state
+            return
+        if chosen.reestimated is not None or len(loads) < len(state.loads):
+            under = remap(chosen.frame, state.frame, state.observations, loads.values())
+        else:
+            under = RemapCache(state.frame, state.occupancy, state.observations, loads).remapped(chosen.frame)
+        self.state = _remapped(replace(state, frame=chosen.frame), under)
+
+    def _learn(self, judged: Judgement) -> None:
+        """Keep what was learnt while an explanation was chosen: searches, hypotheses, other ends of the motion."""
+        state, chosen = self.state, judged.explanation
+        if judged.hypotheses is not None:
+            state = replace(state, hypotheses=judged.hypotheses)
+        self.state = state = replace(state, search_count=judged.searches)
+        if not judged.blocked or chosen.frame != state.frame or state.motions[-1].number != len(state.observations):
+            return
+        weights = [(one, (one.chance or 0.0) * math.exp(-one.prior_cost)) for one in judged.blocked]
+        total = sum(weight for _, weight in weights)
+        others = [(state.frame.place_to_utak(*one.place), w / total) for one, w in weights if one.place != chosen.place]
+        motions = (*state.motions[:-1], state.motions[-1]._replace(alternative_ends=tuple(others)))
+        self.state = replace(state, motions=motions)
+
+    def _remember(self, command: Move | Push, name: str | None = None) -> None:
+        """Remember a straight motion, for it may have ended otherwise than believed. name : of the object in hand."""
+        state = self.state
+        motion = MotionHypothesis(len(state.observations), (command.east, command.north), state.hypotheses, load=name)
+        self.state = replace(state, motions=(*state.motions[1 - MAX_MOTIONS :], motion))
+
+    def _declare_floor(self, load: HeldObject) -> None:
+        """Believe that there is floor where an object lies."""
+        occupancy, patch = self.state.occupancy, load.possible
+        squares = occupancy.squares(patch.west, patch.south, patch.mask)
+        occupancy.declare(squares, FREE, len(self.state.observations) - 1)
+
+    def _integrate(self, explanation: Explanation, ranges: FieldRanges) -> Accommodated:
+        """Integrate an explained observation into the map, without what the held objects show of themselves."""
+        state, occupancy = self.state, self.state.occupancy
+        samples, number = state.frame.samples(), len(state.observations)
+        x, y = math.floor(explanation.place[0]), math.floor(explanation.place[1])
+        loads = {name: load.seen(samples, ranges, x, y) for name, load in state.loads.items()}
+        samples, counts = discounted(samples, ranges, x, y, loads.values())
+        cells = field_statuses(occupancy, samples, counts, x, y)
+        moved = tuple(object_pose(load, state.frame) for load in loads.values())
+        observation = Observation(ranges, state.frame.place_to_utak(*explanation.place), moved)
+        occupancy.observe(samples, counts, x, y, number)
+        occupancy.overruled += explanation.residual  # contradictions among open squares count as well
+        if number == 0:
+            occupancy.stand(x, y, 0)
+        self.state = replace(
+            state,
+            loads=loads,
+            observations=(*state.observations, observation),
+            residuals=(*state.residuals[1 - RESIDUAL_WINDOW :], explanation.residual),
+            place=_standing_place(state, explanation.place),
+        )
+        return Accommodated(explanation, cells)
+
+
+def _remapped(state: TrackerState, under: RemappedMap) -> TrackerState:
+    """Return a state with another map and the objects on it; what belonged to the squares of the old map is dropped."""
+    if under.occupancy is not state.occupancy:
+        state = replace(state, blocked_squares=frozenset(), suspected_squares=frozenset(), completions=None)
+    return replace(state, occupancy=under.occupancy, loads=dict(under.loads))
+
+
+def _standing_place(state: TrackerState, place: Position) -> Position:
+    """Return the place to believe, map frame: on the side of a grid line where nothing stands, snapped to the middle.
+
+    A motion that a contact stopped ends on a grid line, and the observation may have been made from either side.
+    """
+    sides, occupancy = [place, *observation_places(place)], state.occupancy
+    squares = [(math.floor(x), math.floor(y)) for x, y in sides]
+    free = (occupancy.state[occupancy.index(*s)] != FULL and s not in state.blocked_squares for s in squares)
+    return snap_to_middle(next((side for side, can_stand in zip(sides, free, strict=True) if can_stand), place))

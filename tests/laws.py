@@ -1,0 +1,344 @@
+"""The laws of the house (docs/architecture.md, "Laws"): each is a function that yields a sentence for each violation.
+
+A law looks at the source under a root folder and imports none of it, so it can be tried on a small planted house.
+"""
+
+import ast
+import io
+import re
+import sys
+import tokenize
+from collections import defaultdict
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+HOUSE = ("geometry", "kb", "planner", "simulator")
+MEASURED = (*HOUSE, "benchmarks")
+MAY_IMPORT = {
+    "geometry": set[str](),
+    "kb": {"geometry"},
+    "planner": {"geometry", "kb"},
+    "simulator": {"geometry", "kb", "planner"},
+}
+MAY_USE = {
+    "geometry": {"numba", "numpy", "shapely", "networkx"},
+    "kb": {"clingo", "numpy", "shapely"},
+    "planner": {"numpy", "shapely"},
+    "simulator": {"numpy", "shapely"},
+}
+PURE_WORLD = "simulator/world"  # the simulated world: besides itself it may import geometry alone
+NUMBA_IN = "geometry/kernels/jit.py"
+CLINGO_IN = ("kb/reasoning", "kb/three_valued")
+MAX_MODULES = 12  # in a folder: what a reader keeps in mind at once
+MAX_LINES = 400  # of a module
+PERSON_PER_THOUSAND = 1.0  # "he", "his", "him" in 1,000 words of comments and docstrings
+EMPTY_NAMES = {"utils", "helpers", "common", "misc", "core", "manager"}
+RIDDLE = re.compile(r"(That|Who|What|By|Where|Whose|Whom|When|How|If|So|And|Of|To)\b")
+PERSON = re.compile(r"\b(he|his|him|himself)\b", re.IGNORECASE)
+VAGUE_WORDS = """
+    MOST LEAST NEAR FAR BESIDE LIKELY FULL FEW SOME ABOUT STILL EDGE LOOSE WIDEST MAYBE SHY BARE LAST SURE CLEAR LONG
+    SHORT OTHERS UNSEEN
+"""
+VAGUE = set(VAGUE_WORDS.split())
+
+
+@cache
+def tree_of(path: Path) -> ast.Module:
+    """Return the syntax tree of a module."""
+    return ast.parse(path.read_text())
+
+
+def modules(root: Path, packages: tuple[str, ...] = HOUSE) -> Iterator[Path]:
+    """Yield the modules of some packages, sorted."""
+    for package in packages:
+        yield from sorted((root / package).rglob("*.py"))
+
+
+def short(path: Path, root: Path) -> str:
+    """Return a path below the root, with slashes."""
+    return path.relative_to(root).as_posix()
+
+
+def imports(path: Path) -> Iterator[tuple[str, str]]:
+    """Yield (module, name) for each import at whatever depth; the name is "" for `import module`."""
+    for node in ast.walk(tree_of(path)):
+        if isinstance(node, ast.Import):
+            yield from ((alias.name, "") for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            yield from ((node.module, alias.name) for alias in node.names)
+
+
+def package_imports(root: Path) -> Iterator[str]:
+    """Packages import only packages below them: geometry, kb, planner, simulator."""
+    for path in modules(root):
+        own = short(path, root).split("/")[0]
+        below = MAY_IMPORT[own] | {own}
+        for module, _ in imports(path):
+            if module.split(".")[0] in {*HOUSE, "benchmarks", "tests", "utak"} - below:
+                yield f"{short(path, root)} imports {module}"
+            ours = module.split(".")[0] in HOUSE and not module.startswith(("geometry", PURE_WORLD.replace("/", ".")))
+            if ours and short(path, root).startswith(PURE_WORLD):
+                yield f"{short(path, root)} imports {module}: the simulated world knows geometry alone"
+
+
+def relative_imports(root: Path) -> Iterator[str]:
+    """Every import is absolute, so that a reader sees which room it comes from."""
+    for path in modules(root, MEASURED):
+        if any(isinstance(node, ast.ImportFrom) and node.level for node in ast.walk(tree_of(path))):
+            yield f"{short(path, root)} has a relative import"
+
+
+def others_used(root: Path) -> Iterator[str]:
+    """Packages use only the libraries that they may; numba is met in one module, clingo in two rooms."""
+    for path in modules(root):
+        name = short(path, root)
+        for library in {module.split(".")[0] for module, _ in imports(path)}:
+            if library in {*HOUSE, "utak_command"} | set(sys.stdlib_module_names):
+                continue
+            if library not in MAY_USE[name.split("/")[0]]:
+                yield f"{name} uses {library}"
+            if library == "numba" and name != NUMBA_IN:
+                yield f"{name} uses numba, which {NUMBA_IN} alone may"
+            if library == "clingo" and not name.startswith(CLINGO_IN):
+                yield f"{name} uses clingo, which {' and '.join(CLINGO_IN)} alone may"
+
+
+def rooms(root: Path, packages: tuple[str, ...] = MEASURED) -> dict[str, set[str]]:
+    """Return which rooms each room imports. A room is a folder of modules, or a module beside such folders."""
+    known = {short(path, root)[:-3].replace("/", ".").removesuffix(".__init__") for path in modules(root, packages)}
+    folders = {module for module in known if (root / module.replace(".", "/")).is_dir()}
+
+    def room(module: str) -> str:
+        return module if module in folders or module.count(".") == 1 else module.rpartition(".")[0]
+
+    edges: dict[str, set[str]] = defaultdict(set)
+    for path in modules(root, packages):
+        own = room(short(path, root)[:-3].replace("/", ".").removesuffix(".__init__"))
+        edges[own] |= set()
+        for module, name in imports(path):
+            target = f"{module}.{name}" if f"{module}.{name}" in known else module
+            if target in known and room(target) != own:
+                edges[own].add(room(target))
+    return dict(edges)
+
+
+def circles(root: Path) -> Iterator[str]:
+    """Imports among packages and among rooms form no circle."""
+    edges, done = rooms(root), set[str]()
+
+    def visit(room: str, way: tuple[str, ...]) -> Iterator[str]:
+        if room in way:
+            yield " -> ".join((*way[way.index(room) :], room))
+        elif room not in done:
+            for other in sorted(edges.get(room, ())):
+                yield from visit(other, (*way, room))
+            done.add(room)
+
+    for room in sorted(edges):
+        yield from visit(room, ())
+
+
+def crowded_folders(root: Path) -> Iterator[str]:
+    """A folder holds at most a dozen modules."""
+    count: dict[Path, int] = defaultdict(int)
+    for path in modules(root, MEASURED):
+        count[path.parent] += path.name != "__init__.py"
+    for folder, number in sorted(count.items()):
+        if number > MAX_MODULES:
+            yield f"{short(folder, root)} holds {number} modules, at most {MAX_MODULES}"
+
+
+def public_values(path: Path) -> Iterator[str]:
+    """Yield the public classes, constants and type aliases that a module defines."""
+    for node in tree_of(path).body:
+        if isinstance(node, ast.ClassDef):
+            names = [node.name]
+        elif isinstance(node, ast.Assign | ast.AnnAssign):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            flat = [part for t in targets for part in (t.elts if isinstance(t, ast.Tuple) else [t])]
+            names = [t.id for t in flat if isinstance(t, ast.Name) and t.id[0].isupper()]
+        else:
+            continue
+        yield from (name for name in names if not name.startswith("_"))
+
+
+def names_with_two_meanings(root: Path) -> Iterator[str]:
+    """No two public classes, constants or type aliases bear one name."""
+    places: dict[str, list[str]] = defaultdict(list)
+    for path in modules(root, MEASURED):
+        for name in public_values(path):
+            if len(name) > 1:  # a type variable stands for nothing of the project's
+                places[name].append(short(path, root))
+    for name, where in sorted(places.items()):
+        if len(where) > 1:
+            yield f"{name} stands in {', '.join(where)}"
+
+
+def vague_constants(root: Path) -> Iterator[str]:
+    """A constant is named by what it bounds."""
+    for path in modules(root, MEASURED):
+        for name in set(public_values(path)) & VAGUE:
+            yield f"{short(path, root)}: {name} does not say what it bounds"
+
+
+def docstrings(path: Path) -> Iterator[tuple[int, str]]:
+    """Yield (line, text) of each docstring of a module, its classes and functions."""
+    for node in ast.walk(tree_of(path)):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            text = ast.get_docstring(node)
+            if text:
+                yield getattr(node, "lineno", 1), text
+
+
+def riddles(root: Path) -> Iterator[str]:
+    """A docstring begins with what is returned or done, not with a subordinate clause."""
+    for path in modules(root, MEASURED):
+        for line, text in docstrings(path):
+            if RIDDLE.match(text):
+                yield f"{short(path, root)}:{line}: {text.splitlines()[0]}"
+
+
+def persons(root: Path) -> Iterator[str]:
+    """Comments and docstrings speak of the robot, not of him."""
+    for package in MEASURED:
+        words = found = 0
+        for path in modules(root, (package,)):
+            tokens = tokenize.generate_tokens(io.StringIO(path.read_text()).readline)
+            texts = [token.string for token in tokens if token.type == tokenize.COMMENT]
+            texts += [text for _, text in docstrings(path)]
+            words += sum(len(text.split()) for text in texts)
+            found += sum(len(PERSON.findall(text)) for text in texts)
+        if found > PERSON_PER_THOUSAND * words / 1000:
+            yield f"{package}: he, his or him {found} times in {words} words"
+
+
+def shapeless_modules(root: Path) -> Iterator[str]:
+    """A module has a concept: a docstring, a name, and no more than 400 lines."""
+    for path in modules(root, MEASURED):
+        name, lines = short(path, root), len(path.read_text().splitlines())
+        if lines > MAX_LINES:
+            yield f"{name} has {lines} lines, at most {MAX_LINES}"
+        if path.stem in EMPTY_NAMES:
+            yield f"{name} is named after no concept"
+        if len((ast.get_docstring(tree_of(path)) or "").split()) < 3:
+            yield f"{name} does not say what it is"
+
+
+def code_in_fronts(root: Path) -> Iterator[str]:
+    """An `__init__.py` holds a docstring alone; that of geometry also its public names."""
+    for path in modules(root):
+        if path.name == "__init__.py":
+            public = short(path, root) == "geometry/__init__.py"
+            allowed = (ast.Expr, ast.ImportFrom, ast.Assign) if public else (ast.Expr,)
+            if not all(isinstance(node, allowed) for node in tree_of(path).body):
+                yield f"{short(path, root)} has code"
+
+
+def unlisted_modules(root: Path) -> Iterator[str]:
+    """The docstring of a room's `__init__.py` names each of its modules."""
+    for path in modules(root):
+        if path.name == "__init__.py":
+            text = ast.get_docstring(tree_of(path)) or ""
+            for other in sorted(path.parent.iterdir()):
+                room = other.is_dir() and (other / "__init__.py").exists()
+                if (room or (other.suffix == ".py" and other != path)) and not re.search(rf"\b{other.stem}\b", text):
+                    yield f"{short(path, root)} does not list {other.stem}"
+
+
+def inherited_classes(root: Path) -> Iterator[str]:
+    """No class of ours inherits from another one of ours: parts are put together, not mixed in."""
+    ours = {node.name for path in modules(root) for node in tree_of(path).body if isinstance(node, ast.ClassDef)}
+    for path in modules(root):
+        for node in ast.walk(tree_of(path)):
+            if isinstance(node, ast.ClassDef) and not node.name.endswith("Error"):
+                for base in node.bases:
+                    if isinstance(base, ast.Name) and base.id in ours:
+                        yield f"{short(path, root)}: {node.name} inherits from {base.id}"
+
+
+def is_frozen(node: ast.ClassDef) -> bool:
+    """Return whether a class is a NamedTuple or a frozen dataclass."""
+    marks = [ast.unparse(part) for part in (*node.decorator_list, *node.bases)]
+    return any(mark == "NamedTuple" or ("dataclass" in mark and "frozen=True" in mark) for mark in marks)
+
+
+def thunks(root: Path) -> Iterator[str]:
+    """A frozen value holds values, not functions that are still to be called."""
+    for path in modules(root, ("kb", "planner", "simulator")):
+        aliases = {
+            target.id
+            for node in tree_of(path).body
+            if isinstance(node, ast.Assign) and ast.unparse(node.value).startswith("Callable[[],")
+            for target in node.targets
+            if isinstance(target, ast.Name)
+        }
+        for node in ast.walk(tree_of(path)):
+            if isinstance(node, ast.ClassDef) and is_frozen(node):
+                for field in node.body:
+                    if isinstance(field, ast.AnnAssign):
+                        written = ast.unparse(field.annotation)
+                        if "Callable[[]," in written or set(re.findall(r"\w+", written)) & aliases:
+                            yield f"{short(path, root)}: {node.name}.{ast.unparse(field.target)} is still to be called"
+
+
+def words_of_simulator(root: Path) -> Iterator[str]:
+    """Nothing below the simulator speaks of it, in a name, a string or a comment."""
+    for path in modules(root, ("geometry", "kb", "planner")):
+        kinds = (tokenize.NAME, tokenize.STRING, tokenize.COMMENT)
+        for token in tokenize.generate_tokens(io.StringIO(path.read_text()).readline):
+            if token.type in kinds and "simulator" in token.string:
+                yield f"{short(path, root)}:{token.start[0]} speaks of the simulator"
+
+
+def encodings_that_include(root: Path) -> Iterator[str]:
+    """Encodings are loaded by one loader: none includes another or runs a script."""
+    for path in sorted([*(root / "kb").rglob("*.lp"), *(root / "planner").rglob("*.lp")]):
+        for word in ("#include", "#script"):
+            if word in path.read_text():
+                yield f"{short(path, root)} has {word}"
+
+
+def patched_globals(root: Path) -> Iterator[str]:
+    """Tests give another part at a seam; they put nothing in the place of a module's own functions."""
+    for path in sorted((root / "tests").rglob("*.py")):
+        named = {
+            alias.asname or alias.name
+            for node in ast.walk(tree_of(path))
+            if isinstance(node, ast.Import | ast.ImportFrom)
+            for alias in node.names
+            if _is_module(root, node, alias.name)
+        }
+        for node in ast.walk(tree_of(path)):
+            if isinstance(node, ast.Call) and ast.unparse(node.func) == "monkeypatch.setattr" and node.args:
+                target = node.args[0]
+                text = target.value if isinstance(target, ast.Constant) else ast.unparse(target)
+                if text in named or (isinstance(target, ast.Constant) and str(text).split(".")[0] in HOUSE):
+                    yield f"{short(path, root)}:{node.lineno} patches {text}"
+
+
+def _is_module(root: Path, node: ast.Import | ast.ImportFrom, name: str) -> bool:
+    """Return whether an imported name is a module of the house."""
+    whole = f"{node.module}.{name}" if isinstance(node, ast.ImportFrom) else name
+    return whole.split(".")[0] in HOUSE and (root / whole.replace(".", "/")).with_suffix(".py").exists()
+
+
+LAWS = (
+    package_imports,
+    relative_imports,
+    others_used,
+    circles,
+    crowded_folders,
+    names_with_two_meanings,
+    vague_constants,
+    riddles,
+    persons,
+    shapeless_modules,
+    code_in_fronts,
+    unlisted_modules,
+    inherited_classes,
+    thunks,
+    words_of_simulator,
+    encodings_that_include,
+    patched_globals,
+)
