@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 
+from geometry.kernels.arrays import XY
 from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import Inside, Leg
 from geometry.motion.se2 import Motion, Rotate, Translate
@@ -20,7 +21,7 @@ from planner.advice import Act, Go, See
 from planner.carrying import remaining_plan
 from planner.carrying.infeasibility import Infeasibility
 from planner.carrying.manipulation_oracle import EndsFunction, ManipulationOracle, ManipulationPlan, Request
-from planner.carrying.remaining_plan import Place, RemainingPlan, grasp_direction, is_at, square_index
+from planner.carrying.remaining_plan import RemainingPlan, grasp_direction, is_at, square_index
 from planner.goals.placement import SURELY, drawn_out, region_of
 from planner.screen.moves import is_open
 from planner.screen.projection import Squares, grown
@@ -105,7 +106,7 @@ class PlanExecutor:
         self._plans = 0  # how many were made
         self._contacts: dict[str, int] = {}  # how often an object stood against something unexpectedly
         self._pushed: Translate | None = None  # the last motion with a held object, if a push, and not a retreat
-        self._went_on: Place | None = None  # where a plan was last made that goes on with the present grasp
+        self._went_on: XY | None = None  # where a plan was last made that goes on with the present grasp
 
     @property
     def turns(self) -> bool:
@@ -121,7 +122,7 @@ class PlanExecutor:
         Parameters
         ----------
         node : the object.
-        ends : where it shall lie, by name, frame of the view's arrays.
+        ends : where it shall lie, by name, view frame.
         situation : what is believed.
         hoped : returns the ends as they are if the floor goes on as it is hoped to.
 
@@ -155,7 +156,7 @@ class PlanExecutor:
         Parameters
         ----------
         node : the object.
-        ends : where it shall lie, by name, frame of the view's arrays.
+        ends : where it shall lie, by name, view frame.
         situation : what is believed.
         """
         found = self._oracle.find(self._request(node, ends, "", situation.model), situation)

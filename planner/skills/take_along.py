@@ -4,8 +4,8 @@ import math
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import XY, Floats
 from geometry.manipulation.plan_carrying import Inside
 from geometry.manipulation.workspace import Workspace
 from geometry.motion.first_contact import ContactBody
@@ -18,7 +18,6 @@ from planner.screen.projection import Squares, grown, marked
 from planner.situation import Situation
 from planner.subgoal_kind import SubgoalKind
 
-Floats = NDArray[np.float64]
 VIEWPOINT_RADIUS = 4  # squares from a viewpoint within which an object is brought; a convention
 MAX_TRIED_SQUARES = 64  # squares of a viewpoint that are tried; a bound on time
 MIN_PUSH = 0.5  # squares: a shorter push stays in the robot's square
@@ -45,7 +44,7 @@ def shortest_push(node: Node, squares: Squares, situation: Situation) -> Transla
     return Translate(*free[0].tolist()) if len(free) else None
 
 
-def detour_push(node: Node, squares: Squares, end: tuple[float, float], situation: Situation) -> Translate | None:
+def detour_push(node: Node, squares: Squares, end: XY, situation: Situation) -> Translate | None:
     """Return the first of two straight pushes to an end, so that the robot comes to one of some squares between them.
 
     Of all such pairs it is the shortest.
