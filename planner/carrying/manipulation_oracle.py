@@ -39,7 +39,7 @@ MAX_ORACLE_ROUNDS = 12  # options that geometry is asked about for one request; 
 SWEEP_STRIDE = 0.25  # squares between the sampled places of a motion; a convention, well below one square
 CONTACTS_FOR_CLEARANCE = 2  # unexpected contacts of an object, from which on its plan must keep WALL_CLEARANCE; tuned
 WALL_CLEARANCE = 0.15  # squares that such a plan keeps from walls; tuned on random worlds (benchmarks.campaign)
-OUTLINE_MARGIN = 0.3  # squares kept free about an object off the grid, and for each contact; tuned likewise
+INEXACT_MARGIN = 0.3  # squares kept free about an object off the grid, and for each contact; tuned likewise
 MAX_MARGIN = 0.6  # squares: the most that is kept free, so that doors stay passable; tuned likewise
 TURN_ARM = 0.4  # squares that a point of an object moves for each degree that it is turned, about; a convention
 MAX_REMEMBERED = 64  # answers of geometry that are remembered; a bound on memory
@@ -245,7 +245,7 @@ class ManipulationOracle:
         if key not in self._answers:
             if len(self._answers) > MAX_REMEMBERED:
                 self._answers.clear()
-            margin = min(OUTLINE_MARGIN * (contacts + (not is_whole(shape))), MAX_MARGIN)
+            margin = min(INEXACT_MARGIN * (contacts + (not is_whole(shape))), MAX_MARGIN)
 
             def ask(free: Bools, walls: Any = None) -> CarryingPlan:
                 return plan_carrying(

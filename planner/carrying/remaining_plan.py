@@ -5,7 +5,7 @@ that leads over squares known to be free.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -176,6 +176,21 @@ def safe_prefix(found: ManipulationPlan, node: Node, situation: Situation) -> Ma
         return None
     plan = replace(found.plan, legs=(replace(first, motions=tuple(safe)),))
     return replace(found, plan=plan, swept=swept_squares(plan, start, situation.model.labels.shape))
+
+
+@dataclass(frozen=True)
+class PlanOperations:
+    """The functions on remaining plans that the executor uses; tests pass their own.
+
+    Attributes
+    ----------
+    begin_plan, revalidate, start_from_robot, safe_prefix : the functions above, or others in their place.
+    """
+
+    begin_plan: Callable[[ManipulationPlan, Node, WorldModel], RemainingPlan] = begin_plan
+    revalidate: Callable[[RemainingPlan, Mapping[str, End] | None, Situation], RemainingPlan | None] = revalidate
+    start_from_robot: Callable[[RemainingPlan, Mapping[str, End], Situation], RemainingPlan | None] = start_from_robot
+    safe_prefix: Callable[[ManipulationPlan, Node, Situation], ManipulationPlan | None] = safe_prefix
 
 
 def square_index(place: XY, model: WorldModel) -> Squares:

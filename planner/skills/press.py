@@ -11,10 +11,9 @@ import numpy as np
 
 from geometry.kernels.arrays import XY
 from geometry.motion.se2 import Translate
-from kb.body import Push
 from kb.language.terms import Fact
 from kb.world.model import Node, WorldModel
-from planner.advice import Act
+from planner.advice import Act, unplanned_act
 from planner.goals.placement import Placement
 from planner.goals.robot_goals import corner_side
 from planner.situation import Situation
@@ -63,7 +62,7 @@ class Presser:
         push = self._left.pop(0)
         self._last = push, (node.polygon.centroid.x, node.polygon.centroid.y)
         why = f"{node.name} is pressed against the wall, to be sure that it is there"
-        return Act(Push(*model.frame.to_utak(push.dx, push.dy)), why, push)
+        return unplanned_act(push, why, model)
 
 
 def _corner_of(goal: Fact, situation: Situation) -> XY:

@@ -19,7 +19,7 @@ from planner.situation import Situation
 from planner.subgoal_kind import SubgoalKind
 
 VIEWPOINT_RADIUS = 4  # squares from a viewpoint within which an object is brought; a convention
-MAX_TRIED_SQUARES = 64  # squares of a viewpoint that are tried; a bound on time
+MAX_TRIED_PUSHES = 64  # squares of a viewpoint that are tried; a bound on time
 MIN_PUSH = 0.5  # squares: a shorter push stays in the robot's square
 MAX_ESCAPE = 8  # squares along each axis by which an object that shuts the robot in is led out; a bound on time
 
@@ -118,7 +118,7 @@ def region_near(squares: Squares, situation: Situation) -> Inside | None:
 def _pushes_to(squares: Squares, situation: Situation) -> Floats:
     """Return the pushes (n, 2) that bring the robot to the middles of some squares, the shortest first.
 
-    At most MAX_TRIED_SQUARES of them, spread over all lengths; none longer than one move of an exploring robot.
+    At most MAX_TRIED_PUSHES of them, spread over all lengths; none longer than one move of an exploring robot.
     """
     model = situation.model
     rows, columns = np.divmod(squares, model.labels.shape[1])
@@ -128,7 +128,7 @@ def _pushes_to(squares: Squares, situation: Situation) -> Floats:
     longest = HURRY.most(SubgoalKind.EXPLORE, model)
     able = np.flatnonzero((length > MIN_PUSH) & (np.abs(pushes).max(axis=1) <= longest))
     able = able[np.argsort(length[able], kind="stable")]
-    spread = np.unique(np.linspace(0, len(able) - 1, MAX_TRIED_SQUARES).astype(int)) if len(able) else able
+    spread = np.unique(np.linspace(0, len(able) - 1, MAX_TRIED_PUSHES).astype(int)) if len(able) else able
     chosen: Floats = pushes[able[spread]]
     return chosen
 

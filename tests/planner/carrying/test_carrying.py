@@ -17,8 +17,7 @@ from kb.body import Body, Command, Grasp, Move, Push, Release, Turn
 from kb.task.task import Task
 from kb.world.model import Node, WorldModel
 from planner.carrying.manipulation_oracle import ManipulationPlan
-from planner.carrying.plan_executor import PlanOperations
-from planner.carrying.remaining_plan import safe_prefix
+from planner.carrying.remaining_plan import PlanOperations, safe_prefix
 from planner.cycle import Options, Robot
 from planner.deciding.decider import Decider
 from planner.deciding.pursuit import Pursuer
