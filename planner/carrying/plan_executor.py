@@ -48,7 +48,6 @@ NO_PROGRESS = 0.1  # squares: less than the shortest useful motion, more than ro
 VIEWPOINT_TARGET = "sight"  # the end of a plan that brings an object near to where the robot wants to look
 AWAY_TARGET = "away"  # the end of a plan that moves an object out of the way of another
 
-
 Advice = Act | Go | See | Infeasibility
 
 

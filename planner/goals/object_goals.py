@@ -1,4 +1,4 @@
-"""Where a carried object must end for a goal to hold, or what must be seen first to tell.
+"""The places where a carried object must end for a goal to hold, or what must be seen first to tell.
 
 Ends (geometry.manipulation.goals) are in the view frame, in squares, as all manipulation planning is.
 """

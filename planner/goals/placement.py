@@ -29,14 +29,14 @@ ANGLE_TOLERANCE = 2.0  # degrees within which an object has the orientation that
 
 
 class DeferredEnds(Protocol):
-    """What is needed to compute some ends, which takes time and is done only when they are asked for."""
+    """The ingredients of some ends. To compute these takes time, so it is done only when they are asked for."""
 
     def ends(self) -> Mapping[str, End]:
         """Compute the ends, by name, in the view frame."""
 
 
 class DeferredViewpoints(Protocol):
-    """What is needed to compute some viewpoints, which takes time and is done only when they are asked for."""
+    """The ingredients of some viewpoints. To compute these takes time, so it is done only when asked for."""
 
     def viewpoints(self) -> tuple[Viewpoint, ...]:
         """Compute the viewpoints."""
