@@ -1,4 +1,4 @@
-"""The planner: from the task and what is believed to the next command. Imports geometry and kb, never the simulator.
+"""The planner: from the task and what is believed to the next command. Imports geometry and kb.
 
 cycle         the action cycle: wake, then act, perceive and decide until the task ends
 decision      a decision: the next command, or the verdict

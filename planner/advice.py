@@ -1,4 +1,4 @@
-"""What the plan executor advises: a command to give, a square to walk to, or squares to see first.
+"""Advice of the plan executor: a command to give, a square to walk to, or squares to see first.
 
 The fourth answer, that nothing can be done, is planner.carrying.infeasibility.Infeasibility.
 """
@@ -6,8 +6,9 @@ The fourth answer, that nothing can be done, is planner.carrying.infeasibility.I
 from dataclasses import dataclass
 
 from geometry.kernels.arrays import XY
-from geometry.motion.se2 import Translate
-from kb.body import Command
+from geometry.motion.se2 import Motion, Rotate, Translate
+from kb.body import Command, Push, Turn
+from kb.world.model import WorldModel
 from planner.screen.projection import Squares
 from planner.sights.frontiers import Viewpoint
 
@@ -55,3 +56,28 @@ class See:
     """
 
     viewpoint: Viewpoint
+
+
+def command_of(motion: Motion, model: WorldModel) -> Command:
+    """Return the command for a motion of the held object.
+
+    Parameters
+    ----------
+    motion : a push or a turn, in squares and degrees, map frame.
+    model : what is believed; its frame tells the robot's own directions.
+    """
+    if isinstance(motion, Rotate):
+        return Turn(motion.degrees)
+    return Push(*model.frame.to_utak(motion.dx, motion.dy))
+
+
+def unplanned_act(push: Translate, why: str, model: WorldModel) -> Act:
+    """Return the act of a push that no plan asks for.
+
+    Parameters
+    ----------
+    push : in squares, map frame.
+    why : the reason, in words.
+    model : what is believed.
+    """
+    return Act(command_of(push, model), why, push)

@@ -18,7 +18,7 @@ from planner.decision import Decision, TaskVerdict
 
 @dataclass(frozen=True)
 class Options:
-    """How the robot works.
+    """Options of the robot.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class StepReport(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """How the task ended.
+    """The end of the task, as the robot judges it.
 
     Attributes
     ----------

@@ -7,7 +7,7 @@ from kb.body import Command
 
 
 class TaskVerdict(StrEnum):
-    """How a task ended, as episodes write it.
+    """The end of a task, as episodes write it.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Decision:
     verdict : how the task ended; None while it goes on.
     unless : the open fact that would overturn the verdict, in words; "" when none is known yet, None when there can be
         none.
-    near : the place (x, y) that the verdict is about, in squares, frame of the view's arrays; None for no such place.
+    near : the place (x, y) that the verdict is about, in squares, view frame; None for no such place.
     """
 
     command: Command | None

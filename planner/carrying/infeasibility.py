@@ -3,18 +3,17 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from geometry.kernels.arrays import XY
 from geometry.manipulation.plan_carrying import CarryingPlan
 from kb.objects.held_object import is_whole
 from kb.world.model import Node, WorldModel
 from planner.carrying.open_facts import possible_width
 from planner.goals.placement import lies_askew
 
-Place = tuple[float, float]
-
 
 @dataclass(frozen=True, eq=False)
 class Refutation:
-    """What geometry refuted: no way leads to any of the ends of an object.
+    """A refutation by geometry: no way leads to any of the ends of an object.
 
     The passages that are too narrow take time to find. They are worked out when a method asks for them.
 
@@ -29,8 +28,8 @@ class Refutation:
     plans: tuple[tuple[int, CarryingPlan], ...]
     model: WorldModel
 
-    def neck(self) -> Place | None:
-        """Return the middle (x, y) of the passage that is too narrow, frame of the view's arrays; None for none."""
+    def neck(self) -> XY | None:
+        """Return the middle (x, y) of the passage that is too narrow, view frame; None for none."""
         passage = closest_refuted(self.plans).passage
         return None if passage is None else passage.place
 
@@ -74,8 +73,8 @@ class Infeasibility:
         """Return why nothing can be done, in words. May take time, to find the passage that is too narrow."""
         return self.message or (self.refutation.reason() if self.refutation is not None else "")
 
-    def neck(self) -> Place | None:
-        """Return the middle (x, y) of the passage that is too narrow, frame of the view's arrays; None for none."""
+    def neck(self) -> XY | None:
+        """Return the middle (x, y) of the passage that is too narrow, view frame; None for none."""
         return None if self.refutation is None else self.refutation.neck()
 
     def unless(self) -> str:

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.goals import End, moved
 from geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, plan_carrying
 from geometry.motion.se2 import Rotate, Translate
@@ -32,8 +32,6 @@ from planner.screen.moves import is_open
 from planner.screen.projection import UNSEEN, grown
 from planner.situation import Situation
 
-Mask = NDArray[np.bool_]
-Place = tuple[float, float]
 EndsFunction = Callable[[], Mapping[str, End]]  # ends by their names; it is called only where they are needed
 TRIED_LEVELS = (0, BOLD, UNSEEN)  # certainty levels of squares (planner.screen.projection), the surest first
 MIN_PLAN_COMMANDS = 2  # commands of the shortest plan with an object in hand: one push and the release (derived)
@@ -41,14 +39,14 @@ MAX_ORACLE_ROUNDS = 12  # options that geometry is asked about for one request; 
 SWEEP_STRIDE = 0.25  # squares between the sampled places of a motion; a convention, well below one square
 CONTACTS_FOR_CLEARANCE = 2  # unexpected contacts of an object, from which on its plan must keep WALL_CLEARANCE; tuned
 WALL_CLEARANCE = 0.15  # squares that such a plan keeps from walls; tuned on random worlds (benchmarks.campaign)
-OUTLINE_MARGIN = 0.3  # squares kept free about an object off the grid, and for each contact; tuned likewise
+INEXACT_MARGIN = 0.3  # squares kept free about an object off the grid, and for each contact; tuned likewise
 MAX_MARGIN = 0.6  # squares: the most that is kept free, so that doors stay passable; tuned likewise
 TURN_ARM = 0.4  # squares that a point of an object moves for each degree that it is turned, about; a convention
 MAX_REMEMBERED = 64  # answers of geometry that are remembered; a bound on memory
 
 
 class OtherObjects(StrEnum):
-    """What a plan does about the other objects, as planner/asp/transport.lp knows it.
+    """The treatment of other objects by a plan, as planner/asp/transport.lp knows it.
 
     Attributes
     ----------
@@ -66,7 +64,7 @@ class ManipulationPlan:
 
     Attributes
     ----------
-    plan : what geometry found, in squares, frame of the view's arrays.
+    plan : what geometry found, in squares, view frame.
     target : the name of the end that it leads to.
     level : the certainty level of the squares that it needs, 0 the surest.
     swept : (rows, columns) bool, the squares that the object, or the robot holding it, crosses.
@@ -77,7 +75,7 @@ class ManipulationPlan:
     plan: CarryingPlan
     target: str
     level: int
-    swept: Mask
+    swept: Bools
     aside: tuple[str, ...] = ()
     hopes: bool = False
 
@@ -96,12 +94,12 @@ class ManipulationPlan:
 
 @dataclass(frozen=True)
 class Request:
-    """A question to the oracle: how can an object be carried to one of several ends?
+    """A question to the oracle: how an object can be carried to one of several ends.
 
     Attributes
     ----------
     node : the object.
-    ends : where it shall lie, by name, in squares, frame of the view's arrays.
+    ends : where it shall lie, by name, in squares, view frame.
     avoid : grasps that failed, as (x, y) of the robot from the middle of the object.
     last_target : the name of the end that was chosen last time; "" for none.
     contacts : how often the object stood against something unexpectedly. Each time more room is wanted about it.
@@ -111,7 +109,7 @@ class Request:
 
     node: Node
     ends: Mapping[str, End]
-    avoid: tuple[tuple[float, float], ...] = ()
+    avoid: tuple[XY, ...] = ()
     last_target: str = ""
     contacts: int = 0
     held: bool = False
@@ -119,7 +117,7 @@ class Request:
 
 
 class CarryingFloor(NamedTuple):
-    """Where an object and the robot are, and which squares they may use, all in one frame.
+    """The places of an object and the robot, and the squares that they may use, all in one frame.
 
     Attributes
     ----------
@@ -130,9 +128,9 @@ class CarryingFloor(NamedTuple):
     """
 
     shape: Any
-    utak: Place
-    free: Mask
-    walk: Mask
+    utak: XY
+    free: Bools
+    walk: Bools
 
 
 class ManipulationOracle:
@@ -159,7 +157,7 @@ class ManipulationOracle:
         Returns
         -------
         ManipulationPlan or Infeasibility
-            The plan is in the frame of the view's arrays.
+            The plan is in the view frame.
         """
         shape, utak = in_view(request.node.polygon, situation), situation.model.place_on_view
         floors = {option: usable_squares(request.node, situation, *option) for option in _floor_options(situation)}
@@ -247,9 +245,9 @@ class ManipulationOracle:
         if key not in self._answers:
             if len(self._answers) > MAX_REMEMBERED:
                 self._answers.clear()
-            margin = min(OUTLINE_MARGIN * (contacts + (not is_whole(shape))), MAX_MARGIN)
+            margin = min(INEXACT_MARGIN * (contacts + (not is_whole(shape))), MAX_MARGIN)
 
-            def ask(free: Mask, walls: Any = None) -> CarryingPlan:
+            def ask(free: Bools, walls: Any = None) -> CarryingPlan:
                 return plan_carrying(
                     shape, free, utak, end, margin, self._pull, avoid, walk, walls=walls, held=held, turn=turn
                 )
@@ -269,7 +267,7 @@ def _may_use_other_doors(node: Node, situation: Situation) -> bool:
     return bool(len(own) > 1 or (not own and situation.forbidden("utak")))
 
 
-def _with_clearance(free: Mask, shape: Any) -> tuple[Mask, Any]:
+def _with_clearance(free: Bools, shape: Any) -> tuple[Bools, Any]:
     """Return the free squares and the walls (shapely) for an object that keeps WALL_CLEARANCE, but where it touches."""
     rows, columns = free.shape
     walls = shapely.box(0, 0, columns, rows).difference(region_of(free))
@@ -278,7 +276,7 @@ def _with_clearance(free: Mask, shape: Any) -> tuple[Mask, Any]:
     return free & ~grown(~np.pad(free, 1), 1)[1:-1, 1:-1], thick
 
 
-def _ambiguous_grasps(node: Node, model: WorldModel) -> Iterator[tuple[float, float]]:
+def _ambiguous_grasps(node: Node, model: WorldModel) -> Iterator[XY]:
     """Yield the grasps, as (x, y) from the object's middle, from which no compass direction surely names its squares.
 
     In a frame that is turned these are squares at its corners.
@@ -297,7 +295,7 @@ def _floor_options(situation: Situation) -> list[tuple[int, OtherObjects]]:
     return [(level, others) for level in TRIED_LEVELS for others in choices]
 
 
-def usable_squares(node: Node, situation: Situation, level: int, others: OtherObjects) -> Mask:
+def usable_squares(node: Node, situation: Situation, level: int, others: OtherObjects) -> Bools:
     """Return the mask (rows, columns) of squares that may be used to carry an object.
 
     These are the free squares of a certainty level and the object's own; with OtherObjects.ASIDE those of movable
@@ -364,17 +362,17 @@ def _manipulation_plan(
     return ManipulationPlan(plan, name, level, swept, aside)
 
 
-def swept_squares(plan: CarryingPlan, shape: Any, size: tuple[int, ...]) -> Mask:
+def swept_squares(plan: CarryingPlan, shape: Any, size: tuple[int, ...]) -> Bools:
     """Return the mask of squares that an object, and the robot holding it, cross on a plan.
 
     Parameters
     ----------
-    plan : the plan, frame of the view's arrays.
-    shape : the outline of the object where it lies before the plan, shapely, same frame.
+    plan : the plan, view frame.
+    shape : the outline of the object where it lies before the plan, shapely, view frame.
     size : (rows, columns) of the mask.
     """
     rows, columns = size
-    mask: Mask = squares(shape, columns, rows)
+    mask: Bools = squares(shape, columns, rows)
     for leg in plan.legs:
         x, y = leg.place
         for motion in leg.motions:

@@ -9,17 +9,14 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import XY, Bools
 from geometry.raster.components import edged
 from kb.perception.protrusions import VERGE
 from kb.world.model import WorldModel
 from planner.decision import Decision, TaskVerdict
 from planner.goals.placement import LIKELY
 from planner.screen.moves import is_settled
-
-Mask = NDArray[np.bool_]
-Place = tuple[float, float]
 
 
 def qualify(decision: Decision, model: WorldModel) -> Decision:
@@ -64,13 +61,13 @@ def verdict_if_not_found(model: WorldModel, immovable: bool = False) -> TaskVerd
     return TaskVerdict.IMPOSSIBLE if proved else TaskVerdict.LIMIT
 
 
-def nearest_open_fact(model: WorldModel, near: Place) -> str:
+def nearest_open_fact(model: WorldModel, near: XY) -> str:
     """Return the open fact nearest to a place that may allow another plan, in words; "" when there is none.
 
     Parameters
     ----------
     model : what is believed.
-    near : (x, y) in squares, frame of the view's arrays.
+    near : (x, y) in squares, view frame.
     """
     wall = _nearest_square(unfelt_walls(model), near)
     if wall is not None:
@@ -82,17 +79,17 @@ def nearest_open_fact(model: WorldModel, near: Place) -> str:
     return f"{unmoved[0].name}, which was never moved, is more than one thing" if unmoved else ""
 
 
-def unfelt_walls(model: WorldModel) -> Mask:
+def unfelt_walls(model: WorldModel) -> Bools:
     """Return the mask (rows, columns) of squares beside known floor on which a wall was seen and never felt."""
     felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE)
-    things: Mask = np.zeros_like(felt)
+    things: Bools = np.zeros_like(felt)
     for node in model.objects:
         things |= model.mask(node.patch)
-    mask: Mask = edged(model.space) & model.view.seen & ~model.space & ~felt & ~things
+    mask: Bools = edged(model.space) & model.view.seen & ~model.space & ~felt & ~things
     return mask
 
 
-def possible_width(width: float, missing: float, sides: tuple[Place, Place], where: str) -> str:
+def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: str) -> str:
     """Return the open fact that a passage is wide enough, in words; "" when it is too narrow in any case.
 
     A wall lies anywhere in the squares in which it was seen. So each side may stand back by up to a square along each
@@ -112,7 +109,7 @@ def possible_width(width: float, missing: float, sides: tuple[Place, Place], whe
     return f"the passage at {where}, which is between {width:.2f} and {most:.2f} squares wide, is wide enough"
 
 
-def _nearest_square(mask: Mask, near: Place) -> Place | None:
+def _nearest_square(mask: Bools, near: XY) -> XY | None:
     """Return the middle of the marked square nearest to a place, the first of several; None for an empty mask."""
     rows, columns = np.nonzero(mask)
     if not len(rows):

@@ -5,27 +5,36 @@ are where it says, and while the squares that it needs are still believed free.
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 
+from geometry.kernels.arrays import XY
 from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import Inside, Leg
-from geometry.motion.se2 import Motion, Rotate, Translate
-from kb.body import Command, Grasp, Move, Push, Release, Turn
-from kb.mapping.occupancy import OPEN
+from geometry.motion.se2 import Rotate, Translate
+from kb.body import Grasp, Move, Release
 from kb.objects.held_object import is_whole
 from kb.perception.frame import CENTRE
-from kb.world.model import SPACE, Node, WorldModel
-from planner.advice import Act, Go, See
-from planner.carrying import remaining_plan
+from kb.world.model import Node, WorldModel
+from planner.advice import Act, Go, See, command_of, unplanned_act
 from planner.carrying.infeasibility import Infeasibility
 from planner.carrying.manipulation_oracle import EndsFunction, ManipulationOracle, ManipulationPlan, Request
-from planner.carrying.remaining_plan import Place, RemainingPlan, grasp_direction, is_at, square_index
-from planner.goals.placement import SURELY, drawn_out, region_of
-from planner.screen.moves import is_open
-from planner.screen.projection import Squares, grown
-from planner.sights.frontiers import Viewpoint, by_touch, sight_of
-from planner.sights.viewpoints import TAKE, inspection
+from planner.carrying.preconditions import (
+    PLACE_SLACK,
+    look_at_obstacle,
+    needed_view,
+    touch_of_obstacle,
+    turn_cost,
+)
+from planner.carrying.remaining_plan import (
+    PlanOperations,
+    RemainingPlan,
+    grasp_direction,
+    is_at,
+    square_index,
+)
+from planner.goals.placement import drawn_out, region_of
+from planner.screen.projection import Squares
 from planner.situation import Situation
 from planner.skills.failed_grasps import FailedGrasps
 from planner.skills.take_along import detour_push, escape_push, region_near, shortest_push
@@ -35,36 +44,11 @@ from planner.skills.unjam import retreat_push
 # not, as after a slip. Tuned on random worlds (benchmarks.campaign).
 MAX_CONTACTS, MAX_CONTACTS_INEXACT = 2, 4
 MAX_PLANS = 40  # plans in one task; a bound on time
-PLACE_SLACK = 0.02  # squares by which the robot may stand elsewhere in its square before a turn needs more room; tuned
-TURN_COST_OPEN_FRAME = 2.5  # commands that a turn counts for while the orientation of the frame is open; tuned
-TURN_COST_OPEN_PLACE = 1.5  # commands that it counts for while the place within the square is open; tuned
 NO_PROGRESS = 0.1  # squares: less than the shortest useful motion, more than rounding; a convention
-LONG_PLAN = 8  # commands of a plan above which everything unclear about its way is looked at first; tuned
-DETOUR_ROOM = 2  # squares beside the way of a long plan within which more room would help; tuned
 VIEWPOINT_TARGET = "sight"  # the end of a plan that brings an object near to where the robot wants to look
 AWAY_TARGET = "away"  # the end of a plan that moves an object out of the way of another
 
-
 Advice = Act | Go | See | Infeasibility
-
-
-@dataclass(frozen=True)
-class PlanOperations:
-    """The functions of planner.carrying.remaining_plan that the executor uses; tests pass their own.
-
-    Attributes
-    ----------
-    begin_plan, revalidate, start_from_robot, safe_prefix : as of planner.carrying.remaining_plan.
-    """
-
-    begin_plan: Callable[[ManipulationPlan, Node, WorldModel], RemainingPlan] = remaining_plan.begin_plan
-    revalidate: Callable[[RemainingPlan, Mapping[str, End] | None, Situation], RemainingPlan | None] = (
-        remaining_plan.revalidate
-    )
-    start_from_robot: Callable[[RemainingPlan, Mapping[str, End], Situation], RemainingPlan | None] = (
-        remaining_plan.start_from_robot
-    )
-    safe_prefix: Callable[[ManipulationPlan, Node, Situation], ManipulationPlan | None] = remaining_plan.safe_prefix
 
 
 class PlanExecutor:
@@ -105,7 +89,7 @@ class PlanExecutor:
         self._plans = 0  # how many were made
         self._contacts: dict[str, int] = {}  # how often an object stood against something unexpectedly
         self._pushed: Translate | None = None  # the last motion with a held object, if a push, and not a retreat
-        self._went_on: Place | None = None  # where a plan was last made that goes on with the present grasp
+        self._went_on: XY | None = None  # where a plan was last made that goes on with the present grasp
 
     @property
     def turns(self) -> bool:
@@ -121,7 +105,7 @@ class PlanExecutor:
         Parameters
         ----------
         node : the object.
-        ends : where it shall lie, by name, frame of the view's arrays.
+        ends : where it shall lie, by name, view frame.
         situation : what is believed.
         hoped : returns the ends as they are if the floor goes on as it is hoped to.
 
@@ -155,7 +139,7 @@ class PlanExecutor:
         Parameters
         ----------
         node : the object.
-        ends : where it shall lie, by name, frame of the view's arrays.
+        ends : where it shall lie, by name, view frame.
         situation : what is believed.
         """
         found = self._oracle.find(self._request(node, ends, "", situation.model), situation)
@@ -203,7 +187,7 @@ class PlanExecutor:
             return None
         push = shortest_push(node, squares, situation) if self.pull and model.held is not None else None
         if push is not None:
-            return _unplanned(push, f"{node.name} is taken along", model)
+            return unplanned_act(push, f"{node.name} is taken along", model)
         return self._bring_near(node, squares, situation) if fetch else None
 
     def detour(self, node: Node, squares: Squares, situation: Situation) -> Act | None:
@@ -226,7 +210,7 @@ class PlanExecutor:
             return None
         end, middle = plan.end.centroid, node.polygon.centroid
         push = detour_push(node, squares, (end.x - middle.x, end.y - middle.y), situation)
-        return None if push is None else _unplanned(push, f"{node.name} is taken along", situation.model)
+        return None if push is None else unplanned_act(push, f"{node.name} is taken along", situation.model)
 
     def lead_out(self, node: Node, situation: Situation) -> Act | None:
         """Return the push after which the held object no longer shuts the robot in, and mark the grasp as failed.
@@ -237,7 +221,7 @@ class PlanExecutor:
         if push is None:
             return None
         self.failed.record(node, situation.model)
-        return _unplanned(push, f"{node.name} is led out of the nook, to be grasped from elsewhere", situation.model)
+        return unplanned_act(push, f"{node.name} is led out of the nook, to be grasped from elsewhere", situation.model)
 
     def drop_other_plan(self, name: str) -> None:
         """Drop the plan under way unless it carries the object `name`."""
@@ -291,7 +275,7 @@ class PlanExecutor:
         elif held.moved and pushed is not None and self.pull:
             doubted = self._contacts[held.name] > 1 or not is_whole(held.polygon)
             retreat = retreat_push(held, pushed, model, doubted)
-            return Act(_command(retreat, model), f"{held.name} is drawn back from what stopped it")
+            return Act(command_of(retreat, model), f"{held.name} is drawn back from what stopped it")
         return Act(Release(), f"{held.name} is released, because it did not move")
 
     # -- making a plan ---------------------------------------------------------------------------
@@ -315,7 +299,7 @@ class PlanExecutor:
             if isinstance(cleared, See | Infeasibility):
                 return cleared
             node, found = cleared
-        seen = self._needed_view(found, node, situation)
+        seen = needed_view(found, node, situation)
         if seen is not None:
             prefix = self._operations.safe_prefix(found, node, situation)
             if prefix is None:
@@ -333,17 +317,14 @@ class PlanExecutor:
         self, found: ManipulationPlan, node: Node, situation: Situation
     ) -> tuple[Node, ManipulationPlan] | See | Infeasibility:
         """Return the first object that a plan needs moved aside, with a plan for that; or a look at it, or why not."""
-        things = (thing for thing in situation.model.objects if thing.name in found.aside)
-        touch = _first_see(by_touch(situation.cost_maps, thing) for thing in things if thing.confidence < SURELY)
+        touch = touch_of_obstacle(found, situation)
         if touch is not None:
             return touch
         cleared = (self._plan_aside(other, found, situation) for other in situation.model.objects)
         first = next((plan for plan in cleared if plan is not None), None)
         if first is not None:
             return first
-        named = (situation.model.object(name) for name in found.aside)
-        unclear = (other for other in named if other is not None and other.open)
-        look = _first_see(inspection(situation.cost_maps, other, chance=1.0, to=TAKE) for other in unclear)
+        look = look_at_obstacle(found, situation)
         if look is not None:
             return look
         why = f"{found.aside[0]} is in the way of {node.name}, and cannot be moved aside"
@@ -355,7 +336,7 @@ class PlanExecutor:
         held = model.held == node.name and not stalled
         contacts = self._contacts.get(node.name, 0)
         contacts += model.frame.origin != CENTRE and max(model.leeway) > PLACE_SLACK
-        return Request(node, ends, self.failed.grasps(node), last, contacts, held, _turn_cost(model))
+        return Request(node, ends, self.failed.grasps(node), last, contacts, held, turn_cost(model))
 
     def _plan_aside(
         self, other: Node, found: ManipulationPlan, situation: Situation
@@ -368,26 +349,6 @@ class PlanExecutor:
         request = self._request(other, {AWAY_TARGET: end}, "", situation.model)
         plan = self._oracle.find(request, situation)
         return (other, plan) if isinstance(plan, ManipulationPlan) and plan.plan.legs and not plan.aside else None
-
-    def _needed_view(self, found: ManipulationPlan, node: Node, situation: Situation) -> See | None:
-        """Return what of the way of a plan must be seen before it is begun; None when no look tells more of it.
-
-        All that is believed floor is trusted: to be stopped now and then costs less than to look each time. To release
-        the object, walk, come back and grasp it again costs more than to be stopped, so a plan that goes on with the
-        present grasp is trusted, and so is one over hoped squares. But before a long plan, a square that takes away the
-        room for a shorter one, and may be free, is looked at too.
-        """
-        model, is_long = situation.model, found.plan.commands > LONG_PLAN
-        if found.hopes or (found.plan.goes_on and not is_long):
-            return None
-        unsure = found.swept & ~situation.cost_maps.free(0)
-        if is_long:
-            unsure |= grown(found.swept, DETOUR_ROOM) & (model.view.state == OPEN) & (model.view.probability > SPACE)
-        unsure &= ~model.mask(node.patch)
-        if not unsure.any():
-            return None
-        viewpoint = sight_of(situation.cost_maps, unsure, f"it is not clear whether the way for {node.name} is free")
-        return See(viewpoint) if len(viewpoint.squares) else None
 
     # -- following a plan ------------------------------------------------------------------------
 
@@ -410,7 +371,7 @@ class PlanExecutor:
         self._pushed = motion if isinstance(motion, Translate) else None
         rest = replace(leg, motions=leg.motions[1:])
         self._plan = replace(plan, legs=(rest, *plan.legs[1:]), polygon=polygon, place=place)
-        return Act(_command(motion, model), f"{plan.name} is carried to its place ({plan.target})")
+        return Act(command_of(motion, model), f"{plan.name} is carried to its place ({plan.target})")
 
     def _take(self, plan: RemainingPlan, leg: Leg, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
         """Return the step to where the object is grasped, or the grasp; from the present place if that does as well.
@@ -437,31 +398,3 @@ class PlanExecutor:
             return None
         self._plan, self._pushed = replace(begun, grasped=True, place=begun.legs[0].place), None
         return Act(Grasp(direction), f"{plan.name} is grasped, to be carried to its place ({plan.target})")
-
-
-def _first_see(looks: Iterable[Viewpoint]) -> See | None:
-    """Return the advice to use the first of some viewpoints that has squares; None for none."""
-    return next((See(look) for look in looks if len(look.squares)), None)
-
-
-def _turn_cost(model: WorldModel) -> float:
-    """Return how many commands a turn counts for.
-
-    A turn leaves the object askew while the orientation of the frame is open, and elsewhere than believed while the
-    place of the robot within its square is open.
-    """
-    if is_open(model):
-        return TURN_COST_OPEN_FRAME
-    return TURN_COST_OPEN_PLACE if max(model.leeway) > PLACE_SLACK else 1.0
-
-
-def _unplanned(push: Translate, why: str, model: WorldModel) -> Act:
-    """Return a push, in squares, map frame, that no plan asks for, as an act."""
-    return Act(_command(push, model), why, push)
-
-
-def _command(motion: Motion, model: WorldModel) -> Command:
-    """Return the command for a motion of the held object, which is in squares, map frame."""
-    if isinstance(motion, Rotate):
-        return Turn(motion.degrees)
-    return Push(*model.frame.to_utak(motion.dx, motion.dy))

@@ -5,14 +5,14 @@ that leads over squares known to be free.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.goals import End
 from geometry.manipulation.legs import shifted, verified
 from geometry.manipulation.plan_carrying import Leg
@@ -26,8 +26,6 @@ from planner.goals.placement import barred, in_view, lands_in_one
 from planner.screen.projection import Squares
 from planner.situation import Situation
 
-Mask = NDArray[np.bool_]
-Place = tuple[float, float]
 PLACE_TOLERANCE = 1e-6  # squares within which the robot is where a plan says: rounding only
 KEPT_LEVEL = 2  # certainty level of squares over which a plan is kept, though a surer one was asked for; a convention
 AREA_TOLERANCE = 1e-3  # squares^2 by which an object may lie otherwise than a plan says: rounding of outlines
@@ -36,7 +34,7 @@ MIN_PREFIX = 4.0  # squares that a push must lead to be begun before all of its 
 
 @dataclass(frozen=True)
 class RemainingPlan:
-    """What is left of a manipulation plan, in squares, map frame.
+    """The remaining part of a manipulation plan, in squares, map frame.
 
     Attributes
     ----------
@@ -56,7 +54,7 @@ class RemainingPlan:
     legs: tuple[Leg, ...]
     needed: Patch
     level: int
-    place: Place | None = None
+    place: XY | None = None
     grasped: bool = False
 
     @property
@@ -78,7 +76,7 @@ def begin_plan(found: ManipulationPlan, node: Node, model: WorldModel) -> Remain
 
     Parameters
     ----------
-    found : the plan, frame of the view's arrays.
+    found : the plan, view frame.
     node : the object that it carries.
     model : what is believed.
     """
@@ -97,7 +95,7 @@ def revalidate(plan: RemainingPlan, ends: Mapping[str, End] | None, situation: S
     Parameters
     ----------
     plan : the remaining plan.
-    ends : where it must lead, by name, frame of the view's arrays; None when it only clears the way for another object.
+    ends : where it must lead, by name, view frame; None when it only clears the way for another object.
     situation : what is believed.
     """
     model = situation.model
@@ -132,7 +130,7 @@ def start_from_robot(plan: RemainingPlan, ends: Mapping[str, End], situation: Si
     Parameters
     ----------
     plan : the remaining plan, before its first grasp.
-    ends : where it must lead, by name, frame of the view's arrays.
+    ends : where it must lead, by name, view frame.
     situation : what is believed.
     """
     model = situation.model
@@ -180,13 +178,28 @@ def safe_prefix(found: ManipulationPlan, node: Node, situation: Situation) -> Ma
     return replace(found, plan=plan, swept=swept_squares(plan, start, situation.model.labels.shape))
 
 
-def square_index(place: Place, model: WorldModel) -> Squares:
+@dataclass(frozen=True)
+class PlanOperations:
+    """The functions on remaining plans that the executor uses; tests pass their own.
+
+    Attributes
+    ----------
+    begin_plan, revalidate, start_from_robot, safe_prefix : the functions above, or others in their place.
+    """
+
+    begin_plan: Callable[[ManipulationPlan, Node, WorldModel], RemainingPlan] = begin_plan
+    revalidate: Callable[[RemainingPlan, Mapping[str, End] | None, Situation], RemainingPlan | None] = revalidate
+    start_from_robot: Callable[[RemainingPlan, Mapping[str, End], Situation], RemainingPlan | None] = start_from_robot
+    safe_prefix: Callable[[ManipulationPlan, Node, Situation], ManipulationPlan | None] = safe_prefix
+
+
+def square_index(place: XY, model: WorldModel) -> Squares:
     """Return the flat index, as an array of one, of the view's square in which a point (x, y) of the map frame lies."""
     row, column = model.view.locate(*place)
     return np.array([row * model.labels.shape[1] + column])
 
 
-def is_at(model: WorldModel, place: Place) -> bool:
+def is_at(model: WorldModel, place: XY) -> bool:
     """Return whether the robot stands exactly at a point (x, y) of the map frame, but for rounding."""
     return math.dist(model.place, place) < PLACE_TOLERANCE
 
@@ -221,7 +234,7 @@ def grasp_direction(leg: Leg, plan: RemainingPlan, model: WorldModel) -> str | N
     return next(iter(there if node.colour is None else [*there, *felt]), None)
 
 
-def _longest_part(workspace: Workspace, shape: Any, place: Place, push: Translate) -> Translate | None:
+def _longest_part(workspace: Workspace, shape: Any, place: XY, push: Translate) -> Translate | None:
     """Return the longest part of a push, rounded to whole squares, that is free; None for none."""
     steps = math.floor(math.hypot(push.dx, push.dy))
     parts = ((round(push.dx * n / steps), round(push.dy * n / steps)) for n in range(steps - 1, 0, -1))
@@ -229,13 +242,13 @@ def _longest_part(workspace: Workspace, shape: Any, place: Place, push: Translat
     return next((part for part in pushes if workspace.lets(shape, place, part)), None)
 
 
-def _kept_squares(plan: RemainingPlan, node: Node, situation: Situation) -> Mask:
+def _kept_squares(plan: RemainingPlan, node: Node, situation: Situation) -> Bools:
     """Return the mask (rows, columns) of squares over which a plan made before may still lead."""
     free = situation.cost_maps.free(max(plan.level, KEPT_LEVEL)) | situation.model.mask(node.patch)
     return free & ~barred(node, situation)
 
 
-def _end_outline(plan: RemainingPlan, node: Node, free: Mask, situation: Situation) -> Any:
+def _end_outline(plan: RemainingPlan, node: Node, free: Bools, situation: Situation) -> Any:
     """Return the outline after a plan from where the object really lies, frame of the view; None if it is blocked."""
     west, south = situation.model.view.west, situation.model.view.south
     first, *others = plan.legs

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import At, Inside
 from geometry.raster.geodesic import UNREACHED
@@ -21,7 +22,7 @@ from planner.decision import Decision, TaskVerdict
 from planner.goals.placement import LIKELY, SURELY, hidden_behind, leads_away, out_of_wall, region_of
 from planner.navigation.routes import PlannedRoute, ways
 from planner.navigation.subgoals import Subgoal
-from planner.screen.projection import UNSEEN, CostMaps, Mask
+from planner.screen.projection import UNSEEN, CostMaps
 from planner.sights.frontiers import by_touch
 from planner.situation import Situation
 from planner.stages import Stage
@@ -36,7 +37,7 @@ class Obstacle(NamedTuple):
     Attributes
     ----------
     node : the object.
-    aside : where it shall lie so that the way is free, or so that all of it is seen; frame of the view's arrays.
+    aside : where it shall lie so that the way is free, or so that all of it is seen; view frame.
     """
 
     node: Node
@@ -69,7 +70,7 @@ def obstacles(things: Sequence[Node], situation: Situation) -> Iterator[Obstacle
         yield from _hidden_in_doors(thing, depth, situation)
 
 
-def _routes_opened(under: Mask, situation: Situation) -> list[PlannedRoute]:
+def _routes_opened(under: Bools, situation: Situation) -> list[PlannedRoute]:
     """Return the route, if any, to floor that is reached only if some squares are free; none into a mere nook."""
     without, cost_maps = CostMaps(situation.model, under), situation.cost_maps
     beyond = (without.distances[UNSEEN] != UNREACHED) & (cost_maps.distances[UNSEEN] == UNREACHED) & ~under

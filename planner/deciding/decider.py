@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from geometry.kernels.arrays import XY
 from kb.body import Release
 from kb.language.terms import Fact
 from kb.task.binding import Reconciled, reconcile
@@ -37,8 +38,6 @@ from planner.situation import Situation
 from planner.skills.into_corner import IntoCorner, halt_beside_walls
 from planner.stages import BY_THE_WAY, FROM_THE_START, Stage, stages
 from planner.subgoal_kind import SubgoalKind
-
-Place = tuple[float, float]
 
 
 class Decider:
@@ -94,7 +93,7 @@ class Decider:
         self._into_corner = IntoCorner()
         self._turn = 0  # the sign of the turn that was begun about an object
 
-    def decide(self, model: WorldModel, track: Sequence[Place]) -> Decision:
+    def decide(self, model: WorldModel, track: Sequence[XY]) -> Decision:
         """Return what to do after an impression.
 
         Parameters
@@ -131,7 +130,7 @@ class Decider:
         return Decision(None, " and ".join(map(str, self.stages)) + " holds", TaskVerdict.DONE)
 
     def _towards(
-        self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[Place]
+        self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[XY]
     ) -> Decision | None:
         """Return the next command towards a stage, or the verdict when it cannot be attained; None when it is."""
         conflict = self._transporter.conflict_verdict(stage, situation)
@@ -150,9 +149,7 @@ class Decider:
             return None
         return self._clearer.clear_before_verdict(decision, stage.own, stage, situation, self._tools)
 
-    def _go(
-        self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[Place]
-    ) -> Decision | None:
+    def _go(self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[XY]) -> Decision | None:
         """Return the next command towards where the robot itself shall be, or the verdict; None when it is there."""
         goals = stage.own
         if situation.model.held is not None:
@@ -205,7 +202,7 @@ class Decider:
         looks = (self.pursuer.pursue_look(subgoal, stage, situation) for subgoal in subgoals)
         return next((look for look in looks if look is not None), None)
 
-    def _go_round(self, stage: Stage, name: str, situation: Situation, track: Sequence[Place]) -> Decision | None:
+    def _go_round(self, stage: Stage, name: str, situation: Situation, track: Sequence[XY]) -> Decision | None:
         """Return the next command on the way round an object; None when the robot has gone round it and is back."""
         model, cost_maps = situation.model, situation.cost_maps
         node = model.object(name)

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import Floats
 from kb.mapping.object_heat import seen_in_part
 from kb.task.binding import Reconciled
 from kb.world.model import Node, WorldModel
@@ -28,7 +28,6 @@ PASSAGE_CHANCE = 20  # percent that floor seen beyond an unknown passage holds i
 ANY_SHAPE_CHANCE = 0.4  # probability that an object is the one looked for, when its shape is not told
 DISTANT_LOOK_SHARE = 0.7  # of the promise of a look that ends right before an object, that of one from afar
 MIN_OBJECT_CHANCE = 3  # percent, of every object that is not known to be another one
-Heat = NDArray[np.float64]
 
 
 class Candidate(NamedTuple):
@@ -119,7 +118,7 @@ def chance_of_none(candidates: Sequence[Candidate]) -> float:
 
 
 def _doubtful_objects(
-    situation: Situation, reconciled: Reconciled, likely: Heat | None, to: Approach
+    situation: Situation, reconciled: Reconciled, likely: Floats | None, to: Approach
 ) -> list[Candidate]:
     """Return the objects of the world model that may be what is looked for. likely : as of `_object_heat`."""
     cost_maps, model = situation.cost_maps, situation.model
@@ -137,7 +136,7 @@ def _doubtful_objects(
     return [candidate for candidate in found if len(candidate.subgoal.squares)]
 
 
-def _chance(node: Node, likely: Heat, model: WorldModel) -> float:
+def _chance(node: Node, likely: Floats, model: WorldModel) -> float:
     """Return the probability that an object is what is looked for, by map completions or by the part that is seen."""
     mask = model.mask(node.patch)
     shown = float(likely[mask].max())
@@ -145,7 +144,7 @@ def _chance(node: Node, likely: Heat, model: WorldModel) -> float:
     return max(shown, float(seen_in_part(mask.sum()))) if cut else shown
 
 
-def _likely_places(cost_maps: CostMaps, likely: Heat, to: Approach) -> list[Candidate]:
+def _likely_places(cost_maps: CostMaps, likely: Floats, to: Approach) -> list[Candidate]:
     """Return the places where map completions show what is looked for."""
     seen = sightings(cost_maps, likely, "what is looked for may be there", to)
     return [Candidate(squares, Subgoal(SubgoalKind.INSPECT, *look)) for squares, look in seen]
@@ -178,7 +177,7 @@ def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> li
     return [*explored, *settled, *passages]
 
 
-def _object_heat(situation: Situation, reconciled: Reconciled) -> Heat | None:
+def _object_heat(situation: Situation, reconciled: Reconciled) -> Floats | None:
     """Return the probability (rows, columns) that a square belongs to the shape looked for; None when none is."""
     wanted = sorted(
         str(claim.fact.args[1])

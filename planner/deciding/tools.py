@@ -8,7 +8,7 @@ from planner.deciding.verification import Verifier
 
 
 class Tools(NamedTuple):
-    """What a transporter or a clearer of obstacles works with while it decides. Neither of them keeps it.
+    """The tools of a transporter or a clearer of obstacles while it decides. Neither of them keeps them.
 
     Attributes
     ----------

@@ -250,7 +250,7 @@ class Transporter:
         tools: Tools,
     ) -> Decision:
         """Return a decision whose verdict is `impossible` only where that is proved and nothing is left to check."""
-        must_reach = land.must_reach() if decision.verdict else {}
+        must_reach = land.must_reach.ends() if decision.verdict else {}
         if must_reach:
             shut_off = tools.executor.infeasibility(node, must_reach, situation)
             if shut_off is not None and shut_off.proved:
@@ -278,12 +278,12 @@ class Transporter:
             self._looked_before = looked
             return Infeasibility(not situation.model.shaken, land.missing)
         if land.ends:
-            return executor.advise(node, land.ends, situation, land.hoped)
+            return executor.advise(node, land.ends, situation, land.hoped.ends)
         onward = executor.continue_plan(node, situation)
         if onward is not None:
             return onward
         for name, end in land.approach.items():
-            advice = executor.advise(node, {name: end}, situation, land.hoped)
+            advice = executor.advise(node, {name: end}, situation, land.hoped.ends)
             if isinstance(advice, Act | Go):
                 return advice
         self._looked_before = looked
@@ -351,7 +351,7 @@ def _look_at(node: Node, stage: Stage, situation: Situation, tools: Tools) -> De
 
 def _look_by_the_way(node: Node, land: Placement, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
     """Return a push, in place of one of the plan, that shows on the way what the robot would have to come back for."""
-    for look in land.by_the_way():
+    for look in land.by_the_way.viewpoints():
         act = tools.executor.detour(node, look.squares, situation)
         led = _push_to_see(act, look.what, stage, situation, tools)
         if led is not None:

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import XY, Bools, Floats
 from geometry.raster.components import edged
 from kb.world.doors import jamb
 from kb.world.model import Node, WorldModel
@@ -25,9 +25,6 @@ from planner.sights.viewpoints import TAKE, inspection
 from planner.situation import Situation
 from planner.subgoal_kind import SubgoalKind
 
-Place = tuple[float, float]
-Mask = NDArray[np.bool_]
-Floats = NDArray[np.float64]
 MAX_INNER_WALL = 4  # squares: the thickest wall between two rooms; a convention of random worlds
 FEW_LOOKS = 4  # squares looked from, up to which the orientation of the frame is made sure of; tuned on random worlds
 
@@ -38,7 +35,7 @@ class Verifier:
     def __init__(self) -> None:
         """Remember nothing yet."""
         self._unsettled: set[str] = set()  # objects that are being looked at until they are settled
-        self._rechecked: list[Place] = []  # passages that were looked at again, map frame
+        self._rechecked: list[XY] = []  # passages that were looked at again, map frame
 
     def is_unsettled(self, node: Node) -> bool:
         """Return whether the robot has begun to look at an object that is not settled."""
@@ -116,7 +113,7 @@ def look_at_contradiction(situation: Situation) -> Subgoal | None:
     return Subgoal(SubgoalKind.INSPECT, *look)
 
 
-def robot_square(model: WorldModel) -> Mask:
+def robot_square(model: WorldModel) -> Bools:
     """Return the mask (rows, columns) of the square in which the robot stands."""
     return model.squares([(math.floor(model.place[0]), math.floor(model.place[1]))])
 
@@ -142,7 +139,7 @@ def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
     return None
 
 
-def check_elsewhere(goal: str, began: Place, covered: Mask, situation: Situation) -> Subgoal | None:
+def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:
     """Return what to see or feel before something is said to be elsewhere than it began; None when that is sure.
 
     Parameters
@@ -155,7 +152,7 @@ def check_elsewhere(goal: str, began: Place, covered: Mask, situation: Situation
     return unseen_beyond_door(goal, began, covered, situation) or unfelt_wall(goal, began, covered, situation)
 
 
-def unfelt_wall(goal: str, began: Place, covered: Mask, situation: Situation) -> Subgoal | None:
+def unfelt_wall(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:
     """Return where to feel whether something is part of a wall on which the goal depends; None for no such.
 
     If it were an object that stands against the wall, the goal would no longer hold.
@@ -176,7 +173,7 @@ def unfelt_wall(goal: str, began: Place, covered: Mask, situation: Situation) ->
     return None
 
 
-def unseen_beyond_door(goal: str, began: Place, covered: Mask, situation: Situation) -> Subgoal | None:
+def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:
     """Return where to see how wide the floor is beyond a door, before something is said to be there; None if sure.
 
     A door is a neck of the floor, and what was never seen counts as floor. Behind what seems to be a door there may be
@@ -203,7 +200,7 @@ def unseen_beyond_door(goal: str, began: Place, covered: Mask, situation: Situat
     return None if nearest is None else Subgoal(SubgoalKind.INSPECT, *nearest)
 
 
-def _are_jambs_in_line(mask: Mask, door: Door, model: WorldModel) -> bool:
+def _are_jambs_in_line(mask: Bools, door: Door, model: WorldModel) -> bool:
     """Return whether squares are one jamb of a door whose other jamb is a thin wall: then both are likely one wall."""
     for end, other in ((door.a, door.b), (door.b, door.a)):
         if len(jamb(mask, end)[0]):
@@ -213,7 +210,7 @@ def _are_jambs_in_line(mask: Mask, door: Door, model: WorldModel) -> bool:
     return False
 
 
-def _has_floor_beside(place: Floats, way: tuple[float, float], model: WorldModel) -> bool:
+def _has_floor_beside(place: Floats, way: XY, model: WorldModel) -> bool:
     """Return whether there is floor within MAX_INNER_WALL squares of a place in a direction (unit vector)."""
     steps = np.arange(1, MAX_INNER_WALL + 1)[:, None] * np.array(way) + place
     columns, rows = np.floor(steps).astype(int).T
@@ -222,7 +219,7 @@ def _has_floor_beside(place: Floats, way: tuple[float, float], model: WorldModel
     return bool(model.space[rows[inside], columns[inside]].any())
 
 
-def _dependence(goal: str, began: Place, covered: Mask, situation: Situation) -> Callable[[Mask], bool]:
+def _dependence(goal: str, began: XY, covered: Bools, situation: Situation) -> Callable[[Bools], bool]:
     """Return a function that tells whether the goal holds only if some squares of the verge are wall."""
     model = situation.model
     if goal == "around":
@@ -230,7 +227,7 @@ def _dependence(goal: str, began: Place, covered: Mask, situation: Situation) ->
         return lambda mask: bool((hidden & ~out_of_sight(model.verge & ~mask, model, began)).any())
     beyond = situation.next_to(began, situation.rooms, SURE)
 
-    def moves_the_room(mask: Mask) -> bool:
+    def moves_the_room(mask: Bools) -> bool:
         other = situation.next_to(began, rooms_of(model, situation.rules, model.verge & ~mask), SURE)
         return bool(other.any() and not (other & beyond).any())
 

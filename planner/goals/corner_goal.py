@@ -3,8 +3,7 @@
 import itertools
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
-from functools import partial
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -41,6 +40,64 @@ MAX_CORNER_SHIFT, CORNER_SHIFT_WIDTH = (
 )  # squares that a corner may lie beyond sure floor, over so many squares width
 
 
+@dataclass(frozen=True, eq=False)
+class CornerRegion:
+    """Deferred ends: the regions that an object must reach wherever the corner is.
+
+    Attributes
+    ----------
+    side : of the corner, such as northeast.
+    node : the object.
+    situation : what is believed.
+    """
+
+    side: str
+    node: Node
+    situation: Situation
+
+    def ends(self) -> Mapping[str, End]:
+        """Compute the regions, by the side of the corner, in the view frame."""
+        return _must_reach(self.side, self.node, self.situation)
+
+
+@dataclass(frozen=True, eq=False)
+class FurtherCorner:
+    """Deferred ends: the corner, if the floor goes on as optimistic planning assumes.
+
+    Attributes
+    ----------
+    side : of the corner, such as northeast.
+    name : of the end.
+    situation : what is believed.
+    """
+
+    side: str
+    name: str
+    situation: Situation
+
+    def ends(self) -> Mapping[str, End]:
+        """Compute the corner as an end, by name, in the view frame; nothing when it would not be further away."""
+        return _further_corner(self.side, self.name, self.situation)
+
+
+@dataclass(frozen=True, eq=False)
+class RoomsByTheWay:
+    """Deferred viewpoints: rooms that are not seen and may hold another corner further towards a side.
+
+    Attributes
+    ----------
+    side : of the corner, such as northeast.
+    situation : what is believed.
+    """
+
+    side: str
+    situation: Situation
+
+    def viewpoints(self) -> tuple[Viewpoint, ...]:
+        """Compute where these rooms can be seen."""
+        return _room_viewpoints(self.side, self.situation)
+
+
 def corner_placement(side: str, node: Node, situation: Situation) -> Placement:
     """Return where an object is in the furthest corner towards a side, such as "northeast".
 
@@ -53,13 +110,13 @@ def corner_placement(side: str, node: Node, situation: Situation) -> Placement:
         unknown = missing_for_corner(side, situation, floor)
         if unknown is not None:
             near = _near(side, node, situation, floor)
-            must_reach = partial(_must_reach, side, node, situation)
-            hoped = partial(_further_corner, side, next(iter(near), ""), situation)
+            must_reach = CornerRegion(side, node, situation)
+            hoped = FurtherCorner(side, next(iter(near), ""), situation)
             return Placement({}, unknown.missing, unknown.viewpoints, near, must_reach=must_reach, hoped=hoped)
     found = _in_corner(side, node, situation)
     if not found.holds:
         held = situation.model.held == node.name
-        return replace(found, by_the_way=partial(_room_viewpoints, side, situation)) if held else found
+        return replace(found, by_the_way=RoomsByTheWay(side, situation)) if held else found
     viewpoints = _room_viewpoints(side, situation)
     shut_in = not viewpoints and not can_leave(node, situation)
     if shut_in:
@@ -121,7 +178,7 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
         around = grown(around, 1) & ~under
     unclear = around & ~model.told
     shape = in_view(node.polygon, situation)
-    hoped = partial(_further_corner, side, side, situation)
+    hoped = FurtherCorner(side, side, situation)
     between = _between_walls(side, situation)
     if between is not None and not (unclear & (view.probability < 1 - CLEAR)).any():
         return _between_placement(side, between, shape)

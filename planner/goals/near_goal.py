@@ -12,7 +12,7 @@ from geometry.motion.se2 import Pose
 from kb.language.terms import Fact, Number, Text
 from kb.language.wkt import parse_wkt
 from kb.world.model import Node
-from planner.goals.placement import ANGLE_TOLERANCE, Placement, in_view, region_of
+from planner.goals.placement import ANGLE_TOLERANCE, KnownEnds, Placement, in_view, region_of
 from planner.situation import Situation
 
 BESIDE_DISTANCE = 1.0  # squares between two things that are beside each other, at most (the meaning of the goal)
@@ -59,7 +59,7 @@ def _touching(shape: Any, target: Any, name: str) -> Placement:
         ends,
         holds=shape.distance(target) <= BESIDE_DISTANCE,
         loose={name: Inside(near)},
-        must_reach=lambda: {name: far},
+        must_reach=KnownEnds({name: far}),
         some=True,
     )
 
@@ -83,4 +83,4 @@ def pose_placement(goal: Fact, node: Node, situation: Situation) -> Placement:
     west, south, east, north = outline.bounds
     margin = POSE_TOLERANCE + math.hypot(east - west, north - south) * math.radians(ANGLE_TOLERANCE)
     near = Inside(outline.buffer(margin, join_style="mitre"))
-    return Placement({"pose": At(there)}, holds=holds, must_reach=lambda: {"pose": near}, some=True)
+    return Placement({"pose": At(there)}, holds=holds, must_reach=KnownEnds({"pose": near}), some=True)

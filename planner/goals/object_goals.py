@@ -1,11 +1,10 @@
-"""Where a carried object must end for a goal to hold, or what must be seen first to tell.
+"""The places where a carried object must end for a goal to hold, or what must be seen first to tell.
 
 Ends (geometry.manipulation.goals) are in the view frame, in squares, as all manipulation planning is.
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
-from functools import partial
+from dataclasses import dataclass, replace
 
 from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.goals import End, moved
@@ -16,11 +15,29 @@ from kb.world.rooms import Rooms
 from planner.goals.corner_goal import corner_placement
 from planner.goals.near_goal import beside_placement, pose_placement, start_placement
 from planner.goals.optimistic import BEYOND, spread_into_unseen
-from planner.goals.placement import Placement, in_view, lands_in_one, region_of
+from planner.goals.placement import Placement, RegionEnds, in_view, lands_in_one, region_of
 from planner.goals.robot_goals import corner_side, door_viewpoints, next_room_missing, out_of_sight, room_numbers
 from planner.situation import Situation
 
 REGION_RIM = 1.0  # squares from the edge of a region in which an object may not be within it after all (convention)
+
+
+@dataclass(frozen=True, eq=False)
+class OptimisticEnds:
+    """Deferred ends inside some squares, or inside the unseen squares that these lead to.
+
+    Attributes
+    ----------
+    masks : (rows, columns) bool, by name.
+    situation : what is believed.
+    """
+
+    masks: Mapping[str, Bools]
+    situation: Situation
+
+    def ends(self) -> Mapping[str, End]:
+        """Compute each end as if the floor went on as optimistic planning assumes, in the view frame."""
+        return {name: _optimistic_end(mask, self.situation) for name, mask in self.masks.items()}
 
 
 def landing(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
@@ -93,16 +110,17 @@ def _next_room(began: XY, node: Node, situation: Situation) -> Placement:
     rooms = situation.rooms
     beyond, viewpoints = situation.next_rooms(began)
     if beyond.any():
-        ends = _room_ends(rooms, beyond)
+        parts = _room_parts(rooms, beyond)
+        ends = RegionEnds(parts).ends()
         if viewpoints and _meets_one(ends, node, situation):
             return Placement({}, viewpoints[0].what, viewpoints, there=True)
-        return Placement(ends, hoped=partial(_room_ends, rooms, beyond, situation))
+        return Placement(ends, hoped=OptimisticEnds(parts, situation))
     missing, viewpoints = next_room_missing(situation), door_viewpoints(situation)
-    likely_rooms = situation.likely_next_rooms(began)
-    likely = _room_ends(*likely_rooms)
+    parts = _room_parts(*situation.likely_next_rooms(began))
+    likely = RegionEnds(parts).ends()
     if _meets_one(likely, node, situation):
         return Placement({}, missing, viewpoints, there=True)
-    return Placement(likely, missing, viewpoints, hoped=partial(_room_ends, *likely_rooms, situation))
+    return Placement(likely, missing, viewpoints, hoped=OptimisticEnds(parts, situation))
 
 
 def _optimistic_end(mask: Bools, situation: Situation) -> End:
@@ -110,16 +128,9 @@ def _optimistic_end(mask: Bools, situation: Situation) -> End:
     return moved(Inside(region_of(spread_into_unseen(mask, situation))), -BEYOND, -BEYOND)
 
 
-def _room_ends(rooms: Rooms, mask: Bools, optimistic: Situation | None = None) -> dict[str, End]:
-    """Return the ends inside the parts of a mask that belong to each room, by the name of the room.
-
-    optimistic : the situation, when the rooms shall go on unseen as optimistic planning assumes; None when not.
-    """
-    parts = {f"r{n}": mask & (rooms.labels == n) for n in room_numbers(rooms, mask)}
-    return {
-        name: _optimistic_end(part, optimistic) if optimistic else Inside(region_of(part))
-        for name, part in parts.items()
-    }
+def _room_parts(rooms: Rooms, mask: Bools) -> dict[str, Bools]:
+    """Return the parts of a mask that belong to each room, by the name of the room."""
+    return {f"r{n}": mask & (rooms.labels == n) for n in room_numbers(rooms, mask)}
 
 
 def _around_corner(began: XY, node: Node, situation: Situation) -> Placement:
@@ -130,7 +141,5 @@ def _around_corner(began: XY, node: Node, situation: Situation) -> Placement:
         # Wherever the object ends, it lies on squares that are hidden or were never seen.
         rest = {"hidden": hidden | ~model.view.seen} if hidden.any() else {}
         missing = "no corner is seen yet that hides a place for it"
-        return Placement({}, missing, must_reach=lambda: {name: Inside(region_of(mask)) for name, mask in rest.items()})
-    return Placement(
-        {"hidden": Inside(region_of(hidden))}, hoped=lambda: {"hidden": _optimistic_end(hidden, situation)}
-    )
+        return Placement({}, missing, must_reach=RegionEnds(rest))
+    return Placement({"hidden": Inside(region_of(hidden))}, hoped=OptimisticEnds({"hidden": hidden}, situation))

@@ -3,16 +3,16 @@
 Shapes and ends (geometry.manipulation.goals) are in the view frame, in squares, as all manipulation planning is.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import product
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import shapely
 
 from geometry.kernels.arrays import Bools
-from geometry.manipulation.goals import At, End, met
+from geometry.manipulation.goals import At, End, Inside, met
 from geometry.motion.se2 import Pose, Translate
 from geometry.raster.rasterize import squares
 from kb.localisation.propose.larger_object import DEEPEST, SIDES
@@ -21,13 +21,66 @@ from planner.screen.projection import grown, shifted
 from planner.sights.frontiers import Viewpoint
 from planner.situation import Situation
 
-Ends = Callable[[], Mapping[str, End]]  # ends by name, computed when called
-LazyViewpoints = Callable[[], tuple[Viewpoint, ...]]  # viewpoints, computed when called
 NEGLIGIBLE_LENGTH = 0.01  # squares that do not matter (convention)
 SURELY = 95  # percent: what is an object with less may be a piece of wall, and is felt before it is taken (tuned)
 LIKELY = 20  # percent: what is an object with less hardly is one (tuned on random worlds)
 NOOK_RANGE = 2  # squares around an object within which floor leads nowhere (tuned on random worlds)
 ANGLE_TOLERANCE = 2.0  # degrees within which an object has the orientation that it shall have (meaning of the goal)
+
+
+class DeferredEnds(Protocol):
+    """The ingredients of some ends. To compute these takes time, so it is done only when they are asked for."""
+
+    def ends(self) -> Mapping[str, End]:
+        """Compute the ends, by name, in the view frame."""
+
+
+class DeferredViewpoints(Protocol):
+    """The ingredients of some viewpoints. To compute these takes time, so it is done only when asked for."""
+
+    def viewpoints(self) -> tuple[Viewpoint, ...]:
+        """Compute the viewpoints."""
+
+
+@dataclass(frozen=True)
+class KnownEnds:
+    """Deferred ends that are known already.
+
+    Attributes
+    ----------
+    by_name : the ends, in the view frame.
+    """
+
+    by_name: Mapping[str, End] = field(default_factory=dict)
+
+    def ends(self) -> Mapping[str, End]:
+        """Return the ends, by name."""
+        return self.by_name
+
+
+@dataclass(frozen=True, eq=False)
+class RegionEnds:
+    """Deferred ends inside some squares.
+
+    Attributes
+    ----------
+    masks : (rows, columns) bool, by name.
+    """
+
+    masks: Mapping[str, Bools]
+
+    def ends(self) -> Mapping[str, End]:
+        """Compute the region of each mask as an end, in the view frame."""
+        return {name: Inside(region_of(mask)) for name, mask in self.masks.items()}
+
+
+@dataclass(frozen=True)
+class NoViewpoints:
+    """Deferred viewpoints of which there are none."""
+
+    def viewpoints(self) -> tuple[Viewpoint, ...]:
+        """Return no viewpoint."""
+        return ()
 
 
 @dataclass(frozen=True)
@@ -44,10 +97,10 @@ class Placement:
     there : whether the goal holds but for what must be known first.
     shut_in : as `there`, and the robot cannot leave the object where it is, for it shuts the robot in.
     loose : by name, where the object may end if none of `ends` can be reached.
-    must_reach : computes, while the end is not known, regions that the object must reach wherever it is: unseen
+    must_reach : deferred, while the end is not known, regions that the object must reach wherever it is: unseen
         squares, and the squares of the one end that may be it.
-    hoped : computes the ends that follow if the floor goes on as optimistic planning assumes.
-    by_the_way : computes what must be seen before the goal holds and is better seen on the way: coming back takes
+    hoped : deferred, the ends that follow if the floor goes on as optimistic planning assumes.
+    by_the_way : deferred, what must be seen before the goal holds and is better seen on the way: coming back takes
         longer.
     presses : by name, pushes after which the object touches walls that may be further away than believed. After them a
         goal that is believed to hold surely holds.
@@ -62,9 +115,9 @@ class Placement:
     there: bool = False
     shut_in: bool = False
     loose: Mapping[str, End] = field(default_factory=dict)
-    must_reach: Ends = dict
-    hoped: Ends = dict
-    by_the_way: LazyViewpoints = tuple
+    must_reach: DeferredEnds = KnownEnds()
+    hoped: DeferredEnds = KnownEnds()
+    by_the_way: DeferredViewpoints = NoViewpoints()
     presses: Mapping[str, Translate] = field(default_factory=dict)
     some: bool = False
 

@@ -1,14 +1,13 @@
 """Failed grasps: grasps by which an object did not move. They are avoided until no other is left."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import XY, Floats
 from geometry.motion.se2 import Rotate
 from kb.perception.frame import CENTRE
 from kb.world.model import Node, WorldModel
 
 MAX_RETRIES = 3  # times that the failed grasps of one object are tried again; a bound on time
-Place = tuple[float, float]
 
 
 class FailedGrasps:
@@ -16,7 +15,7 @@ class FailedGrasps:
 
     def __init__(self) -> None:
         """Remember nothing yet."""
-        self._failed: dict[str, tuple[Place, ...]] = {}
+        self._failed: dict[str, tuple[XY, ...]] = {}
         self._retries: dict[str, int] = {}
 
     def __bool__(self) -> bool:
@@ -35,7 +34,7 @@ class FailedGrasps:
         grasps = np.array([model.place, square]) - (middle.x, middle.y)
         self._failed[node.name] = (*self._failed.get(node.name, ()), *_rotated(grasps, -node.turned))
 
-    def grasps(self, node: Node) -> tuple[Place, ...]:
+    def grasps(self, node: Node) -> tuple[XY, ...]:
         """Return the failed grasps of an object as it lies now: (x, y) of the robot from its middle, in squares."""
         return _rotated(np.array(self._failed.get(node.name, ())).reshape(-1, 2), node.turned)
 
@@ -53,6 +52,6 @@ class FailedGrasps:
         return True
 
 
-def _rotated(grasps: NDArray[np.float64], degrees: float) -> tuple[Place, ...]:
+def _rotated(grasps: Floats, degrees: float) -> tuple[XY, ...]:
     """Return grasps, (n, 2) from the object's middle, after the object is turned by degrees, counter-clockwise."""
     return tuple((float(x), float(y)) for x, y in Rotate(degrees, (0.0, 0.0)).points(grasps))

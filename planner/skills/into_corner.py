@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from geometry.kernels.arrays import XY
 from kb.body import Command, Move
 from kb.world.corners import Corner, known_floor
 from planner.goals.robot_goals import corner_side
@@ -18,7 +19,6 @@ from planner.screen.sweeps import Square, squares_met
 from planner.situation import Situation
 from planner.stages import Stage
 
-Place = tuple[float, float]
 HALT_DISTANCE = 0.01  # squares from both lines of the corner's square at which the robot halts; a convention
 STRAIGHT_LENGTH = 3  # squares beside a corner along which a wall is straight if it stays in its row; derived for 1 in 3
 PRESS_LENGTH = 1.5  # squares: a wall in the next square may be so far away, from anywhere in the robot's own square
@@ -66,12 +66,12 @@ class IntoCorner:
         return not known
 
 
-def halting_place(corner: Corner, situation: Situation) -> Place:
+def halting_place(corner: Corner, situation: Situation) -> XY:
     """Return where in the square of a corner the robot halts: the point right beside its outer lines.
 
     Parameters
     ----------
-    corner : in the frame of the view's arrays.
+    corner : in the view frame.
     situation : what is believed.
 
     Returns
@@ -106,7 +106,7 @@ def lies_straight(corner: Corner, situation: Situation) -> bool:
 
     Parameters
     ----------
-    corner : in the frame of the view's arrays.
+    corner : in the view frame.
     situation : what is believed.
     """
     floor = np.pad(known_floor(situation.model), STRAIGHT_LENGTH + 1)
@@ -118,7 +118,7 @@ def lies_straight(corner: Corner, situation: Situation) -> bool:
     return bool(floor[along].all() and floor[up].all() and not floor[behind].any() and not floor[beside].any())
 
 
-def _square_at(place: Place) -> Square:
+def _square_at(place: XY) -> Square:
     """Return the square (x, y) of the map frame in which a point lies."""
     return math.floor(place[0]), math.floor(place[1])
 
@@ -138,7 +138,7 @@ def _wall_sides(corner: Corner) -> tuple[int, int]:
     return (1 if corner.point[0] > corner.square[0] else -1), (1 if corner.point[1] > corner.square[1] else -1)
 
 
-def _is_safe_line(place: Place, cost_maps: CostMaps) -> bool:
+def _is_safe_line(place: XY, cost_maps: CostMaps) -> bool:
     """Return whether the straight line from the robot to a point of the map frame stays on safe squares."""
     view, here = cost_maps.model.view, cost_maps.model.place_on_view
     there = (place[0] - view.west, place[1] - view.south)

@@ -9,18 +9,17 @@ import math
 
 import numpy as np
 
+from geometry.kernels.arrays import XY
 from geometry.motion.se2 import Translate
-from kb.body import Push
 from kb.language.terms import Fact
 from kb.world.model import Node, WorldModel
-from planner.advice import Act
+from planner.advice import Act, unplanned_act
 from planner.goals.placement import Placement
 from planner.goals.robot_goals import corner_side
 from planner.situation import Situation
 
 STOPPED_SHORT = 0.1  # squares by which a push that was stopped falls short at least; a convention, above rounding
 CORNER_SHIFT = 2.0  # squares by which a corner may seem to move when a press shows more of its walls; tuned
-Place = tuple[float, float]
 
 
 class Presser:
@@ -29,9 +28,9 @@ class Presser:
     def __init__(self) -> None:
         """Remember no press yet."""
         self._of: tuple[str, str] | None = None  # the goal and the object
-        self._corner: Place = (0.0, 0.0)  # in squares, map frame
+        self._corner: XY = (0.0, 0.0)  # in squares, map frame
         self._left: list[Translate] = []
-        self._last: tuple[Translate, Place] | None = None  # the last press, and the object's middle before it
+        self._last: tuple[Translate, XY] | None = None  # the last press, and the object's middle before it
 
     def forget(self) -> None:
         """Forget all presses: the object was pushed otherwise, or a press was not stopped."""
@@ -63,16 +62,16 @@ class Presser:
         push = self._left.pop(0)
         self._last = push, (node.polygon.centroid.x, node.polygon.centroid.y)
         why = f"{node.name} is pressed against the wall, to be sure that it is there"
-        return Act(Push(*model.frame.to_utak(push.dx, push.dy)), why, push)
+        return unplanned_act(push, why, model)
 
 
-def _corner_of(goal: Fact, situation: Situation) -> Place:
+def _corner_of(goal: Fact, situation: Situation) -> XY:
     """Return the corner (x, y) that a goal is about, in squares, map frame."""
     (x, y), view = situation.corners[corner_side(goal)].point, situation.model.view
     return x + view.west, y + view.south
 
 
-def _is_stopped(push: Translate, before: Place, node: Node) -> bool:
+def _is_stopped(push: Translate, before: XY, node: Node) -> bool:
     """Return whether a push of an object fell short. before : its middle before the push, map frame."""
     moved = np.subtract((node.polygon.centroid.x, node.polygon.centroid.y), before)
     length = math.hypot(push.dx, push.dy)

@@ -4,8 +4,8 @@ import math
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.kernels.arrays import XY, Floats
 from geometry.manipulation.plan_carrying import Inside
 from geometry.manipulation.workspace import Workspace
 from geometry.motion.first_contact import ContactBody
@@ -18,9 +18,8 @@ from planner.screen.projection import Squares, grown, marked
 from planner.situation import Situation
 from planner.subgoal_kind import SubgoalKind
 
-Floats = NDArray[np.float64]
 VIEWPOINT_RADIUS = 4  # squares from a viewpoint within which an object is brought; a convention
-MAX_TRIED_SQUARES = 64  # squares of a viewpoint that are tried; a bound on time
+MAX_TRIED_PUSHES = 64  # squares of a viewpoint that are tried; a bound on time
 MIN_PUSH = 0.5  # squares: a shorter push stays in the robot's square
 MAX_ESCAPE = 8  # squares along each axis by which an object that shuts the robot in is led out; a bound on time
 
@@ -45,7 +44,7 @@ def shortest_push(node: Node, squares: Squares, situation: Situation) -> Transla
     return Translate(*free[0].tolist()) if len(free) else None
 
 
-def detour_push(node: Node, squares: Squares, end: tuple[float, float], situation: Situation) -> Translate | None:
+def detour_push(node: Node, squares: Squares, end: XY, situation: Situation) -> Translate | None:
     """Return the first of two straight pushes to an end, so that the robot comes to one of some squares between them.
 
     Of all such pairs it is the shortest.
@@ -119,7 +118,7 @@ def region_near(squares: Squares, situation: Situation) -> Inside | None:
 def _pushes_to(squares: Squares, situation: Situation) -> Floats:
     """Return the pushes (n, 2) that bring the robot to the middles of some squares, the shortest first.
 
-    At most MAX_TRIED_SQUARES of them, spread over all lengths; none longer than one move of an exploring robot.
+    At most MAX_TRIED_PUSHES of them, spread over all lengths; none longer than one move of an exploring robot.
     """
     model = situation.model
     rows, columns = np.divmod(squares, model.labels.shape[1])
@@ -129,7 +128,7 @@ def _pushes_to(squares: Squares, situation: Situation) -> Floats:
     longest = HURRY.most(SubgoalKind.EXPLORE, model)
     able = np.flatnonzero((length > MIN_PUSH) & (np.abs(pushes).max(axis=1) <= longest))
     able = able[np.argsort(length[able], kind="stable")]
-    spread = np.unique(np.linspace(0, len(able) - 1, MAX_TRIED_SQUARES).astype(int)) if len(able) else able
+    spread = np.unique(np.linspace(0, len(able) - 1, MAX_TRIED_PUSHES).astype(int)) if len(able) else able
     chosen: Floats = pushes[able[spread]]
     return chosen
 

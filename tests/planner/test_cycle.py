@@ -1,4 +1,4 @@
-"""The cycle on a tiny body: a drawn world, exact moves, nothing else. And what each goal means."""
+"""The action cycle on a tiny body: a drawn world, exact moves, nothing else. And the meaning of each goal."""
 
 import math
 from dataclasses import replace
@@ -27,9 +27,11 @@ NOWHERE = Span(0, 0, 0)
 
 
 class DrawnBody:
-    """A body in a drawing, which must never be told to walk into anything. It wakes amid a square.
+    """A body in a drawing that wakes in the middle of a square. A command to walk into something is an error.
 
-    bumps : it may be told to, and is stopped.
+    Attributes
+    ----------
+    bumps : whether such a command is allowed, and stops.
     """
 
     bumps = False
@@ -105,7 +107,7 @@ def test_the_northeast_corner_of_a_plain_room() -> None:
 
 
 def two_rooms(west: int, east: int, door: range) -> list[str]:
-    """Two rooms 14 squares wide on the same southern wall, so many squares long, with a door in between."""
+    """Return two rooms 14 squares wide on one southern wall, `west` and `east` squares long, with a door between."""
     rows = ["b" * 32]
     for north in range(max(west, east), 0, -1):
         left, right = ("." if north <= size else "b" for size in (west, east))
@@ -114,7 +116,7 @@ def two_rooms(west: int, east: int, door: range) -> list[str]:
 
 
 def with_utak(rows: list[str], column: int, north: int) -> list[str]:
-    """Utak in a square; the one in the southwest corner of the floor is (1, 1)."""
+    """Return a drawing with Utak in a square; the one in the southwest corner of the floor is (1, 1)."""
     row = len(rows) - 1 - north
     return [r[:column] + "U" + r[column + 1 :] if k == row else r for k, r in enumerate(rows)]
 
@@ -125,26 +127,26 @@ def test_the_furthest_corner_may_lie_in_a_room_that_is_not_seen_yet(seed: int, t
     assert trial.right, (trial.verdict, trial.reason, trial.crash)
 
 
-def test_what_goes_on_unseen_beside_a_door_is_looked_at_before_the_next_room_is_held_for_reached(
+def test_unseen_floor_beside_a_door_is_looked_at_before_the_next_room_counts_as_reached(
     tmp_path: Path,
 ) -> None:
     trial = run_trial(2, 63026, Conditions(), tmp_path)
     assert trial.right, (trial.verdict, trial.reason, trial.crash)
 
 
-def test_who_wakes_right_beside_a_doorway_is_in_the_room_on_his_side_of_it(tmp_path: Path) -> None:
+def test_a_robot_that_wakes_beside_a_doorway_is_in_the_room_on_its_side(tmp_path: Path) -> None:
     trial = run_trial(2, 83026, Conditions(), tmp_path)
     assert trial.right, (trial.verdict, trial.reason, trial.crash)
 
 
-def test_a_room_too_far_back_to_reach_further_is_not_gone_to() -> None:
+def test_a_room_that_cannot_reach_further_is_not_visited() -> None:
     robot, body = run(with_utak(two_rooms(14, 40, range(3, 7)), 22, 34), Task({}, (), (NORTHEAST,)))
     assert robot.verdict.verdict == "done"
     assert body.square == (30, 40)
     assert all(x >= 17 for x, _ in body.track)
 
 
-def test_a_thing_seen_beyond_a_wall_is_reached_by_the_door() -> None:
+def test_an_object_seen_beyond_a_wall_is_reached_by_the_door() -> None:
     rows = ["b" * 32, *["b" + "." * 14 + "bb" + "." * 14 + "b"] * 6, *["b" + "." * 30 + "b"] * 4]
     rows += ["b" + "." * 14 + "bb" + "." * 14 + "b"] * 3
     rows += ["b" + "." * 14 + "bb" + "." * 4 + "ggg" + "." * 7 + "b"] * 2
@@ -167,7 +169,7 @@ def test_around_the_corner_is_out_of_sight() -> None:
     assert plain.verdict.verdict == "possible_if"  # its walls were never felt
 
 
-def test_go_to_the_square() -> None:
+def test_the_robot_goes_to_the_square() -> None:
     robot, body = run(THINGS, SQUARE)
     assert robot.verdict.believed
     x, y = body.square
@@ -175,7 +177,7 @@ def test_go_to_the_square() -> None:
     assert 10 <= y <= 14
 
 
-def test_what_is_not_there_is_looked_for_and_given_up() -> None:
+def test_an_object_that_is_not_there_is_searched_and_given_up() -> None:
     robot, body = run(EMPTY, SQUARE)
     assert not robot.verdict.believed
     assert robot.verdict.verdict != "done"
@@ -228,7 +230,7 @@ def test_the_next_room() -> None:
     assert body.square[0] >= 17
 
 
-def test_round_a_thing_and_back() -> None:
+def test_the_robot_goes_round_an_object_and_back() -> None:
     circled = goal("circled", "utak", term("x"))
     task = Task(SQUARE.parameters, SQUARE.claims, (circled, goal("at", "utak", term("start"))))
     robot, body = run(THINGS, task)
@@ -241,7 +243,7 @@ def test_round_a_thing_and_back() -> None:
     assert abs(round(turns)) == 1
 
 
-def test_one_after_the_other() -> None:
+def test_first_and_then_are_attained_one_after_the_other() -> None:
     corner = goal("at", "utak", term("corner(southwest)"))
     task = Task({}, (), (Symbol("first", (NORTHEAST,), NOWHERE), Symbol("then", (corner,), NOWHERE)))
     robot, body = run(EMPTY, task)
@@ -279,7 +281,7 @@ def test_the_destination_of_a_corner_is_its_square() -> None:
         assert abs(c - column) <= 1
 
 
-def test_the_destination_of_a_thing_is_beside_it() -> None:
+def test_the_destination_of_an_object_is_beside_it() -> None:
     from planner.goals.robot_goals import destination
     from planner.situation import Situation
 
@@ -298,7 +300,7 @@ def test_the_destination_of_a_thing_is_beside_it() -> None:
 
 
 def _situation(kind, model, binding):  # type: ignore[no-untyped-def]
-    """A situation, with whatever fields it has."""
+    """Return a situation, with whatever fields it has."""
     known = {"model": model, "screens": CostMaps(model), "binding": binding, "rooms": rooms_of(model)}
     known |= {"corners": corners(model), "task": SQUARE, "rules": (), "track": ()}
     return kind(**{name: known[name] for name in kind.__dataclass_fields__})
@@ -320,15 +322,15 @@ def test_a_window_that_begins_elsewhere_changes_nothing() -> None:
     assert other.here == (one.here[0] + 3, one.here[1])
 
 
-def test_he_who_is_carried_off_does_his_task_all_the_same() -> None:
+def test_a_robot_that_is_carried_off_does_its_task_all_the_same() -> None:
     for seed in range(3):
         rng = np.random.default_rng(seed)
         body = DrawnBody(THINGS, int(rng.integers(-44, 46)))
         robot = Robot(body, Task({}, (), (NORTHEAST,)), Options(max_steps=60))
         robot.wake()
         robot.step()
-        body.place = np.array([rng.integers(2, 9), rng.integers(1, 12)]) + 0.5  # somebody puts him down there
-        body.occupied, body.colours = world_of(ROOMS), colours_of(ROOMS)  # in another house
+        body.place = np.array([rng.integers(2, 9), rng.integers(1, 12)]) + 0.5  # somebody carries the robot there
+        body.occupied, body.colours = world_of(ROOMS), colours_of(ROOMS)  # into another house
         body.bumps = True
         while not robot.finished:
             robot.step()
@@ -340,7 +342,7 @@ def test_he_who_is_carried_off_does_his_task_all_the_same() -> None:
     ("anew", "shaken", "verdict"),
     [(False, False, "possible_if"), (True, False, "possible_if"), (False, True, "limit"), (True, True, "limit")],
 )
-def test_nothing_is_proved_of_what_was_not_seen_while_looks_contradict_each_other(
+def test_nothing_is_proved_of_the_unseen_while_impressions_contradict_each_other(
     anew: bool, shaken: bool, verdict: str
 ) -> None:
     model = seen_whole(EMPTY)

@@ -12,9 +12,9 @@ from geometry.manipulation.goals import End
 from geometry.motion.se2 import Rotate
 from kb.world.model import Node, WorldModel
 from planner.carrying.manipulation_oracle import ManipulationPlan
-from planner.carrying.plan_executor import PlanOperations
 from planner.carrying.remaining_plan import (
     AREA_TOLERANCE,
+    PlanOperations,
     RemainingPlan,
     begin_plan,
     revalidate,

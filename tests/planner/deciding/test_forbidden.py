@@ -1,4 +1,4 @@
-"""Doors that the task forbids: which one is meant, and whether it was gone through."""
+"""Doors that the task forbids: which one is meant, and whether the robot went through it."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -34,16 +34,16 @@ NEVER = Task({}, (), facts_of("not_through(utak, d)."))
         ([], False),
     ],
 )
-def test_through_a_door_is_over_its_neck(track: list[tuple[float, float]], through: bool) -> None:
+def test_a_track_over_the_neck_of_a_door_goes_through_it(track: list[tuple[float, float]], through: bool) -> None:
     assert went_through(np.array(track, float).reshape(-1, 2), DOOR) == through
 
 
-def test_there_and_back_crosses_nothing_in_all() -> None:
+def test_a_track_there_and_back_crosses_nothing_in_all() -> None:
     assert crosses(np.array([(1, 3), (8, 3), (1, 3)], float), DOOR) == 0
 
 
 def situation(rows: list[str], confidence: int, *track: tuple[float, float]) -> Situation:
-    """A situation in a drawn house all of whose doors are believed as much. track : squares from where Utak woke."""
+    """Return a situation in a drawn house whose doors all have one confidence. track : squares from the start."""
     found = situation_of(seen_whole(rows), task=NEVER)
     doors = tuple(replace(door, confidence=confidence) for door in found.rooms.doors)
     return replace(found, rooms=replace(found.rooms, doors=doors), track=((0.5, 0.5), *track))
@@ -53,17 +53,17 @@ def names(doors: tuple[Door, ...]) -> list[str]:
     return [door.name for door in doors]
 
 
-def test_one_door_is_meant_and_others_may_be_used() -> None:
+def test_one_door_is_forbidden_and_others_may_be_used() -> None:
     assert len(situation(TWO_DOORS, 99).rooms.doors) == 2
     assert names(situation(TWO_DOORS, 99).forbidden("utak")) == ["d1"]
 
 
-def test_while_no_door_is_sure_none_may_be_used() -> None:
+def test_no_door_may_be_used_while_none_is_sure() -> None:
     assert names(situation(TWO_DOORS, 40).forbidden("utak")) == ["d1", "d2"]
     assert names(situation(TWO_DOORS, 10).forbidden("utak")) == ["d1", "d2"]  # however unlikely
 
 
-def test_the_door_that_was_gone_through_is_not_the_one_that_is_meant() -> None:
+def test_a_door_that_the_robot_went_through_is_not_the_forbidden_one() -> None:
     (middle,) = situation(ONE_DOOR, 99).rooms.doors
     x, y = middle.place
     model = situation(ONE_DOOR, 99).model
@@ -75,12 +75,12 @@ def test_the_door_that_was_gone_through_is_not_the_one_that_is_meant() -> None:
     assert len(two.avoided) == 1 and two.forbidden("utak") == two.avoided
 
 
-def test_who_is_not_forbidden_a_door_may_use_it() -> None:
+def test_without_a_constraint_every_door_may_be_used() -> None:
     assert replace(situation(ONE_DOOR, 99), task=Task({}, (), ())).forbidden("utak") == ()
 
 
 def two_rooms(door: tuple[int, int], mirrored: bool) -> str:
-    """A world of two rooms one above the other and a door between them, from one x to another; or its mirror image."""
+    """Return a world of two rooms, one above the other, and a door between two x; or its mirror image, as facts."""
     across = [
         (23, 21),
         (door[1], 21),
@@ -103,7 +103,7 @@ def two_rooms(door: tuple[int, int], mirrored: bool) -> str:
 
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("door", [(5, 10), (8, 11), (16, 20)])
-def test_the_only_door_is_never_gone_through(door: tuple[int, int], mirrored: bool, tmp_path: Path) -> None:
+def test_the_robot_never_goes_through_the_only_door(door: tuple[int, int], mirrored: bool, tmp_path: Path) -> None:
     goals = "in(utak, room(next)). not_through(utak, d)."
     found = run(scene(tmp_path, two_rooms(door, mirrored), "door(d).", goals))
     assert found.result.verdict == "possible_if" and "forbidden" in found.result.reason

@@ -1,4 +1,4 @@
-"""Who is at a loss with what looks contradicted gives up what he believes, and begins anew."""
+"""A robot that finds nothing to do, and whose beliefs were contradicted, forgets them and begins anew."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -13,38 +13,46 @@ from kb.world.model import WorldModel
 from kb.world.rooms import rooms_of
 from planner.cycle import Options, Robot
 from planner.deciding.decider import Decider
-from planner.decision import Decision
+from planner.decision import Decision, TaskVerdict
 from tests.planner.test_cycle import EMPTY, SQUARE, DrawnBody
 
 
 class Handed(DrawnBody):
-    """The same, with hands that may let go of what nobody sees."""
+    """The same body, with a hand that may release what is not drawn."""
 
     def act(self, command: Command) -> Impression:
         return super().act(Move(0.0, 0.0) if isinstance(command, Release) else command)
 
 
 class Undecided:
-    """Is at a loss whenever he is asked, and counts that."""
+    """A decider that looks once, and then gives up whenever it is asked.
+
+    Attributes
+    ----------
+    asked : for each time after the first, whether the robot had begun anew.
+    """
 
     bound: Mapping[str, str] = {}
     corners: Mapping[str, Corner] = {}
 
     def __init__(self) -> None:
-        self.asked: list[bool] = []  # for each time, whether he had begun anew
+        self.asked: list[bool] = []
+        self._has_looked = False
 
     def decide(self, model: WorldModel, _track: object) -> Decision:
-        self.asked.append(model.anew)
         self.rooms = rooms_of(model)
-        return Decision(None, "nobody knows", "limit")
+        if not self._has_looked:
+            self._has_looked = True
+            return Decision(Move(0.0, 0.0), "the robot looks")
+        self.asked.append(model.anew)
+        return Decision(None, "nothing is known", TaskVerdict.LIMIT)
 
 
 def at_a_loss(slipped: bool) -> tuple[Robot, Undecided]:
-    """One who looks once more and then is at a loss; if he slipped before with a thing in hand."""
-    robot, undecided = Robot(Handed(EMPTY), SQUARE, Options()), Undecided()
+    """Return a robot that looked once and then gave up, and its decider. slipped : with an object held before."""
+    undecided = Undecided()
+    robot = Robot(Handed(EMPTY), SQUARE, Options(), cast(Decider, undecided))
     robot.wake()
-    robot.decision, robot.finished = Decision(Move(0.0, 0.0), "he looks"), False
-    robot.decider = cast(Decider, undecided)
     robot.knowledge.tracker.state = replace(robot.knowledge.memory, slipped=slipped)
     if slipped:
         thing = shapely.box(4, 2, 8, 4)
@@ -53,21 +61,21 @@ def at_a_loss(slipped: bool) -> tuple[Robot, Undecided]:
     return robot, undecided
 
 
-def test_who_is_at_a_loss_begins_anew_once_if_looks_contradicted_what_he_believes() -> None:
+def test_a_robot_that_gives_up_with_contradicted_beliefs_begins_anew_once() -> None:
     robot, undecided = at_a_loss(slipped=True)
     assert not robot.finished and isinstance(robot.decision.command, Release)
-    assert "o1 is let go, to begin anew; nobody knows" in robot.decision.why
+    assert "o1 is released, because the robot forgets its map and begins anew; nothing is known" in robot.decision.why
     report = robot.step()
     assert report.belief["pose"] == "anew"
     assert undecided.asked == [False, True]
     assert robot.model.anew and not robot.model.shaken and not robot.model.object("o1")
     assert robot.finished and robot.verdict.verdict == "limit"
     robot.knowledge.tracker.state = replace(robot.knowledge.memory, slipped=True)
-    robot.decision, robot.finished = Decision(Move(0.0, 0.0), "he looks"), False
+    robot.decision, robot.finished = Decision(Move(0.0, 0.0), "the robot looks"), False
     robot.step()
     assert robot.finished and undecided.asked == [False, True, True]
 
 
-def test_who_is_at_a_loss_and_believes_nothing_that_was_contradicted_has_no_reason_to_begin_anew() -> None:
+def test_a_robot_that_gives_up_with_beliefs_in_agreement_does_not_begin_anew() -> None:
     robot, undecided = at_a_loss(slipped=False)
     assert robot.finished and robot.verdict.verdict == "limit" and undecided.asked == [False]

@@ -1,4 +1,4 @@
-"""What is looked at first while it is not known where something is."""
+"""Subgoals while it is not known where something is."""
 
 import numpy as np
 import pytest
@@ -6,15 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from geometry.raster.components import edged
-from planner.deciding.search import Candidate, none_of
+from planner.deciding.search import Candidate, chance_of_none
 from planner.navigation.subgoals import Subgoal
 from planner.screen.projection import grown, marked
 from planner.sights.frontiers import SHORT_OF, short_of
+from planner.subgoal_kind import SubgoalKind
 from tests.planner.sights.test_viewpoints import distance_from, room
 
 
 @given(st.integers(1, 12), st.integers(1, 12), st.integers(0, 2**32 - 1))
-def test_edged_is_what_shares_an_edge(rows: int, columns: int, seed: int) -> None:
+def test_an_edged_mask_has_all_squares_that_share_an_edge_with_it(rows: int, columns: int, seed: int) -> None:
     mask = np.random.default_rng(seed).random((rows, columns)) < 0.2
     marked = np.argwhere(mask)
     want = [np.abs(marked - square).sum(1).min(initial=9) <= 1 for square in np.ndindex(rows, columns)]
@@ -23,20 +24,21 @@ def test_edged_is_what_shares_an_edge(rows: int, columns: int, seed: int) -> Non
 
 
 def candidate(squares: list[int], chance: int) -> Candidate:
-    return Candidate(np.array(squares), Subgoal("inspect", np.array([0]), "", chance))
+    """Return a candidate that covers some squares. chance : percent."""
+    return Candidate(np.array(squares), Subgoal(SubgoalKind.INSPECT, np.array([0]), "", chance))
 
 
 @given(st.lists(st.integers(1, 100), max_size=6))
-def test_what_is_missing_was_not_seen_yet_if_it_is_none_of_all_that_was_seen(chances: list[int]) -> None:
-    none = none_of([candidate([k], chance) for k, chance in enumerate(chances)])
+def test_the_chance_of_none_is_the_product_over_separate_candidates(chances: list[int]) -> None:
+    none = chance_of_none([candidate([k], chance) for k, chance in enumerate(chances)])
     assert none == pytest.approx(float(np.prod([1 - chance / 100 for chance in chances])))
 
 
-def test_a_thing_and_a_picture_of_it_count_once() -> None:
-    assert none_of([candidate([1, 2], 40), candidate([2, 3], 90)]) == pytest.approx(0.6)
+def test_candidates_that_share_squares_count_once() -> None:
+    assert chance_of_none([candidate([1, 2], 40), candidate([2, 3], 90)]) == pytest.approx(0.6)
 
 
-def test_what_lies_behind_a_place_is_seen_short_of_it() -> None:
+def test_squares_behind_a_place_are_seen_from_short_of_it() -> None:
     cost_maps, _ = room()
     model = cost_maps.model
     row, column = model.view.locate(*model.place)

@@ -19,6 +19,7 @@ from planner.advice import Act, Go
 from planner.carrying.infeasibility import Infeasibility
 from planner.carrying.manipulation_oracle import EndsFunction, ManipulationOracle, ManipulationPlan, Request
 from planner.carrying.plan_executor import Advice, PlanExecutor
+from planner.carrying.preconditions import needed_view
 from planner.carrying.remaining_plan import RemainingPlan, grasp_direction
 from planner.deciding.transport import Transporter
 from planner.decision import TaskVerdict
@@ -179,7 +180,7 @@ def test_an_object_that_would_be_grasped_again_from_here_is_not_released(aside: 
 def test_a_square_that_narrows_the_way_of_a_long_plan_is_looked_at(pushes: int, chance: float, looks: bool) -> None:
     situation = doubtful(beside(()), 8.5, 3.5, chance)
     view, (node,) = situation.model.view, situation.model.objects
-    see = PlanExecutor()._needed_view(plan_over(situation, 8.5, 1.5, pushes), node, situation)
+    see = needed_view(plan_over(situation, 8.5, 1.5, pushes), node, situation)
     assert (see is not None) == looks
     if see is not None:
         place = view.locate(8.5, 3.5)
@@ -194,7 +195,7 @@ def test_a_held_object_is_not_released_to_look_at_its_way_unless_that_is_long(
     situation = doubtful(beside(()), 8.5, 1.5, 0.2)
     (node,) = situation.model.objects
     plan = plan_over(situation, 8.5, 1.5, pushes, taken)
-    assert (PlanExecutor()._needed_view(plan, node, situation) is not None) == looks
+    assert (needed_view(plan, node, situation) is not None) == looks
 
 
 @pytest.mark.parametrize("lost", [False, True])

@@ -1,4 +1,4 @@
-"""Looks by which he makes sure before he commits himself, or says that something is so."""
+"""Goal verification and active perception: looks before the robot commits itself, or claims something."""
 
 import math
 from dataclasses import replace
@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 import shapely
 
-import planner.deciding.transport
 from geometry.manipulation.plan_carrying import Inside
 from kb.body import Move
 from kb.language.reader import facts_of
@@ -16,20 +15,21 @@ from kb.world.model import WorldModel
 from kb.world.rooms import SURE
 from planner.carrying.infeasibility import Infeasibility
 from planner.carrying.manipulation_oracle import ManipulationOracle, Request
-from planner.carrying.open_facts import qualified
+from planner.carrying.open_facts import qualify
 from planner.deciding.decider import Decider
+from planner.deciding.transport import Transporter
 from planner.deciding.verification import (
     Verifier,
-    _jambs_in_line,
-    before_elsewhere,
-    before_taking,
-    misgiving,
-    unseen_beyond,
+    _are_jambs_in_line,
+    check_elsewhere,
+    look_at_contradiction,
+    look_before_grasp,
+    unseen_beyond_door,
 )
 from planner.sights.frontiers import CLOSE
 from planner.stages import Stage
 from tests.kb.drawings import seen_whole, walked
-from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of
+from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of, tools_with
 
 AT_START = replace(NO_TASK, goals=facts_of("at(utak, start)."))
 NARROW = [
@@ -45,14 +45,14 @@ NARROW = [
 
 
 def stood_in(rows: list[str], contradicted: bool) -> WorldModel:
-    """A room seen whole, by one whose last look, from where he stands, agrees with it or does not."""
+    """Return the model of a room seen whole. contradicted : whether the last impression disagrees with it."""
     model = seen_whole(rows)
     here = (math.floor(model.place[0]), math.floor(model.place[1]))
     return replace(model, looked_from=frozenset({here}), contradicted=contradicted)
 
 
 def squares_from(model: WorldModel, squares: np.ndarray) -> np.ndarray:
-    """(n, 2): how far east and north of Utak each of some squares of the view is."""
+    """Return how far east and north of the robot each of some squares of the view is, (n, 2)."""
     rows, columns = np.divmod(squares, model.labels.shape[1])
     row, column = model.view.locate(*model.place)
     return np.stack([columns - column, rows - row], axis=1)
@@ -62,28 +62,28 @@ def squares_from(model: WorldModel, squares: np.ndarray) -> np.ndarray:
     ("spread", "turns", "looks", "stuck", "first"),
     [
         (math.pi, True, 2, 0, True),
-        (math.pi, False, 2, 0, False),  # what is pushed stays as it lies
+        (math.pi, False, 2, 0, False),  # a pushed object stays as it lies
         (0.0, True, 2, 0, False),
-        (math.pi, True, 9, 0, False),  # he has looked often enough
+        (math.pi, True, 9, 0, False),  # the robot has looked often enough
         (math.pi, False, 2, 1, True),  # it was pushed, and did not move
         (0.0, False, 2, 1, False),
     ],
 )
-def test_before_a_thing_is_turned_or_tried_again_he_looks_how_the_squares_lie(
+def test_the_orientation_of_the_frame_is_looked_at_before_an_object_is_turned_or_tried_again(
     spread: float, turns: bool, looks: int, stuck: int, first: bool
 ) -> None:
     looked = frozenset((x, 0) for x in range(looks))
     model = replace(seen_whole(BESIDE_A_THING), likely_spread=spread, looked_from=looked)
     (node,) = model.objects
-    subgoal = before_taking(replace(node, stuck=stuck), turns, situation_of(model))
+    subgoal = look_before_grasp(replace(node, stuck=stuck), turns, situation_of(model))
     assert (subgoal is not None) == first
     if subgoal is not None:
-        assert "how the squares lie" in subgoal.what
+        assert "how the squares of the map lie" in subgoal.what
         assert len(subgoal.squares)
 
 
 @pytest.mark.parametrize("sure", [True, False])
-def test_who_is_not_sure_of_his_map_looks_at_a_narrow_passage_from_close_by_before_he_says_so(sure: bool) -> None:
+def test_a_narrow_passage_on_an_unsure_map_is_looked_at_from_close_by(sure: bool) -> None:
     model = seen_whole(NARROW)
     (node,) = model.objects
     node = replace(node, polygon=shapely.box(-20, 0, -16, 4), colour="g", shape={"square": 99})
@@ -94,7 +94,7 @@ def test_who_is_not_sure_of_his_map_looks_at_a_narrow_passage_from_close_by_befo
     assert refusal.proved
     assert neck == pytest.approx((15, 7), abs=1.0)
     verifier = Verifier()
-    first = verifier.narrow_again(refusal, situation_of(model))
+    first = verifier.recheck_passage(refusal, situation_of(model))
     assert (first is None) == sure
     if first is None:
         return
@@ -102,14 +102,14 @@ def test_who_is_not_sure_of_his_map_looks_at_a_narrow_passage_from_close_by_befo
     assert max(np.abs(columns + 0.5 - neck[0]).max(), np.abs(rows + 0.5 - neck[1]).max()) <= CLOSE
     x, y = columns[0] + model.view.west + 0.5, rows[0] + model.view.south + 0.5
     there = situation_of(replace(model, place=(float(x), float(y))))
-    assert verifier.narrow_again(refusal, there) is None
-    assert verifier.narrow_again(refusal, situation_of(model)) is None  # he need not go there again
+    assert verifier.recheck_passage(refusal, there) is None
+    assert verifier.recheck_passage(refusal, situation_of(model)) is None  # it need not be looked at again
 
 
-def test_who_sees_what_contradicts_his_beliefs_looks_from_elsewhere_near_by() -> None:
-    assert misgiving(situation_of(stood_in(BESIDE_A_THING, False))) is None
+def test_after_a_contradiction_the_robot_looks_from_elsewhere_near_by() -> None:
+    assert look_at_contradiction(situation_of(stood_in(BESIDE_A_THING, False))) is None
     model = stood_in(BESIDE_A_THING, True)
-    subgoal = misgiving(situation_of(model))
+    subgoal = look_at_contradiction(situation_of(model))
     assert subgoal is not None
     away = np.abs(squares_from(model, subgoal.squares)).max(1)
     assert len(away)
@@ -118,18 +118,18 @@ def test_who_sees_what_contradicts_his_beliefs_looks_from_elsewhere_near_by() ->
 
 
 @pytest.mark.parametrize("contradicted", [False, True])
-def test_nothing_is_held_for_done_while_the_last_look_contradicts_what_is_believed(contradicted: bool) -> None:
+def test_nothing_is_done_while_the_last_impression_contradicts_what_is_believed(contradicted: bool) -> None:
     model = stood_in(BESIDE_A_THING, contradicted)
     decider = Decider(AT_START)
     decision = decider.decide(model, [model.place])
     assert (decision.verdict == "done") == (not contradicted)
     if contradicted:
         assert isinstance(decision.command, Move)
-        assert decision.why == "what is seen is not as it is believed to be; at(utak,start)"
+        assert decision.why == "what is seen differs from what is believed; at(utak,start)"
         assert decider.decide(replace(model, contradicted=False), [model.place]).verdict == "done"
 
 
-def test_who_has_looked_from_everywhere_and_still_sees_what_contradicts_says_that_he_does_not_know() -> None:
+def test_a_contradiction_that_stays_from_everywhere_ends_with_limit() -> None:
     model = seen_whole(BESIDE_A_THING)
     rows, columns = np.nonzero(model.floor)
     everywhere = frozenset(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))
@@ -137,20 +137,20 @@ def test_who_has_looked_from_everywhere_and_still_sees_what_contradicts_says_tha
     decision = Decider(AT_START).decide(model, [model.place])
     assert decision.command is None
     assert decision.verdict == "limit"
-    assert "what is seen is not as it is believed to be" in decision.why
+    assert "what is seen differs from what is believed" in decision.why
 
 
 @pytest.mark.parametrize("sure", [True, False])
-def test_that_a_thing_is_nowhere_is_not_proved_by_not_seeing_it(sure: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_object_that_is_not_seen_is_not_proved_to_be_missing(sure: bool) -> None:
     """It may stand against a wall, and look like a piece of that."""
     model = seen_whole(BESIDE_A_THING)
     model = replace(model, objects=(), view=model.view._replace(sure=sure))
-    monkeypatch.setattr(planner.deciding.transport, "aims_towards", lambda *_: [])
+    transporter = Transporter(search=lambda *_: [])
     (goal,) = facts_of("in(x, room(next)).")
     unseen = Reconciled({}, ("x",), (), ())
-    decision = Decider(NO_TASK).transporter.towards(goal, Stage((goal,)), situation_of(model), unseen)
+    decision = transporter.towards(goal, Stage((goal,)), situation_of(model), unseen, tools_with())
     assert decision is not None
-    found = qualified(decision, model)
+    found = qualify(decision, model)
     assert (found.command, found.verdict) == (None, "possible_if")
     assert "nothing seen so far is x" in found.why and "never felt" in found.why
 
@@ -162,7 +162,7 @@ STUB = [  # a wall between two rooms with a door in it
     *["b" + "." * 13 + "bb" + "." * 8 + "U" + "." * 4 + "b"] * 5,
     "b" * 30,
 ]
-BAR = [  # what may be a thing that stands against a wall, and leaves a passage
+BAR = [  # what may be an object that stands against a wall, and leaves a passage
     "b" * 34,
     *["b" + "." * 32 + "b"] * 5,
     *["b" + "." * 15 + "bb" + "." * 8 + "U" + "." * 6 + "b"] * 8,
@@ -174,9 +174,9 @@ BAR = [  # what may be a thing that stands against a wall, and leaves a passage
 def test_two_jambs_in_line_are_one_wall(rows: list[str], wall: bool) -> None:
     situation = situation_of(seen_whole(rows))
     (door,) = situation.rooms.doors
-    beside = [mask for mask in situation.model.protruding if mask.sum() in (10, 16)]
-    assert beside
-    assert all(_jambs_in_line(mask, door, situation.model) == wall for mask in beside)
+    pieces = [mask for mask in situation.model.protruding if mask.sum() in (10, 16)]
+    assert pieces
+    assert all(_are_jambs_in_line(mask, door, situation.model) == wall for mask in pieces)
 
 
 ARM = [  # a room with an arm to the east, just as long as it is seen to be
@@ -193,20 +193,20 @@ WAY = [(0, 3), (4, -3), (-2, 4), (2, -17), (8, 0)]
 
 
 @pytest.mark.parametrize("goal", ["in", "through"])
-def test_what_was_never_seen_makes_no_door_of_the_mouth_of_an_arm(goal: str) -> None:
+def test_the_mouth_of_an_arm_is_no_door_while_squares_beyond_are_unseen(goal: str) -> None:
     situation = situation_of(walked(ARM, WAY).model)
     model = situation.model
-    lying, began = model.squares([(24, -10), (25, -10)]), (0.5, 5.0)
-    look = before_elsewhere(goal, began, lying, situation)
+    covered, began = model.squares([(24, -10), (25, -10)]), (0.5, 5.0)
+    look = check_elsewhere(goal, began, covered, situation)
     assert look is not None
     rows, columns = np.divmod(look.squares, model.labels.shape[1])
     assert (columns + model.view.west > 16).all() and (rows + model.view.south < -4).all()
-    assert before_elsewhere("around", began, lying, situation) is None
+    assert check_elsewhere("around", began, covered, situation) is None
     assert 1 in {side for door in situation.rooms.sure for side in door.sides}
 
 
-def test_what_is_seen_to_be_wide_enough_is_another_room() -> None:
+def test_a_floor_that_is_seen_to_be_wide_is_another_room() -> None:
     situation = situation_of(walked(NEXT, [*WAY, (10, 2)]).model)
-    lying = situation.model.squares([(24, -10), (25, -10)])
-    assert unseen_beyond("in", (0.5, 5.0), lying, situation) is None
-    assert situation.next_to((0.5, 5.0), situation.rooms, SURE)[lying].all()
+    covered = situation.model.squares([(24, -10), (25, -10)])
+    assert unseen_beyond_door("in", (0.5, 5.0), covered, situation) is None
+    assert situation.next_to((0.5, 5.0), situation.rooms, SURE)[covered].all()

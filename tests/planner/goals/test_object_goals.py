@@ -64,7 +64,7 @@ def test_what_stands_before_a_door_is_too_wide_for_it_or_may_pass_whatever_lies_
     situation = situation_of(replace(model, objects=(node,)), {"x": node.name})
     found = landing(NORTHEAST, node, (0.0, 0.0), situation)
     assert not found.ends
-    refusal = PlanExecutor().refused(node, found.must_reach(), situation)
+    refusal = PlanExecutor().infeasibility(node, found.must_reach.ends(), situation)
     if wide > 3:
         assert refusal is None
         return
@@ -174,7 +174,7 @@ def test_a_corner_that_rather_lies_further_is_hoped_for_there(chance: float, row
     situation = situation_of(replace(model, objects=(node,)), {"x": "o1"})
     found = landing(NORTHEAST, node, (3.5, 1.5), situation)
     (name, end), *_ = [*found.ends.items(), *found.approach.items()]
-    hoped = found.hoped()
+    hoped = found.hoped.ends()
     assert list(hoped) == [name] * (further > 0)
     for other in hoped.values():
         assert (other.x - end.x, other.y - end.y) == (0, further)
@@ -214,7 +214,7 @@ def test_rooms_that_he_must_see_before_it_is_there_he_may_see_by_the_way(behind:
     situation = situation_of(replace(model, objects=(node,), held="o1" if held else None), {"x": "o1"})
     found = landing(NORTHEAST, node, (2.5, -0.5), situation)
     assert found.ends and not found.holds
-    assert bool(found.by_the_way()) == (behind == "?" and held)
+    assert bool(found.by_the_way.viewpoints()) == (behind == "?" and held)
 
 
 NOOK = [  # where he woke, too narrow for a thing to lie on any side of that with its middle beside it
@@ -235,10 +235,10 @@ def test_that_a_thing_can_be_brought_to_none_of_some_ends_proves_nothing(goal: s
     situation = situation_of(replace(model, objects=(node,)), {"x": node.name})
     found = landing(facts_of(goal)[0], node, (0.0, 0.0), situation)
     assert found.some
-    refused = PlanExecutor().refused(node, found.ends, situation)
+    refused = PlanExecutor().infeasibility(node, found.ends, situation)
     assert refused is not None
     assert refused.proved
-    assert PlanExecutor().refused(node, found.must_reach(), situation) is None
+    assert PlanExecutor().infeasibility(node, found.must_reach.ends(), situation) is None
 
 
 def test_what_lies_loosely_near_to_something_is_near_to_it() -> None:

@@ -86,7 +86,7 @@ def found(
     """The way that is chosen. open_ : is it open how the lattice lies?"""
     model = replace(model, likely_spread=0.3) if open_ else model
     situation = situation_of(model)
-    answer = ManipulationOracle().find(Request(thing(model), ends, hoped=lambda: hoped or {}), situation)
+    answer = ManipulationOracle().find(Request(thing(model), ends), situation, hoped=lambda: hoped or {})
     assert isinstance(answer, ManipulationPlan)
     return answer, situation
 

@@ -1,4 +1,4 @@
-"""Pushes that tell how large a thing is, before he says that it cannot pass."""
+"""Active size estimation: pushes that measure an object before it is said to be too large."""
 
 from pathlib import Path
 
@@ -12,18 +12,18 @@ from geometry.manipulation.goals import At
 from kb.mapping.patch import Patch
 from kb.objects.subcell_extent import SubcellExtent
 from kb.world.model import Node
-from planner.skills.measure_size import MOST, SizeEstimator
+from planner.skills.measure_size import MAX_SIZE_PUSHES, SizeEstimator
 
 
 @pytest.mark.parametrize(
     ("task", "seed", "kind"),
     [
-        (7, 411011, "wide"),  # its way about is not clear where he could take it: he looks first
+        (7, 411011, "wide"),  # the floor where it could be grasped is not clear: that is looked at first
         (9, 420023, "snug"),  # by its least outline the passage lacks less, and it is the same passage
-        (7, 440003, "snug"),  # it was turned, and looks tell nothing of its sides before it is turned back
+        (7, 440003, "snug"),  # it was turned, and impressions tell nothing of its sides before it is turned back
     ],
 )
-def test_how_large_it_is_is_told_before_he_says_what_is_missing(
+def test_an_object_is_measured_before_the_missing_width_is_said(
     task: int, seed: int, kind: str, tmp_path: Path
 ) -> None:
     trial = run_trial(task, seed, Conditions(kind=kind), tmp_path)
@@ -41,7 +41,7 @@ def node_of(polygon: shapely.Polygon, turned: float, astray: bool) -> Node:
 
 
 @pytest.mark.parametrize("turned", [90.0, -90.0, 180.0, 270.0])
-def test_what_lies_astray_by_a_turn_is_turned_back_first(turned: float) -> None:
+def test_an_object_that_a_turn_brought_astray_is_turned_back_first(turned: float) -> None:
     brick = shapely.box(3.3, 4.1, 5.3, 9.1)
     ends = list(SizeEstimator().poses(node_of(brick, turned, True)))
     assert len(ends) > 1
@@ -56,9 +56,9 @@ def test_what_lies_astray_by_a_turn_is_turned_back_first(turned: float) -> None:
     assert max(far) >= 2.0
 
 
-def test_what_does_not_lie_astray_is_pushed_only_and_not_for_ever() -> None:
+def test_an_object_that_is_not_astray_is_only_pushed_and_not_for_ever() -> None:
     sizer = SizeEstimator()
-    tries = [list(sizer.poses(node_of(shapely.box(3, 4, 5, 9), 90.0, False))) for _ in range(MOST + 1)]
+    tries = [list(sizer.poses(node_of(shapely.box(3, 4, 5, 9), 90.0, False))) for _ in range(MAX_SIZE_PUSHES + 1)]
     assert all(end.pose.degrees == 0 for ends in tries for end in ends)
-    assert all(tries[:MOST])
-    assert tries[MOST] == []
+    assert all(tries[:MAX_SIZE_PUSHES])
+    assert tries[MAX_SIZE_PUSHES] == []

@@ -1,4 +1,4 @@
-"""Presses of what is carried against the walls of a corner."""
+"""Presses of a held object against the walls of a corner."""
 
 from dataclasses import replace
 
@@ -23,7 +23,7 @@ LAND = Placement({}, holds=True, presses={"across": ACROSS, "up": UP})
 
 
 def holding() -> tuple[Situation, Node]:
-    """Utak beside a thing that he holds."""
+    """Return the situation of a robot beside an object that it holds, and the object."""
     model = seen_whole(BESIDE_A_THING)
     (node,) = model.objects
     west, south, mask = node.patch
@@ -32,10 +32,11 @@ def holding() -> tuple[Situation, Node]:
 
 
 def moved(node: Node, dx: float, dy: float) -> Node:
+    """Return an object that was moved, in squares."""
     return replace(node, polygon=shapely.affinity.translate(node.polygon, dx, dy))
 
 
-def test_each_press_is_given_once_and_what_was_stopped_by_all_is_there() -> None:
+def test_each_press_is_given_once_and_an_object_stopped_by_all_is_pressed() -> None:
     situation, node = holding()
     presser = Presser()
     assert not presser.is_pressed(GOAL, node, situation)
@@ -49,22 +50,22 @@ def test_each_press_is_given_once_and_what_was_stopped_by_all_is_there() -> None
     assert presser.is_pressed(GOAL, node, situation)
 
 
-def test_what_went_the_whole_way_was_not_stopped() -> None:
+def test_an_object_that_went_the_whole_way_was_not_stopped() -> None:
     situation, node = holding()
     presser = Presser()
     presser.begin(GOAL, node, LAND, situation)
     presser.next(node, situation.model)
     assert not presser.is_pressed(GOAL, moved(node, 1.0, 0.0), situation)
-    assert not presser.is_pressed(GOAL, node, situation)  # all of it is forgotten
+    assert not presser.is_pressed(GOAL, node, situation)  # all presses are forgotten
 
 
-@pytest.mark.parametrize("change", ["let go", "another goal", "another corner", "pushed"])
-def test_presses_count_for_one_thing_in_hand_one_goal_and_one_corner(change: str) -> None:
+@pytest.mark.parametrize("change", ["released", "another goal", "another corner", "pushed"])
+def test_presses_count_for_one_held_object_one_goal_and_one_corner(change: str) -> None:
     situation, node = holding()
     presser, goal = Presser(), GOAL
     presser.begin(GOAL, node, LAND, situation)
     presser.next(node, situation.model)
-    if change == "let go":
+    if change == "released":
         situation = replace(situation, model=replace(situation.model, held=None))
     elif change == "another goal":
         (goal,) = facts_of("at(x, corner(southwest)).")
@@ -77,7 +78,7 @@ def test_presses_count_for_one_thing_in_hand_one_goal_and_one_corner(change: str
     assert not presser.is_pressed(goal, node, situation)
 
 
-def test_nothing_is_pressed_that_has_no_presses_or_is_not_held() -> None:
+def test_an_object_without_presses_or_not_held_is_not_pressed() -> None:
     situation, node = holding()
     presser = Presser()
     presser.begin(GOAL, node, replace(LAND, presses={}), situation)
@@ -90,13 +91,13 @@ def test_nothing_is_pressed_that_has_no_presses_or_is_not_held() -> None:
 @pytest.mark.parametrize(
     ("gap", "short", "ways"),
     [
-        ((0.0, 0.0), (0.0, 0.0, 0.0, 0.0), {}),  # what lies right beside these squares is near enough
+        ((0.0, 0.0), (0.0, 0.0, 0.0, 0.0), {}),  # right beside these squares is near enough
         ((0.0, 0.0), (0.0, 0.9, 0.0, 0.0), {"across": WALL + 0.9}),  # its eastern side may lie further in
         ((0.0, 0.5), (0.9, 0.0, 0.9, 0.0), {"up": WALL + 0.5}),  # others do not matter
         ((0.5, 0.5), (0.0, 0.0, 0.0, 0.5), {"across": WALL + 0.5, "up": WALL + 1.0}),
     ],
 )
-def test_towards_a_wall_that_may_be_further_than_a_square_a_thing_is_pressed(
+def test_an_object_is_pressed_towards_walls_that_may_be_further_than_a_square(
     gap: tuple[float, float], short: tuple[float, float, float, float], ways: dict[str, float]
 ) -> None:
     _, node = holding()

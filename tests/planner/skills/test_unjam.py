@@ -1,4 +1,4 @@
-"""What stands against something is freed: shapely tells whether it can go on then."""
+"""Unjamming an object that stands against something: shapely tells whether it can go on then."""
 
 import math
 from dataclasses import replace
@@ -13,8 +13,8 @@ from geometry.motion.se2 import Translate
 from kb.mapping.occupancy import FULL
 from kb.mapping.patch import covered
 from kb.world.model import Node, WorldModel
-from planner.skills.failed_grasps import MOST, FailedGrasps
-from planner.skills.unjam import BACK, ONWARD, ROOM, drawn_back
+from planner.skills.failed_grasps import MAX_RETRIES, FailedGrasps
+from planner.skills.unjam import RETREAT, ROOM_AHEAD, ROOM_TO_SPARE, retreat_push
 from tests.kb.drawings import seen_whole
 
 DOOR = ["b" * 24, *["b" + "." * 22 + "b"] * 8, "b" * 9 + "." * 6 + "b" * 9]
@@ -25,12 +25,12 @@ DOOR += [
     *["b" + "." * 22 + "b"] * 4,
     "b" * 24,
 ]
-WEST = 7  # the squares of the door are the columns 7 to 12 of the lattice, for Utak stands in the third of the drawing
+WEST = 7  # the door has the columns 7 to 12 of the map frame, for the robot stands in the third of the drawing
 NORTH = Translate(0.0, 6.0)
 
 
 def before_the_door(x: float, wide: float, inexact: bool = True) -> tuple[Node, WorldModel]:
-    """A thing that stands right below the wall with the door, its west side at x."""
+    """Return an object, `wide` squares wide, that stands right below the wall with the door, its west side at x."""
     model = seen_whole(DOOR)
     sill = min(row for row in range(1, 12) if model.view.state[model.view.locate(0, row)] == FULL)
     polygon = shapely.box(x, sill - 4.0, x + wide, sill)
@@ -56,73 +56,75 @@ def passes(polygon: shapely.Geometry, motion: Translate, walls: shapely.Geometry
 
 @given(st.floats(-0.9, 0.9).filter(lambda x: abs(x) > 0.01), st.sampled_from([3.0, 4.0, 5.0, 5.5]))
 @settings(max_examples=30, deadline=None)
-def test_it_is_drawn_back_and_so_far_aside_that_it_passes(aside: float, wide: float) -> None:
+def test_an_object_is_drawn_back_and_so_far_aside_that_it_passes(aside: float, wide: float) -> None:
     x = WEST + aside if aside < 0 else WEST + 6 - wide + aside  # over one of the jambs
     node, model = before_the_door(x, wide)
     walls = walls_of(model)
     assert not passes(node.polygon, NORTH, walls)
-    freed = drawn_back(node, NORTH, model)
-    assert freed.dy == pytest.approx(-BACK)
+    freed = retreat_push(node, NORTH, model)
+    assert freed.dy == pytest.approx(-RETREAT)
     assert math.copysign(1, freed.dx) == -math.copysign(1, aside)
     assert passes(node.polygon, freed, walls)
-    onward = Translate(0.0, BACK + ONWARD)
+    onward = Translate(0.0, RETREAT + ROOM_AHEAD)
     there = translate(node.polygon, freed.dx, freed.dy)
     if abs(aside) <= 0.85:
         assert passes(there, onward, walls)
         assert abs(freed.dx) >= abs(aside)
-        assert abs(freed.dx) <= abs(aside) + ROOM + 0.1 + 1e-9
+        assert abs(freed.dx) <= abs(aside) + ROOM_TO_SPARE + 0.1 + 1e-9
 
 
-def test_what_nothing_known_stops_is_only_drawn_back() -> None:
+def test_an_object_that_nothing_known_stops_is_only_drawn_back() -> None:
     node, model = before_the_door(WEST + 1.0, 4.0)
-    assert tuple(drawn_back(node, NORTH, model)) == pytest.approx((0.0, -BACK))
+    assert tuple(retreat_push(node, NORTH, model)) == pytest.approx((0.0, -RETREAT))
 
 
-def test_what_lies_just_where_it_is_believed_to_is_only_drawn_back() -> None:
+def test_an_object_that_is_known_exactly_is_only_drawn_back() -> None:
     node, model = before_the_door(WEST - 0.5, 4.0, inexact=False)
-    assert tuple(drawn_back(node, NORTH, model)) == pytest.approx((0.0, -BACK))
+    assert tuple(retreat_push(node, NORTH, model)) == pytest.approx((0.0, -RETREAT))
 
 
 @given(st.floats(0.0, 1.0), st.sampled_from([4.0, 4.6, 5.0]))
 @settings(max_examples=20, deadline=None)
-def test_what_is_stopped_again_where_nothing_is_known_to_be_is_brought_to_the_middle(part: float, wide: float) -> None:
+def test_an_object_that_is_stopped_again_by_nothing_known_is_brought_to_the_middle(part: float, wide: float) -> None:
     node, model = before_the_door(WEST + part * (6 - wide), wide, inexact=False)
     walls = walls_of(model)
-    freed = drawn_back(node, NORTH, model, doubted=True)
-    assert freed.dy == pytest.approx(-BACK)
+    freed = retreat_push(node, NORTH, model, doubted=True)
+    assert freed.dy == pytest.approx(-RETREAT)
     assert passes(node.polygon, freed, walls)
     offs = [abs(x - WEST - (6 - wide) / 2) for x in (node.polygon.bounds[0], node.polygon.bounds[0] + freed.dx)]
     assert offs[1] <= offs[0] / 2 + 0.1  # no further than a square aside
 
 
-def test_what_stands_in_the_open_is_drawn_back_straight_for_all_doubt() -> None:
+def test_a_doubted_object_in_the_open_is_drawn_back_straight() -> None:
     node, model = before_the_door(WEST + 1.0, 4.0)
-    assert tuple(drawn_back(node, Translate(0.0, -3.0), model, doubted=True)) == pytest.approx((0.0, BACK))
+    assert tuple(retreat_push(node, Translate(0.0, -3.0), model, doubted=True)) == pytest.approx((0.0, RETREAT))
 
 
-def test_what_is_wider_than_the_door_is_only_drawn_back() -> None:
+def test_an_object_wider_than_the_door_is_only_drawn_back() -> None:
     node, model = before_the_door(WEST - 0.5, 7.0)
-    assert tuple(drawn_back(node, NORTH, model)) == pytest.approx((0.0, -BACK))
+    assert tuple(retreat_push(node, NORTH, model)) == pytest.approx((0.0, -RETREAT))
 
 
-def test_holds_that_failed_are_tried_again_when_no_other_is_left_but_not_for_ever() -> None:
+def test_failed_grasps_are_forgiven_a_few_times() -> None:
     node, model = before_the_door(WEST, 4.0)
     failed = FailedGrasps()
     assert not failed
-    assert not failed.forgiven(node)
-    for _ in range(MOST):
-        failed.blame(node, model)
-        assert failed.of(node)
-        assert failed.forgiven(node)
-        assert not failed.of(node)
-    failed.blame(node, model)
-    assert not failed.forgiven(node)
-    assert failed.of(node)
+    assert not failed.forgive(node)
+    for _ in range(MAX_RETRIES):
+        failed.record(node, model)
+        assert failed.grasps(node)
+        assert failed.forgive(node)
+        assert not failed.grasps(node)
+    failed.record(node, model)
+    assert not failed.forgive(node)
+    assert failed.grasps(node)
 
 
 @given(st.floats(-9, 9), st.floats(-9, 9), st.floats(-5, 5), st.floats(-5, 5))
 @settings(max_examples=60, deadline=None)
-def test_so_far_on_and_so_far_to_the_left(dx: float, dy: float, onward: float, left: float) -> None:
+def test_a_steered_push_leads_so_far_on_and_so_far_to_the_left(
+    dx: float, dy: float, onward: float, left: float
+) -> None:
     length = math.hypot(dx, dy)
     assume(length > 1e-3)
     steered = Translate(dx, dy).steered(onward, left)

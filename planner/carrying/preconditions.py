@@ -1,0 +1,82 @@
+"""Preconditions of a manipulation plan: what must be seen or felt before it is begun, and what its turns cost."""
+
+from collections.abc import Iterable
+
+from kb.mapping.occupancy import OPEN
+from kb.world.model import SPACE, Node, WorldModel
+from planner.advice import See
+from planner.carrying.manipulation_oracle import ManipulationPlan
+from planner.goals.placement import SURELY
+from planner.screen.moves import is_open
+from planner.screen.projection import grown
+from planner.sights.frontiers import Viewpoint, by_touch, sight_of
+from planner.sights.viewpoints import TAKE, inspection
+from planner.situation import Situation
+
+PLACE_SLACK = 0.02  # squares by which the robot may stand elsewhere in its square before a turn needs more room; tuned
+TURN_COST_OPEN_FRAME = 2.5  # commands that a turn counts for while the orientation of the frame is open; tuned
+TURN_COST_OPEN_PLACE = 1.5  # commands that it counts for while the place within the square is open; tuned
+LONG_PLAN = 8  # commands of a plan above which everything unclear about its way is looked at first; tuned
+DETOUR_ROOM = 2  # squares beside the way of a long plan within which more room would help; tuned
+
+
+def needed_view(found: ManipulationPlan, node: Node, situation: Situation) -> See | None:
+    """Return what of the way of a plan must be seen before it is begun; None when no look tells more of it.
+
+    All that is believed floor is trusted: to be stopped now and then costs less than to look each time. To release
+    the object, walk, come back and grasp it again costs more than to be stopped, so a plan that goes on with the
+    present grasp is trusted, and so is one over hoped squares. But before a long plan, a square that takes away the
+    room for a shorter one, and may be free, is looked at too.
+    """
+    model, is_long = situation.model, found.plan.commands > LONG_PLAN
+    if found.hopes or (found.plan.goes_on and not is_long):
+        return None
+    unsure = found.swept & ~situation.cost_maps.free(0)
+    if is_long:
+        unsure |= grown(found.swept, DETOUR_ROOM) & (model.view.state == OPEN) & (model.view.probability > SPACE)
+    unsure &= ~model.mask(node.patch)
+    if not unsure.any():
+        return None
+    viewpoint = sight_of(situation.cost_maps, unsure, f"it is not clear whether the way for {node.name} is free")
+    return See(viewpoint) if len(viewpoint.squares) else None
+
+
+def touch_of_obstacle(found: ManipulationPlan, situation: Situation) -> See | None:
+    """Return where to feel the first obstacle of a plan that may be a piece of wall; None when there is none.
+
+    Parameters
+    ----------
+    found : the plan; its `aside` names the obstacles.
+    situation : what is believed.
+    """
+    things = (thing for thing in situation.model.objects if thing.name in found.aside)
+    return _first_see(by_touch(situation.cost_maps, thing) for thing in things if thing.confidence < SURELY)
+
+
+def look_at_obstacle(found: ManipulationPlan, situation: Situation) -> See | None:
+    """Return a look at the first obstacle of a plan of which squares are open; None when there is none.
+
+    Parameters
+    ----------
+    found : the plan; its `aside` names the obstacles.
+    situation : what is believed.
+    """
+    named = (situation.model.object(name) for name in found.aside)
+    unclear = (other for other in named if other is not None and other.open)
+    return _first_see(inspection(situation.cost_maps, other, chance=1.0, to=TAKE) for other in unclear)
+
+
+def turn_cost(model: WorldModel) -> float:
+    """Return how many commands a turn counts for.
+
+    A turn leaves the object askew while the orientation of the frame is open, and elsewhere than believed while the
+    place of the robot within its square is open.
+    """
+    if is_open(model):
+        return TURN_COST_OPEN_FRAME
+    return TURN_COST_OPEN_PLACE if max(model.leeway) > PLACE_SLACK else 1.0
+
+
+def _first_see(looks: Iterable[Viewpoint]) -> See | None:
+    """Return the advice to use the first of some viewpoints that has squares; None for none."""
+    return next((See(look) for look in looks if len(look.squares)), None)
