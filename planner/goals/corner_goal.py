@@ -27,7 +27,7 @@ from planner.situation import Situation
 CORNER_VIEW_RANGE = 6  # squares from a corner within which it is seen well (tuned on random worlds)
 CONTACT_GAP = 0.1  # squares between an object and walls that it touches, at most (convention)
 ROTATED_ALLOWANCE = 1.25  # squares that a rotated object may reach further from its walls than a straight one (tuned)
-WALL = 1.0  # squares: so deep in the squares in which it was seen a wall may lie (derived: one whole square)
+WALL = 1.0  # squares: so deep a wall may lie in the squares in which it was seen (derived)
 STAIR_DEPTH = math.sqrt(2)  # squares: so far behind its stairs of squares a slanted wall may be (derived: a diagonal)
 WALL_RELEASE = (
     0.4  # squares away from one slanted wall while pressed on the other: the first would stop it else (tuned)

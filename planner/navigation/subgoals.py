@@ -13,7 +13,7 @@ TENTHS = 10  # the encodings count lengths and costs in tenths of squares
 
 
 class Subgoal(NamedTuple):
-    """Squares to go to, and why.
+    """A place to go to, and the reason.
 
     Attributes
     ----------
