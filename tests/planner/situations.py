@@ -1,4 +1,4 @@
-"""Situations of world models: with their rooms and corners, and no task unless one is given; and a room for them."""
+"""Situations for tests: those of a world model with its rooms and corners, and a drawn room."""
 
 from collections.abc import Mapping
 
@@ -10,7 +10,7 @@ from planner.screen.projection import CostMaps
 from planner.situation import Situation
 
 NO_TASK = Task({}, (), ())
-BESIDE_A_THING = [  # a room, and Utak right beside the one thing in it
+BESIDE_A_THING = [  # a room, with the robot right beside the only object
     "b" * 20,
     *["b" + "." * 18 + "b"] * 6,
     "b....ggg" + "." * 11 + "b",
@@ -22,5 +22,5 @@ BESIDE_A_THING = [  # a room, and Utak right beside the one thing in it
 
 
 def situation_of(model: WorldModel, bound: Mapping[str, str] | None = None, task: Task = NO_TASK) -> Situation:
-    """What a planner is told of a world model. bound : what the task's parameters mean."""
+    """Return the situation of a world model. bound : the names of the nodes that the task's parameters mean."""
     return Situation(model, CostMaps(model), bound or {}, rooms_of(model), corners(model), task)
