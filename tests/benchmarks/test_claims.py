@@ -142,7 +142,7 @@ def test_a_child_that_breaks_is_an_error(tmp_path: Path) -> None:
 
 def test_a_run_out_of_time_tells_how_long_its_last_command_took(tmp_path: Path) -> None:
     def runner(place: Path, limits: Limits) -> str:
-        (place / child.CYCLES).write_text("1.0\n2.0\n")
+        (place / child.CYCLES_FILE).write_text("1.0\n2.0\n")
         (place / "stderr.txt").write_text("")
         return "time"
 

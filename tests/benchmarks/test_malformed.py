@@ -40,7 +40,7 @@ def test_the_campaign_sees_faults(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         while True:
             pass
 
-    monkeypatch.setattr(malformed, "PATIENCE", 0.05)
+    monkeypatch.setattr(malformed, "HANG_SECONDS", 0.05)
     monkeypatch.setattr(malformed, "read_scenario", forever)
     assert malformed.outcome(tmp_path) == "! hung"
     monkeypatch.setattr(malformed, "read_scenario", lambda folder: 1 // 0)

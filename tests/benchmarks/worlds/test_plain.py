@@ -9,7 +9,7 @@ import shapely
 from benchmarks.harness.knowing import knowing
 from benchmarks.harness.trial import Conditions, run_trial
 from benchmarks.worlds.makers import scenario
-from benchmarks.worlds.plain import GOALS
+from benchmarks.worlds.plain import PLAIN_GOALS
 from benchmarks.worlds.scenes import write
 from kb.mapping.occupancy import FREE
 from simulator.episode.episode import EpisodeLog
@@ -18,7 +18,7 @@ from simulator.scenario.scenario import read_scenario
 from simulator.scenario.settings import Settings
 
 
-@pytest.mark.parametrize("task", sorted(GOALS))
+@pytest.mark.parametrize("task", sorted(PLAIN_GOALS))
 def test_plain_worlds_are_valid_and_on_whole_squares(task: int, tmp_path: Path) -> None:
     for seed in range(4):
         world = scenario(task, seed, kind="plain")

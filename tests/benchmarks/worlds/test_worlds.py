@@ -18,7 +18,7 @@ from benchmarks.worlds.floorplans import is_simple_row
 from benchmarks.worlds.makers import MAKERS, scenario
 from benchmarks.worlds.placing import digital
 from benchmarks.worlds.scenes import RandomScenario, write
-from benchmarks.worlds.walking import CORNERS
+from benchmarks.worlds.walking import CORNER_DIRECTIONS
 
 ROOT = Path(__file__).resolve().parents[3]
 SEEDS = range(14)
@@ -114,7 +114,7 @@ def test_the_square_of_task_four_can_be_circled(seed: int) -> None:
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_corner_of_task_one_is_the_furthest_of_the_floor(seed: int) -> None:
     world = scenario(1, seed)
-    east, north = CORNERS[world.texts.goal.split("(")[2].split(")")[0]]
+    east, north = CORNER_DIRECTIONS[world.texts.goal.split("(")[2].split(")")[0]]
     angle = math.radians(world.heading)
     c, s = math.cos(angle), math.sin(angle)
     rows, columns = np.nonzero(digital(world.plan.floor, world.plan.width, world.plan.height))
